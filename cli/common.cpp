@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "cli/common.h"
+
+#include <bit>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "engine/core/error.h"
+#include "hwtlas/hw_tlas.h"
+#include "swtlas/sw_tlas.h"
+
+namespace twinray::cli {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "ray and hit files are little-endian");
+
+void apply_disabled(ContextDesc& desc) {
+    const char* disabled = std::getenv("TWINRAY_DISABLE");
+    std::istringstream names(disabled ? disabled : "");
+    for (std::string name; std::getline(names, name, ',');) {
+        if (name == "ray_query") desc.use_ray_query = false;
+        else if (name == "ray_tracing_pipeline") desc.use_ray_tracing_pipeline = false;
+        else fail("TWINRAY_DISABLE: '", name, "' is not ray_query or ray_tracing_pipeline");
+    }
+}
+
+}  // namespace
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+    command.add_option("--device", options.device, "index or part of the name (see `twinray devices`)");
+    command.add_option("--seed", options.seed, "seed of random rays")->capture_default_str();
+    command.add_option("--json", options.json, "append results to FILE, one JSON object a line");
+    command.add_flag("--quiet", options.quiet, "no progress, no warnings");
+    command.add_flag("--validation", options.validation, "run under the Vulkan validation layer");
+}
+
+std::unique_ptr<Context> make_context(const CommonOptions& options) {
+    ContextDesc desc{.device = options.device, .validation = options.validation};
+    apply_disabled(desc);
+    return std::make_unique<Context>(desc);
+}
+
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const std::string& kind) {
+    if (kind == "hw") return std::make_unique<HwTlas>(context);
+    return std::make_unique<SwTlas>(context);
+}
+
+const char* hardware_path(const Context& context) {
+    return context.facts().ray_query ? "ray query" : "ray tracing pipeline";
+}
+
+Scene load_scene_with_warnings(const std::filesystem::path& file, bool quiet) {
+    Scene scene = load_scene(file);
+    if (!quiet)
+        for (const std::string& warning : scene.warnings) std::cerr << "twinray: warning: " << warning << '\n';
+    return scene;
+}
+
+std::vector<Ray> read_rays(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    if (!in) fail("rays file '", file.string(), "' cannot be opened");
+    const auto bytes = static_cast<std::uint64_t>(in.tellg());
+    if (bytes % sizeof(Ray) != 0)
+        fail("rays file '", file.string(), "': ", bytes, " bytes is not a multiple of ", sizeof(Ray), ", the size of a ray");
+    std::vector<Ray> rays(bytes / sizeof(Ray));
+    in.seekg(0);
+    if (!in.read(reinterpret_cast<char*>(rays.data()), static_cast<std::streamsize>(bytes)))
+        fail("rays file '", file.string(), "' cannot be read");
+    return rays;
+}
+
+void write_hits(const std::filesystem::path& file, const std::vector<Hit>& hits) {
+    std::ofstream out(file, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(hits.data()), static_cast<std::streamsize>(hits.size() * sizeof(Hit)));
+    if (!out.flush()) fail("hits file '", file.string(), "' cannot be written");
+}
+
+void append_json(const std::filesystem::path& file, const nlohmann::json& record) {
+    if (file.empty()) return;
+    std::ofstream out(file, std::ios::app);
+    out << record.dump() << '\n';
+    if (!out.flush()) fail("JSON file '", file.string(), "' cannot be written");
+}
+
+nlohmann::json describe(const Context& context) {
+    const std::uint32_t api = context.facts().api_version;
+    return {{"name", context.facts().name},
+            {"driver", context.facts().driver},
+            {"api", text(VK_API_VERSION_MAJOR(api), ".", VK_API_VERSION_MINOR(api), ".", VK_API_VERSION_PATCH(api))}};
+}
+
+}  // namespace twinray::cli

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// What the subcommands share: options, making an accelerator, raw ray files, JSON lines.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/accel/abstract_accel.h"
+#include "engine/scene/scene.h"
+
+namespace twinray::cli {
+
+struct CommonOptions {
+    std::string device;
+    std::uint64_t seed = 1;
+    std::filesystem::path json;
+    bool quiet = false;
+    bool validation = false;
+};
+void add_common_options(CLI::App& command, CommonOptions& options);
+
+// A context for these options; TWINRAY_DISABLE (a comma-separated list of ray_query, ray_tracing_pipeline) leaves
+// features of the device unused.
+std::unique_ptr<Context> make_context(const CommonOptions& options);
+
+// kind: "sw" or "hw".
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const std::string& kind);
+// How the hardware accelerator traces on this context: "ray query" or "ray tracing pipeline".
+const char* hardware_path(const Context& context);
+
+// Loads and prints the warnings to stderr unless quiet.
+Scene load_scene_with_warnings(const std::filesystem::path& file, bool quiet);
+
+// Raw little-endian arrays of 32-byte records. Throws Error naming the file and the size.
+std::vector<Ray> read_rays(const std::filesystem::path& file);
+void write_hits(const std::filesystem::path& file, const std::vector<Hit>& hits);
+
+// Appends one line; does nothing for an empty path.
+void append_json(const std::filesystem::path& file, const nlohmann::json& record);
+nlohmann::json describe(const Context& context);
+
+// Each adds its subcommand; the callback sets `exit_code`.
+void add_devices(CLI::App& app, int& exit_code);
+void add_trace(CLI::App& app, int& exit_code);
+void add_verify(CLI::App& app, int& exit_code);
+
+}  // namespace twinray::cli

@@ -1,0 +1,11 @@
+# One place for how twinray's own code is compiled. GPU kernels have serial twins in C++ that must round alike, so
+# contraction is off everywhere.
+add_library(twinray_options INTERFACE)
+target_compile_features(twinray_options INTERFACE cxx_std_20)
+target_include_directories(twinray_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(twinray_options INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off>)
+if(TWINRAY_SANITIZE)
+    target_compile_options(twinray_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined)
+    target_link_options(twinray_options INTERFACE -fsanitize=address,undefined)
+endif()

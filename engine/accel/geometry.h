@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/accel/instance_record.h"
+#include "engine/core/transform.h"
+#include "engine/scene/mesh.h"
+
+namespace twinray {
+
+// A mesh as an accelerator keeps it: its own copy of what tracing needs.
+struct Geometry {
+    std::string name;
+    std::vector<vec3> positions;
+    std::vector<uvec3> triangles;
+    Bounds bounds;
+    std::size_t non_finite_triangles = 0;  // inactive: never hit, still counted
+
+    // Throws Error naming the mesh and the limit: an index out of range, more than max_triangles.
+    explicit Geometry(const MeshView& mesh);
+
+    static constexpr std::size_t max_triangles = (1u << 24) - 1;  // Vulkan's guaranteed maxPrimitiveCount
+};
+
+constexpr uint max_custom_index = (1u << 24) - 1;
+
+// The record of one instance, geometry address left 0. Throws Error naming `object` for a singular or non-finite
+// transform and a custom index of more than 24 bits.
+InstanceRecord make_instance_record(const Transform& transform, uint custom_index, std::uint8_t mask,
+                                    const std::string& object);
+Transform transform_of(const InstanceRecord& record);
+
+// A box around `bounds` under `transform`: float64 arithmetic, rounded outward.
+Bounds transformed(const Bounds& bounds, const Transform& transform);
+
+}  // namespace twinray

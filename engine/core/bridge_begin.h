@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+// No include guard on purpose: opens the vocabulary of shaders/shared/*.h for C++. Pair with bridge_end.h.
+#define FUNC inline
+#define INOUT(T) T&
+#define PRECISE
+#define REF(T) Ref<T>
+#define AT(ref, i) ref[i]
+#define BUFFER_OF(T, alignment) static_assert(sizeof(T) % (alignment) == 0)
+#define FLOATS(word) floats_of(word)
+#define UINTS(word) uints_of(word)

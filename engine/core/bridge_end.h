@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+// Closes what bridge_begin.h opened.
+#undef FUNC
+#undef INOUT
+#undef PRECISE
+#undef REF
+#undef AT
+#undef BUFFER_OF
+#undef FLOATS
+#undef UINTS

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "engine/core/context.h"
+#include "engine/core/shader_bridge.h"
+
+typedef struct VmaAllocation_T* VmaAllocation;
+
+namespace twinray {
+
+enum class Memory : std::uint8_t {
+    device,    // fastest for the GPU, not mapped
+    upload,    // host writes once, GPU reads
+    readback,  // GPU writes, host reads
+};
+
+struct BufferDesc {
+    std::string name;            // required: shows in errors, debuggers and validation messages
+    std::uint64_t bytes = 0;     // 0 is allowed and gives an empty buffer with address 0
+    Memory memory = Memory::device;
+    VkBufferUsageFlags usage = 0;     // beyond storage, transfer and device address
+    std::uint64_t alignment = 16;     // of the device address; a power of two
+};
+
+// A named range of device memory. Move-only; when destroyed it is freed after all work submitted so far.
+class Buffer {
+  public:
+    Buffer() = default;
+    // Throws Error naming the buffer and its size when memory is out.
+    Buffer(Context& context, const BufferDesc& desc);
+    ~Buffer();
+    Buffer(Buffer&& other) noexcept;
+    Buffer& operator=(Buffer&& other) noexcept;
+
+    VkBuffer handle() const { return handle_; }
+    std::uint64_t address() const { return address_; }
+    std::uint64_t bytes() const { return bytes_; }
+    const std::string& name() const { return name_; }
+    std::byte* mapped() const { return mapped_; }  // null for Memory::device
+
+    // The typed address of element `first`, as kernels take it.
+    template <class T>
+    Ref<T> ref(std::uint64_t byte_offset = 0) const {
+        return {address_ + byte_offset};
+    }
+
+  private:
+    Context* context_ = nullptr;
+    VkBuffer handle_ = VK_NULL_HANDLE;
+    VmaAllocation allocation_ = nullptr;
+    std::uint64_t address_ = 0;
+    std::uint64_t bytes_ = 0;
+    std::byte* mapped_ = nullptr;
+    std::string name_;
+};
+
+}  // namespace twinray

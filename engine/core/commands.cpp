@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/commands.h"
+
+#include <utility>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+VkCommandPool new_pool(Context& context) {
+    VkCommandPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+    info.queueFamilyIndex = context.queue_family();
+    VkCommandPool pool = VK_NULL_HANDLE;
+    vk_check(context.vk().vkCreateCommandPool(context.device(), &info, nullptr, &pool), "create a command pool");
+    return pool;
+}
+
+VkQueryPool new_timestamps(Context& context, std::uint32_t count) {
+    VkQueryPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    info.queryCount = count;
+    VkQueryPool pool = VK_NULL_HANDLE;
+    vk_check(context.vk().vkCreateQueryPool(context.device(), &info, nullptr, &pool), "create a timestamp pool");
+    return pool;
+}
+
+}  // namespace
+
+Commands::Commands(Context& context, const std::string& name) : context_(context), name_(name) {
+    const VulkanFunctions& vk = context.vk();
+    pool_ = new_pool(context);
+    queries_ = new_timestamps(context, 2 * max_timed_passes_);
+    VkCommandBufferAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    allocate.commandPool = pool_;
+    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    allocate.commandBufferCount = 1;
+    vk_check(vk.vkAllocateCommandBuffers(context.device(), &allocate, &handle_), "allocate a command buffer");
+    context.set_name(VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<std::uint64_t>(handle_), name_);
+    VkCommandBufferBeginInfo begin{};
+    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    vk_check(vk.vkBeginCommandBuffer(handle_, &begin), "begin a command buffer");
+    vk.vkCmdResetQueryPool(handle_, queries_, 0, 2 * max_timed_passes_);
+    // Earlier submissions on this queue are ordered before, but their writes need to be made visible.
+    end_pass();
+}
+
+Commands::~Commands() {
+    context_.retire([&vk = context_.vk(), device = context_.device(), pool = pool_, queries = queries_] {
+        vk.vkDestroyCommandPool(device, pool, nullptr);
+        vk.vkDestroyQueryPool(device, queries, nullptr);
+    });
+}
+
+Commands::Pass::Pass(Commands& commands, const std::string& name) : commands_(commands) { commands_.begin_pass(name); }
+
+Commands::Pass::~Pass() {
+    Commands& c = commands_;
+    const std::uint32_t index = static_cast<std::uint32_t>(c.pass_names_.size()) - 1;
+    if (index < max_timed_passes_)
+        c.context_.vk().vkCmdWriteTimestamp(c.handle_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, c.queries_, 2 * index + 1);
+    c.end_pass();
+    if (c.context_.vk().vkCmdEndDebugUtilsLabelEXT) c.context_.vk().vkCmdEndDebugUtilsLabelEXT(c.handle_);
+}
+
+void Commands::begin_pass(const std::string& name) {
+    if (in_pass_) fail("commands '", name_, "': pass '", name, "' starts inside pass '", pass_names_.back(), "'");
+    if (done_.value) fail("commands '", name_, "': pass '", name, "' recorded after submit");
+    in_pass_ = true;
+    pass_names_.push_back(name);
+    if (context_.vk().vkCmdBeginDebugUtilsLabelEXT) {
+        VkDebugUtilsLabelEXT label{};
+        label.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
+        label.pLabelName = name.c_str();
+        context_.vk().vkCmdBeginDebugUtilsLabelEXT(handle_, &label);
+    }
+    const std::uint32_t index = static_cast<std::uint32_t>(pass_names_.size()) - 1;
+    if (index < max_timed_passes_)
+        context_.vk().vkCmdWriteTimestamp(handle_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, 2 * index);
+}
+
+void Commands::end_pass() {
+    VkMemoryBarrier barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+    context_.vk().vkCmdPipelineBarrier(handle_, context_.stages(), context_.stages() | VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+                                       &barrier, 0, nullptr, 0, nullptr);
+    in_pass_ = false;
+}
+
+void Commands::upload(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data) {
+    if (data.empty()) return;
+    if (offset + data.size() > target.bytes())
+        fail("buffer '", target.name(), "': upload of ", data.size(), " bytes at ", offset, " exceeds its ",
+             target.bytes(), " bytes");
+    Buffer staging(context_, {.name = "staging for " + target.name(), .bytes = data.size(), .memory = Memory::upload});
+    std::memcpy(staging.mapped(), data.data(), data.size());
+    copy(staging, 0, target, offset, data.size());
+    keep(std::move(staging));
+}
+
+void Commands::copy(const Buffer& from, std::uint64_t from_offset, const Buffer& to, std::uint64_t to_offset,
+                    std::uint64_t bytes) {
+    if (bytes == 0) return;
+    const VkBufferCopy region{from_offset, to_offset, bytes};
+    context_.vk().vkCmdCopyBuffer(handle_, from.handle(), to.handle(), 1, &region);
+}
+
+void Commands::fill(const Buffer& target, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word) {
+    if (bytes) context_.vk().vkCmdFillBuffer(handle_, target.handle(), offset, bytes, word);
+}
+
+SyncPoint Commands::submit() {
+    vk_check(context_.vk().vkEndCommandBuffer(handle_), "end a command buffer");
+    done_ = context_.submit(handle_);
+    kept_.clear();  // retired behind the submission just made
+    return done_;
+}
+
+std::vector<PassTiming> Commands::timings() const {
+    context_.wait(done_);
+    const std::uint32_t count = std::min(static_cast<std::uint32_t>(pass_names_.size()), max_timed_passes_);
+    std::vector<std::uint64_t> stamps(2 * count);
+    if (count)
+        vk_check(context_.vk().vkGetQueryPoolResults(context_.device(), queries_, 0, 2 * count, stamps.size() * 8,
+                                                     stamps.data(), 8, VK_QUERY_RESULT_64_BIT),
+                 "read timestamps");
+    std::vector<PassTiming> timings;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double ticks = static_cast<double>(stamps[2 * i + 1] - stamps[2 * i]);
+        timings.push_back({pass_names_[i], ticks * context_.timestamp_period_ns() * 1e-6});
+    }
+    return timings;
+}
+
+std::vector<std::byte> download_bytes(Context& context, const Buffer& buffer, std::uint64_t offset,
+                                      std::uint64_t bytes) {
+    if (bytes == 0) return {};
+    if (offset + bytes > buffer.bytes())
+        fail("buffer '", buffer.name(), "': download of ", bytes, " bytes at ", offset, " exceeds its ", buffer.bytes(),
+             " bytes");
+    Buffer readback(context, {.name = "readback of " + buffer.name(), .bytes = bytes, .memory = Memory::readback});
+    Commands commands(context, "download");
+    {
+        const auto pass = commands.pass("download");
+        commands.copy(buffer, offset, readback, 0, bytes);
+    }
+    context.wait(commands.submit());
+    return {readback.mapped(), readback.mapped() + bytes};
+}
+
+}  // namespace twinray

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/buffer.h"
+
+namespace twinray {
+
+// GPU time of one named pass.
+struct PassTiming {
+    std::string name;
+    double ms = 0;
+};
+
+// One command buffer, recorded as a straight line of named passes. The end of a pass is a global memory barrier, so
+// each pass sees all that earlier passes wrote; dispatches inside one pass must not depend on each other.
+class Commands {
+  public:
+    Commands(Context& context, const std::string& name);
+    ~Commands();
+    Commands(const Commands&) = delete;
+    Commands& operator=(const Commands&) = delete;
+
+    // A scope: everything recorded while it lives belongs to it.
+    class Pass {
+      public:
+        Pass(Commands& commands, const std::string& name);
+        ~Pass();
+        Pass(const Pass&) = delete;
+        Pass& operator=(const Pass&) = delete;
+
+      private:
+        Commands& commands_;
+    };
+    [[nodiscard]] Pass pass(const std::string& name) { return Pass(*this, name); }
+    bool in_pass() const { return in_pass_; }
+
+    // Copies into `target` through a staging buffer that lives until the GPU has read it.
+    void upload(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data);
+    template <class T>
+    void upload(const Buffer& target, std::span<const T> data, std::uint64_t offset = 0) {
+        upload(target, offset, std::as_bytes(data));
+    }
+    void copy(const Buffer& from, std::uint64_t from_offset, const Buffer& to, std::uint64_t to_offset,
+              std::uint64_t bytes);
+    // bytes must be a multiple of 4.
+    void fill(const Buffer& target, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word);
+
+    // Takes ownership until the GPU has finished these commands.
+    void keep(Buffer&& temporary) { kept_.push_back(std::move(temporary)); }
+
+    // Once, at the end. The object may then be destroyed at any time.
+    SyncPoint submit();
+
+    // After submit: waits for the GPU; one entry per pass in recording order.
+    std::vector<PassTiming> timings() const;
+
+    Context& context() const { return context_; }
+    VkCommandBuffer handle() const { return handle_; }
+
+  private:
+    void begin_pass(const std::string& name);
+    void end_pass();
+
+    static constexpr std::uint32_t max_timed_passes_ = 512;  // passes beyond it are recorded but not timed
+    Context& context_;
+    std::string name_;
+    VkCommandPool pool_ = VK_NULL_HANDLE;
+    VkCommandBuffer handle_ = VK_NULL_HANDLE;
+    VkQueryPool queries_ = VK_NULL_HANDLE;
+    std::vector<std::string> pass_names_;
+    std::vector<Buffer> kept_;
+    bool in_pass_ = false;
+    SyncPoint done_;
+};
+
+// Copies `count` elements back to the host; submits and waits.
+std::vector<std::byte> download_bytes(Context& context, const Buffer& buffer, std::uint64_t offset, std::uint64_t bytes);
+
+template <class T>
+std::vector<T> download(Context& context, const Buffer& buffer, std::uint64_t count, std::uint64_t byte_offset = 0) {
+    const std::vector<std::byte> bytes = download_bytes(context, buffer, byte_offset, count * sizeof(T));
+    std::vector<T> values(count);
+    if (count) std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
+}
+
+}  // namespace twinray

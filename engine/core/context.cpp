@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/context.h"
+
+#include <cstdio>
+#include <utility>
+
+#include "engine/core/error.h"
+#include "engine/core/vma.h"
+
+namespace twinray {
+namespace {
+
+VkInstance new_instance(const VulkanFunctions& vk, const std::string& name, bool validation) {
+    VkApplicationInfo application{};
+    application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+    application.pApplicationName = name.c_str();
+    application.pEngineName = "twinray";
+    application.apiVersion = VK_API_VERSION_1_3;  // device-level 1.2 is enough; 1.3 is what the validation layer knows
+
+    const VkValidationFeatureEnableEXT synchronisation = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    VkValidationFeaturesEXT validation_features{};
+    validation_features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+    validation_features.enabledValidationFeatureCount = 1;
+    validation_features.pEnabledValidationFeatures = &synchronisation;
+
+    const char* layer = "VK_LAYER_KHRONOS_validation";
+    const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    VkInstanceCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+    info.pApplicationInfo = &application;
+    if (validation) {
+        info.pNext = &validation_features;
+        info.enabledLayerCount = 1;
+        info.ppEnabledLayerNames = &layer;
+        info.enabledExtensionCount = 2;
+        info.ppEnabledExtensionNames = extensions;
+    }
+    VkInstance instance = VK_NULL_HANDLE;
+    vk_check(vk.vkCreateInstance(&info, nullptr, &instance),
+             validation ? "create a Vulkan instance with VK_LAYER_KHRONOS_validation" : "create a Vulkan instance");
+    return instance;
+}
+
+std::vector<DeviceFacts> facts_of(const VulkanFunctions& vk, const std::vector<VkPhysicalDevice>& devices) {
+    std::vector<DeviceFacts> facts;
+    for (VkPhysicalDevice device : devices) facts.push_back(query_device_facts(vk, device));
+    return facts;
+}
+
+std::string no_device_message(const DeviceChoice& choice) {
+    std::string message = "no usable Vulkan device";
+    for (const std::string& reason : choice.rejections) message += "\n  device " + reason;
+    if (choice.rejections.empty()) message += ": the loader found none (Debian: apt-get install mesa-vulkan-drivers)";
+    return message;
+}
+
+}  // namespace
+
+Context::Context(const ContextDesc& desc) : log_(desc.log) {
+    vk_.load_global(desc.get_instance_proc_addr);
+    try {
+        create_instance(desc);
+        create_device(desc);
+        create_own_objects();
+    } catch (...) {
+        destroy_everything();
+        throw;
+    }
+}
+
+Context::Context(const AdoptedDevice& adopted)
+    : facts_(adopted.enabled),
+      log_(adopted.log),
+      owns_device_(false),
+      instance_(adopted.instance),
+      physical_device_(adopted.physical_device),
+      device_(adopted.device),
+      queue_(adopted.queue),
+      queue_family_(adopted.queue_family),
+      api_version_(adopted.api_version),
+      lock_queue_(adopted.lock_queue),
+      unlock_queue_(adopted.unlock_queue) {
+    if (!adopted.instance || !adopted.physical_device || !adopted.device || !adopted.queue ||
+        !adopted.get_instance_proc_addr)
+        fail("adopted device: instance, physical_device, device, queue and get_instance_proc_addr must all be set");
+    facts_.has_compute_queue = true;
+    if (const auto missing = missing_for_software(facts_); !missing.empty())
+        fail("adopted device '", facts_.name, "': ", missing.front(), " must be enabled on the VkDevice");
+    vk_.load_global(adopted.get_instance_proc_addr);
+    vk_.load_instance(instance_);
+    vk_.load_device(device_);
+    try {
+        create_own_objects();
+    } catch (...) {
+        destroy_everything();
+        throw;
+    }
+}
+
+Context::~Context() {
+    try {
+        wait_for_gpu();
+    } catch (const Error& error) {
+        warn(error.what());
+    }
+    destroy_everything();
+}
+
+void Context::create_instance(const ContextDesc& desc) {
+    instance_ = new_instance(vk_, desc.name, desc.validation);
+    vk_.load_instance(instance_);
+    if (!desc.validation) return;
+    VkDebugUtilsMessengerCreateInfoEXT info{};
+    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+    info.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+    info.pfnUserCallback = on_message;
+    info.pUserData = this;
+    vk_check(vk_.vkCreateDebugUtilsMessengerEXT(instance_, &info, nullptr, &messenger_), "create a debug messenger");
+}
+
+void Context::create_device(const ContextDesc& desc) {
+    const std::vector<VkPhysicalDevice> devices = physical_devices(vk_, instance_);
+    const std::vector<DeviceFacts> facts = facts_of(vk_, devices);
+    const DeviceChoice choice = choose_device(facts, desc.device);
+    if (choice.index < 0) fail(no_device_message(choice));
+    physical_device_ = devices[static_cast<std::size_t>(choice.index)];
+    facts_ = facts[static_cast<std::size_t>(choice.index)];
+    facts_.ray_query &= desc.use_ray_query;
+    facts_.ray_tracing_pipeline &= desc.use_ray_tracing_pipeline;
+    queue_family_ = static_cast<std::uint32_t>(compute_queue_family(vk_, physical_device_));
+    api_version_ = std::min(facts_.api_version, std::uint32_t{VK_API_VERSION_1_3});
+
+    const DeviceRequirements requirements(facts_);
+    const float priority = 1;
+    VkDeviceQueueCreateInfo queue{};
+    queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+    queue.queueFamilyIndex = queue_family_;
+    queue.queueCount = 1;
+    queue.pQueuePriorities = &priority;
+    VkDeviceCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+    info.pNext = requirements.features();
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queue;
+    info.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions().size());
+    info.ppEnabledExtensionNames = requirements.extensions().data();
+    vk_check(vk_.vkCreateDevice(physical_device_, &info, nullptr, &device_), "create a Vulkan device");
+    vk_.load_device(device_);
+    vk_.vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+}
+
+void Context::create_own_objects() {
+    VkPhysicalDeviceProperties2 properties{};
+    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    vk_.vkGetPhysicalDeviceProperties2(physical_device_, &properties);
+    timestamp_period_ns_ = properties.properties.limits.timestampPeriod;
+    allocator_ = create_allocator(vk_, instance_, physical_device_, device_, api_version_);
+
+    VkSemaphoreTypeCreateInfo type{};
+    type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
+    type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+    VkSemaphoreCreateInfo semaphore{};
+    semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+    semaphore.pNext = &type;
+    vk_check(vk_.vkCreateSemaphore(device_, &semaphore, nullptr, &timeline_), "create the timeline semaphore");
+    set_name(VK_OBJECT_TYPE_SEMAPHORE, reinterpret_cast<std::uint64_t>(timeline_), "twinray timeline");
+
+    VkPipelineCacheCreateInfo cache{};
+    cache.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
+    vk_check(vk_.vkCreatePipelineCache(device_, &cache, nullptr, &pipeline_cache_), "create the pipeline cache");
+}
+
+void Context::destroy_everything() noexcept {
+    for (Retired& retired : retired_) retired.destroy();
+    retired_.clear();
+    if (pipeline_cache_) vk_.vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
+    if (timeline_) vk_.vkDestroySemaphore(device_, timeline_, nullptr);
+    if (allocator_) destroy_allocator(allocator_);
+    if (!owns_device_) return;
+    if (device_) vk_.vkDestroyDevice(device_, nullptr);
+    if (messenger_) vk_.vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
+    if (instance_) vk_.vkDestroyInstance(instance_, nullptr);
+}
+
+VkPipelineStageFlags Context::stages() const {
+    VkPipelineStageFlags stages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+    if (facts_.acceleration_structure) stages |= VK_PIPELINE_STAGE_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
+    if (facts_.ray_tracing_pipeline) stages |= VK_PIPELINE_STAGE_RAY_TRACING_SHADER_BIT_KHR;
+    return stages;
+}
+
+SyncPoint Context::submit(VkCommandBuffer commands) {
+    const std::uint64_t value = submitted_ + 1;
+    VkTimelineSemaphoreSubmitInfo timeline{};
+    timeline.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
+    timeline.signalSemaphoreValueCount = 1;
+    timeline.pSignalSemaphoreValues = &value;
+    VkSubmitInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    info.pNext = &timeline;
+    info.commandBufferCount = 1;
+    info.pCommandBuffers = &commands;
+    info.signalSemaphoreCount = 1;
+    info.pSignalSemaphores = &timeline_;
+    if (lock_queue_) lock_queue_();
+    const VkResult result = vk_.vkQueueSubmit(queue_, 1, &info, VK_NULL_HANDLE);
+    if (unlock_queue_) unlock_queue_();
+    vk_check(result, "submit to the queue");
+    submitted_ = value;
+    collect();
+    return {timeline_, value};
+}
+
+bool Context::is_reached(SyncPoint point) const {
+    std::uint64_t value = 0;
+    vk_check(vk_.vkGetSemaphoreCounterValue(device_, point.semaphore, &value), "read the timeline");
+    return value >= point.value;
+}
+
+void Context::wait(SyncPoint point) const {
+    if (!point.semaphore || !point.value) return;
+    VkSemaphoreWaitInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
+    info.semaphoreCount = 1;
+    info.pSemaphores = &point.semaphore;
+    info.pValues = &point.value;
+    vk_check(vk_.vkWaitSemaphores(device_, &info, UINT64_MAX), "wait for the GPU");
+}
+
+void Context::wait_for_gpu() {
+    wait(last_submission());
+    collect();
+}
+
+void Context::retire(std::function<void()> destroy) { retired_.push_back({submitted_, std::move(destroy)}); }
+
+void Context::collect() {
+    if (retired_.empty() || !timeline_) return;
+    std::uint64_t reached = 0;
+    vk_check(vk_.vkGetSemaphoreCounterValue(device_, timeline_, &reached), "read the timeline");
+    while (!retired_.empty() && retired_.front().value <= reached) {
+        retired_.front().destroy();
+        retired_.pop_front();
+    }
+}
+
+void Context::warn(std::string_view message) const {
+    if (log_) log_(message);
+    else std::fprintf(stderr, "twinray: %.*s\n", static_cast<int>(message.size()), message.data());
+}
+
+std::vector<std::string> Context::validation_messages() const {
+    const std::lock_guard lock(messages_mutex_);
+    return messages_;
+}
+
+void Context::set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const {
+    if (!vk_.vkSetDebugUtilsObjectNameEXT || !messenger_) return;
+    VkDebugUtilsObjectNameInfoEXT info{};
+    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
+    info.objectType = type;
+    info.objectHandle = handle;
+    info.pObjectName = name.c_str();
+    vk_.vkSetDebugUtilsObjectNameEXT(device_, &info);
+}
+
+VkBool32 VKAPI_PTR Context::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                       const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+    Context& context = *static_cast<Context*>(user);
+    {
+        const std::lock_guard lock(context.messages_mutex_);
+        context.messages_.emplace_back(data->pMessage);
+    }
+    context.warn(data->pMessage);
+    return VK_FALSE;
+}
+
+std::vector<DeviceFacts> list_devices() {
+    VulkanFunctions vk;
+    vk.load_global(nullptr);
+    const VkInstance instance = new_instance(vk, "twinray devices", false);
+    vk.load_instance(instance);
+    const std::vector<DeviceFacts> facts = facts_of(vk, physical_devices(vk, instance));
+    vk.vkDestroyInstance(instance, nullptr);
+    return facts;
+}
+
+}  // namespace twinray

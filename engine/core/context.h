@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/device_facts.h"
+
+typedef struct VmaAllocator_T* VmaAllocator;
+
+namespace twinray {
+
+// A value that a timeline semaphore reaches when the work submitted up to here is done.
+struct SyncPoint {
+    VkSemaphore semaphore = VK_NULL_HANDLE;
+    std::uint64_t value = 0;
+};
+
+using Log = std::function<void(std::string_view)>;
+
+struct ContextDesc {
+    std::string name = "twinray";
+    std::string device = {};  // "" = best; an index or a part of the name, see choose_device
+    bool validation = false;  // the Khronos layer, with synchronisation validation; messages go to the log and are kept
+    bool use_ray_query = true;             // false: leave the extension disabled although the device has it
+    bool use_ray_tracing_pipeline = true;  // likewise
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;  // null: open the system's loader
+    Log log = {};                          // warnings and validation messages; empty = stderr
+};
+
+// A device that the host created and keeps. Its objects are used, never changed, waited idle on or destroyed.
+struct AdoptedDevice {
+    VkInstance instance = VK_NULL_HANDLE;
+    VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+    VkDevice device = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;      // must support compute
+    std::uint32_t queue_family = 0;
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;  // required
+    std::uint32_t api_version = 0;       // the version that the instance was created with
+    DeviceFacts enabled;                 // what was *enabled* on the device: told by the host, never guessed
+    std::function<void()> lock_queue;    // held around each submission; may be empty
+    std::function<void()> unlock_queue;
+    Log log;
+};
+
+// One device with its memory allocator, one queue and one timeline. Not copyable; used by one thread at a time.
+class Context {
+  public:
+    // Throws Error with the reason why each device was rejected if none fits.
+    explicit Context(const ContextDesc& desc = {});
+    explicit Context(const AdoptedDevice& adopted);
+    ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    const VulkanFunctions& vk() const { return vk_; }
+    VkDevice device() const { return device_; }
+    VkPhysicalDevice physical_device() const { return physical_device_; }
+    VmaAllocator allocator() const { return allocator_; }
+    VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
+    std::uint32_t queue_family() const { return queue_family_; }
+    const DeviceFacts& facts() const { return facts_; }  // what is enabled, not merely supported
+    float timestamp_period_ns() const { return timestamp_period_ns_; }
+
+    // Stages and accesses of everything that twinray records; used by its barriers.
+    VkPipelineStageFlags stages() const;
+
+    // Submits one primary command buffer; returns the point at which it is done. Frees what has been passed.
+    SyncPoint submit(VkCommandBuffer commands);
+    SyncPoint last_submission() const { return {timeline_, submitted_}; }
+    bool is_reached(SyncPoint point) const;
+    void wait(SyncPoint point) const;  // throws Error on device loss
+    void wait_for_gpu();               // everything submitted so far; then frees what was retired
+
+    // Runs `destroy` when everything submitted so far is done.
+    void retire(std::function<void()> destroy);
+
+    void warn(std::string_view message) const;
+    // Messages of the validation layer so far.
+    std::vector<std::string> validation_messages() const;
+    void set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const;
+
+  private:
+    struct Retired {
+        std::uint64_t value;
+        std::function<void()> destroy;
+    };
+    static VkBool32 VKAPI_PTR on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                         const VkDebugUtilsMessengerCallbackDataEXT*, void*);
+    void create_instance(const ContextDesc& desc);
+    void create_device(const ContextDesc& desc);
+    void create_own_objects();
+    void collect();
+    void destroy_everything() noexcept;
+
+    VulkanFunctions vk_;
+    DeviceFacts facts_;
+    Log log_;
+    bool owns_device_ = true;
+    VkInstance instance_ = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    VkPhysicalDevice physical_device_ = VK_NULL_HANDLE;
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkQueue queue_ = VK_NULL_HANDLE;
+    std::uint32_t queue_family_ = 0;
+    std::uint32_t api_version_ = VK_API_VERSION_1_2;
+    std::function<void()> lock_queue_, unlock_queue_;
+    VmaAllocator allocator_ = nullptr;
+    VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
+    VkSemaphore timeline_ = VK_NULL_HANDLE;
+    std::uint64_t submitted_ = 0;
+    float timestamp_period_ns_ = 1;
+    std::deque<Retired> retired_;
+    mutable std::mutex messages_mutex_;
+    std::vector<std::string> messages_;
+};
+
+// Every Vulkan device with what it offers. Throws Error when there is no Vulkan at all.
+std::vector<DeviceFacts> list_devices();
+
+}  // namespace twinray

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/device_choice.h"
+
+#include <algorithm>
+#include <cctype>
+#include <tuple>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+constexpr std::uint32_t version_1_2 = (1u << 22) | (2u << 12);
+
+std::string lower(std::string s) {
+    std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return s;
+}
+
+bool is_index(const std::string& request) {
+    return !request.empty() && std::all_of(request.begin(), request.end(), [](unsigned char c) { return std::isdigit(c); });
+}
+
+bool is_requested(const DeviceFacts& device, std::size_t index, const std::string& request) {
+    if (request.empty()) return true;
+    if (is_index(request)) return std::to_string(index) == request;
+    return lower(device.name).find(lower(request)) != std::string::npos;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+    std::string all;
+    for (const std::string& part : parts) all += (all.empty() ? "" : ", ") + part;
+    return all;
+}
+
+// Larger is better.
+auto rank(const DeviceFacts& device) {
+    return std::tuple(missing_for_hardware(device).empty(), -static_cast<int>(device.kind));
+}
+
+}  // namespace
+
+std::vector<std::string> missing_for_software(const DeviceFacts& device) {
+    std::vector<std::string> missing;
+    if (device.api_version < version_1_2) missing.push_back("Vulkan 1.2");
+    if (!device.has_compute_queue) missing.push_back("a compute queue");
+    if (!device.timeline_semaphore) missing.push_back("timelineSemaphore");
+    if (!device.buffer_device_address) missing.push_back("bufferDeviceAddress");
+    if (!device.scalar_block_layout) missing.push_back("scalarBlockLayout");
+    if (!device.shader_int64) missing.push_back("shaderInt64");
+    return missing;
+}
+
+std::vector<std::string> missing_for_hardware(const DeviceFacts& device) {
+    std::vector<std::string> missing = missing_for_software(device);
+    if (!device.acceleration_structure) missing.push_back("VK_KHR_acceleration_structure");
+    if (!device.ray_query && !device.ray_tracing_pipeline)
+        missing.push_back("VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline");
+    return missing;
+}
+
+DeviceChoice choose_device(std::span<const DeviceFacts> devices, const std::string& request) {
+    DeviceChoice choice;
+    std::vector<std::string> reasons(devices.size());
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        const std::vector<std::string> missing = missing_for_software(devices[i]);
+        if (!is_requested(devices[i], i, request)) reasons[i] = text("does not match the request '", request, "'");
+        else if (!missing.empty()) reasons[i] = "lacks " + joined(missing);
+        else if (choice.index < 0 || rank(devices[i]) > rank(devices[static_cast<std::size_t>(choice.index)]))
+            choice.index = static_cast<int>(i);
+    }
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        if (static_cast<int>(i) == choice.index) continue;
+        if (reasons[i].empty()) reasons[i] = "ranks behind '" + devices[static_cast<std::size_t>(choice.index)].name + "'";
+        choice.rejections.push_back(text(i, " '", devices[i].name, "': ", reasons[i]));
+    }
+    return choice;
+}
+
+const char* name_of(DeviceKind kind) {
+    switch (kind) {
+        case DeviceKind::discrete: return "discrete GPU";
+        case DeviceKind::integrated: return "integrated GPU";
+        case DeviceKind::virtual_gpu: return "virtual GPU";
+        case DeviceKind::cpu: return "CPU";
+        case DeviceKind::other: break;
+    }
+    return "other";
+}
+
+}  // namespace twinray

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Which device to use, and why not the others: plain data in, plain data out, no Vulkan calls.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace twinray {
+
+enum class DeviceKind : std::uint8_t { discrete, integrated, virtual_gpu, cpu, other };
+
+// What twinray wants to know of a device; filled by query_device_facts.
+struct DeviceFacts {
+    std::string name;
+    std::string driver;
+    DeviceKind kind = DeviceKind::other;
+    std::uint32_t api_version = 0;  // as VK_MAKE_API_VERSION
+    bool has_compute_queue = false;
+    bool timeline_semaphore = false;
+    bool buffer_device_address = false;
+    bool scalar_block_layout = false;
+    bool shader_int64 = false;
+    bool shader_float64 = false;
+    bool acceleration_structure = false;
+    bool ray_query = false;
+    bool ray_tracing_pipeline = false;
+    // The driver builds in input order, without spatial sorting (Mesa's lavapipe): presorted input pays.
+    bool builds_in_input_order = false;
+};
+
+// What the software accelerator and everything else of twinray needs and this device lacks, one phrase each.
+std::vector<std::string> missing_for_software(const DeviceFacts& device);
+// The same for the hardware accelerator (includes what software needs).
+std::vector<std::string> missing_for_hardware(const DeviceFacts& device);
+
+struct DeviceChoice {
+    int index = -1;                        // into the given span; -1 = none fits
+    std::vector<std::string> rejections;   // one sentence for each device that was not chosen
+};
+
+// request: "" = best (hardware ray tracing first, then discrete > integrated > virtual > cpu, then order),
+// a decimal index, or a part of the device's name (case-insensitive).
+DeviceChoice choose_device(std::span<const DeviceFacts> devices, const std::string& request);
+
+const char* name_of(DeviceKind kind);
+
+}  // namespace twinray

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace twinray {
+
+// The one exception of the library. Its text names the object, the value and the limit that it broke,
+// or, for failures of the world (no device, out of memory, bad file), what to do.
+class Error : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+// Joins values into one string: text("mesh '", name, "': index ", i, " of ", n).
+template <class... Parts>
+std::string text(const Parts&... parts) {
+    std::ostringstream out;
+    (out << ... << parts);
+    return out.str();
+}
+
+template <class... Parts>
+[[noreturn]] void fail(const Parts&... parts) {
+    throw Error(text(parts...));
+}
+
+}  // namespace twinray

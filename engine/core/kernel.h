@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/commands.h"
+
+namespace twinray {
+
+struct SpecializationConstant {
+    std::uint32_t id;
+    std::uint32_t value;  // VkBool32 for bools
+};
+
+struct KernelDesc {
+    std::string name = {};                 // folder_stem: the label, the timing and the twin have this name too
+    std::span<const std::uint32_t> spirv;  // embedded at build time
+    std::uint32_t group_size = 64;         // local_size_x of the shader
+    std::vector<SpecializationConstant> constants = {};
+};
+
+// A compute pipeline whose only input is one push-constant block. Use Kernel<Args>.
+class ComputePipeline {
+  public:
+    ComputePipeline(Context& context, const KernelDesc& desc, std::uint32_t args_bytes);
+    ~ComputePipeline();
+    ComputePipeline(const ComputePipeline&) = delete;
+    ComputePipeline& operator=(const ComputePipeline&) = delete;
+
+    void dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count) const;
+
+    const std::string& name() const { return name_; }
+    std::uint32_t group_size() const { return group_size_; }
+
+  private:
+    Context& context_;
+    std::string name_;
+    std::uint32_t group_size_;
+    std::uint32_t args_bytes_;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE;
+    VkPipeline pipeline_ = VK_NULL_HANDLE;
+};
+
+// A compute kernel that takes one Args struct, shared with its GLSL, as push constants (128 bytes are guaranteed).
+template <class Args>
+class Kernel {
+    static_assert(sizeof(Args) <= 128 && sizeof(Args) % 4 == 0);
+
+  public:
+    Kernel(Context& context, const KernelDesc& desc) : pipeline_(context, desc, sizeof(Args)) {}
+
+    // Runs at least `count` invocations; the shader must ignore global_index() >= count. Opens a pass with the
+    // kernel's name unless one is open.
+    void dispatch(Commands& commands, const Args& args, std::uint64_t count) const {
+        dispatch_groups(commands, args, (count + pipeline_.group_size() - 1) / pipeline_.group_size());
+    }
+    void dispatch_groups(Commands& commands, const Args& args, std::uint64_t group_count) const {
+        pipeline_.dispatch_groups(commands, &args, group_count);
+    }
+    const std::string& name() const { return pipeline_.name(); }
+
+  private:
+    ComputePipeline pipeline_;
+};
+
+// Shared with the ray tracing pipeline.
+VkShaderModule create_shader_module(Context& context, std::span<const std::uint32_t> spirv, const std::string& name);
+VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlags stages, std::uint32_t bytes);
+
+}  // namespace twinray

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/radix_sort.h"
+
+#include <utility>
+
+#include "engine_sort_histogram.spv.h"
+#include "engine_sort_scan.spv.h"
+#include "engine_sort_scatter.spv.h"
+
+namespace twinray {
+namespace {
+
+std::uint64_t block_count(std::uint64_t count) { return (count + SORT_BLOCK - 1) / SORT_BLOCK; }
+
+}  // namespace
+
+RadixSort::RadixSort(Context& context)
+    : histogram_(context, {.name = "sort_histogram", .spirv = engine_sort_histogram_spirv, .group_size = SORT_DIGITS}),
+      scan_(context, {.name = "sort_scan", .spirv = engine_sort_scan_spirv, .group_size = SCAN_GROUP}),
+      scatter_(context, {.name = "sort_scatter", .spirv = engine_sort_scatter_spirv, .group_size = SORT_DIGITS}) {}
+
+std::uint64_t RadixSort::counter_bytes(std::uint64_t count) { return block_count(count) * SORT_DIGITS * sizeof(uint); }
+
+RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
+                                   std::uint32_t bits) const {
+    if (count < 2) return pairs;
+    const auto blocks = static_cast<uint>(block_count(count));
+    for (uint shift = 0; shift < bits; shift += SORT_DIGIT_BITS) {
+        const SortArgs args{pairs.keys, pairs.values, spare.keys, spare.values, counters, count, shift, blocks, 0};
+        histogram_.dispatch_groups(commands, args, blocks);
+        scan_.dispatch_groups(commands, {counters, blocks * SORT_DIGITS, 0}, 1);
+        scatter_.dispatch_groups(commands, args, blocks);
+        std::swap(pairs, spare);
+    }
+    return pairs;
+}
+
+}  // namespace twinray

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "engine/core/kernel.h"
+#include "engine/core/sort_args.h"
+
+namespace twinray {
+
+// Sorts (key, value) pairs of uints on the GPU, stable, by the low bits of the key.
+class RadixSort {
+  public:
+    explicit RadixSort(Context& context);
+
+    struct Pairs {
+        Uints keys;
+        Uints values;
+    };
+    // Bytes of the counter buffer that record() needs for `count` pairs.
+    static std::uint64_t counter_bytes(std::uint64_t count);
+
+    // Sorts `pairs` by the lowest `bits` bits of the key, using `spare` as the other half of the ping-pong; returns
+    // which of the two holds the result.
+    Pairs record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
+                 std::uint32_t bits) const;
+
+  private:
+    Kernel<SortArgs> histogram_;
+    Kernel<ScanArgs> scan_;
+    Kernel<SortArgs> scatter_;
+};
+
+}  // namespace twinray

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// The C++ side of the bridge: what shaders/shared/*.h need to compile as C++ in namespace twinray.
+// Include this, then open namespace twinray and include shared headers between
+// engine/core/bridge_begin.h and engine/core/bridge_end.h.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include <glm/glm.hpp>
+
+namespace twinray {
+
+using uint = std::uint32_t;
+using glm::abs;
+using glm::cross;
+using glm::dot;
+using glm::floor;
+using glm::ivec3;
+using glm::max;
+using glm::min;
+using glm::uvec2;
+using glm::uvec3;
+using glm::uvec4;
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+using std::uint64_t;
+
+inline float uintBitsToFloat(uint bits) { return std::bit_cast<float>(bits); }
+inline uint floatBitsToUint(float value) { return std::bit_cast<uint>(value); }
+
+// Eight bytes: a device address when pushed to the GPU, a host address in the serial CPU twins.
+template <class T>
+struct Ref {
+    std::uint64_t address = 0;
+
+    T& operator[](std::size_t i) const { return reinterpret_cast<T*>(address)[i]; }
+    explicit operator std::uint64_t() const { return address; }
+    static Ref to(const T* host) { return {reinterpret_cast<std::uint64_t>(host)}; }
+};
+
+using Words64 = Ref<std::uint64_t>;
+using Floats = Ref<float>;
+using Uints = Ref<uint>;
+
+inline vec2 floats_of(std::uint64_t word) {
+    return {uintBitsToFloat(static_cast<uint>(word)), uintBitsToFloat(static_cast<uint>(word >> 32))};
+}
+inline uvec2 uints_of(std::uint64_t word) {
+    return {static_cast<uint>(word), static_cast<uint>(word >> 32)};
+}
+
+}  // namespace twinray

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/transform.h"
+
+#include <cmath>
+
+#include <glm/gtc/matrix_access.hpp>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+using dmat3 = glm::dmat3;  // column-major: m[column][row]
+
+dmat3 linear_part(const Transform& t) {
+    dmat3 m;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) m[column][row] = t.rows[row][column];
+    return m;
+}
+
+glm::dvec3 offset(const Transform& t) { return {t.rows[0].w, t.rows[1].w, t.rows[2].w}; }
+
+Transform rounded(const dmat3& linear, const glm::dvec3& offset) {
+    Transform t;
+    for (int row = 0; row < 3; ++row)
+        t.rows[row] = vec4(linear[0][row], linear[1][row], linear[2][row], offset[row]);
+    return t;
+}
+
+}  // namespace
+
+Transform Transform::translation(vec3 offset) {
+    Transform t;
+    for (int row = 0; row < 3; ++row) t.rows[row].w = offset[row];
+    return t;
+}
+
+Transform Transform::scaling(vec3 factors) {
+    Transform t;
+    for (int row = 0; row < 3; ++row) t.rows[row][row] = factors[row];
+    return t;
+}
+
+Transform Transform::of(const glm::mat4& matrix) {
+    if (glm::row(matrix, 3) != vec4(0, 0, 0, 1)) fail("transform: the fourth row of the matrix must be 0 0 0 1");
+    return {{glm::row(matrix, 0), glm::row(matrix, 1), glm::row(matrix, 2)}};
+}
+
+vec3 transform_point(const Transform& transform, vec3 point) {
+    return vec3(linear_part(transform) * glm::dvec3(point) + offset(transform));
+}
+
+vec3 transform_vector(const Transform& transform, vec3 vector) {
+    return vec3(linear_part(transform) * glm::dvec3(vector));
+}
+
+Transform operator*(const Transform& a, const Transform& b) {
+    return rounded(linear_part(a) * linear_part(b), linear_part(a) * offset(b) + offset(a));
+}
+
+double determinant(const Transform& transform) { return glm::determinant(linear_part(transform)); }
+
+Transform inverse(const Transform& transform, const char* object) {
+    for (const vec4& row : transform.rows)
+        for (int column = 0; column < 4; ++column)
+            if (!std::isfinite(row[column])) fail(object, ": transform entry ", row[column], " is not finite");
+    const double det = determinant(transform);
+    if (det == 0.0 || !std::isfinite(det))
+        fail(object, ": transform is singular (determinant ", det, "; it must be finite and not 0)");
+    const dmat3 linear = glm::inverse(linear_part(transform));
+    return rounded(linear, -(linear * offset(transform)));
+}
+
+}  // namespace twinray

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/vulkan_functions.h"
+
+#include <dlfcn.h>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+PFN_vkGetInstanceProcAddr open_system_loader() {
+    // Kept open for the life of the process: drivers and layers do not survive being unloaded.
+    void* loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
+    if (!loader) fail("no Vulkan loader: libvulkan.so.1 cannot be opened (Debian: apt-get install libvulkan1)");
+    return reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(loader, "vkGetInstanceProcAddr"));
+}
+
+}  // namespace
+
+void VulkanFunctions::load_global(PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
+    vkGetInstanceProcAddr = get_instance_proc_addr ? get_instance_proc_addr : open_system_loader();
+#define TWINRAY_LOAD(name) name = reinterpret_cast<PFN_##name>(vkGetInstanceProcAddr(nullptr, #name));
+    TWINRAY_GLOBAL_FUNCTIONS(TWINRAY_LOAD)
+#undef TWINRAY_LOAD
+}
+
+void VulkanFunctions::load_instance(VkInstance instance) {
+#define TWINRAY_LOAD(name) name = reinterpret_cast<PFN_##name>(vkGetInstanceProcAddr(instance, #name));
+    TWINRAY_INSTANCE_FUNCTIONS(TWINRAY_LOAD)
+    TWINRAY_DEBUG_FUNCTIONS(TWINRAY_LOAD)
+#undef TWINRAY_LOAD
+}
+
+void VulkanFunctions::load_device(VkDevice device) {
+#define TWINRAY_LOAD(name) name = reinterpret_cast<PFN_##name>(vkGetDeviceProcAddr(device, #name));
+    TWINRAY_DEVICE_FUNCTIONS(TWINRAY_LOAD)
+    TWINRAY_RAY_TRACING_FUNCTIONS(TWINRAY_LOAD)
+#undef TWINRAY_LOAD
+}
+
+void vk_check(VkResult result, const char* action) {
+    if (result != VK_SUCCESS) fail(action, ": ", name_of(result));
+}
+
+const char* name_of(VkResult result) {
+    switch (result) {
+        case VK_SUCCESS: return "success";
+        case VK_ERROR_OUT_OF_HOST_MEMORY: return "out of host memory";
+        case VK_ERROR_OUT_OF_DEVICE_MEMORY: return "out of device memory; use a smaller scene or batch";
+        case VK_ERROR_INITIALIZATION_FAILED: return "the driver could not initialise";
+        case VK_ERROR_DEVICE_LOST: return "the device was lost; create a new context";
+        case VK_ERROR_LAYER_NOT_PRESENT: return "a layer is not installed";
+        case VK_ERROR_EXTENSION_NOT_PRESENT: return "an extension is not supported";
+        case VK_ERROR_FEATURE_NOT_PRESENT: return "a feature is not supported";
+        case VK_ERROR_INCOMPATIBLE_DRIVER: return "no compatible Vulkan driver (Debian: apt-get install mesa-vulkan-drivers)";
+        case VK_ERROR_TOO_MANY_OBJECTS: return "too many objects";
+        case VK_TIMEOUT: return "timed out";
+        default: return "Vulkan reported an unexpected result";
+    }
+}
+
+}  // namespace twinray

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// Every Vulkan function that twinray calls, by level. The library defines no global vk* symbol: these names become
+// members of one table per device, so that a host may link the Vulkan loader, volk or another copy beside it.
+#pragma once
+
+#define VK_NO_PROTOTYPES
+#include <vulkan/vulkan_core.h>
+
+#define TWINRAY_GLOBAL_FUNCTIONS(F) \
+    F(vkCreateInstance)             \
+    F(vkEnumerateInstanceExtensionProperties) \
+    F(vkEnumerateInstanceLayerProperties)
+
+#define TWINRAY_INSTANCE_FUNCTIONS(F)        \
+    F(vkDestroyInstance)                     \
+    F(vkEnumeratePhysicalDevices)            \
+    F(vkEnumerateDeviceExtensionProperties)  \
+    F(vkGetPhysicalDeviceProperties2)        \
+    F(vkGetPhysicalDeviceFeatures2)          \
+    F(vkGetPhysicalDeviceQueueFamilyProperties) \
+    F(vkGetPhysicalDeviceMemoryProperties)   \
+    F(vkCreateDevice)                        \
+    F(vkGetDeviceProcAddr)
+
+// Present only with VK_EXT_debug_utils.
+#define TWINRAY_DEBUG_FUNCTIONS(F)      \
+    F(vkCreateDebugUtilsMessengerEXT)   \
+    F(vkDestroyDebugUtilsMessengerEXT)  \
+    F(vkSetDebugUtilsObjectNameEXT)     \
+    F(vkCmdBeginDebugUtilsLabelEXT)     \
+    F(vkCmdEndDebugUtilsLabelEXT)
+
+#define TWINRAY_DEVICE_FUNCTIONS(F)     \
+    F(vkDestroyDevice)                  \
+    F(vkGetDeviceQueue)                 \
+    F(vkQueueSubmit)                    \
+    F(vkCreateCommandPool)              \
+    F(vkDestroyCommandPool)             \
+    F(vkAllocateCommandBuffers)         \
+    F(vkBeginCommandBuffer)             \
+    F(vkEndCommandBuffer)               \
+    F(vkCreateSemaphore)                \
+    F(vkDestroySemaphore)               \
+    F(vkWaitSemaphores)                 \
+    F(vkGetSemaphoreCounterValue)       \
+    F(vkCreateQueryPool)                \
+    F(vkDestroyQueryPool)               \
+    F(vkGetQueryPoolResults)            \
+    F(vkCmdResetQueryPool)              \
+    F(vkCmdWriteTimestamp)              \
+    F(vkCreateShaderModule)             \
+    F(vkDestroyShaderModule)            \
+    F(vkCreatePipelineCache)            \
+    F(vkDestroyPipelineCache)           \
+    F(vkCreatePipelineLayout)           \
+    F(vkDestroyPipelineLayout)          \
+    F(vkCreateComputePipelines)         \
+    F(vkDestroyPipeline)                \
+    F(vkCmdBindPipeline)                \
+    F(vkCmdPushConstants)               \
+    F(vkCmdDispatch)                    \
+    F(vkCmdPipelineBarrier)             \
+    F(vkCmdCopyBuffer)                  \
+    F(vkCmdFillBuffer)                  \
+    F(vkGetBufferDeviceAddress)
+
+// Present only with VK_KHR_acceleration_structure and VK_KHR_ray_tracing_pipeline.
+#define TWINRAY_RAY_TRACING_FUNCTIONS(F)               \
+    F(vkCreateAccelerationStructureKHR)                \
+    F(vkDestroyAccelerationStructureKHR)               \
+    F(vkGetAccelerationStructureBuildSizesKHR)         \
+    F(vkGetAccelerationStructureDeviceAddressKHR)      \
+    F(vkCmdBuildAccelerationStructuresKHR)             \
+    F(vkCreateRayTracingPipelinesKHR)                  \
+    F(vkGetRayTracingShaderGroupHandlesKHR)            \
+    F(vkCmdTraceRaysKHR)
+
+namespace twinray {
+
+// Filled from one vkGetInstanceProcAddr; a function of an extension that is not enabled stays null.
+struct VulkanFunctions {
+    PFN_vkGetInstanceProcAddr vkGetInstanceProcAddr = nullptr;
+#define TWINRAY_MEMBER(name) PFN_##name name = nullptr;
+    TWINRAY_GLOBAL_FUNCTIONS(TWINRAY_MEMBER)
+    TWINRAY_INSTANCE_FUNCTIONS(TWINRAY_MEMBER)
+    TWINRAY_DEBUG_FUNCTIONS(TWINRAY_MEMBER)
+    TWINRAY_DEVICE_FUNCTIONS(TWINRAY_MEMBER)
+    TWINRAY_RAY_TRACING_FUNCTIONS(TWINRAY_MEMBER)
+#undef TWINRAY_MEMBER
+
+    // get_instance_proc_addr null: opens the system's Vulkan loader. Throws Error if there is none.
+    void load_global(PFN_vkGetInstanceProcAddr get_instance_proc_addr);
+    void load_instance(VkInstance instance);
+    void load_device(VkDevice device);
+};
+
+// Throws Error naming the action and the VkResult unless result is VK_SUCCESS.
+void vk_check(VkResult result, const char* action);
+const char* name_of(VkResult result);
+
+}  // namespace twinray

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Files, compressed files and text encodings as bytes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace twinray {
+
+using Bytes = std::vector<std::uint8_t>;
+
+// The whole file. Throws Error naming it when it is missing, not a regular file or cannot be read.
+Bytes read_file(const std::filesystem::path& file);
+
+// Unpacks gzip data; `object` names its source in errors (damaged, truncated, more than 4 GiB unpacked).
+Bytes unpack_gzip(const Bytes& packed, const std::string& object);
+
+// Base64 as data URIs use it (padding optional); nothing when a character is foreign to it.
+std::optional<Bytes> decode_base64(std::string_view base64);
+
+// %20 -> space and so on; a percent sign without two hexadecimal digits stays as it is.
+std::string decode_percent(std::string_view uri);
+
+// The extension with its dot, in lower case.
+std::string lower_suffix(const std::filesystem::path& file);
+
+}  // namespace twinray

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include "engine/scene/gltf_accessor.h"
+#include "engine/scene/gltf_nodes.h"
+
+namespace twinray {
+namespace {
+
+// The matrices of EXT_mesh_gpu_instancing, or one identity.
+class Placements {
+  public:
+    Placements(const GltfFile& file, const GltfNode& node) : file_(file), name_(node.name) {
+        const auto& extensions = file.model.nodes[node.index].extensions;
+        const tinygltf::Value* extension = find_extension(extensions, "EXT_mesh_gpu_instancing");
+        const tinygltf::Value* attributes = extension ? find_member(*extension, "attributes") : nullptr;
+        if (!attributes) return;
+        translations_ = read<3>(*attributes, "TRANSLATION");
+        rotations_ = read<4>(*attributes, "ROTATION");
+        scales_ = read<3>(*attributes, "SCALE");
+    }
+
+    std::size_t count() const { return count_.value_or(1); }
+    bool is_instanced() const { return count_.has_value(); }
+
+    glm::dmat4 matrix(std::size_t i) const {
+        return matrix_of(file_, entry(translations_, i), entry(rotations_, i), entry(scales_, i), text(name_, " instance ", i));
+    }
+
+  private:
+    template <int N>
+    std::vector<glm::vec<N, float>> read(const tinygltf::Value& attributes, const char* name) {
+        const int accessor = index_of(attributes, name);
+        if (accessor < 0) return {};
+        auto values = read_vectors<N>(file_, accessor, text(name_, " EXT_mesh_gpu_instancing ", name));
+        if (count_ && *count_ != values.size())
+            file_.fail(name_, ": EXT_mesh_gpu_instancing ", name, " has ", values.size(), " elements, others have ", *count_);
+        count_ = values.size();
+        return values;
+    }
+
+    template <class Vector>
+    static std::vector<double> entry(const std::vector<Vector>& values, std::size_t i) {
+        std::vector<double> numbers;
+        if (!values.empty())
+            for (int k = 0; k < Vector::length(); ++k) numbers.push_back(values[i][k]);
+        return numbers;
+    }
+
+    const GltfFile& file_;
+    std::string name_;
+    std::optional<std::size_t> count_;
+    std::vector<vec3> translations_, scales_;
+    std::vector<vec4> rotations_;
+};
+
+void add_instances(GltfFile& file, const GltfNode& node, std::vector<Instance>& instances) {
+    const tinygltf::Node& source = file.model.nodes[node.index];
+    if (source.mesh < 0 || std::size_t(source.mesh) >= file.model.meshes.size())
+        file.fail(node.name, ": mesh ", source.mesh, " does not exist; the file has ", file.model.meshes.size());
+    const Placements placements(file, node);
+    std::size_t singular = 0;
+    for (std::size_t i = 0; i < placements.count(); ++i) {
+        const std::string object = placements.is_instanced() ? text(node.name, " instance ", i) : node.name;
+        Instance instance;
+        instance.name = source.name.empty() ? object : source.name;
+        instance.mesh = static_cast<uint>(source.mesh);
+        instance.transform = rounded_transform(file, node.world * placements.matrix(i), object);
+        if (determinant(instance.transform) == 0)
+            ++singular;
+        else
+            instances.push_back(std::move(instance));
+    }
+    if (singular) file.warn(text(node.name, ": skipped ", singular, " of ", placements.count(),
+                                 " placements, whose transform flattens the mesh (determinant 0)"));
+}
+
+}  // namespace
+
+std::vector<Instance> read_gltf_instances(GltfFile& file, const std::vector<GltfNode>& nodes) {
+    std::vector<Instance> instances;
+    for (const GltfNode& node : nodes)
+        if (file.model.nodes[node.index].mesh != -1) add_instances(file, node, instances);
+    return instances;
+}
+
+}  // namespace twinray

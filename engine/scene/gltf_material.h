@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "engine/scene/gltf_file.h"
+#include "engine/scene/scene.h"
+
+namespace twinray {
+
+// Fills scene.materials, one per glTF material in the same order, and scene.images with those that they use,
+// each decoded once. An image that cannot be read becomes a checkerboard, with a warning.
+void read_gltf_materials(GltfFile& file, Scene& scene);
+
+}  // namespace twinray

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "engine/scene/gltf_file.h"
+#include "engine/scene/scene.h"
+
+namespace twinray {
+
+// Turns glTF texture references into Textures, decoding each image on its first use.
+class GltfTextures {
+  public:
+    GltfTextures(GltfFile& file, std::vector<Image>& images);
+
+    // `object` names the user in errors and warnings: "material 3 'wood' baseColorTexture".
+    Texture read(int texture, int texcoord, const tinygltf::ExtensionMap& extensions, const std::string& object);
+
+    // A reference inside an extension: member `key` of `parent`; no texture when it is absent.
+    Texture read(const tinygltf::Value& parent, const std::string& key, const std::string& object);
+
+  private:
+    std::int32_t image_of(const tinygltf::Texture& texture, const std::string& object);
+    Image decode(std::size_t image) const;
+    void set_wrap(Texture& result, int sampler, const std::string& object) const;
+
+    GltfFile& file_;
+    std::vector<Image>& images_;
+    std::vector<std::int32_t> decoded_;  // glTF image -> index into images_, -1 = not yet
+};
+
+}  // namespace twinray

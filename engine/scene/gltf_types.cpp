@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Members of a wrong type, which tinygltf passes over in silence and a scene would then lack.
+#include <map>
+#include <string_view>
+
+#include "engine/scene/gltf_json.h"
+
+namespace twinray {
+namespace {
+
+using nlohmann::json;
+
+enum class Kind { index, number, indices, numbers, object, objects };
+
+bool is_list(const json& value, bool (*accepts)(const json&)) {
+    return value.is_array() && std::ranges::all_of(value, accepts);
+}
+
+bool is(Kind kind, const json& value) {
+    switch (kind) {
+        case Kind::index: return value.is_number_unsigned();
+        case Kind::number: return value.is_number();
+        case Kind::indices: return is_list(value, [](const json& entry) { return entry.is_number_unsigned(); });
+        case Kind::numbers: return is_list(value, [](const json& entry) { return entry.is_number(); });
+        case Kind::object: return value.is_object();
+        case Kind::objects: return is_list(value, [](const json& entry) { return entry.is_object(); });
+    }
+    return false;
+}
+
+const char* description(Kind kind) {
+    switch (kind) {
+        case Kind::index: return "a non-negative integer";
+        case Kind::number: return "a number";
+        case Kind::indices: return "a list of non-negative integers";
+        case Kind::numbers: return "a list of numbers";
+        case Kind::object: return "an object";
+        case Kind::objects: return "a list of objects";
+    }
+    return "";
+}
+
+// glTF uses these keys with one meaning wherever they stand, but for two.
+std::optional<Kind> kind_of(const std::string& key, const json& parent, const std::string& parent_path) {
+    static const std::map<std::string_view, Kind> kinds = {
+        {"accessors", Kind::objects},      {"attributes", Kind::object},     {"baseColorFactor", Kind::numbers},
+        {"baseColorTexture", Kind::object}, {"buffer", Kind::index},         {"bufferView", Kind::index},
+        {"bufferViews", Kind::objects},    {"byteLength", Kind::index},      {"byteOffset", Kind::index},
+        {"byteStride", Kind::index},       {"camera", Kind::index},          {"cameras", Kind::objects},
+        {"children", Kind::indices},       {"componentType", Kind::index},   {"count", Kind::index},
+        {"emissiveFactor", Kind::numbers}, {"emissiveTexture", Kind::object}, {"extensions", Kind::object},
+        {"index", Kind::index},            {"material", Kind::index},        {"materials", Kind::objects},
+        {"matrix", Kind::numbers},         {"mesh", Kind::index},            {"meshes", Kind::objects},
+        {"metallicFactor", Kind::number},  {"metallicRoughnessTexture", Kind::object},
+        {"mode", Kind::index},             {"normalTexture", Kind::object},  {"NORMAL", Kind::index},
+        {"orthographic", Kind::object},    {"pbrMetallicRoughness", Kind::object},
+        {"perspective", Kind::object},     {"POSITION", Kind::index},        {"primitives", Kind::objects},
+        {"rotation", Kind::numbers},       {"roughnessFactor", Kind::number}, {"sampler", Kind::index},
+        {"samplers", Kind::objects},       {"scene", Kind::index},           {"scenes", Kind::objects},
+        {"source", Kind::index},           {"sparse", Kind::object},         {"TANGENT", Kind::index},
+        {"texCoord", Kind::index},         {"TEXCOORD_0", Kind::index},      {"textures", Kind::objects},
+        {"translation", Kind::numbers}};
+    const bool is_root = parent.contains("asset");
+    const bool is_texture = parent_path.ends_with("Texture");
+    if (key == "nodes") return is_root ? Kind::objects : Kind::indices;     // of the file or of a scene
+    if (key == "scale") return is_texture ? Kind::number : Kind::numbers;  // of a normal map or of a node
+    const auto found = kinds.find(key);
+    return found == kinds.end() ? std::nullopt : std::optional(found->second);
+}
+
+void check(const GltfFile& file, const json& value, const std::string& path) {
+    if (value.is_array())
+        for (std::size_t i = 0; i < value.size(); ++i) check(file, value[i], text(path, "/", i));
+    if (!value.is_object()) return;
+    for (const auto& [key, member] : value.items()) {
+        if (key == "extras") continue;
+        const std::string member_path = path + "/" + key;
+        if (const auto kind = kind_of(key, value, path); kind && !is(*kind, member))
+            file.fail("JSON ", member_path, " is ", member.dump().substr(0, 40), ", not ", description(*kind));
+        if (key != "extensions") {
+            check(file, member, member_path);
+            continue;
+        }
+        for (const auto& [name, extension] : member.items())
+            if (!extension.is_object()) file.fail("JSON ", member_path, "/", name, " is not an object");
+    }
+}
+
+}  // namespace
+
+void check_types(const GltfFile& file, const json& root) { check(file, root, ""); }
+
+}  // namespace twinray

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "engine/scene/mesh.h"
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+bool is_finite(vec3 point) { return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z); }
+
+}  // namespace
+
+Bounds bounds_of(const MeshView& mesh) {
+    Bounds bounds;
+    for (const uvec3& triangle : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            if (const vec3 point = mesh.positions[triangle[corner]]; is_finite(point)) bounds.include(point);
+    return bounds;
+}
+
+void check_indices(const MeshView& mesh) {
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (int corner = 0; corner < 3; ++corner)
+            if (const uint index = mesh.triangles[i][corner]; index >= mesh.positions.size())
+                fail("mesh '", mesh.name, "': triangle ", i, " has vertex index ", index, ", but the mesh has only ",
+                     mesh.positions.size(), " vertices");
+}
+
+std::size_t count_non_finite_triangles(const MeshView& mesh) {
+    std::size_t count = 0;
+    for (const uvec3& triangle : mesh.triangles)
+        if (!is_finite(mesh.positions[triangle.x]) || !is_finite(mesh.positions[triangle.y]) ||
+            !is_finite(mesh.positions[triangle.z]))
+            ++count;
+    return count;
+}
+
+}  // namespace twinray

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "engine/scene/scene.h"
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+#include "engine/scene/bytes.h"
+#include "engine/scene/importers.h"
+
+namespace twinray {
+namespace {
+
+Scene import(const std::filesystem::path& file) {
+    const std::string suffix = lower_suffix(file);
+    if (suffix == ".gltf" || suffix == ".glb") return import_gltf(file);
+    const std::string inner = suffix == ".gz" ? lower_suffix(file.stem()) : suffix;
+    if (inner == ".obj" || inner == ".ply" || inner == ".stl") return import_assimp(file, inner.substr(1));
+    fail("'", file.string(), "': unknown suffix '", suffix == ".gz" ? inner + suffix : suffix,
+         "'; scenes are .gltf, .glb, .obj, .ply or .stl, the last three also with .gz");
+}
+
+// Readers give triangles without a material the index after the last one.
+void add_default_material(Scene& scene) {
+    const uint index = static_cast<uint>(scene.materials.size());
+    for (const Mesh& mesh : scene.meshes)
+        if (std::ranges::find(mesh.materials, index) != mesh.materials.end()) {
+            scene.materials.push_back({.name = "default"});
+            return;
+        }
+}
+
+// What every loaded scene promises, whichever reader it came from.
+void complete(Scene& scene, const std::filesystem::path& file) {
+    if (scene.instances.empty())
+        fail("'", file.string(), "': holds no triangles to place",
+             scene.warnings.empty() ? std::string() : text(" (", scene.warnings.front(), ")"));
+    add_default_material(scene);
+    for (const Mesh& mesh : scene.meshes) {
+        if (const std::size_t count = count_non_finite_triangles(mesh))
+            scene.warnings.push_back(text("mesh '", mesh.name, "': ", count, " of ", mesh.triangles.size(),
+                                          " triangles have a NaN or infinite coordinate and stay inactive"));
+    }
+}
+
+Bounds transformed(const Bounds& box, const Transform& transform) {
+    Bounds result;
+    for (int corner = 0; corner < 8; ++corner)
+        result.include(transform_point(transform, vec3(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                                                       corner & 4 ? box.hi.z : box.lo.z)));
+    return result;
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file) {
+    try {
+        Scene scene = import(file);
+        complete(scene, file);
+        return scene;
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& e) {  // out of memory on a size that the file made up
+        fail("'", file.string(), "': cannot be loaded (", e.what(), ")");
+    }
+}
+
+Bounds bounds_of(const Scene& scene) {
+    std::vector<Bounds> mesh_bounds;
+    for (const Mesh& mesh : scene.meshes) mesh_bounds.push_back(bounds_of(MeshView(mesh)));
+    Bounds bounds;
+    for (const Instance& instance : scene.instances)
+        if (const Bounds& box = mesh_bounds[instance.mesh]; !box.is_empty())
+            bounds.include(transformed(box, instance.transform));
+    return bounds;
+}
+
+std::size_t count_triangles(const Scene& scene) {
+    std::size_t count = 0;
+    for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangles.size();
+    return count;
+}
+
+}  // namespace twinray

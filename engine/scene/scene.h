@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// A scene as loaded from a file: meshes, their instances and what is needed to shade and view them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/transform.h"
+#include "engine/scene/mesh.h"
+
+namespace twinray {
+
+// 8-bit RGBA, row 0 first (glTF's v = 0). sRGB or linear is decided by the use (base colour and emission: sRGB).
+struct Image {
+    std::string name;
+    uint width = 0;
+    uint height = 0;
+    std::vector<std::uint8_t> rgba;
+};
+
+enum class Wrap : std::uint8_t { repeat, clamp_to_edge, mirrored_repeat };
+
+// An image with its sampling: uv' = rotation/scale/offset of KHR_texture_transform applied to the mesh's uv.
+struct Texture {
+    std::int32_t image = -1;  // index into Scene::images, -1 = none
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
+    // uv' = (row0 . (u, v, 1), row1 . (u, v, 1))
+    vec3 uv_row0 = vec3(1, 0, 0);
+    vec3 uv_row1 = vec3(0, 1, 0);
+};
+
+enum class AlphaMode : std::uint8_t { opaque, mask, blend };
+
+// glTF 2.0 metallic-roughness material with KHR_materials_{emissive_strength, transmission, ior, unlit}.
+struct Material {
+    std::string name;
+    vec4 base_color = vec4(1);  // linear
+    float metallic = 1;
+    float roughness = 1;        // perceptual, as glTF; alpha = roughness^2
+    vec3 emission = vec3(0);    // linear, emissive_strength multiplied in
+    float transmission = 0;
+    float ior = 1.5f;
+    float normal_scale = 1;
+    float alpha_cutoff = 0.5f;
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    bool double_sided = false;
+    bool unlit = false;
+    Texture base_color_texture = {}, metallic_roughness_texture = {}, emission_texture = {}, normal_texture = {},
+            transmission_texture = {};
+};
+
+// One placement of a mesh in the world.
+struct Instance {
+    std::string name;
+    uint mesh = 0;  // index into Scene::meshes
+    Transform transform;
+};
+
+// Looks along -z of its frame, +y up (glTF).
+struct Camera {
+    std::string name;
+    Transform camera_to_world;
+    float vertical_fov = 0.8f;             // radians; perspective
+    std::optional<float> aspect;           // width / height when the file states one
+    std::optional<float> orthographic_half_height;  // set: orthographic, in world units
+};
+
+// KHR_lights_punctual.
+struct Light {
+    enum class Kind : std::uint8_t { directional, point, spot };
+    std::string name;
+    Kind kind = Kind::point;
+    vec3 color = vec3(1);  // linear; times intensity: lux (directional) or candela (point, spot)
+    vec3 position = vec3(0);
+    vec3 direction = vec3(0, 0, -1);  // unit, from the light
+    float range = INFINITY;
+    float inner_cone = 0;  // radians
+    float outer_cone = 0.7853982f;
+};
+
+struct Scene {
+    std::vector<Mesh> meshes;
+    std::vector<Material> materials;  // never empty after load: entry for meshes without one is appended
+    std::vector<Image> images;
+    std::vector<Instance> instances;
+    std::vector<Camera> cameras;
+    std::vector<Light> lights;
+    std::vector<std::string> warnings;  // what was skipped or replaced, one clear sentence each
+};
+
+// Loads .gltf, .glb (tinygltf) or .obj, .ply, .stl (Assimp; also with a .gz suffix), chosen by the suffix.
+// Throws Error naming the file, the object and the limit on anything that cannot be rendered faithfully.
+Scene load_scene(const std::filesystem::path& file);
+
+// Union of all instances' boxes under their transforms, in world space.
+Bounds bounds_of(const Scene& scene);
+
+// Triangles counted once per instance.
+std::size_t count_triangles(const Scene& scene);
+
+}  // namespace twinray

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "engine/scene/mesh.h"
+
+namespace twinray {
+
+// The same triangles over fewer vertices: those that are exactly equal in every attribute become one, at the place of
+// the first (0 equals -0). No tolerance, which would have to be wrong for scenes far smaller or larger than it.
+// Triangles keep their order and number, those that are or become degenerate included.
+Mesh weld_equal_vertices(const Mesh& mesh);
+
+}  // namespace twinray

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "engine/verify/aimed_rays.h"
+
+#include <cmath>
+#include <limits>
+
+namespace twinray {
+namespace {
+
+// A stream of random numbers per (seed, ray): the n-th is SplitMix64's finaliser (Steele, Lea and Flood 2014) of a
+// counter, so that any ray can be made alone and in any order.
+class Draws {
+  public:
+    Draws(std::uint64_t seed, std::size_t ray) : state_(mixed(mixed(seed) + ray)) {}
+
+    std::uint64_t bits() { return mixed(state_ += 0x9E3779B97F4A7C15u); }
+    double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  // [0, 1)
+    double between(double low, double high) { return low + (high - low) * unit(); }
+    // Below n: the high word of the 32 x 32 bit product, n < 2^32.
+    uint below(std::size_t n) { return static_cast<uint>((bits() >> 32) * n >> 32); }
+
+    // Uniform on the unit sphere, by rejection: only correctly rounded operations, the same on every platform.
+    glm::dvec3 direction() {
+        for (;;) {
+            const glm::dvec3 p(between(-1, 1), between(-1, 1), between(-1, 1));
+            const double square = p.x * p.x + p.y * p.y + p.z * p.z;
+            if (square <= 1 && square > 0x1p-20) return p / std::sqrt(square);
+        }
+    }
+
+  private:
+    static std::uint64_t mixed(std::uint64_t x) {
+        x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+        x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+        return x ^ (x >> 31);
+    }
+
+    std::uint64_t state_;
+};
+
+Ray endless(const vec3& origin, const glm::dvec3& direction) {
+    return {origin, 0.0f, vec3(direction), std::numeric_limits<float>::infinity()};
+}
+
+vec3 to_finite(const glm::dvec3& p) {
+    constexpr double largest = std::numeric_limits<float>::max();
+    return vec3(glm::clamp(p, glm::dvec3(-largest), glm::dvec3(largest)));
+}
+
+// A length to place origins by; that of the coordinates where the box has no extent.
+double diagonal_of(const Box64& box) {
+    const double diagonal = box.is_empty() ? 0 : glm::length(box.corners[1] - box.corners[0]);
+    if (diagonal > 0) return diagonal;
+    return box.max_abs() > 0 ? box.max_abs() : 1.0;
+}
+
+// Instances with an active triangle.
+std::vector<uint> targets_of(const Oracle& scene) {
+    std::vector<uint> targets;
+    for (uint i = 0; i < scene.instance_count(); ++i)
+        if (!scene.geometry(i).active().empty()) targets.push_back(i);
+    return targets;
+}
+
+// The corners of a random active triangle, in world space.
+Triangle64 draw_triangle(Draws& draws, const Oracle& scene, const std::vector<uint>& targets) {
+    const uint instance = targets[draws.below(targets.size())];
+    const Geometry64& geometry = scene.geometry(instance);
+    uint primitive = draws.below(geometry.triangle_count());
+    while (geometry.find(primitive) == nullptr) primitive = (primitive + 1) % uint(geometry.triangle_count());
+    Triangle64 corners = geometry.find(primitive)->corners64();
+    const Placement64& placement = scene.placement(instance);
+    for (glm::dvec3& corner : corners) corner = placement.to_world * corner + placement.offset;
+    return corners;
+}
+
+// pick(draws, corners) chooses the point of a triangle to aim at.
+template <class Pick>
+std::vector<Ray> aimed_rays(const Oracle& scene, std::size_t count, std::uint64_t seed, const Pick& pick) {
+    const std::vector<uint> targets = targets_of(scene);
+    if (targets.empty()) return random_rays({}, count, seed);
+    std::vector<Ray> rays;
+    rays.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        Draws draws(seed, i);
+        const glm::dvec3 target = pick(draws, draw_triangle(draws, scene, targets));
+        double distance = draws.between(0.05, 2.0) * diagonal_of(scene.bounds());
+        vec3 origin = to_finite(target + distance * draws.direction());
+        while (glm::dvec3(origin) == target) {  // rounding swallows the distance of a tiny, far triangle
+            distance *= 2;
+            origin = to_finite(target + distance * draws.direction());
+        }
+        rays.push_back(endless(origin, glm::normalize(target - glm::dvec3(origin))));
+    }
+    return rays;
+}
+
+}  // namespace
+
+std::vector<Ray> random_rays(const Bounds& bounds, std::size_t count, std::uint64_t seed) {
+    Box64 box;
+    box.include(bounds.is_empty() ? glm::dvec3(-0.5) : glm::dvec3(bounds.lo));
+    box.include(bounds.is_empty() ? glm::dvec3(0.5) : glm::dvec3(bounds.hi));
+    std::vector<Ray> rays;
+    rays.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        Draws draws(seed, i);
+        const double margin = diagonal_of(box) * (i % 2 == 0 ? 0.1 : 1.0);
+        glm::dvec3 origin;
+        for (int axis = 0; axis < 3; ++axis)
+            origin[axis] = draws.between(box.corners[0][axis] - margin, box.corners[1][axis] + margin);
+        rays.push_back(endless(to_finite(origin), draws.direction()));
+    }
+    return rays;
+}
+
+std::vector<Ray> vertex_aimed_rays(const Oracle& scene, std::size_t count, std::uint64_t seed) {
+    return aimed_rays(scene, count, seed,
+                      [](Draws& draws, const Triangle64& corners) { return corners[draws.below(3)]; });
+}
+
+std::vector<Ray> edge_aimed_rays(const Oracle& scene, std::size_t count, std::uint64_t seed) {
+    return aimed_rays(scene, count, seed, [](Draws& draws, const Triangle64& corners) {
+        const uint edge = draws.below(3);
+        const double w = draws.unit();
+        return (1 - w) * corners[edge] + w * corners[(edge + 1) % 3];
+    });
+}
+
+}  // namespace twinray

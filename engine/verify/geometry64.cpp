@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "engine/verify/geometry64.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+constexpr uint inactive = std::numeric_limits<uint>::max();
+
+double max_abs(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+Box64 box_of(const std::array<vec3, 3>& corners) {
+    Box64 box;
+    for (const vec3& corner : corners) box.include(glm::dvec3(corner));
+    return box;
+}
+
+std::array<vec3, 3> corners_of(const MeshView& mesh, uint primitive) {
+    std::array<vec3, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const uint vertex = mesh.triangles[primitive][static_cast<int>(i)];
+        if (vertex >= mesh.positions.size())
+            fail("mesh '", mesh.name, "': triangle ", primitive, " uses vertex ", vertex, " of ",
+                 mesh.positions.size());
+        corners[i] = mesh.positions[vertex];
+    }
+    return corners;
+}
+
+}  // namespace
+
+ObjectRay::ObjectRay(const glm::dvec3& origin, const glm::dvec3& direction, double scale)
+    : slabs(origin, direction, 0x1p-48 * (max_abs(origin) + scale)),
+      sheared(origin, direction) {}
+
+Triangle64 ActiveTriangle::corners64() const {
+    return {glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])};
+}
+
+std::optional<TriangleHit64> ActiveTriangle::intersect(const ObjectRay& ray, const Interval64& clip) const {
+    const Interval64 inside = intersection(ray.slabs.clip(box_of(corners)), clip);
+    if (inside.is_empty()) return std::nullopt;
+    std::optional<TriangleHit64> hit = ray.sheared.intersect(corners64());
+    if (hit) hit->t = std::clamp(hit->t, inside.near, inside.far);
+    return hit;
+}
+
+Geometry64::Geometry64(const MeshView& mesh) : slots_(mesh.triangles.size(), inactive) {
+    if (mesh.triangles.size() >= inactive)
+        fail("mesh '", mesh.name, "': ", mesh.triangles.size(), " triangles, the limit is ", inactive - 1);
+    std::vector<ActiveTriangle> triangles;
+    std::vector<Box64> boxes;
+    for (uint primitive = 0; primitive < mesh.triangles.size(); ++primitive) {
+        const std::array<vec3, 3> corners = corners_of(mesh, primitive);
+        if (!has_area(corners)) continue;
+        triangles.push_back({corners, primitive});
+        boxes.push_back(box_of(corners));
+    }
+    bvh_ = Bvh64(boxes);
+    triangles_.reserve(triangles.size());
+    for (const uint item : bvh_.order()) {
+        slots_[triangles[item].primitive] = static_cast<uint>(triangles_.size());
+        triangles_.push_back(triangles[item]);
+    }
+}
+
+const ActiveTriangle* Geometry64::find(uint primitive) const {
+    if (primitive >= slots_.size() || slots_[primitive] == inactive) return nullptr;
+    return &triangles_[slots_[primitive]];
+}
+
+}  // namespace twinray

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+#include "engine/verify/oracle.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+double infinity_norm(const glm::dmat3& m) {
+    double norm = 0;
+    for (int row = 0; row < 3; ++row)
+        norm = std::max(norm, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
+    return norm;
+}
+
+glm::dmat3 absolute(const glm::dmat3& m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
+
+// A box around the transformed box, rounding included: centre and half extent, each off by a few 2^-53.
+Box64 box_in_world(const Box64& box, const Placement64& placement) {
+    const glm::dvec3 center = box.corners[0] * 0.5 + box.corners[1] * 0.5;
+    const glm::dvec3 half = box.corners[1] * 0.5 - box.corners[0] * 0.5;
+    const glm::dvec3 center_world = placement.to_world * center + placement.offset;
+    const glm::dmat3 linear = absolute(placement.to_world);
+    const glm::dvec3 rounding = 0x1p-48 * (linear * (glm::abs(center) + half) + glm::abs(placement.offset));
+    const glm::dvec3 half_world = linear * half + rounding;
+    Box64 world;
+    world.include(center_world - half_world);
+    world.include(center_world + half_world);
+    return world;
+}
+
+}  // namespace
+
+Placement64::Placement64(const Transform& transform, const char* object)
+    : offset(transform.rows[0].w, transform.rows[1].w, transform.rows[2].w),
+      is_identity(transform == Transform{}) {
+    static_cast<void>(inverse(transform, object));  // throws on what has no inverse
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            to_world[column][row] = transform.rows[static_cast<std::size_t>(row)][column];
+    to_object = glm::inverse(to_world);
+    condition = infinity_norm(absolute(to_object) * absolute(to_world));
+}
+
+// The state of one query over all instances.
+struct Oracle::Search {
+    Ray ray;
+    double t_min;
+    double t_limit;  // culls boxes that start beyond it: t_max, then the best t
+    SlabRay slabs;
+    bool any = false;
+    OracleHit best;
+
+    Search(const Ray& world, double scale, double condition)
+        : ray(world),
+          t_min(std::max(0.0, double{world.t_min})),
+          t_limit(world.t_max),
+          // Object space answers for a world ray that is off by the roundings of the inverse.
+          slabs(glm::dvec3(world.origin), glm::dvec3(world.direction),
+                0x1p-48 * condition * (glm::length(glm::dvec3(world.origin)) + scale)) {}
+
+    bool is_done() const { return any && best.hit; }
+
+    void offer(const OracleHit& hit) {
+        const bool is_better = best.hit ? std::tie(hit.t, hit.instance, hit.primitive) <
+                                              std::tie(best.t, best.instance, best.primitive)
+                                        : hit.t < t_limit;
+        if (!(hit.t > t_min) || !is_better) return;
+        best = hit;
+        t_limit = hit.t;
+    }
+};
+
+Oracle::Oracle(std::span<const MeshView> geometries, std::span<const OracleInstance> instances) {
+    geometries_.reserve(geometries.size());
+    for (const MeshView& mesh : geometries) geometries_.emplace_back(mesh);
+    std::vector<Box64> boxes;
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+        const OracleInstance& instance = instances[i];
+        const std::string object = text("instance ", i);
+        if (instance.geometry >= geometries_.size())
+            fail(object, ": geometry ", instance.geometry, " of ", geometries_.size());
+        PlacedGeometry placed{instance.geometry, instance.custom_index,
+                              Placement64(instance.object_to_world, object.c_str()), Box64{}};
+        const Box64& box = geometries_[instance.geometry].bounds();
+        if (!box.is_empty()) {
+            placed.world_box = box_in_world(box, placed.placement);
+            condition_ = std::max(condition_, placed.placement.condition);
+            placed_.push_back(static_cast<uint>(i));
+            boxes.push_back(placed.world_box);
+        }
+        instances_.push_back(placed);
+    }
+    bvh_ = Bvh64(boxes);
+}
+
+Oracle Oracle::of(const Scene& scene) {
+    const std::vector<MeshView> geometries(scene.meshes.begin(), scene.meshes.end());
+    std::vector<OracleInstance> instances;
+    for (const Instance& instance : scene.instances) instances.push_back({instance.mesh, instance.transform, 0});
+    return {geometries, instances};
+}
+
+template <bool BRUTE_FORCE>
+void Oracle::search_instance(uint instance, Search& search) const {
+    const PlacedGeometry& placed = instances_[instance];
+    const Geometry64& geometry = geometries_[placed.geometry];
+    const Interval64 clip = search.slabs.clip(placed.world_box);
+    if (clip.is_empty()) return;
+    const ObjectRay ray(placed.placement.point_to_object(glm::dvec3(search.ray.origin)),
+                        placed.placement.vector_to_object(glm::dvec3(search.ray.direction)),
+                        geometry.bounds().max_abs());
+    const auto test = [&](const ActiveTriangle& triangle) {
+        if (const auto hit = triangle.intersect(ray, clip))
+            search.offer({true, hit->t, hit->u, hit->v, triangle.primitive, instance, placed.custom_index});
+        return !search.is_done();
+    };
+    if constexpr (BRUTE_FORCE) {
+        for (const ActiveTriangle& triangle : geometry.active()) test(triangle);
+    } else {
+        geometry.visit(ray.slabs, search.t_min, search.t_limit, test);
+    }
+}
+
+void Oracle::search_all(Search& search) const {
+    bvh_.visit_leaves(search.slabs, search.t_min, search.t_limit, [&](uint first, uint last) {
+        for (uint i = first; i < last && !search.is_done(); ++i)
+            search_instance<false>(placed_[bvh_.order()[i]], search);
+        return !search.is_done();
+    });
+}
+
+OracleHit Oracle::closest_hit(const Ray& ray) const {
+    if (!is_traceable(ray)) return {};
+    Search search(ray, bounds().max_abs(), condition_);
+    search_all(search);
+    return search.best;
+}
+
+OracleHit Oracle::closest_hit_brute_force(const Ray& ray) const {
+    if (!is_traceable(ray)) return {};
+    Search search(ray, bounds().max_abs(), condition_);
+    for (const uint instance : placed_) search_instance<true>(instance, search);
+    return search.best;
+}
+
+bool Oracle::any_hit(const Ray& ray) const {
+    if (!is_traceable(ray)) return false;
+    Search search(ray, bounds().max_abs(), condition_);
+    search.any = true;
+    search_all(search);
+    return search.best.hit;
+}
+
+std::vector<uint> Oracle::instances_hit(const Ray& ray, double t_limit) const {
+    std::vector<uint> found;
+    if (!is_traceable(ray)) return found;
+    const double t_end = std::min(t_limit, double{ray.t_max});
+    const Search all(ray, bounds().max_abs(), condition_);
+    bvh_.visit_leaves(all.slabs, all.t_min, t_end, [&](uint first, uint last) {
+        for (uint i = first; i < last; ++i) {
+            Search search = all;
+            search.any = true;
+            search.t_limit = t_end;
+            search_instance<false>(placed_[bvh_.order()[i]], search);
+            if (search.best.hit) found.push_back(placed_[bvh_.order()[i]]);
+        }
+        return true;
+    });
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+}  // namespace twinray

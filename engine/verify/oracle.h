@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// The referee: closest and any hits of a scene in float64 on the CPU, independent of both accelerators.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/core/ray.h"
+#include "engine/core/transform.h"
+#include "engine/scene/scene.h"
+#include "engine/verify/geometry64.h"
+
+namespace twinray {
+
+// One placement of a geometry, in the order of the accelerator's instance array.
+struct OracleInstance {
+    uint geometry = 0;  // index into the oracle's list
+    Transform object_to_world;
+    uint custom_index = 0;  // handed through to OracleHit
+};
+
+struct OracleHit {
+    bool hit = false;
+    double t = -1;  // in units of the ray's direction
+    double u = 0;   // the point is (1-u-v) v0 + u v1 + v v2
+    double v = 0;
+    uint primitive = 0;
+    uint instance = 0;
+    uint custom_index = 0;
+
+    bool operator==(const OracleHit&) const = default;
+};
+
+// An affine map in float64 and its inverse.
+struct Placement64 {
+    glm::dmat3 to_world{1.0}, to_object{1.0};  // linear parts
+    glm::dvec3 offset{0.0};                    // of to_world
+    bool is_identity = true;
+    double condition = 1;  // infinity norm of |to_object| |to_world|: how much the inverse amplifies rounding
+
+    Placement64() = default;
+    // Throws Error, naming `object`, when an entry is not finite or the linear part is singular.
+    Placement64(const Transform& transform, const char* object);
+
+    glm::dvec3 point_to_object(const glm::dvec3& p) const { return is_identity ? p : to_object * (p - offset); }
+    glm::dvec3 vector_to_object(const glm::dvec3& v) const { return is_identity ? v : to_object * v; }
+};
+
+// Answers by the rules of docs and shaders/shared/ray.h: t_min < t < t_max, both exclusive; a negative t_min counts
+// as 0; rays that are not is_traceable() miss; no culling; triangles that are not finite or have no area are never
+// hit; the closest hit has the smallest t, then the lowest (instance, primitive). Immutable, so threads may share it.
+class Oracle {
+  public:
+    // Copies what it needs. Throws Error on an index out of range and on a singular or non-finite transform.
+    Oracle(std::span<const MeshView> geometries, std::span<const OracleInstance> instances);
+    static Oracle of(const Scene& scene);
+
+    OracleHit closest_hit(const Ray& ray) const;
+    // The same answer, bit for bit, from testing every triangle.
+    OracleHit closest_hit_brute_force(const Ray& ray) const;
+    bool any_hit(const Ray& ray) const;
+
+    // Instances that the ray hits at some t with t_min < t < t_limit, ascending.
+    std::vector<uint> instances_hit(const Ray& ray, double t_limit) const;
+
+    const Box64& bounds() const { return bvh_.bounds(); }  // of the active triangles in world space
+    uint instance_count() const { return static_cast<uint>(instances_.size()); }
+    const Geometry64& geometry(uint instance) const { return geometries_[instances_[instance].geometry]; }
+    const Placement64& placement(uint instance) const { return instances_[instance].placement; }
+
+  private:
+    struct PlacedGeometry {
+        uint geometry = 0;
+        uint custom_index = 0;
+        Placement64 placement;
+        Box64 world_box;  // empty when the geometry has no active triangle
+    };
+    struct Search;
+
+    template <bool BRUTE_FORCE>
+    void search_instance(uint instance, Search& search) const;
+    void search_all(Search& search) const;
+
+    std::vector<Geometry64> geometries_;
+    std::vector<PlacedGeometry> instances_;
+    std::vector<uint> placed_;  // instances with an active triangle: what the items of bvh_ are
+    Bvh64 bvh_;
+    double condition_ = 1;  // the worst of all placements
+};
+
+}  // namespace twinray

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace twinray {
+
+// Calls body(begin, end) for disjoint ranges that cover [0, count), on `threads` threads (0: one per core).
+// Ranges are handed out in any order, so a body must write only what belongs to its range: results then do not
+// depend on the thread count. The first exception of a body is thrown here, after all threads have ended.
+template <class Body>
+void parallel_for(std::size_t count, const Body& body, unsigned threads = 0) {
+    if (count == 0) return;
+    if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
+    const std::size_t grain = std::clamp<std::size_t>(count / (std::size_t{threads} * 16), 1, 4096);
+    std::atomic<std::size_t> next{0};
+    std::exception_ptr failure;
+    std::mutex failure_mutex;
+
+    const auto work = [&] {
+        try {
+            for (std::size_t begin = next.fetch_add(grain); begin < count; begin = next.fetch_add(grain))
+                body(begin, std::min(begin + grain, count));
+        } catch (...) {
+            next = count;  // the other threads stop at their next range
+            const std::lock_guard lock(failure_mutex);
+            if (!failure) failure = std::current_exception();
+        }
+    };
+    {
+        std::vector<std::jthread> team;
+        for (unsigned i = 1; i < threads; ++i) team.emplace_back(work);
+        work();
+    }
+    if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace twinray

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "hwtlas/acceleration_structure.h"
+
+#include <utility>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+// VkAccelerationStructureCreateInfoKHR: offset must be a multiple of 256; ours is 0 in a buffer aligned likewise.
+constexpr std::uint64_t storage_alignment = 256;
+
+std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
+    return (value + multiple - 1) / multiple * multiple;
+}
+
+std::uint64_t scratch_alignment(const Context& context) {
+    VkPhysicalDeviceAccelerationStructurePropertiesKHR structure{};
+    structure.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR;
+    VkPhysicalDeviceProperties2 properties{};
+    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    properties.pNext = &structure;
+    context.vk().vkGetPhysicalDeviceProperties2(context.physical_device(), &properties);
+    return structure.minAccelerationStructureScratchOffsetAlignment;
+}
+
+VkAccelerationStructureBuildGeometryInfoKHR build_info(const StructureBuild& build) {
+    VkAccelerationStructureBuildGeometryInfoKHR info{};
+    info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
+    info.type = build.type;
+    info.flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR;
+    info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
+    info.geometryCount = 1;
+    info.pGeometries = &build.geometry;
+    return info;
+}
+
+VkAccelerationStructureBuildSizesInfoKHR build_sizes(const Context& context, const StructureBuild& build) {
+    const VkAccelerationStructureBuildGeometryInfoKHR info = build_info(build);
+    VkAccelerationStructureBuildSizesInfoKHR sizes{};
+    sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
+    context.vk().vkGetAccelerationStructureBuildSizesKHR(
+        context.device(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &build.primitive_count, &sizes);
+    return sizes;
+}
+
+}  // namespace
+
+AccelerationStructure::AccelerationStructure(Context& context, const std::string& name,
+                                             VkAccelerationStructureTypeKHR type, std::uint64_t bytes)
+    : context_(&context),
+      storage_(context, {.name = name,
+                         .bytes = bytes,
+                         .usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR,
+                         .alignment = storage_alignment}) {
+    const VulkanFunctions& vk = context.vk();
+    VkAccelerationStructureCreateInfoKHR info{};
+    info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR;
+    info.buffer = storage_.handle();
+    info.size = bytes;
+    info.type = type;
+    const VkResult result = vk.vkCreateAccelerationStructureKHR(context.device(), &info, nullptr, &handle_);
+    if (result != VK_SUCCESS) fail("acceleration structure '", name, "' of ", bytes, " bytes: ", name_of(result));
+    VkAccelerationStructureDeviceAddressInfoKHR address{};
+    address.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR;
+    address.accelerationStructure = handle_;
+    address_ = vk.vkGetAccelerationStructureDeviceAddressKHR(context.device(), &address);
+    context.set_name(VK_OBJECT_TYPE_ACCELERATION_STRUCTURE_KHR, reinterpret_cast<std::uint64_t>(handle_), name);
+}
+
+AccelerationStructure::~AccelerationStructure() {
+    if (!handle_) return;
+    context_->retire([&vk = context_->vk(), device = context_->device(), handle = handle_] {
+        vk.vkDestroyAccelerationStructureKHR(device, handle, nullptr);
+    });
+}
+
+AccelerationStructure::AccelerationStructure(AccelerationStructure&& other) noexcept { *this = std::move(other); }
+
+AccelerationStructure& AccelerationStructure::operator=(AccelerationStructure&& other) noexcept {
+    std::swap(context_, other.context_);
+    std::swap(storage_, other.storage_);
+    std::swap(handle_, other.handle_);
+    std::swap(address_, other.address_);
+    return *this;
+}
+
+std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
+                                                    std::span<const StructureBuild> builds) {
+    if (builds.empty()) return {};
+    Context& context = commands.context();
+    const std::uint64_t alignment = scratch_alignment(context);
+    std::vector<AccelerationStructure> structures;
+    std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
+    std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;
+    std::uint64_t scratch_bytes = 0;
+    for (const StructureBuild& build : builds) {
+        const VkAccelerationStructureBuildSizesInfoKHR sizes = build_sizes(context, build);
+        structures.emplace_back(context, build.name, build.type, sizes.accelerationStructureSize);
+        VkAccelerationStructureBuildGeometryInfoKHR info = build_info(build);
+        info.dstAccelerationStructure = structures.back().handle();
+        info.scratchData.deviceAddress = scratch_bytes;  // an offset until the buffer exists
+        infos.push_back(info);
+        // lavapipe applies firstVertex twice; offsets live in the addresses instead, and all of these stay 0.
+        ranges.push_back({build.primitive_count, 0, 0, 0});
+        scratch_bytes += round_up(sizes.buildScratchSize, alignment);
+    }
+    Buffer scratch(context, {.name = pass_name + " scratch", .bytes = scratch_bytes, .alignment = alignment});
+    std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> range_of;
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+        infos[i].scratchData.deviceAddress += scratch.address();
+        range_of.push_back(&ranges[i]);
+    }
+    const auto pass = commands.pass(pass_name);
+    context.vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), static_cast<std::uint32_t>(infos.size()),
+                                                     infos.data(), range_of.data());
+    commands.keep(std::move(scratch));
+    return structures;
+}
+
+}  // namespace twinray

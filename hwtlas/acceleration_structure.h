@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/commands.h"
+
+namespace twinray {
+
+// A VkAccelerationStructureKHR with its storage. Move-only; destroyed after all work submitted so far.
+class AccelerationStructure {
+  public:
+    AccelerationStructure() = default;
+    AccelerationStructure(Context& context, const std::string& name, VkAccelerationStructureTypeKHR type,
+                          std::uint64_t bytes);
+    ~AccelerationStructure();
+    AccelerationStructure(AccelerationStructure&& other) noexcept;
+    AccelerationStructure& operator=(AccelerationStructure&& other) noexcept;
+
+    VkAccelerationStructureKHR handle() const { return handle_; }
+    std::uint64_t address() const { return address_; }  // 0 for a default-constructed one
+    std::uint64_t bytes() const { return storage_.bytes(); }
+
+  private:
+    Context* context_ = nullptr;
+    Buffer storage_;
+    VkAccelerationStructureKHR handle_ = VK_NULL_HANDLE;
+    std::uint64_t address_ = 0;
+};
+
+// One structure to be built from one geometry.
+struct StructureBuild {
+    std::string name;
+    VkAccelerationStructureTypeKHR type;
+    VkAccelerationStructureGeometryKHR geometry;
+    std::uint32_t primitive_count;
+};
+
+// Creates the structures and builds all of them with one command in one pass called `pass_name`. What the geometries
+// point to must have been written by earlier passes. The scratch memory is kept by `commands`.
+std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
+                                                    std::span<const StructureBuild> builds);
+
+}  // namespace twinray

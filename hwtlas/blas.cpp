@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "hwtlas/blas.h"
+
+#include <utility>
+
+#include "hwtlas/blas_input.h"
+
+namespace twinray {
+namespace {
+
+template <class T>
+Buffer upload(Commands& commands, const std::string& name, const std::vector<T>& values) {
+    Buffer buffer(commands.context(), {.name = name, .bytes = values.size() * sizeof(T)});
+    commands.upload(buffer, std::span<const T>(values));
+    return buffer;
+}
+
+StructureBuild build_of(const std::string& name, const Buffer& positions, const Buffer& triangles) {
+    StructureBuild build{};
+    build.name = "blas " + name;
+    build.type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR;
+    build.primitive_count = static_cast<std::uint32_t>(triangles.bytes() / sizeof(uvec3));
+    build.geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
+    build.geometry.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
+    build.geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
+    VkAccelerationStructureGeometryTrianglesDataKHR& data = build.geometry.geometry.triangles;
+    data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
+    data.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
+    data.vertexData.deviceAddress = positions.address();
+    data.vertexStride = sizeof(vec3);
+    data.maxVertex = static_cast<std::uint32_t>(positions.bytes() / sizeof(vec3)) - 1;
+    data.indexType = VK_INDEX_TYPE_UINT32;
+    data.indexData.deviceAddress = triangles.address();
+    return build;
+}
+
+}  // namespace
+
+std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries, bool reorder) {
+    std::vector<Blas> blases(geometries.size());
+    std::vector<StructureBuild> builds;
+    std::vector<std::size_t> built;  // builds[i] belongs to blases[built[i]]
+    if (geometries.empty()) return blases;
+    {
+        const auto pass = commands.pass("hwtlas_upload_meshes");
+        for (std::size_t i = 0; i < geometries.size(); ++i) {
+            const Geometry& geometry = *geometries[i];
+            const BlasInput input = blas_input(geometry, reorder);
+            if (input.is_empty()) continue;
+            Buffer positions = upload(commands, "blas positions " + geometry.name, input.positions);
+            Buffer triangles = upload(commands, "blas triangles " + geometry.name, input.triangles);
+            blases[i].original_triangles = upload(commands, "blas order " + geometry.name, input.original);
+            builds.push_back(build_of(geometry.name, positions, triangles));
+            built.push_back(i);
+            commands.keep(std::move(positions));
+            commands.keep(std::move(triangles));
+        }
+    }
+    std::vector<AccelerationStructure> structures = build_structures(commands, "hwtlas_build_blases", builds);
+    for (std::size_t i = 0; i < built.size(); ++i) blases[built[i]].structure = std::move(structures[i]);
+    return blases;
+}
+
+}  // namespace twinray

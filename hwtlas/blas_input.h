@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// What the driver is given for a mesh. Pure functions.
+#pragma once
+
+#include <vector>
+
+#include "engine/accel/geometry.h"
+
+namespace twinray {
+
+// Only finite positions, one triangle per triangle of the mesh: one with a non-finite corner keeps its place but is
+// collapsed to a point. Vulkan has no word for an infinite corner, and lavapipe lets a NaN leak into the boxes of the
+// triangles beside it, although the specification makes such a triangle inactive.
+struct BlasInput {
+    std::vector<vec3> positions;
+    std::vector<uvec3> triangles;
+    std::vector<uint> original;  // place in `triangles` -> the mesh's triangle; empty: not reordered
+
+    bool is_empty() const { return triangles.empty(); }  // the mesh has nothing that could be hit
+};
+
+BlasInput blas_input(const Geometry& geometry, bool reorder);
+
+}  // namespace twinray

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// HwScene and HwTraceArgs for C++.
+#pragma once
+
+#include "engine/core/ray.h"
+
+namespace twinray {
+using std::uint64_t;
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/hw_scene.h"
+#include "engine/core/bridge_end.h"
+
+static_assert(sizeof(HwInstance) == 16 && sizeof(HwScene) == 16 && sizeof(HwTraceArgs) == 32);
+}  // namespace twinray

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "hwtlas/hw_tlas.h"
+
+#include <utility>
+
+#include "engine/core/error.h"
+#include "hwtlas/blas.h"
+#include "hwtlas/tlas.h"
+#include "hwtlas_trace_query.spv.h"
+#include "hwtlas_trace_rchit.spv.h"
+#include "hwtlas_trace_rgen.spv.h"
+#include "hwtlas_trace_rmiss.spv.h"
+
+namespace twinray {
+namespace {
+
+Context& checked(Context& context) {
+    const std::vector<std::string> missing = missing_for_hardware(context.facts());
+    std::string list;
+    for (const std::string& item : missing) list += (list.empty() ? "" : ", ") + item;
+    if (!missing.empty()) fail("HwTlas: device '", context.facts().name, "' lacks ", list);
+    return context;
+}
+
+std::size_t index_of(Query query) { return static_cast<std::size_t>(query); }
+
+}  // namespace
+
+struct HwTlas::HwGeometry : BuiltGeometry {
+    explicit HwGeometry(Blas&& built) : blas(std::move(built)) {
+        reference = blas.reference();
+        bytes = blas.bytes();
+    }
+    Blas blas;
+};
+
+struct HwTlas::HwTopLevel : BuiltScene {
+    explicit HwTopLevel(Tlas&& built) : tlas(std::move(built)) {
+        address = tlas.scene.address();
+        bytes = tlas.bytes();
+    }
+    Tlas tlas;
+};
+
+HwTlas::HwTlas(Context& context, BuildOrder order)
+    : AbstractAccel(checked(context), "HwTlas"),
+      reorder_(order == BuildOrder::morton ||
+               (order == BuildOrder::automatic && context.facts().builds_in_input_order)) {
+    create_pipelines(Query::closest);
+    create_pipelines(Query::any);
+}
+
+HwTlas::~HwTlas() = default;
+
+void HwTlas::create_pipelines(Query query) {
+    const std::vector<SpecializationConstant> constants = {{HW_HAS_REMAP, reorder_}, {HW_IS_ANY, query == Query::any}};
+    if (context().facts().ray_query)
+        kernels_[index_of(query)] = std::make_unique<Kernel<HwTraceArgs>>(
+            context(), KernelDesc{.name = "hwtlas_trace_query", .spirv = hwtlas_trace_query_spirv, .constants = constants});
+    else
+        pipelines_[index_of(query)] = std::make_unique<RayTracingPipeline>(
+            context(), RayTracingPipelineDesc{.name = "hwtlas_trace",
+                                              .ray_generation = hwtlas_trace_rgen_spirv,
+                                              .miss = hwtlas_trace_rmiss_spirv,
+                                              .closest_hit = hwtlas_trace_rchit_spirv,
+                                              .constants = constants});
+}
+
+const char* HwTlas::trace_path() const {
+    return kernels_[index_of(Query::closest)] ? "ray query" : "ray tracing pipeline";
+}
+
+std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> HwTlas::build_geometries(
+    Commands& commands, std::span<const Geometry* const> geometries) {
+    std::vector<std::unique_ptr<BuiltGeometry>> built;
+    for (Blas& blas : build_blases(commands, geometries, reorder_))
+        built.push_back(std::make_unique<HwGeometry>(std::move(blas)));
+    return built;
+}
+
+std::unique_ptr<AbstractAccel::BuiltScene> HwTlas::build_scene(Commands& commands,
+                                                               std::span<const PlacedInstance> instances) {
+    std::vector<TlasInstance> placed;
+    placed.reserve(instances.size());
+    for (const PlacedInstance& instance : instances) {
+        const Blas& blas = static_cast<const HwGeometry*>(instance.built)->blas;
+        const Bounds bounds_world = transformed(instance.geometry->bounds, transform_of(instance.record));
+        placed.push_back({instance.record, bounds_world.center(), blas.original_triangles.ref<uint>()});
+    }
+    return std::make_unique<HwTopLevel>(build_tlas(commands, placed, reorder_));
+}
+
+void HwTlas::record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const {
+    const HwTraceArgs args{{scene}, desc.rays, desc.hits, static_cast<uint>(desc.count), desc.mask};
+    if (const auto& kernel = kernels_[index_of(desc.query)]) kernel->dispatch(commands, args, desc.count);
+    else pipelines_[index_of(desc.query)]->trace(commands, args);
+}
+
+}  // namespace twinray

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+
+#include "engine/accel/abstract_accel.h"
+#include "engine/core/kernel.h"
+#include "hwtlas/ray_tracing_pipeline.h"
+
+namespace twinray {
+
+// The order in which triangles and instances go to the driver. Results do not depend on it.
+enum class BuildOrder : std::uint8_t {
+    automatic,  // morton where DeviceFacts::builds_in_input_order, else input
+    input,      // as pushed; no table to map ids back exists then
+    morton,
+};
+
+// The accelerator on VK_KHR_acceleration_structure. Traces with ray queries where they are enabled, else with a ray
+// tracing pipeline. Where the driver finds two triangles at the same distance, the driver chooses.
+class HwTlas : public AbstractAccel {
+  public:
+    // Throws Error naming the device and what it lacks.
+    explicit HwTlas(Context& context, BuildOrder order = BuildOrder::automatic);
+    ~HwTlas() override;
+
+    // "ray query" or "ray tracing pipeline".
+    const char* trace_path() const;
+    bool reorders() const { return reorder_; }
+
+  protected:
+    std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(
+        Commands& commands, std::span<const Geometry* const> geometries) override;
+    std::unique_ptr<BuiltScene> build_scene(Commands& commands, std::span<const PlacedInstance> instances) override;
+    void record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const override;
+
+  private:
+    struct HwGeometry;
+    struct HwTopLevel;
+    void create_pipelines(Query query);
+
+    bool reorder_;
+    // By Query; only those of the chosen path exist.
+    std::array<std::unique_ptr<Kernel<HwTraceArgs>>, 2> kernels_;
+    std::array<std::unique_ptr<RayTracingPipeline>, 2> pipelines_;
+};
+
+}  // namespace twinray

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "hwtlas/order.h"
+
+#include <algorithm>
+
+#include "engine/core/ray.h"
+
+namespace twinray {
+namespace {
+
+struct Keyed {
+    std::uint64_t code;
+    uint index;
+    auto operator<=>(const Keyed&) const = default;
+};
+
+constexpr double cells_per_axis = 1u << 21;
+
+bool is_last(vec3 center) { return !is_finite(center); }
+
+// Puts two zero bits between any two of the low 21 bits.
+std::uint64_t spread(std::uint64_t bits) {
+    bits = (bits | bits << 32) & 0x001f00000000ffff;
+    bits = (bits | bits << 16) & 0x001f0000ff0000ff;
+    bits = (bits | bits << 8) & 0x100f00f00f00f00f;
+    bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
+    bits = (bits | bits << 2) & 0x1249249249249249;
+    return bits;
+}
+
+std::uint64_t cell(double offset, double scale) {
+    return static_cast<std::uint64_t>(std::min(offset * scale, cells_per_axis - 1));
+}
+
+}  // namespace
+
+std::vector<uint> morton_order(std::span<const vec3> centers) {
+    Bounds bounds;
+    for (const vec3& center : centers)
+        if (!is_last(center)) bounds.include(center);
+    // One scale for all axes keeps the cells cubes: a long scene is halved along its length first. In float64, since
+    // the extent of finite floats may exceed the largest float.
+    const glm::dvec3 lo(bounds.lo), size = glm::dvec3(bounds.hi) - lo;
+    const double extent = std::max({size.x, size.y, size.z});
+    const double scale = extent > 0 ? cells_per_axis / extent : 0;
+
+    std::vector<Keyed> keys(centers.size());
+    for (std::size_t i = 0; i < centers.size(); ++i) {
+        const glm::dvec3 p = glm::dvec3(centers[i]) - lo;
+        const std::uint64_t code = is_last(centers[i]) ? UINT64_MAX
+                                                       : spread(cell(p.x, scale)) << 2 | spread(cell(p.y, scale)) << 1 |
+                                                             spread(cell(p.z, scale));
+        keys[i] = {code, static_cast<uint>(i)};
+    }
+    std::sort(keys.begin(), keys.end());
+    std::vector<uint> order(keys.size());
+    std::transform(keys.begin(), keys.end(), order.begin(), [](const Keyed& key) { return key.index; });
+    return order;
+}
+
+std::vector<vec3> triangle_centers(std::span<const vec3> positions, std::span<const uvec3> triangles) {
+    std::vector<vec3> centers;
+    centers.reserve(triangles.size());
+    for (const uvec3& triangle : triangles) {
+        const vec3 a = positions[triangle.x], b = positions[triangle.y], c = positions[triangle.z];
+        if (!is_finite(a) || !is_finite(b) || !is_finite(c)) {
+            centers.emplace_back(NAN);
+            continue;
+        }
+        Bounds box{a, a};
+        box.include(b);
+        box.include(c);
+        centers.push_back(box.center());
+    }
+    return centers;
+}
+
+}  // namespace twinray

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// The order in which primitives go to a driver that builds in input order. Pure functions.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/scene/mesh.h"
+
+namespace twinray {
+
+// Positions of `centers` along a Morton curve with 2^21 steps over the largest extent; equal codes keep their order
+// and non-finite centers go last, in order.
+std::vector<uint> morton_order(std::span<const vec3> centers);
+
+// Centers of the triangles' boxes; NaN for a triangle with a non-finite corner.
+std::vector<vec3> triangle_centers(std::span<const vec3> positions, std::span<const uvec3> triangles);
+
+}  // namespace twinray

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_ray_tracing : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/ray.h"
+
+layout(location = 0) rayPayloadInEXT Hit payload;
+
+void main() { payload = miss(); }

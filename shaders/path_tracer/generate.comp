@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// One camera ray per pixel, through a uniformly random point of it.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/ray.h"
+#include "shaders/path_tracer/scene.h"
+#include "shaders/path_tracer/wave.h"
+#include "shaders/path_tracer/random.h"
+layout(local_size_x = PATH_GROUP) in;
+layout(push_constant, scalar) uniform Push { GenerateArgs args; };
+
+// Strips of eight rows, column by column: 64 neighbours in the order lie in an 8 x 8 block.
+uvec2 pixel_at(uint position)
+{
+    uint strip = position / (8u * args.width);
+    uint rows = min(8u, args.height - 8u * strip);
+    uint inside = position - strip * 8u * args.width;
+    return uvec2(inside / rows, strip * 8u + inside % rows);
+}
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.count) return;
+    uvec2 pixel = pixel_at(args.first + i);
+    uint index = pixel.y * args.width + pixel.x;
+    uvec4 words = random_words(index, args.sample_index, 0u, args.seed);
+    vec2 inside = (vec2(pixel) + unit_floats(words.x, words.y)) / vec2(args.width, args.height);
+    vec3 across = args.camera.right * (2.0 * inside.x - 1.0) + args.camera.up * (1.0 - 2.0 * inside.y);
+    bool is_orthographic = args.camera.orthographic != 0u;
+    Ray ray;
+    ray.origin = args.camera.origin + (is_orthographic ? across : vec3(0.0));
+    ray.direction = normalize(args.camera.forward + (is_orthographic ? vec3(0.0) : across));
+    ray.t_min = 0.0;
+    ray.t_max = uintBitsToFloat(0x7f800000u);
+    PathState path;
+    path.throughput = vec3(1.0);
+    path.pdf = 0.0;
+    path.pixel = index;
+    path.progress = 0u;
+    AT(args.rays, i) = ray;
+    AT(args.paths, i) = path;
+}

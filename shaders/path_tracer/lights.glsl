@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// Light found by sampling it: the environment, emissive triangles, punctual lights.
+#ifndef TWINRAY_PATH_TRACER_LIGHTS_GLSL
+#define TWINRAY_PATH_TRACER_LIGHTS_GLSL
+
+struct LightSample
+{
+    vec3 direction; // from the surface; unit
+    vec3 radiance;
+    float pdf;      // by solid angle; for a punctual light only its chance of being chosen
+    bool is_delta;  // a punctual light, which no other strategy finds
+    vec3 target;    // where the shadow ray ends; an environment has no end
+    bool has_target;
+};
+
+// A column of an alias table of `count` columns; uses the whole word, since count may need many of its bits.
+uint sample_alias(REF(AliasEntry) table, uint count, uint word, uint coin)
+{
+    uint column, unused;
+    umulExtended(word, count, column, unused);
+    AliasEntry entry = AT(table, column);
+    return coin < entry.keep ? column : entry.other;
+}
+
+vec3 environment_pixel(Environment env, int x, int y)
+{
+    uint column = x < 0 ? env.width - 1u : (x >= int(env.width) ? 0u : uint(x));
+    return AT(env.pixels, uint(clamp(y, 0, int(env.height) - 1)) * env.width + min(column, env.width - 1u)).rgb;
+}
+
+// at: in pixels.
+vec3 environment_radiance(Environment env, vec2 at)
+{
+    vec2 low = floor(at - 0.5);
+    vec2 weight = at - 0.5 - low;
+    int x = int(low.x);
+    int y = int(low.y);
+    vec3 top = mix(environment_pixel(env, x, y), environment_pixel(env, x + 1, y), weight.x);
+    vec3 bottom = mix(environment_pixel(env, x, y + 1), environment_pixel(env, x + 1, y + 1), weight.x);
+    return mix(top, bottom, weight.y);
+}
+
+// In pixels; u grows from -x over -z, +x to +z.
+vec2 environment_position(Environment env, vec3 direction)
+{
+    float turns = atan(direction.z, direction.x) / (2.0 * PI) + 0.5;
+    float angle = atan(length(direction.xz), direction.y) / PI;
+    return vec2(turns * float(env.width), angle * float(env.height));
+}
+
+float environment_pdf(Environment env, vec2 at)
+{
+    return env.chance * env.density_per_luminance * luminance(environment_pixel(env, int(at.x), int(at.y)));
+}
+
+LightSample sample_environment(Environment env, uvec4 words)
+{
+    uint pixel = sample_alias(env.table, env.width * env.height, words.x, words.y);
+    vec2 inside = unit_floats(words.z, words.w);
+    uint row = pixel / env.width;
+    float x = float(pixel - row * env.width) + inside.x;
+    // Uniform by solid angle between the cosines of the row's edges.
+    float top = unit_circle(float(row) / float(2u * env.height)).x;
+    float bottom = unit_circle(float(row + 1u) / float(2u * env.height)).x;
+    float cosine = mix(top, bottom, inside.y);
+    float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    vec2 circle = unit_circle(x / float(env.width) - 0.5);
+    LightSample light;
+    light.direction = vec3(circle.x * sine, cosine, circle.y * sine);
+    // Placed inside the row linearly: atan of the direction would cost more and differ by less than rounding matters.
+    light.radiance = environment_radiance(env, vec2(x, environment_position(env, light.direction).y));
+    light.pdf = env.chance * env.density_per_luminance * luminance(AT(env.pixels, pixel).rgb);
+    light.is_delta = false;
+    light.has_target = false;
+    light.target = vec3(0.0);
+    return light;
+}
+
+LightSample sample_emitter(SceneData scene, Emitter emitter, vec3 from, vec2 u)
+{
+    Placement placement = load_placement(scene.instances, emitter.instance);
+    TriangleData data = load_triangle_data(AT(scene.instances, emitter.instance), emitter.primitive);
+    Surface surface = surface_at(data, placement, sample_triangle(u));
+    uint flags = AT(scene.materials, surface.material).flags;
+    float density = AT(AT(scene.instances, emitter.instance).emitter_density, emitter.primitive);
+    vec3 way = surface.point.position - from;
+    float distance2 = dot(way, way);
+    float cosine = -dot(surface.point.normal, way) * inversesqrt(distance2);
+    LightSample light;
+    light.direction = way * inversesqrt(distance2);
+    light.radiance = emitted(scene, surface.material, flags, surface.uv, cosine > 0.0);
+    light.pdf = (1.0 - scene.environment.chance) * density * distance2 / abs(cosine);
+    light.is_delta = false;
+    light.has_target = true;
+    light.target = spawn_position(surface.point, cosine > 0.0);
+    return light;
+}
+
+LightSample sample_punctual(SceneData scene, PunctualLight light, vec3 from)
+{
+    LightSample result;
+    result.pdf = (1.0 - scene.environment.chance) * light.chance;
+    result.is_delta = true;
+    result.has_target = light.kind != PUNCTUAL_DIRECTIONAL;
+    result.target = light.position;
+    result.radiance = light.color;
+    result.direction = -light.direction;
+    if (light.kind == PUNCTUAL_DIRECTIONAL) return result;
+    vec3 way = light.position - from;
+    float distance2 = dot(way, way);
+    result.direction = way * inversesqrt(distance2);
+    float reach = distance2 / (light.range * light.range);
+    result.radiance *= clamp(1.0 - reach * reach, 0.0, 1.0) / distance2;
+    if (light.kind == PUNCTUAL_SPOT)
+    {
+        float cone = clamp(dot(light.direction, -result.direction) * light.cone_scale + light.cone_offset, 0.0, 1.0);
+        result.radiance *= cone * cone;
+    }
+    return result;
+}
+
+LightSample sample_light(SceneData scene, vec3 from, float group, uvec4 words)
+{
+    if (HAS_ENVIRONMENT && (!HAS_LOCAL_LIGHTS || group < scene.environment.chance))
+        return sample_environment(scene.environment, words);
+    uint index = sample_alias(scene.local_table, scene.local_count, words.x, words.y);
+    if (index < scene.emitter_count)
+        return sample_emitter(scene, AT(scene.emitters, index), from, unit_floats(words.z, words.w));
+    return sample_punctual(scene, AT(scene.punctual, index - scene.emitter_count), from);
+}
+
+// Density with which sample_light would have found this point of an emitter.
+float emitter_pdf(SceneData scene, Hit hit, Surface surface, vec3 from, vec3 direction)
+{
+    Floats density = AT(scene.instances, hit.instance_index).emitter_density;
+    if (uint64_t(density) == 0ul) return 0.0;
+    vec3 way = surface.point.position - from;
+    return (1.0 - scene.environment.chance) * AT(density, hit.primitive_index) * dot(way, way) /
+           abs(dot(surface.point.normal, direction));
+}
+#endif

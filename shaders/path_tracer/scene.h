@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// The scene as the path tracer's kernels read it from device memory.
+#ifndef TWINRAY_PATH_TRACER_SCENE_H
+#define TWINRAY_PATH_TRACER_SCENE_H
+
+// Ids of the specialisation constants: what a scene lacks is compiled out.
+const uint PT_HAS_ALPHA = 0u;        // some material is masked or blended: rays may pass surfaces
+const uint PT_HAS_TEXTURES = 1u;
+const uint PT_HAS_GLASS = 2u;        // some material transmits
+const uint PT_HAS_ENVIRONMENT = 3u;
+const uint PT_HAS_LOCAL_LIGHTS = 4u; // emissive triangles or punctual lights
+const uint PT_STRATEGY = 5u;         // how direct light is found
+
+const uint STRATEGY_MIS = 0u;    // both of the following, weighted by the power heuristic
+const uint STRATEGY_LIGHTS = 1u; // sample lights only
+const uint STRATEGY_BSDF = 2u;   // sample the surface only: punctual lights are never found
+
+// 48 bytes. normal (0, 0, 0): none, shade flat. tangent.w 0: none, derive from uv.
+struct SurfaceVertex
+{
+    vec3 position;
+    vec3 normal;
+    vec2 uv;
+    vec4 tangent;
+};
+BUFFER_OF(SurfaceVertex, 16);
+
+struct SurfaceTriangle
+{
+    uvec3 vertices;
+    uint material;
+};
+BUFFER_OF(SurfaceTriangle, 16);
+
+// By Hit::instance_index.
+struct SurfaceInstance
+{
+    vec4 object_to_world[3];
+    vec4 world_to_object[3];
+    REF(SurfaceVertex) vertices;
+    REF(SurfaceTriangle) triangles;
+    Floats emitter_density; // per triangle: probability of being chosen as light / world area; null if none emits
+};
+BUFFER_OF(SurfaceInstance, 8);
+
+// 8-bit RGBA, row 0 at v = 0.
+struct TexelGrid
+{
+    Uints texels;
+    uint width;
+    uint height;
+};
+BUFFER_OF(TexelGrid, 8);
+
+const uint WRAP_REPEAT = 0u;
+const uint WRAP_CLAMP = 1u;
+const uint WRAP_MIRROR = 2u;
+
+struct TextureSlot
+{
+    uint image;
+    uint wrap; // of u in the low byte, of v in the next
+    vec3 row0; // uv' = (row0 . (u, v, 1), row1 . (u, v, 1))
+    vec3 row1;
+};
+
+const uint MATERIAL_MASKED = 1u;
+const uint MATERIAL_BLENDED = 2u;
+const uint MATERIAL_TWO_SIDED = 4u; // emits from its back too
+const uint MATERIAL_UNLIT = 8u;
+const uint MATERIAL_BASE_TEXTURE = 16u;
+const uint MATERIAL_ROUGHNESS_TEXTURE = 32u;
+const uint MATERIAL_EMISSION_TEXTURE = 64u;
+const uint MATERIAL_NORMAL_TEXTURE = 128u;
+const uint MATERIAL_TRANSMISSION_TEXTURE = 256u;
+
+struct SurfaceMaterial
+{
+    vec4 base_color;
+    vec3 emission;
+    uint flags;
+    float metallic;
+    float roughness;
+    float transmission;
+    float ior;
+    float normal_scale;
+    float alpha_cutoff;
+    TextureSlot base_texture;
+    TextureSlot roughness_texture;
+    TextureSlot emission_texture;
+    TextureSlot normal_texture;
+    TextureSlot transmission_texture;
+};
+BUFFER_OF(SurfaceMaterial, 4);
+
+// One column of an alias table: keep it if a random 32-bit word is below `keep`, else take `other`.
+struct AliasEntry
+{
+    uint keep;
+    uint other;
+};
+BUFFER_OF(AliasEntry, 8);
+
+struct Emitter
+{
+    uint instance;
+    uint primitive;
+};
+BUFFER_OF(Emitter, 8);
+
+const uint PUNCTUAL_DIRECTIONAL = 0u;
+const uint PUNCTUAL_POINT = 1u;
+const uint PUNCTUAL_SPOT = 2u;
+
+// KHR_lights_punctual.
+struct PunctualLight
+{
+    vec3 position;
+    uint kind;
+    vec3 direction;   // from the light
+    float range;      // infinity: none
+    vec3 color;       // times intensity
+    float chance;     // of being chosen among the local lights
+    float cone_scale; // spot: clamp(cos * scale + offset, 0, 1)^2
+    float cone_offset;
+};
+BUFFER_OF(PunctualLight, 4);
+
+// Of a pixel of the environment, or summed over the samples of a pixel of the picture.
+struct Radiance
+{
+    vec3 rgb;
+};
+BUFFER_OF(Radiance, 4);
+
+// Radiance by direction, latitude-longitude, row 0 around +y. A pixel is chosen with probability proportional to its
+// luminance times its solid angle, then a direction uniformly within it.
+struct Environment
+{
+    REF(Radiance) pixels;
+    REF(AliasEntry) table;
+    uint width;
+    uint height;
+    float density_per_luminance; // probability density by solid angle = this * luminance of the pixel
+    float chance;                // of sampling the environment instead of a local light
+};
+
+struct SceneData
+{
+    REF(SurfaceInstance) instances;
+    REF(SurfaceMaterial) materials;
+    REF(TexelGrid) images;
+    REF(Emitter) emitters;
+    REF(PunctualLight) punctual;
+    REF(AliasEntry) local_table; // emitters, then punctual lights
+    uint emitter_count;
+    uint local_count;
+    Environment environment;
+};
+BUFFER_OF(SceneData, 8);
+#endif

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+// What each ray of a wave met: adds the light it found, sends a shadow ray to a light and the path onwards.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/path_tracer/includes.glsl"
+#include "shaders/path_tracer/random.h"
+#include "shaders/path_tracer/lights.glsl"
+layout(local_size_x = PATH_GROUP) in;
+layout(push_constant, scalar) uniform Push { ShadeArgs args; };
+
+const uint ROULETTE_DEPTH = 3u; // scatterings that no path is spared
+
+// A vertex of a path as its functions share it.
+struct Vertex
+{
+    PathState path;
+    Surface surface;
+    Bsdf bsdf;
+    vec3 wo;
+    vec3 normal;   // shading normal on the side of wo
+    bool is_front; // of the triangle
+    uint number;   // random dimensions 3 number + 1 ... 3 number + 3 belong to it
+};
+
+float infinity() { return uintBitsToFloat(0x7f800000u); }
+
+uvec4 words_of(Vertex vertex, uint which)
+{
+    return random_words(vertex.path.pixel, args.sample_index, 3u * vertex.number + 1u + which, args.seed);
+}
+
+void add(uint pixel, vec3 radiance)
+{
+    if (is_finite(radiance)) AT(args.sums, pixel).rgb += radiance;
+    else atomicAdd(AT(args.counters, 0).non_finite, 1u);
+}
+
+// Weight of light that a ray sampled with density `own` has found, where light sampling has density `other`.
+float found_weight(float own, float other)
+{
+    if (STRATEGY == STRATEGY_BSDF) return 1.0;
+    if (STRATEGY == STRATEGY_LIGHTS) return own > 0.0 && other > 0.0 ? 0.0 : 1.0;
+    return mis_weight(own, other);
+}
+
+void add_environment(PathState path, Ray ray)
+{
+    if (!HAS_ENVIRONMENT) return;
+    Environment env = AT(args.scene, 0).environment;
+    vec2 at = environment_position(env, ray.direction);
+    float weight = found_weight(path.pdf, path.pdf > 0.0 ? environment_pdf(env, at) : 0.0);
+    add(path.pixel, path.throughput * environment_radiance(env, at) * weight);
+}
+
+void add_emission(Vertex vertex, Ray ray, Hit hit, uint flags)
+{
+    vec3 radiance = emitted(AT(args.scene, 0), vertex.surface.material, flags, vertex.surface.uv, vertex.is_front);
+    if (!HAS_LOCAL_LIGHTS || largest(radiance) <= 0.0) return;
+    float other = emitter_pdf(AT(args.scene, 0), hit, vertex.surface, ray.origin, ray.direction);
+    add(vertex.path.pixel, vertex.path.throughput * radiance * found_weight(vertex.path.pdf, other));
+}
+
+void go_on(Ray ray, PathState path)
+{
+    uint slot = atomicAdd(AT(args.counters, 0).paths, 1u);
+    AT(args.next_rays, slot) = ray;
+    AT(args.next_paths, slot) = path;
+}
+
+// The same ray behind a transparent surface.
+void pass(Vertex vertex, Ray ray)
+{
+    if (vertex.number - (vertex.path.progress >> 16u) >= MAX_PASSES)
+    {
+        atomicAdd(AT(args.counters, 0).cut, 1u);
+        return;
+    }
+    ray.t_min = passing_t(vertex.surface.point, vertex.surface.placement, ray, vertex.surface.t);
+    vertex.path.progress += 1u;
+    go_on(ray, vertex.path);
+}
+
+bool is_above(Vertex vertex, vec3 direction)
+{
+    return (dot(vertex.surface.point.normal, direction) > 0.0) == vertex.is_front;
+}
+
+// Next-event estimation.
+void light_directly(Vertex vertex)
+{
+    SceneData scene = AT(args.scene, 0);
+    float group = unit_float(words_of(vertex, 0u).z);
+    LightSample light = sample_light(scene, vertex.surface.point.position, group, words_of(vertex, 1u));
+    if (!(light.pdf > 0.0) || !(largest(light.radiance) > 0.0)) return;
+    Frame frame = frame_about(vertex.normal);
+    vec3 wi = to_local(frame, light.direction);
+    // A tilted shading normal must not let light through the triangle.
+    if ((wi.z > 0.0) != is_above(vertex, light.direction)) return;
+    BsdfValue value = evaluate(vertex.bsdf, to_local(frame, vertex.wo), wi);
+    if (!(largest(value.f) > 0.0)) return;
+    float weight = light.is_delta || STRATEGY == STRATEGY_LIGHTS ? 1.0 : mis_weight(light.pdf, value.pdf);
+    ShadowState shadow;
+    shadow.contribution = vertex.path.throughput * value.f * light.radiance * (weight / light.pdf);
+    shadow.pixel = vertex.path.pixel;
+    Ray ray;
+    ray.origin = spawn_position(vertex.surface.point, (wi.z > 0.0) == vertex.is_front);
+    ray.direction = light.has_target ? light.target - ray.origin : light.direction;
+    ray.t_min = 0.0;
+    ray.t_max = light.has_target ? 1.0 : infinity();
+    uint slot = atomicAdd(AT(args.counters, 0).shadows, 1u);
+    AT(args.shadow_rays, slot) = ray;
+    AT(args.shadows, slot) = shadow;
+}
+
+void scatter(Vertex vertex)
+{
+    uvec4 words = words_of(vertex, 2u);
+    float lobe = unit_float(words.x);
+    vec2 u = unit_floats(words.y, words.z);
+    Frame frame = frame_about(vertex.normal);
+    BsdfSample onwards = sample_bsdf(vertex.bsdf, to_local(frame, vertex.wo), lobe, u);
+    vec3 direction = to_world(frame, onwards.wi);
+    if (onwards.pdf == 0.0 && (onwards.wi.z > 0.0) != is_above(vertex, direction))
+    {
+        // A mirror direction through the triangle: mirror at the triangle itself, where losing it would be seen.
+        frame = frame_about(vertex.is_front ? vertex.surface.point.normal : -vertex.surface.point.normal);
+        onwards = sample_bsdf(vertex.bsdf, to_local(frame, vertex.wo), lobe, u);
+        direction = to_world(frame, onwards.wi);
+    }
+    if ((onwards.wi.z > 0.0) != is_above(vertex, direction)) return;
+    PathState path = vertex.path;
+    path.throughput *= onwards.weight;
+    if (path.progress >> 16u >= ROULETTE_DEPTH)
+    {
+        float survival = min(largest(path.throughput), 0.95);
+        if (!(unit_float(words.w) < survival)) return;
+        path.throughput /= survival;
+    }
+    if (!(largest(path.throughput) > 0.0)) return;
+    path.pdf = onwards.pdf;
+    path.progress += 0x10001u;
+    Ray ray;
+    ray.origin = spawn_position(vertex.surface.point, (onwards.wi.z > 0.0) == vertex.is_front);
+    ray.direction = direction;
+    ray.t_min = 0.0;
+    ray.t_max = infinity();
+    go_on(ray, path);
+}
+
+void shade(PathState path, Ray ray, Hit hit)
+{
+    Vertex vertex;
+    vertex.path = path;
+    vertex.surface = surface_of(AT(args.scene, 0), ray, hit);
+    vertex.wo = -ray.direction;
+    vertex.is_front = dot(vertex.surface.point.normal, vertex.wo) >= 0.0;
+    vertex.number = path.progress & 0xffffu;
+    uint flags = AT(AT(args.scene, 0).materials, vertex.surface.material).flags;
+    uvec4 choices = words_of(vertex, 0u);
+    vec4 color = base_color(AT(args.scene, 0), vertex.surface.material, flags, vertex.surface.uv);
+    if (HAS_ALPHA)
+    {
+        float cutoff = AT(AT(args.scene, 0).materials, vertex.surface.material).alpha_cutoff;
+        if (unit_float(choices.x) >= opacity(flags, cutoff, color.a)) return pass(vertex, ray);
+    }
+    if ((flags & MATERIAL_UNLIT) != 0u) return add(path.pixel, path.throughput * color.rgb);
+    add_emission(vertex, ray, hit, flags);
+    if (path.progress >> 16u >= args.max_depth) return;
+    vertex.normal = shading_normal(AT(args.scene, 0), vertex.surface, flags, vertex.wo);
+    vertex.bsdf = bsdf_of(AT(args.scene, 0), vertex.surface, flags, color.rgb, vertex.is_front, unit_float(choices.y));
+    if (STRATEGY != STRATEGY_BSDF && (HAS_ENVIRONMENT || HAS_LOCAL_LIGHTS) && scatters(vertex.bsdf)) light_directly(vertex);
+    scatter(vertex);
+}
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.count) return;
+    PathState path = AT(args.paths, i);
+    Ray ray = AT(args.rays, i);
+    Hit hit = AT(args.hits, i);
+    if (hit.hit != 0u) shade(path, ray, hit);
+    else add_environment(path, ray);
+}

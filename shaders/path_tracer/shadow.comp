@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Adds what shadow rays carry where nothing blocks them. With transparent surfaces in the scene a shadow ray looks for
+// its closest hit, is dimmed by it and goes on in the next round.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/path_tracer/includes.glsl"
+layout(local_size_x = PATH_GROUP) in;
+layout(push_constant, scalar) uniform Push { ShadowArgs args; };
+
+void pass(Ray ray, ShadowState shadow, Hit hit)
+{
+    SceneData scene = AT(args.scene, 0);
+    Surface surface = surface_of(scene, ray, hit);
+    uint flags = AT(scene.materials, surface.material).flags;
+    if ((flags & (MATERIAL_MASKED | MATERIAL_BLENDED)) == 0u) return;
+    float cutoff = AT(scene.materials, surface.material).alpha_cutoff;
+    float passed = 1.0 - opacity(flags, cutoff, base_color(scene, surface.material, flags, surface.uv).a);
+    if (passed <= 0.0) return;
+    if (args.is_last != 0u)
+    {
+        atomicAdd(AT(args.counters, 0).cut, 1u);
+        return;
+    }
+    ray.t_min = passing_t(surface.point, surface.placement, ray, surface.t);
+    shadow.contribution *= passed;
+    uint slot = atomicAdd(AT(args.counters, 0).shadows, 1u);
+    AT(args.next_rays, slot) = ray;
+    AT(args.next_shadows, slot) = shadow;
+}
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.count) return;
+    Hit hit = AT(args.hits, i);
+    ShadowState shadow = AT(args.shadows, i);
+    if (hit.hit == 0u)
+    {
+        if (is_finite(shadow.contribution)) AT(args.sums, shadow.pixel).rgb += shadow.contribution;
+        else atomicAdd(AT(args.counters, 0).non_finite, 1u);
+    }
+    else if (HAS_ALPHA) pass(AT(args.rays, i), shadow, hit);
+}

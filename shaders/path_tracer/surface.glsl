@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// What a ray met, rebuilt from the ids of the hit and the ray alone: an accelerator's own t, u and v are rounded in its
+// own way and never used, so the same ids give the same picture, bit for bit.
+#ifndef TWINRAY_PATH_TRACER_SURFACE_GLSL
+#define TWINRAY_PATH_TRACER_SURFACE_GLSL
+
+struct Surface
+{
+    SurfacePoint point;
+    Placement placement;
+    float t;            // along the ray that met it
+    vec3 normal;        // shading normal, unit, on the side of point.normal
+    vec3 tangent;       // world, for normal maps; not normalised
+    vec3 bitangent;
+    vec2 uv;
+    uint material;
+};
+
+struct TriangleData
+{
+    SurfaceVertex corner[3];
+    uint material;
+};
+
+// Fetched in 64-bit components: drivers on CPUs pay per component, not per byte.
+SurfaceVertex load_vertex(REF(SurfaceVertex) vertices, uint index)
+{
+    Words64 words = Words64(uint64_t(vertices) + uint64_t(index) * 48ul);
+    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4), w5 = AT(words, 5);
+    SurfaceVertex vertex;
+    vertex.position = vec3(FLOATS(w0), FLOATS(w1).x);
+    vertex.normal = vec3(FLOATS(w1).y, FLOATS(w2));
+    vertex.uv = FLOATS(w3);
+    vertex.tangent = vec4(FLOATS(w4), FLOATS(w5));
+    return vertex;
+}
+
+TriangleData load_triangle_data(SurfaceInstance instance, uint primitive)
+{
+    Words64 words = Words64(uint64_t(instance.triangles) + uint64_t(primitive) * 16ul);
+    uvec2 low = UINTS(AT(words, 0)), high = UINTS(AT(words, 1));
+    TriangleData data;
+    data.corner[0] = load_vertex(instance.vertices, low.x);
+    data.corner[1] = load_vertex(instance.vertices, low.y);
+    data.corner[2] = load_vertex(instance.vertices, high.x);
+    data.material = high.y;
+    return data;
+}
+
+Rows load_rows(uint64_t address)
+{
+    Words64 words = Words64(address);
+    Rows rows;
+    rows.r0 = vec4(FLOATS(AT(words, 0)), FLOATS(AT(words, 1)));
+    rows.r1 = vec4(FLOATS(AT(words, 2)), FLOATS(AT(words, 3)));
+    rows.r2 = vec4(FLOATS(AT(words, 4)), FLOATS(AT(words, 5)));
+    return rows;
+}
+
+Placement load_placement(REF(SurfaceInstance) instances, uint index)
+{
+    uint64_t address = uint64_t(instances) + uint64_t(index) * 120ul;
+    Placement placement;
+    placement.to_world = load_rows(address);
+    placement.to_object = load_rows(address + 48ul);
+    return placement;
+}
+
+// Where the ray crosses the plane of the triangle, without asking whether it does so inside; pulled into the triangle.
+// Returns (u, v, t).
+vec3 crossing_of(Ray ray, Placement placement, Corners corners)
+{
+    RaySpace space = make_ray_space(transform_point(placement.to_object, ray.origin),
+                                    transform_vector(placement.to_object, ray.direction), 0.0);
+    vec3 a = sheared(corners.a, space);
+    vec3 b = sheared(corners.b, space);
+    vec3 c = sheared(corners.c, space);
+    TriangleHit hit = crossing(a, b, c, edge_function(b, c), edge_function(c, a), edge_function(a, b), space.shear_z);
+    // Compare and select: a NaN, where the triangle is seen edge on, becomes 0.
+    float u = hit.u > 0.0 ? (hit.u < 1.0 ? hit.u : 1.0) : 0.0;
+    float v = hit.v > 0.0 ? (hit.v < 1.0 - u ? hit.v : 1.0 - u) : 0.0;
+    return vec3(u, v, hit.t);
+}
+
+Corners corners_of(TriangleData data)
+{
+    Corners corners;
+    corners.a = data.corner[0].position;
+    corners.b = data.corner[1].position;
+    corners.c = data.corner[2].position;
+    return corners;
+}
+
+vec2 interpolated_uv(TriangleData data, vec2 at)
+{
+    return data.corner[0].uv * (1.0 - at.x - at.y) + data.corner[1].uv * at.x + data.corner[2].uv * at.y;
+}
+
+vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placement, vec2 at)
+{
+    vec3 normal = data.corner[0].normal * (1.0 - at.x - at.y) + data.corner[1].normal * at.x + data.corner[2].normal * at.y;
+    if (dot(normal, normal) == 0.0) return point.normal;
+    normal = normalize(transposed_times(placement.to_object, normal));
+    // Files with vertex normals against their winding exist; the winding decides what is the front.
+    return dot(normal, point.normal) < 0.0 ? -normal : normal;
+}
+
+// Tangents of the file, else by the derivatives of uv. glTF's bitangent points to smaller v (up in the picture).
+void set_tangents(inout Surface surface, TriangleData data, vec2 at)
+{
+    vec4 tangent = data.corner[0].tangent * (1.0 - at.x - at.y) + data.corner[1].tangent * at.x + data.corner[2].tangent * at.y;
+    if (data.corner[0].tangent.w != 0.0)
+    {
+        vec3 normal = data.corner[0].normal * (1.0 - at.x - at.y) + data.corner[1].normal * at.x + data.corner[2].normal * at.y;
+        surface.tangent = transform_vector(surface.placement.to_world, tangent.xyz);
+        surface.bitangent = transform_vector(surface.placement.to_world, cross(normal, tangent.xyz) * data.corner[0].tangent.w);
+        return;
+    }
+    vec2 du = data.corner[1].uv - data.corner[0].uv;
+    vec2 dv = data.corner[2].uv - data.corner[0].uv;
+    vec3 edge1 = data.corner[1].position - data.corner[0].position;
+    vec3 edge2 = data.corner[2].position - data.corner[0].position;
+    float handedness = du.x * dv.y - du.y * dv.x < 0.0 ? -1.0 : 1.0;
+    surface.tangent = transform_vector(surface.placement.to_world, (edge1 * dv.y - edge2 * du.y) * handedness);
+    surface.bitangent = transform_vector(surface.placement.to_world, (edge1 * dv.x - edge2 * du.x) * handedness);
+}
+
+Surface surface_at(TriangleData data, Placement placement, vec2 at)
+{
+    Surface surface;
+    surface.placement = placement;
+    surface.point = surface_point(placement, corners_of(data), at);
+    surface.uv = interpolated_uv(data, at);
+    surface.material = data.material;
+    surface.normal = interpolated_normal(data, surface.point, placement, at);
+    return surface;
+}
+
+Surface surface_of(SceneData scene, Ray ray, Hit hit)
+{
+    Placement placement = load_placement(scene.instances, hit.instance_index);
+    TriangleData data = load_triangle_data(AT(scene.instances, hit.instance_index), hit.primitive_index);
+    vec3 at = crossing_of(ray, placement, corners_of(data));
+    Surface surface = surface_at(data, placement, at.xy);
+    surface.t = at.z;
+    if (HAS_TEXTURES) set_tangents(surface, data, at.xy);
+    return surface;
+}
+#endif

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// A wave: rays in flight, what each carries, and what the kernels that move it take. Needs ray.h and scene.h.
+#ifndef TWINRAY_PATH_TRACER_WAVE_H
+#define TWINRAY_PATH_TRACER_WAVE_H
+
+const uint PATH_GROUP = 64u;
+
+// Transparent surfaces that one path, and one shadow ray, may pass; beyond it they count as opaque and black.
+const uint MAX_PASSES = 32u;
+const uint MAX_SHADOW_PASSES = 8u;
+
+// 24 bytes, one per ray.
+struct PathState
+{
+    vec3 throughput;
+    float pdf;     // density by solid angle with which the ray was sampled; 0: it could not have been found as light
+    uint pixel;
+    uint progress; // low half: surfaces met, which number the random dimensions; high half: scatterings of them
+};
+BUFFER_OF(PathState, 8);
+
+// What a shadow ray adds to its pixel if nothing blocks it.
+struct ShadowState
+{
+    vec3 contribution;
+    uint pixel;
+};
+BUFFER_OF(ShadowState, 8);
+
+struct Counters
+{
+    uint paths;      // appended for the next wave
+    uint shadows;    // appended for the next shadow wave
+    uint non_finite; // contributions dropped as NaN or infinite
+    uint cut;        // rays ended after passing too many transparent surfaces
+};
+BUFFER_OF(Counters, 4);
+
+// Rays leave origin + x right + y up (orthographic) or in direction forward + x right + y up, x and y in [-1, 1].
+struct CameraRays
+{
+    vec3 origin;
+    vec3 right;
+    vec3 up;
+    vec3 forward;
+    uint orthographic;
+};
+
+struct GenerateArgs
+{
+    REF(Ray) rays;
+    REF(PathState) paths;
+    CameraRays camera;
+    uint first; // position in the order of pixels
+    uint count;
+    uint width;
+    uint height;
+    uint sample_index;
+    uint seed;
+};
+
+struct ShadeArgs
+{
+    REF(SceneData) scene;
+    REF(Ray) rays;
+    REF(Hit) hits;
+    REF(PathState) paths;
+    REF(Ray) next_rays;
+    REF(PathState) next_paths;
+    REF(Ray) shadow_rays;
+    REF(ShadowState) shadows;
+    REF(Counters) counters;
+    REF(Radiance) sums;
+    uint count;
+    uint sample_index;
+    uint seed;
+    uint max_depth;
+};
+
+struct ShadowArgs
+{
+    REF(SceneData) scene;
+    REF(Ray) rays;
+    REF(Hit) hits;
+    REF(ShadowState) shadows;
+    REF(Ray) next_rays;
+    REF(ShadowState) next_shadows;
+    REF(Counters) counters;
+    REF(Radiance) sums;
+    uint count;
+    uint is_last; // rays that are not through after this round end
+};
+
+// A ray on which two accelerators name different hits.
+struct Disagreement
+{
+    Ray ray;
+    Hit first;
+    Hit second;
+    uint pixel;
+    uint is_any; // a query for any hit: only hit or miss counts
+};
+BUFFER_OF(Disagreement, 8);
+
+struct CompareArgs
+{
+    REF(Ray) rays;
+    REF(Hit) first;
+    REF(Hit) second;
+    Uints pixels;       // of ray i at i * pixel_stride
+    REF(Disagreement) found;
+    Uints found_count;  // counts beyond the capacity too
+    Uints marks;        // one per pixel, set to 1 where a ray disagrees
+    uint pixel_stride;
+    uint count;
+    uint capacity;
+    uint is_any;
+};
+#endif

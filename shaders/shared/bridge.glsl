@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The GLSL side of the bridge: gives shared headers the words that both languages understand.
+// Its C++ twin is engine/core/shader_bridge.h; no shared header contains a language #ifdef.
+#ifndef TWINRAY_BRIDGE_GLSL
+#define TWINRAY_BRIDGE_GLSL
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_buffer_reference2 : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_control_flow_attributes : require
+
+#define FUNC
+#define INOUT(T) inout T
+#define PRECISE precise
+#define REF(T) T##_ref
+#define AT(ref, i) ref.items[i]
+#define BUFFER_OF(T, alignment) \
+    layout(buffer_reference, scalar, buffer_reference_align = alignment) buffer T##_ref { T items[]; }
+#define BUFFER_OF_WORDS(name, T, alignment) \
+    layout(buffer_reference, scalar, buffer_reference_align = alignment) buffer name { T items[]; }
+#define FEATURE(id, name) layout(constant_id = id) const bool name = true;
+
+// Reads the two floats that lie in one 64-bit word, low word first.
+#define FLOATS(word) uintBitsToFloat(unpackUint2x32(word))
+#define UINTS(word) unpackUint2x32(word)
+
+BUFFER_OF_WORDS(Words64, uint64_t, 8);
+BUFFER_OF_WORDS(Floats, float, 4);
+BUFFER_OF_WORDS(Uints, uint, 4);
+
+// Linear index of this group and this invocation; Kernel::dispatch spreads large counts over x and y. Macros, because
+// gl_WorkGroupSize has its value only after the shader's local_size declaration, which follows this include.
+#define group_index() (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x)
+#define global_index() (group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex)
+#endif

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+// What the build kernels of the software accelerator share. A batch builds many trees at once: its leaves stand one
+// tree after the other, and a block is a run of up to BUILD_GROUP leaves of one tree.
+#ifndef TWINRAY_SHARED_BUILD_H
+#define TWINRAY_SHARED_BUILD_H
+#include "shaders/shared/bvh.h"
+#include "shaders/shared/ray.h"
+#include "shaders/shared/transform.h"
+
+const uint BUILD_GROUP = 256u;
+const uint INACTIVE_CODE = 0x3fffffffu; // Morton code of leaves without a finite box: last
+
+struct LeafBox
+{
+    vec3 lo;
+    vec3 hi;
+};
+BUFFER_OF(LeafBox, 4);
+
+// Box of a tree's leaf centres, as ordered bits (see ordered_bits).
+struct CentroidBounds
+{
+    uvec3 lo;
+    uvec3 hi;
+};
+BUFFER_OF(CentroidBounds, 4);
+
+// One tree of the batch, with leaves first .. first + count - 1.
+struct BuildTree
+{
+    uint first;
+    uint count;
+    Floats positions;          // 3 floats a vertex; triangles only
+    Uints indices;             // 3 indices a triangle; triangles only
+    REF(BvhTriangle) triangles;
+    REF(Bvh) bvh;
+};
+BUFFER_OF(BuildTree, 8);
+
+struct BuildBlock
+{
+    uint tree;
+    uint first;
+    uint count;
+};
+BUFFER_OF(BuildBlock, 4);
+
+struct TriangleLeavesArgs
+{
+    REF(BuildTree) trees;
+    REF(BuildBlock) blocks;
+    REF(LeafBox) boxes;
+    REF(CentroidBounds) centroids; // one per tree
+    uint block_count;
+    uint reserved;
+};
+
+struct InstanceLeavesArgs
+{
+    REF(InstanceRecord) records;
+    REF(SwInstance) instances;
+    REF(BuildBlock) blocks;
+    REF(LeafBox) boxes;
+    REF(CentroidBounds) centroids;
+    uint block_count;
+    uint reserved;
+};
+
+struct MortonArgs
+{
+    REF(BuildBlock) blocks;
+    REF(LeafBox) boxes;
+    REF(CentroidBounds) centroids;
+    Uints codes;   // by leaf
+    Uints keys;    // the same, to be sorted
+    Uints order;   // 0, 1, 2, ...
+    Uints tree_of; // by leaf; 0 = not wanted (a single tree)
+    uint block_count;
+    uint reserved;
+};
+
+// keys[i] = tree_of[order[i]]
+struct TreeKeysArgs
+{
+    Uints tree_of;
+    Uints order;
+    Uints keys;
+    uint count;
+    uint reserved;
+};
+
+struct HierarchyArgs
+{
+    REF(BuildTree) trees;
+    REF(BuildBlock) blocks;
+    REF(LeafBox) boxes;
+    Uints codes;
+    Uints order;
+    Uints meeting;          // by inner node: the far end of the range that arrived first, NOTHING before
+    uint block_count;
+    uint leaves_are_sorted; // 1: leaf references count sorted leaves; 0: they are the leaf's own index
+};
+
+struct EncodeTrianglesArgs
+{
+    REF(BuildTree) trees;
+    REF(BuildBlock) blocks;
+    Uints order;
+    uint block_count;
+    uint reserved;
+};
+
+struct SwTraceArgs
+{
+    REF(SwScene) scene;
+    REF(Ray) rays;
+    REF(Hit) hits;
+    uint count;
+    uint mask;
+};
+
+FUNC bool is_active(LeafBox box) { return box.lo.x <= box.hi.x; }
+
+FUNC LeafBox empty_box()
+{
+    LeafBox box;
+    box.lo = vec3(uintBitsToFloat(0x7f800000u));
+    box.hi = vec3(uintBitsToFloat(0xff800000u));
+    return box;
+}
+
+// The middle without overflow, which (lo + hi) / 2 has above 1.7e38.
+FUNC vec3 center_of(LeafBox box)
+{
+    PRECISE vec3 half_lo = box.lo * 0.5f;
+    PRECISE vec3 half_hi = box.hi * 0.5f;
+    PRECISE vec3 center = half_lo + half_hi;
+    return center;
+}
+
+FUNC vec3 load_position(Floats positions, uint vertex)
+{
+    return vec3(AT(positions, vertex * 3u), AT(positions, vertex * 3u + 1u), AT(positions, vertex * 3u + 2u));
+}
+
+// The corners of a triangle, all 0 if one of them is not finite.
+FUNC BvhTriangle fetch_triangle(BuildTree tree, uint primitive)
+{
+    BvhTriangle triangle;
+    triangle.v0 = load_position(tree.positions, AT(tree.indices, primitive * 3u));
+    triangle.v1 = load_position(tree.positions, AT(tree.indices, primitive * 3u + 1u));
+    triangle.v2 = load_position(tree.positions, AT(tree.indices, primitive * 3u + 2u));
+    triangle.primitive_index = primitive;
+    return triangle;
+}
+
+FUNC bool is_finite_triangle(BvhTriangle t) { return is_finite(t.v0) && is_finite(t.v1) && is_finite(t.v2); }
+
+FUNC LeafBox box_of_triangle(BvhTriangle t)
+{
+    if (!is_finite_triangle(t)) return empty_box();
+    LeafBox box;
+    box.lo = min(t.v0, min(t.v1, t.v2));
+    box.hi = max(t.v0, max(t.v1, t.v2));
+    return box;
+}
+
+// A box around object_to_world applied to the box (lo, hi), widened by the rounding of this arithmetic and by how far
+// rounding moves a ray that is taken to object space and back: both are a few 2^-24 of the magnitudes involved, and
+// 2^-20 of them is added.
+FUNC LeafBox box_of_instance(InstanceRecord instance, vec3 lo, vec3 hi, Rows to_object)
+{
+    if (!(lo.x <= hi.x)) return empty_box();
+    LeafBox box = empty_box();
+    for (uint axis = 0u; axis < 3u; axis = axis + 1u)
+    {
+        vec4 row = instance.object_to_world[axis];
+        vec3 a = vec3(row.x * lo.x, row.y * lo.y, row.z * lo.z);
+        vec3 b = vec3(row.x * hi.x, row.y * hi.y, row.z * hi.z);
+        float low = row.w + (min(a.x, b.x) + min(a.y, b.y) + min(a.z, b.z));
+        float high = row.w + (max(a.x, b.x) + max(a.y, b.y) + max(a.z, b.z));
+        float reach = max(abs(row.w), max(abs(low), abs(high)));
+        vec3 size = abs(vec3(row.x, row.y, row.z));
+        reach = max(reach, dot(size, max(abs(lo), abs(hi))));
+        reach = max(reach, dot(size, vec3(abs(to_object.r0.w), abs(to_object.r1.w), abs(to_object.r2.w))));
+        box.lo[axis] = low - reach * 9.5367431640625e-07f;
+        box.hi[axis] = high + reach * 9.5367431640625e-07f;
+    }
+    return box;
+}
+#endif

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Error-free float transformations. `precise` is repeated in every helper: it does not reach into callees, and a
+// contracted product would break both the exactness here and the watertightness that rests on it.
+#ifndef TWINRAY_SHARED_EXACT_H
+#define TWINRAY_SHARED_EXACT_H
+
+// The rounding error of the product p = fl(a b): a b = p + error, exactly, barring over- and underflow.
+// Dekker, "A floating-point technique for extending the available precision", 1971, with Veltkamp's splitting.
+FUNC float product_error(float a, float b, float p)
+{
+    PRECISE float a_scaled = 4097.0f * a;
+    PRECISE float a_rest = a_scaled - a;
+    PRECISE float a_high = a_scaled - a_rest;
+    PRECISE float a_low = a - a_high;
+    PRECISE float b_scaled = 4097.0f * b;
+    PRECISE float b_rest = b_scaled - b;
+    PRECISE float b_high = b_scaled - b_rest;
+    PRECISE float b_low = b - b_high;
+    PRECISE float high_high = a_high * b_high;
+    PRECISE float high_low = a_high * b_low;
+    PRECISE float low_high = a_low * b_high;
+    PRECISE float low_low = a_low * b_low;
+    PRECISE float error = high_high - p;
+    error = error + high_low;
+    error = error + low_high;
+    error = error + low_low;
+    return error;
+}
+
+// The rounding error of the sum s = fl(a + b): a + b = s + error, exactly (Knuth's TwoSum).
+FUNC float sum_error(float a, float b, float s)
+{
+    PRECISE float b_virtual = s - a;
+    PRECISE float a_virtual = s - b_virtual;
+    PRECISE float b_error = b - b_virtual;
+    PRECISE float a_error = a - a_virtual;
+    PRECISE float error = a_error + b_error;
+    return error;
+}
+
+// a.x b.x + a.y b.y + a.z b.z + c as if in twice the precision, rounded once (Ogita, Rump, Oishi, "Accurate sum and
+// dot product", 2005).
+FUNC float accurate_dot(vec3 a, vec3 b, float c)
+{
+    PRECISE float p0 = a.x * b.x;
+    PRECISE float p1 = a.y * b.y;
+    PRECISE float p2 = a.z * b.z;
+    PRECISE float s0 = c + p0;
+    PRECISE float s1 = s0 + p1;
+    PRECISE float s2 = s1 + p2;
+    PRECISE float low = sum_error(c, p0, s0) + product_error(a.x, b.x, p0);
+    low = low + sum_error(s0, p1, s1);
+    low = low + product_error(a.y, b.y, p1);
+    low = low + sum_error(s1, p2, s2);
+    low = low + product_error(a.z, b.z, p2);
+    PRECISE float result = s2 + low;
+    return result;
+}
+#endif

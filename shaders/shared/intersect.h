@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// Watertight ray-box and ray-triangle tests.
+#ifndef TWINRAY_SHARED_INTERSECT_H
+#define TWINRAY_SHARED_INTERSECT_H
+#include "shaders/shared/exact.h"
+#include "shaders/shared/ray.h"
+
+// A ray prepared for one coordinate space.
+//  - Boxes: near and far planes use reciprocals padded by a factor 1 -+ 2^-20, which covers the 2.5 ulp that Vulkan
+//    allows a division and the roundings of (plane - origin) * reciprocal (Ize, "Robust BVH Ray Traversal", 2013,
+//    with the constant for Vulkan), and origins shifted by an absolute pad for what an instance transform adds.
+//  - Triangles: shear constants of Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", 2013.
+struct RaySpace
+{
+    vec3 origin;
+    vec3 near_origin;
+    vec3 far_origin;
+    vec3 near_inverse;
+    vec3 far_inverse;
+    uint axis; // the dominant axis of the direction
+    float shear_x;
+    float shear_y;
+    float shear_z;
+};
+
+FUNC float reciprocal(float d)
+{
+    // 1/0 is written out: Vulkan leaves the division undefined. Its sign is that of the zero.
+    return d == 0.0f ? uintBitsToFloat(0x7f800000u | (floatBitsToUint(d) & 0x80000000u)) : 1.0f / d;
+}
+
+FUNC vec3 dominant_last(vec3 v, uint axis)
+{
+    return axis == 0u ? vec3(v.y, v.z, v.x) : (axis == 1u ? vec3(v.z, v.x, v.y) : v);
+}
+
+FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
+{
+    const float NEAR_FACTOR = 0.99999904632568359375f; // 1 - 2^-20
+    const float FAR_FACTOR = 1.00000095367431640625f;  // 1 + 2^-20
+    RaySpace space;
+    space.origin = origin;
+    vec3 inverse = vec3(reciprocal(direction.x), reciprocal(direction.y), reciprocal(direction.z));
+    space.near_inverse = inverse * NEAR_FACTOR;
+    space.far_inverse = inverse * FAR_FACTOR;
+    vec3 shift = vec3(inverse.x < 0.0f ? -pad : pad, inverse.y < 0.0f ? -pad : pad, inverse.z < 0.0f ? -pad : pad);
+    space.near_origin = origin + shift;
+    space.far_origin = origin - shift;
+    vec3 size = abs(direction);
+    space.axis = size.x >= size.y ? (size.x >= size.z ? 0u : 2u) : (size.y >= size.z ? 1u : 2u);
+    vec3 d = dominant_last(direction, space.axis);
+    space.shear_x = d.x / d.z;
+    space.shear_y = d.y / d.z;
+    space.shear_z = 1.0f / d.z;
+    return space;
+}
+
+// Whether the ray meets the box within [t_min, t_max], and the distance at which it enters.
+// Compare-and-select instead of min/max: a NaN (0 * infinity: the origin lies on a plane that the ray is parallel to)
+// must leave the interval as it was, which GLSL does not promise of min/max.
+FUNC bool enter_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, INOUT(float) enter)
+{
+    bool flip_x = space.near_inverse.x < 0.0f;
+    bool flip_y = space.near_inverse.y < 0.0f;
+    bool flip_z = space.near_inverse.z < 0.0f;
+    PRECISE float near_x = ((flip_x ? hi.x : lo.x) - space.near_origin.x) * space.near_inverse.x;
+    PRECISE float near_y = ((flip_y ? hi.y : lo.y) - space.near_origin.y) * space.near_inverse.y;
+    PRECISE float near_z = ((flip_z ? hi.z : lo.z) - space.near_origin.z) * space.near_inverse.z;
+    PRECISE float far_x = ((flip_x ? lo.x : hi.x) - space.far_origin.x) * space.far_inverse.x;
+    PRECISE float far_y = ((flip_y ? lo.y : hi.y) - space.far_origin.y) * space.far_inverse.y;
+    PRECISE float far_z = ((flip_z ? lo.z : hi.z) - space.far_origin.z) * space.far_inverse.z;
+    enter = t_min;
+    enter = near_x > enter ? near_x : enter;
+    enter = near_y > enter ? near_y : enter;
+    enter = near_z > enter ? near_z : enter;
+    float leave = t_max;
+    leave = far_x < leave ? far_x : leave;
+    leave = far_y < leave ? far_y : leave;
+    leave = far_z < leave ? far_z : leave;
+    return enter <= leave;
+}
+
+// A corner seen along the ray: x, y sheared so that the ray is the point (0, 0), z along the dominant axis. It depends
+// on the corner and the ray alone, so all triangles that share the corner see the same point.
+FUNC vec3 sheared(vec3 corner, RaySpace space)
+{
+    PRECISE vec3 relative = corner - space.origin;
+    vec3 p = dominant_last(relative, space.axis);
+    PRECISE float move_x = space.shear_x * p.z;
+    PRECISE float move_y = space.shear_y * p.z;
+    PRECISE float x = p.x - move_x;
+    PRECISE float y = p.y - move_y;
+    return vec3(x, y, p.z);
+}
+
+// Twice the signed area of (0, a, b). Rounding is monotone: a nonzero result has the right sign.
+FUNC float edge_function(vec3 a, vec3 b)
+{
+    PRECISE float p = a.x * b.y;
+    PRECISE float q = a.y * b.x;
+    PRECISE float area = p - q;
+    return area;
+}
+
+// The same where edge_function gives 0: the exact value, and where that is 0 too, the sign after moving the ray by
+// (e, e^2) for a vanishing e > 0 (simulation of simplicity), so that exactly one of the triangles around an edge or a
+// corner is hit, for any winding. 0 only for a collapsed edge.
+FUNC float exact_edge_function(vec3 a, vec3 b, INOUT(int) side)
+{
+    PRECISE float p = a.x * b.y;
+    PRECISE float q = a.y * b.x;
+    PRECISE float area = p - q;
+    if (p == q)
+    {
+        PRECISE float low = product_error(a.x, b.y, p) - product_error(a.y, b.x, q);
+        area = low;
+    }
+    if (p != q) side = p > q ? 1 : -1;
+    else if (area != 0.0f) side = area > 0.0f ? 1 : -1;
+    else if (a.y != b.y) side = a.y > b.y ? 1 : -1;
+    else side = b.x > a.x ? 1 : (b.x < a.x ? -1 : 0);
+    return area;
+}
+
+struct TriangleHit
+{
+    float t;
+    float u;
+    float v;
+};
+
+// t, u, v where the ray crosses the plane of the sheared corners, from their edge functions.
+FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float area_a, float area_b, float area_c, float shear_z)
+{
+    PRECISE float det = area_a + area_b;
+    det = det + area_c;
+    PRECISE float za = area_a * a.z;
+    PRECISE float zb = area_b * b.z;
+    PRECISE float zc = area_c * c.z;
+    PRECISE float z = za + zb;
+    z = z + zc;
+    PRECISE float scaled = z * shear_z;
+    TriangleHit hit;
+    hit.t = scaled / det;
+    hit.u = area_b / det;
+    hit.v = area_c / det;
+    return hit;
+}
+
+// Whether the ray's line meets the triangle (a, b, c), and where. No interval test.
+FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(TriangleHit) hit)
+{
+    vec3 a = sheared(v0, space);
+    vec3 b = sheared(v1, space);
+    vec3 c = sheared(v2, space);
+    float area_a = edge_function(b, c);
+    float area_b = edge_function(c, a);
+    float area_c = edge_function(a, b);
+    if (area_a == 0.0f || area_b == 0.0f || area_c == 0.0f)
+    {
+        int side_a = 0;
+        int side_b = 0;
+        int side_c = 0;
+        area_a = exact_edge_function(b, c, side_a);
+        area_b = exact_edge_function(c, a, side_b);
+        area_c = exact_edge_function(a, b, side_c);
+        if (side_a == 0 || side_a != side_b || side_b != side_c) return false;
+    }
+    else if ((area_a < 0.0f) != (area_b < 0.0f) || (area_b < 0.0f) != (area_c < 0.0f)) return false;
+    hit = crossing(a, b, c, area_a, area_b, area_c, space.shear_z);
+    return true;
+}
+#endif

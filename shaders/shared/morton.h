@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// 30-bit Morton codes: 10 bits an axis, x in the highest bit of each triple.
+#ifndef TWINRAY_SHARED_MORTON_H
+#define TWINRAY_SHARED_MORTON_H
+
+// ........ ........ ......98 76543210  ->  ....9..8 ..7..6.. 5..4..3. .2..1..0
+FUNC uint spread_bits(uint x)
+{
+    x = (x | (x << 16u)) & 0x030000ffu;
+    x = (x | (x << 8u)) & 0x0300f00fu;
+    x = (x | (x << 4u)) & 0x030c30c3u;
+    x = (x | (x << 2u)) & 0x09249249u;
+    return x;
+}
+
+// The cell of a coordinate in [lo, hi] cut into 1024; 0 where the interval has no length. The clamp comes before the
+// conversion to integer, which is undefined out of range.
+FUNC uint cell_of(float x, float lo, float hi)
+{
+    PRECISE float extent = hi - lo;
+    if (!(extent > 0.0f)) return 0u;
+    PRECISE float offset = x - lo;
+    PRECISE float scaled = offset / extent * 1024.0f;
+    scaled = scaled > 0.0f ? scaled : 0.0f;
+    scaled = scaled < 1023.0f ? scaled : 1023.0f;
+    return uint(scaled);
+}
+
+FUNC uint morton_code(vec3 point, vec3 lo, vec3 hi)
+{
+    return (spread_bits(cell_of(point.x, lo.x, hi.x)) << 2u) | (spread_bits(cell_of(point.y, lo.y, hi.y)) << 1u) |
+           spread_bits(cell_of(point.z, lo.z, hi.z));
+}
+
+// A map from floats (NaN excepted) to uints that keeps order, for atomic min and max.
+FUNC uint ordered_bits(float x)
+{
+    uint bits = floatBitsToUint(x);
+    return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
+}
+FUNC float from_ordered_bits(uint bits)
+{
+    return uintBitsToFloat((bits & 0x80000000u) != 0u ? bits & 0x7fffffffu : ~bits);
+}
+#endif

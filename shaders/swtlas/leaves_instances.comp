@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// The world box of each instance, what traversal needs of it, and the bounds of the centroids. The only stage that
+// knows instances from triangles: all later ones see boxes.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/swtlas/centroids.glsl"
+layout(local_size_x = BUILD_GROUP) in;
+layout(push_constant, scalar) uniform Push { InstanceLeavesArgs args; };
+
+LeafBox place_instance(uint index)
+{
+    InstanceRecord record = AT(args.records, index);
+    Rows to_world;
+    to_world.r0 = record.object_to_world[0];
+    to_world.r1 = record.object_to_world[1];
+    to_world.r2 = record.object_to_world[2];
+    Rows to_object = inverse_of(to_world);
+    SwInstance instance;
+    instance.world_to_object[0] = to_object.r0;
+    instance.world_to_object[1] = to_object.r1;
+    instance.world_to_object[2] = to_object.r2;
+    instance.custom_index_mask = record.custom_index_mask;
+    instance.root = NOTHING;
+    LeafBox box = empty_box();
+    if (record.geometry != 0ul)
+    {
+        SwGeometry geometry = AT(REF(SwGeometry)(record.geometry), 0);
+        instance.nodes = geometry.bvh.nodes;
+        instance.triangles = geometry.triangles;
+        instance.root = geometry.bvh.root;
+        box = box_of_instance(record, geometry.bvh.lo, geometry.bvh.hi, to_object);
+    }
+    AT(args.instances, index) = instance;
+    return box;
+}
+
+void main()
+{
+    if (group_index() >= args.block_count) return;
+    BuildBlock block = AT(args.blocks, group_index());
+    LeafBox box = empty_box();
+    if (gl_LocalInvocationIndex < block.count)
+    {
+        uint leaf = block.first + gl_LocalInvocationIndex;
+        box = place_instance(leaf);
+        AT(args.boxes, leaf) = box;
+    }
+    add_centroids(args.centroids, block.tree, box);
+}

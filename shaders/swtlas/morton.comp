@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// The Morton code of each leaf's centre within its tree's centroids.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/build.h"
+#include "shaders/shared/morton.h"
+layout(local_size_x = BUILD_GROUP) in;
+layout(push_constant, scalar) uniform Push { MortonArgs args; };
+
+void main()
+{
+    if (group_index() >= args.block_count) return;
+    BuildBlock block = AT(args.blocks, group_index());
+    if (gl_LocalInvocationIndex >= block.count) return;
+    uint leaf = block.first + gl_LocalInvocationIndex;
+    LeafBox box = AT(args.boxes, leaf);
+    uint code = INACTIVE_CODE;
+    if (is_active(box))
+    {
+        CentroidBounds bounds = AT(args.centroids, block.tree);
+        vec3 lo = vec3(from_ordered_bits(bounds.lo.x), from_ordered_bits(bounds.lo.y), from_ordered_bits(bounds.lo.z));
+        vec3 hi = vec3(from_ordered_bits(bounds.hi.x), from_ordered_bits(bounds.hi.y), from_ordered_bits(bounds.hi.z));
+        code = morton_code(center_of(box), lo, hi);
+    }
+    AT(args.codes, leaf) = code;
+    AT(args.keys, leaf) = code;
+    AT(args.order, leaf) = leaf;
+    if (uint64_t(args.tree_of) != 0ul) AT(args.tree_of, leaf) = block.tree;
+}

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "swtlas/build.h"
+
+#include "swtlas_encode_triangles.spv.h"
+#include "swtlas_hierarchy.spv.h"
+#include "swtlas_leaves_instances.spv.h"
+#include "swtlas_leaves_triangles.spv.h"
+#include "swtlas_morton.spv.h"
+#include "swtlas_tree_keys.spv.h"
+
+namespace twinray {
+namespace {
+
+constexpr uint morton_bits = 30;
+
+KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv) {
+    return {.name = name, .spirv = spirv, .group_size = BUILD_GROUP};
+}
+
+}  // namespace
+
+struct Builder::Batch {
+    Ref<BuildTree> trees;
+    Ref<BuildBlock> blocks;
+    Ref<LeafBox> boxes;
+    Ref<CentroidBounds> centroids;
+    Uints codes, tree_of, meeting, counters;
+    RadixSort::Pairs pairs, spare;
+    uint block_count;
+};
+
+Builder::Builder(Context& context)
+    : sort_(context),
+      leaves_triangles_(context, stage("swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
+      leaves_instances_(context, stage("swtlas_leaves_instances", swtlas_leaves_instances_spirv)),
+      morton_(context, stage("swtlas_morton", swtlas_morton_spirv)),
+      tree_keys_(context, stage("swtlas_tree_keys", swtlas_tree_keys_spirv)),
+      hierarchy_(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv)),
+      encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv)) {}
+
+Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const {
+    const BuildScratch& at = plan.scratch;
+    Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = at.bytes});
+    const uint none = ordered_bits(-INFINITY), all = ordered_bits(INFINITY);
+    const std::vector<CentroidBounds> empty(trees.size(), {uvec3(all), uvec3(none)});
+    {
+        const auto pass = commands.pass("swtlas build input");
+        commands.upload(scratch, trees, at.trees);
+        commands.upload(scratch, std::span(plan.blocks), at.blocks);
+        commands.upload(scratch, std::span(empty), at.centroids);
+        commands.fill(scratch, at.meeting, std::uint64_t{plan.leaf_count} * sizeof(uint), NOTHING);
+    }
+    const std::uint64_t base = scratch.address();
+    const Batch batch{{base + at.trees},
+                      {base + at.blocks},
+                      {base + at.boxes},
+                      {base + at.centroids},
+                      {base + at.codes},
+                      {plan.tree_bits ? base + at.tree_of : 0},
+                      {base + at.meeting},
+                      {base + at.counters},
+                      {{base + at.keys[0]}, {base + at.order[0]}},
+                      {{base + at.keys[1]}, {base + at.order[1]}},
+                      static_cast<uint>(plan.blocks.size())};
+    commands.keep(std::move(scratch));
+    return batch;
+}
+
+Uints Builder::record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+    const MortonArgs args{batch.blocks,      batch.boxes,        batch.centroids, batch.codes,       batch.pairs.keys,
+                          batch.pairs.values, batch.tree_of, batch.block_count, 0};
+    morton_.dispatch_groups(commands, args, batch.block_count);
+    RadixSort::Pairs sorted = sort_.record(commands, batch.pairs, batch.spare, batch.counters, plan.leaf_count, morton_bits);
+    if (plan.tree_bits == 0) return sorted.values;
+    const RadixSort::Pairs other = sorted.keys.address == batch.pairs.keys.address ? batch.spare : batch.pairs;
+    tree_keys_.dispatch(commands, {batch.tree_of, sorted.values, sorted.keys, plan.leaf_count, 0}, plan.leaf_count);
+    return sort_.record(commands, sorted, other, batch.counters, plan.leaf_count, plan.tree_bits).values;
+}
+
+void Builder::record_hierarchy(Commands& commands, const Batch& batch, Uints order,
+                               bool leaves_are_sorted) const {
+    const HierarchyArgs args{batch.trees, batch.blocks,  batch.boxes,       batch.codes,
+                             order,       batch.meeting, batch.block_count, leaves_are_sorted ? 1u : 0u};
+    hierarchy_.dispatch_groups(commands, args, batch.block_count);
+}
+
+void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const {
+    if (plan.leaf_count == 0) return;
+    const Batch batch = begin(commands, plan, trees);
+    leaves_triangles_.dispatch_groups(
+        commands, {batch.trees, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0}, batch.block_count);
+    const Uints order = record_order(commands, plan, batch);
+    record_hierarchy(commands, batch, order, true);
+    encode_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, order, batch.block_count, 0},
+                                      batch.block_count);
+}
+
+void Builder::record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
+                               Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
+    if (plan.leaf_count == 0) return;
+    const Batch batch = begin(commands, plan, std::span(&tree, 1));
+    leaves_instances_.dispatch_groups(
+        commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
+        batch.block_count);
+    record_hierarchy(commands, batch, record_order(commands, plan, batch), false);
+}
+
+}  // namespace twinray

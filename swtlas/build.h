@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "engine/core/radix_sort.h"
+#include "swtlas/plan.h"
+
+namespace twinray {
+
+// Records the build of a batch of trees on the GPU, the same stages for triangles and for instances:
+//
+//     leaves -> morton -> sort by code (-> sort by tree) -> hierarchy (-> encode triangles)
+//
+// Each stage is one kernel over all trees of the batch and has a serial twin of the same name in swtlas/reference.h.
+class Builder {
+  public:
+    explicit Builder(Context& context);
+
+    // trees[i] has leaf_counts[i] triangles; its Bvh must name its node array already and describe an empty tree.
+    void record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const;
+    // One tree over the records; fills `instances`.
+    void record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
+                          Ref<SwInstance> instances) const;
+
+  private:
+    // The addresses of a batch's scratch regions.
+    struct Batch;
+    Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const;
+    Uints record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
+    void record_hierarchy(Commands& commands, const Batch& batch, Uints order,
+                          bool leaves_are_sorted) const;
+
+    RadixSort sort_;
+    Kernel<TriangleLeavesArgs> leaves_triangles_;
+    Kernel<InstanceLeavesArgs> leaves_instances_;
+    Kernel<MortonArgs> morton_;
+    Kernel<TreeKeysArgs> tree_keys_;
+    Kernel<HierarchyArgs> hierarchy_;
+    Kernel<EncodeTrianglesArgs> encode_triangles_;
+};
+
+}  // namespace twinray

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "swtlas/plan.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "engine/core/error.h"
+#include "engine/core/radix_sort.h"
+
+namespace twinray {
+namespace {
+
+// Hands out 16-byte aligned regions one after the other.
+struct Arena {
+    std::uint64_t bytes = 0;
+
+    template <class T>
+    std::uint64_t take(std::uint64_t count) {
+        const std::uint64_t offset = bytes;
+        bytes += (count * sizeof(T) + 15) / 16 * 16;
+        return offset;
+    }
+};
+
+uint inner_count(uint leaf_count) { return std::max(leaf_count, 1u) - 1u; }
+
+BuildScratch layout_scratch(const BuildPlan& plan) {
+    const uint n = plan.leaf_count;
+    Arena arena;
+    BuildScratch scratch;
+    scratch.trees = arena.take<BuildTree>(plan.first.size());
+    scratch.blocks = arena.take<BuildBlock>(plan.blocks.size());
+    scratch.boxes = arena.take<LeafBox>(n);
+    scratch.centroids = arena.take<CentroidBounds>(plan.first.size());
+    scratch.codes = arena.take<uint>(n);
+    scratch.tree_of = arena.take<uint>(plan.tree_bits ? n : 0);
+    scratch.meeting = arena.take<uint>(n);
+    for (int i = 0; i < 2; ++i) {
+        scratch.keys[i] = arena.take<uint>(n);
+        scratch.order[i] = arena.take<uint>(n);
+    }
+    scratch.counters = arena.take<std::byte>(RadixSort::counter_bytes(n));
+    scratch.bytes = arena.bytes;
+    return scratch;
+}
+
+}  // namespace
+
+BuildPlan plan_build(std::span<const uint> leaf_counts) {
+    BuildPlan plan;
+    std::uint64_t total = 0;
+    for (std::size_t tree = 0; tree < leaf_counts.size(); ++tree) {
+        plan.first.push_back(static_cast<uint>(total));
+        for (uint done = 0; done < leaf_counts[tree]; done += BUILD_GROUP)
+            plan.blocks.push_back({static_cast<uint>(tree), static_cast<uint>(total) + done,
+                                   std::min(BUILD_GROUP, leaf_counts[tree] - done)});
+        total += leaf_counts[tree];
+        if (total >= NOTHING) fail("build: ", total, " primitives in one sync; at most ", NOTHING - 1, " fit");
+    }
+    plan.leaf_count = static_cast<uint>(total);
+    if (leaf_counts.size() > 1) plan.tree_bits = static_cast<uint>(std::bit_width(leaf_counts.size() - 1));
+    plan.scratch = layout_scratch(plan);
+    return plan;
+}
+
+GeometryLayout layout_geometry(uint triangle_count) {
+    Arena arena;
+    arena.take<SwGeometry>(1);
+    const std::uint64_t nodes = arena.take<BvhNode>(inner_count(triangle_count));
+    const std::uint64_t triangles = arena.take<BvhTriangle>(triangle_count);
+    return {nodes, triangles, arena.bytes};
+}
+
+SceneLayout layout_scene(uint instance_count) {
+    Arena arena;
+    arena.take<SwScene>(1);
+    const std::uint64_t nodes = arena.take<BvhNode>(inner_count(instance_count));
+    const std::uint64_t instances = arena.take<SwInstance>(instance_count);
+    return {nodes, instances, arena.bytes};
+}
+
+}  // namespace twinray

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Everything that a batch of builds decides before it records: pure, tested without a device.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "swtlas/structures.h"
+
+namespace twinray {
+
+// Byte offsets into one scratch buffer.
+struct BuildScratch {
+    std::uint64_t trees = 0, blocks = 0, boxes = 0, centroids = 0, codes = 0, tree_of = 0, meeting = 0;
+    std::uint64_t keys[2] = {}, order[2] = {};
+    std::uint64_t counters = 0;
+    std::uint64_t bytes = 0;
+};
+
+struct BuildPlan {
+    std::vector<uint> first;         // by tree: its first leaf in the batch
+    std::vector<BuildBlock> blocks;  // runs of leaves that one group handles, never across trees
+    uint leaf_count = 0;             // of the batch
+    uint tree_bits = 0;              // bits of the largest tree index; 0 = one tree, no sort by tree
+    BuildScratch scratch;
+};
+
+// Throws Error if the batch has 2^32 leaves or more.
+BuildPlan plan_build(std::span<const uint> leaf_counts);
+
+// Where the parts of a built geometry lie in its buffer: SwGeometry at 0, then nodes, then triangles.
+struct GeometryLayout {
+    std::uint64_t nodes = 0, triangles = 0, bytes = 0;
+};
+GeometryLayout layout_geometry(uint triangle_count);
+
+// Where the parts of a scene lie in its buffer: SwScene at 0, then nodes, then instances.
+struct SceneLayout {
+    std::uint64_t nodes = 0, instances = 0, bytes = 0;
+};
+SceneLayout layout_scene(uint instance_count);
+
+}  // namespace twinray

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "swtlas/reference.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace twinray::reference {
+namespace {
+
+BvhTriangle gather(std::span<const vec3> positions, uvec3 corners, uint primitive) {
+    return {positions[corners.x], positions[corners.y], positions[corners.z], primitive};
+}
+
+LeafBox joined(const LeafBox& a, const LeafBox& b) { return {min(a.lo, b.lo), max(a.hi, b.hi)}; }
+
+// Builds [first, last] and returns its reference and box.
+struct TopDown {
+    std::span<const LeafBox> boxes;
+    std::span<const uint> codes;
+    std::span<const uint> order;
+    bool leaves_are_sorted;
+    std::vector<BvhNode>& nodes;
+
+    std::uint64_t split_after(std::size_t position) const {
+        const uint difference = codes[order[position]] ^ codes[order[position + 1]];
+        return (std::uint64_t{difference} << 32) | (position ^ (position + 1));
+    }
+
+    std::size_t highest_split(std::size_t first, std::size_t last) const {
+        // Sorted codes differ most at their ends, so the first position that differs from `first` as much as `last`
+        // does is the cut; a linear search keeps the twin obvious.
+        std::size_t best = first;
+        for (std::size_t i = first + 1; i < last; ++i)
+            if (split_after(i) > split_after(best)) best = i;
+        return best;
+    }
+
+    std::pair<uint, LeafBox> build(std::size_t first, std::size_t last) const {
+        if (first == last) {
+            const uint element = order[first];
+            return {LEAF_BIT | (leaves_are_sorted ? static_cast<uint>(first) : element), boxes[element]};
+        }
+        const std::size_t split = highest_split(first, last);
+        const auto [child0, box0] = build(first, split);
+        const auto [child1, box1] = build(split + 1, last);
+        nodes[split] = {box0.lo, child0, box0.hi, child1, box1.lo, static_cast<uint>(first), box1.hi,
+                        static_cast<uint>(last)};
+        return {static_cast<uint>(split), joined(box0, box1)};
+    }
+};
+
+}  // namespace
+
+std::vector<LeafBox> leaves_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles) {
+    std::vector<LeafBox> boxes;
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+        boxes.push_back(box_of_triangle(gather(positions, triangles[i], static_cast<uint>(i))));
+    return boxes;
+}
+
+std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, std::vector<SwInstance>& instances) {
+    std::vector<LeafBox> boxes;
+    instances.clear();
+    for (const InstanceRecord& record : records) {
+        const Rows to_object =
+            inverse_of({record.object_to_world[0], record.object_to_world[1], record.object_to_world[2]});
+        SwInstance instance{{to_object.r0, to_object.r1, to_object.r2}, {}, {}, NOTHING, record.custom_index_mask};
+        LeafBox box = empty_box();
+        if (record.geometry) {
+            const SwGeometry& geometry = *reinterpret_cast<const SwGeometry*>(record.geometry);
+            instance.nodes = geometry.bvh.nodes;
+            instance.triangles = geometry.triangles;
+            instance.root = geometry.bvh.root;
+            box = box_of_instance(record, geometry.bvh.lo, geometry.bvh.hi, to_object);
+        }
+        instances.push_back(instance);
+        boxes.push_back(box);
+    }
+    return boxes;
+}
+
+CentroidBounds centroids(std::span<const LeafBox> boxes) {
+    CentroidBounds bounds{uvec3(ordered_bits(INFINITY)), uvec3(ordered_bits(-INFINITY))};
+    for (const LeafBox& box : boxes) {
+        if (!is_active(box)) continue;
+        const vec3 center = center_of(box);
+        const uvec3 bits(ordered_bits(center.x), ordered_bits(center.y), ordered_bits(center.z));
+        bounds = {min(bounds.lo, bits), max(bounds.hi, bits)};
+    }
+    return bounds;
+}
+
+std::vector<uint> morton(std::span<const LeafBox> boxes, const CentroidBounds& bounds) {
+    const vec3 lo(from_ordered_bits(bounds.lo.x), from_ordered_bits(bounds.lo.y), from_ordered_bits(bounds.lo.z));
+    const vec3 hi(from_ordered_bits(bounds.hi.x), from_ordered_bits(bounds.hi.y), from_ordered_bits(bounds.hi.z));
+    std::vector<uint> codes;
+    for (const LeafBox& box : boxes)
+        codes.push_back(is_active(box) ? morton_code(center_of(box), lo, hi) : INACTIVE_CODE);
+    return codes;
+}
+
+std::vector<uint> sort(std::span<const uint> codes) {
+    std::vector<uint> order(codes.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](uint a, uint b) { return codes[a] < codes[b]; });
+    return order;
+}
+
+Hierarchy hierarchy(std::span<const LeafBox> boxes, std::span<const uint> codes, std::span<const uint> order,
+                    bool leaves_are_sorted) {
+    Hierarchy tree;
+    if (boxes.empty()) return tree;
+    tree.nodes.resize(boxes.size() - 1);
+    const auto [root, box] =
+        TopDown{boxes, codes, order, leaves_are_sorted, tree.nodes}.build(0, boxes.size() - 1);
+    tree.root = root;
+    tree.box = box;
+    return tree;
+}
+
+std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
+                                          std::span<const uint> order) {
+    std::vector<BvhTriangle> encoded;
+    for (const uint primitive : order) {
+        BvhTriangle triangle = gather(positions, triangles[primitive], primitive);
+        if (!is_finite_triangle(triangle)) triangle = {vec3(0), vec3(0), vec3(0), primitive};
+        encoded.push_back(triangle);
+    }
+    return encoded;
+}
+
+std::size_t Scene::add_geometry(const MeshView& mesh) {
+    const std::vector<LeafBox> boxes = leaves_triangles(mesh.positions, mesh.triangles);
+    const std::vector<uint> codes = morton(boxes, centroids(boxes));
+    const std::vector<uint> order = sort(codes);
+    geometries_.push_back({{}, hierarchy(boxes, codes, order, true), encode_triangles(mesh.positions, mesh.triangles, order)});
+    return geometries_.size() - 1;
+}
+
+void Scene::add_instance(std::size_t geometry, const InstanceRecord& record) { placed_.push_back({geometry, record}); }
+
+void Scene::build() {
+    for (BuiltGeometry& geometry : geometries_)
+        geometry.header = {{Ref<BvhNode>::to(geometry.tree.nodes.data()), geometry.tree.root,
+                            static_cast<uint>(geometry.triangles.size()), geometry.tree.box.lo, geometry.tree.box.hi},
+                           Ref<BvhTriangle>::to(geometry.triangles.data())};
+    std::vector<InstanceRecord> records;
+    for (auto [geometry, record] : placed_) {
+        record.geometry = Ref<SwGeometry>::to(&geometries_[geometry].header).address;
+        records.push_back(record);
+    }
+    const std::vector<LeafBox> boxes = leaves_instances(records, instances_);
+    const std::vector<uint> codes = morton(boxes, centroids(boxes));
+    top_ = hierarchy(boxes, codes, sort(codes), false);
+    header_ = {{Ref<BvhNode>::to(top_.nodes.data()), top_.root, static_cast<uint>(boxes.size()), top_.box.lo, top_.box.hi},
+               Ref<SwInstance>::to(instances_.data()), instances_.size()};
+}
+
+Hit Scene::trace(const Ray& ray, uint query, uint mask) const { return traverse(header_, ray, mask, query); }
+
+}  // namespace twinray::reference

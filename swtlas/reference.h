@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Serial CPU twins of the build kernels, one function per stage by the same name. They share the kernels' arithmetic
+// (shaders/shared) but not their algorithms, so that a test can compare every stage bit for bit.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/scene/mesh.h"
+#include "swtlas/structures.h"
+
+namespace twinray::reference {
+
+std::vector<LeafBox> leaves_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles);
+
+// Writes the instances and returns their world boxes. geometry addresses are host addresses of SwGeometry.
+std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, std::vector<SwInstance>& instances);
+
+CentroidBounds centroids(std::span<const LeafBox> boxes);
+std::vector<uint> morton(std::span<const LeafBox> boxes, const CentroidBounds& bounds);
+
+// Leaf indices by code, equal codes in order.
+std::vector<uint> sort(std::span<const uint> codes);
+
+struct Hierarchy {
+    std::vector<BvhNode> nodes;
+    uint root = NOTHING;
+    LeafBox box = empty_box();
+};
+// Top-down: a range is cut at its highest split.
+Hierarchy hierarchy(std::span<const LeafBox> boxes, std::span<const uint> codes, std::span<const uint> order,
+                    bool leaves_are_sorted);
+
+std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
+                                          std::span<const uint> order);
+
+// A whole software accelerator in host memory: what the GPU builds and traverses, step by step in a debugger.
+class Scene {
+  public:
+    // Returns the geometry's index.
+    std::size_t add_geometry(const MeshView& mesh);
+    void add_instance(std::size_t geometry, const InstanceRecord& record);
+    void build();
+    Hit trace(const Ray& ray, uint query = QUERY_CLOSEST, uint mask = 0xff) const;
+
+  private:
+    struct BuiltGeometry {
+        SwGeometry header;
+        Hierarchy tree;
+        std::vector<BvhTriangle> triangles;
+    };
+    std::vector<BuiltGeometry> geometries_;
+    std::vector<std::pair<std::size_t, InstanceRecord>> placed_;
+    std::vector<SwInstance> instances_;
+    Hierarchy top_;
+    SwScene header_{};
+};
+
+}  // namespace twinray::reference

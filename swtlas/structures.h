@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// The software accelerator's structures, build arguments and traversal for C++.
+#pragma once
+
+#include "engine/accel/instance_record.h"
+#include "engine/core/ray.h"
+#include "engine/core/sort_args.h"
+
+namespace twinray {
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/build.h"
+#include "shaders/shared/morton.h"
+#include "shaders/shared/traverse.h"
+#include "engine/core/bridge_end.h"
+
+static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 72);
+static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 48 && sizeof(SwScene) == 56);
+}  // namespace twinray

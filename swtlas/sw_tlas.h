@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "engine/accel/abstract_accel.h"
+#include "swtlas/build.h"
+
+namespace twinray {
+
+// The software accelerator: a two-level BVH built and traversed by compute shaders. Needs no ray tracing extension.
+class SwTlas final : public AbstractAccel {
+  public:
+    explicit SwTlas(Context& context);
+
+    // For checks and tools: copies of the built trees, downloaded. Throws Error on a dead or unsynced handle.
+    struct Tree {
+        Bvh bvh;
+        std::vector<BvhNode> nodes;
+        std::vector<BvhTriangle> triangles;  // of a geometry; empty for the scene
+    };
+    Tree download_geometry(AccelHandle handle) const;
+    Tree download_scene() const;
+
+  private:
+    struct SwBuiltGeometry;
+    struct SwBuiltScene;
+    std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
+                                                                 std::span<const Geometry* const> geometries) override;
+    std::unique_ptr<BuiltScene> build_scene(Commands& commands, std::span<const PlacedInstance> instances) override;
+    void record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const override;
+
+    Builder builder_;
+    Kernel<SwTraceArgs> trace_closest_;
+    Kernel<SwTraceArgs> trace_any_;
+};
+
+}  // namespace twinray

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/radix_sort.h"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+#include "tests/support/device.h"
+
+namespace twinray {
+namespace {
+
+class RadixSortTest : public test::VulkanTest {
+  protected:
+    // Values are 0, 1, 2, ... so that they show stability.
+    std::vector<uint> sorted_values(const RadixSort& sort, const std::vector<uint>& keys, uint bits) {
+        const std::uint64_t bytes = keys.size() * sizeof(uint);
+        std::vector<uint> values(keys.size());
+        std::iota(values.begin(), values.end(), 0u);
+        Buffer buffers[4];
+        for (Buffer& buffer : buffers) buffer = Buffer(context(), {.name = "sort test", .bytes = bytes});
+        Buffer counters(context(), {.name = "counters", .bytes = RadixSort::counter_bytes(keys.size())});
+        Commands commands(context(), "sort test");
+        {
+            const auto pass = commands.pass("input");
+            commands.upload(buffers[0], std::span(keys));
+            commands.upload(buffers[1], std::span<const uint>(values));
+        }
+        const RadixSort::Pairs result =
+            sort.record(commands, {{buffers[0].address()}, {buffers[1].address()}},
+                        {{buffers[2].address()}, {buffers[3].address()}}, {counters.address()},
+                        static_cast<uint>(keys.size()), bits);
+        commands.submit();
+        const bool in_place = result.values.address == buffers[1].address();
+        return download<uint>(context(), buffers[in_place ? 1 : 3], keys.size());
+    }
+};
+
+std::vector<uint> expected_values(const std::vector<uint>& keys, uint bits) {
+    const uint mask = bits == 32 ? ~0u : (1u << bits) - 1;
+    std::vector<uint> values(keys.size());
+    std::iota(values.begin(), values.end(), 0u);
+    std::stable_sort(values.begin(), values.end(), [&](uint a, uint b) { return (keys[a] & mask) < (keys[b] & mask); });
+    return values;
+}
+
+TEST_F(RadixSortTest, EqualsStableSortForManyCountsAndWidths) {
+    const RadixSort sort(context());
+    std::mt19937 random(1);
+    for (const std::size_t count : {1u, 2u, 63u, 64u, 500u, 2047u, 2048u, 2049u, 10'000u, 150'000u}) {
+        for (const uint bits : {1u, 6u, 9u, 30u}) {
+            std::vector<uint> keys(count);
+            for (uint& key : keys) key = static_cast<uint>(random()) & ((1u << bits) - 1);
+            EXPECT_EQ(sorted_values(sort, keys, bits), expected_values(keys, bits)) << count << " keys of " << bits << " bits";
+        }
+    }
+}
+
+TEST_F(RadixSortTest, EqualKeysKeepTheirOrder) {
+    const RadixSort sort(context());
+    const std::vector<uint> keys(5000, 42u);
+    EXPECT_EQ(sorted_values(sort, keys, 30), expected_values(keys, 30));
+}
+
+}  // namespace
+}  // namespace twinray

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// Ids against a float64 brute force: whatever is reordered, replaced or left out, the user's numbering comes back.
+#include "tests/hwtlas/hw_test.h"
+#include "tests/support/meshes.h"
+
+namespace twinray::test {
+namespace {
+
+class HwTlasIds : public HwTlasTest {};
+INSTANTIATE_TEST_SUITE_P(Ways, HwTlasIds, all_ways, name_of_way);
+
+// A bumpy n x n height field over [-1, 1]^2 with its triangles in random order.
+Mesh shuffled_grid(uint n) {
+    Mesh mesh;
+    mesh.name = "grid";
+    for (uint y = 0; y <= n; ++y)
+        for (uint x = 0; x <= n; ++x) {
+            const vec2 p = vec2(x, y) / static_cast<float>(n) * 2.0f - 1.0f;
+            mesh.positions.emplace_back(p.x, p.y, 0.2f * std::sin(7 * p.x) * std::cos(5 * p.y));
+        }
+    for (uint y = 0; y < n; ++y)
+        for (uint x = 0; x < n; ++x) {
+            const uint corner = y * (n + 1) + x;
+            mesh.triangles.push_back(uvec3(corner, corner + 1, corner + n + 1));
+            mesh.triangles.push_back(uvec3(corner + 1, corner + n + 2, corner + n + 1));
+        }
+    std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), std::mt19937(3));
+    return mesh;
+}
+
+Transform rotation(float angle) {
+    const float c = std::cos(angle), s = std::sin(angle);
+    return {{vec4(c, -s, 0, 0), vec4(s, c, 0, 0), vec4(0, 0, 1, 0)}};
+}
+
+// Around the unit cube that random_triangles fills.
+const Transform centered = Transform::translation(vec3(-0.5f));
+
+// Makes every `step`-th triangle of random_triangles non-finite, each in another way.
+void poison(Mesh& mesh, std::size_t step) {
+    const float bad[] = {NAN, INFINITY, -INFINITY};
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += step) {
+        const std::size_t kind = i / step;
+        mesh.positions[3 * i + kind % 3][static_cast<int>(kind / 3 % 3)] = bad[kind / 9 % 3];
+    }
+}
+
+TEST_P(HwTlasIds, OfAShuffledGridAreTheUsers) {
+    const Mesh mesh = shuffled_grid(40);
+    BruteForce reference;
+    reference.add(mesh);
+    accel().push(mesh);
+    expect_agreement(accel(), reference, random_rays(3000, 1, 1), 500);
+}
+
+TEST_P(HwTlasIds, OfMovedScaledRotatedAndMirroredInstancesAreTheUsers) {
+    const Mesh grid = shuffled_grid(8), soup = random_triangles(150, 2, 0.5f);
+    std::vector<Transform> transforms;
+    for (int i = 0; i < 24; ++i) {
+        const float a = static_cast<float>(i);
+        const Transform mirror = Transform::scaling(vec3(i % 2 ? -0.3f : 0.4f, 0.3f, i % 3 ? 0.2f : -0.5f));
+        const Transform move = Transform::translation(vec3(2.1f * std::sin(a), 1.7f * std::cos(2 * a), std::sin(5 * a)));
+        transforms.push_back(move * rotation(a) * mirror);
+    }
+    BruteForce reference;
+    accel().push(grid, transforms);
+    for (const Transform& transform : transforms) reference.add(grid, transform);
+    accel().push(soup, centered * rotation(1));
+    reference.add(soup, centered * rotation(1));
+    expect_agreement(accel(), reference, random_rays(3000, 4, 2.5f), 500);
+}
+
+TEST_P(HwTlasIds, AndNeighboursSurviveNonFiniteVertices) {
+    Mesh mesh = random_triangles(2000, 5, 0.15f);
+    poison(mesh, 7);
+    BruteForce reference;
+    reference.add(mesh, centered);
+    accel().push(mesh, centered);
+    expect_agreement(accel(), reference, random_rays(3000, 6, 0.6f), 1000);
+}
+
+TEST_P(HwTlasIds, AndNeighboursSurviveInstancesWithNothingToHit) {
+    const Mesh soup = random_triangles(20, 8, 0.5f);
+    Mesh empty, infinite = soup, points = soup;
+    poison(infinite, 1);
+    for (uvec3& triangle : points.triangles) triangle = uvec3(triangle.x, triangle.y, triangle.y);
+    const Mesh* meshes[] = {&soup, &empty, &infinite, &soup, &points};
+    BruteForce reference;
+    for (int i = 0; i < 100; ++i) {
+        const float a = static_cast<float>(i);
+        const Transform move = Transform::translation(vec3(std::sin(a), std::cos(3 * a), std::sin(7 * a))) * centered;
+        accel().push(*meshes[i % 5], move * rotation(a));
+        reference.add(*meshes[i % 5], move * rotation(a));
+    }
+    expect_agreement(accel(), reference, random_rays(1500, 9, 1.5f), 500);
+}
+
+TEST_P(HwTlasIds, AreNeverReturnedForMeshesThatCannotBeHit) {
+    Mesh line;
+    line.positions = {vec3(-1, 0, 0), vec3(0), vec3(1, 0, 0)};
+    line.triangles.assign(100, uvec3(0, 1, 2));
+    Mesh nothing = random_triangles(30, 1);
+    poison(nothing, 1);
+    accel().push(line);
+    accel().push(nothing);
+    accel().push(Mesh{});
+    std::vector<Ray> rays = random_rays(500, 10, 1);
+    rays.push_back({vec3(0.5f, 0, 1), 0, vec3(0, 0, -1), INFINITY});
+    for (const Hit& hit : accel().closest_hits(rays)) EXPECT_TRUE(same_bytes(hit, miss()));
+    for (const Hit& hit : accel().any_hits(rays)) EXPECT_TRUE(same_bytes(hit, miss()));
+}
+
+class HwTlasOrder : public VulkanTest {
+  protected:
+    void SetUp() override {
+        VulkanTest::SetUp();
+        if (IsSkipped()) return;
+        if (HasFailure()) FAIL() << "no device";
+        if (!missing_for_hardware(context().facts()).empty()) GTEST_SKIP() << context().facts().name;
+    }
+};
+
+TEST_F(HwTlasOrder, FollowsTheDriverUnlessTold) {
+    EXPECT_EQ(HwTlas(context()).reorders(), context().facts().builds_in_input_order);
+}
+
+TEST_F(HwTlasOrder, ChangesNoBitOfTheHitsAndCostsNothingWhenOff) {
+    const Mesh mesh = random_triangles(1000, 11, 0.2f);
+    HwTlas kept(context(), BuildOrder::input), sorted(context(), BuildOrder::morton);
+    for (HwTlas* accel : {&kept, &sorted}) {
+        accel->push(mesh);
+        accel->push(mesh, Transform::translation(vec3(-1)));
+    }
+    const std::vector<Ray> rays = random_rays(2000, 12, 1);
+    const std::vector<Hit> expected = kept.closest_hits(rays), found = sorted.closest_hits(rays);
+    for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(same_bytes(found[i], expected[i])) << "ray " << i;
+    // 4 bytes per triangle of each mesh and 16 per instance are the two tables; nothing else may differ.
+    EXPECT_EQ(sorted.structure_bytes() - kept.structure_bytes(), 2 * 1000 * 4 + 2 * 16u);
+}
+
+}  // namespace
+}  // namespace twinray::test

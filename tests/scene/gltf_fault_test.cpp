@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+// Every fault of a glTF file is one clear Error that names the file, the object and the limit.
+#include <functional>
+
+#include "tests/scene/gltf_builder.h"
+
+namespace twinray::test {
+namespace {
+
+struct Fault {
+    const char* name;
+    std::function<void(GltfBuilder&)> bend;
+    std::string message;
+};
+
+std::string fault_name(const testing::TestParamInfo<Fault>& fault) { return fault.param.name; }
+
+class GltfFault : public testing::TestWithParam<Fault> {};
+
+TEST_P(GltfFault, IsNamed) {
+    GltfBuilder gltf = one_triangle();
+    GetParam().bend(gltf);
+    const std::string message = gltf.error();
+    expect_contains(message, "test.gltf");
+    expect_contains(message, GetParam().message);
+    EXPECT_LT(message.size(), 500u);
+}
+
+json& accessor(GltfBuilder& gltf, std::size_t index) { return gltf.root["accessors"][index]; }
+json& view(GltfBuilder& gltf, std::size_t index) { return gltf.root["bufferViews"][index]; }
+json& node(GltfBuilder& gltf, std::size_t index = 0) { return gltf.root["nodes"][index]; }
+
+const Fault accessor_faults[] = {
+    {"IndexOutOfRange", [](auto& g) { g.primitive()["indices"] = g.add_indices({0, 1, 3}); },
+     "mesh 0 'tri' primitive 0: index 3 at position 2 is out of range; POSITION has 3 elements"},
+    {"ViewLeavesBuffer", [](auto& g) { view(g, 0)["byteLength"] = 1000; }, "buffer 0 has only 44 bytes"},
+    {"ViewOffsetOverflows", [](auto& g) { view(g, 0)["byteOffset"] = 0xfffffffffffffff0u; }, "bufferView 0 takes 36"},
+    {"ViewOfNoBuffer", [](auto& g) { view(g, 0)["buffer"] = 4; }, "bufferView 0 names buffer 4; the file has 1"},
+    {"AccessorLeavesView", [](auto& g) { accessor(g, 0)["count"] = 4; }, "leave bufferView 0, which has 36 bytes"},
+    {"AccessorCountOverflows", [](auto& g) { accessor(g, 0)["count"] = 0x2000000000000001u; }, "has count"},
+    {"AccessorOffsetLeavesView", [](auto& g) { accessor(g, 0)["byteOffset"] = 40; }, "leave bufferView 0"},
+    {"AccessorOfNoView", [](auto& g) { accessor(g, 0)["bufferView"] = 9; }, "bufferView 9 does not exist"},
+    {"NoSuchAccessor", [](auto& g) { g.primitive()["attributes"]["POSITION"] = 7; }, "POSITION: accessor 7 does not exist"},
+    {"StrideBelowElement", [](auto& g) { view(g, 0)["byteStride"] = 4; }, "byteStride 4 of bufferView 0 is less than"},
+    {"PositionsAreNotVec3", [](auto& g) { accessor(g, 0)["type"] = "VEC2"; }, "accessor 0 is not of type VEC3"},
+    {"PositionsAreDoubles", [](auto& g) { accessor(g, 0)["componentType"] = 5130; }, "component type 5130"},
+    {"PositionsAreInts", [](auto& g) { accessor(g, 0)["componentType"] = 5125; }, "component type 5125"},
+    {"IndicesAreFloats", [](auto& g) { g.primitive()["indices"] = g.add_floats("SCALAR", {0, 1, 2}); },
+     "component type 5126 is not an unsigned integer"},
+    {"UnequalAttributes", [](auto& g) { g.primitive()["attributes"]["NORMAL"] = g.add_floats("VEC3", {0, 0, 1}); },
+     "NORMAL has 1 elements, but POSITION has 3"},
+    {"HugeImplicitCount",
+     [](auto& g) {
+         accessor(g, 0).erase("bufferView");
+         accessor(g, 0)["count"] = 4000000000u;
+     },
+     "no bufferView but count 4000000000"},
+    {"SparseIndexOutOfRange",
+     [](auto& g) {
+         const int indices = g.add_view("\x05");
+         accessor(g, 0)["sparse"] = {{"count", 1},
+                                     {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                                     {"values", {{"bufferView", 0}}}};
+     },
+     "sparse: index 5 at position 0 is not below the count 3"},
+    {"SparseCountTooLarge",
+     [](auto& g) {
+         accessor(g, 0)["sparse"] = {{"count", 9},
+                                     {"indices", {{"bufferView", 0}, {"componentType", 5121}}},
+                                     {"values", {{"bufferView", 0}}}};
+     },
+     "sparse: count 9"},
+    {"SparseIndicesAreFloats",
+     [](auto& g) {
+         accessor(g, 0)["sparse"] = {{"count", 1},
+                                     {"indices", {{"bufferView", 0}, {"componentType", 5126}}},
+                                     {"values", {{"bufferView", 0}}}};
+     },
+     "sparse: indices have component type 5126"},
+};
+INSTANTIATE_TEST_SUITE_P(Accessor, GltfFault, testing::ValuesIn(accessor_faults), fault_name);
+
+const Fault object_faults[] = {
+    {"NoSuchMaterial", [](auto& g) { g.primitive()["material"] = 2; }, "mesh 0 'tri': material 2 does not exist"},
+    {"NoSuchTexture",
+     [](auto& g) { g.root["materials"] = {{{"name", "m"}, {"normalTexture", {{"index", 3}}}}}; },
+     "material 0 'm' normalTexture: texture 3 does not exist"},
+    {"NoSuchImage",
+     [](auto& g) {
+         g.root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+         g.root["textures"] = {{{"source", 5}}};
+     },
+     "normalTexture: image 5 does not exist"},
+    {"NoSuchSampler",
+     [](auto& g) {
+         g.root["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+         g.root["textures"] = {{{"sampler", 5}}};
+     },
+     "normalTexture: sampler 5 does not exist"},
+    {"NoSuchMesh", [](auto& g) { node(g)["mesh"] = 4; }, "node 0 'node': mesh 4 does not exist; the file has 1"},
+    {"NoSuchCamera", [](auto& g) { node(g)["camera"] = 0; }, "node 0 'node': camera 0 does not exist"},
+    {"NoSuchLight", [](auto& g) { node(g)["extensions"]["KHR_lights_punctual"]["light"] = 0; }, "light 0 does not exist"},
+    {"NoSuchScene", [](auto& g) { g.root["scene"] = 3; }, "scene 3, the default, does not exist; the file has 1"},
+    {"NoSuchChild", [](auto& g) { node(g)["children"] = {8}; }, "node 0 'node': child 8 does not exist"},
+    {"NoSuchSceneNode", [](auto& g) { g.root["scenes"][0]["nodes"] = {6}; }, "the scene lists node 6"},
+    {"NodeListedTwice", [](auto& g) { g.root["scenes"][0]["nodes"] = {0, 0}; }, "node 0 'node': is listed twice"},
+    {"SceneListsAChild", [](auto& g) { g.add_node({{"children", {0}}}); }, "is listed in the scene but is a child of node 1"},
+    {"TwoParents",
+     [](auto& g) {
+         g.add_node({{"children", {0}}});
+         g.add_node({{"children", {0}}});
+     },
+     "node 0 'node': is a child of both node 1 and node 2"},
+    {"Cycle",
+     [](auto& g) {
+         node(g)["children"] = {1};
+         g.append("nodes", {{"children", {0}}});
+     },
+     "node 0 'node': the node hierarchy has a cycle"},
+    {"OwnChild", [](auto& g) { node(g)["children"] = {0}; }, "node 0 'node': the node hierarchy has a cycle"},
+    {"TooDeep",
+     [](auto& g) {
+         for (int i = 0; i < 1000; ++i) g.append("nodes", i == 999 ? json::object() : json{{"children", {i + 2}}});
+         node(g)["children"] = {1};
+     },
+     "1001 levels deep; the limit is 1000"},
+    {"ShortMatrix", [](auto& g) { node(g)["matrix"] = {1, 2, 3}; }, "matrix has 3 numbers instead of 16"},
+    {"ShortTranslation", [](auto& g) { node(g)["translation"] = {1, 2}; }, "translation has 2 numbers instead of 3"},
+    {"ProjectiveMatrix", [](auto& g) { node(g)["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; },
+     "the last row of its matrix is not 0 0 0 1"},
+    {"InfiniteTransform", [](auto& g) { node(g)["translation"] = {1e39, 0, 0}; },
+     "node 0 'node': its transform to the world has the entry 1e+39"},
+    {"ZeroQuaternion", [](auto& g) { node(g)["rotation"] = {0, 0, 0, 0}; }, "node 0 'node': rotation has length 0"},
+    {"UnequalInstancing",
+     [](auto& g) {
+         const int two = g.add_floats("VEC3", std::vector<float>(6)), one = g.add_floats("VEC3", {1, 1, 1});
+         node(g)["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", two}, {"SCALE", one}};
+     },
+     "EXT_mesh_gpu_instancing SCALE has 1 elements, others have 2"},
+    {"EmptyScene", [](auto& g) { g.root["scenes"][0]["nodes"] = json::array(); }, "holds no triangles to place"},
+    {"OnlyPoints", [](auto& g) { g.primitive()["mode"] = 0; }, "holds no triangles to place (mesh 0 'tri': skipped 1"},
+};
+INSTANTIATE_TEST_SUITE_P(Object, GltfFault, testing::ValuesIn(object_faults), fault_name);
+
+const Fault file_faults[] = {
+    {"NoAsset", [](auto& g) { g.root.erase("asset"); }, "so it is not glTF 2.0"},
+    {"VersionOne", [](auto& g) { g.root["asset"]["version"] = "1.0"; }, "is glTF 1.0; only glTF 2.0 is supported"},
+    {"DracoRequired", [](auto& g) { g.root["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
+     "needs the glTF extension KHR_draco_mesh_compression, which is not supported; decompress it"},
+    {"BasisuRequired", [](auto& g) { g.root["extensionsRequired"] = {"KHR_texture_basisu"}; }, "convert its images"},
+    {"UnknownRequired", [](auto& g) { g.root["extensionsRequired"] = {"ACME_secret"}; }, "extension ACME_secret"},
+    {"DracoWithoutFallback",
+     [](auto& g) {
+         accessor(g, 0).erase("bufferView");
+         g.primitive()["extensions"]["KHR_draco_mesh_compression"] = json::object();
+     },
+     "needs the glTF extension KHR_draco_mesh_compression"},
+    {"PrimitivesAreNoList", [](auto& g) { g.root["meshes"][0]["primitives"] = 3; },
+     "JSON /meshes/0/primitives is 3, not a list of objects"},
+    {"NodesAreNoList", [](auto& g) { g.root["nodes"] = "many"; }, "JSON /nodes is \"many\", not a list of objects"},
+    {"ImagesAreNoList", [](auto& g) { g.root["images"] = 1; }, "JSON /images is not a list"},
+    {"NegativeMesh", [](auto& g) { node(g)["mesh"] = -1; }, "JSON /nodes/0/mesh is -1, not a non-negative integer"},
+    {"ScaleIsNoList", [](auto& g) { node(g)["scale"] = 2; }, "JSON /nodes/0/scale is 2, not a list of numbers"},
+    {"ExtensionIsNoObject", [](auto& g) { node(g)["extensions"]["EXT_mesh_gpu_instancing"] = 1; },
+     "JSON /nodes/0/extensions/EXT_mesh_gpu_instancing is not an object"},
+    {"UnknownAccessorType", [](auto& g) { accessor(g, 0)["type"] = "VEC9"; }, "not valid glTF"},
+};
+INSTANTIATE_TEST_SUITE_P(File, GltfFault, testing::ValuesIn(file_faults), fault_name);
+
+// For what cannot be said by bending the JSON: the bytes around it.
+std::string error_of_file(const std::string& name, const std::string& content) {
+    const TempDir dir;
+    const std::string message = error_of([&] { load_scene(dir.write(name, content)); });
+    expect_contains(message, name);
+    return message;
+}
+
+TEST(GltfFile, DamagedJsonIsNamed) {
+    expect_contains(error_of_file("a.gltf", "{\"asset\": "), "not valid JSON");
+    expect_contains(error_of_file("a.gltf", ""), "not valid JSON");
+    expect_contains(error_of_file("a.gltf", "[]"), "the JSON is not an object");
+    expect_contains(error_of_file("a.gltf", "{\"asset\": {\"version\": \"2.0\"}, \"scene\": 1e999}"), "not valid JSON");
+    expect_contains(error_of_file("a.gltf", std::string(100000, '[')), "nested deeper than 100 levels");
+}
+
+TEST(GltfFile, DamagedGlbIsNamed) {
+    const std::string glb = one_triangle().as_glb();
+    expect_contains(error_of_file("a.glb", glb.substr(0, 10)), "header is truncated");
+    expect_contains(error_of_file("a.glb", glb.substr(0, glb.size() - 8)), "the GLB is truncated");
+    expect_contains(error_of_file("a.glb", "glTF" + std::string("\x01\0\0\0", 4) + glb.substr(8)), "GLB version 1");
+    std::string long_chunk = glb;
+    long_chunk[14] = '\x7f';
+    expect_contains(error_of_file("a.glb", long_chunk), "chunk at byte 12");
+    std::string no_json = glb;
+    no_json[16] = 'X';
+    expect_contains(error_of_file("a.glb", no_json), "no JSON chunk");
+}
+
+TEST(GltfFile, DamagedBuffersAreNamed) {
+    GltfBuilder gltf = one_triangle();
+    const auto error_with = [&](const json& buffer) {
+        gltf.root["buffers"] = {buffer};
+        return error_of_file("a.gltf", gltf.root.dump());
+    };
+    expect_contains(error_with({{"byteLength", 44}, {"uri", "gone.bin"}}), "gone.bin': file not found");
+    expect_contains(error_with({{"byteLength", 44}, {"uri", "data:;base64,AAAA"}}),
+                    "buffer 0: byteLength is 44, but its data URI has only 3 bytes");
+    expect_contains(error_with({{"byteLength", 44}, {"uri", "data:;base64,!"}}), "foreign to base64");
+    expect_contains(error_with({{"uri", "data:;base64,AAAA"}}), "byteLength is missing");
+    expect_contains(error_with({{"byteLength", 44}}), "binary chunk has only 0 bytes");
+    expect_contains(error_with({{"byteLength", 44}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}),
+                    "EXT_meshopt_compression");
+}
+
+TEST(GltfFile, AMissingFileIsNamed) {
+    expect_contains(error_of([] { load_scene("no/such/scene.glb"); }), "'no/such/scene.glb': file not found");
+}
+
+TEST(GltfFile, AppearanceExtensionsMayBeRequiredAndAreSkippedWithAWarning) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["extensionsRequired"] = {"KHR_materials_sheen"};
+    gltf.root["extensionsUsed"] = {"KHR_materials_sheen", "KHR_texture_transform"};
+    EXPECT_EQ(gltf.load().warnings, std::vector<std::string>{"shown without the glTF extensions KHR_materials_sheen"});
+}
+
+}  // namespace
+}  // namespace twinray::test

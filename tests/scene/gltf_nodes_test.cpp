@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+// Placement: the node tree, instancing, cameras and lights.
+#include "tests/scene/gltf_builder.h"
+
+namespace twinray::test {
+namespace {
+
+TEST(GltfNodes, TransformsMultiplyDownTheTree) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["nodes"] = {{{"children", {1}}, {"translation", {10, 0, 0}}, {"rotation", {0, 0, 0.70710678, 0.70710678}}},
+                          {{"mesh", 0}, {"translation", {0, 1, 0}}, {"scale", {2, 3, 4}}}};
+    const Transform transform = gltf.load().instances[0].transform;
+    const vec3 moved = transform_point(transform, vec3(1, 1, 1));  // scaled (2, 3, 4), moved (2, 4, 4), turned (-4, 2, 4)
+    EXPECT_NEAR(moved.x, 6, 1e-6);
+    EXPECT_NEAR(moved.y, 2, 1e-6);
+    EXPECT_NEAR(moved.z, 4, 1e-6);
+}
+
+TEST(GltfNodes, MatricesAreColumnMajor) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["nodes"][0]["matrix"] = {1, 2, 3, 0, 4, 5, 7, 0, 8, 9, 11, 0, 12, 13, 14, 1};
+    const Transform expected{{vec4(1, 4, 8, 12), vec4(2, 5, 9, 13), vec4(3, 7, 11, 14)}};
+    EXPECT_EQ(gltf.load().instances[0].transform, expected);
+}
+
+TEST(GltfNodes, QuaternionsOfAnyLengthOnlyRotate) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["nodes"][0]["rotation"] = {0, 5, 0, 0};
+    EXPECT_EQ(gltf.load().instances[0].transform, Transform::scaling({-1, 1, -1}));
+}
+
+TEST(GltfNodes, MirroringIsKept) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["nodes"][0]["scale"] = {-1, 1, 1};
+    EXPECT_EQ(determinant(gltf.load().instances[0].transform), -1);
+}
+
+TEST(GltfNodes, AFlattenedInstanceIsSkippedByName) {
+    GltfBuilder gltf = one_triangle();
+    gltf.add_node({{"name", "flat"}, {"mesh", 0}, {"scale", {1, 0, 1}}});
+    const Scene scene = gltf.load();
+    EXPECT_EQ(scene.instances.size(), 1u);
+    EXPECT_TRUE(has_warning(scene, "node 1 'flat': skipped 1 of 1 placements"));
+}
+
+TEST(GltfNodes, OnlyTheDefaultSceneIsShown) {
+    GltfBuilder gltf = one_triangle();
+    gltf.append("nodes", {{"mesh", 0}});
+    EXPECT_EQ(gltf.load().instances.size(), 1u);
+}
+
+TEST(GltfNodes, WithoutADefaultSceneAllRootsAreShownWithTheirChildren) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root.erase("scene");
+    gltf.append("nodes", {{"mesh", 0}, {"children", {2}}});
+    gltf.append("nodes", {{"mesh", 0}});
+    EXPECT_EQ(gltf.load().instances.size(), 3u);
+    gltf.root.erase("scenes");
+    EXPECT_EQ(gltf.load().instances.size(), 3u);
+}
+
+TEST(GltfNodes, AThousandLevelsAreFine) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["nodes"] = json::array();
+    for (int i = 0; i < 1000; ++i) gltf.append("nodes", i == 999 ? json{{"mesh", 0}} : json{{"children", {i + 1}}});
+    EXPECT_EQ(gltf.load().instances.size(), 1u);
+}
+
+TEST(GltfNodes, GpuInstancingPlacesTheMeshOncePerElement) {
+    GltfBuilder gltf = one_triangle();
+    const int translations = gltf.add_floats("VEC3", {1, 0, 0, 2, 0, 0, 3, 0, 0});
+    const int scales = gltf.add_floats("VEC3", {1, 1, 1, 2, 2, 2, 0, 0, 0});
+    gltf.root["nodes"][0]["translation"] = {0, 5, 0};
+    gltf.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", translations},
+                                                                                     {"SCALE", scales}};
+    const Scene scene = gltf.load();
+    EXPECT_EQ(scene.meshes.size(), 1u);
+    ASSERT_EQ(scene.instances.size(), 2u);
+    EXPECT_EQ(transform_point(scene.instances[1].transform, vec3(1, 0, 0)), vec3(4, 5, 0));
+    EXPECT_TRUE(has_warning(scene, "skipped 1 of 3 placements"));
+}
+
+TEST(GltfNodes, CamerasStandWhereTheirNodesDoWithoutTheirScale) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}, {"aspectRatio", 2}}}},
+                            {{"type", "orthographic"},
+                             {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0}, {"zfar", 9}}}}};
+    gltf.add_node({{"camera", 0}, {"translation", {1, 2, 3}}, {"scale", {2, 2, 2}}});
+    gltf.add_node({{"camera", 1}});
+    const Scene scene = gltf.load();
+    ASSERT_EQ(scene.cameras.size(), 2u);
+    EXPECT_EQ(scene.cameras[0].camera_to_world, Transform::translation({1, 2, 3}));
+    EXPECT_EQ(scene.cameras[0].vertical_fov, 0.5f);
+    EXPECT_EQ(scene.cameras[0].aspect, 2.0f);
+    EXPECT_FALSE(scene.cameras[0].orthographic_half_height);
+    EXPECT_EQ(scene.cameras[1].orthographic_half_height, 2.0f);
+    EXPECT_EQ(scene.cameras[1].aspect, 1.5f);
+}
+
+TEST(GltfNodes, ACameraThatSeesNothingIsSkipped) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0}, {"znear", 0.1}}}}};
+    gltf.add_node({{"camera", 0}});
+    const Scene scene = gltf.load();
+    EXPECT_TRUE(scene.cameras.empty());
+    EXPECT_TRUE(has_warning(scene, "node 1: skipped its camera"));
+}
+
+TEST(GltfNodes, LightsShineAlongTheMinusZOfTheirNodes) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "spot"}, {"color", {1, 0.5, 0}}, {"intensity", 8}, {"range", 7},
+         {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}},
+        {{"type", "point"}}};
+    // Half a turn about y, so that -z points along +z.
+    gltf.add_node({{"translation", {1, 2, 3}}, {"rotation", {0, 1, 0, 0}}, {"scale", {3, 3, 3}},
+                   {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    gltf.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
+    const Scene scene = gltf.load();
+    ASSERT_EQ(scene.lights.size(), 2u);
+    const Light& spot = scene.lights[0];
+    EXPECT_EQ(spot.kind, Light::Kind::spot);
+    EXPECT_EQ(spot.color, vec3(8, 4, 0));
+    EXPECT_EQ(spot.position, vec3(1, 2, 3));
+    EXPECT_EQ(spot.direction, vec3(0, 0, 1));
+    EXPECT_EQ(spot.range, 7);
+    EXPECT_EQ(spot.inner_cone, 0.25f);
+    EXPECT_EQ(spot.outer_cone, 0.5f);
+    EXPECT_EQ(scene.lights[1].kind, Light::Kind::point);
+    EXPECT_EQ(scene.lights[1].range, INFINITY);
+}
+
+}  // namespace
+}  // namespace twinray::test

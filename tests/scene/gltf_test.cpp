@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// What a glTF file's geometry becomes; gltf_material_test.cpp and gltf_fault_test.cpp see to the rest.
+#include "tests/scene/gltf_builder.h"
+
+namespace twinray::test {
+namespace {
+
+TEST(Gltf, ATriangleKeepsItsNamesPositionsAndIndices) {
+    const Scene scene = one_triangle().load();
+    ASSERT_EQ(scene.meshes.size(), 1u);
+    EXPECT_EQ(scene.meshes[0].name, "tri");
+    EXPECT_EQ(scene.meshes[0].positions, (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(scene.meshes[0].triangles, (std::vector<uvec3>{{0, 1, 2}}));
+    ASSERT_EQ(scene.instances.size(), 1u);
+    EXPECT_EQ(scene.instances[0].name, "node");
+    EXPECT_EQ(scene.instances[0].transform, Transform());
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(Gltf, GlbHoldsTheSameScene) {
+    const TempDir dir;
+    const Scene scene = load_scene(dir.write("test.glb", one_triangle().as_glb()));
+    EXPECT_EQ(scene.meshes[0].positions, one_triangle().load().meshes[0].positions);
+}
+
+TEST(Gltf, AGlbIsKnownByItsContent) {
+    const TempDir dir;
+    EXPECT_EQ(count_triangles(load_scene(dir.write("misnamed.GLTF", one_triangle().as_glb()))), 1u);
+}
+
+TEST(Gltf, BuffersLieInFilesWithEscapedNamesAndMayBeLonger) {
+    const TempDir dir;
+    GltfBuilder gltf = one_triangle();
+    dir.write("my data.bin", gltf.buffer + "trailing");
+    gltf.root["buffers"] = {{{"byteLength", gltf.buffer.size()}, {"uri", "my%20data.bin"}}};
+    EXPECT_EQ(count_triangles(load_scene(dir.write("test.gltf", gltf.root.dump()))), 1u);
+}
+
+TEST(Gltf, IndicesMayHave8Or16Or32Bits) {
+    GltfBuilder gltf = one_triangle();
+    gltf.primitive()["indices"] = gltf.add<std::uint8_t>("SCALAR", 5121, {2, 1, 0});
+    EXPECT_EQ(gltf.load().meshes[0].triangles[0], uvec3(2, 1, 0));
+    gltf.primitive()["indices"] = gltf.add<std::uint16_t>("SCALAR", 5123, {1, 2, 0});
+    EXPECT_EQ(gltf.load().meshes[0].triangles[0], uvec3(1, 2, 0));
+    gltf.primitive()["indices"] = gltf.add<std::uint32_t>("SCALAR", 5125, {0, 2, 1});
+    EXPECT_EQ(gltf.load().meshes[0].triangles[0], uvec3(0, 2, 1));
+}
+
+TEST(Gltf, WithoutIndicesVerticesFollowEachOther) {
+    GltfBuilder gltf = one_triangle();
+    gltf.primitive().erase("indices");
+    EXPECT_EQ(gltf.load().meshes[0].triangles, (std::vector<uvec3>{{0, 1, 2}}));
+}
+
+TEST(Gltf, StripsAndFansKeepTheWindingOfTheSpecification) {
+    GltfBuilder gltf = one_triangle();
+    gltf.primitive() = {{"attributes", {{"POSITION", gltf.add_floats("VEC3", std::vector<float>(15))}}}, {"mode", 5}};
+    EXPECT_EQ(gltf.load().meshes[0].triangles, (std::vector<uvec3>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
+    gltf.primitive()["mode"] = 6;
+    EXPECT_EQ(gltf.load().meshes[0].triangles, (std::vector<uvec3>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}));
+}
+
+TEST(Gltf, PointsAndLinesAreSkippedWithACount) {
+    GltfBuilder gltf = one_triangle();
+    for (const int mode : {0, 1, 3}) {
+        json other = gltf.primitive();
+        other["mode"] = mode;
+        gltf.root["meshes"][0]["primitives"].push_back(other);
+    }
+    const Scene scene = gltf.load();
+    EXPECT_EQ(count_triangles(scene), 1u);
+    EXPECT_TRUE(has_warning(scene, "skipped 3 primitives"));
+}
+
+TEST(Gltf, CornersAfterTheLastWholeTriangleAreIgnoredWithAWarning) {
+    GltfBuilder gltf = one_triangle();
+    gltf.primitive()["indices"] = gltf.add_indices({0, 1, 2, 0, 1});
+    const Scene scene = gltf.load();
+    EXPECT_EQ(count_triangles(scene), 1u);
+    EXPECT_TRUE(has_warning(scene, "ignored 2 corners"));
+}
+
+TEST(Gltf, DegenerateTrianglesStayAndKeepTheirIndex) {
+    GltfBuilder gltf = one_triangle();
+    gltf.primitive()["indices"] = gltf.add_indices({0, 0, 1, 0, 1, 2});
+    EXPECT_EQ(gltf.load().meshes[0].triangles, (std::vector<uvec3>{{0, 0, 1}, {0, 1, 2}}));
+}
+
+TEST(Gltf, AllPrimitivesOfAMeshBecomeOneMeshWithMaterialsPerTriangle) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["materials"] = {{{"name", "a"}}, {{"name", "b"}}};
+    json other = gltf.primitive();
+    other["attributes"]["POSITION"] = gltf.add_floats("VEC3", {0, 0, 1, 1, 0, 1, 0, 1, 1});
+    other["material"] = 1;
+    gltf.root["meshes"][0]["primitives"].push_back(other);
+    const Scene scene = gltf.load();
+    ASSERT_EQ(scene.meshes.size(), 1u);
+    EXPECT_EQ(scene.meshes[0].triangles, (std::vector<uvec3>{{0, 1, 2}, {3, 4, 5}}));
+    EXPECT_EQ(scene.meshes[0].materials, (std::vector<uint>{2, 1}));  // 2: the default, after the file's own
+    ASSERT_EQ(scene.materials.size(), 3u);
+    EXPECT_EQ(scene.materials[2].name, "default");
+}
+
+TEST(Gltf, VerticesThatPrimitivesShareAreStoredOnce) {
+    GltfBuilder gltf = one_triangle();
+    json other = gltf.primitive();
+    other["indices"] = gltf.add_indices({2, 1, 0});
+    gltf.root["meshes"][0]["primitives"].push_back(other);
+    const Mesh mesh = gltf.load().meshes[0];
+    EXPECT_EQ(mesh.positions.size(), 3u);
+    EXPECT_EQ(mesh.triangles, (std::vector<uvec3>{{0, 1, 2}, {2, 1, 0}}));
+}
+
+TEST(Gltf, AMeshThatTwoNodesUseIsLoadedOnce) {
+    GltfBuilder gltf = one_triangle();
+    gltf.add_node({{"mesh", 0}, {"translation", {1, 2, 3}}});
+    const Scene scene = gltf.load();
+    EXPECT_EQ(scene.meshes.size(), 1u);
+    ASSERT_EQ(scene.instances.size(), 2u);
+    EXPECT_EQ(scene.instances[1].transform, Transform::translation({1, 2, 3}));
+    EXPECT_EQ(count_triangles(scene), 2u);
+}
+
+TEST(Gltf, AccessorsHonourOffsetAndStride) {
+    GltfBuilder gltf = one_triangle();
+    const int accessor = gltf.add_floats("VEC3", {9, 0, 0, 0, 7, 1, 0, 0, 7, 0, 1, 0});
+    gltf.root["accessors"][std::size_t(accessor)].update({{"byteOffset", 4}, {"count", 3}});
+    gltf.root["bufferViews"].back()["byteStride"] = 16;
+    gltf.primitive()["attributes"]["POSITION"] = accessor;
+    EXPECT_EQ(gltf.load().meshes[0].positions, (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+}
+
+TEST(Gltf, QuantizedPositionsKeepOrNormaliseTheirIntegers) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["extensionsRequired"] = {"KHR_mesh_quantization"};
+    const int accessor = gltf.add<std::int16_t>("VEC3", 5122, {0, 0, 0, 32767, -32768, 0, 0, 1, 0});
+    gltf.primitive()["attributes"]["POSITION"] = accessor;
+    EXPECT_EQ(gltf.load().meshes[0].positions[1], vec3(32767, -32768, 0));
+    gltf.root["accessors"][std::size_t(accessor)]["normalized"] = true;
+    EXPECT_EQ(gltf.load().meshes[0].positions[1], vec3(1, -1, 0));
+    const int bytes = gltf.add<std::uint8_t>("VEC2", 5121, {0, 255, 51, 0, 0, 0});
+    gltf.root["accessors"][std::size_t(bytes)]["normalized"] = true;
+    gltf.primitive()["attributes"]["TEXCOORD_0"] = bytes;
+    EXPECT_EQ(gltf.load().meshes[0].uvs, (std::vector<vec2>{{0, 1}, {0.2f, 0}, {0, 0}}));
+}
+
+TEST(Gltf, SparseAccessorsOverwriteTheirBaseOrZeros) {
+    GltfBuilder gltf = one_triangle();
+    const int indices = gltf.add_view(std::string("\x01\x02", 2));
+    const float values[6] = {5, 5, 5, 6, 6, 6};
+    const int replaced = gltf.add_view({reinterpret_cast<const char*>(values), sizeof values});
+    json& accessor = gltf.root["accessors"][0];
+    accessor["sparse"] = {{"count", 2},
+                          {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                          {"values", {{"bufferView", replaced}}}};
+    EXPECT_EQ(gltf.load().meshes[0].positions, (std::vector<vec3>{{0, 0, 0}, {5, 5, 5}, {6, 6, 6}}));
+    accessor.erase("bufferView");
+    accessor["sparse"]["count"] = 1;
+    EXPECT_EQ(gltf.load().meshes[0].positions, (std::vector<vec3>{{0, 0, 0}, {5, 5, 5}, {0, 0, 0}}));
+}
+
+TEST(Gltf, MeshesWithoutNormalsHaveNone) { EXPECT_TRUE(one_triangle().load().meshes[0].normals.empty()); }
+
+TEST(Gltf, APrimitiveWithoutNormalsGetsFlatOnesWhereAnotherHasThem) {
+    GltfBuilder gltf = one_triangle();
+    json other = gltf.primitive();
+    other["attributes"]["NORMAL"] = gltf.add_floats("VEC3", {1, 0, 0, 1, 0, 0, 1, 0, 0});
+    gltf.root["meshes"][0]["primitives"].push_back(other);
+    const Mesh mesh = gltf.load().meshes[0];
+    ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+    EXPECT_EQ(mesh.normals[mesh.triangles[0].x], vec3(0, 0, 1));
+    EXPECT_EQ(mesh.normals[mesh.triangles[1].x], vec3(1, 0, 0));
+    EXPECT_EQ(mesh.positions[mesh.triangles[0].y], vec3(1, 0, 0));
+}
+
+TEST(Gltf, TangentsStayOnlyWhereTheWholeMeshHasThem) {
+    GltfBuilder gltf = one_triangle();
+    json& attributes = gltf.primitive()["attributes"];
+    attributes["NORMAL"] = gltf.add_floats("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+    attributes["TANGENT"] = gltf.add_floats("VEC4", {1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1});
+    EXPECT_EQ(gltf.load().meshes[0].tangents, std::vector<vec4>(3, vec4(1, 0, 0, -1)));
+    json other = gltf.primitive();
+    other["attributes"].erase("TANGENT");
+    gltf.root["meshes"][0]["primitives"].push_back(other);
+    EXPECT_TRUE(gltf.load().meshes[0].tangents.empty());
+}
+
+TEST(Gltf, NonFiniteVerticesStayAndAreCounted) {
+    GltfBuilder gltf = one_triangle();
+    gltf.primitive()["attributes"]["POSITION"] = gltf.add_floats("VEC3", {0, 0, 0, INFINITY, 0, 0, 0, 1, 0});
+    const Scene scene = gltf.load();
+    EXPECT_EQ(scene.meshes[0].triangles.size(), 1u);
+    EXPECT_TRUE(has_warning(scene, "1 of 1 triangles have a NaN or infinite coordinate"));
+}
+
+TEST(Gltf, SkinsAnimationsMorphTargetsAndColoursAreShownAtRestWithOneWarningEach) {
+    GltfBuilder gltf = one_triangle();
+    gltf.primitive()["targets"] = {{{"POSITION", 0}}};
+    gltf.primitive()["attributes"]["COLOR_0"] = 0;
+    gltf.root["meshes"][0]["primitives"].push_back(gltf.primitive());
+    gltf.root["skins"] = {{{"joints", {0}}}};
+    gltf.root["animations"] = {{{"channels", json::array()}, {"samplers", json::array()}}};
+    EXPECT_EQ(gltf.load().warnings.size(), 4u);
+}
+
+}  // namespace
+}  // namespace twinray::test

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "engine/scene/image.h"
+
+#include <cmath>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+
+#include "tests/scene/png_bytes.h"
+#include "tests/scene/temp_dir.h"
+
+namespace twinray::test {
+namespace {
+
+std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+Image decode(const std::string& bytes) { return decode_image(bytes_of(bytes), "picture"); }
+
+TEST(Image, RgbaPngKeepsItsPixelsRowByRow) {
+    const Image image = decode(png_bytes(1, 2, 8, 6, "abcdefgh"));
+    EXPECT_EQ(image.width, 1u);
+    EXPECT_EQ(image.height, 2u);
+    EXPECT_EQ(image.rgba, bytes_of("abcdefgh"));
+}
+
+TEST(Image, GreyAndRgbAreWidened) {
+    EXPECT_EQ(decode(png_bytes(1, 1, 8, 0, "g")).rgba, bytes_of("ggg\xff"));
+    EXPECT_EQ(decode(png_bytes(1, 1, 8, 2, "rgb")).rgba, bytes_of("rgb\xff"));
+}
+
+TEST(Image, SixteenBitsAreCutToEight) { EXPECT_EQ(decode(png_bytes(1, 1, 16, 2, "r?g?b?")).rgba, bytes_of("rgb\xff")); }
+
+TEST(Image, WhatCannotBeDecodedIsNamed) {
+    const std::string png = png_bytes(4, 4, 8, 6, std::string(64, 'x'));
+    expect_contains(error_of([&] { decode(png.substr(0, png.size() / 2)); }), "picture is a damaged PNG");
+    expect_contains(error_of([] { decode(""); }), "picture is empty");
+    expect_contains(error_of([] { decode("\xff\xd8\xff\xe0 nothing"); }), "picture is a damaged JPEG");
+    expect_contains(error_of([] { decode("hello"); }), "picture is neither PNG nor JPEG");
+    expect_contains(error_of([] { decode("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n1234"); }),
+                    "picture is neither PNG nor JPEG");
+}
+
+TEST(Image, AFalseHugeSizeIsRefused) {
+    const std::string png = png_bytes(1, 1, 8, 6, "abcd");
+    const std::string header = big_endian(100000) + big_endian(100000) + std::string("\x08\x06\0\0\0", 5);
+    const std::string huge = png.substr(0, 8) + png_chunk("IHDR", header) + png.substr(33);
+    expect_contains(error_of([&] { decode(huge); }), "picture is a damaged PNG (too large)");
+}
+
+TEST(Image, TheCheckerboardIsMagentaAndBlack) {
+    const Image image = checkerboard_image("lost");
+    ASSERT_EQ(image.rgba.size(), std::size_t(4) * image.width * image.height);
+    EXPECT_EQ(std::vector(image.rgba.begin(), image.rgba.begin() + 4), (std::vector<std::uint8_t>{255, 0, 255, 255}));
+    EXPECT_EQ(std::vector(image.rgba.begin() + 16, image.rgba.begin() + 20), (std::vector<std::uint8_t>{0, 0, 0, 255}));
+}
+
+TEST(HdrImage, RadianceIsReadAsLinearLight) {
+    const TempDir dir;
+    const std::string pixels("\x80\x40\x00\x81\x00\x80\x00\x84", 8);  // mantissas and 2^(e - 136)
+    const HdrImage image = load_hdr_image(dir.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + pixels));
+    ASSERT_EQ(image.width, 2u);
+    ASSERT_EQ(image.height, 1u);
+    EXPECT_EQ(image.rgb[0], vec3(1, 0.5f, 0));
+    EXPECT_EQ(image.rgb[1], vec3(0, 8, 0));
+}
+
+// Writes interleaved floats, as many channels as names, with the data window starting at (3, 5).
+std::filesystem::path write_exr(const TempDir& dir, const std::vector<std::string>& channels, int width, int height,
+                                const std::vector<float>& values, Imf::Compression compression) {
+    const std::filesystem::path path = dir / "a.exr";
+    const Imath::Box2i window({3, 5}, {3 + width - 1, 5 + height - 1});
+    Imf::Header header(window, window);
+    header.compression() = compression;
+    Imf::FrameBuffer frame;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        header.channels().insert(channels[i], Imf::Channel(Imf::FLOAT));
+        const std::size_t x_stride = sizeof(float) * channels.size();
+        frame.insert(channels[i], Imf::Slice::Make(Imf::FLOAT, values.data() + i, window, x_stride,
+                                                   x_stride * static_cast<std::size_t>(width)));
+    }
+    Imf::OutputFile file(path.string().c_str(), header);
+    file.setFrameBuffer(frame);
+    file.writePixels(height);
+    return path;
+}
+
+TEST(HdrImage, ExrKeepsFloatsExactly) {
+    const TempDir dir;
+    const std::vector<float> values = {0.1f, 1e6f, 1e-20f, 3, 4, 5};
+    const HdrImage image = load_hdr_image(write_exr(dir, {"R", "G", "B"}, 1, 2, values, Imf::ZIP_COMPRESSION));
+    ASSERT_EQ(image.height, 2u);
+    EXPECT_EQ(image.rgb[0], vec3(0.1f, 1e6f, 1e-20f));
+    EXPECT_EQ(image.rgb[1], vec3(3, 4, 5));
+}
+
+TEST(HdrImage, DwabIsRead) {
+    const TempDir dir;
+    const HdrImage image =
+        load_hdr_image(write_exr(dir, {"R", "G", "B"}, 64, 64, std::vector<float>(3 * 64 * 64, 0.5f), Imf::DWAB_COMPRESSION));
+    ASSERT_EQ(image.rgb.size(), 4096u);
+    for (const vec3& pixel : image.rgb) EXPECT_NEAR(pixel.x, 0.5f, 0.01f);
+}
+
+TEST(HdrImage, LuminanceAloneBecomesGrey) {
+    const TempDir dir;
+    const HdrImage image = load_hdr_image(write_exr(dir, {"Y"}, 2, 1, {2, 7}, Imf::NO_COMPRESSION));
+    EXPECT_EQ(image.rgb, (std::vector<vec3>{vec3(2), vec3(7)}));
+}
+
+TEST(HdrImage, WhatCannotBeLightIsReplaced) {
+    const TempDir dir;
+    const HdrImage image = load_hdr_image(write_exr(dir, {"R", "G", "B"}, 1, 1, {INFINITY, NAN, -1}, Imf::NO_COMPRESSION));
+    EXPECT_EQ(image.rgb[0], vec3(65504, 0, 0));
+}
+
+TEST(HdrImage, FaultsAreNamed) {
+    const TempDir dir;
+    expect_contains(error_of([&] { load_hdr_image(dir / "no.exr"); }), "no.exr': file not found");
+    expect_contains(error_of([&] { load_hdr_image(dir.write("a.png", "x")); }), "unknown suffix '.png'");
+    expect_contains(error_of([&] { load_hdr_image(dir.write("a.exr", "x")); }), "not a readable OpenEXR image");
+    expect_contains(error_of([&] { load_hdr_image(dir.write("a.hdr", "x")); }), "not a Radiance .hdr image");
+    expect_contains(error_of([&] { load_hdr_image(write_exr(dir, {"Z"}, 1, 1, {1}, Imf::NO_COMPRESSION)); }),
+                    "neither channels R, G and B nor Y");
+}
+
+}  // namespace
+}  // namespace twinray::test

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "engine/scene/mesh.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/scene/scene.h"
+#include "engine/scene/weld.h"
+#include "tests/scene/temp_dir.h"
+
+namespace twinray::test {
+namespace {
+
+Mesh mesh_of(std::vector<vec3> positions, std::vector<uvec3> triangles) {
+    Mesh mesh;
+    mesh.name = "m";
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(triangles);
+    return mesh;
+}
+
+TEST(Mesh, BoundsHoldTheVerticesThatTrianglesUse) {
+    const Mesh mesh = mesh_of({{0, 0, 0}, {1, 2, 0}, {0, 0, -3}, {99, 99, 99}}, {{0, 1, 2}});
+    EXPECT_EQ(bounds_of(mesh).lo, vec3(0, 0, -3));
+    EXPECT_EQ(bounds_of(mesh).hi, vec3(1, 2, 0));
+}
+
+TEST(Mesh, BoundsLeaveOutNonFiniteVertices) {
+    const Mesh mesh = mesh_of({{0, 0, 0}, {NAN, 50, 50}, {1, 1, 1}, {INFINITY, 0, 0}}, {{0, 1, 2}, {0, 2, 3}});
+    EXPECT_EQ(bounds_of(mesh).lo, vec3(0));
+    EXPECT_EQ(bounds_of(mesh).hi, vec3(1));
+}
+
+TEST(Mesh, BoundsOfNothingAreEmpty) {
+    EXPECT_TRUE(bounds_of(mesh_of({{1, 1, 1}}, {})).is_empty());
+    EXPECT_EQ(Bounds().size(), vec3(0));
+}
+
+TEST(Mesh, AnIndexOutOfRangeIsNamed) {
+    const Mesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 3}});
+    expect_contains(error_of([&] { check_indices(mesh); }),
+                    "mesh 'm': triangle 1 has vertex index 3, but the mesh has only 3 vertices");
+    EXPECT_NO_THROW(check_indices(mesh_of(mesh.positions, {{0, 1, 2}})));
+}
+
+TEST(Mesh, NonFiniteTrianglesAreCountedOnceEach) {
+    const Mesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, NAN, INFINITY}, {0, 0, -INFINITY}},
+                              {{0, 1, 1}, {0, 1, 2}, {3, 2, 3}, {2, 0, 1}});
+    EXPECT_EQ(count_non_finite_triangles(mesh), 3u);
+}
+
+TEST(Weld, ExactlyEqualVerticesBecomeOneAndTrianglesKeepTheirOrder) {
+    Mesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {1e-30f, 0, 0}, {-0.0f, 0, 0}, {1, 0, 0}}, {{0, 1, 2}, {3, 4, 2}, {0, 3, 1}});
+    mesh.materials = {4, 5, 6};
+    const Mesh welded = weld_equal_vertices(mesh);
+    EXPECT_EQ(welded.positions, (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {1e-30f, 0, 0}}));
+    EXPECT_EQ(welded.triangles, (std::vector<uvec3>{{0, 1, 2}, {0, 1, 2}, {0, 0, 1}}));
+    EXPECT_EQ(welded.materials, mesh.materials);
+    EXPECT_EQ(welded.name, "m");
+}
+
+TEST(Weld, VerticesThatDifferInAnyAttributeStayApart) {
+    Mesh mesh = mesh_of({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{0, 1, 2}});
+    mesh.uvs = {{0, 0}, {1, 0}, {0, 0}};
+    EXPECT_EQ(weld_equal_vertices(mesh).uvs, (std::vector<vec2>{{0, 0}, {1, 0}}));
+    mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 1, 0}};
+    EXPECT_EQ(weld_equal_vertices(mesh).positions.size(), 3u);
+}
+
+TEST(Scene, BoundsAndCountsFollowTheInstances) {
+    Scene scene;
+    scene.meshes = {mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}), mesh_of({}, {})};
+    scene.instances = {{"a", 0, Transform::translation({5, 0, 0})}, {"b", 0, Transform::scaling({-2, 1, 1})}, {"c", 1, {}}};
+    EXPECT_EQ(bounds_of(scene).lo, vec3(-2, 0, 0));
+    EXPECT_EQ(bounds_of(scene).hi, vec3(6, 1, 0));
+    EXPECT_EQ(count_triangles(scene), 2u);
+}
+
+TEST(Scene, BoundsTakeAllEightCornersOfATurnedBox) {
+    Scene scene;
+    scene.meshes = {mesh_of({{0, 0, 0}, {1, 2, 4}, {1, 0, 4}}, {{0, 1, 2}})};
+    // x' = x - y + z, so that its extremes lie at corners that are neither lo nor hi.
+    scene.instances = {{"sheared", 0, {{vec4(1, -1, 1, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0)}}}};
+    EXPECT_EQ(bounds_of(scene).lo, vec3(-2, 0, 0));
+    EXPECT_EQ(bounds_of(scene).hi, vec3(5, 2, 4));
+}
+
+TEST(Scene, UnknownSuffixesAreRefusedWithTheKnownOnes) {
+    const TempDir dir;
+    expect_contains(error_of([&] { load_scene(dir.write("a.fbx", "x")); }), "unknown suffix '.fbx'; scenes are .gltf, .glb");
+    expect_contains(error_of([&] { load_scene(dir.write("a.glb.gz", "x")); }), "unknown suffix '.glb.gz'");
+    expect_contains(error_of([&] { load_scene(dir.write("a", "x")); }), "unknown suffix ''");
+}
+
+}  // namespace
+}  // namespace twinray::test

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+#include "engine/core/error.h"
+
+namespace twinray::test {
+
+// A fresh folder that disappears with its test.
+class TempDir {
+  public:
+    TempDir() {
+        std::string name = (std::filesystem::temp_directory_path() / "twinray-XXXXXX").string();
+        if (!mkdtemp(name.data())) fail("cannot make a temporary folder like '", name, "'");
+        path_ = name;
+    }
+    ~TempDir() { std::filesystem::remove_all(path_); }
+    TempDir(const TempDir&) = delete;
+    TempDir& operator=(const TempDir&) = delete;
+
+    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+    // Writes the file and returns its path.
+    std::filesystem::path write(const std::string& name, std::string_view content) const {
+        const std::filesystem::path file = path_ / name;
+        std::ofstream(file, std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
+        return file;
+    }
+
+  private:
+    std::filesystem::path path_;
+};
+
+// What the Error that `action` throws says; a test failure when it throws none.
+template <class Action>
+std::string error_of(Action action) {
+    try {
+        action();
+    } catch (const Error& e) {
+        return e.what();
+    }
+    ADD_FAILURE() << "no Error was thrown";
+    return {};
+}
+
+inline void expect_contains(const std::string& all, const std::string& part) {
+    EXPECT_NE(all.find(part), std::string::npos) << "'" << part << "' is not in: " << all;
+}
+
+}  // namespace twinray::test

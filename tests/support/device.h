@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Vulkan devices for tests: validation is on (core and synchronisation) and any message fails the test.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "engine/core/context.h"
+
+namespace twinray::test {
+
+// A validated context of its own, or null when this machine has no usable device: then the test has been skipped, or
+// failed when TWINRAY_REQUIRE names vulkan. Callers return at once on null.
+std::unique_ptr<Context> make_context(ContextDesc desc = {});
+
+// Fixture for label `vulkan`: a fresh context per test.
+class VulkanTest : public ::testing::Test {
+  protected:
+    void SetUp() override;
+    void TearDown() override;  // fails on validation messages
+    virtual ContextDesc context_desc() const { return {}; }
+    Context& context() { return *context_; }
+
+  private:
+    std::unique_ptr<Context> context_;
+    std::vector<std::string> log_;
+};
+
+}  // namespace twinray::test

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <cstring>
+
+#include "swtlas/check.h"
+#include "swtlas/reference.h"
+#include "swtlas/sw_tlas.h"
+#include "tests/support/device.h"
+#include "tests/support/meshes.h"
+
+namespace twinray {
+namespace {
+
+class SwBuild : public test::VulkanTest {};
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+// Boxes by the leaf index that node references use: sorted order.
+std::vector<LeafBox> boxes_of(const std::vector<BvhTriangle>& triangles, const Mesh& mesh) {
+    std::vector<LeafBox> boxes;
+    const std::vector<LeafBox> by_primitive = reference::leaves_triangles(mesh.positions, mesh.triangles);
+    for (const BvhTriangle& triangle : triangles) boxes.push_back(by_primitive.at(triangle.primitive_index));
+    return boxes;
+}
+
+void expect_sound(const SwTlas::Tree& tree, const Mesh& mesh) {
+    const TreeCheck check = check_tree(tree.bvh, tree.nodes, boxes_of(tree.triangles, mesh));
+    for (const std::string& violation : check.violations) ADD_FAILURE() << mesh.name << ": " << violation;
+}
+
+void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh) {
+    const std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);
+    const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
+    const std::vector<uint> order = reference::sort(codes);
+    const reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, true);
+    EXPECT_EQ(tree.bvh.root, twin.root) << mesh.name;
+    EXPECT_TRUE(same_bytes(tree.nodes, twin.nodes)) << mesh.name;
+    EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(mesh.positions, mesh.triangles, order))) << mesh.name;
+}
+
+TEST_F(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsTwin) {
+    SwTlas accel(context());
+    std::vector<Mesh> meshes;
+    std::vector<AccelHandle> handles;
+    for (std::size_t n = 0; n <= 300; ++n) {
+        meshes.push_back(test::random_triangles(n, static_cast<unsigned>(n)));
+        handles.push_back(accel.push(meshes.back()));
+    }
+    accel.sync();
+    for (std::size_t n = 0; n <= 300; ++n) {
+        const SwTlas::Tree tree = accel.download_geometry(handles[n]);
+        expect_sound(tree, meshes[n]);
+        expect_twin(tree, meshes[n]);
+    }
+}
+
+TEST_F(SwBuild, LargeMeshesAreSound) {
+    for (const std::size_t n : {100'000u, 1'000'000u}) {
+        SwTlas accel(context());
+        const Mesh mesh = test::random_triangles(n, 7, 0.01f);
+        const AccelHandle handle = accel.push(mesh);
+        accel.sync();
+        expect_sound(accel.download_geometry(handle), mesh);
+    }
+}
+
+TEST_F(SwBuild, EqualCentroidsAreSplitByPosition) {
+    SwTlas accel(context());
+    const Mesh mesh = test::equal_triangles(1000);
+    const AccelHandle handle = accel.push(mesh);
+    accel.sync();
+    const SwTlas::Tree tree = accel.download_geometry(handle);
+    expect_sound(tree, mesh);
+    expect_twin(tree, mesh);
+    EXPECT_LE(check_tree(tree.bvh, tree.nodes, boxes_of(tree.triangles, mesh)).depth, 10u);
+}
+
+TEST_F(SwBuild, NonFiniteTrianglesAreInactiveAndKeepTheirIndex) {
+    Mesh mesh = test::random_triangles(500, 11);
+    for (const std::size_t i : {0u, 17u, 255u, 256u, 499u}) {
+        const float bad[] = {NAN, INFINITY, -INFINITY};
+        mesh.positions[3 * i + i % 3][static_cast<int>(i / 7 % 3)] = bad[i % 3];
+    }
+    SwTlas accel(context());
+    const AccelHandle handle = accel.push(mesh);
+    accel.sync();
+    const SwTlas::Tree tree = accel.download_geometry(handle);
+    expect_sound(tree, mesh);
+    expect_twin(tree, mesh);
+    EXPECT_TRUE(std::isfinite(tree.bvh.lo.x) && std::isfinite(tree.bvh.hi.x));
+}
+
+TEST_F(SwBuild, AMeshOfNothingButNansIsEmpty) {
+    Mesh mesh = test::random_triangles(5, 3);
+    for (vec3& position : mesh.positions) position.y = NAN;
+    SwTlas accel(context());
+    const AccelHandle handle = accel.push(mesh);
+    accel.sync();
+    EXPECT_GT(accel.download_geometry(handle).bvh.lo.x, accel.download_geometry(handle).bvh.hi.x);
+    const Hit hit = accel.closest_hits(std::vector<Ray>{{vec3(0.5f, 0.5f, -1), 0, vec3(0, 0, 1), INFINITY}}).front();
+    EXPECT_EQ(hit.hit, 0u);
+}
+
+TEST_F(SwBuild, ASecondBuildIsBitIdentical) {
+    const Mesh mesh = test::random_triangles(50'000, 5, 0.02f);
+    SwTlas::Tree trees[2];
+    for (SwTlas::Tree& tree : trees) {
+        SwTlas accel(context());
+        const AccelHandle handle = accel.push(mesh);
+        accel.sync();
+        tree = accel.download_geometry(handle);
+    }
+    EXPECT_TRUE(same_bytes(trees[0].nodes, trees[1].nodes));
+    EXPECT_TRUE(same_bytes(trees[0].triangles, trees[1].triangles));
+}
+
+TEST_F(SwBuild, TheSceneTreeIsSoundOverInstances) {
+    SwTlas accel(context());
+    const Mesh mesh = test::random_triangles(10, 1);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> place(-50, 50);
+    std::vector<Transform> transforms;
+    std::vector<InstanceRecord> records;
+    for (int i = 0; i < 777; ++i) {
+        transforms.push_back(Transform::translation({place(random), place(random), place(random)}) *
+                             Transform::scaling({1.5f, -0.25f, 3}));
+        records.push_back(make_instance_record(transforms.back(), 0, 0xff, "test"));
+    }
+    accel.push(mesh, transforms);
+    accel.sync();
+
+    const reference::Hierarchy geometry = [&] {
+        const std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);
+        const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
+        return reference::hierarchy(boxes, codes, reference::sort(codes), true);
+    }();
+    const SwGeometry header{{{}, geometry.root, 10, geometry.box.lo, geometry.box.hi}, {}};
+    for (InstanceRecord& record : records) record.geometry = Ref<SwGeometry>::to(&header).address;
+    std::vector<SwInstance> instances;
+    const std::vector<LeafBox> boxes = reference::leaves_instances(records, instances);
+
+    const SwTlas::Tree tree = accel.download_scene();
+    for (const std::string& violation : check_tree(tree.bvh, tree.nodes, boxes).violations) ADD_FAILURE() << violation;
+}
+
+TEST(TreeCheck, NamesWhatIsWrong) {
+    const Mesh mesh = test::random_triangles(20, 1);
+    const std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);
+    const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
+    const std::vector<uint> order = reference::sort(codes);
+    const reference::Hierarchy good = reference::hierarchy(boxes, codes, order, false);
+    const Bvh bvh{{}, good.root, 20, good.box.lo, good.box.hi};
+    EXPECT_TRUE(check_tree(bvh, good.nodes, boxes).violations.empty());
+
+    std::vector<BvhNode> shrunk = good.nodes;
+    shrunk[good.root].lo0.x = std::nextafter(shrunk[good.root].lo0.x, INFINITY);
+    EXPECT_FALSE(check_tree(bvh, shrunk, boxes).violations.empty());
+    std::vector<BvhNode> lost = good.nodes;
+    lost[good.root].child0 = lost[good.root].child1;
+    EXPECT_FALSE(check_tree(bvh, lost, boxes).violations.empty());
+    std::vector<BvhNode> wild = good.nodes;
+    wild[good.root].child1 = 1000;
+    EXPECT_FALSE(check_tree(bvh, wild, boxes).violations.empty());
+}
+
+}  // namespace
+}  // namespace twinray

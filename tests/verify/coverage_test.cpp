@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "engine/verify/coverage.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/verify/meshes.h"
+
+namespace twinray {
+namespace {
+
+using namespace testing;  // NOLINT
+
+// The triangles of the mesh as the ray sees them.
+Coverage coverage_of(const Soup& soup, const Ray& ray) {
+    const Tube tube(ray, Placement64(), Accelerator::software);
+    std::vector<PatchTriangle> patch;
+    for (const uvec3& t : soup.triangles) {
+        const std::array<vec3, 3> corners = {soup.positions[t.x], soup.positions[t.y], soup.positions[t.z]};
+        patch.push_back({corners, tube.footprint({glm::dvec3(corners[0]), glm::dvec3(corners[1]),
+                                                  glm::dvec3(corners[2])})});
+    }
+    return coverage(patch);
+}
+
+Soup fan(uint valence, bool is_closed) {
+    Soup soup;
+    const auto rim = [&](uint i) {
+        const float angle = 6.2831853f * static_cast<float>(i % valence) / static_cast<float>(valence);
+        return vec3(std::cos(angle), std::sin(angle), 4);
+    };
+    for (uint i = 0; i < (is_closed ? valence : valence - 1); ++i) soup.add({0, 0, 5}, rim(i), rim(i + 1));
+    return soup;
+}
+
+const Ray at_center = make_ray(vec3(0), {0, 0, 1});
+
+TEST(Coverage, OfNothingIsOpen) { EXPECT_EQ(coverage({}), Coverage::open); }
+
+TEST(Coverage, OfAnInteriorPointIsCertain) {
+    EXPECT_EQ(coverage_of(fan(5, true), make_ray({0.2f, 0.1f, 0}, {0, 0, 1})), Coverage::certain);
+}
+
+TEST(Coverage, OfTheCornerOfAClosedFanIsCertain) {
+    for (const uint valence : {3u, 4u, 7u, 500u})
+        EXPECT_EQ(coverage_of(fan(valence, true), at_center), Coverage::certain) << valence;
+}
+
+TEST(Coverage, OfTheCornerOfAnOpenFanIsOpen) {
+    for (const uint valence : {3u, 4u, 7u}) EXPECT_EQ(coverage_of(fan(valence, false), at_center), Coverage::open);
+}
+
+TEST(Coverage, OfACrackThinnerThanRoundingIsUnresolved) {
+    // A corner that is one ulp off along the ray opens no gap, but nothing joins the four triangles there.
+    Soup soup = fan(4, true);
+    soup.positions[0].z = std::nextafter(5.0f, 6.0f);  // no longer the same corner
+    EXPECT_EQ(coverage_of(soup, at_center), Coverage::unresolved);
+}
+
+TEST(Coverage, OfAFoldIsOpen) {
+    Soup soup;
+    soup.add({0, -1, 4}, {0, 1, 4}, {1, 0, 4});
+    soup.add({0, 1, 4}, {0, -1, 4}, {1, 0, 5});
+    EXPECT_EQ(coverage_of(soup, at_center), Coverage::open);
+}
+
+TEST(Coverage, OfASharedEdgeIsCertainUnlessTheCornersDiffer) {
+    Soup soup;
+    soup.add({0, -1, 4}, {0, 1, 4}, {1, 0, 4});
+    soup.add({0, -1, 4}, {0, 1, 4}, {-1, 0, 4});
+    EXPECT_EQ(coverage_of(soup, at_center), Coverage::certain);
+    soup.positions[4].y = 2;
+    EXPECT_EQ(coverage_of(soup, at_center), Coverage::unresolved);
+    soup.positions[4].y = 1;
+    soup.positions[0].x = -0.0f;  // still the same position
+    EXPECT_EQ(coverage_of(soup, at_center), Coverage::certain);
+}
+
+TEST(Coverage, OfAThirdTriangleOnAnEdgeIsUnresolvedButCopiesDoNotCount) {
+    Soup soup;
+    soup.add({0, -1, 4}, {0, 1, 4}, {1, 0, 4});
+    soup.add({0, -1, 4}, {0, 1, 4}, {-1, 0, 4});
+    soup.add({-1, 0, 4}, {0, 1, 4}, {0, -1, 4});
+    EXPECT_EQ(coverage_of(soup, at_center), Coverage::certain);
+    soup.add({0, -1, 4}, {0, 1, 4}, {-1, 0, 3});
+    EXPECT_EQ(coverage_of(soup, at_center), Coverage::unresolved);
+}
+
+}  // namespace
+}  // namespace twinray

@@ -1,0 +1,205 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Installs the Debian packages that twinray needs, and nothing else.
+#   tools/setup.sh           install; does nothing if everything is there
+#   tools/setup.sh --undo    remove the apt configuration that it wrote
+#   SKIP_APT=1               install nothing, whatever is missing
+# On Debian 12 (bookworm) two things are not in the release itself: a Mesa whose CPU driver traces rays (from
+# bookworm-backports) and the header-only Vulkan Memory Allocator (from trixie). Both suites are added at priorities
+# that let through these packages and nothing else. On Debian 13 (trixie) no configuration is written.
+set -euo pipefail
+
+packages=(
+    g++ cmake ninja-build pkg-config python3-minimal
+    libvulkan-dev libvulkan-volk-dev libvulkan-memory-allocator-dev
+    mesa-vulkan-drivers vulkan-tools vulkan-validationlayers glslang-tools spirv-tools
+    libglm-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev libgtest-dev
+    libopenexr-dev libassimp-dev zlib1g-dev assimp-testmodels
+)
+oldest_mesa=24 # the first whose lavapipe has acceleration structures and ray queries
+
+backports_file=/etc/apt/sources.list.d/twinray-bookworm-backports.sources
+trixie_file=/etc/apt/sources.list.d/twinray-trixie-vma.sources
+pin_file=/etc/apt/preferences.d/twinray.pref
+keyring=/usr/share/keyrings/debian-archive-keyring.gpg
+
+say() { printf 'setup: %s\n' "$*"; }
+die() {
+    printf 'setup: error: %s\n' "$*" >&2
+    exit 1
+}
+
+# Prints what is missing or too old, one per line.
+missing_packages() {
+    local -A version=()
+    local status package number
+    while read -r status package number; do
+        if [[ $status == installed ]]; then version[$package]=$number; fi
+    done < <(dpkg-query -W -f '${db:Status-Status} ${Package} ${Version}\n' "${packages[@]}" 2>/dev/null)
+    for package in "${packages[@]}"; do
+        if [[ -z ${version[$package]-} ]]; then echo "$package"; fi
+    done
+    number=${version[mesa-vulkan-drivers]-}
+    if [[ -n $number ]] && dpkg --compare-versions "$number" lt "$oldest_mesa"; then
+        echo "mesa-vulkan-drivers >= $oldest_mesa (installed: $number)"
+    fi
+}
+
+become_root() {
+    if ((EUID == 0)); then
+        as_root=()
+    elif command -v sudo >/dev/null; then
+        as_root=(sudo)
+    else
+        die "needs root: run it as root, or install sudo"
+    fi
+}
+
+write_file() { # path, text from stdin
+    say "writes $1"
+    "${as_root[@]}" tee "$1" >/dev/null
+    "${as_root[@]}" chmod 644 "$1"
+}
+
+# Runs apt-get with its output in the log.
+apt_get() {
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o Acquire::Retries=3 -o DPkg::Lock::Timeout=120 "$@" \
+        >>"$log" 2>&1
+}
+
+say_how_to_undo() {
+    if [[ -e $pin_file ]]; then say "to remove the apt configuration again: tools/setup.sh --undo"; fi
+}
+
+apt_failed() { # what failed
+    printf 'setup: %s failed; the end of %s:\n' "$1" "$log" >&2
+    tail -n 15 "$log" | sed 's/^/    /' >&2
+    if grep -qE 'bookworm-backports.* does (not|no longer) have a Release file' "$log"; then
+        say "bookworm-backports was not found on the mirror. Debian moves old suites to its archive mirror: put that" \
+            "mirror's address into $backports_file and run this script again." >&2
+    fi
+    if grep -q NO_PUBKEY "$log"; then
+        say "a signing key is missing: upgrade the package debian-archive-keyring and run this script again." >&2
+    fi
+    say_how_to_undo >&2
+    exit 1
+}
+
+# One line per index that apt reads: origin, codename, component, file that names it, mirror.
+# shellcheck disable=SC2016
+apt_sources() {
+    local format='$(ORIGIN)|$(CODENAME)|$(COMPONENT)|$(SOURCESENTRY)|$(REPO_URI)'
+    apt-get indextargets --format "$format" 'Created-By: Packages'
+}
+
+# The mirror that serves this system's Debian packages already.
+debian_mirror() {
+    apt_sources | awk -F'|' '!uri && $1 == "Debian" && $2 == "bookworm" && $3 == "main" && $5 !~ /^cdrom:/ {
+                                 uri = $5 }
+                             END { print uri }'
+}
+
+# Whether a file that is not ours offers the suite; a second entry could then contradict it.
+is_configured() {
+    apt_sources | awk -F'|' -v suite="$1" '$2 == suite && $3 == "main" && $4 !~ /\/twinray-/ { found = 1 }
+                                           END { exit !found }'
+}
+
+write_source() { # path, suite, mirror
+    if [[ -e $1 ]]; then return; fi # someone may have put another mirror there
+    printf 'Types: deb\nURIs: %s\nSuites: %s\nComponents: main\nSigned-By: %s\n' "$3" "$2" "$keyring" |
+        write_file "$1"
+}
+
+configure_bookworm() {
+    local mirror
+    mirror=$(debian_mirror)
+    if [[ -z $mirror ]]; then # apt has never read its indexes
+        say "reads the package indexes"
+        apt_get update || true
+        mirror=$(debian_mirror)
+    fi
+    if [[ -z $mirror ]]; then
+        die "apt has no working source for bookworm main (see $log)"
+    fi
+    if [[ ! -e $keyring ]]; then
+        die "$keyring is missing: install debian-archive-keyring"
+    fi
+
+    local pins=$'Package: libvulkan-memory-allocator-dev\nPin: release n=trixie\nPin-Priority: 500\n\n'
+    pins+=$'Package: src:mesa src:libdrm\nPin: release n=bookworm-backports\nPin-Priority: 500\n'
+    if ! is_configured trixie; then # else trixie keeps the priority that someone chose for it
+        write_source "$trixie_file" trixie "$mirror"
+        pins=$'Package: *\nPin: release n=trixie\nPin-Priority: -10\n\n'$pins
+    fi
+    if ! is_configured bookworm-backports; then write_source "$backports_file" bookworm-backports "$mirror"; fi
+    write_file "$pin_file" <<<"${pins%$'\n'}"
+}
+
+install_packages() {
+    become_root
+    log=$(mktemp --suffix=.log "${TMPDIR:-/tmp}/twinray-setup.XXXXXX")
+    if [[ $1 == bookworm ]]; then configure_bookworm; fi
+    say "installs ${#packages[@]} packages and what they depend on; log in $log"
+    # An unrelated source of this system may fail without harm; ours may not.
+    if ! apt_get update && grep -qE '^(E|Err).*(bookworm-backports|trixie)' "$log"; then
+        apt_failed "reading the package indexes"
+    fi
+    apt_get install -y --no-install-recommends "${packages[@]}" || apt_failed "installing"
+    { grep -h '^Need to get' "$log" || true; } | sed 's/^Need to get/setup: downloaded/'
+    local missing
+    missing=$(missing_packages)
+    if [[ -n $missing ]]; then
+        die "apt reported no error, but these are missing or too old (log in $log): ${missing//$'\n'/, }"
+    fi
+    say_how_to_undo
+    say "done in $SECONDS s"
+}
+
+undo() {
+    local file removed=0
+    for file in "$backports_file" "$trixie_file" "$pin_file"; do
+        if [[ -e $file ]]; then
+            become_root
+            "${as_root[@]}" rm -f "$file"
+            say "removed $file"
+            removed=1
+        fi
+    done
+    if ((removed)); then
+        say "the packages stay installed (/var/log/apt/history.log lists them); run 'apt-get update' when convenient"
+    else
+        say "nothing to undo"
+    fi
+}
+
+main() {
+    case ${1-} in
+    --undo)
+        undo
+        return
+        ;;
+    '') ;;
+    *) die "unknown option '$1'; usage: tools/setup.sh [--undo]" ;;
+    esac
+    if [[ ${SKIP_APT-} == 1 ]]; then
+        say "SKIP_APT=1, installs nothing"
+        return
+    fi
+    local ID='' VERSION_CODENAME=''
+    # shellcheck disable=SC1091
+    if [[ -r /etc/os-release ]]; then . /etc/os-release; fi
+    if [[ $ID != debian || ! $VERSION_CODENAME =~ ^(bookworm|trixie)$ ]]; then
+        say "this is neither Debian 12 nor Debian 13: nothing is installed. twinray needs, by their Debian names:"
+        printf '    %s\n' "${packages[*]}" | fold -s -w 110
+        say "with Mesa >= $oldest_mesa, or the driver of a GPU. CMake names what it does not find."
+        return
+    fi
+    if [[ -z $(missing_packages) ]]; then
+        say "all packages are installed"
+        return
+    fi
+    install_packages "$VERSION_CODENAME"
+}
+
+main "$@"

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Installs the packages, builds and runs every test.
+#   tools/test.sh [release|debug|asan]
+# TWINRAY_REQUIRE names the devices without which tests fail instead of skipping: "vulkan" unless it is set.
+# The last lines are ctest's summary.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. tools/lib.sh
+
+preset=${1-release}
+if [[ ! $preset =~ ^(release|debug|asan)$ || $# -gt 1 ]]; then
+    echo "usage: tools/test.sh [release|debug|asan]" >&2
+    exit 2
+fi
+
+build "$preset"
+section "Tests ($preset)"
+export TWINRAY_REQUIRE=${TWINRAY_REQUIRE-vulkan}
+exec ctest --preset "$preset"
