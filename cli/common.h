@@ -48,5 +48,6 @@ nlohmann::json describe(const Context& context);
 void add_devices(CLI::App& app, int& exit_code);
 void add_trace(CLI::App& app, int& exit_code);
 void add_verify(CLI::App& app, int& exit_code);
+void add_bench(CLI::App& app, int& exit_code);
 
 }  // namespace twinray::cli

@@ -56,7 +56,8 @@ void HwTlas::create_pipelines(Query query) {
     const std::vector<SpecializationConstant> constants = {{HW_HAS_REMAP, reorder_}, {HW_IS_ANY, query == Query::any}};
     if (context().facts().ray_query)
         kernels_[index_of(query)] = std::make_unique<Kernel<HwTraceArgs>>(
-            context(), KernelDesc{.name = "hwtlas_trace_query", .spirv = hwtlas_trace_query_spirv, .constants = constants});
+            context(),
+            KernelDesc{.name = "hwtlas_trace_query", .spirv = hwtlas_trace_query_spirv, .constants = constants});
     else
         pipelines_[index_of(query)] = std::make_unique<RayTracingPipeline>(
             context(), RayTracingPipelineDesc{.name = "hwtlas_trace",
@@ -92,8 +93,10 @@ std::unique_ptr<AbstractAccel::BuiltScene> HwTlas::build_scene(Commands& command
 
 void HwTlas::record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const {
     const HwTraceArgs args{{scene}, desc.rays, desc.hits, static_cast<uint>(desc.count), desc.mask};
-    if (const auto& kernel = kernels_[index_of(desc.query)]) kernel->dispatch(commands, args, desc.count);
-    else pipelines_[index_of(desc.query)]->trace(commands, args);
+    if (const auto& kernel = kernels_[index_of(desc.query)])
+        kernel->dispatch(commands, args, desc.count);
+    else
+        pipelines_[index_of(desc.query)]->trace(commands, args);
 }
 
 }  // namespace twinray

@@ -29,8 +29,8 @@ class HwTlas : public AbstractAccel {
     bool reorders() const { return reorder_; }
 
   protected:
-    std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(
-        Commands& commands, std::span<const Geometry* const> geometries) override;
+    std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
+                                                                 std::span<const Geometry* const> geometries) override;
     std::unique_ptr<BuiltScene> build_scene(Commands& commands, std::span<const PlacedInstance> instances) override;
     void record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const override;
 

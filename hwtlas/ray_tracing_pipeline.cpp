@@ -34,8 +34,7 @@ VkRayTracingShaderGroupCreateInfoKHR group_of(std::uint32_t stage, VkRayTracingS
     VkRayTracingShaderGroupCreateInfoKHR group{};
     group.sType = VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR;
     group.type = type;
-    group.generalShader = group.closestHitShader = group.anyHitShader = group.intersectionShader =
-        VK_SHADER_UNUSED_KHR;
+    group.generalShader = group.closestHitShader = group.anyHitShader = group.intersectionShader = VK_SHADER_UNUSED_KHR;
     (type == VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR ? group.generalShader : group.closestHitShader) = stage;
     return group;
 }

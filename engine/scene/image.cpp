@@ -20,7 +20,7 @@
 #define STBI_ONLY_HDR
 #define STBI_NO_STDIO
 #define STBI_MAX_DIMENSIONS (1 << 28)
-#include <stb/stb_image.h>
+#include <stb_image.h>
 
 namespace twinray {
 namespace {

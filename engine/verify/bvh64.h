@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -103,6 +104,7 @@ void Bvh64::visit_leaves(const SlabRay& ray, double t_min, const double& t_limit
     std::array<Entry, max_depth_ + 2> stack;  // one waiting sibling per level
     std::size_t size = 0;
     const auto push = [&](uint node, const Interval64& t) {
+        assert(size < stack.size());  // guaranteed by the builder's depth limit
         if (!t.is_empty() && t.near <= t_limit && t.far >= t_min) stack[size++] = {node, t.near};
     };
     if (!nodes_.empty()) push(0, ray.clip(nodes_[0].box));

@@ -18,13 +18,15 @@ double infinity_norm(const glm::dmat3& m) {
 
 glm::dmat3 absolute(const glm::dmat3& m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
 
-// A box around the transformed box, rounding included: centre and half extent, each off by a few 2^-53.
+// A box around the transformed box, rounding included: that of centre and half extent, and that of rays on their way
+// to object space, which the inverse amplifies and which does not shrink where large offsets cancel.
 Box64 box_in_world(const Box64& box, const Placement64& placement) {
     const glm::dvec3 center = box.corners[0] * 0.5 + box.corners[1] * 0.5;
     const glm::dvec3 half = box.corners[1] * 0.5 - box.corners[0] * 0.5;
     const glm::dvec3 center_world = placement.to_world * center + placement.offset;
     const glm::dmat3 linear = absolute(placement.to_world);
-    const glm::dvec3 rounding = 0x1p-48 * (linear * (glm::abs(center) + half) + glm::abs(placement.offset));
+    const glm::dvec3 sizes = linear * (glm::abs(center) + half) + glm::abs(placement.offset);
+    const glm::dvec3 rounding = 0x1p-48 * placement.condition * sizes;
     const glm::dvec3 half_world = linear * half + rounding;
     Box64 world;
     world.include(center_world - half_world);

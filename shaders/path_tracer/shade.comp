@@ -161,9 +161,17 @@ void shade(PathState path, Ray ray, Hit hit)
     if (HAS_ALPHA)
     {
         float cutoff = AT(AT(args.scene, 0).materials, vertex.surface.material).alpha_cutoff;
-        if (unit_float(choices.x) >= opacity(flags, cutoff, color.a)) return pass(vertex, ray);
+        if (unit_float(choices.x) >= opacity(flags, cutoff, color.a))
+        {
+            pass(vertex, ray);
+            return;
+        }
     }
-    if ((flags & MATERIAL_UNLIT) != 0u) return add(path.pixel, path.throughput * color.rgb);
+    if ((flags & MATERIAL_UNLIT) != 0u)
+    {
+        add(path.pixel, path.throughput * color.rgb);
+        return;
+    }
     add_emission(vertex, ray, hit, flags);
     if (path.progress >> 16u >= args.max_depth) return;
     vertex.normal = shading_normal(AT(args.scene, 0), vertex.surface, flags, vertex.wo);

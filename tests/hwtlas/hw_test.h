@@ -47,10 +47,9 @@ class HwTlasTest : public VulkanTest, public ::testing::WithParamInterface<Way> 
     std::unique_ptr<HwTlas> accel_;
 };
 
-inline const auto all_ways = ::testing::Values(Way{"RayQueryInputOrder", true, BuildOrder::input},
-                                               Way{"RayQueryMortonOrder", true, BuildOrder::morton},
-                                               Way{"PipelineInputOrder", false, BuildOrder::input},
-                                               Way{"PipelineMortonOrder", false, BuildOrder::morton});
+inline const auto all_ways = ::testing::Values(
+    Way{"RayQueryInputOrder", true, BuildOrder::input}, Way{"RayQueryMortonOrder", true, BuildOrder::morton},
+    Way{"PipelineInputOrder", false, BuildOrder::input}, Way{"PipelineMortonOrder", false, BuildOrder::morton});
 inline const auto name_of_way = [](const auto& info) { return info.param.name; };
 
 inline bool same_bytes(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof(Hit)) == 0; }
@@ -81,8 +80,10 @@ class BruteForce {
             const double inside = intersect(triangle, ray, hit);
             if (!(inside > -margin_) || hit.t <= ray.t_min || hit.t >= ray.t_max) continue;
             if (inside < margin_) hit.primitive = unsure_;
-            if (hit.t < best.t) second = best, best = hit;
-            else if (hit.t < second.t) second = hit;
+            if (hit.t < best.t)
+                second = best, best = hit;
+            else if (hit.t < second.t)
+                second = hit;
         }
         if (best.t == INFINITY) return best;
         if (best.primitive == unsure_ || second.t - best.t < margin_ * best.t) return {};

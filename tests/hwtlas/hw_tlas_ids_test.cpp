@@ -59,7 +59,8 @@ TEST_P(HwTlasIds, OfMovedScaledRotatedAndMirroredInstancesAreTheUsers) {
     for (int i = 0; i < 24; ++i) {
         const float a = static_cast<float>(i);
         const Transform mirror = Transform::scaling(vec3(i % 2 ? -0.3f : 0.4f, 0.3f, i % 3 ? 0.2f : -0.5f));
-        const Transform move = Transform::translation(vec3(2.1f * std::sin(a), 1.7f * std::cos(2 * a), std::sin(5 * a)));
+        const Transform move =
+            Transform::translation(vec3(2.1f * std::sin(a), 1.7f * std::cos(2 * a), std::sin(5 * a)));
         transforms.push_back(move * rotation(a) * mirror);
     }
     BruteForce reference;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <cstring>
+#include <random>
 
+#include "engine/scene/shapes.h"
 #include "swtlas/check.h"
 #include "swtlas/reference.h"
 #include "swtlas/sw_tlas.h"
 #include "tests/support/device.h"
-#include "tests/support/meshes.h"
 
 namespace twinray {
 namespace {
@@ -41,12 +42,21 @@ void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh) {
     EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(mesh.positions, mesh.triangles, order))) << mesh.name;
 }
 
+// n copies of one triangle: all centroids equal.
+Mesh equal_triangles(std::size_t n) {
+    Mesh mesh;
+    mesh.name = "equal";
+    mesh.positions = {vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
+    mesh.triangles.assign(n, uvec3(0, 1, 2));
+    return mesh;
+}
+
 TEST_F(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsTwin) {
     SwTlas accel(context());
     std::vector<Mesh> meshes;
     std::vector<AccelHandle> handles;
     for (std::size_t n = 0; n <= 300; ++n) {
-        meshes.push_back(test::random_triangles(n, static_cast<unsigned>(n)));
+        meshes.push_back(make_soup(static_cast<uint>(n), static_cast<uint>(n)));
         handles.push_back(accel.push(meshes.back()));
     }
     accel.sync();
@@ -58,9 +68,9 @@ TEST_F(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsTwin) {
 }
 
 TEST_F(SwBuild, LargeMeshesAreSound) {
-    for (const std::size_t n : {100'000u, 1'000'000u}) {
+    for (const uint n : {100'000u, 1'000'000u}) {
         SwTlas accel(context());
-        const Mesh mesh = test::random_triangles(n, 7, 0.01f);
+        const Mesh mesh = make_soup(n, 7, 0.01f);
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
         expect_sound(accel.download_geometry(handle), mesh);
@@ -69,7 +79,7 @@ TEST_F(SwBuild, LargeMeshesAreSound) {
 
 TEST_F(SwBuild, EqualCentroidsAreSplitByPosition) {
     SwTlas accel(context());
-    const Mesh mesh = test::equal_triangles(1000);
+    const Mesh mesh = equal_triangles(1000);
     const AccelHandle handle = accel.push(mesh);
     accel.sync();
     const SwTlas::Tree tree = accel.download_geometry(handle);
@@ -79,7 +89,7 @@ TEST_F(SwBuild, EqualCentroidsAreSplitByPosition) {
 }
 
 TEST_F(SwBuild, NonFiniteTrianglesAreInactiveAndKeepTheirIndex) {
-    Mesh mesh = test::random_triangles(500, 11);
+    Mesh mesh = make_soup(500, 11);
     for (const std::size_t i : {0u, 17u, 255u, 256u, 499u}) {
         const float bad[] = {NAN, INFINITY, -INFINITY};
         mesh.positions[3 * i + i % 3][static_cast<int>(i / 7 % 3)] = bad[i % 3];
@@ -94,7 +104,7 @@ TEST_F(SwBuild, NonFiniteTrianglesAreInactiveAndKeepTheirIndex) {
 }
 
 TEST_F(SwBuild, AMeshOfNothingButNansIsEmpty) {
-    Mesh mesh = test::random_triangles(5, 3);
+    Mesh mesh = make_soup(5, 3);
     for (vec3& position : mesh.positions) position.y = NAN;
     SwTlas accel(context());
     const AccelHandle handle = accel.push(mesh);
@@ -105,7 +115,7 @@ TEST_F(SwBuild, AMeshOfNothingButNansIsEmpty) {
 }
 
 TEST_F(SwBuild, ASecondBuildIsBitIdentical) {
-    const Mesh mesh = test::random_triangles(50'000, 5, 0.02f);
+    const Mesh mesh = make_soup(50'000, 5, 0.02f);
     SwTlas::Tree trees[2];
     for (SwTlas::Tree& tree : trees) {
         SwTlas accel(context());
@@ -119,7 +129,7 @@ TEST_F(SwBuild, ASecondBuildIsBitIdentical) {
 
 TEST_F(SwBuild, TheSceneTreeIsSoundOverInstances) {
     SwTlas accel(context());
-    const Mesh mesh = test::random_triangles(10, 1);
+    const Mesh mesh = make_soup(10, 1);
     std::mt19937 random(3);
     std::uniform_real_distribution<float> place(-50, 50);
     std::vector<Transform> transforms;
@@ -147,7 +157,7 @@ TEST_F(SwBuild, TheSceneTreeIsSoundOverInstances) {
 }
 
 TEST(TreeCheck, NamesWhatIsWrong) {
-    const Mesh mesh = test::random_triangles(20, 1);
+    const Mesh mesh = make_soup(20, 1);
     const std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);
     const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);

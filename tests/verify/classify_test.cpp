@@ -132,6 +132,16 @@ TEST(Classify, WrongTIsTErr) {
     EXPECT_EQ(judge(oracle, inner_ray, hit), both(Class::agree, Class::agree));
 }
 
+TEST(Classify, HardwareIsAllowedTheErrorOfItsOwnInverse) {
+    const Transform nearly_singular = {{vec4(1, 1, 0, 0), vec4(1, 1 + 0x1p-10f, 0, 0), vec4(0, 0, 1, 0)}};
+    const Oracle oracle = one(two_sheets().soups[0], nearly_singular).oracle();
+    const Ray ray = make_ray(transform_point(nearly_singular, {0.7f, 0.2f, 0}), {0, 0, 1});
+    Hit hit = near_hit;
+    ASSERT_EQ(judge(oracle, ray, hit), both(Class::agree, Class::agree));
+    hit.t = 4.02f;
+    EXPECT_EQ(judge(oracle, ray, hit), both(Class::t_err, Class::agree));
+}
+
 TEST(Classify, WrongBarycentricsAreOutOfRange) {
     const Oracle oracle = two_sheets().oracle();
     Hit swapped = near_hit;

@@ -56,10 +56,12 @@ TEST(Coverage, OfACrackThinnerThanRoundingIsUnresolved) {
     EXPECT_EQ(coverage_of(soup, at_center), Coverage::unresolved);
 }
 
-TEST(Coverage, OfAFoldIsOpen) {
+TEST(Coverage, OfAFoldIsOpenInEitherWinding) {
     Soup soup;
     soup.add({0, -1, 4}, {0, 1, 4}, {1, 0, 4});
     soup.add({0, 1, 4}, {0, -1, 4}, {1, 0, 5});
+    EXPECT_EQ(coverage_of(soup, at_center), Coverage::open);
+    std::swap(soup.triangles[1].x, soup.triangles[1].y);
     EXPECT_EQ(coverage_of(soup, at_center), Coverage::open);
 }
 

@@ -15,6 +15,8 @@ TEST(HasArea, IsDecidedExactly) {
     EXPECT_TRUE(has_area({vec3(1, 1, 1), vec3(3, 3, 3), vec3(1e6f, 1e6f, 1e6f + 0.0625f)}));
     EXPECT_TRUE(has_area({vec3(1, 1, 0), vec3(1 + ulp, 1 + ulp, 0), vec3(1e30f, 1e30f * (1 + ulp), 0)}));
     EXPECT_FALSE(has_area({vec3(1e-30f), vec3(1), vec3(1e30f)}));
+    // The area is 2^-40 and its terms are 2^20: a float64 sum would lose it.
+    EXPECT_TRUE(has_area({vec3(0, 1, 0), vec3(0x1p-60f, 1, 0), vec3(0x1p20f, 0x1p20f + 1, 0)}));
     EXPECT_TRUE(has_area({vec3(0), vec3(1e-40f, 0, 0), vec3(0, 1e-40f, 0)}));
     EXPECT_TRUE(has_area({vec3(0), vec3(3e38f, 0, 0), vec3(0, 3e38f, 0)}));
 }

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+// `twinray bench`: build times and trace rates of both accelerators on the same rays, interleaved in one process.
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+
+#include "cli/common.h"
+#include "engine/accel/scene_push.h"
+#include "engine/verify/classify.h"
+#include "hwtlas/hw_tlas.h"
+#include "swtlas/sw_tlas.h"
+
+namespace twinray::cli {
+namespace {
+
+struct BenchOptions {
+    CommonOptions common;
+    std::filesystem::path scene;
+    uint width = 1024;
+    std::size_t rounds = 5;
+};
+
+struct Candidate {
+    std::string name;
+    std::unique_ptr<AbstractAccel> accel;
+    double build_ms = 0;
+    std::vector<double> trace_ms = {};
+    std::vector<Hit> hits = {};
+
+    double median_ms() const {
+        std::vector<double> sorted = trace_ms;
+        std::sort(sorted.begin(), sorted.end());
+        return sorted[sorted.size() / 2];
+    }
+};
+
+// Pinhole rays over the scene from a corner above, in tiles of 8 x 8 pixels as a renderer would.
+std::vector<Ray> primary_rays(const Bounds& bounds, uint width) {
+    const vec3 target = bounds.center();
+    const vec3 eye = target + normalize(vec3(0.6f, 0.4f, 1.0f)) * (1.2f * length(bounds.size()));
+    const vec3 forward = normalize(target - eye);
+    const vec3 right = normalize(cross(forward, vec3(0, 1, 0)));
+    const vec3 up = cross(right, forward);
+    const float half = 0.45f;  // tangent of half the field of view
+    std::vector<Ray> rays;
+    for (uint tile = 0; tile < width / 8 * (width / 8); ++tile)
+        for (uint pixel = 0; pixel < 64; ++pixel) {
+            const uint x = tile % (width / 8) * 8 + pixel % 8, y = tile / (width / 8) * 8 + pixel / 8;
+            const vec2 p = (vec2(x, y) + 0.5f) / static_cast<float>(width) * 2.0f - 1.0f;
+            rays.push_back({eye, 0, normalize(forward + (right * p.x - up * p.y) * half), INFINITY});
+        }
+    return rays;
+}
+
+double total_ms(const std::vector<PassTiming>& timings) {
+    double sum = 0;
+    for (const PassTiming& timing : timings) sum += timing.ms;
+    return sum;
+}
+
+std::vector<Candidate> make_candidates(Context& context, const Scene& scene) {
+    std::vector<Candidate> candidates;
+    candidates.push_back({"sw", std::make_unique<SwTlas>(context)});
+    if (missing_for_hardware(context.facts()).empty()) {
+        candidates.push_back({"hw", std::make_unique<HwTlas>(context)});
+        if (context.facts().builds_in_input_order)
+            candidates.push_back({"hw input order", std::make_unique<HwTlas>(context, BuildOrder::input)});
+    }
+    for (Candidate& candidate : candidates) {
+        push_scene(*candidate.accel, scene);
+        candidate.accel->sync();
+        candidate.build_ms = total_ms(candidate.accel->build_timings());
+    }
+    return candidates;
+}
+
+double trace_once(const Candidate& candidate, const Buffer& rays, const Buffer& hits, std::uint64_t count) {
+    Commands commands(candidate.accel->context(), "bench");
+    candidate.accel->trace(commands, candidate.accel->view(), {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = count});
+    commands.submit();
+    return total_ms(commands.timings());
+}
+
+// Errors of a sample of the hits, judged by the referee.
+Classes judge(const Oracle& oracle, const Candidate& candidate, const std::vector<Ray>& rays) {
+    constexpr std::size_t sample = 20'000;
+    std::vector<Ray> some_rays;
+    std::vector<Hit> some_hits;
+    for (std::size_t i = 0; i < rays.size(); i += std::max<std::size_t>(rays.size() / sample, 1)) {
+        some_rays.push_back(rays[i]);
+        some_hits.push_back(candidate.hits[i]);
+    }
+    Classes classes;
+    const bool ours = candidate.name == "sw";
+    const std::vector<Verdict> verdicts = ours ? classify_all(oracle, some_rays, some_hits, {}) : classify_all(oracle, some_rays, {}, some_hits);
+    for (const Verdict& verdict : verdicts) classes.add(ours ? *verdict.software : *verdict.hardware);
+    return classes;
+}
+
+void report(const BenchOptions& options, const Context& context, const std::vector<Candidate>& candidates,
+            const Scene& scene, const std::vector<Ray>& rays) {
+    const Oracle oracle = Oracle::of(scene);
+    const double triangles = static_cast<double>(std::max<std::size_t>(count_triangles(scene), 1));
+    std::cout << "  accelerator        build ms  Mrays/s   sw is faster by  bytes/triangle  agree or tie with float64\n";
+    for (const Candidate& candidate : candidates) {
+        const double mrays = static_cast<double>(rays.size()) / candidate.median_ms() * 1e-3;
+        const Classes classes = judge(oracle, candidate, rays);
+        const double sound = static_cast<double>(classes[Class::agree] + classes[Class::tie]) / static_cast<double>(classes.total());
+        const double ratio = candidate.median_ms() / candidates.front().median_ms();
+        const double bytes = static_cast<double>(candidate.accel->structure_bytes()) / triangles;
+        std::cout << "  " << std::left << std::setw(16) << candidate.name << std::right << std::fixed << std::setprecision(1)
+                  << std::setw(11) << candidate.build_ms << std::setprecision(3) << std::setw(9) << mrays
+                  << std::setprecision(2) << std::setw(15) << ratio << 'x' << std::setprecision(1) << std::setw(16) << bytes
+                  << std::setprecision(4) << std::setw(17) << 100 * sound << " % of " << classes.total() << '\n';
+        append_json(options.common.json, {{"schema", "twinray-bench/1"},
+                                          {"device", describe(context)},
+                                          {"scene", options.scene.string()},
+                                          {"rays", "primary"},
+                                          {"n", rays.size()},
+                                          {"rounds", options.rounds},
+                                          {"backend", candidate.name},
+                                          {"layout", candidate.name == "sw" ? "bvh2" : "driver"},
+                                          {"builder", candidate.name == "sw" ? "lbvh" : "driver"},
+                                          {"level", "watertight"},
+                                          {"mrays_per_s", mrays},
+                                          {"build_ms", candidate.build_ms},
+                                          {"bytes_per_triangle", bytes},
+                                          {"sw_speedup", ratio},
+                                          {"agreement", sound}});
+    }
+}
+
+void run(const BenchOptions& options) {
+    const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
+    const std::unique_ptr<Context> context = make_context(options.common);
+    const std::vector<Ray> rays = primary_rays(bounds_of(scene), options.width);
+    std::vector<Candidate> candidates = make_candidates(*context, scene);
+    const Buffer ray_buffer(*context, {.name = "bench rays", .bytes = rays.size() * sizeof(Ray)});
+    const Buffer hit_buffer(*context, {.name = "bench hits", .bytes = rays.size() * sizeof(Hit)});
+    Commands upload(*context, "bench input");
+    {
+        const auto pass = upload.pass("bench rays");
+        upload.upload(ray_buffer, std::span<const Ray>(rays));
+    }
+    upload.submit();
+
+    std::cout << "bench " << options.scene.filename().string() << ": " << count_triangles(scene) << " triangles, "
+              << rays.size() << " primary rays, median of " << options.rounds << " interleaved rounds, on "
+              << context->facts().name << "; HwTlas by " << hardware_path(*context) << '\n';
+    for (Candidate& candidate : candidates) {  // warm up: drivers compile at the first dispatch
+        trace_once(candidate, ray_buffer, hit_buffer, rays.size());
+        candidate.hits = download<Hit>(*context, hit_buffer, rays.size());
+    }
+    for (std::size_t round = 0; round < options.rounds; ++round)
+        for (Candidate& candidate : candidates)
+            candidate.trace_ms.push_back(trace_once(candidate, ray_buffer, hit_buffer, rays.size()));
+    report(options, *context, candidates, scene, rays);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, int&) {
+    CLI::App* command = app.add_subcommand("bench", "build and trace rates of both accelerators, with their errors");
+    const auto options = std::make_shared<BenchOptions>();
+    command->add_option("--scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
+    command->add_option("--width", options->width, "pixels a side of the square of primary rays, a multiple of 8")
+        ->check(CLI::Range(8, 4096))
+        ->capture_default_str();
+    command->add_option("--rounds", options->rounds)->check(CLI::Range(1, 1000))->capture_default_str();
+    add_common_options(*command, options->common);
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace twinray::cli

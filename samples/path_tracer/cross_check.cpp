@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "samples/path_tracer/cross_check.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "path_tracer_compare.spv.h"
+
+namespace twinray::path_tracer {
+namespace {
+
+constexpr uint batch_capacity = 1 << 16;  // disagreements kept of one trace
+
+}  // namespace
+
+CrossChecker::CrossChecker(Context& context, AbstractAccel& second, const Renderer& renderer, std::uint64_t pixel_count)
+    : context_(context),
+      second_(second),
+      compare_(context, {.name = "path_tracer_compare", .spirv = path_tracer_compare_spirv, .group_size = PATH_GROUP}),
+      hits_(context, {.name = "second hits", .bytes = renderer.batch_size() * sizeof(Hit)}),
+      batch_(context, {.name = "disagreements", .bytes = batch_capacity * sizeof(Disagreement)}),
+      batch_count_(context, {.name = "disagreement count", .bytes = sizeof(uint)}),
+      batch_count_readback_(context,
+                            {.name = "disagreement count readback", .bytes = sizeof(uint), .memory = Memory::readback}),
+      marks_(context, {.name = "disagreement marks", .bytes = pixel_count * sizeof(uint)}) {
+    Commands commands(context, "cross-check start");
+    {
+        const auto pass = commands.pass("cross-check start");
+        commands.fill(marks_, 0, marks_.bytes(), 0);
+    }
+    commands.submit();
+}
+
+void CrossChecker::record(Commands& commands, const TraceDesc& desc, Uints pixels, uint pixel_stride) {
+    TraceDesc again = desc;
+    again.hits = hits_.ref<Hit>();
+    second_.trace(commands, second_.view(), again);
+    {
+        const auto pass = commands.pass("cross-check clear");
+        commands.fill(batch_count_, 0, sizeof(uint), 0);
+    }
+    compare_.dispatch(commands,
+                      {desc.rays, desc.hits, again.hits, pixels, batch_.ref<Disagreement>(), batch_count_.ref<uint>(),
+                       marks_.ref<uint>(), pixel_stride, static_cast<uint>(desc.count), batch_capacity,
+                       desc.query == Query::any},
+                      desc.count);
+    const auto pass = commands.pass("cross-check count");
+    commands.copy(batch_count_, 0, batch_count_readback_, 0, sizeof(uint));
+}
+
+void CrossChecker::collect() {
+    uint count = 0;
+    std::memcpy(&count, batch_count_readback_.mapped(), sizeof count);
+    found_ += count;
+    const std::size_t room = std::min<std::size_t>({count, batch_capacity, max_kept - kept_.size()});
+    const auto found = download<Disagreement>(context_, batch_, room);
+    kept_.insert(kept_.end(), found.begin(), found.end());
+}
+
+std::vector<uint> CrossChecker::marks() { return download<uint>(context_, marks_, marks_.bytes() / sizeof(uint)); }
+
+PictureDifference compare_pictures(const Picture& first, const Picture& second, const std::vector<uint>& marks) {
+    PictureDifference difference;
+    for (std::size_t i = 0; i < first.rgb.size(); ++i) {
+        if (std::memcmp(&first.rgb[i], &second.rgb[i], sizeof(vec3)) == 0) continue;
+        ++difference.differing;
+        if (marks[i] == 0) ++difference.unexplained;
+    }
+    return difference;
+}
+
+}  // namespace twinray::path_tracer

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+
+#include "samples/path_tracer/renderer.h"
+
+namespace twinray::path_tracer {
+
+// Traces every ray of a render again with a second accelerator and keeps those on which the two name different hits.
+class CrossChecker final : public WaveObserver {
+  public:
+    // `second` must hold the scene, built.
+    CrossChecker(Context& context, AbstractAccel& second, const Renderer& renderer, std::uint64_t pixel_count);
+
+    void record(Commands& commands, const TraceDesc& desc, Uints pixels, uint pixel_stride) override;
+    void collect() override;
+
+    // The first max_kept of them.
+    const std::vector<Disagreement>& kept() const { return kept_; }
+    std::uint64_t found() const { return found_; }
+    // One per pixel: whether any of its rays disagreed, kept or not.
+    std::vector<uint> marks();
+
+    static constexpr std::size_t max_kept = 1 << 20;
+
+  private:
+    Context& context_;
+    AbstractAccel& second_;
+    Kernel<CompareArgs> compare_;
+    Buffer hits_, batch_, batch_count_, batch_count_readback_, marks_;
+    std::vector<Disagreement> kept_;
+    std::uint64_t found_ = 0;
+};
+
+// Pixels that differ in any bit, and those of them where no ray disagreed.
+struct PictureDifference {
+    std::uint64_t differing = 0;
+    std::uint64_t unexplained = 0;
+};
+PictureDifference compare_pictures(const Picture& first, const Picture& second, const std::vector<uint>& marks);
+
+}  // namespace twinray::path_tracer

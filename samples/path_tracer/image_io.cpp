@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "samples/path_tracer/image_io.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/error.h"
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#include <stb_image_write.h>
+
+namespace twinray::path_tracer {
+namespace {
+
+// Khronos PBR Neutral (2024): leaves what is below 0.8 alone, apart from undoing the glare of a dielectric's Fresnel
+// reflection, and compresses highlights towards white.
+vec3 tone_mapped(vec3 color) {
+    constexpr float fresnel = 0.04f, start = 0.8f - fresnel, desaturation = 0.15f;
+    const float low = std::min({color.x, color.y, color.z});
+    color -= low < 2 * fresnel ? low - low * low / (4 * fresnel) : fresnel;
+    const float peak = largest(color);
+    if (peak < start) return color;
+    const float room = 1 - start, compressed = 1 - room * room / (peak + room - start);
+    return glm::mix(color * (compressed / peak), vec3(compressed), 1 - 1 / (desaturation * (peak - compressed) + 1));
+}
+
+std::uint8_t srgb_byte(float linear) {
+    const float c = linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+    return static_cast<std::uint8_t>(std::clamp(c, 0.0f, 1.0f) * 255 + 0.5f);
+}
+
+void write_png(const std::filesystem::path& file, const Picture& picture, float exposure) {
+    const float scale = std::exp2(exposure);
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(picture.rgb.size() * 3);
+    for (const vec3& pixel : picture.rgb) {
+        const vec3 color = tone_mapped(pixel * scale);
+        for (int i = 0; i < 3; ++i) bytes.push_back(srgb_byte(color[i]));
+    }
+    const int width = static_cast<int>(picture.width), height = static_cast<int>(picture.height);
+    if (!stbi_write_png(file.string().c_str(), width, height, 3, bytes.data(), 3 * width))
+        fail("'", file.string(), "': cannot write the picture");
+}
+
+void write_exr(const std::filesystem::path& file, const Picture& picture) {
+    try {
+        Imf::Header header(static_cast<int>(picture.width), static_cast<int>(picture.height));
+        Imf::FrameBuffer frame;
+        const char* names[] = {"R", "G", "B"};
+        for (std::size_t i = 0; i < 3; ++i) {
+            header.channels().insert(names[i], Imf::Channel(Imf::FLOAT));
+            // The library takes pointers to non-const for reading and writing alike.
+            char* first = const_cast<char*>(reinterpret_cast<const char*>(picture.rgb.data())) + i * sizeof(float);
+            frame.insert(names[i], Imf::Slice(Imf::FLOAT, first, sizeof(vec3), sizeof(vec3) * picture.width));
+        }
+        Imf::OutputFile out(file.string().c_str(), header);
+        out.setFrameBuffer(frame);
+        out.writePixels(static_cast<int>(picture.height));
+    } catch (const std::exception& e) {
+        fail("'", file.string(), "': cannot write the picture (", e.what(), ")");
+    }
+}
+
+}  // namespace
+
+float automatic_exposure(const Picture& picture) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const vec3& pixel : picture.rgb)
+        if (const float l = luminance(pixel); l > 0) {
+            sum += std::log2(double{l});
+            ++count;
+        }
+    return count ? static_cast<float>(std::log2(0.18) - sum / static_cast<double>(count)) : 0;
+}
+
+bool is_picture_file(const std::filesystem::path& file) { return file.extension() == ".png" || file.extension() == ".exr"; }
+
+void write_picture(const std::filesystem::path& file, const Picture& picture, float exposure) {
+    if (file.extension() == ".exr") write_exr(file, picture);
+    else write_png(file, picture, exposure);
+}
+
+}  // namespace twinray::path_tracer

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Pictures to files.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "samples/path_tracer/shared.h"
+
+namespace twinray::path_tracer {
+
+// Linear radiance, row 0 on top.
+struct Picture {
+    uint width = 0;
+    uint height = 0;
+    std::vector<vec3> rgb;
+};
+
+// Exposure in stops that brings the geometric mean luminance of the pixels that are not black to a middle grey of 0.18.
+float automatic_exposure(const Picture& picture);
+
+// By suffix: .exr, linear 32-bit float, without exposure; .png, 8-bit sRGB, exposed and tone mapped with Khronos PBR
+// Neutral. Throws Error naming the file.
+void write_picture(const std::filesystem::path& file, const Picture& picture, float exposure);
+
+// Whether write_picture knows the suffix.
+bool is_picture_file(const std::filesystem::path& file);
+
+}  // namespace twinray::path_tracer

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// The sample path tracer: one scene, one picture, by either accelerator or by both against each other.
+#include <cstdio>
+
+#include "engine/core/error.h"
+#include "samples/path_tracer/report.h"
+
+namespace twinray::path_tracer {
+namespace {
+
+int render(const Options& options) {
+    const Session session = make_session(options);
+    const auto accel = make_accel(*session.context, session.scene, chosen_accel(options, *session.context));
+    const Picture picture = session.renderer->render(*accel, options.quiet);
+    write_picture(options.output, picture, session.exposure(options, picture));
+    report_render(options, session, *accel);
+    return 0;
+}
+
+std::filesystem::path with_suffix(const std::filesystem::path& file, const char* suffix) {
+    return file.parent_path() / (file.stem().string() + suffix + file.extension().string());
+}
+
+// Hardware leads, software traces the same rays; then software renders alone.
+int cross_check(const Options& options) {
+    const Session session = make_session(options);
+    Renderer& renderer = *session.renderer;
+    const auto hardware = make_accel(*session.context, session.scene, "hw");
+    const auto software = make_accel(*session.context, session.scene, "sw");
+    CrossCheck result;
+    result.hardware_path = trace_path(*hardware);
+    result.pixel_count = std::uint64_t{session.settings.width} * session.settings.height;
+
+    CrossChecker checker(*session.context, *software, renderer, result.pixel_count);
+    const Picture by_hardware = renderer.render(*hardware, options.quiet, &checker);
+    result.path_rays = renderer.stats().path_rays;
+    result.shadow_rays = renderer.stats().shadow_rays;
+    result.disagreeing = checker.found();
+    const Picture by_software = renderer.render(*software, options.quiet);
+    result.pictures = compare_pictures(by_hardware, by_software, checker.marks());
+    classify_disagreements(session.scene, checker.kept(), result);
+
+    const float exposure = session.exposure(options, by_hardware);
+    write_picture(with_suffix(options.output, "_hw"), by_hardware, exposure);
+    write_picture(with_suffix(options.output, "_sw"), by_software, exposure);
+    report_cross_check(options, session, result);
+    return result.passed() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace twinray::path_tracer
+
+int main(int argc, char** argv) {
+    using namespace twinray::path_tracer;
+    try {
+        const ParsedOptions parsed = parse_options(argc, argv);
+        if (parsed.exit_status) return *parsed.exit_status;
+        return parsed.options.cross_check.empty() ? render(parsed.options) : cross_check(parsed.options);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "path_tracer: %s\n", error.what());
+        return 1;
+    }
+}

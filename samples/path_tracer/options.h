@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "engine/core/context.h"
+
+namespace twinray::path_tracer {
+
+struct Options {
+    std::filesystem::path scene, output, environment, json, cross_check;
+    std::string accel;   // "hw", "sw", "" = hw where the device has it
+    std::string device;
+    std::uint32_t samples = 16;
+    std::uint32_t width = 0;   // 0: from the camera's aspect and the height, else 640
+    std::uint32_t height = 0;  // 0: 480
+    std::uint32_t max_depth = 8;
+    std::uint32_t seed = 1;
+    int camera = 0;                 // -1: frame the scene
+    std::optional<float> exposure;  // stops; none: automatic for lights of the scene, else 0
+    bool validation = false;
+    bool quiet = false;
+};
+
+// The options, or the exit status of a run that is over: help was shown (0) or the usage is wrong (2).
+struct ParsedOptions {
+    Options options;
+    std::optional<int> exit_status;
+};
+ParsedOptions parse_options(int argc, char** argv);
+
+// With what TWINRAY_DISABLE, a comma-separated list of ray_query and ray_tracing_pipeline, leaves unused.
+ContextDesc context_desc(const Options& options);
+
+}  // namespace twinray::path_tracer

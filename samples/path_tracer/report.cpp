@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "samples/path_tracer/report.h"
+
+#include <cstdio>
+#include <fstream>
+#include <iomanip>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.h"
+
+namespace twinray::path_tracer {
+namespace {
+
+double build_ms(const AbstractAccel& accel) {
+    double ms = 0;
+    for (const PassTiming& pass : accel.build_timings()) ms += pass.ms;
+    return ms;
+}
+
+double mega_rays_per_second(const RenderStats& stats) {
+    return static_cast<double>(stats.path_rays + stats.shadow_rays) / stats.seconds * 1e-6;
+}
+
+nlohmann::json settings_json(const Options& options, const Session& session) {
+    return {{"schema", "twinray-report/1"},
+            {"scene", options.scene.string()},
+            {"picture", options.output.string()},
+            {"device", session.context->facts().name},
+            {"driver", session.context->facts().driver},
+            {"width", session.settings.width},
+            {"height", session.settings.height},
+            {"spp", session.settings.samples},
+            {"max_depth", session.settings.max_depth},
+            {"seed", session.settings.seed},
+            {"triangles", count_triangles(session.scene)},
+            {"instances", session.scene.instances.size()}};
+}
+
+nlohmann::json render_json(const Options& options, const Session& session, const AbstractAccel& accel) {
+    const RenderStats& stats = session.renderer->stats();
+    nlohmann::json record = settings_json(options, session);
+    record.update({{"case", "path_tracer"},
+                   {"backend", backend(accel)},
+                   {"path", trace_path(accel)},
+                   {"path_rays", stats.path_rays},
+                   {"shadow_rays", stats.shadow_rays},
+                   {"non_finite", stats.non_finite},
+                   {"cut", stats.cut},
+                   {"build_ms", build_ms(accel)},
+                   {"seconds", stats.seconds},
+                   {"mrays_per_s", mega_rays_per_second(stats)}});
+    return record;
+}
+
+void write_line(const std::filesystem::path& file, const std::string& line, std::ios::openmode mode) {
+    std::ofstream out(file, mode);
+    if (!(out << line << std::flush)) fail("'", file.string(), "': cannot write");
+}
+
+nlohmann::json cross_check_json(const Options& options, const Session& session, const CrossCheck& result) {
+    nlohmann::json record = settings_json(options, session), classes = nlohmann::json::array();
+    for (const auto& [kinds, count] : result.classes)
+        classes.push_back({{"sw", name(kinds.first)}, {"hw", name(kinds.second)}, {"rays", count}});
+    record.update({{"case", "path_tracer.cross_check"},
+                   {"path", result.hardware_path},
+                   {"path_rays", result.path_rays},
+                   {"shadow_rays", result.shadow_rays},
+                   {"disagreeing_rays", result.disagreeing},
+                   {"classified_rays", result.classified},
+                   {"classes", classes},
+                   {"faults_of_ours", result.faults_of_ours},
+                   {"differing_pixels", result.pictures.differing},
+                   {"unexplained_pixels", result.pictures.unexplained},
+                   {"pass", result.passed()}});
+    return record;
+}
+
+std::string cross_check_text(const Options& options, const Session& session, const CrossCheck& result) {
+    std::ostringstream out;
+    out << "cross-check " << options.scene.filename().string() << ", " << session.settings.width << " x "
+        << session.settings.height << ", " << session.settings.samples << " spp, on " << session.context->facts().name
+        << ": HwTlas by " << result.hardware_path << " against SwTlas\n"
+        << "  rays traced by both                  " << result.path_rays + result.shadow_rays << " (" << result.path_rays
+        << " path, " << result.shadow_rays << " shadow)\n"
+        << "  rays with different hits             " << result.disagreeing << '\n';
+    for (const auto& [kinds, count] : result.classes)
+        out << "    SW " << name(kinds.first) << ", HW " << name(kinds.second) << ": " << count << '\n';
+    if (result.classified < result.disagreeing)
+        out << "    not classified: " << result.disagreeing - result.classified << '\n';
+    out << "  faults of ours (SW_LEAK, SW_FALSE, T_ERR)  " << result.faults_of_ours << '\n'
+        << "  differing pixels                     " << result.pictures.differing << " of " << result.pixel_count << '\n'
+        << "  differing pixels without such a ray  " << result.pictures.unexplained << '\n'
+        << (result.passed() ? "PASS\n" : "FAIL\n");
+    return out.str();
+}
+
+}  // namespace
+
+void report_render(const Options& options, const Session& session, const AbstractAccel& accel) {
+    const RenderStats& stats = session.renderer->stats();
+    if (stats.non_finite)
+        std::fprintf(stderr, "path_tracer: %llu contributions were NaN or infinite and are missing from the picture\n",
+                     static_cast<unsigned long long>(stats.non_finite));
+    if (!options.json.empty())
+        write_line(options.json, render_json(options, session, accel).dump() + "\n", std::ios::app);
+    if (options.quiet) return;
+    if (stats.cut)
+        std::fprintf(stderr, "path_tracer: %llu rays met more transparent surfaces than are followed (%u, shadows %u)\n",
+                     static_cast<unsigned long long>(stats.cut), MAX_PASSES, MAX_SHADOW_PASSES);
+    std::printf("%s: %u x %u, %u spp by %s (%s) in %.1f s, %.2f Mrays/s\n", options.output.string().c_str(),
+                session.settings.width, session.settings.height, session.settings.samples, accel.name().c_str(),
+                trace_path(accel).c_str(), stats.seconds, mega_rays_per_second(stats));
+}
+
+void classify_disagreements(const Scene& scene, const std::vector<Disagreement>& disagreements, CrossCheck& result) {
+    if (disagreements.empty()) return;
+    const Oracle oracle = Oracle::of(scene);
+    for (const Disagreement& d : disagreements) {
+        const Verdict verdict = d.is_any ? classify_any(oracle, d.ray, d.second.hit != 0, d.first.hit != 0)
+                                         : classify(oracle, d.ray, d.second, d.first);
+        ++result.classes[{*verdict.software, *verdict.hardware}];
+        result.faults_of_ours += is_fault_of_ours(*verdict.software);
+    }
+    result.classified = disagreements.size();
+}
+
+void report_cross_check(const Options& options, const Session& session, const CrossCheck& result) {
+    const std::string summary = cross_check_text(options, session, result);
+    const std::string json = cross_check_json(options, session, result).dump() + "\n";
+    std::fputs(summary.c_str(), stdout);
+    write_line(options.cross_check, options.cross_check.extension() == ".json" ? json : summary, std::ios::trunc);
+    if (!options.json.empty()) write_line(options.json, json, std::ios::app);
+}
+
+}  // namespace twinray::path_tracer

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// What the program tells about a run.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "engine/verify/classify.h"
+#include "samples/path_tracer/cross_check.h"
+#include "samples/path_tracer/session.h"
+
+namespace twinray::path_tracer {
+
+// One line per render, unless quiet, and warnings about what was dropped. Appends the JSON record that the options
+// ask for.
+void report_render(const Options& options, const Session& session, const AbstractAccel& accel);
+
+// What one cross-check found.
+struct CrossCheck {
+    std::string hardware_path;
+    std::uint64_t path_rays = 0, shadow_rays = 0;
+    std::uint64_t disagreeing = 0;
+    std::uint64_t classified = 0;
+    std::map<std::pair<Class, Class>, std::uint64_t> classes;  // (software, hardware) of the classified rays
+    std::uint64_t faults_of_ours = 0;
+    PictureDifference pictures;
+    std::uint64_t pixel_count = 0;
+
+    bool passed() const { return faults_of_ours == 0 && pictures.unexplained == 0; }
+};
+
+// Judges each disagreeing ray by the float64 referee. `first` of each is hardware, `second` software.
+void classify_disagreements(const Scene& scene, const std::vector<Disagreement>& disagreements, CrossCheck& result);
+
+// Prints to stdout and writes the file: one JSON object if it ends in .json, else the text.
+void report_cross_check(const Options& options, const Session& session, const CrossCheck& result);
+
+}  // namespace twinray::path_tracer

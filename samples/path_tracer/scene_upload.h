@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/core/commands.h"
+#include "engine/core/kernel.h"
+#include "samples/path_tracer/environment.h"
+#include "samples/path_tracer/lights.h"
+
+namespace twinray::path_tracer {
+
+// What a scene needs of the kernels; what is false is compiled out.
+struct SceneFeatures {
+    bool alpha = false;
+    bool textures = false;
+    bool glass = false;
+    bool environment = false;
+    bool local_lights = false;
+};
+SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment);
+
+// A scene in device memory as the kernels read it. Instances keep their index.
+class DeviceScene {
+  public:
+    // environment: null for black. Returns before the upload is done; later submissions see it.
+    DeviceScene(Context& context, const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment);
+
+    Ref<SceneData> data() const { return data_.ref<SceneData>(); }
+    const SceneFeatures& features() const { return features_; }
+
+  private:
+    template <class T>
+    Ref<T> upload(Commands& commands, const std::string& name, const std::vector<T>& values);
+    Ref<SurfaceInstance> upload_instances(Commands& commands, const Scene& scene, const LocalLights& lights);
+    Ref<TexelGrid> upload_images(Commands& commands, const Scene& scene);
+    Environment upload_environment(Commands& commands, const EnvironmentMap& map);
+    SceneData upload_all(Commands& commands, const Scene& scene, const LocalLights& lights, const EnvironmentMap* map);
+
+    Context& context_;
+    SceneFeatures features_;
+    std::vector<Buffer> buffers_;
+    Buffer data_;
+};
+
+}  // namespace twinray::path_tracer

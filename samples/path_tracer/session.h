@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// What the options ask for, made: scene, lights, camera, device and accelerators.
+#pragma once
+
+#include <memory>
+
+#include "samples/path_tracer/options.h"
+#include "samples/path_tracer/renderer.h"
+
+namespace twinray::path_tracer {
+
+struct Session {
+    Scene scene;
+    LocalLights lights;
+    std::unique_ptr<EnvironmentMap> environment;  // null: black
+    bool is_default_sky = false;
+    RenderSettings settings;
+    std::unique_ptr<Context> context;
+    std::unique_ptr<DeviceScene> device_scene;
+    std::unique_ptr<Renderer> renderer;
+
+    // Of a picture, as the options say.
+    float exposure(const Options& options, const Picture& picture) const;
+};
+
+// Throws Error naming the file, the option and the limit.
+Session make_session(const Options& options);
+
+// kind: "hw" or "sw". Holds the scene, built.
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const std::string& kind);
+
+// "hw" where the device has it and the options do not say otherwise.
+std::string chosen_accel(const Options& options, const Context& context);
+
+// "compute", "ray query" or "ray tracing pipeline".
+std::string trace_path(const AbstractAccel& accel);
+// "hw" or "sw".
+std::string backend(const AbstractAccel& accel);
+
+}  // namespace twinray::path_tracer

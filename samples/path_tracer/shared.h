@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// The structs and the mathematics that the path tracer shares with its kernels, for C++.
+#pragma once
+
+#include "engine/core/ray.h"
+
+namespace twinray {
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/transform.h"
+#include "engine/core/bridge_end.h"
+}  // namespace twinray
+
+namespace twinray::path_tracer {
+using glm::clamp;
+using glm::length;
+using glm::normalize;
+using glm::sqrt;
+
+#include "engine/core/bridge_begin.h"
+#include "shaders/path_tracer/scene.h"
+#include "shaders/path_tracer/wave.h"
+#include "shaders/path_tracer/random.h"
+#include "shaders/path_tracer/sampling.h"
+#include "shaders/path_tracer/spawn.h"
+#include "shaders/path_tracer/bsdf.h"
+#include "engine/core/bridge_end.h"
+
+static_assert(sizeof(SurfaceVertex) == 48 && sizeof(SurfaceTriangle) == 16 && sizeof(SurfaceInstance) == 120);
+static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 88);
+static_assert(sizeof(PathState) == 24 && sizeof(ShadowState) == 16 && sizeof(Disagreement) == 104);
+}  // namespace twinray::path_tracer

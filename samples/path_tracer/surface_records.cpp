@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "samples/path_tracer/surface_records.h"
+
+namespace twinray::path_tracer {
+namespace {
+
+uint wrap_word(Wrap wrap) {
+    switch (wrap) {
+        case Wrap::clamp_to_edge: return WRAP_CLAMP;
+        case Wrap::mirrored_repeat: return WRAP_MIRROR;
+        case Wrap::repeat: break;
+    }
+    return WRAP_REPEAT;
+}
+
+TextureSlot slot_of(const Texture& texture, uint flag, uint& flags) {
+    if (texture.image < 0) return {};
+    flags |= flag;
+    return {static_cast<uint>(texture.image), wrap_word(texture.wrap_u) | wrap_word(texture.wrap_v) << 8,
+            texture.uv_row0, texture.uv_row1};
+}
+
+SurfaceMaterial material_record(const Material& material) {
+    SurfaceMaterial record{};
+    uint flags = 0;
+    if (material.alpha_mode == AlphaMode::mask) flags |= MATERIAL_MASKED;
+    if (material.alpha_mode == AlphaMode::blend) flags |= MATERIAL_BLENDED;
+    if (material.double_sided) flags |= MATERIAL_TWO_SIDED;
+    if (material.unlit) flags |= MATERIAL_UNLIT;
+    record.base_texture = slot_of(material.base_color_texture, MATERIAL_BASE_TEXTURE, flags);
+    record.roughness_texture = slot_of(material.metallic_roughness_texture, MATERIAL_ROUGHNESS_TEXTURE, flags);
+    record.emission_texture = slot_of(material.emission_texture, MATERIAL_EMISSION_TEXTURE, flags);
+    record.normal_texture = slot_of(material.normal_texture, MATERIAL_NORMAL_TEXTURE, flags);
+    record.transmission_texture = slot_of(material.transmission_texture, MATERIAL_TRANSMISSION_TEXTURE, flags);
+    record.base_color = material.base_color;
+    record.emission = material.emission;
+    record.flags = flags;
+    record.metallic = material.metallic;
+    record.roughness = material.roughness;
+    record.transmission = material.transmission;
+    record.ior = material.ior;
+    record.normal_scale = material.normal_scale;
+    record.alpha_cutoff = material.alpha_cutoff;
+    return record;
+}
+
+}  // namespace
+
+std::vector<SurfaceVertex> vertex_records(const Mesh& mesh) {
+    std::vector<SurfaceVertex> records(mesh.positions.size());
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        records[i].position = mesh.positions[i];
+        records[i].normal = mesh.normals.empty() ? vec3(0) : mesh.normals[i];
+        records[i].uv = mesh.uvs.empty() ? vec2(0) : mesh.uvs[i];
+        records[i].tangent = mesh.tangents.empty() ? vec4(0) : mesh.tangents[i];
+    }
+    return records;
+}
+
+std::vector<SurfaceTriangle> triangle_records(const Mesh& mesh) {
+    std::vector<SurfaceTriangle> records;
+    records.reserve(mesh.triangles.size());
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) records.push_back({mesh.triangles[i], mesh.material(i)});
+    return records;
+}
+
+std::vector<SurfaceMaterial> material_records(const Scene& scene) {
+    std::vector<SurfaceMaterial> records;
+    for (const Material& material : scene.materials) records.push_back(material_record(material));
+    return records;
+}
+
+SurfaceInstance instance_record(const Transform& transform) {
+    const Rows inverse = inverse_of({transform.rows[0], transform.rows[1], transform.rows[2]});
+    SurfaceInstance record{};
+    for (std::size_t i = 0; i < 3; ++i) record.object_to_world[i] = transform.rows[i];
+    record.world_to_object[0] = inverse.r0;
+    record.world_to_object[1] = inverse.r1;
+    record.world_to_object[2] = inverse.r2;
+    return record;
+}
+
+std::array<const Texture*, 5> textures_of(const Material& material) {
+    return {&material.base_color_texture, &material.metallic_roughness_texture, &material.emission_texture,
+            &material.normal_texture, &material.transmission_texture};
+}
+
+}  // namespace twinray::path_tracer

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/context.h"
+
+#include "engine/core/commands.h"
+#include "engine/core/error.h"
+#include "engine/core/vma.h"
+#include "tests/support/device.h"
+
+namespace twinray {
+namespace {
+
+class ContextTest : public test::VulkanTest {};
+
+TEST(ContextErrors, AnUnknownDeviceIsNamedWithTheReasons) {
+    try {
+        const Context context({.device = "no such device"});
+        FAIL() << "a context was made";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("no usable Vulkan device"), std::string::npos) << error.what();
+    }
+}
+
+TEST(ContextErrors, AnIncompleteAdoptionIsRefused) {
+    EXPECT_THROW(Context(AdoptedDevice{}), Error);
+}
+
+TEST_F(ContextTest, UploadsAndDownloads) {
+    std::vector<uint> values(1000);
+    for (uint i = 0; i < 1000; ++i) values[i] = i * i;
+    const Buffer buffer(context(), {.name = "values", .bytes = 4000});
+    Commands commands(context(), "upload");
+    {
+        const auto pass = commands.pass("upload");
+        commands.upload(buffer, std::span<const uint>(values));
+    }
+    commands.submit();
+    EXPECT_EQ(download<uint>(context(), buffer, 1000), values);
+    EXPECT_EQ(download<uint>(context(), buffer, 10, 400), std::vector<uint>(values.begin() + 100, values.begin() + 110));
+}
+
+TEST_F(ContextTest, CopiesBeyondABufferAreRefused) {
+    const Buffer buffer(context(), {.name = "small", .bytes = 16});
+    Commands commands(context(), "upload");
+    const std::vector<uint> five(5);
+    EXPECT_THROW(commands.upload(buffer, std::span<const uint>(five)), Error);
+    EXPECT_THROW(download<uint>(context(), buffer, 5), Error);
+}
+
+TEST_F(ContextTest, ABufferNeedsAName) { EXPECT_THROW(Buffer(context(), {.name = "", .bytes = 16}), Error); }
+
+TEST_F(ContextTest, MemoryIsFreedAfterTheWorkThatMayUseIt) {
+    context().wait_for_gpu();
+    const std::uint64_t before = allocated_bytes(context().allocator());
+    { const Buffer buffer(context(), {.name = "temporary", .bytes = 1 << 20}); }
+    context().wait_for_gpu();
+    EXPECT_EQ(allocated_bytes(context().allocator()), before);
+}
+
+TEST_F(ContextTest, PassesAreTimedByName) {
+    const Buffer buffer(context(), {.name = "filled", .bytes = 1 << 20});
+    Commands commands(context(), "fill");
+    {
+        const auto pass = commands.pass("first");
+        commands.fill(buffer, 0, 1 << 20, 1);
+    }
+    {
+        const auto pass = commands.pass("second");
+        commands.fill(buffer, 0, 1 << 20, 2);
+    }
+    commands.submit();
+    const std::vector<PassTiming> timings = commands.timings();
+    ASSERT_EQ(timings.size(), 2u);
+    EXPECT_EQ(timings[0].name, "first");
+    EXPECT_EQ(timings[1].name, "second");
+    EXPECT_GT(timings[0].ms, 0);
+    EXPECT_EQ(download<uint>(context(), buffer, 1, 400).front(), 2u);
+}
+
+TEST_F(ContextTest, PassesDoNotNest) {
+    Commands commands(context(), "nested");
+    const auto outer = commands.pass("outer");
+    EXPECT_THROW(static_cast<void>(commands.pass("inner")), Error);
+}
+
+// The fixture must see what the layer says, or "validation is silent" means nothing.
+TEST(Validation, IsHeard) {
+    std::vector<std::string> messages;
+    ContextDesc desc;
+    desc.log = [&](std::string_view message) { messages.emplace_back(message); };
+    const std::unique_ptr<Context> context = test::make_context(desc);
+    if (!context) return;
+    VkBufferCreateInfo wrong{};
+    wrong.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;  // size 0 and no usage are both forbidden
+    const auto create = reinterpret_cast<PFN_vkCreateBuffer>(context->vk().vkGetDeviceProcAddr(context->device(), "vkCreateBuffer"));
+    const auto destroy = reinterpret_cast<PFN_vkDestroyBuffer>(context->vk().vkGetDeviceProcAddr(context->device(), "vkDestroyBuffer"));
+    VkBuffer buffer = VK_NULL_HANDLE;
+    create(context->device(), &wrong, nullptr, &buffer);
+    destroy(context->device(), buffer, nullptr);
+    EXPECT_FALSE(context->validation_messages().empty());
+    EXPECT_FALSE(messages.empty());
+}
+
+}  // namespace
+}  // namespace twinray

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/transform.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/core/error.h"
+#include "swtlas/structures.h"
+
+namespace twinray {
+namespace {
+
+Transform random_transform(std::mt19937& random, float scale) {
+    std::uniform_real_distribution<float> unit(-scale, scale);
+    Transform transform;
+    for (vec4& row : transform.rows) row = vec4(unit(random), unit(random), unit(random), unit(random));
+    return transform;
+}
+
+TEST(Transform, OfAGlmMatrixHasItsRows) {
+    glm::mat4 matrix(1);
+    matrix[3] = glm::vec4(5, 6, 7, 1);  // GLM is column-major: the translation
+    EXPECT_EQ(Transform::of(matrix), Transform::translation({5, 6, 7}));
+    matrix[0][3] = 1;
+    EXPECT_THROW(Transform::of(matrix), Error);
+}
+
+TEST(Transform, ProductsApplyTheRightOneFirst) {
+    const Transform t = Transform::translation({1, 0, 0}) * Transform::scaling({2, 3, 4});
+    EXPECT_EQ(transform_point(t, {1, 1, 1}), vec3(3, 3, 4));
+    EXPECT_EQ(transform_vector(t, {1, 1, 1}), vec3(2, 3, 4));
+}
+
+TEST(Transform, InverseRefusesSingularAndNonFiniteOnes) {
+    EXPECT_THROW(inverse(Transform::scaling({1, 0, 1}), "x"), Error);
+    EXPECT_THROW(inverse(Transform::translation({INFINITY, 0, 0}), "x"), Error);
+}
+
+// The GPU's float32 inverse must be as good as float64 rounded, but for the conditioning of a Newton step.
+TEST(Transform, TheShadersInverseIsAccurateToARoundingForWellConditionedMaps) {
+    std::mt19937 random(4);
+    for (int i = 0; i < 2000; ++i) {
+        const float scale = std::ldexp(1.0f, static_cast<int>(random() % 60) - 30);
+        const Transform m = random_transform(random, scale);
+        const Transform exact = inverse(m, "test");
+        const Rows rows = inverse_of({m.rows[0], m.rows[1], m.rows[2]});
+        const vec4 computed[] = {rows.r0, rows.r1, rows.r2};
+        double norm_m = 0, norm_w = 0;
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) {
+                norm_m = std::max(norm_m, std::abs(double{m.rows[static_cast<std::size_t>(r)][c]}));
+                norm_w = std::max(norm_w, std::abs(double{exact.rows[static_cast<std::size_t>(r)][c]}));
+            }
+        if (norm_m * norm_w > 1000) continue;  // nearly singular: the residual is checked where it matters
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(computed[r][c], exact.rows[static_cast<std::size_t>(r)][c], norm_w * 0x1p-22) << "transform " << i;
+    }
+}
+
+}  // namespace
+}  // namespace twinray
