@@ -19,7 +19,7 @@ function(twinray_add_shaders target)
         set(module ${TWINRAY_SPIRV_DIR}/${name}.spv)
         set(flags --quiet -V --target-env vulkan1.2 -I${PROJECT_SOURCE_DIR})
         add_custom_command(
-            OUTPUT ${header} ${module}
+            OUTPUT ${module} ${header}
             COMMAND ${GLSLANG_VALIDATOR} ${flags} --depfile ${module}.d -o ${module} ${input}
             COMMAND ${GLSLANG_VALIDATOR} ${flags} --vn ${name}_spirv -o ${header} ${input}
             DEPENDS ${input}

@@ -21,7 +21,9 @@ struct Geometry {
     // Throws Error naming the mesh and the limit: an index out of range, more than max_triangles.
     explicit Geometry(const MeshView& mesh);
 
-    static constexpr std::size_t max_triangles = (1u << 24) - 1;  // Vulkan's guaranteed maxPrimitiveCount
+    // Leaf positions have 24 bits in the bound on the tree's depth; 2^24 - 1 is also the least maxInstanceCount that
+    // Vulkan guarantees.
+    static constexpr std::size_t max_triangles = (1u << 24) - 1;
 };
 
 constexpr uint max_custom_index = (1u << 24) - 1;

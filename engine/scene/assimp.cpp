@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <map>
 
-#include <assimp/Importer.hpp>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <assimp/Importer.hpp>
 
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
@@ -26,7 +26,8 @@ class AssimpReader {
         parse();
         check_source_indices();
         triangulate();
-        for (unsigned i = 0; i < source_->mNumMaterials; ++i) scene_.materials.push_back(material_of(*source_->mMaterials[i]));
+        for (unsigned i = 0; i < source_->mNumMaterials; ++i)
+            scene_.materials.push_back(material_of(*source_->mMaterials[i]));
         for (unsigned i = 0; i < source_->mNumMeshes; ++i) read_mesh(i);
         place(*source_->mRootNode, aiMatrix4x4());
         return std::move(scene_);
@@ -105,7 +106,8 @@ class AssimpReader {
             if (mesh == placed_as_.end()) continue;
             const std::string name = node.mName.length ? node.mName.C_Str() : scene_.meshes[mesh->second].name;
             scene_.instances.push_back(
-                {name, mesh->second,
+                {name,
+                 mesh->second,
                  {{vec4(m.a1, m.a2, m.a3, m.a4), vec4(m.b1, m.b2, m.b3, m.b4), vec4(m.c1, m.c2, m.c3, m.c4)}}});
         }
         for (unsigned i = 0; i < node.mNumChildren; ++i) place(*node.mChildren[i], world);
@@ -117,7 +119,8 @@ class AssimpReader {
         if (source.Get(AI_MATKEY_NAME, name) == AI_SUCCESS) material.name = name.C_Str();
         material.metallic = 0;
         aiColor3D color;
-        if (source.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS) material.base_color = {color.r, color.g, color.b, 1};
+        if (source.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS)
+            material.base_color = {color.r, color.g, color.b, 1};
         if (source.Get(AI_MATKEY_COLOR_EMISSIVE, color) == AI_SUCCESS) material.emission = {color.r, color.g, color.b};
         float opacity = 1;
         if (source.Get(AI_MATKEY_OPACITY, opacity) == AI_SUCCESS && opacity < 1) {

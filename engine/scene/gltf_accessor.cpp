@@ -72,13 +72,16 @@ void apply_sparse(const GltfFile& file, const tinygltf::Accessor& accessor, std:
     if (!is_unsigned) file.fail(object, " sparse: indices have component type ", sparse.indices.componentType);
     if (sparse.count < 0 || std::size_t(sparse.count) > accessor.count)
         file.fail(object, " sparse: count ", sparse.count, " is not within 0 and the accessor's ", accessor.count);
-    if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) file.fail(object, " sparse: negative byteOffset");
+    if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0)
+        file.fail(object, " sparse: negative byteOffset");
 
     const std::size_t count = std::size_t(sparse.count);
     Bytes indices(count * index_size), values(count * element_size);
-    copy_elements(file, {sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset), index_size, index_size, count},
+    copy_elements(file,
+                  {sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset), index_size, index_size, count},
                   indices.data(), object + " sparse indices");
-    copy_elements(file, {sparse.values.bufferView, std::size_t(sparse.values.byteOffset), element_size, element_size, count},
+    copy_elements(file,
+                  {sparse.values.bufferView, std::size_t(sparse.values.byteOffset), element_size, element_size, count},
                   values.data(), object + " sparse values");
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t index = unsigned_at(indices, i, index_size);
@@ -107,8 +110,8 @@ Elements gather(const GltfFile& file, int index, int components, const std::stri
             file.fail(object, ": accessor ", index, " has no bufferView but count ", accessor.count, ", over 2^24");
         elements.bytes.resize(accessor.count * size);
     } else {
-        const Layout layout{accessor.bufferView, accessor.byteOffset, stride_of(file, accessor.bufferView, size, object),
-                            size, accessor.count};
+        const Layout layout{accessor.bufferView, accessor.byteOffset,
+                            stride_of(file, accessor.bufferView, size, object), size, accessor.count};
         if (accessor.count > view_bytes(file, accessor.bufferView, object).size())
             file.fail(object, ": accessor ", index, " has count ", accessor.count, ", more than bufferView ",
                       accessor.bufferView, " has bytes");
@@ -145,7 +148,8 @@ std::vector<float> read_floats(const GltfFile& file, int accessor, int component
         case TINYGLTF_COMPONENT_TYPE_SHORT: return converted<std::int16_t>(elements);
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return converted<std::uint16_t>(elements);
         default:
-            file.fail(object, ": component type ", elements.component_type, " is neither float nor an integer of 8 or 16 bits");
+            file.fail(object, ": component type ", elements.component_type,
+                      " is neither float nor an integer of 8 or 16 bits");
     }
 }
 

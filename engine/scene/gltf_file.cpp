@@ -31,9 +31,9 @@ Bytes read_buffer(const GltfFile& file, const json& buffer, std::size_t index, B
     }
     if (bytes.size() < *length)
         file.fail(name, ": byteLength is ", *length, ", but ",
-                  uri.empty()             ? "the file's binary chunk"
+                  uri.empty()                ? "the file's binary chunk"
                   : uri.starts_with("data:") ? "its data URI"
-                                          : "'" + uri + "'",
+                                             : "'" + uri + "'",
                   " has only ", bytes.size(), " bytes");
     bytes.resize(*length);  // a file may be longer, a chunk is padded
     return bytes;
@@ -111,11 +111,12 @@ std::span<const std::uint8_t> view_bytes(const GltfFile& file, int view, const s
         file.fail(object, ": bufferView ", view, " does not exist; the file has ", views.size());
     const tinygltf::BufferView& v = views[std::size_t(view)];
     if (v.buffer < 0 || std::size_t(v.buffer) >= file.model.buffers.size())
-        file.fail(object, ": bufferView ", view, " names buffer ", v.buffer, "; the file has ", file.model.buffers.size());
+        file.fail(object, ": bufferView ", view, " names buffer ", v.buffer, "; the file has ",
+                  file.model.buffers.size());
     const auto& data = file.model.buffers[std::size_t(v.buffer)].data;
     if (v.byteOffset > data.size() || v.byteLength > data.size() - v.byteOffset)
-        file.fail(object, ": bufferView ", view, " takes ", v.byteLength, " bytes from byte ", v.byteOffset, ", but buffer ",
-                  v.buffer, " has only ", data.size(), " bytes");
+        file.fail(object, ": bufferView ", view, " takes ", v.byteLength, " bytes from byte ", v.byteOffset,
+                  ", but buffer ", v.buffer, " has only ", data.size(), " bytes");
     return {data.data() + v.byteOffset, v.byteLength};
 }
 

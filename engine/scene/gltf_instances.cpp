@@ -24,7 +24,8 @@ class Placements {
     bool is_instanced() const { return count_.has_value(); }
 
     glm::dmat4 matrix(std::size_t i) const {
-        return matrix_of(file_, entry(translations_, i), entry(rotations_, i), entry(scales_, i), text(name_, " instance ", i));
+        return matrix_of(file_, entry(translations_, i), entry(rotations_, i), entry(scales_, i),
+                         text(name_, " instance ", i));
     }
 
   private:
@@ -34,7 +35,8 @@ class Placements {
         if (accessor < 0) return {};
         auto values = read_vectors<N>(file_, accessor, text(name_, " EXT_mesh_gpu_instancing ", name));
         if (count_ && *count_ != values.size())
-            file_.fail(name_, ": EXT_mesh_gpu_instancing ", name, " has ", values.size(), " elements, others have ", *count_);
+            file_.fail(name_, ": EXT_mesh_gpu_instancing ", name, " has ", values.size(), " elements, others have ",
+                       *count_);
         count_ = values.size();
         return values;
     }
@@ -71,8 +73,9 @@ void add_instances(GltfFile& file, const GltfNode& node, std::vector<Instance>& 
         else
             instances.push_back(std::move(instance));
     }
-    if (singular) file.warn(text(node.name, ": skipped ", singular, " of ", placements.count(),
-                                 " placements, whose transform flattens the mesh (determinant 0)"));
+    if (singular)
+        file.warn(text(node.name, ": skipped ", singular, " of ", placements.count(),
+                       " placements, whose transform flattens the mesh (determinant 0)"));
 }
 
 }  // namespace

@@ -35,7 +35,8 @@ Container split_glb(const GltfFile& file, const Bytes& bytes) {
         const std::size_t size = word_at(bytes, offset), type = word_at(bytes, offset + 4);
         offset += 8;
         if (size > length - offset)
-            file.fail("the GLB chunk at byte ", offset - 8, " has ", size, " bytes, but only ", length - offset, " follow");
+            file.fail("the GLB chunk at byte ", offset - 8, " has ", size, " bytes, but only ", length - offset,
+                      " follow");
         const auto first = bytes.begin() + static_cast<std::ptrdiff_t>(offset);
         if (type == CHUNK_JSON && container.json.empty())
             container.json = {reinterpret_cast<const char*>(bytes.data()) + offset, size};

@@ -68,7 +68,8 @@ class MeshReader {
                 add(source_.primitives[i], text(name_, " primitive ", i));
             else
                 ++skipped;
-        if (skipped) file_.warn(text(name_, ": skipped ", skipped, " primitives of points, lines or without positions"));
+        if (skipped)
+            file_.warn(text(name_, ": skipped ", skipped, " primitives of points, lines or without positions"));
         return std::move(mesh_);
     }
 
@@ -87,8 +88,8 @@ class MeshReader {
     };
 
     template <int N>
-    std::vector<glm::vec<N, float>> read_attribute(const Primitive& primitive, const char* name, std::size_t vertex_count,
-                                                   const std::string& object) const {
+    std::vector<glm::vec<N, float>> read_attribute(const Primitive& primitive, const char* name,
+                                                   std::size_t vertex_count, const std::string& object) const {
         const int accessor = attribute_of(primitive, name);
         if (accessor < 0) return std::vector<glm::vec<N, float>>(vertex_count, glm::vec<N, float>(0));
         auto values = read_vectors<N>(file_, accessor, text(object, " ", name));

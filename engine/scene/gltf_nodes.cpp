@@ -19,11 +19,13 @@ std::vector<int> find_parents(const GltfFile& file) {
     for (std::size_t i = 0; i < nodes.size(); ++i)
         for (const int child : nodes[i].children) {
             if (child < 0 || std::size_t(child) >= nodes.size())
-                file.fail(node_name(file, i), ": child ", child, " does not exist; the file has ", nodes.size(), " nodes");
+                file.fail(node_name(file, i), ": child ", child, " does not exist; the file has ", nodes.size(),
+                          " nodes");
             int& parent = parents[std::size_t(child)];
             if (parent >= 0)
                 file.fail(node_name(file, std::size_t(child)), ": is a child of both ",
-                          node_name(file, std::size_t(parent)), " and ", node_name(file, i), "; nodes must form a tree");
+                          node_name(file, std::size_t(parent)), " and ", node_name(file, i),
+                          "; nodes must form a tree");
             parent = static_cast<int>(i);
         }
     return parents;
@@ -86,8 +88,7 @@ glm::dmat4 local_matrix(const GltfFile& file, std::size_t index, const std::stri
 }
 
 void check_length(const GltfFile& file, const std::vector<double>& list, std::size_t length, const std::string& what) {
-    if (!list.empty() && list.size() != length)
-        file.fail(what, " has ", list.size(), " numbers instead of ", length);
+    if (!list.empty() && list.size() != length) file.fail(what, " has ", list.size(), " numbers instead of ", length);
 }
 
 glm::dmat3 rotation_matrix(const GltfFile& file, const std::vector<double>& q, const std::string& object) {
@@ -121,8 +122,9 @@ Transform rounded_transform(const GltfFile& file, const glm::dmat4& matrix, cons
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 4; ++column) {
             const float entry = static_cast<float>(matrix[column][row]);
-            if (!std::isfinite(entry)) file.fail(object, ": its transform to the world has the entry ", matrix[column][row],
-                                                 ", which is not a finite float");
+            if (!std::isfinite(entry))
+                file.fail(object, ": its transform to the world has the entry ", matrix[column][row],
+                          ", which is not a finite float");
             transform.rows[std::size_t(row)][column] = entry;
         }
     return transform;

@@ -76,7 +76,8 @@ std::int32_t GltfTextures::image_of(const tinygltf::Texture& texture, const std:
         try {
             images_.push_back(decode(std::size_t(source)));
         } catch (const Error& e) {
-            const std::string name = gltf_name("image", std::size_t(source), file_.model.images[std::size_t(source)].name);
+            const std::string name =
+                gltf_name("image", std::size_t(source), file_.model.images[std::size_t(source)].name);
             file_.warn(text(e.what(), "; ", name, " is shown as a checkerboard"));
             images_.push_back(checkerboard_image(name));
         }

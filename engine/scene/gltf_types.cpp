@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Members of a wrong type, which tinygltf passes over in silence and a scene would then lack.
-#include <map>
+#include <set>
 #include <string_view>
 
 #include "engine/scene/gltf_json.h"
@@ -40,32 +40,36 @@ const char* description(Kind kind) {
     return "";
 }
 
-// glTF uses these keys with one meaning wherever they stand, but for two.
+// glTF uses these keys with one meaning wherever they stand.
+std::optional<Kind> kind_of(const std::string& key) {
+    struct Keys {
+        Kind kind;
+        std::set<std::string_view> names;
+    };
+    static const Keys all[] = {
+        {Kind::index, {"buffer",  "bufferView", "byteLength", "byteOffset", "byteStride", "camera",    "componentType",
+                       "count",   "index",      "material",   "mesh",       "mode",       "NORMAL",    "POSITION",
+                       "sampler", "scene",      "source",     "TANGENT",    "texCoord",   "TEXCOORD_0"}},
+        {Kind::number, {"metallicFactor", "roughnessFactor"}},
+        {Kind::indices, {"children"}},
+        {Kind::numbers, {"baseColorFactor", "emissiveFactor", "matrix", "rotation", "translation"}},
+        {Kind::object,
+         {"attributes", "baseColorTexture", "emissiveTexture", "extensions", "metallicRoughnessTexture",
+          "normalTexture", "orthographic", "pbrMetallicRoughness", "perspective", "sparse"}},
+        {Kind::objects,
+         {"accessors", "bufferViews", "cameras", "materials", "meshes", "primitives", "samplers", "scenes",
+          "textures"}}};
+    for (const auto& [kind, names] : all)
+        if (names.contains(key)) return kind;
+    return std::nullopt;
+}
+
 std::optional<Kind> kind_of(const std::string& key, const json& parent, const std::string& parent_path) {
-    static const std::map<std::string_view, Kind> kinds = {
-        {"accessors", Kind::objects},      {"attributes", Kind::object},     {"baseColorFactor", Kind::numbers},
-        {"baseColorTexture", Kind::object}, {"buffer", Kind::index},         {"bufferView", Kind::index},
-        {"bufferViews", Kind::objects},    {"byteLength", Kind::index},      {"byteOffset", Kind::index},
-        {"byteStride", Kind::index},       {"camera", Kind::index},          {"cameras", Kind::objects},
-        {"children", Kind::indices},       {"componentType", Kind::index},   {"count", Kind::index},
-        {"emissiveFactor", Kind::numbers}, {"emissiveTexture", Kind::object}, {"extensions", Kind::object},
-        {"index", Kind::index},            {"material", Kind::index},        {"materials", Kind::objects},
-        {"matrix", Kind::numbers},         {"mesh", Kind::index},            {"meshes", Kind::objects},
-        {"metallicFactor", Kind::number},  {"metallicRoughnessTexture", Kind::object},
-        {"mode", Kind::index},             {"normalTexture", Kind::object},  {"NORMAL", Kind::index},
-        {"orthographic", Kind::object},    {"pbrMetallicRoughness", Kind::object},
-        {"perspective", Kind::object},     {"POSITION", Kind::index},        {"primitives", Kind::objects},
-        {"rotation", Kind::numbers},       {"roughnessFactor", Kind::number}, {"sampler", Kind::index},
-        {"samplers", Kind::objects},       {"scene", Kind::index},           {"scenes", Kind::objects},
-        {"source", Kind::index},           {"sparse", Kind::object},         {"TANGENT", Kind::index},
-        {"texCoord", Kind::index},         {"TEXCOORD_0", Kind::index},      {"textures", Kind::objects},
-        {"translation", Kind::numbers}};
     const bool is_root = parent.contains("asset");
     const bool is_texture = parent_path.ends_with("Texture");
-    if (key == "nodes") return is_root ? Kind::objects : Kind::indices;     // of the file or of a scene
+    if (key == "nodes") return is_root ? Kind::objects : Kind::indices;    // of the file or of a scene
     if (key == "scale") return is_texture ? Kind::number : Kind::numbers;  // of a normal map or of a node
-    const auto found = kinds.find(key);
-    return found == kinds.end() ? std::nullopt : std::optional(found->second);
+    return kind_of(key);
 }
 
 void check(const GltfFile& file, const json& value, const std::string& path) {

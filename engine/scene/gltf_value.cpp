@@ -33,7 +33,8 @@ std::vector<double> numbers_of(const tinygltf::Value& object, const std::string&
     const tinygltf::Value* member = find_member(object, key);
     if (!member || !member->IsArray()) return numbers;
     for (int i = 0; i < static_cast<int>(member->ArrayLen()); ++i)
-        if (const tinygltf::Value& entry = member->Get(i); entry.IsNumber()) numbers.push_back(entry.GetNumberAsDouble());
+        if (const tinygltf::Value& entry = member->Get(i); entry.IsNumber())
+            numbers.push_back(entry.GetNumberAsDouble());
     return numbers;
 }
 

@@ -10,7 +10,7 @@
 namespace twinray {
 namespace {
 
-Scene import(const std::filesystem::path& file) {
+Scene read_by_suffix(const std::filesystem::path& file) {
     const std::string suffix = lower_suffix(file);
     if (suffix == ".gltf" || suffix == ".glb") return import_gltf(file);
     const std::string inner = suffix == ".gz" ? lower_suffix(file.stem()) : suffix;
@@ -45,8 +45,9 @@ void complete(Scene& scene, const std::filesystem::path& file) {
 Bounds transformed(const Bounds& box, const Transform& transform) {
     Bounds result;
     for (int corner = 0; corner < 8; ++corner)
-        result.include(transform_point(transform, vec3(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                                                       corner & 4 ? box.hi.z : box.lo.z)));
+        result.include(
+            transform_point(transform, vec3(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                                            corner & 4 ? box.hi.z : box.lo.z)));
     return result;
 }
 
@@ -54,7 +55,7 @@ Bounds transformed(const Bounds& box, const Transform& transform) {
 
 Scene load_scene(const std::filesystem::path& file) {
     try {
-        Scene scene = import(file);
+        Scene scene = read_by_suffix(file);
         complete(scene, file);
         return scene;
     } catch (const Error&) {

@@ -35,11 +35,11 @@ void append(Mesh& mesh, const Mesh& part) {
 Mesh make_icosahedron() {
     const float a = 0.525731112f, b = 0.850650808f;  // 1 and the golden ratio, scaled to the unit sphere
     Mesh mesh;
-    mesh.positions = {{-a, b, 0}, {a, b, 0},  {-a, -b, 0}, {a, -b, 0}, {0, -a, b},  {0, a, b},
+    mesh.positions = {{-a, b, 0},  {a, b, 0},  {-a, -b, 0}, {a, -b, 0}, {0, -a, b},  {0, a, b},
                       {0, -a, -b}, {0, a, -b}, {b, 0, -a},  {b, 0, a},  {-b, 0, -a}, {-b, 0, a}};
-    mesh.triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},   {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                      {3, 8, 9},   {4, 9, 5},  {2, 4, 11},  {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+    mesh.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
     return mesh;
 }
 
@@ -102,7 +102,8 @@ Mesh make_grid(uint nx, uint ny, float height, uint seed) {
     mesh.name = "grid";
     for (uint j = 0; j <= ny; ++j)
         for (uint i = 0; i <= nx; ++i) {
-            const vec2 uv(static_cast<float>(i) / static_cast<float>(nx), static_cast<float>(j) / static_cast<float>(ny));
+            const vec2 uv(static_cast<float>(i) / static_cast<float>(nx),
+                          static_cast<float>(j) / static_cast<float>(ny));
             mesh.positions.emplace_back(uv.x, height * uniform(), uv.y);
             mesh.uvs.push_back(uv);
         }
@@ -116,7 +117,8 @@ Mesh make_grid(uint nx, uint ny, float height, uint seed) {
 }
 
 Mesh make_soup(uint triangle_count, uint seed, float size) {
-    if (triangle_count > UINT32_MAX / 3) fail("soup: ", triangle_count, " triangles; their vertices must fit into 32 bits");
+    if (triangle_count > UINT32_MAX / 3)
+        fail("soup: ", triangle_count, " triangles; their vertices must fit into 32 bits");
     Uniform uniform(seed);
     Mesh mesh;
     mesh.name = "soup";

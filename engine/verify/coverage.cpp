@@ -12,9 +12,9 @@ namespace twinray {
 namespace {
 
 using glm::dvec2;
-using Corner = std::array<float, 3>;
+using Corner = std::array<float, 3>;  // ordered by comparing numbers, so that -0 equals 0
 
-Corner key_of(const vec3& p) { return {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f}; }  // + 0 turns -0 into 0
+Corner key_of(const vec3& p) { return {p.x, p.y, p.z}; }
 
 double cross2(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
 
@@ -56,7 +56,7 @@ std::vector<dvec2> circle(std::size_t count, double radius) {
     return points;
 }
 
-// Triangles near the ray, joined along the edges near the ray.
+// Triangles joined along the edges near the ray.
 class Patch {
   public:
     explicit Patch(std::span<const PatchTriangle> patch);
@@ -73,7 +73,7 @@ class Patch {
         std::size_t triangle;
         int orientation;  // -1: the two list their common edge in the same direction
     };
-    void keep_near(std::span<const PatchTriangle> patch);
+    void keep_distinct(std::span<const PatchTriangle> patch);
     void join_edges();
     bool is_near_ray(const dvec2& a, const dvec2& b) const { return distance(a, b, dvec2(0)) <= radius_; }
     double clearance(const dvec2& point) const;
@@ -88,7 +88,7 @@ class Patch {
 
 Patch::Patch(std::span<const PatchTriangle> patch) {
     for (const PatchTriangle& triangle : patch) radius_ = std::max(radius_, triangle.footprint.radius);
-    keep_near(patch);
+    keep_distinct(patch);
     neighbours_.resize(triangles_.size());
     is_open_.resize(triangles_.size());
     side_.resize(triangles_.size());
@@ -96,10 +96,9 @@ Patch::Patch(std::span<const PatchTriangle> patch) {
 }
 
 // Copies of a triangle cover the same rays, and would make its edges look non-manifold: one is enough.
-void Patch::keep_near(std::span<const PatchTriangle> patch) {
+void Patch::keep_distinct(std::span<const PatchTriangle> patch) {
     std::set<std::array<Corner, 3>> seen;
     for (const PatchTriangle& triangle : patch) {
-        if (triangle.footprint.margin < -radius_) continue;
         std::array<Corner, 3> key = {key_of(triangle.corners[0]), key_of(triangle.corners[1]),
                                      key_of(triangle.corners[2])};
         std::sort(key.begin(), key.end());

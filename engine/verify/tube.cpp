@@ -123,9 +123,8 @@ void Tube::set_depth_bounds(Footprint& footprint, const Depths& depths) const {
     const double area = std::abs(plane.determinant);
     const double least_area = std::max(0.0, area - 3 * edge_error);
     const double weight_error = edge_error / least_area;
-    const double slope = glm::length(plane.gradient) * area / least_area * footprint.radius;
     const double z = depths.z[static_cast<std::size_t>(nearest - corners.begin())] - glm::dot(plane.gradient, *nearest);
-    const double spread = footprint.radius + slope + weight_error * (depths.high - depths.low);
+    const double spread = footprint.radius + weight_error * (depths.high - depths.low);
     double low = depths.low - footprint.radius;
     double high = depths.high + footprint.radius;
     footprint.t = (depths.low * 0.5 + depths.high * 0.5) / length_;

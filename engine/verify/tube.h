@@ -30,8 +30,8 @@ struct Footprint {
 // 5e for Vulkan's 2.5 ulp division and 2e for product and sum, in each of two axes: together less than
 // 16e (|v - o'| + |W||o| + |w| + |v - o'| |W||d| / |d'|). The hardware inverts the matrix itself, which scales the
 // error of W by the condition number of the matrix. An identity placement transforms without error.
-// t follows pbrt-v4 ("Bounding Intersection Point Error", 6.8.5): a displacement of the corners moves t along the
-// triangle's slope, and rounded edge functions shift the weights of thin triangles; both end at the corners' depths.
+// t follows pbrt-v4 ("Bounding Intersection Point Error", 6.8.5): displaced corners and rounded edge functions shift
+// the weights, the more the thinner the triangle, and t with them, but never beyond the corners' depths.
 class Tube {
   public:
     Tube(const Ray& ray, const Placement64& placement, Accelerator accelerator);

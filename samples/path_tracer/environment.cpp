@@ -2,9 +2,9 @@
 #include "samples/path_tracer/environment.h"
 
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <utility>
-
-#include "samples/path_tracer/alias_table.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -21,22 +21,34 @@ vec3 default_radiance(vec3 direction) {
     return dot(direction, sun_direction) > sun_cosine ? sky + vec3(110, 104, 92) : sky;
 }
 
+// Cumulated from 0 to 1; all 0 but the last where the weights have no sum.
+void append_sums(std::vector<float>& sums, std::span<const double> weights) {
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    double sum = 0;
+    sums.push_back(0);
+    for (const double weight : weights) {
+        sum += weight;
+        sums.push_back(total > 0 ? static_cast<float>(sum / total) : 0);
+    }
+    sums.back() = 1;
+}
+
 }  // namespace
 
 EnvironmentMap::EnvironmentMap(HdrImage map) : image(std::move(map)) {
-    std::vector<double> weights;
-    weights.reserve(image.rgb.size());
-    double total = 0;
+    std::vector<double> rows, columns(image.width);
     for (uint y = 0; y < image.height; ++y) {
+        for (uint x = 0; x < image.width; ++x)
+            columns[x] = double{luminance(image.rgb[std::size_t{y} * image.width + x])};
+        append_sums(column_sums, columns);
         const double height = std::cos(edge_angle(y, image.height)) - std::cos(edge_angle(y + 1, image.height));
-        const double solid_angle = 2 * double{PI} / image.width * height;
-        for (uint x = 0; x < image.width; ++x) {
-            weights.push_back(double{luminance(image.rgb[std::size_t{y} * image.width + x])} * solid_angle);
-            total += weights.back();
-        }
+        const double pixel_solid_angle = 2 * double{PI} / image.width * height;
+        rows.push_back(std::accumulate(columns.begin(), columns.end(), 0.0) * pixel_solid_angle);
     }
-    table = make_alias_table(weights);
-    if (!table.empty()) density_per_luminance = static_cast<float>(1 / total);
+    const double total = std::accumulate(rows.begin(), rows.end(), 0.0);
+    if (!(total > 0)) return;
+    append_sums(row_sums, rows);
+    density_per_luminance = static_cast<float>(1 / total);
 }
 
 HdrImage constant_sky(vec3 radiance) { return {2, 2, std::vector<vec3>(4, radiance)}; }

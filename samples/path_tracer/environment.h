@@ -12,10 +12,12 @@ namespace twinray::path_tracer {
 // Light from infinitely far away, as a latitude-longitude map, ready to be sampled.
 struct EnvironmentMap {
     HdrImage image;
-    std::vector<AliasEntry> table;     // over the pixels, by luminance times solid angle; empty for a black map
-    float density_per_luminance = 0;   // see Environment in shaders/path_tracer/scene.h
+    // See Environment in shaders/path_tracer/scene.h; no sums for a black map.
+    std::vector<float> row_sums, column_sums;
+    float density_per_luminance = 0;
 
     explicit EnvironmentMap(HdrImage map);
+    bool is_black() const { return row_sums.empty(); }
 };
 
 // The same radiance from everywhere.

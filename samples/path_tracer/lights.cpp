@@ -111,4 +111,9 @@ LocalLights collect_lights(const Scene& scene) {
     return std::move(collector.lights);
 }
 
+bool has_lamps(const Scene& scene) {
+    const auto is_lamp = [](const Material& material) { return largest(material.emission) > 1; };
+    return !scene.lights.empty() || std::any_of(scene.materials.begin(), scene.materials.end(), is_lamp);
+}
+
 }  // namespace twinray::path_tracer

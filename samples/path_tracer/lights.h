@@ -21,4 +21,8 @@ struct LocalLights {
 
 LocalLights collect_lights(const Scene& scene);
 
+// Whether the scene brings light to see by: a punctual light, or a surface brighter than the radiance 1 that glTF
+// allows without KHR_materials_emissive_strength, which is the glow of a label or a screen rather than a lamp.
+bool has_lamps(const Scene& scene);
+
 }  // namespace twinray::path_tracer

@@ -43,7 +43,7 @@ void add_picture(CLI::App& app, Options& options) {
         ->check(CLI::Range(-1, 1 << 20))
         ->capture_default_str();
     app.add_option("--exposure", options.exposure,
-                   "stops, for .png; default: automatic for scenes with lights of their own, else 0");
+                   "stops, for .png; default: 0 under the default sky, else automatic");
 }
 
 void add_machine(CLI::App& app, Options& options) {

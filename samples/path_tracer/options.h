@@ -19,7 +19,7 @@ struct Options {
     std::uint32_t max_depth = 8;
     std::uint32_t seed = 1;
     int camera = 0;                 // -1: frame the scene
-    std::optional<float> exposure;  // stops; none: automatic for lights of the scene, else 0
+    std::optional<float> exposure;  // stops; none: 0 under the default sky, else automatic
     bool validation = false;
     bool quiet = false;
 };

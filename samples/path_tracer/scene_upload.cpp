@@ -29,7 +29,7 @@ SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const E
         features.textures |= has_texture(material);
         features.glass |= material.transmission > 0;
     }
-    features.environment = environment && !environment->table.empty();
+    features.environment = environment && !environment->is_black();
     features.local_lights = !lights.empty();
     return features;
 }
@@ -102,8 +102,13 @@ Environment DeviceScene::upload_environment(Commands& commands, const Environmen
     std::vector<Radiance> pixels;
     pixels.reserve(map.image.rgb.size());
     for (const vec3& rgb : map.image.rgb) pixels.push_back({rgb});
-    return {upload(commands, "environment", pixels), upload(commands, "environment table", map.table), map.image.width,
-            map.image.height, map.density_per_luminance, features_.local_lights ? 0.5f : 1.0f};
+    return {upload(commands, "environment", pixels),
+            upload(commands, "environment row sums", map.row_sums),
+            upload(commands, "environment column sums", map.column_sums),
+            map.image.width,
+            map.image.height,
+            map.density_per_luminance,
+            features_.local_lights ? 0.5f : 1.0f};
 }
 
 }  // namespace twinray::path_tracer

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/session.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -19,7 +20,11 @@ constexpr uint default_height = 480;
 
 Scene load(const Options& options) {
     const std::string builtin = "builtin:", name = options.scene.string();
-    if (name.rfind(builtin, 0) != 0) return load_scene(options.scene);
+    if (name.rfind(builtin, 0) != 0) {
+        Scene scene = load_scene(options.scene);
+        std::stable_sort(scene.instances.begin(), scene.instances.end(), [](const Instance& a, const Instance& b) { return a.mesh < b.mesh; });
+        return scene;
+    }
     if (name == builtin + "cornell-box") return cornell_box_scene();
     fail("'", name, "': unknown; there is builtin:cornell-box");
 }
@@ -45,7 +50,7 @@ RenderSettings make_settings(const Options& options, const Scene& scene) {
     settings.height = options.height ? options.height : options.width ? scaled(options.width, 1 / aspect) : default_height;
     settings.width = options.width ? options.width : scaled(settings.height, aspect);
     aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    settings.camera = camera_rays(camera ? *camera : frame_bounds(bounds_of(scene), aspect), aspect);
+    settings.camera = camera_rays(camera ? *camera : frame_scene(scene, aspect), aspect);
     return settings;
 }
 
@@ -64,7 +69,7 @@ Session make_session(const Options& options) {
             std::fprintf(stderr, "path_tracer: %s\n", warning.c_str());
     session.settings = make_settings(options, session.scene);
     session.lights = collect_lights(session.scene);
-    session.is_default_sky = options.environment.empty() && session.lights.empty();
+    session.is_default_sky = options.environment.empty() && !has_lamps(session.scene);
     if (session.is_default_sky) session.environment = std::make_unique<EnvironmentMap>(default_sky());
     if (!options.environment.empty())
         session.environment = std::make_unique<EnvironmentMap>(load_hdr_image(options.environment));

@@ -2,6 +2,8 @@
 // The structs and the mathematics that the path tracer shares with its kernels, for C++.
 #pragma once
 
+#include <glm/integer.hpp>
+
 #include "engine/core/ray.h"
 
 namespace twinray {
@@ -11,6 +13,7 @@ namespace twinray {
 }  // namespace twinray
 
 namespace twinray::path_tracer {
+using glm::bitfieldReverse;
 using glm::clamp;
 using glm::length;
 using glm::normalize;
@@ -26,6 +29,6 @@ using glm::sqrt;
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(SurfaceVertex) == 48 && sizeof(SurfaceTriangle) == 16 && sizeof(SurfaceInstance) == 120);
-static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 88);
+static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 96);
 static_assert(sizeof(PathState) == 24 && sizeof(ShadowState) == 16 && sizeof(Disagreement) == 104);
 }  // namespace twinray::path_tracer

@@ -25,8 +25,8 @@ void main()
     if (i >= args.count) return;
     uvec2 pixel = pixel_at(args.first + i);
     uint index = pixel.y * args.width + pixel.x;
-    uvec4 words = random_words(index, args.sample_index, 0u, args.seed);
-    vec2 inside = (vec2(pixel) + unit_floats(words.x, words.y)) / vec2(args.width, args.height);
+    vec2 jitter = unit_floats(sample_pair(index, args.sample_index, 0u, args.seed));
+    vec2 inside = (vec2(pixel) + jitter) / vec2(args.width, args.height);
     vec3 across = args.camera.right * (2.0 * inside.x - 1.0) + args.camera.up * (1.0 - 2.0 * inside.y);
     bool is_orthographic = args.camera.orthographic != 0u;
     Ray ray;

@@ -13,13 +13,29 @@ struct LightSample
     bool has_target;
 };
 
-// A column of an alias table of `count` columns; uses the whole word, since count may need many of its bits.
-uint sample_alias(REF(AliasEntry) table, uint count, uint word, uint coin)
+// A column of an alias table of `count` columns. The fraction of word * count decides between its two entries.
+uint sample_alias(REF(AliasEntry) table, uint count, uint word)
 {
-    uint column, unused;
-    umulExtended(word, count, column, unused);
+    uint column, fraction;
+    umulExtended(word, count, column, fraction);
     AliasEntry entry = AT(table, column);
-    return coin < entry.keep ? column : entry.other;
+    return fraction < entry.keep ? column : entry.other;
+}
+
+// The cell of a table of cumulated probabilities that u in [0, 1) falls into, plus how far into it.
+float sample_sums(Floats sums, uint first, uint count, float u)
+{
+    uint low = 0u;
+    uint high = count;
+    while (high - low > 1u)
+    {
+        uint middle = (low + high) / 2u;
+        if (AT(sums, first + middle) <= u) low = middle;
+        else high = middle;
+    }
+    float begin = AT(sums, first + low);
+    float inside = (u - begin) / (AT(sums, first + low + 1u) - begin);
+    return float(low) + clamp(inside, 0.0, 0.99999994);
 }
 
 vec3 environment_pixel(Environment env, int x, int y)
@@ -53,23 +69,22 @@ float environment_pdf(Environment env, vec2 at)
     return env.chance * env.density_per_luminance * luminance(environment_pixel(env, int(at.x), int(at.y)));
 }
 
-LightSample sample_environment(Environment env, uvec4 words)
+LightSample sample_environment(Environment env, vec2 u)
 {
-    uint pixel = sample_alias(env.table, env.width * env.height, words.x, words.y);
-    vec2 inside = unit_floats(words.z, words.w);
-    uint row = pixel / env.width;
-    float x = float(pixel - row * env.width) + inside.x;
+    float y = sample_sums(env.row_sums, 0u, env.height, u.y);
+    uint row = min(uint(y), env.height - 1u);
+    float x = sample_sums(env.column_sums, row * (env.width + 1u), env.width, u.x);
+    uint column = min(uint(x), env.width - 1u);
     // Uniform by solid angle between the cosines of the row's edges.
     float top = unit_circle(float(row) / float(2u * env.height)).x;
     float bottom = unit_circle(float(row + 1u) / float(2u * env.height)).x;
-    float cosine = mix(top, bottom, inside.y);
+    float cosine = mix(top, bottom, y - float(row));
     float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
     vec2 circle = unit_circle(x / float(env.width) - 0.5);
     LightSample light;
     light.direction = vec3(circle.x * sine, cosine, circle.y * sine);
-    // Placed inside the row linearly: atan of the direction would cost more and differ by less than rounding matters.
     light.radiance = environment_radiance(env, vec2(x, environment_position(env, light.direction).y));
-    light.pdf = env.chance * env.density_per_luminance * luminance(AT(env.pixels, pixel).rgb);
+    light.pdf = env.chance * env.density_per_luminance * luminance(AT(env.pixels, row * env.width + column).rgb);
     light.is_delta = false;
     light.has_target = false;
     light.target = vec3(0.0);
@@ -119,13 +134,13 @@ LightSample sample_punctual(SceneData scene, PunctualLight light, vec3 from)
     return result;
 }
 
-LightSample sample_light(SceneData scene, vec3 from, float group, uvec4 words)
+// choice: between the environment and local lights, then among these. u: on the light.
+LightSample sample_light(SceneData scene, vec3 from, uvec2 choice, vec2 u)
 {
-    if (HAS_ENVIRONMENT && (!HAS_LOCAL_LIGHTS || group < scene.environment.chance))
-        return sample_environment(scene.environment, words);
-    uint index = sample_alias(scene.local_table, scene.local_count, words.x, words.y);
-    if (index < scene.emitter_count)
-        return sample_emitter(scene, AT(scene.emitters, index), from, unit_floats(words.z, words.w));
+    if (HAS_ENVIRONMENT && (!HAS_LOCAL_LIGHTS || unit_float(choice.x) < scene.environment.chance))
+        return sample_environment(scene.environment, u);
+    uint index = sample_alias(scene.local_table, scene.local_count, choice.y);
+    if (index < scene.emitter_count) return sample_emitter(scene, AT(scene.emitters, index), from, u);
     return sample_punctual(scene, AT(scene.punctual, index - scene.emitter_count), from);
 }
 

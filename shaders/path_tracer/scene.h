@@ -93,7 +93,7 @@ struct SurfaceMaterial
 };
 BUFFER_OF(SurfaceMaterial, 4);
 
-// One column of an alias table: keep it if a random 32-bit word is below `keep`, else take `other`.
+// One column of an alias table: keep it if a random 32-bit fraction is below `keep`, else take `other`.
 struct AliasEntry
 {
     uint keep;
@@ -138,7 +138,8 @@ BUFFER_OF(Radiance, 4);
 struct Environment
 {
     REF(Radiance) pixels;
-    REF(AliasEntry) table;
+    Floats row_sums;     // height + 1 cumulated probabilities of the rows, from 0 to 1
+    Floats column_sums;  // for each row, width + 1 cumulated probabilities within the row
     uint width;
     uint height;
     float density_per_luminance; // probability density by solid angle = this * luminance of the pixel

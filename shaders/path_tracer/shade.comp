@@ -10,6 +10,14 @@ layout(push_constant, scalar) uniform Push { ShadeArgs args; };
 
 const uint ROULETTE_DEPTH = 3u; // scatterings that no path is spared
 
+// The pairs of random dimensions of a vertex; pair 0 of a path is its place in the pixel.
+const uint PAIR_PART = 0u;    // whether a transparent surface is met, and which part of its material
+const uint PAIR_CHOICE = 1u;  // of a light
+const uint PAIR_LIGHT = 2u;   // on the light
+const uint PAIR_SCATTER = 3u; // direction
+const uint PAIR_LOBE = 4u;    // of the BSDF, and Russian roulette
+const uint PAIR_COUNT = 5u;
+
 // A vertex of a path as its functions share it.
 struct Vertex
 {
@@ -19,14 +27,14 @@ struct Vertex
     vec3 wo;
     vec3 normal;   // shading normal on the side of wo
     bool is_front; // of the triangle
-    uint number;   // random dimensions 3 number + 1 ... 3 number + 3 belong to it
+    uint number;   // it has PAIR_COUNT pairs of random dimensions
 };
 
 float infinity() { return uintBitsToFloat(0x7f800000u); }
 
-uvec4 words_of(Vertex vertex, uint which)
+uvec2 pair_of(Vertex vertex, uint which)
 {
-    return random_words(vertex.path.pixel, args.sample_index, 3u * vertex.number + 1u + which, args.seed);
+    return sample_pair(vertex.path.pixel, args.sample_index, PAIR_COUNT * vertex.number + which + 1u, args.seed);
 }
 
 void add(uint pixel, vec3 radiance)
@@ -89,8 +97,8 @@ bool is_above(Vertex vertex, vec3 direction)
 void light_directly(Vertex vertex)
 {
     SceneData scene = AT(args.scene, 0);
-    float group = unit_float(words_of(vertex, 0u).z);
-    LightSample light = sample_light(scene, vertex.surface.point.position, group, words_of(vertex, 1u));
+    LightSample light = sample_light(scene, vertex.surface.point.position, pair_of(vertex, PAIR_CHOICE),
+                                     unit_floats(pair_of(vertex, PAIR_LIGHT)));
     if (!(light.pdf > 0.0) || !(largest(light.radiance) > 0.0)) return;
     Frame frame = frame_about(vertex.normal);
     vec3 wi = to_local(frame, light.direction);
@@ -114,9 +122,9 @@ void light_directly(Vertex vertex)
 
 void scatter(Vertex vertex)
 {
-    uvec4 words = words_of(vertex, 2u);
-    float lobe = unit_float(words.x);
-    vec2 u = unit_floats(words.y, words.z);
+    vec2 lobe_and_roulette = unit_floats(pair_of(vertex, PAIR_LOBE));
+    float lobe = lobe_and_roulette.x;
+    vec2 u = unit_floats(pair_of(vertex, PAIR_SCATTER));
     Frame frame = frame_about(vertex.normal);
     BsdfSample onwards = sample_bsdf(vertex.bsdf, to_local(frame, vertex.wo), lobe, u);
     vec3 direction = to_world(frame, onwards.wi);
@@ -133,7 +141,7 @@ void scatter(Vertex vertex)
     if (path.progress >> 16u >= ROULETTE_DEPTH)
     {
         float survival = min(largest(path.throughput), 0.95);
-        if (!(unit_float(words.w) < survival)) return;
+        if (lobe_and_roulette.y >= survival) return;
         path.throughput /= survival;
     }
     if (!(largest(path.throughput) > 0.0)) return;
@@ -156,12 +164,12 @@ void shade(PathState path, Ray ray, Hit hit)
     vertex.is_front = dot(vertex.surface.point.normal, vertex.wo) >= 0.0;
     vertex.number = path.progress & 0xffffu;
     uint flags = AT(AT(args.scene, 0).materials, vertex.surface.material).flags;
-    uvec4 choices = words_of(vertex, 0u);
+    vec2 part = unit_floats(pair_of(vertex, PAIR_PART));
     vec4 color = base_color(AT(args.scene, 0), vertex.surface.material, flags, vertex.surface.uv);
     if (HAS_ALPHA)
     {
         float cutoff = AT(AT(args.scene, 0).materials, vertex.surface.material).alpha_cutoff;
-        if (unit_float(choices.x) >= opacity(flags, cutoff, color.a))
+        if (part.x >= opacity(flags, cutoff, color.a))
         {
             pass(vertex, ray);
             return;
@@ -175,7 +183,7 @@ void shade(PathState path, Ray ray, Hit hit)
     add_emission(vertex, ray, hit, flags);
     if (path.progress >> 16u >= args.max_depth) return;
     vertex.normal = shading_normal(AT(args.scene, 0), vertex.surface, flags, vertex.wo);
-    vertex.bsdf = bsdf_of(AT(args.scene, 0), vertex.surface, flags, color.rgb, vertex.is_front, unit_float(choices.y));
+    vertex.bsdf = bsdf_of(AT(args.scene, 0), vertex.surface, flags, color.rgb, vertex.is_front, part.y);
     if (STRATEGY != STRATEGY_BSDF && (HAS_ENVIRONMENT || HAS_LOCAL_LIGHTS) && scatters(vertex.bsdf)) light_directly(vertex);
     scatter(vertex);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Ids against a float64 brute force: whatever is reordered, replaced or left out, the user's numbering comes back.
 #include "tests/hwtlas/hw_test.h"
-#include "tests/support/meshes.h"
+#include "engine/scene/shapes.h"
 
 namespace twinray::test {
 namespace {
@@ -33,10 +33,10 @@ Transform rotation(float angle) {
     return {{vec4(c, -s, 0, 0), vec4(s, c, 0, 0), vec4(0, 0, 1, 0)}};
 }
 
-// Around the unit cube that random_triangles fills.
+// Around the unit cube that make_soup fills.
 const Transform centered = Transform::translation(vec3(-0.5f));
 
-// Makes every `step`-th triangle of random_triangles non-finite, each in another way.
+// Makes every `step`-th triangle of make_soup non-finite, each in another way.
 void poison(Mesh& mesh, std::size_t step) {
     const float bad[] = {NAN, INFINITY, -INFINITY};
     for (std::size_t i = 0; i < mesh.triangles.size(); i += step) {
@@ -54,7 +54,7 @@ TEST_P(HwTlasIds, OfAShuffledGridAreTheUsers) {
 }
 
 TEST_P(HwTlasIds, OfMovedScaledRotatedAndMirroredInstancesAreTheUsers) {
-    const Mesh grid = shuffled_grid(8), soup = random_triangles(150, 2, 0.5f);
+    const Mesh grid = shuffled_grid(8), soup = make_soup(150, 2, 0.5f);
     std::vector<Transform> transforms;
     for (int i = 0; i < 24; ++i) {
         const float a = static_cast<float>(i);
@@ -72,7 +72,7 @@ TEST_P(HwTlasIds, OfMovedScaledRotatedAndMirroredInstancesAreTheUsers) {
 }
 
 TEST_P(HwTlasIds, AndNeighboursSurviveNonFiniteVertices) {
-    Mesh mesh = random_triangles(2000, 5, 0.15f);
+    Mesh mesh = make_soup(2000, 5, 0.15f);
     poison(mesh, 7);
     BruteForce reference;
     reference.add(mesh, centered);
@@ -81,7 +81,7 @@ TEST_P(HwTlasIds, AndNeighboursSurviveNonFiniteVertices) {
 }
 
 TEST_P(HwTlasIds, AndNeighboursSurviveInstancesWithNothingToHit) {
-    const Mesh soup = random_triangles(20, 8, 0.5f);
+    const Mesh soup = make_soup(20, 8, 0.5f);
     Mesh empty, infinite = soup, points = soup;
     poison(infinite, 1);
     for (uvec3& triangle : points.triangles) triangle = uvec3(triangle.x, triangle.y, triangle.y);
@@ -100,7 +100,7 @@ TEST_P(HwTlasIds, AreNeverReturnedForMeshesThatCannotBeHit) {
     Mesh line;
     line.positions = {vec3(-1, 0, 0), vec3(0), vec3(1, 0, 0)};
     line.triangles.assign(100, uvec3(0, 1, 2));
-    Mesh nothing = random_triangles(30, 1);
+    Mesh nothing = make_soup(30, 1);
     poison(nothing, 1);
     accel().push(line);
     accel().push(nothing);
@@ -126,7 +126,7 @@ TEST_F(HwTlasOrder, FollowsTheDriverUnlessTold) {
 }
 
 TEST_F(HwTlasOrder, ChangesNoBitOfTheHitsAndCostsNothingWhenOff) {
-    const Mesh mesh = random_triangles(1000, 11, 0.2f);
+    const Mesh mesh = make_soup(1000, 11, 0.2f);
     HwTlas kept(context(), BuildOrder::input), sorted(context(), BuildOrder::morton);
     for (HwTlas* accel : {&kept, &sorted}) {
         accel->push(mesh);

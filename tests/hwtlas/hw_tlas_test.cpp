@@ -3,7 +3,7 @@
 
 #include "engine/core/error.h"
 #include "tests/hwtlas/hw_test.h"
-#include "tests/support/meshes.h"
+#include "engine/scene/shapes.h"
 
 namespace twinray::test {
 namespace {

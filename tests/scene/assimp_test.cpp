@@ -101,7 +101,8 @@ TEST(Assimp, DamagedGzipIsNamed) {
 
 TEST(Assimp, MaterialsAndTexturesComeFromTheMtl) {
     const TempDir dir;
-    dir.write("a.mtl", "newmtl red\nKd 0.5 0.25 0\nKe 1 2 3\nd 0.5\nmap_Kd skin.png\nnewmtl gone\nmap_Kd sub\\no.png\n");
+    dir.write("a.mtl",
+              "newmtl red\nKd 0.5 0.25 0\nKe 1 2 3\nd 0.5\nmap_Kd skin.png\nnewmtl gone\nmap_Kd sub\\no.png\n");
     dir.write("skin.png", png_bytes(1, 1, 8, 6, "abcd"));
     const Scene scene = load_scene(dir.write("a.obj",
                                              "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
@@ -123,7 +124,8 @@ TEST(Assimp, MaterialsAndTexturesComeFromTheMtl) {
 }
 
 TEST(Assimp, AnIndexOutOfRangeIsNamed) {
-    expect_contains(load_error("a.ply", ply("3 0 1 9\n", 1)), "face 0 has vertex index 9, but the mesh has only 4 vertices");
+    expect_contains(load_error("a.ply", ply("3 0 1 9\n", 1)),
+                    "face 0 has vertex index 9, but the mesh has only 4 vertices");
     expect_contains(load_error("a.ply", ply("4 0 1 2 -1\n", 1)), "vertex index 4294967295");
     expect_contains(load_error("a.obj", "v 0 0 0\nf 1 2 3\n"), "out of range");
 }

@@ -67,8 +67,8 @@ struct GltfBuilder {
 
     std::string with_data_uri() const {
         json file = root;
-        file["buffers"] = {{{"byteLength", buffer.size()},
-                            {"uri", "data:application/octet-stream;base64," + base64(buffer)}}};
+        file["buffers"] = {
+            {{"byteLength", buffer.size()}, {"uri", "data:application/octet-stream;base64," + base64(buffer)}}};
         return file.dump();
     }
 

@@ -31,7 +31,10 @@ json& view(GltfBuilder& gltf, std::size_t index) { return gltf.root["bufferViews
 json& node(GltfBuilder& gltf, std::size_t index = 0) { return gltf.root["nodes"][index]; }
 
 const Fault accessor_faults[] = {
-    {"IndexOutOfRange", [](auto& g) { g.primitive()["indices"] = g.add_indices({0, 1, 3}); },
+    {"IndexOutOfRange",
+     [](auto& g) {
+         g.primitive()["indices"] = g.add_indices({0, 1, 3});
+     },
      "mesh 0 'tri' primitive 0: index 3 at position 2 is out of range; POSITION has 3 elements"},
     {"ViewLeavesBuffer", [](auto& g) { view(g, 0)["byteLength"] = 1000; }, "buffer 0 has only 44 bytes"},
     {"ViewOffsetOverflows", [](auto& g) { view(g, 0)["byteOffset"] = 0xfffffffffffffff0u; }, "bufferView 0 takes 36"},
@@ -40,14 +43,21 @@ const Fault accessor_faults[] = {
     {"AccessorCountOverflows", [](auto& g) { accessor(g, 0)["count"] = 0x2000000000000001u; }, "has count"},
     {"AccessorOffsetLeavesView", [](auto& g) { accessor(g, 0)["byteOffset"] = 40; }, "leave bufferView 0"},
     {"AccessorOfNoView", [](auto& g) { accessor(g, 0)["bufferView"] = 9; }, "bufferView 9 does not exist"},
-    {"NoSuchAccessor", [](auto& g) { g.primitive()["attributes"]["POSITION"] = 7; }, "POSITION: accessor 7 does not exist"},
+    {"NoSuchAccessor", [](auto& g) { g.primitive()["attributes"]["POSITION"] = 7; },
+     "POSITION: accessor 7 does not exist"},
     {"StrideBelowElement", [](auto& g) { view(g, 0)["byteStride"] = 4; }, "byteStride 4 of bufferView 0 is less than"},
     {"PositionsAreNotVec3", [](auto& g) { accessor(g, 0)["type"] = "VEC2"; }, "accessor 0 is not of type VEC3"},
     {"PositionsAreDoubles", [](auto& g) { accessor(g, 0)["componentType"] = 5130; }, "component type 5130"},
     {"PositionsAreInts", [](auto& g) { accessor(g, 0)["componentType"] = 5125; }, "component type 5125"},
-    {"IndicesAreFloats", [](auto& g) { g.primitive()["indices"] = g.add_floats("SCALAR", {0, 1, 2}); },
+    {"IndicesAreFloats",
+     [](auto& g) {
+         g.primitive()["indices"] = g.add_floats("SCALAR", {0, 1, 2});
+     },
      "component type 5126 is not an unsigned integer"},
-    {"UnequalAttributes", [](auto& g) { g.primitive()["attributes"]["NORMAL"] = g.add_floats("VEC3", {0, 0, 1}); },
+    {"UnequalAttributes",
+     [](auto& g) {
+         g.primitive()["attributes"]["NORMAL"] = g.add_floats("VEC3", {0, 0, 1});
+     },
      "NORMAL has 1 elements, but POSITION has 3"},
     {"HugeImplicitCount",
      [](auto& g) {
@@ -65,16 +75,14 @@ const Fault accessor_faults[] = {
      "sparse: index 5 at position 0 is not below the count 3"},
     {"SparseCountTooLarge",
      [](auto& g) {
-         accessor(g, 0)["sparse"] = {{"count", 9},
-                                     {"indices", {{"bufferView", 0}, {"componentType", 5121}}},
-                                     {"values", {{"bufferView", 0}}}};
+         accessor(g, 0)["sparse"] = {
+             {"count", 9}, {"indices", {{"bufferView", 0}, {"componentType", 5121}}}, {"values", {{"bufferView", 0}}}};
      },
      "sparse: count 9"},
     {"SparseIndicesAreFloats",
      [](auto& g) {
-         accessor(g, 0)["sparse"] = {{"count", 1},
-                                     {"indices", {{"bufferView", 0}, {"componentType", 5126}}},
-                                     {"values", {{"bufferView", 0}}}};
+         accessor(g, 0)["sparse"] = {
+             {"count", 1}, {"indices", {{"bufferView", 0}, {"componentType", 5126}}}, {"values", {{"bufferView", 0}}}};
      },
      "sparse: indices have component type 5126"},
 };
@@ -83,7 +91,9 @@ INSTANTIATE_TEST_SUITE_P(Accessor, GltfFault, testing::ValuesIn(accessor_faults)
 const Fault object_faults[] = {
     {"NoSuchMaterial", [](auto& g) { g.primitive()["material"] = 2; }, "mesh 0 'tri': material 2 does not exist"},
     {"NoSuchTexture",
-     [](auto& g) { g.root["materials"] = {{{"name", "m"}, {"normalTexture", {{"index", 3}}}}}; },
+     [](auto& g) {
+         g.root["materials"] = {{{"name", "m"}, {"normalTexture", {{"index", 3}}}}};
+     },
      "material 0 'm' normalTexture: texture 3 does not exist"},
     {"NoSuchImage",
      [](auto& g) {
@@ -99,12 +109,21 @@ const Fault object_faults[] = {
      "normalTexture: sampler 5 does not exist"},
     {"NoSuchMesh", [](auto& g) { node(g)["mesh"] = 4; }, "node 0 'node': mesh 4 does not exist; the file has 1"},
     {"NoSuchCamera", [](auto& g) { node(g)["camera"] = 0; }, "node 0 'node': camera 0 does not exist"},
-    {"NoSuchLight", [](auto& g) { node(g)["extensions"]["KHR_lights_punctual"]["light"] = 0; }, "light 0 does not exist"},
+    {"NoSuchLight", [](auto& g) { node(g)["extensions"]["KHR_lights_punctual"]["light"] = 0; },
+     "light 0 does not exist"},
     {"NoSuchScene", [](auto& g) { g.root["scene"] = 3; }, "scene 3, the default, does not exist; the file has 1"},
     {"NoSuchChild", [](auto& g) { node(g)["children"] = {8}; }, "node 0 'node': child 8 does not exist"},
     {"NoSuchSceneNode", [](auto& g) { g.root["scenes"][0]["nodes"] = {6}; }, "the scene lists node 6"},
-    {"NodeListedTwice", [](auto& g) { g.root["scenes"][0]["nodes"] = {0, 0}; }, "node 0 'node': is listed twice"},
-    {"SceneListsAChild", [](auto& g) { g.add_node({{"children", {0}}}); }, "is listed in the scene but is a child of node 1"},
+    {"NodeListedTwice",
+     [](auto& g) {
+         g.root["scenes"][0]["nodes"] = {0, 0};
+     },
+     "node 0 'node': is listed twice"},
+    {"SceneListsAChild",
+     [](auto& g) {
+         g.add_node({{"children", {0}}});
+     },
+     "is listed in the scene but is a child of node 1"},
     {"TwoParents",
      [](auto& g) {
          g.add_node({{"children", {0}}});
@@ -124,13 +143,28 @@ const Fault object_faults[] = {
          node(g)["children"] = {1};
      },
      "1001 levels deep; the limit is 1000"},
-    {"ShortMatrix", [](auto& g) { node(g)["matrix"] = {1, 2, 3}; }, "matrix has 3 numbers instead of 16"},
-    {"ShortTranslation", [](auto& g) { node(g)["translation"] = {1, 2}; }, "translation has 2 numbers instead of 3"},
+    {"ShortMatrix",
+     [](auto& g) {
+         node(g)["matrix"] = {1, 2, 3};
+     },
+     "matrix has 3 numbers instead of 16"},
+    {"ShortTranslation",
+     [](auto& g) {
+         node(g)["translation"] = {1, 2};
+     },
+     "translation has 2 numbers instead of 3"},
     {"ProjectiveMatrix", [](auto& g) { node(g)["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; },
      "the last row of its matrix is not 0 0 0 1"},
-    {"InfiniteTransform", [](auto& g) { node(g)["translation"] = {1e39, 0, 0}; },
+    {"InfiniteTransform",
+     [](auto& g) {
+         node(g)["translation"] = {1e39, 0, 0};
+     },
      "node 0 'node': its transform to the world has the entry 1e+39"},
-    {"ZeroQuaternion", [](auto& g) { node(g)["rotation"] = {0, 0, 0, 0}; }, "node 0 'node': rotation has length 0"},
+    {"ZeroQuaternion",
+     [](auto& g) {
+         node(g)["rotation"] = {0, 0, 0, 0};
+     },
+     "node 0 'node': rotation has length 0"},
     {"UnequalInstancing",
      [](auto& g) {
          const int two = g.add_floats("VEC3", std::vector<float>(6)), one = g.add_floats("VEC3", {1, 1, 1});
@@ -208,8 +242,9 @@ TEST(GltfFile, DamagedBuffersAreNamed) {
     expect_contains(error_with({{"byteLength", 44}, {"uri", "data:;base64,!"}}), "foreign to base64");
     expect_contains(error_with({{"uri", "data:;base64,AAAA"}}), "byteLength is missing");
     expect_contains(error_with({{"byteLength", 44}}), "binary chunk has only 0 bytes");
-    expect_contains(error_with({{"byteLength", 44}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}),
-                    "EXT_meshopt_compression");
+    expect_contains(
+        error_with({{"byteLength", 44}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}),
+        "EXT_meshopt_compression");
 }
 
 TEST(GltfFile, AMissingFileIsNamed) {

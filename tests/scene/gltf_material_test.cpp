@@ -23,16 +23,16 @@ GltfBuilder with_base_color_texture() {
 }
 
 TEST(GltfMaterial, FactorsAndModesAreTaken) {
-    const Scene scene = textured_triangle({{"name", "paint"},
-                                           {"pbrMetallicRoughness",
-                                            {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}},
-                                             {"metallicFactor", 0.5},
-                                             {"roughnessFactor", 0.6}}},
-                                           {"emissiveFactor", {0.25, 0.5, 1}},
-                                           {"alphaMode", "MASK"},
-                                           {"alphaCutoff", 0.75},
-                                           {"doubleSided", true}})
-                            .load();
+    const Scene scene =
+        textured_triangle(
+            {{"name", "paint"},
+             {"pbrMetallicRoughness",
+              {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.6}}},
+             {"emissiveFactor", {0.25, 0.5, 1}},
+             {"alphaMode", "MASK"},
+             {"alphaCutoff", 0.75},
+             {"doubleSided", true}})
+            .load();
     ASSERT_EQ(scene.materials.size(), 1u);
     const Material& material = scene.materials[0];
     EXPECT_EQ(material.name, "paint");
@@ -68,11 +68,12 @@ TEST(GltfMaterial, ExtensionsAreTaken) {
 }
 
 TEST(GltfMaterial, SpecularGlossinessIsShownByItsDiffuseColour) {
-    const Scene scene =
-        textured_triangle({{"extensions",
-                            {{"KHR_materials_pbrSpecularGlossiness",
-                              {{"diffuseFactor", {0.5, 0.25, 0, 1}}, {"glossinessFactor", 0.75}, {"diffuseTexture", {{"index", 0}}}}}}}})
-            .load();
+    const Scene scene = textured_triangle({{"extensions",
+                                            {{"KHR_materials_pbrSpecularGlossiness",
+                                              {{"diffuseFactor", {0.5, 0.25, 0, 1}},
+                                               {"glossinessFactor", 0.75},
+                                               {"diffuseTexture", {{"index", 0}}}}}}}})
+                            .load();
     EXPECT_EQ(scene.materials[0].base_color, vec4(0.5f, 0.25f, 0, 1));
     EXPECT_EQ(scene.materials[0].metallic, 0);
     EXPECT_EQ(scene.materials[0].roughness, 0.25f);
@@ -81,10 +82,11 @@ TEST(GltfMaterial, SpecularGlossinessIsShownByItsDiffuseColour) {
 }
 
 TEST(GltfMaterial, FactorsOutsideOfTheirRangeAreClamped) {
-    const Material material = textured_triangle({{"pbrMetallicRoughness", {{"metallicFactor", 2}, {"roughnessFactor", -1}}},
-                                                 {"emissiveFactor", {-1, 3, 0}}})
-                                  .load()
-                                  .materials[0];
+    const Material material =
+        textured_triangle({{"pbrMetallicRoughness", {{"metallicFactor", 2}, {"roughnessFactor", -1}}},
+                           {"emissiveFactor", {-1, 3, 0}}})
+            .load()
+            .materials[0];
     EXPECT_EQ(material.metallic, 1);
     EXPECT_EQ(material.roughness, 0);
     EXPECT_EQ(material.emission, vec3(0, 1, 0));
@@ -135,7 +137,8 @@ TEST(GltfMaterial, WrapModesComeFromTheSampler) {
 // quad, and the image has its arrow on the diagonal u = v.
 TEST(GltfMaterial, TextureTransformsTurnAsTheKhronosSampleDoes) {
     GltfBuilder gltf = with_base_color_texture();
-    json& transform = gltf.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"];
+    json& transform =
+        gltf.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"];
     transform = {{"rotation", 0.39269908169872414}};
     const Texture rotated = gltf.load().materials[0].base_color_texture;
     const vec3 mark(0.42095178f, 1.01626749f, 1);
@@ -171,8 +174,9 @@ TEST(GltfMaterial, AnImageThatCannotBeShownIsACheckerboardWithAReason) {
     expect_checkerboard({{"uri", "missing.png"}}, "missing.png': file not found");
     expect_checkerboard({{"uri", "data:image/ktx2;base64," + base64("\xabKTX 20\xbb\r\n\x1a\n")}}, "KTX2");
     expect_checkerboard({{"uri", "data:image/webp;base64," + base64("RIFF....WEBPVP8 ")}}, "WebP");
-    expect_checkerboard({{"uri", "data:image/png;base64," + base64(png_bytes(8, 8, 8, 2, std::string(192, 'x')).substr(0, 50))}},
-                        "damaged PNG");
+    expect_checkerboard(
+        {{"uri", "data:image/png;base64," + base64(png_bytes(8, 8, 8, 2, std::string(192, 'x')).substr(0, 50))}},
+        "damaged PNG");
     expect_checkerboard({{"uri", "data:image/png;base64,"}}, "empty");
     expect_checkerboard({{"uri", "data:image/png;base64,????"}}, "foreign to base64");
     expect_checkerboard({{"uri", "data:image/png,raw"}}, "not base64");

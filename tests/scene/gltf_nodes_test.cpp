@@ -7,10 +7,12 @@ namespace {
 
 TEST(GltfNodes, TransformsMultiplyDownTheTree) {
     GltfBuilder gltf = one_triangle();
-    gltf.root["nodes"] = {{{"children", {1}}, {"translation", {10, 0, 0}}, {"rotation", {0, 0, 0.70710678, 0.70710678}}},
-                          {{"mesh", 0}, {"translation", {0, 1, 0}}, {"scale", {2, 3, 4}}}};
+    gltf.root["nodes"] = {
+        {{"children", {1}}, {"translation", {10, 0, 0}}, {"rotation", {0, 0, 0.70710678, 0.70710678}}},
+        {{"mesh", 0}, {"translation", {0, 1, 0}}, {"scale", {2, 3, 4}}}};
     const Transform transform = gltf.load().instances[0].transform;
-    const vec3 moved = transform_point(transform, vec3(1, 1, 1));  // scaled (2, 3, 4), moved (2, 4, 4), turned (-4, 2, 4)
+    const vec3 moved =
+        transform_point(transform, vec3(1, 1, 1));  // scaled (2, 3, 4), moved (2, 4, 4), turned (-4, 2, 4)
     EXPECT_NEAR(moved.x, 6, 1e-6);
     EXPECT_NEAR(moved.y, 2, 1e-6);
     EXPECT_NEAR(moved.z, 4, 1e-6);
@@ -72,7 +74,7 @@ TEST(GltfNodes, GpuInstancingPlacesTheMeshOncePerElement) {
     const int scales = gltf.add_floats("VEC3", {1, 1, 1, 2, 2, 2, 0, 0, 0});
     gltf.root["nodes"][0]["translation"] = {0, 5, 0};
     gltf.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", translations},
-                                                                                     {"SCALE", scales}};
+                                                                                    {"SCALE", scales}};
     const Scene scene = gltf.load();
     EXPECT_EQ(scene.meshes.size(), 1u);
     ASSERT_EQ(scene.instances.size(), 2u);
@@ -82,9 +84,9 @@ TEST(GltfNodes, GpuInstancingPlacesTheMeshOncePerElement) {
 
 TEST(GltfNodes, CamerasStandWhereTheirNodesDoWithoutTheirScale) {
     GltfBuilder gltf = one_triangle();
-    gltf.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}, {"aspectRatio", 2}}}},
-                            {{"type", "orthographic"},
-                             {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0}, {"zfar", 9}}}}};
+    gltf.root["cameras"] = {
+        {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}, {"aspectRatio", 2}}}},
+        {{"type", "orthographic"}, {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0}, {"zfar", 9}}}}};
     gltf.add_node({{"camera", 0}, {"translation", {1, 2, 3}}, {"scale", {2, 2, 2}}});
     gltf.add_node({{"camera", 1}});
     const Scene scene = gltf.load();
@@ -109,11 +111,16 @@ TEST(GltfNodes, ACameraThatSeesNothingIsSkipped) {
 TEST(GltfNodes, LightsShineAlongTheMinusZOfTheirNodes) {
     GltfBuilder gltf = one_triangle();
     gltf.root["extensions"]["KHR_lights_punctual"]["lights"] = {
-        {{"type", "spot"}, {"color", {1, 0.5, 0}}, {"intensity", 8}, {"range", 7},
+        {{"type", "spot"},
+         {"color", {1, 0.5, 0}},
+         {"intensity", 8},
+         {"range", 7},
          {"spot", {{"innerConeAngle", 0.25}, {"outerConeAngle", 0.5}}}},
         {{"type", "point"}}};
     // Half a turn about y, so that -z points along +z.
-    gltf.add_node({{"translation", {1, 2, 3}}, {"rotation", {0, 1, 0, 0}}, {"scale", {3, 3, 3}},
+    gltf.add_node({{"translation", {1, 2, 3}},
+                   {"rotation", {0, 1, 0, 0}},
+                   {"scale", {3, 3, 3}},
                    {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
     gltf.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
     const Scene scene = gltf.load();

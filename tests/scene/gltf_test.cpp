@@ -203,5 +203,12 @@ TEST(Gltf, SkinsAnimationsMorphTargetsAndColoursAreShownAtRestWithOneWarningEach
     EXPECT_EQ(gltf.load().warnings.size(), 4u);
 }
 
+TEST(Gltf, FaultsOfAnimationsAndSkinsDoNotMatter) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["animations"] = {{{"channels", {{{"sampler", -1}}}}, {"samplers", 5}}};
+    gltf.root["skins"] = {{{"joints", "none"}}};
+    EXPECT_EQ(count_triangles(gltf.load()), 1u);
+}
+
 }  // namespace
 }  // namespace twinray::test

@@ -59,7 +59,8 @@ TEST(Image, TheCheckerboardIsMagentaAndBlack) {
 TEST(HdrImage, RadianceIsReadAsLinearLight) {
     const TempDir dir;
     const std::string pixels("\x80\x40\x00\x81\x00\x80\x00\x84", 8);  // mantissas and 2^(e - 136)
-    const HdrImage image = load_hdr_image(dir.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + pixels));
+    const HdrImage image =
+        load_hdr_image(dir.write("a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + pixels));
     ASSERT_EQ(image.width, 2u);
     ASSERT_EQ(image.height, 1u);
     EXPECT_EQ(image.rgb[0], vec3(1, 0.5f, 0));
@@ -97,8 +98,8 @@ TEST(HdrImage, ExrKeepsFloatsExactly) {
 
 TEST(HdrImage, DwabIsRead) {
     const TempDir dir;
-    const HdrImage image =
-        load_hdr_image(write_exr(dir, {"R", "G", "B"}, 64, 64, std::vector<float>(3 * 64 * 64, 0.5f), Imf::DWAB_COMPRESSION));
+    const HdrImage image = load_hdr_image(
+        write_exr(dir, {"R", "G", "B"}, 64, 64, std::vector<float>(3 * 64 * 64, 0.5f), Imf::DWAB_COMPRESSION));
     ASSERT_EQ(image.rgb.size(), 4096u);
     for (const vec3& pixel : image.rgb) EXPECT_NEAR(pixel.x, 0.5f, 0.01f);
 }
@@ -111,7 +112,8 @@ TEST(HdrImage, LuminanceAloneBecomesGrey) {
 
 TEST(HdrImage, WhatCannotBeLightIsReplaced) {
     const TempDir dir;
-    const HdrImage image = load_hdr_image(write_exr(dir, {"R", "G", "B"}, 1, 1, {INFINITY, NAN, -1}, Imf::NO_COMPRESSION));
+    const HdrImage image =
+        load_hdr_image(write_exr(dir, {"R", "G", "B"}, 1, 1, {INFINITY, NAN, -1}, Imf::NO_COMPRESSION));
     EXPECT_EQ(image.rgb[0], vec3(65504, 0, 0));
 }
 

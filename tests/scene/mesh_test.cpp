@@ -49,7 +49,8 @@ TEST(Mesh, NonFiniteTrianglesAreCountedOnceEach) {
 }
 
 TEST(Weld, ExactlyEqualVerticesBecomeOneAndTrianglesKeepTheirOrder) {
-    Mesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {1e-30f, 0, 0}, {-0.0f, 0, 0}, {1, 0, 0}}, {{0, 1, 2}, {3, 4, 2}, {0, 3, 1}});
+    Mesh mesh =
+        mesh_of({{0, 0, 0}, {1, 0, 0}, {1e-30f, 0, 0}, {-0.0f, 0, 0}, {1, 0, 0}}, {{0, 1, 2}, {3, 4, 2}, {0, 3, 1}});
     mesh.materials = {4, 5, 6};
     const Mesh welded = weld_equal_vertices(mesh);
     EXPECT_EQ(welded.positions, (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {1e-30f, 0, 0}}));
@@ -69,7 +70,8 @@ TEST(Weld, VerticesThatDifferInAnyAttributeStayApart) {
 TEST(Scene, BoundsAndCountsFollowTheInstances) {
     Scene scene;
     scene.meshes = {mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}), mesh_of({}, {})};
-    scene.instances = {{"a", 0, Transform::translation({5, 0, 0})}, {"b", 0, Transform::scaling({-2, 1, 1})}, {"c", 1, {}}};
+    scene.instances = {
+        {"a", 0, Transform::translation({5, 0, 0})}, {"b", 0, Transform::scaling({-2, 1, 1})}, {"c", 1, {}}};
     EXPECT_EQ(bounds_of(scene).lo, vec3(-2, 0, 0));
     EXPECT_EQ(bounds_of(scene).hi, vec3(6, 1, 0));
     EXPECT_EQ(count_triangles(scene), 2u);
@@ -86,7 +88,8 @@ TEST(Scene, BoundsTakeAllEightCornersOfATurnedBox) {
 
 TEST(Scene, UnknownSuffixesAreRefusedWithTheKnownOnes) {
     const TempDir dir;
-    expect_contains(error_of([&] { load_scene(dir.write("a.fbx", "x")); }), "unknown suffix '.fbx'; scenes are .gltf, .glb");
+    expect_contains(error_of([&] { load_scene(dir.write("a.fbx", "x")); }),
+                    "unknown suffix '.fbx'; scenes are .gltf, .glb");
     expect_contains(error_of([&] { load_scene(dir.write("a.glb.gz", "x")); }), "unknown suffix '.glb.gz'");
     expect_contains(error_of([&] { load_scene(dir.write("a", "x")); }), "unknown suffix ''");
 }

@@ -82,8 +82,7 @@ TEST(Shapes, TheGridCoversTheUnitSquareFacingUp) {
 TEST(Shapes, TheSoupIsSeparateTrianglesOfTheSizeAsked) {
     const Mesh soup = make_soup(500, 42, 0.25f);
     EXPECT_EQ(soup.positions.size(), 1500u);
-    for (const uvec3& t : soup.triangles)
-        EXPECT_LE(glm::length(soup.positions[t.x] - soup.positions[t.y]), 0.5f);
+    for (const uvec3& t : soup.triangles) EXPECT_LE(glm::length(soup.positions[t.x] - soup.positions[t.y]), 0.5f);
     EXPECT_LT(glm::length(bounds_of(soup).center() - vec3(0.5f)), 0.1f);
 }
 

@@ -27,6 +27,7 @@ void VulkanTest::SetUp() {
     // Collected outside the context, so that what the layer says while it is destroyed counts too.
     desc.log = [this](std::string_view message) { log_.emplace_back(message); };
     context_ = make_context(desc);
+    if (!context_ && HasFailure()) FAIL() << "no device";
 }
 
 void VulkanTest::TearDown() {

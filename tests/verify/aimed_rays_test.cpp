@@ -126,7 +126,7 @@ TEST(AimedRays, OriginsAreTwentiethToTwoDiagonalsAway) {
 
 TEST(AimedRays, ExtremeScenesGiveTraceableRays) {
     Soup far, huge, point_like, inactive;
-    far.add({1e10f, 0, 0}, {1e10f, 1e-3f, 0}, {1e10f, 0, 1e-3f});
+    far.add(vec3(1e10f), {1e10f + 1024, 1e10f, 1e10f}, {1e10f, 1e10f + 1024, 1e10f});  // neighbours in float32
     huge.add({3e38f, 0, 0}, {0, 3e38f, 0}, {-3e38f, 0, 3e38f});
     point_like.add({0, 0, 0}, {1e-40f, 0, 0}, {0, 1e-40f, 0});
     inactive.add(vec3(NAN), vec3(0), vec3(1));

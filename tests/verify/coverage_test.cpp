@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "tests/verify/meshes.h"
 
 namespace twinray {
@@ -40,6 +42,12 @@ TEST(Coverage, OfAnInteriorPointIsCertain) {
     EXPECT_EQ(coverage_of(fan(5, true), make_ray({0.2f, 0.1f, 0}, {0, 0, 1})), Coverage::certain);
 }
 
+TEST(Coverage, OfAnInteriorPointIsCertainBesideATriangleOfWhichLittleIsKnown) {
+    Soup soup = fan(5, true);
+    soup.add({1e6f, 1e6f, 4}, {-1e6f, 1e6f, 6}, {0, -0.5f, 5});
+    EXPECT_EQ(coverage_of(soup, make_ray({0.2f, 0.1f, 0}, {0, 0, 1})), Coverage::certain);
+}
+
 TEST(Coverage, OfTheCornerOfAClosedFanIsCertain) {
     for (const uint valence : {3u, 4u, 7u, 500u})
         EXPECT_EQ(coverage_of(fan(valence, true), at_center), Coverage::certain) << valence;
@@ -57,12 +65,14 @@ TEST(Coverage, OfACrackThinnerThanRoundingIsUnresolved) {
 }
 
 TEST(Coverage, OfAFoldIsOpenInEitherWinding) {
-    Soup soup;
-    soup.add({0, -1, 4}, {0, 1, 4}, {1, 0, 4});
-    soup.add({0, 1, 4}, {0, -1, 4}, {1, 0, 5});
-    EXPECT_EQ(coverage_of(soup, at_center), Coverage::open);
-    std::swap(soup.triangles[1].x, soup.triangles[1].y);
-    EXPECT_EQ(coverage_of(soup, at_center), Coverage::open);
+    for (const float side : {1.0f, -1.0f}) {
+        Soup soup;
+        soup.add({0, -1, 4}, {0, 1, 4}, {side, 0, 4});
+        soup.add({0, 1, 4}, {0, -1, 4}, {side, 0, 5});
+        EXPECT_EQ(coverage_of(soup, at_center), Coverage::open);
+        std::swap(soup.triangles[1].x, soup.triangles[1].y);
+        EXPECT_EQ(coverage_of(soup, at_center), Coverage::open);
+    }
 }
 
 TEST(Coverage, OfASharedEdgeIsCertainUnlessTheCornersDiffer) {

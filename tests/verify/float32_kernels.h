@@ -89,7 +89,8 @@ struct Scene32 {
     }
 };
 
-// What the kernel's `refined` level reports: t, u and v of the same triangle's plane, in float64.
+// What a kernel that refines its result reports: t, u and v of the same triangle's plane, in float64, unless that t
+// leaves the ray's interval.
 inline Hit refined(const Oracle& oracle, const Ray& ray, Hit hit) {
     if (hit.hit == 0) return hit;
     const ActiveTriangle* triangle = oracle.geometry(hit.instance_index).find(hit.primitive_index);
@@ -99,8 +100,9 @@ inline Hit refined(const Oracle& oracle, const Ray& ray, Hit hit) {
     const glm::dvec3 d = placement.vector_to_object(glm::dvec3(ray.direction));
     const glm::dvec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0], s = o - corners[0];
     const double sum = glm::dot(e1, glm::cross(d, e2));
-    if (sum == 0) return hit;
-    hit.t = float(glm::dot(e2, glm::cross(s, e1)) / sum);
+    const float t = float(glm::dot(e2, glm::cross(s, e1)) / sum);
+    if (!(t > ray.t_min && t < ray.t_max)) return hit;
+    hit.t = t;
     hit.u = float(glm::dot(s, glm::cross(d, e2)) / sum);
     hit.v = float(glm::dot(d, glm::cross(s, e1)) / sum);
     return hit;

@@ -88,7 +88,7 @@ TEST(HonestKernel, HasNoFaultFarFromTheOrigin) {
     Soup far = grid(14, 0.3f, 0.3f, 1);
     for (vec3& p : far.positions) p += vec3(1e5f, -1e5f, 1e5f);
     expect_no_fault(one(far), 31);
-    expect_no_fault(one(sphere(3), Transform::translation({1e4f, -1e4f, 1e4f})), 32);
+    expect_no_fault(one(sphere(3), Transform::translation({1e4f, -1e4f, 1e4f}) * rotation(0.7f, 0.4f)), 32);
 }
 
 TEST(HonestKernel, HasNoFaultUnderTransforms) {

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// The shaders' intersection tests, run as C++.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/scene/shapes.h"
+#include "engine/accel/geometry.h"
+#include "swtlas/reference.h"
+
+namespace twinray {
+namespace {
+
+int hits_of(const Mesh& mesh, vec3 origin, vec3 direction) {
+    const RaySpace space = make_ray_space(origin, direction, 0);
+    int count = 0;
+    for (const uvec3& corners : mesh.triangles) {
+        TriangleHit hit;
+        count += intersect_triangle(mesh.positions[corners.x], mesh.positions[corners.y], mesh.positions[corners.z], space, hit);
+    }
+    return count;
+}
+
+TEST(IntersectTriangle, APointOnASharedCornerBelongsToExactlyOneTriangleForAnyWinding) {
+    Mesh fan;
+    const int n = 7;
+    fan.positions.push_back(vec3(0, 0, 1));
+    for (int i = 0; i < n; ++i) {
+        const float angle = 2 * 3.14159265f * static_cast<float>(i) / n;
+        fan.positions.push_back(vec3(std::cos(angle), std::sin(angle), 1));
+    }
+    std::mt19937 random(1);
+    for (int round = 0; round < 64; ++round) {
+        fan.triangles.clear();
+        for (uint i = 0; i < n; ++i) {
+            const uint a = 1 + i, b = 1 + (i + 1) % n;
+            fan.triangles.push_back(random() % 2 ? uvec3(0, a, b) : uvec3(b, a, 0));
+        }
+        EXPECT_EQ(hits_of(fan, vec3(0), vec3(0, 0, 1)), 1);
+    }
+}
+
+TEST(IntersectTriangle, PointsOnSharedEdgesOfAGridBelongToExactlyOneTriangle) {
+    const Mesh grid = make_grid(4, 4);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<float> unit(0.3f, 0.7f);
+    for (int i = 0; i < 2000; ++i) {
+        const vec3 origin(unit(random), 3, unit(random));
+        const uvec3 corners = grid.triangles[random() % grid.triangles.size()];
+        const vec3 a = grid.positions[corners.x], b = grid.positions[corners.y];
+        const vec3 target = a * 0.5f + b * 0.5f;
+        if (target.x <= 0 || target.x >= 1 || target.z <= 0 || target.z >= 1) continue;  // the rim has one side
+        EXPECT_EQ(hits_of(grid, origin, target - origin), 1) << i;
+        EXPECT_EQ(hits_of(grid, vec3(target.x, 3, target.z), vec3(0.0f, -1, -0.0f)), 1) << i;
+    }
+}
+
+TEST(IntersectTriangle, InThePlaneOfTheTriangleMisses) {
+    const Mesh quad = make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0));
+    EXPECT_EQ(hits_of(quad, vec3(-1, 0.5f, 0), vec3(1, 0, 0)), 0);
+    EXPECT_EQ(hits_of(quad, vec3(-1, -1, 0), vec3(1, 1, 0)), 0);
+}
+
+TEST(ExactEdgeFunction, HasTheSignOfTheExactValueWhereRoundingHidesIt) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    int ties = 0;
+    for (int i = 0; i < 200'000; ++i) {
+        const vec3 a(unit(random), unit(random), 0);
+        const float scale = unit(random);
+        vec3 b(a.x * scale, a.y * scale, 0);  // nearly collinear with a
+        if (i % 2) b.x = std::nextafter(b.x, 2.0f);
+        const double exact = double{a.x} * b.y - double{a.y} * b.x;  // products of floats are exact in double
+        int side = 0;
+        const float value = exact_edge_function(a, b, side);
+        if (exact == 0) continue;
+        EXPECT_EQ(side, exact > 0 ? 1 : -1);
+        EXPECT_EQ(value > 0, exact > 0);
+        ties += edge_function(a, b) == 0;
+    }
+    EXPECT_GT(ties, 100) << "the slow path was not exercised";
+}
+
+TEST(EnterBox, ParallelRaysOnAFaceAreKept) {
+    for (const float zero : {0.0f, -0.0f}) {
+        float enter = 0;
+        const RaySpace lower = make_ray_space(vec3(0, 0.5f, -1), vec3(zero, zero, 1), 0);
+        EXPECT_TRUE(enter_box(vec3(0), vec3(1), lower, 0, INFINITY, enter));
+        const RaySpace upper = make_ray_space(vec3(1, 0.5f, -1), vec3(zero, zero, 1), 0);
+        EXPECT_TRUE(enter_box(vec3(0), vec3(1), upper, 0, INFINITY, enter));
+        const RaySpace outside = make_ray_space(vec3(1.5f, 0.5f, -1), vec3(zero, zero, 1), 0);
+        EXPECT_FALSE(enter_box(vec3(0), vec3(1), outside, 0, INFINITY, enter));
+    }
+}
+
+TEST(EnterBox, EmptyBoxesAreNeverEntered) {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    const LeafBox none = empty_box();
+    for (int i = 0; i < 1000; ++i) {
+        const vec3 direction(i % 3 ? unit(random) : 0.0f, i % 5 ? unit(random) : -0.0f, unit(random));
+        float enter = 0;
+        EXPECT_FALSE(enter_box(none.lo, none.hi, make_ray_space(vec3(unit(random)), direction, 0), 0, INFINITY, enter));
+    }
+}
+
+TEST(Traverse, TheTwinOfTheWholeAcceleratorTracesOnTheCpu) {
+    reference::Scene scene;
+    const Mesh sphere = make_icosphere(4, 2);
+    const std::size_t geometry = scene.add_geometry(sphere);
+    scene.add_instance(geometry, make_instance_record(Transform::translation({0, 0, -5}), 7, 0xff, "test"));
+    scene.add_instance(geometry, make_instance_record(Transform::translation({0, 0, -15}), 8, 0xff, "test"));
+    scene.build();
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    for (int i = 0; i < 10'000; ++i) {  // from inside a closed sphere nothing leaks
+        const vec3 origin(unit(random), unit(random), unit(random) - 5);
+        const vec3 corner = sphere.positions[random() % sphere.positions.size()] + vec3(0, 0, -5);
+        const Hit hit = scene.trace({origin, 0, corner - origin, INFINITY});
+        ASSERT_EQ(hit.hit, 1u);
+        EXPECT_NEAR(hit.t, 1, 1e-2f);
+        EXPECT_EQ(hit.custom_index, 7u);
+    }
+}
+
+}  // namespace
+}  // namespace twinray
