@@ -8,9 +8,9 @@
 
 namespace twinray {
 
-// Only finite positions, one triangle per triangle of the mesh: one with a non-finite corner keeps its place but is
-// collapsed to a point. Vulkan has no word for an infinite corner, and lavapipe lets a NaN leak into the boxes of the
-// triangles beside it, although the specification makes such a triangle inactive.
+// Only finite positions, one triangle per triangle of the mesh: one that is not active (a non-finite corner, no area)
+// keeps its place but is collapsed to a point. Vulkan has no word for an infinite corner; lavapipe lets a NaN leak into
+// the boxes of the triangles beside it, and hits triangles without area now and then.
 struct BlasInput {
     std::vector<vec3> positions;
     std::vector<uvec3> triangles;

@@ -123,7 +123,8 @@ std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::
     std::vector<BvhTriangle> encoded;
     for (const uint primitive : order) {
         BvhTriangle triangle = gather(positions, triangles[primitive], primitive);
-        if (!is_finite_triangle(triangle)) triangle = {vec3(0), vec3(0), vec3(0), primitive};
+        if (!is_active_triangle(triangle.v0, triangle.v1, triangle.v2))
+            triangle = {vec3(0), vec3(0), vec3(0), primitive};
         encoded.push_back(triangle);
     }
     return encoded;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// .obj, .ply and .stl through Assimp.
+// .obj and .stl through Assimp.
 #include <algorithm>
 #include <map>
 
@@ -36,11 +36,11 @@ class AssimpReader {
   private:
     void parse() {
         const std::string name = path_.string();
-        const Bytes bytes = read_file(path_);
         if (lower_suffix(path_) == ".gz") {
-            const Bytes unpacked = unpack_gzip(bytes, name);
+            const Bytes unpacked = read_packed_file(path_);
             source_ = importer_.ReadFileFromMemory(unpacked.data(), unpacked.size(), 0, format_.c_str());
         } else {
+            read_file(path_);  // for its plain words when there is no such file
             source_ = importer_.ReadFile(name, 0);
         }
         if (!source_ || !source_->mRootNode)
@@ -70,7 +70,7 @@ class AssimpReader {
     }
 
     // Vertices of .obj and .stl come one per corner and are shared again where they are equal. A facet normal of .stl
-    // would keep them apart and says nothing that its corners do not. A .ply shares its vertices as it likes.
+    // would keep them apart and says nothing that its corners do not.
     void read_mesh(unsigned index) {
         const aiMesh& source = *source_->mMeshes[index];
         Mesh mesh;
@@ -95,7 +95,7 @@ class AssimpReader {
             return;
         }
         placed_as_[index] = static_cast<uint>(scene_.meshes.size());
-        scene_.meshes.push_back(format_ == "ply" ? std::move(mesh) : weld_equal_vertices(mesh));
+        scene_.meshes.push_back(weld_equal_vertices(mesh));
     }
 
     void place(const aiNode& node, const aiMatrix4x4& above) {

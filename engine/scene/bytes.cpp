@@ -84,6 +84,11 @@ Bytes unpack_gzip(const Bytes& packed, const std::string& object) {
     return bytes;
 }
 
+Bytes read_packed_file(const std::filesystem::path& file) {
+    Bytes bytes = read_file(file);
+    return lower_suffix(file) == ".gz" ? unpack_gzip(bytes, file.string()) : bytes;
+}
+
 std::optional<Bytes> decode_base64(std::string_view base64) {
     while (!base64.empty() && base64.back() == '=') base64.remove_suffix(1);
     Bytes bytes;

@@ -19,6 +19,9 @@ Bytes read_file(const std::filesystem::path& file);
 // Unpacks gzip data; `object` names its source in errors (damaged, truncated, more than 4 GiB unpacked).
 Bytes unpack_gzip(const Bytes& packed, const std::string& object);
 
+// The whole file, unpacked when its suffix is .gz.
+Bytes read_packed_file(const std::filesystem::path& file);
+
 // Base64 as data URIs use it (padding optional); nothing when a character is foreign to it.
 std::optional<Bytes> decode_base64(std::string_view base64);
 

@@ -24,8 +24,7 @@ struct Binning {
     double scale = 0;
 
     Binning(const Box64& centroids, int axis)
-        : low(centroids.corners[0][axis]),
-          scale(static_cast<double>(bin_count) / (centroids.corners[1][axis] - low)) {}
+        : low(centroids.corners[0][axis]), scale(static_cast<double>(bin_count) / (centroids.corners[1][axis] - low)) {}
 
     std::size_t operator()(double centroid) const {
         return std::min(static_cast<std::size_t>((centroid - low) * scale), bin_count - 1);
@@ -176,14 +175,13 @@ uint Bvh64::Builder::divide(const Range& range) {
         Box64 centroids;
         for (auto item = begin; item != end; ++item) centroids.include(centroids_[*item]);
         const Binning bin_of(centroids, split.axis);
-        const auto middle = std::partition(
-            begin, end, [&](uint item) { return bin_of(centroids_[item][split.axis]) < split.bin; });
+        const auto middle =
+            std::partition(begin, end, [&](uint item) { return bin_of(centroids_[item][split.axis]) < split.bin; });
         return static_cast<uint>(middle - bvh_.order_.begin());
     }
     const auto middle = begin + (range.end - range.begin) / 2;
     const int axis = std::max(split.axis, 0);
-    std::nth_element(begin, middle, end,
-                     [&](uint a, uint b) { return centroids_[a][axis] < centroids_[b][axis]; });
+    std::nth_element(begin, middle, end, [&](uint a, uint b) { return centroids_[a][axis] < centroids_[b][axis]; });
     return static_cast<uint>(middle - bvh_.order_.begin());
 }
 

@@ -33,8 +33,8 @@ double beta_fraction(double a, double b, double x) {
 
 // Regularised incomplete beta function I_x(a, b), 0 < x < 1; I_p(k + 1, n - k) is the chance of more than k of n.
 double regularised_beta(double a, double b, double x) {
-    const double log_front = std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) +
-                             b * std::log1p(-x);
+    const double log_front =
+        std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x);
     if (x < (a + 1) / (a + b + 2)) return std::exp(log_front) * beta_fraction(a, b, x) / a;
     return 1 - std::exp(log_front) * beta_fraction(b, a, 1 - x) / b;
 }
@@ -43,14 +43,12 @@ double regularised_beta(double a, double b, double x) {
 
 std::string_view name(Class kind) {
     static constexpr std::array<std::string_view, class_count> names = {
-        "AGREE", "TIE",   "BOUNDARY", "BOUNDARY_HW_MISS", "UNSPECIFIED", "INVALID_INPUT", "SW_LEAK", "SW_FALSE",
-        "T_ERR", "HW_LEAK", "HW_FALSE", "HW_T_ERR",       "HW_RANGE"};
+        "AGREE",    "TIE",   "BOUNDARY", "BOUNDARY_HW_MISS", "UNSPECIFIED", "INVALID_INPUT", "SW_LEAK",
+        "SW_FALSE", "T_ERR", "HW_LEAK",  "HW_FALSE",         "HW_T_ERR",    "HW_RANGE"};
     return names[static_cast<std::size_t>(kind)];
 }
 
-bool is_fault_of_ours(Class kind) {
-    return kind == Class::sw_leak || kind == Class::sw_false || kind == Class::t_err;
-}
+bool is_fault_of_ours(Class kind) { return kind == Class::sw_leak || kind == Class::sw_false || kind == Class::t_err; }
 
 Classes& Classes::operator+=(const Classes& other) {
     for (std::size_t i = 0; i < class_count; ++i) counts[i] += other.counts[i];

@@ -22,7 +22,7 @@ enum class Class : std::uint8_t {
     hw_leak,
     hw_false,
     hw_t_err,
-    hw_range,          // not finite t, u or v, or u, v beyond the error bound: over- or underflow in the driver
+    hw_range,  // not finite t, u or v, or u, v beyond the error bound: over- or underflow in the driver
 };
 inline constexpr std::size_t class_count = 13;
 

@@ -183,9 +183,7 @@ Verdict classify_any(const Oracle& oracle, const Ray& ray, const std::optional<b
     const OracleHit reference = oracle.closest_hit(ray);
     return verdict(
         ray, software, hardware, [](bool is_hit) { return is_hit; },
-        [&](Accelerator accelerator, bool is_hit) {
-            return Judge(oracle, ray, reference, accelerator).any(is_hit);
-        });
+        [&](Accelerator accelerator, bool is_hit) { return Judge(oracle, ray, reference, accelerator).any(is_hit); });
 }
 
 std::vector<Verdict> classify_all(const Oracle& oracle, std::span<const Ray> rays, std::span<const Hit> software,

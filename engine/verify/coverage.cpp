@@ -133,8 +133,8 @@ double Patch::clearance(const dvec2& point) const {
     double least = INFINITY;
     for (const PatchTriangle& triangle : triangles_)
         for (std::size_t i = 0; i < 3; ++i)
-            least = std::min(least, distance(triangle.footprint.corners[i],
-                                             triangle.footprint.corners[(i + 1) % 3], point));
+            least = std::min(least,
+                             distance(triangle.footprint.corners[i], triangle.footprint.corners[(i + 1) % 3], point));
     return least;
 }
 

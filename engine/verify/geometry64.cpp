@@ -19,23 +19,14 @@ Box64 box_of(const std::array<vec3, 3>& corners) {
     return box;
 }
 
-std::array<vec3, 3> corners_of(const MeshView& mesh, uint primitive) {
-    std::array<vec3, 3> corners;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const uint vertex = mesh.triangles[primitive][static_cast<int>(i)];
-        if (vertex >= mesh.positions.size())
-            fail("mesh '", mesh.name, "': triangle ", primitive, " uses vertex ", vertex, " of ",
-                 mesh.positions.size());
-        corners[i] = mesh.positions[vertex];
-    }
-    return corners;
+std::array<vec3, 3> corners_of(const MeshView& mesh, const uvec3& triangle) {
+    return {mesh.positions[triangle.x], mesh.positions[triangle.y], mesh.positions[triangle.z]};
 }
 
 }  // namespace
 
 ObjectRay::ObjectRay(const glm::dvec3& origin, const glm::dvec3& direction, double scale)
-    : slabs(origin, direction, 0x1p-48 * (max_abs(origin) + scale)),
-      sheared(origin, direction) {}
+    : slabs(origin, direction, 0x1p-48 * (max_abs(origin) + scale)), sheared(origin, direction) {}
 
 Triangle64 ActiveTriangle::corners64() const {
     return {glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])};
@@ -52,10 +43,11 @@ std::optional<TriangleHit64> ActiveTriangle::intersect(const ObjectRay& ray, con
 Geometry64::Geometry64(const MeshView& mesh) : slots_(mesh.triangles.size(), inactive) {
     if (mesh.triangles.size() >= inactive)
         fail("mesh '", mesh.name, "': ", mesh.triangles.size(), " triangles, the limit is ", inactive - 1);
+    check_indices(mesh);
     std::vector<ActiveTriangle> triangles;
     std::vector<Box64> boxes;
     for (uint primitive = 0; primitive < mesh.triangles.size(); ++primitive) {
-        const std::array<vec3, 3> corners = corners_of(mesh, primitive);
+        const std::array<vec3, 3> corners = corners_of(mesh, mesh.triangles[primitive]);
         if (!has_area(corners)) continue;
         triangles.push_back({corners, primitive});
         boxes.push_back(box_of(corners));

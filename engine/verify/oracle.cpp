@@ -37,8 +37,7 @@ Box64 box_in_world(const Box64& box, const Placement64& placement) {
 }  // namespace
 
 Placement64::Placement64(const Transform& transform, const char* object)
-    : offset(transform.rows[0].w, transform.rows[1].w, transform.rows[2].w),
-      is_identity(transform == Transform{}) {
+    : offset(transform.rows[0].w, transform.rows[1].w, transform.rows[2].w), is_identity(transform == Transform{}) {
     static_cast<void>(inverse(transform, object));  // throws on what has no inverse
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
@@ -67,9 +66,9 @@ struct Oracle::Search {
     bool is_done() const { return any && best.hit; }
 
     void offer(const OracleHit& hit) {
-        const bool is_better = best.hit ? std::tie(hit.t, hit.instance, hit.primitive) <
-                                              std::tie(best.t, best.instance, best.primitive)
-                                        : hit.t < t_limit;
+        const bool is_better =
+            best.hit ? std::tie(hit.t, hit.instance, hit.primitive) < std::tie(best.t, best.instance, best.primitive)
+                     : hit.t < t_limit;
         if (!(hit.t > t_min) || !is_better) return;
         best = hit;
         t_limit = hit.t;

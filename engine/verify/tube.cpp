@@ -66,8 +66,8 @@ Tube::Tube(const Ray& ray, const Placement64& placement, Accelerator accelerator
     length_ = glm::length(direction_);
     if (!placement.is_identity) {
         const double inverse_error = accelerator == Accelerator::hardware ? placement.condition : 1.0;
-        const glm::dvec3 shift = absolute_product(placement.to_object, origin) +
-                                 absolute_product(placement.to_object, placement.offset);
+        const glm::dvec3 shift =
+            absolute_product(placement.to_object, origin) + absolute_product(placement.to_object, placement.offset);
         origin_error_ = inverse_error * glm::length(shift);
         direction_error_ = inverse_error * glm::length(absolute_product(placement.to_object, direction)) / length_;
     }
@@ -112,10 +112,9 @@ Footprint Tube::footprint(const Triangle64& triangle) const {
 void Tube::set_depth_bounds(Footprint& footprint, const Depths& depths) const {
     const auto& corners = footprint.corners;
     const Plane plane = plane_of(corners, depths.z);
-    const auto [nearest, farthest] =
-        std::minmax_element(corners.begin(), corners.end(), [](const glm::dvec2& first, const glm::dvec2& second) {
-            return glm::length(first) < glm::length(second);
-        });
+    const auto [nearest, farthest] = std::minmax_element(
+        corners.begin(), corners.end(),
+        [](const glm::dvec2& first, const glm::dvec2& second) { return glm::length(first) < glm::length(second); });
     const double reach = glm::length(*farthest);
     // Displaced corners change each edge function by up to `edge_error` and the area by up to three of them. Where
     // that may swallow the area, rounding chooses the weights and only the corners' depths bound t.

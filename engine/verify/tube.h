@@ -12,10 +12,10 @@ enum class Accelerator { software, hardware };
 // One triangle seen along a ray, in object units, float64. The ray is the point (0, 0).
 struct Footprint {
     std::array<glm::dvec2, 3> corners;  // perpendicular to the ray
-    double radius = 0;   // a float32 kernel sees each corner displaced by up to this
-    double margin = 0;   // distance from the ray to the outline: positive inside, negative outside
-    double t = 0;        // where the ray meets the triangle's plane, in units of its direction
-    double t_low = 0;    // a float32 kernel that accepts the triangle finds a t in [t_low, t_high]
+    double radius = 0;                  // a float32 kernel sees each corner displaced by up to this
+    double margin = 0;                  // distance from the ray to the outline: positive inside, negative outside
+    double t = 0;                       // where the ray meets the triangle's plane, in units of its direction
+    double t_low = 0;                   // a float32 kernel that accepts the triangle finds a t in [t_low, t_high]
     double t_high = 0;
     double point_error = 0;  // how far from the ray the point of its u, v may lie
 

@@ -6,6 +6,7 @@
 #include "shaders/shared/bvh.h"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/transform.h"
+#include "shaders/shared/triangle.h"
 
 const uint BUILD_GROUP = 256u;
 const uint INACTIVE_CODE = 0x3fffffffu; // Morton code of leaves without a finite box: last
@@ -143,7 +144,6 @@ FUNC vec3 load_position(Floats positions, uint vertex)
     return vec3(AT(positions, vertex * 3u), AT(positions, vertex * 3u + 1u), AT(positions, vertex * 3u + 2u));
 }
 
-// The corners of a triangle, all 0 if one of them is not finite.
 FUNC BvhTriangle fetch_triangle(BuildTree tree, uint primitive)
 {
     BvhTriangle triangle;
@@ -154,11 +154,10 @@ FUNC BvhTriangle fetch_triangle(BuildTree tree, uint primitive)
     return triangle;
 }
 
-FUNC bool is_finite_triangle(BvhTriangle t) { return is_finite(t.v0) && is_finite(t.v1) && is_finite(t.v2); }
-
+// Triangles that cannot be hit keep their place in the tree with an empty box.
 FUNC LeafBox box_of_triangle(BvhTriangle t)
 {
-    if (!is_finite_triangle(t)) return empty_box();
+    if (!is_active_triangle(t.v0, t.v1, t.v2)) return empty_box();
     LeafBox box;
     box.lo = min(t.v0, min(t.v1, t.v2));
     box.hi = max(t.v0, max(t.v1, t.v2));

@@ -26,7 +26,7 @@ struct BvhNode
 };
 BUFFER_OF(BvhNode, 16);
 
-// 40 bytes; all corners 0 for a triangle with a non-finite vertex, which is never hit.
+// 40 bytes; all corners 0 for a triangle that is not active (see triangle.h), which is never hit.
 struct BvhTriangle
 {
     vec3 v0;

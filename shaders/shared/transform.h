@@ -31,7 +31,7 @@ FUNC float row_point(vec4 row, vec3 p)
 FUNC vec3 transform_vector(Rows m, vec3 v) { return vec3(row_vector(m.r0, v), row_vector(m.r1, v), row_vector(m.r2, v)); }
 FUNC vec3 transform_point(Rows m, vec3 p) { return vec3(row_point(m.r0, p), row_point(m.r1, p), row_point(m.r2, p)); }
 
-// a 2^-exponent for the power of two that brings the largest of the entries to [1, 2); exact.
+// The largest power of two that is not above a positive float (0 for denormals).
 FUNC float power_of_two_below(float largest)
 {
     return uintBitsToFloat(floatBitsToUint(largest) & 0x7f800000u);

@@ -43,7 +43,8 @@ TEST(BlasInput, HoldsFinitePositionsOnly) {
 TEST(BlasInput, WithoutAnActiveTriangleIsEmpty) {
     EXPECT_TRUE(blas_input(geometry_of({}), true).is_empty());
     EXPECT_TRUE(blas_input(geometry_of({uvec3(0, 1, 6), uvec3(7, 0, 1)}), true).is_empty());
-    EXPECT_FALSE(blas_input(geometry_of({uvec3(0, 0, 0)}), true).is_empty());
+    EXPECT_TRUE(blas_input(geometry_of({uvec3(0, 0, 0), uvec3(0, 1, 1)}), true).is_empty());
+    EXPECT_FALSE(blas_input(geometry_of({uvec3(0, 0, 0), uvec3(3, 4, 5)}), true).is_empty());
 }
 
 }  // namespace

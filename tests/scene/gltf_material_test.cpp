@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tests/scene/gltf_builder.h"
-#include "tests/scene/png_bytes.h"
+#include "tests/scene/packed_bytes.h"
 
 namespace twinray::test {
 namespace {

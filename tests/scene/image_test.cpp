@@ -8,7 +8,7 @@
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 
-#include "tests/scene/png_bytes.h"
+#include "tests/scene/packed_bytes.h"
 #include "tests/scene/temp_dir.h"
 
 namespace twinray::test {

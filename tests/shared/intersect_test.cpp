@@ -82,6 +82,30 @@ TEST(ExactEdgeFunction, HasTheSignOfTheExactValueWhereRoundingHidesIt) {
     EXPECT_GT(ties, 100) << "the slow path was not exercised";
 }
 
+TEST(ActiveTriangle, IsDecidedExactlyForCornersOnALine) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    int flat = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        // a, a + k d, a + m d are exactly on a line: few enough bits for sums and products to be exact.
+        const float scale = std::ldexp(1.0f, static_cast<int>(random() % 160) - 80);
+        const auto coarse = [&] { return std::floor(unit(random) * 4096); };
+        const vec3 a(coarse(), coarse(), coarse()), d(coarse(), coarse(), coarse());
+        const vec3 b = a + d * 3.0f, c = a + d * 7.0f;
+        EXPECT_FALSE(is_active_triangle(a * scale, b * scale, c * scale));
+        vec3 moved = b;
+        moved[static_cast<int>(random() % 3)] += 0.25f;
+        const bool still_flat = cross(glm::dvec3(moved) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)) == glm::dvec3(0);
+        EXPECT_EQ(is_active_triangle(a * scale, moved * scale, c * scale), !still_flat);
+        flat += still_flat;
+    }
+    EXPECT_LT(flat, 100);
+    EXPECT_FALSE(is_active_triangle(vec3(1, 2, 3), vec3(1, 2, 3), vec3(4, 5, 6)));
+    EXPECT_FALSE(is_active_triangle(vec3(0), vec3(0), vec3(0)));
+    EXPECT_FALSE(is_active_triangle(vec3(0), vec3(1, 0, 0), vec3(0, INFINITY, 0)));
+    EXPECT_TRUE(is_active_triangle(vec3(0), vec3(1e-30f, 0, 0), vec3(0, 1e-30f, 0)));
+}
+
 TEST(EnterBox, ParallelRaysOnAFaceAreKept) {
     for (const float zero : {0.0f, -0.0f}) {
         float enter = 0;

@@ -14,12 +14,6 @@ using namespace testing;  // NOLINT
 
 constexpr std::uint64_t seed = 2026;
 
-Oracle oracle_of(const Soup& soup, const Transform& transform = {}) {
-    const MeshView view = soup.view();
-    const OracleInstance instance{0, transform, 0};
-    return {{&view, 1}, {&instance, 1}};
-}
-
 bool same_bytes(const Ray& a, const Ray& b) { return std::memcmp(&a, &b, sizeof(Ray)) == 0; }
 
 double distance_to_line(const glm::dvec3& point, const Ray& ray) {
@@ -53,10 +47,10 @@ TEST(AimedRays, RayIDependsOnlyOnSeedAndIndex) {
 
 TEST(AimedRays, BytesOfTheFirstRayAreFrozen) {
     const Ray ray = random_rays({vec3(-1), vec3(1)}, 1, seed)[0];
-    const std::array<float, 6> values = {ray.origin.x, ray.origin.y, ray.origin.z,
+    const std::array<float, 6> values = {ray.origin.x,    ray.origin.y,    ray.origin.z,
                                          ray.direction.x, ray.direction.y, ray.direction.z};
     const std::array<float, 6> expected = {-0x1.f3c992p-1f, -0x1.c22ffcp-1f, -0x1.fe518p-2f,
-                                           -0x1.b80178p-5f, 0x1.f71238p-1f, 0x1.6c92fcp-3f};
+                                           -0x1.b80178p-5f, 0x1.f71238p-1f,  0x1.6c92fcp-3f};
     EXPECT_EQ(values, expected);
 }
 
@@ -72,7 +66,7 @@ TEST(AimedRays, RandomRaysStartInAndAroundTheBoxAndPointEverywhere) {
         inside += ray.origin == glm::clamp(ray.origin, box.lo, box.hi);
     }
     for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_NEAR(sum[axis] / 20000, 0, 0.02) << "seed " << seed;         // 5 standard deviations of 1/sqrt(3n)
+        EXPECT_NEAR(sum[axis] / 20000, 0, 0.02) << "seed " << seed;  // 5 standard deviations of 1/sqrt(3n)
         EXPECT_NEAR(squares[axis] / 20000, 1.0 / 3, 0.011) << "seed " << seed;
     }
     EXPECT_GT(inside, 2000u) << "seed " << seed;

@@ -65,6 +65,7 @@ TEST(UpperBound95, OfNoEventIsTheRuleOfThree) {
 TEST(UpperBound95, IsOneWhereNothingIsKnown) {
     EXPECT_EQ(upper_bound_95(0, 0), 1);
     EXPECT_EQ(upper_bound_95(5, 5), 1);
+    EXPECT_EQ(upper_bound_95(6, 5), 1);
 }
 
 TEST(UpperBound95, GrowsWithTheCount) {

@@ -192,8 +192,7 @@ void expect_misses_leak(const Soup& soup, const Transform& transform = {}) {
     for (const Ray& ray : rays) {
         ASSERT_TRUE(oracle.closest_hit(ray).hit);
         ASSERT_EQ(judge(oracle, ray, miss()), both(Class::sw_leak, Class::hw_leak))
-            << "seed " << seed << ", direction " << ray.direction.x << " " << ray.direction.y << " "
-            << ray.direction.z;
+            << "seed " << seed << ", direction " << ray.direction.x << " " << ray.direction.y << " " << ray.direction.z;
         ASSERT_EQ(classify_any(oracle, ray, false, true), both(Class::sw_leak, Class::agree)) << "seed " << seed;
     }
 }

@@ -60,11 +60,7 @@ struct Scene32 {
     std::vector<Soup> soups;
     std::vector<OracleInstance> instances;
 
-    Oracle oracle() const {
-        std::vector<MeshView> views;
-        for (const Soup& soup : soups) views.push_back(soup.view());
-        return {views, instances};
-    }
+    Oracle oracle() const { return oracle_of(soups, instances); }
 
     // Closest hit by testing every triangle in float32.
     Hit trace(const Ray& ray, Test32 test) const {

@@ -96,7 +96,10 @@ TEST(HonestKernel, HasNoFaultUnderTransforms) {
     expect_no_fault(one(sphere(3), turned), 41);
     expect_no_fault(one(sphere(3), turned * Transform::scaling({-1, 30, 0.02f})), 42);
     const Scene32 many = {{sphere(2), cube(), grid(8, 0, 0, 1)},
-                          {{0, turned, 0}, {1, Transform::translation({1, 0, 0}), 0}, {1, {}, 0}, {2, turned, 0},
+                          {{0, turned, 0},
+                           {1, Transform::translation({1, 0, 0}), 0},
+                           {1, {}, 0},
+                           {2, turned, 0},
                            {0, Transform::translation({0, 3, 1}) * Transform::scaling({2, 2, 2}), 0}}};
     expect_no_fault(many, 43);
 }

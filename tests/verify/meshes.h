@@ -13,6 +13,7 @@
 #include "engine/core/ray.h"
 #include "engine/core/transform.h"
 #include "engine/scene/mesh.h"
+#include "engine/verify/oracle.h"
 
 namespace twinray::testing {
 
@@ -27,6 +28,16 @@ struct Soup {
         triangles.push_back({first, first + 1, first + 2});
     }
 };
+
+inline Oracle oracle_of(const std::vector<Soup>& soups, const std::vector<OracleInstance>& instances) {
+    std::vector<MeshView> views;
+    for (const Soup& soup : soups) views.push_back(soup.view());
+    return {views, instances};
+}
+
+inline Oracle oracle_of(const Soup& soup, const Transform& transform = {}) {
+    return oracle_of(std::vector<Soup>{soup}, {{0, transform, 0}});
+}
 
 inline Ray make_ray(vec3 origin, vec3 direction, float t_min = 0, float t_max = INFINITY) {
     return {origin, t_min, direction, t_max};

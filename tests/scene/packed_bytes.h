@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// PNG and gzip files as strings.
 #pragma once
 
 #include <cstdint>
@@ -33,6 +34,20 @@ inline std::string png_bytes(std::uint32_t width, std::uint32_t height, int bit_
     const std::string depth_and_type{static_cast<char>(bit_depth), static_cast<char>(color_type), 0, 0, 0};
     return "\x89PNG\r\n\x1a\n" + png_chunk("IHDR", big_endian(width) + big_endian(height) + depth_and_type) +
            png_chunk("IDAT", packed.substr(0, size)) + png_chunk("IEND", "");
+}
+
+inline std::string gzip_bytes(const std::string& bytes) {
+    z_stream stream{};
+    deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
+    std::string packed(deflateBound(&stream, bytes.size()) + 32, '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream.avail_in = static_cast<uInt>(bytes.size());
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+    stream.avail_out = static_cast<uInt>(packed.size());
+    deflate(&stream, Z_FINISH);
+    packed.resize(stream.total_out);
+    deflateEnd(&stream);
+    return packed;
 }
 
 }  // namespace twinray::test

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// Which triangles can be hit at all: those with finite corners that span an area. Decided exactly: three distinct
+// corners on a line would otherwise be hit now and then, because a sheared image of them is not quite on a line.
+#ifndef TWINRAY_SHARED_TRIANGLE_H
+#define TWINRAY_SHARED_TRIANGLE_H
+#include "shaders/shared/exact.h"
+#include "shaders/shared/ray.h"
+#include "shaders/shared/transform.h"
+
+// Whether 12 floats sum to 0, exactly: they are added one by one to an expansion, a sum of floats that do not overlap,
+// which is 0 only if all of them are (Shewchuk, "Adaptive Precision Floating-Point Arithmetic", 1997, theorem 10).
+FUNC bool sums_to_zero(float terms[12])
+{
+    float expansion[12];
+    for (uint i = 0u; i < 12u; i = i + 1u)
+    {
+        float carry = terms[i];
+        for (uint j = 0u; j < i; j = j + 1u)
+        {
+            PRECISE float sum = carry + expansion[j];
+            expansion[j] = sum_error(carry, expansion[j], sum);
+            carry = sum;
+        }
+        expansion[i] = carry;
+    }
+    bool zero = true;
+    for (uint k = 0u; k < 12u; k = k + 1u) zero = zero && expansion[k] == 0.0f;
+    return zero;
+}
+
+// Whether (b - a) x (c - a) = 0 for points of the plane: the six products and their rounding errors cancel.
+FUNC bool is_flat(vec2 a, vec2 b, vec2 c)
+{
+    float terms[12];
+    PRECISE float bc = b.x * c.y;
+    PRECISE float ba = b.x * a.y;
+    PRECISE float ac = a.x * c.y;
+    PRECISE float cb = b.y * c.x;
+    PRECISE float ab = b.y * a.x;
+    PRECISE float ca = a.y * c.x;
+    terms[0] = product_error(b.x, c.y, bc);
+    terms[1] = -product_error(b.x, a.y, ba);
+    terms[2] = -product_error(a.x, c.y, ac);
+    terms[3] = -product_error(b.y, c.x, cb);
+    terms[4] = product_error(b.y, a.x, ab);
+    terms[5] = product_error(a.y, c.x, ca);
+    terms[6] = bc;
+    terms[7] = -ba;
+    terms[8] = -ac;
+    terms[9] = -cb;
+    terms[10] = ab;
+    terms[11] = ca;
+    return sums_to_zero(terms);
+}
+
+// Whether rounding cannot hide that p - q is not 0, for products p and q of rounded differences: 8 roundings of 2^-24.
+FUNC bool is_surely_not_zero(float p, float q)
+{
+    PRECISE float difference = p - q;
+    PRECISE float size = abs(p) + abs(q);
+    return abs(difference) > size * 4.76837158203125e-07f;
+}
+
+FUNC bool is_finite_triangle(vec3 a, vec3 b, vec3 c) { return is_finite(a) && is_finite(b) && is_finite(c); }
+
+FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c)
+{
+    if (!is_finite_triangle(a, b, c)) return false;
+    PRECISE vec3 u = b - a;
+    PRECISE vec3 v = c - a;
+    if (is_surely_not_zero(u.x * v.y, u.y * v.x) || is_surely_not_zero(u.y * v.z, u.z * v.y) ||
+        is_surely_not_zero(u.z * v.x, u.x * v.z))
+        return true;
+    // Scaled by a power of two, which is exact, so that the products neither overflow nor vanish.
+    float largest = max(largest_entry(a), max(largest_entry(b), largest_entry(c)));
+    if (largest == 0.0f) return false;
+    float scale = power_of_two_below(largest);
+    if (scale == 0.0f) scale = 1.0f; // denormal corners
+    a = a / scale;
+    b = b / scale;
+    c = c / scale;
+    return !(is_flat(vec2(a.x, a.y), vec2(b.x, b.y), vec2(c.x, c.y)) &&
+             is_flat(vec2(a.y, a.z), vec2(b.y, b.z), vec2(c.y, c.z)) &&
+             is_flat(vec2(a.z, a.x), vec2(b.z, b.x), vec2(c.z, c.x)));
+}
+#endif

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "engine/scene/shapes.h"
+#include "samples/path_tracer/camera.h"
+#include "samples/path_tracer/image_io.h"
+#include "samples/path_tracer/lights.h"
+
+namespace twinray::path_tracer {
+namespace {
+
+Scene scene_of(Mesh mesh) {
+    Scene scene;
+    scene.materials.push_back({});
+    scene.meshes.push_back(std::move(mesh));
+    scene.instances.push_back({"instance", 0, {}});
+    return scene;
+}
+
+vec3 backward_of(const Camera& camera) {
+    return {camera.camera_to_world.rows[0].z, camera.camera_to_world.rows[1].z, camera.camera_to_world.rows[2].z};
+}
+
+TEST(FrameScene, ShowsTheWholeBox) {
+    const Scene scene = scene_of(make_box({3, -1, 5}, {9, 1, 6}));
+    for (const float aspect : {0.5f, 1.0f, 2.0f}) {
+        const CameraRays rays = camera_rays(frame_scene(scene, aspect), aspect);
+        float widest = 0;
+        for (const vec3& corner : scene.meshes[0].positions) {
+            const vec3 way = corner - rays.origin;
+            const float depth = dot(way, rays.forward);
+            EXPECT_GT(depth, 0);
+            const float x = dot(way, rays.right) / dot(rays.right, rays.right) / depth;
+            const float y = dot(way, rays.up) / dot(rays.up, rays.up) / depth;
+            widest = std::max({widest, std::abs(x), std::abs(y)});
+        }
+        EXPECT_LT(widest, 1) << aspect;
+        EXPECT_GT(widest, 0.8f) << aspect;
+    }
+}
+
+TEST(FrameScene, LooksIntoOpenRoomsAndAtPictures) {
+    Scene room = cornell_box_scene();
+    EXPECT_GT(backward_of(frame_scene(room, 1)).z, 0.95f);
+    EXPECT_GT(backward_of(frame_scene(scene_of(make_quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1})), 1)).x, 0.9f);
+}
+
+TEST(FrameScene, SeesClosedObjectsFromTheFrontRightAndAbove) {
+    const vec3 backward = backward_of(frame_scene(scene_of(make_icosphere(2)), 1));
+    EXPECT_TRUE(backward.x > 0.2f && backward.y > 0.2f && backward.z > 0.6f);
+}
+
+TEST(CameraRays, OrthographicRaysAreParallel) {
+    Camera camera;
+    camera.orthographic_half_height = 2.0f;
+    const CameraRays rays = camera_rays(camera, 1.5f);
+    EXPECT_EQ(rays.orthographic, 1u);
+    EXPECT_EQ(rays.right, vec3(3, 0, 0));
+    EXPECT_EQ(rays.up, vec3(0, 2, 0));
+    EXPECT_EQ(rays.forward, vec3(0, 0, -1));
+}
+
+TEST(AutomaticExposure, BringsTheMeanToMiddleGrey) {
+    Picture picture{2, 2, {vec3(0), vec3(2), vec3(8), vec3(4)}};
+    EXPECT_NEAR(std::exp2(automatic_exposure(picture)) * 4, 0.18f, 1e-5f);
+    EXPECT_EQ(automatic_exposure({1, 1, {vec3(0)}}), 0);
+}
+
+TEST(LocalLights, AreChosenByTheirPower) {
+    Scene scene = cornell_box_scene();
+    scene.lights.push_back({.name = "light", .kind = Light::Kind::point, .color = vec3(1)});
+    const LocalLights lights = collect_lights(scene);
+    ASSERT_EQ(lights.emitters.size(), 2u);
+    ASSERT_EQ(lights.punctual.size(), 1u);
+    const double light = static_cast<double>(PI * 0.25f * luminance(vec3(15, 13.5f, 11))), point = static_cast<double>(4 * PI);
+    EXPECT_NEAR(lights.punctual[0].chance, point / (light + point), 1e-5);
+    EXPECT_NEAR(lights.densities[lights.emitters[0].instance][0], light / (light + point) / 0.25, 1e-4);
+}
+
+TEST(HasLamps, TellsLampsFromGlowingLabels) {
+    Scene scene = scene_of(make_icosphere(0));
+    scene.materials[0].emission = vec3(1);
+    EXPECT_FALSE(has_lamps(scene));
+    scene.materials[0].emission = vec3(5);
+    EXPECT_TRUE(has_lamps(scene));
+}
+
+}  // namespace
+}  // namespace twinray::path_tracer

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+// Pictures whose value is known.
+#include "tests/samples/render.h"
+
+namespace twinray::path_tracer {
+namespace {
+
+class Energy : public test::VulkanTest {};
+
+Mesh flat_sphere(uint subdivisions) {
+    Mesh mesh = make_icosphere(subdivisions);
+    mesh.normals.clear();
+    return mesh;
+}
+
+constexpr uint strategies[] = {STRATEGY_MIS, STRATEGY_LIGHTS, STRATEGY_BSDF};
+const char* name_of_strategy(uint strategy) {
+    return strategy == STRATEGY_MIS ? "both" : strategy == STRATEGY_LIGHTS ? "lights" : "surfaces";
+}
+
+TEST_F(Energy, AWhiteConvexObjectVanishesInAWhiteFurnace) {
+    Scene scene;
+    add(scene, flat_sphere(2), lambert(1));
+    for (const uint strategy : strategies) {
+        Shot shot;
+        shot.environment = sky(1);
+        shot.settings.strategy = strategy;
+        shot.settings.camera = camera_rays(look({0, 0, 4}, vec3(0), 0.2f), 1);
+        expect_mean(render(context(), scene, shot), 1, name_of_strategy(strategy));
+    }
+}
+
+TEST_F(Energy, InsideAClosedFurnaceRadianceIsTheSumOfAllBounces) {
+    for (const float albedo : {0.5f, 0.9f}) {
+        Scene scene;
+        Material wall = lambert(albedo);
+        wall.emission = vec3(1);
+        wall.double_sided = true;
+        add(scene, flat_sphere(2), wall);
+        Shot shot;
+        shot.settings.max_depth = 12;
+        shot.settings.camera = camera_rays(look({0.1f, 0, 0}, {1, 0.2f, 0.3f}, 0.5f), 1);
+        double expected = 0;
+        for (int bounce = 12; bounce >= 0; --bounce) expected = 1 + static_cast<double>(albedo) * expected;
+        expect_mean(render(context(), scene, shot), expected, "closed furnace");
+    }
+}
+
+// A 2 x 2 light one above the middle of a floor: view factor 0.554126.
+TEST_F(Energy, ARectangularLightGivesItsAnalyticIrradianceByEveryStrategy) {
+    Scene scene;
+    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+    add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
+    for (const uint strategy : strategies) {
+        Shot shot;
+        shot.settings.max_depth = 1;
+        shot.settings.strategy = strategy;
+        shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+        expect_mean(render(context(), scene, shot), 0.554126423979571987, name_of_strategy(strategy));
+    }
+}
+
+TEST_F(Energy, ALightShinesFromItsFrontOnlyUnlessItIsTwoSided) {
+    for (const bool is_two_sided : {false, true}) {
+        Scene scene;
+        Material light = lamp(1);
+        light.double_sided = is_two_sided;
+        add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+        add(scene, make_quad({-1, 1, -1}, {0, 0, 2}, {2, 0, 0}), light);  // faces up
+        Shot shot;
+        shot.settings.max_depth = 1;
+        shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+        expect_mean(render(context(), scene, shot), is_two_sided ? 0.554126423979571987 : 0, "two-sided");
+    }
+}
+
+TEST_F(Energy, AnUnevenEnvironmentGivesTheSameByEveryStrategy) {
+    Scene scene;
+    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(0.8f));
+    HdrImage image{16, 8, std::vector<vec3>(128, vec3(0.1f))};
+    image.rgb[2 * 16 + 5] = vec3(40);
+    image.rgb[1 * 16 + 12] = vec3(7);
+    Statistics found[3];
+    for (const uint strategy : strategies) {
+        Shot shot;
+        shot.settings.max_depth = 1;
+        shot.settings.strategy = strategy;
+        shot.environment = std::make_unique<EnvironmentMap>(image);
+        shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+        found[strategy] = statistics(render(context(), scene, shot));
+    }
+    for (const uint strategy : {STRATEGY_LIGHTS, STRATEGY_BSDF})
+        EXPECT_NEAR(found[strategy].mean, found[STRATEGY_MIS].mean, 4 * (found[strategy].error + found[STRATEGY_MIS].error));
+    EXPECT_GT(found[STRATEGY_MIS].mean, 0.1);
+}
+
+TEST_F(Energy, PunctualLightsGiveTheirAnalyticIrradiance) {
+    const Light sun{.name = "light", .kind = Light::Kind::directional, .color = vec3(3), .direction = normalize(vec3(0, -1, 1))};
+    const Light point{.name = "light", .kind = Light::Kind::point, .color = vec3(5), .position = {0, 2, 0}};
+    const Light faded{.name = "light", .kind = Light::Kind::point, .color = vec3(5), .position = {0, 2, 0}, .range = 4};
+    const Light spot{.name = "light", .kind = Light::Kind::spot, .color = vec3(5), .position = {0, 2, 0}, .direction = {0, -1, 0}};
+    const Light aside{.name = "light", .kind = Light::Kind::spot, .color = vec3(5), .position = {0, 2, 0}, .direction = {1, 0, 0}};
+    const double pi = static_cast<double>(PI);
+    const struct {
+        Light light;
+        double irradiance;
+    } cases[] = {{sun, 3 * std::sqrt(0.5)}, {point, 1.25}, {faded, 1.25 * (1 - 1.0 / 16)}, {spot, 1.25}, {aside, 0}};
+    for (const auto& c : cases) {
+        Scene scene;
+        add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+        scene.lights = {c.light};
+        Shot shot;
+        shot.settings.max_depth = 1;
+        shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+        expect_mean(render(context(), scene, shot), c.irradiance / pi, "punctual");
+    }
+}
+
+TEST_F(Energy, AGlassSphereVanishesInAWhiteFurnace) {
+    for (const float roughness : {0.0f, 0.4f}) {
+        Scene scene;
+        Material glass{.name = "glass", .metallic = 0, .roughness = roughness, .transmission = 1, .ior = 1.5f};
+        add(scene, make_icosphere(4), glass);
+        Shot shot;
+        shot.environment = sky(1);
+        shot.settings.max_depth = 200;
+        shot.settings.camera = camera_rays(look({0, 0, 4}, vec3(0), 0.15f), 1);
+        const Picture picture = render(context(), scene, shot);
+        if (roughness == 0) expect_mean(picture, 1, "smooth glass");
+        // A rough interface scatters once and loses what would scatter again.
+        else EXPECT_NEAR(statistics(picture).mean, 0.95, 0.05);
+    }
+}
+
+TEST_F(Energy, AWhiteRoughMirrorReflectsItsSingleScatteringAlbedo) {
+    Scene scene;
+    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}),
+        {.name = "metal", .metallic = 1, .roughness = std::sqrt(0.5f)});
+    Shot shot;
+    shot.environment = sky(1);
+    shot.settings.camera = camera_rays(look({0, 1, 0}, vec3(0), 1e-3f), 1);
+    expect_mean(render(context(), scene, shot), 0.68785, "alpha 0.5, seen from above");
+}
+
+TEST_F(Energy, DepthZeroShowsOnlyWhatEmits) {
+    Scene scene;
+    add(scene, make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), lambert(1));
+    add(scene, make_quad({-1, 5, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
+    Shot shot;
+    shot.settings.max_depth = 0;
+    shot.settings.camera = camera_rays(look({0, 3, 0}, vec3(0), 0.1f), 1);
+    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 0);
+    shot.settings.camera = camera_rays(look({0, 3, 0}, {0, 5, 0}, 0.1f), 1);
+    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 1);
+}
+
+TEST_F(Energy, PicturesScaleExactlyWithPowersOfTwoOfTheLight) {
+    Picture pictures[2];
+    for (const int power : {0, 1}) {
+        Scene scene = cornell_box_scene();
+        for (Material& material : scene.materials) material.emission *= power ? 0x1p20f : 1.0f;
+        Shot shot;
+        shot.settings.samples = 2;
+        shot.settings.camera = camera_rays(scene.cameras[0], 1);
+        pictures[power] = render(context(), scene, shot);
+    }
+    for (std::size_t i = 0; i < pictures[0].rgb.size(); ++i) EXPECT_EQ(pictures[0].rgb[i] * 0x1p20f, pictures[1].rgb[i]);
+}
+
+}  // namespace
+}  // namespace twinray::path_tracer

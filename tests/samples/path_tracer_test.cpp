@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// What pictures must and must not depend on.
+#include <cstring>
+
+#include "tests/samples/render.h"
+
+namespace twinray::path_tracer {
+namespace {
+
+class PathTracer : public test::VulkanTest {};
+
+bool same_bits(const Picture& a, const Picture& b) {
+    return a.rgb.size() == b.rgb.size() && std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(vec3)) == 0;
+}
+
+Shot cornell_shot(const Scene& scene) {
+    Shot shot;
+    shot.settings.samples = 4;
+    shot.settings.camera = camera_rays(scene.cameras[0], 1);
+    return shot;
+}
+
+TEST_F(PathTracer, TheSameSeedGivesTheSameBitsAndAnotherDoesNot) {
+    const Scene scene = cornell_box_scene();
+    Shot shot = cornell_shot(scene);
+    const Picture first = render(context(), scene, shot);
+    EXPECT_TRUE(same_bits(first, render(context(), scene, shot)));
+    shot.settings.seed = 2;
+    EXPECT_FALSE(same_bits(first, render(context(), scene, shot)));
+}
+
+TEST_F(PathTracer, EveryDifferenceBetweenTheAcceleratorsComesFromARayOnWhichTheyDisagree) {
+    if (!missing_for_hardware(context().facts()).empty()) GTEST_SKIP() << "no ray tracing extensions";
+    Scene scene = cornell_box_scene();
+    // Blended and masked surfaces too, so that rays pass surfaces.
+    scene.materials[1].base_color.w = 0.5f;
+    scene.materials[1].alpha_mode = AlphaMode::blend;
+    HwTlas hardware(context());
+    SwTlas software(context());
+    push_scene(hardware, scene);
+    push_scene(software, scene);
+    software.sync();
+    const DeviceScene device_scene(context(), scene, collect_lights(scene), nullptr);
+    RenderSettings settings = cornell_shot(scene).settings;
+    settings.width = settings.height = 64;
+    Renderer renderer(context(), device_scene, settings);
+    CrossChecker checker(context(), software, renderer, 64 * 64);
+    const Picture by_hardware = renderer.render(hardware, true, &checker);
+    const Picture by_software = renderer.render(software, true);
+    const PictureDifference difference = compare_pictures(by_hardware, by_software, checker.marks());
+    EXPECT_EQ(difference.unexplained, 0u);
+    EXPECT_LT(checker.found(), 10u);
+    EXPECT_EQ(checker.kept().size(), checker.found());
+}
+
+// The check must be able to fail: against a scene with a wall less it finds the wall.
+TEST_F(PathTracer, TheCrossCheckFindsAMissingWall) {
+    Scene scene = cornell_box_scene();
+    SwTlas whole(context()), broken(context());
+    push_scene(whole, scene);
+    scene.meshes[2].positions[0] += vec3(0, 0.7f, 0);
+    push_scene(broken, scene);
+    broken.sync();
+    const DeviceScene device_scene(context(), scene, collect_lights(scene), nullptr);
+    Renderer renderer(context(), device_scene, cornell_shot(scene).settings);
+    CrossChecker checker(context(), broken, renderer, 32 * 32);
+    const Picture right = renderer.render(whole, true, &checker);
+    EXPECT_GT(checker.found(), 100u);
+    const std::vector<uint> nothing_marked(32 * 32);
+    EXPECT_GT(compare_pictures(right, renderer.render(broken, true), nothing_marked).unexplained, 0u);
+}
+
+TEST_F(PathTracer, AMaskedSurfaceLetsLightThroughWhereItsTextureIsClear) {
+    Scene scene;
+    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+    add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
+    Shot shot;
+    shot.settings.max_depth = 1;
+    shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+    const Picture open = render(context(), scene, shot);
+    scene.images.push_back({"clear", 2, 2, std::vector<std::uint8_t>(16, 100)});
+    Material screen = lambert(1);
+    screen.base_color_texture.image = 0;
+    screen.alpha_mode = AlphaMode::mask;
+    add(scene, make_quad({-5, 0.75f, -5}, {0, 0, 10}, {10, 0, 0}), screen);
+    EXPECT_TRUE(same_bits(open, render(context(), scene, shot))) << "clear, in the way of shadow rays";
+    add(scene, make_quad({-5, 0.25f, -5}, {0, 0, 10}, {10, 0, 0}), screen);
+    expect_mean(render(context(), scene, shot), 0.554126423979571987, "clear, in the way of camera rays too");
+    scene.materials[2].alpha_cutoff = 0.2f;
+    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 0) << "opaque";
+}
+
+TEST_F(PathTracer, ABlendedSurfaceDimsLightByItsAlpha) {
+    Scene scene;
+    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+    scene.lights = {{.name = "light", .kind = Light::Kind::directional, .color = vec3(PI), .direction = {0, -1, 0}}};
+    Material screen = lambert(0);
+    screen.base_color.w = 0.25f;
+    screen.alpha_mode = AlphaMode::blend;
+    for (int i = 0; i < 3; ++i)
+        add(scene, make_quad({-5, 1 + static_cast<float>(i), -5}, {0, 0, 10}, {10, 0, 0}), screen);
+    Shot shot;
+    shot.settings.max_depth = 1;
+    shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+    expect_mean(render(context(), scene, shot), 0.75 * 0.75 * 0.75, "three screens before the light");
+    shot.settings.camera = camera_rays(look({0, 9, 0}, vec3(0), 1e-4f), 1);
+    shot.settings.samples = 256;
+    expect_mean(render(context(), scene, shot), std::pow(0.75, 6), "and before the camera");
+}
+
+TEST_F(PathTracer, TiltedShadingNormalsLetNoLightThrough) {
+    Scene scene;
+    Mesh floor = make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0});
+    floor.normals.assign(4, normalize(vec3(1, 0.05f, 0)));
+    add(scene, floor, {.name = "plastic", .metallic = 0, .roughness = 0.5f});
+    // From below the floor, but above the tilted shading horizon.
+    scene.lights = {{.name = "light", .kind = Light::Kind::directional, .direction = normalize(vec3(-1, 0.02f, 0))}};
+    Shot shot;
+    shot.settings.camera = camera_rays(look({1, 0.5f, 0}, vec3(0), 0.1f), 1);
+    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 0);
+    scene.lights[0].direction = normalize(vec3(-1, -0.02f, 0));
+    EXPECT_GT(statistics(render(context(), scene, shot)).mean, 0);
+}
+
+TEST_F(PathTracer, TexturesAreSampledWithTheirTransformAndWrapping) {
+    // Row 0: red, green. Row 1: blue, white.
+    Scene scene;
+    scene.images.push_back({"four", 2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}});
+    const auto color_at = [&](vec2 uv, Texture texture) {
+        Mesh quad = make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+        quad.uvs.assign(4, uv);
+        Material material{.name = "picture", .unlit = true};
+        material.base_color_texture = texture;
+        scene.materials.clear(), scene.meshes.clear(), scene.instances.clear();
+        add(scene, quad, material);
+        Shot shot;
+        shot.settings.camera = camera_rays(look({0, 1, 0}, vec3(0), 0.1f), 1);
+        shot.settings.samples = 1;
+        return render(context(), scene, shot).rgb[0];
+    };
+    const Texture plain{.image = 0};
+    EXPECT_EQ(color_at({0.25f, 0.25f}, plain), vec3(1, 0, 0));
+    EXPECT_EQ(color_at({0.75f, 0.25f}, plain), vec3(0, 1, 0));
+    EXPECT_EQ(color_at({0.25f, 0.75f}, plain), vec3(0, 0, 1));
+    EXPECT_EQ(color_at({-0.75f, 3.25f}, plain), vec3(1, 0, 0));
+    EXPECT_EQ(color_at({0.5f, 0.25f}, plain), vec3(0.5f, 0.5f, 0));  // halfway, filtered in linear light
+    EXPECT_EQ(color_at({0, 0}, plain), vec3(0.5f, 0.5f, 0.5f));      // the corner of all four
+    EXPECT_EQ(color_at({-3, -3}, {.image = 0, .wrap_u = Wrap::clamp_to_edge, .wrap_v = Wrap::clamp_to_edge}), vec3(1, 0, 0));
+    EXPECT_EQ(color_at({1.25f, 0.25f}, {.image = 0, .wrap_u = Wrap::mirrored_repeat}), vec3(0, 1, 0));
+    EXPECT_EQ(color_at({-0.25f, 0.25f}, {.image = 0, .wrap_u = Wrap::mirrored_repeat}), vec3(1, 0, 0));
+    EXPECT_EQ(color_at({0.25f, 0.25f}, {.image = 0, .uv_row0 = vec3(1, 0, 0.5f)}), vec3(0, 1, 0));
+    EXPECT_EQ(color_at({1e30f, -1e30f}, plain).x, color_at({0, 0}, plain).x) << "far beyond where floats have fractions";
+}
+
+TEST_F(PathTracer, MirroredAndScaledInstancesShadeAsTheirTransformSays) {
+    const auto mean = [&](const Transform& transform) {
+        Scene scene;
+        add(scene, make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), lambert(1), transform);
+        add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1), transform);
+        Shot shot;
+        shot.settings.max_depth = 1;
+        shot.settings.camera = camera_rays(look(transform_point(transform, {0, 0.5f, 0}), transform_point(transform, vec3(0)), 1e-4f), 1);
+        return render(context(), scene, shot);
+    };
+    const double expected = 0.554126423979571987;
+    expect_mean(mean(Transform::scaling({-1, 1, 1})), expected, "mirrored");
+    expect_mean(mean(Transform::scaling(vec3(1e3f))), expected, "enlarged");
+    expect_mean(mean(Transform::translation({0, 0, 1}) * Transform::scaling(vec3(1e-2f))), expected, "shrunk, moved");
+}
+
+TEST_F(PathTracer, AnEmptySceneShowsItsSky) {
+    Shot shot;
+    shot.environment = sky(0.5f);
+    shot.settings.camera = camera_rays(look({0, 0, 1}, vec3(0), 0.3f), 1);
+    EXPECT_EQ(statistics(render(context(), Scene{}, shot)).mean, 0.5);
+}
+
+}  // namespace
+}  // namespace twinray::path_tracer

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Small renders for tests.
+#pragma once
+
+#include <cmath>
+#include <memory>
+
+#include "engine/accel/scene_push.h"
+#include "engine/scene/shapes.h"
+#include "hwtlas/hw_tlas.h"
+#include "samples/path_tracer/camera.h"
+#include "samples/path_tracer/cross_check.h"
+#include "swtlas/sw_tlas.h"
+#include "tests/support/device.h"
+
+namespace twinray::path_tracer {
+
+struct Shot {
+    RenderSettings settings = {.width = 32, .height = 32, .samples = 64};
+    std::unique_ptr<EnvironmentMap> environment = nullptr;  // null: black
+    bool hardware = false;
+};
+
+inline Camera look(vec3 from, vec3 to, float half_height) {
+    const vec3 backward = normalize(from - to);
+    const vec3 helper = std::abs(backward.y) > 0.9f ? vec3(0, 0, 1) : vec3(0, 1, 0);
+    const vec3 right = normalize(cross(helper, backward)), up = cross(backward, right);
+    Camera camera;
+    camera.camera_to_world = {{vec4(right.x, up.x, backward.x, from.x), vec4(right.y, up.y, backward.y, from.y),
+                               vec4(right.z, up.z, backward.z, from.z)}};
+    camera.vertical_fov = 2 * std::atan(half_height);
+    return camera;
+}
+
+inline std::unique_ptr<EnvironmentMap> sky(float radiance) {
+    return std::make_unique<EnvironmentMap>(constant_sky(vec3(radiance)));
+}
+
+inline Picture render(Context& context, const Scene& scene, const Shot& shot) {
+    const LocalLights lights = collect_lights(scene);
+    const DeviceScene device_scene(context, scene, lights, shot.environment.get());
+    Renderer renderer(context, device_scene, shot.settings);
+    std::unique_ptr<AbstractAccel> accel;
+    if (shot.hardware) accel = std::make_unique<HwTlas>(context);
+    else accel = std::make_unique<SwTlas>(context);
+    push_scene(*accel, scene);
+    Picture picture = renderer.render(*accel, true);
+    EXPECT_EQ(renderer.stats().non_finite, 0u);
+    return picture;
+}
+
+inline void add(Scene& scene, Mesh mesh, const Material& material, const Transform& transform = {}) {
+    mesh.materials.assign(mesh.triangles.size(), static_cast<uint>(scene.materials.size()));
+    scene.materials.push_back(material);
+    scene.instances.push_back({mesh.name, static_cast<uint>(scene.meshes.size()), transform});
+    scene.meshes.push_back(std::move(mesh));
+}
+
+// Nothing but Lambert: an index of refraction of 1 reflects nothing.
+inline Material lambert(float albedo) {
+    return {.name = "lambert", .base_color = vec4(vec3(albedo), 1), .metallic = 0, .roughness = 1, .ior = 1};
+}
+
+inline Material lamp(float radiance) {
+    return {.name = "lamp", .base_color = vec4(0, 0, 0, 1), .metallic = 0, .emission = vec3(radiance), .ior = 1};
+}
+
+// Over the pixels, whose values are independent of each other and have the same expectation.
+struct Statistics {
+    double mean = 0;
+    double error = 0;  // standard deviation of the mean
+};
+inline Statistics statistics(const Picture& picture) {
+    double sum = 0, squares = 0;
+    for (const vec3& pixel : picture.rgb) sum += static_cast<double>(pixel.y);
+    const auto n = static_cast<double>(picture.rgb.size());
+    for (const vec3& pixel : picture.rgb) squares += std::pow(static_cast<double>(pixel.y) - sum / n, 2);
+    return {sum / n, std::sqrt(squares / (n - 1) / n)};
+}
+
+// Within four standard deviations, plus float rounding.
+inline void expect_mean(const Picture& picture, double expected, const char* what) {
+    const Statistics found = statistics(picture);
+    EXPECT_NEAR(found.mean, expected, 4 * found.error + 2e-6 * expected) << what << ", error " << found.error;
+}
+
+}  // namespace twinray::path_tracer
