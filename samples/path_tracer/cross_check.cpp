@@ -39,11 +39,11 @@ void CrossChecker::record(Commands& commands, const TraceDesc& desc, Uints pixel
         const auto pass = commands.pass("cross-check clear");
         commands.fill(batch_count_, 0, sizeof(uint), 0);
     }
-    compare_.dispatch(commands,
-                      {desc.rays, desc.hits, again.hits, pixels, batch_.ref<Disagreement>(), batch_count_.ref<uint>(),
-                       marks_.ref<uint>(), pixel_stride, static_cast<uint>(desc.count), batch_capacity,
-                       desc.query == Query::any},
-                      desc.count);
+    compare_.dispatch(
+        commands,
+        {desc.rays, desc.hits, again.hits, pixels, batch_.ref<Disagreement>(), batch_count_.ref<uint>(),
+         marks_.ref<uint>(), pixel_stride, static_cast<uint>(desc.count), batch_capacity, desc.query == Query::any},
+        desc.count);
     const auto pass = commands.pass("cross-check count");
     commands.copy(batch_count_, 0, batch_count_readback_, 0, sizeof(uint));
 }

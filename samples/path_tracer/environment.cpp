@@ -60,8 +60,8 @@ HdrImage default_sky() {
         for (uint x = 0; x < sky.width; ++x) {
             const float polar = PI * (static_cast<float>(y) + 0.5f) / static_cast<float>(sky.height);
             const float azimuth = 2 * PI * ((static_cast<float>(x) + 0.5f) / static_cast<float>(sky.width) - 0.5f);
-            sky.rgb.push_back(default_radiance({std::sin(polar) * std::cos(azimuth), std::cos(polar),
-                                                std::sin(polar) * std::sin(azimuth)}));
+            sky.rgb.push_back(default_radiance(
+                {std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)}));
         }
     return sky;
 }

@@ -80,11 +80,15 @@ float automatic_exposure(const Picture& picture) {
     return count ? static_cast<float>(std::log2(0.18) - sum / static_cast<double>(count)) : 0;
 }
 
-bool is_picture_file(const std::filesystem::path& file) { return file.extension() == ".png" || file.extension() == ".exr"; }
+bool is_picture_file(const std::filesystem::path& file) {
+    return file.extension() == ".png" || file.extension() == ".exr";
+}
 
 void write_picture(const std::filesystem::path& file, const Picture& picture, float exposure) {
-    if (file.extension() == ".exr") write_exr(file, picture);
-    else write_png(file, picture, exposure);
+    if (file.extension() == ".exr")
+        write_exr(file, picture);
+    else
+        write_png(file, picture, exposure);
 }
 
 }  // namespace twinray::path_tracer

@@ -28,11 +28,12 @@ float texel_luminance(const Image& image, vec2 uv) {
 // Mean of the emission texture over a triangle, estimated; never 0, so that every emissive triangle can be chosen.
 float mean_texture(const Scene& scene, const Texture& texture, const Mesh& mesh, const uvec3& triangle) {
     if (texture.image < 0 || mesh.uvs.empty()) return 1;
-    constexpr vec2 points[] = {{1 / 3.f, 1 / 3.f}, {0.6f, 0.2f}, {0.2f, 0.6f}, {0.2f, 0.2f},
+    constexpr vec2 points[] = {{1 / 3.f, 1 / 3.f}, {0.6f, 0.2f},  {0.2f, 0.6f}, {0.2f, 0.2f},
                                {0.45f, 0.45f},     {0.1f, 0.45f}, {0.45f, 0.1f}};
     float sum = 0;
     for (const vec2 p : points) {
-        const vec2 uv = mesh.uvs[triangle.x] * (1 - p.x - p.y) + mesh.uvs[triangle.y] * p.x + mesh.uvs[triangle.z] * p.y;
+        const vec2 uv =
+            mesh.uvs[triangle.x] * (1 - p.x - p.y) + mesh.uvs[triangle.y] * p.x + mesh.uvs[triangle.z] * p.y;
         const vec3 affine(uv, 1);
         sum += texel_luminance(scene.images[static_cast<std::size_t>(texture.image)],
                                {dot(texture.uv_row0, affine), dot(texture.uv_row1, affine)});
@@ -63,7 +64,8 @@ struct Collector {
             const uvec3& triangle = mesh.triangles[primitive];
             const double area = world_area(mesh, triangle, instance.transform);
             if (!(area > 0) || !std::isfinite(area)) continue;
-            const float mean = luminance(material.emission) * mean_texture(scene, material.emission_texture, mesh, triangle);
+            const float mean =
+                luminance(material.emission) * mean_texture(scene, material.emission_texture, mesh, triangle);
             lights.emitters.push_back({index, primitive});
             areas.push_back(area);
             weights.push_back(double{PI} * area * double{mean} * (material.double_sided ? 2 : 1));
@@ -74,9 +76,10 @@ struct Collector {
         const float inner = std::cos(light.inner_cone), outer = std::cos(light.outer_cone);
         const float scale = 1 / std::max(inner - outer, 1e-3f);
         const bool is_spot = light.kind == Light::Kind::spot, is_sun = light.kind == Light::Kind::directional;
-        lights.punctual.push_back({light.position, is_sun    ? PUNCTUAL_DIRECTIONAL
-                                                   : is_spot ? PUNCTUAL_SPOT
-                                                             : PUNCTUAL_POINT,
+        lights.punctual.push_back({light.position,
+                                   is_sun    ? PUNCTUAL_DIRECTIONAL
+                                   : is_spot ? PUNCTUAL_SPOT
+                                             : PUNCTUAL_POINT,
                                    light.direction, light.range, light.color, 0, scale, -outer * scale});
         const float solid_angle = is_spot ? 2 * PI * (1 - outer) : 4 * PI;
         weights.push_back(double{luminance(light.color)} *

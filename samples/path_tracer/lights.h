@@ -14,7 +14,7 @@ struct LocalLights {
     std::vector<Emitter> emitters;
     std::vector<std::vector<float>> densities;  // per instance, then triangle: probability / world area; empty if dark
     std::vector<PunctualLight> punctual;
-    std::vector<AliasEntry> table;              // emitters, then punctual
+    std::vector<AliasEntry> table;  // emitters, then punctual
 
     bool empty() const { return table.empty(); }
 };

@@ -31,7 +31,9 @@ void add_files(CLI::App& app, Options& options) {
 }
 
 void add_picture(CLI::App& app, Options& options) {
-    app.add_option("--spp", options.samples, "paths per pixel")->check(CLI::Range(1u, max_samples))->capture_default_str();
+    app.add_option("--spp", options.samples, "paths per pixel")
+        ->check(CLI::Range(1u, max_samples))
+        ->capture_default_str();
     app.add_option("--width", options.width, "pixels; default: 640, or as the camera's aspect asks")
         ->check(CLI::Range(1u, max_side));
     app.add_option("--height", options.height, "pixels; default: 480")->check(CLI::Range(1u, max_side));
@@ -39,11 +41,11 @@ void add_picture(CLI::App& app, Options& options) {
     app.add_option("--max-depth", options.max_depth, "scatterings of a path; 0 shows only what emits")
         ->check(CLI::Range(0u, max_max_depth))
         ->capture_default_str();
-    app.add_option("--camera", options.camera, "which camera of the scene; -1 frames the whole scene, as do scenes without")
+    app.add_option("--camera", options.camera,
+                   "which camera of the scene; -1 frames the whole scene, as do scenes without")
         ->check(CLI::Range(-1, 1 << 20))
         ->capture_default_str();
-    app.add_option("--exposure", options.exposure,
-                   "stops, for .png; default: 0 under the default sky, else automatic");
+    app.add_option("--exposure", options.exposure, "stops, for .png; default: 0 under the default sky, else automatic");
 }
 
 void add_machine(CLI::App& app, Options& options) {
@@ -85,9 +87,12 @@ ContextDesc context_desc(const Options& options) {
     const char* disabled = std::getenv("TWINRAY_DISABLE");
     std::istringstream list(disabled ? disabled : "");
     for (std::string feature; std::getline(list, feature, ',');) {
-        if (feature == "ray_query") desc.use_ray_query = false;
-        else if (feature == "ray_tracing_pipeline") desc.use_ray_tracing_pipeline = false;
-        else fail("TWINRAY_DISABLE: unknown feature '", feature, "'; known are ray_query and ray_tracing_pipeline");
+        if (feature == "ray_query")
+            desc.use_ray_query = false;
+        else if (feature == "ray_tracing_pipeline")
+            desc.use_ray_tracing_pipeline = false;
+        else
+            fail("TWINRAY_DISABLE: unknown feature '", feature, "'; known are ray_query and ray_tracing_pipeline");
     }
     return desc;
 }

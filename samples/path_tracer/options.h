@@ -11,7 +11,7 @@ namespace twinray::path_tracer {
 
 struct Options {
     std::filesystem::path scene, output, environment, json, cross_check;
-    std::string accel;   // "hw", "sw", "" = hw where the device has it
+    std::string accel;  // "hw", "sw", "" = hw where the device has it
     std::string device;
     std::uint32_t samples = 16;
     std::uint32_t width = 0;   // 0: from the camera's aspect and the height, else 640

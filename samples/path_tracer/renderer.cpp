@@ -43,8 +43,10 @@ Renderer::Renderer(Context& context, const DeviceScene& scene, const RenderSetti
       settings_(settings),
       batch_size_(std::min(max_batch_size, std::uint64_t{settings.width} * settings.height)),
       generate_(context, kernel("path_tracer_generate", path_tracer_generate_spirv)),
-      shade_(context, kernel("path_tracer_shade", path_tracer_shade_spirv, constants_of(scene.features(), settings.strategy))),
-      shadow_(context, kernel("path_tracer_shadow", path_tracer_shadow_spirv, constants_of(scene.features(), settings.strategy))),
+      shade_(context,
+             kernel("path_tracer_shade", path_tracer_shade_spirv, constants_of(scene.features(), settings.strategy))),
+      shadow_(context, kernel("path_tracer_shadow", path_tracer_shadow_spirv,
+                              constants_of(scene.features(), settings.strategy))),
       hits_(array_of<Hit>(context, "hits", batch_size_)),
       counters_(array_of<Counters>(context, "counters", 1)),
       counters_readback_(context, {.name = "counters readback", .bytes = sizeof(Counters), .memory = Memory::readback}),
@@ -52,7 +54,8 @@ Renderer::Renderer(Context& context, const DeviceScene& scene, const RenderSetti
     for (int i = 0; i < 2; ++i) {
         rays_[i] = array_of<Ray>(context, "rays", batch_size_);
         paths_[i] = array_of<PathState>(context, "paths", batch_size_);
-        if (i == 1 && !scene.features().alpha) break;  // shadow rays take a second round only behind transparent surfaces
+        if (i == 1 && !scene.features().alpha)
+            break;  // shadow rays take a second round only behind transparent surfaces
         shadow_rays_[i] = array_of<Ray>(context, "shadow rays", batch_size_);
         shadows_[i] = array_of<ShadowState>(context, "shadows", batch_size_);
     }
@@ -75,7 +78,8 @@ Picture Renderer::render(AbstractAccel& accel, bool quiet, WaveObserver* observe
     const Tracing tracing{accel, accel.view(), observer};
     const auto pixels = static_cast<uint>(std::uint64_t{settings_.width} * settings_.height);
     const auto batch = static_cast<uint>(batch_size_);
-    Progress progress("path_tracer " + accel.name(), std::uint64_t{(pixels + batch - 1) / batch} * settings_.samples, quiet);
+    Progress progress("path_tracer " + accel.name(), std::uint64_t{(pixels + batch - 1) / batch} * settings_.samples,
+                      quiet);
     for (uint sample = 0; sample < settings_.samples; ++sample)
         for (uint first = 0; first < pixels; first += batch) {
             trace_batch(tracing, {first, std::min(batch, pixels - first), sample});
@@ -130,12 +134,12 @@ void Renderer::shadow_rounds(const Tracing& tracing, uint count) {
                .query = has_alpha ? Query::closest : Query::any},
               {shadows_[from].address() + offsetof(ShadowState, pixel)}, sizeof(ShadowState));
         clear_appended(commands);
-        shadow_.dispatch(commands,
-                         {scene_.data(), shadow_rays_[from].ref<Ray>(), hits_.ref<Hit>(),
-                          shadows_[from].ref<ShadowState>(), shadow_rays_[to].ref<Ray>(),
-                          shadows_[to].ref<ShadowState>(), counters_.ref<Counters>(), sums_.ref<Radiance>(), count,
-                          round == MAX_SHADOW_PASSES},
-                         count);
+        shadow_.dispatch(
+            commands,
+            {scene_.data(), shadow_rays_[from].ref<Ray>(), hits_.ref<Hit>(), shadows_[from].ref<ShadowState>(),
+             shadow_rays_[to].ref<Ray>(), shadows_[to].ref<ShadowState>(), counters_.ref<Counters>(),
+             sums_.ref<Radiance>(), count, round == MAX_SHADOW_PASSES},
+            count);
         stats_.shadow_rays += count;
         count = run(commands, tracing).shadows;
     }
@@ -144,7 +148,8 @@ void Renderer::shadow_rounds(const Tracing& tracing, uint count) {
 void Renderer::trace(Commands& commands, const Tracing& tracing, const TraceDesc& desc, Uints pixels,
                      std::size_t pixel_stride) {
     tracing.accel.trace(commands, tracing.view, desc);
-    if (tracing.observer) tracing.observer->record(commands, desc, pixels, static_cast<uint>(pixel_stride / sizeof(uint)));
+    if (tracing.observer)
+        tracing.observer->record(commands, desc, pixels, static_cast<uint>(pixel_stride / sizeof(uint)));
 }
 
 void Renderer::clear_appended(Commands& commands) {

@@ -11,8 +11,8 @@ namespace twinray::path_tracer {
 struct RenderSettings {
     uint width = 640;
     uint height = 480;
-    uint samples = 16;    // per pixel
-    uint max_depth = 8;   // scatterings of a path; 0 = only what emits is seen
+    uint samples = 16;   // per pixel
+    uint max_depth = 8;  // scatterings of a path; 0 = only what emits is seen
     uint seed = 1;
     CameraRays camera = {};
     uint strategy = STRATEGY_MIS;

@@ -81,15 +81,16 @@ std::string cross_check_text(const Options& options, const Session& session, con
     out << "cross-check " << options.scene.filename().string() << ", " << session.settings.width << " x "
         << session.settings.height << ", " << session.settings.samples << " spp, on " << session.context->facts().name
         << ": HwTlas by " << result.hardware_path << " against SwTlas\n"
-        << "  rays traced by both                  " << result.path_rays + result.shadow_rays << " (" << result.path_rays
-        << " path, " << result.shadow_rays << " shadow)\n"
+        << "  rays traced by both                  " << result.path_rays + result.shadow_rays << " ("
+        << result.path_rays << " path, " << result.shadow_rays << " shadow)\n"
         << "  rays with different hits             " << result.disagreeing << '\n';
     for (const auto& [kinds, count] : result.classes)
         out << "    SW " << name(kinds.first) << ", HW " << name(kinds.second) << ": " << count << '\n';
     if (result.classified < result.disagreeing)
         out << "    not classified: " << result.disagreeing - result.classified << '\n';
     out << "  faults of ours (SW_LEAK, SW_FALSE, T_ERR)  " << result.faults_of_ours << '\n'
-        << "  differing pixels                     " << result.pictures.differing << " of " << result.pixel_count << '\n'
+        << "  differing pixels                     " << result.pictures.differing << " of " << result.pixel_count
+        << '\n'
         << "  differing pixels without such a ray  " << result.pictures.unexplained << '\n'
         << (result.passed() ? "PASS\n" : "FAIL\n");
     return out.str();
@@ -106,7 +107,8 @@ void report_render(const Options& options, const Session& session, const Abstrac
         write_line(options.json, render_json(options, session, accel).dump() + "\n", std::ios::app);
     if (options.quiet) return;
     if (stats.cut)
-        std::fprintf(stderr, "path_tracer: %llu rays met more transparent surfaces than are followed (%u, shadows %u)\n",
+        std::fprintf(stderr,
+                     "path_tracer: %llu rays met more transparent surfaces than are followed (%u, shadows %u)\n",
                      static_cast<unsigned long long>(stats.cut), MAX_PASSES, MAX_SHADOW_PASSES);
     std::printf("%s: %u x %u, %u spp by %s (%s) in %.1f s, %.2f Mrays/s\n", options.output.string().c_str(),
                 session.settings.width, session.settings.height, session.settings.samples, accel.name().c_str(),

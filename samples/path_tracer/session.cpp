@@ -22,18 +22,28 @@ Scene load(const Options& options) {
     const std::string builtin = "builtin:", name = options.scene.string();
     if (name.rfind(builtin, 0) != 0) {
         Scene scene = load_scene(options.scene);
-        std::stable_sort(scene.instances.begin(), scene.instances.end(), [](const Instance& a, const Instance& b) { return a.mesh < b.mesh; });
+        // push_scene wants them grouped.
+        std::ranges::stable_sort(scene.instances, {}, &Instance::mesh);
         return scene;
     }
     if (name == builtin + "cornell-box") return cornell_box_scene();
     fail("'", name, "': unknown; there is builtin:cornell-box");
 }
 
+// Before the work, not after it.
+void check_folder(const std::filesystem::path& file) {
+    if (file.empty()) return;
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    if (!std::filesystem::is_directory(folder))
+        fail("'", file.string(), "': there is no folder '", folder.string(), "'");
+}
+
 const Camera* chosen_camera(const Options& options, const Scene& scene) {
     if (options.camera < 0 || (scene.cameras.empty() && options.camera == 0)) return nullptr;
     const auto index = static_cast<std::size_t>(options.camera);
     if (index >= scene.cameras.size())
-        fail("'", options.scene.string(), "': --camera ", index, " does not exist; the scene has ", scene.cameras.size());
+        fail("'", options.scene.string(), "': --camera ", index, " does not exist; the scene has ",
+             scene.cameras.size());
     return &scene.cameras[index];
 }
 
@@ -47,7 +57,9 @@ RenderSettings make_settings(const Options& options, const Scene& scene) {
     const auto scaled = [](uint side, float factor) {
         return std::max(1u, static_cast<uint>(std::lround(static_cast<float>(side) * factor)));
     };
-    settings.height = options.height ? options.height : options.width ? scaled(options.width, 1 / aspect) : default_height;
+    settings.height = options.height  ? options.height
+                      : options.width ? scaled(options.width, 1 / aspect)
+                                      : default_height;
     settings.width = options.width ? options.width : scaled(settings.height, aspect);
     aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     settings.camera = camera_rays(camera ? *camera : frame_scene(scene, aspect), aspect);
@@ -62,6 +74,7 @@ float Session::exposure(const Options& options, const Picture& picture) const {
 }
 
 Session make_session(const Options& options) {
+    for (const std::filesystem::path& file : {options.output, options.json, options.cross_check}) check_folder(file);
     Session session;
     session.scene = load(options);
     if (!options.quiet)
@@ -74,16 +87,18 @@ Session make_session(const Options& options) {
     if (!options.environment.empty())
         session.environment = std::make_unique<EnvironmentMap>(load_hdr_image(options.environment));
     session.context = std::make_unique<Context>(context_desc(options));
-    session.device_scene = std::make_unique<DeviceScene>(*session.context, session.scene, session.lights,
-                                                         session.environment.get());
+    session.device_scene =
+        std::make_unique<DeviceScene>(*session.context, session.scene, session.lights, session.environment.get());
     session.renderer = std::make_unique<Renderer>(*session.context, *session.device_scene, session.settings);
     return session;
 }
 
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const std::string& kind) {
     std::unique_ptr<AbstractAccel> accel;
-    if (kind == "hw") accel = std::make_unique<HwTlas>(context);
-    else accel = std::make_unique<SwTlas>(context);
+    if (kind == "hw")
+        accel = std::make_unique<HwTlas>(context);
+    else
+        accel = std::make_unique<SwTlas>(context);
     push_scene(*accel, scene);
     accel->sync();
     return accel;

@@ -44,13 +44,12 @@ TEST(Bsdf, TheAlbedoOfAWhiteMirrorIsThatOfSingleScatteringGgx) {
     const struct {
         float alpha, cosine;
         double albedo;
-    } table[] = {{0.1f, 1, 0.988306},  {0.1f, 0.5f, 0.969205},  {0.1f, 0.1f, 0.883455},
-                 {0.25f, 1, 0.91581},  {0.25f, 0.5f, 0.857263}, {0.25f, 0.1f, 0.891622},
-                 {0.5f, 1, 0.68785},   {0.5f, 0.5f, 0.698251},  {0.5f, 0.1f, 0.860105},
-                 {1, 1, 0.3068528},    {1, 0.5f, 0.450694},     {1, 0.1f, 0.760211}};
+    } table[] = {{0.1f, 1, 0.988306},     {0.1f, 0.5f, 0.969205},  {0.1f, 0.1f, 0.883455}, {0.25f, 1, 0.91581},
+                 {0.25f, 0.5f, 0.857263}, {0.25f, 0.1f, 0.891622}, {0.5f, 1, 0.68785},     {0.5f, 0.5f, 0.698251},
+                 {0.5f, 0.1f, 0.860105},  {1, 1, 0.3068528},       {1, 0.5f, 0.450694},    {1, 0.1f, 0.760211}};
     for (const auto& row : table) {
-        const double albedo = mean_of_samples(mirror(row.alpha), direction(row.cosine),
-                                              [](const BsdfSample& s) { return s.weight.x; });
+        const double albedo =
+            mean_of_samples(mirror(row.alpha), direction(row.cosine), [](const BsdfSample& s) { return s.weight.x; });
         EXPECT_NEAR(albedo, row.albedo, 1e-3) << "alpha " << row.alpha << " cosine " << row.cosine;
     }
 }
@@ -70,7 +69,8 @@ TEST(Bsdf, SamplingAndEvaluationAgree) {
             const vec3 wo = direction(cosine);
             const double sampled = mean_of_samples(bsdf, wo, [](const BsdfSample& s) { return s.weight.y; });
             const double integrated = integral([&](vec3 wi) { return evaluate(bsdf, wo, wi).f.y; });
-            EXPECT_NEAR(sampled, integrated, 3e-3) << "alpha " << bsdf.alpha << " eta " << bsdf.eta << " cosine " << cosine;
+            EXPECT_NEAR(sampled, integrated, 3e-3)
+                << "alpha " << bsdf.alpha << " eta " << bsdf.eta << " cosine " << cosine;
         }
 }
 
@@ -86,7 +86,8 @@ TEST(Bsdf, OpaqueSurfacesAreReciprocal) {
     for (uint i = 0; i < 1000; ++i) {
         const vec3 wo = sample_cosine_hemisphere(unit_floats(sample_pair(i, 0, 0, 1)));
         const vec3 wi = sample_cosine_hemisphere(unit_floats(sample_pair(i, 0, 1, 1)));
-        const float there = evaluate(plastic(0.3f), wo, wi).f.x / wi.z, back = evaluate(plastic(0.3f), wi, wo).f.x / wo.z;
+        const float there = evaluate(plastic(0.3f), wo, wi).f.x / wi.z,
+                    back = evaluate(plastic(0.3f), wi, wo).f.x / wo.z;
         EXPECT_NEAR(there, back, 1e-4f * there);
     }
 }
@@ -94,8 +95,8 @@ TEST(Bsdf, OpaqueSurfacesAreReciprocal) {
 TEST(Bsdf, SmoothGlassReflectsAndTransmitsEverything) {
     for (const float eta : {1.5f, 1 / 1.5f})
         for (const float cosine : {1.0f, 0.7f, 0.2f}) {
-            const double total = mean_of_samples(glass(0, eta), direction(cosine),
-                                                 [](const BsdfSample& s) { return s.weight.x; });
+            const double total =
+                mean_of_samples(glass(0, eta), direction(cosine), [](const BsdfSample& s) { return s.weight.x; });
             EXPECT_EQ(total, 1) << eta << ' ' << cosine;
         }
 }

@@ -72,7 +72,8 @@ TEST(LocalLights, AreChosenByTheirPower) {
     const LocalLights lights = collect_lights(scene);
     ASSERT_EQ(lights.emitters.size(), 2u);
     ASSERT_EQ(lights.punctual.size(), 1u);
-    const double light = static_cast<double>(PI * 0.25f * luminance(vec3(15, 13.5f, 11))), point = static_cast<double>(4 * PI);
+    const double light = static_cast<double>(PI * 0.25f * luminance(vec3(15, 13.5f, 11))),
+                 point = static_cast<double>(4 * PI);
     EXPECT_NEAR(lights.punctual[0].chance, point / (light + point), 1e-5);
     EXPECT_NEAR(lights.densities[lights.emitters[0].instance][0], light / (light + point) / 0.25, 1e-4);
 }

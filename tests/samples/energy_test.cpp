@@ -90,16 +90,20 @@ TEST_F(Energy, AnUnevenEnvironmentGivesTheSameByEveryStrategy) {
         found[strategy] = statistics(render(context(), scene, shot));
     }
     for (const uint strategy : {STRATEGY_LIGHTS, STRATEGY_BSDF})
-        EXPECT_NEAR(found[strategy].mean, found[STRATEGY_MIS].mean, 4 * (found[strategy].error + found[STRATEGY_MIS].error));
+        EXPECT_NEAR(found[strategy].mean, found[STRATEGY_MIS].mean,
+                    4 * (found[strategy].error + found[STRATEGY_MIS].error));
     EXPECT_GT(found[STRATEGY_MIS].mean, 0.1);
 }
 
 TEST_F(Energy, PunctualLightsGiveTheirAnalyticIrradiance) {
-    const Light sun{.name = "light", .kind = Light::Kind::directional, .color = vec3(3), .direction = normalize(vec3(0, -1, 1))};
+    const Light sun{
+        .name = "light", .kind = Light::Kind::directional, .color = vec3(3), .direction = normalize(vec3(0, -1, 1))};
     const Light point{.name = "light", .kind = Light::Kind::point, .color = vec3(5), .position = {0, 2, 0}};
     const Light faded{.name = "light", .kind = Light::Kind::point, .color = vec3(5), .position = {0, 2, 0}, .range = 4};
-    const Light spot{.name = "light", .kind = Light::Kind::spot, .color = vec3(5), .position = {0, 2, 0}, .direction = {0, -1, 0}};
-    const Light aside{.name = "light", .kind = Light::Kind::spot, .color = vec3(5), .position = {0, 2, 0}, .direction = {1, 0, 0}};
+    const Light spot{
+        .name = "light", .kind = Light::Kind::spot, .color = vec3(5), .position = {0, 2, 0}, .direction = {0, -1, 0}};
+    const Light aside{
+        .name = "light", .kind = Light::Kind::spot, .color = vec3(5), .position = {0, 2, 0}, .direction = {1, 0, 0}};
     const double pi = static_cast<double>(PI);
     const struct {
         Light light;
@@ -128,7 +132,8 @@ TEST_F(Energy, AGlassSphereVanishesInAWhiteFurnace) {
         const Picture picture = render(context(), scene, shot);
         if (roughness == 0) expect_mean(picture, 1, "smooth glass");
         // A rough interface scatters once and loses what would scatter again.
-        else EXPECT_NEAR(statistics(picture).mean, 0.95, 0.05);
+        else
+            EXPECT_NEAR(statistics(picture).mean, 0.95, 0.05);
     }
 }
 
@@ -164,7 +169,8 @@ TEST_F(Energy, PicturesScaleExactlyWithPowersOfTwoOfTheLight) {
         shot.settings.camera = camera_rays(scene.cameras[0], 1);
         pictures[power] = render(context(), scene, shot);
     }
-    for (std::size_t i = 0; i < pictures[0].rgb.size(); ++i) EXPECT_EQ(pictures[0].rgb[i] * 0x1p20f, pictures[1].rgb[i]);
+    for (std::size_t i = 0; i < pictures[0].rgb.size(); ++i)
+        EXPECT_EQ(pictures[0].rgb[i] * 0x1p20f, pictures[1].rgb[i]);
 }
 
 }  // namespace

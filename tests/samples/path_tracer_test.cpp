@@ -145,11 +145,13 @@ TEST_F(PathTracer, TexturesAreSampledWithTheirTransformAndWrapping) {
     EXPECT_EQ(color_at({-0.75f, 3.25f}, plain), vec3(1, 0, 0));
     EXPECT_EQ(color_at({0.5f, 0.25f}, plain), vec3(0.5f, 0.5f, 0));  // halfway, filtered in linear light
     EXPECT_EQ(color_at({0, 0}, plain), vec3(0.5f, 0.5f, 0.5f));      // the corner of all four
-    EXPECT_EQ(color_at({-3, -3}, {.image = 0, .wrap_u = Wrap::clamp_to_edge, .wrap_v = Wrap::clamp_to_edge}), vec3(1, 0, 0));
+    EXPECT_EQ(color_at({-3, -3}, {.image = 0, .wrap_u = Wrap::clamp_to_edge, .wrap_v = Wrap::clamp_to_edge}),
+              vec3(1, 0, 0));
     EXPECT_EQ(color_at({1.25f, 0.25f}, {.image = 0, .wrap_u = Wrap::mirrored_repeat}), vec3(0, 1, 0));
     EXPECT_EQ(color_at({-0.25f, 0.25f}, {.image = 0, .wrap_u = Wrap::mirrored_repeat}), vec3(1, 0, 0));
     EXPECT_EQ(color_at({0.25f, 0.25f}, {.image = 0, .uv_row0 = vec3(1, 0, 0.5f)}), vec3(0, 1, 0));
-    EXPECT_EQ(color_at({1e30f, -1e30f}, plain).x, color_at({0, 0}, plain).x) << "far beyond where floats have fractions";
+    EXPECT_EQ(color_at({1e30f, -1e30f}, plain).x, color_at({0, 0}, plain).x)
+        << "far beyond where floats have fractions";
 }
 
 TEST_F(PathTracer, MirroredAndScaledInstancesShadeAsTheirTransformSays) {
@@ -159,7 +161,8 @@ TEST_F(PathTracer, MirroredAndScaledInstancesShadeAsTheirTransformSays) {
         add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1), transform);
         Shot shot;
         shot.settings.max_depth = 1;
-        shot.settings.camera = camera_rays(look(transform_point(transform, {0, 0.5f, 0}), transform_point(transform, vec3(0)), 1e-4f), 1);
+        shot.settings.camera =
+            camera_rays(look(transform_point(transform, {0, 0.5f, 0}), transform_point(transform, vec3(0)), 1e-4f), 1);
         return render(context(), scene, shot);
     };
     const double expected = 0.554126423979571987;

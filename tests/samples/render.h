@@ -41,8 +41,10 @@ inline Picture render(Context& context, const Scene& scene, const Shot& shot) {
     const DeviceScene device_scene(context, scene, lights, shot.environment.get());
     Renderer renderer(context, device_scene, shot.settings);
     std::unique_ptr<AbstractAccel> accel;
-    if (shot.hardware) accel = std::make_unique<HwTlas>(context);
-    else accel = std::make_unique<SwTlas>(context);
+    if (shot.hardware)
+        accel = std::make_unique<HwTlas>(context);
+    else
+        accel = std::make_unique<SwTlas>(context);
     push_scene(*accel, scene);
     Picture picture = renderer.render(*accel, true);
     EXPECT_EQ(renderer.stats().non_finite, 0u);

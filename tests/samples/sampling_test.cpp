@@ -30,7 +30,8 @@ TEST(SamplePair, PixelsDimensionsAndSeedsAreUncorrelated) {
     const auto correlation = [](auto first, auto second) {
         constexpr uint count = 1 << 14;
         double sum = 0;
-        for (uint i = 0; i < count; ++i) sum += (double{unit_float(first(i))} - 0.5) * (double{unit_float(second(i))} - 0.5);
+        for (uint i = 0; i < count; ++i)
+            sum += (double{unit_float(first(i))} - 0.5) * (double{unit_float(second(i))} - 0.5);
         return sum / count * 12;
     };
     const auto base = [](uint i) { return sample_pair(i, 3, 1, 1).x; };
@@ -86,7 +87,8 @@ TEST(AliasTable, GivesEachEntryItsProbability) {
     std::mt19937 random(7);
     for (const std::size_t n : {1u, 2u, 3u, 1000u}) {
         std::vector<double> weights(n);
-        for (double& w : weights) w = std::uniform_real_distribution<double>(0, 1)(random) < 0.3 ? 0 : static_cast<double>(random()) * 1e-9;
+        for (double& w : weights)
+            w = std::uniform_real_distribution<double>(0, 1)(random) < 0.3 ? 0 : static_cast<double>(random()) * 1e-9;
         weights[0] = 5;
         double total = 0;
         for (const double w : weights) total += w;

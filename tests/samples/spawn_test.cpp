@@ -13,8 +13,8 @@ namespace {
 
 struct Case {
     const char* name;
-    float size;       // of the triangle
-    float distance;   // of the triangle from the origin of its object space
+    float size;      // of the triangle
+    float distance;  // of the triangle from the origin of its object space
     Transform transform;
 };
 

@@ -43,8 +43,10 @@ TEST(Ply, AsciiKeepsVerticesTrianglesAndTheirOrder) {
 }
 
 TEST(Ply, NumbersAreRoundedOnceAndBeyondFloatAreInfiniteOrZero) {
-    const Mesh mesh = load(ply(3, "0.1 16777217 +3\n1e60 -1e60 1e-60\nnan inf -inf\n", 1, "3 0 1 2\n")).meshes[0];
-    EXPECT_EQ(mesh.positions[0], vec3(0.1f, 16777216, 3));
+    const Mesh mesh =
+        load(ply(3, "0.1 1.00000005960464477539062500000001 +3\n1e60 -1e60 1e-60\nnan inf -inf\n", 1, "3 0 1 2\n"))
+            .meshes[0];
+    EXPECT_EQ(mesh.positions[0], vec3(0.1f, 1.00000012f, 3));
     EXPECT_EQ(mesh.positions[1], vec3(INFINITY, -INFINITY, 0));
     EXPECT_TRUE(std::isnan(mesh.positions[2].x));
     EXPECT_EQ(mesh.positions[2].z, -INFINITY);
@@ -93,10 +95,19 @@ TEST(Ply, NormalsAndTextureCoordinatesAreTakenFromAnyPlace) {
     EXPECT_EQ(mesh.uvs[0], vec2(0.5f, 0.75f));  // v up in .ply, down here
 }
 
+TEST(Ply, AListIsNoTextureCoordinate) {
+    const Mesh mesh = load("ply\nformat ascii 1.0\nelement vertex 3\n" + POSITIONS +
+                           "property list uchar float u\nproperty float v\nelement face 1\n" + FACE_LIST +
+                           "end_header\n0 0 0 0 9\n1 0 0 1 5 9\n0 1 0 2 5 6 9\n3 0 1 2\n")
+                          .meshes[0];
+    EXPECT_TRUE(mesh.uvs.empty());
+    EXPECT_EQ(mesh.positions[2], vec3(0, 1, 0));
+}
+
 TEST(Ply, FacesMayComeBeforeVerticesAndOtherElementsAreSkipped) {
     const Mesh mesh = load("ply\nformat ascii 1.0\nelement face 1\n" + FACE_LIST +
-                           "element edge 2\nproperty int a\nproperty list uchar int b\nelement vertex 3\n" + POSITIONS +
-                           "end_header\n3 0 1 2\n5 2 6 7\n8 0\n" + TRIANGLE)
+                           "element edge 2\nproperty int a\nproperty list uchar int vertex_index\nelement vertex 3\n" +
+                           POSITIONS + "end_header\n3 0 1 2\n5 2 6 7\n8 0\n" + TRIANGLE)
                           .meshes[0];
     EXPECT_EQ(mesh.triangles, (std::vector<uvec3>{{0, 1, 2}}));
     EXPECT_EQ(mesh.positions[2], vec3(0, 1, 0));
@@ -132,6 +143,7 @@ TEST(Ply, HeaderFaultsAreNamed) {
     expect_error(replaced("element face 1", "element face -1"), "line 8 'element face -1' is not understood");
     expect_error(replaced("property list", "propety list"), "is not understood");
     expect_error(replaced("uchar", "float"), "is not understood");
+    expect_error(replaced("property float z", "property real z"), "line 7 'property real z' is not understood");
     expect_error(replaced("property float z\n", ""), "have no x, y and z");
     expect_error(replaced("vertex 3", "vertex 4000000000"), "4000000000 elements 'vertex' do not fit");
     expect_error(replaced("face 1", "face 999999999999"), "999999999999 elements 'face' do not fit");
@@ -145,7 +157,7 @@ TEST(Ply, BodyFaultsAreNamed) {
     expect_error(ply(3, TRIANGLE, 1, "-3 0 1 2\n"), "list claims -3 entries");
     expect_error(ply(3, TRIANGLE, 1, "9999 0 1 2\n"), "list claims 9999 entries");
     expect_error(ply(3, "0 0 zero\n", 1, "3 0 1 2\n"), "'zero");
-    expect_error(ply(3, "0 0 0x1\n", 1, "3 0 1 2\n"), "is not a number");
+    expect_error(ply(3, "0 0 0x1\n", 1, "3 0 1 2\n"), "'0x1");
     expect_error(ply(3, TRIANGLE, 0, ""), "has 3 vertices but no faces");
     const std::string binary = binary_ply(false);
     expect_error(binary.substr(0, binary.size() - 1), "truncated");
@@ -171,6 +183,9 @@ TEST(Polygon, ConcaveOnesAreCutInsideThemselves) {
         EXPECT_EQ(triangles.size(), 2u);
         EXPECT_DOUBLE_EQ(area_facing_z(arrow, triangles), 1);
     }
+    const auto reversed = triangulate_polygon(arrow, std::vector<uint>{3, 2, 1, 0});
+    ASSERT_EQ(reversed.size(), 2u);
+    for (const uvec3& t : reversed) EXPECT_LT(cross(arrow[t.y] - arrow[t.x], arrow[t.z] - arrow[t.x]).z, 0);
     const std::vector<vec3> star = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {3, 1, 0}, {0, 4, 0}, {1, 1, 0}};
     const auto triangles = triangulate_polygon(star, std::vector<uint>{0, 1, 2, 3, 4, 5});
     EXPECT_EQ(triangles.size(), 4u);
@@ -195,8 +210,20 @@ TEST(Polygon, WhatHasNoEarIsCutAsAFan) {
               (std::vector<uvec3>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
     const std::vector<vec3> broken(4, vec3(NAN));
     EXPECT_EQ(triangulate_polygon(broken, std::vector<uint>{0, 1, 2, 3}).size(), 2u);
-    std::vector<uint> many(300);
-    EXPECT_EQ(triangulate_polygon(broken, many).size(), 298u);
+}
+
+TEST(Polygon, OnesOfVeryManyCornersAreCutAsAFan) {
+    std::vector<vec3> circle;
+    std::vector<uint> corners;
+    for (uint i = 0; i < 300; ++i) {
+        const float angle = static_cast<float>(i) * 0.02f;
+        circle.emplace_back(std::cos(angle), std::sin(angle), 0);
+        corners.push_back(i);
+    }
+    circle[1] = vec3(0);  // turns outwards, so that no ear would be cut there
+    const auto triangles = triangulate_polygon(circle, corners);
+    EXPECT_EQ(triangles.size(), 298u);
+    EXPECT_EQ(triangles[0], uvec3(0, 1, 2));
 }
 
 }  // namespace
