@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <sstream>
 
 #include "engine/core/error.h"
 #include "hwtlas/hw_tlas.h"
@@ -15,16 +14,6 @@ namespace twinray::cli {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "ray and hit files are little-endian");
-
-void apply_disabled(ContextDesc& desc) {
-    const char* disabled = std::getenv("TWINRAY_DISABLE");
-    std::istringstream names(disabled ? disabled : "");
-    for (std::string name; std::getline(names, name, ',');) {
-        if (name == "ray_query") desc.use_ray_query = false;
-        else if (name == "ray_tracing_pipeline") desc.use_ray_tracing_pipeline = false;
-        else fail("TWINRAY_DISABLE: '", name, "' is not ray_query or ray_tracing_pipeline");
-    }
-}
 
 }  // namespace
 
@@ -38,7 +27,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
 
 std::unique_ptr<Context> make_context(const CommonOptions& options) {
     ContextDesc desc{.device = options.device, .validation = options.validation};
-    apply_disabled(desc);
+    if (const char* disabled = std::getenv("TWINRAY_DISABLE")) disable_features(desc, disabled);
     return std::make_unique<Context>(desc);
 }
 

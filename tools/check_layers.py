@@ -13,7 +13,8 @@ SEES = {  # besides itself and shaders/shared
     "engine/core": [], "engine/scene": BASE[:1], "engine/accel": BASE[:2], "engine/report": BASE[:1],
     "engine/analysis": BASE, "engine/collide": BASE, "engine/verify": BASE,
     "swtlas": ENGINE, "hwtlas": ENGINE,
-    "cli": PRODUCT, "samples": PRODUCT, "bench": PRODUCT, "tests": PRODUCT + ["cli", "samples", "bench"],
+    "cli": PRODUCT,
+    "samples": PRODUCT + ["shaders/path_tracer"], "bench": PRODUCT, "tests": PRODUCT + ["cli", "samples", "bench"],
     "shaders": ["shaders/engine"],  # each folder of shaders, but shaders/shared, which sees nothing else
 }
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all

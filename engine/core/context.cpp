@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/context.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <sstream>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -55,6 +57,15 @@ std::string no_device_message(const DeviceChoice& choice) {
 }
 
 }  // namespace
+
+void disable_features(ContextDesc& desc, const std::string& list) {
+    std::istringstream names(list);
+    for (std::string name; std::getline(names, name, ',');) {
+        if (name == "ray_query") desc.use_ray_query = false;
+        else if (name == "ray_tracing_pipeline") desc.use_ray_tracing_pipeline = false;
+        else fail("disabled features: '", name, "' is not ray_query or ray_tracing_pipeline");
+    }
+}
 
 Context::Context(const ContextDesc& desc) : log_(desc.log) {
     vk_.load_global(desc.get_instance_proc_addr);

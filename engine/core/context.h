@@ -33,6 +33,10 @@ struct ContextDesc {
     Log log = {};                          // warnings and validation messages; empty = stderr
 };
 
+// Leaves features of the device unused: `list` holds ray_query and ray_tracing_pipeline, separated by commas. For
+// programs that take it from their user, as TWINRAY_DISABLE. Throws Error naming anything else in the list.
+void disable_features(ContextDesc& desc, const std::string& list);
+
 // A device that the host created and keeps. Its objects are used, never changed, waited idle on or destroyed.
 struct AdoptedDevice {
     VkInstance instance = VK_NULL_HANDLE;

@@ -36,6 +36,7 @@ void complete(Scene& scene, const std::filesystem::path& file) {
         fail("'", file.string(), "': holds no triangles to place",
              scene.warnings.empty() ? std::string() : text(" (", scene.warnings.front(), ")"));
     add_default_material(scene);
+    std::ranges::stable_sort(scene.instances, {}, &Instance::mesh);
     for (const Mesh& mesh : scene.meshes) {
         if (const std::size_t count = count_non_finite_triangles(mesh))
             scene.warnings.push_back(text("mesh '", mesh.name, "': ", count, " of ", mesh.triangles.size(),

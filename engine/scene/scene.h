@@ -86,7 +86,7 @@ struct Scene {
     std::vector<Mesh> meshes;
     std::vector<Material> materials;  // never empty after load: entry for meshes without one is appended
     std::vector<Image> images;
-    std::vector<Instance> instances;
+    std::vector<Instance> instances;  // load_scene leaves them grouped by mesh, ascending
     std::vector<Camera> cameras;
     std::vector<Light> lights;
     std::vector<std::string> warnings;  // what was skipped or replaced, one clear sentence each

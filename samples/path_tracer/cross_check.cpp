@@ -2,6 +2,8 @@
 #include "samples/path_tracer/cross_check.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 
 #include "path_tracer_compare.spv.h"
@@ -10,6 +12,8 @@ namespace twinray::path_tracer {
 namespace {
 
 constexpr uint batch_capacity = 1 << 16;  // disagreements kept of one trace
+
+std::array<uint, 3> bits_of(vec3 value) { return std::bit_cast<std::array<uint, 3>>(value); }
 
 }  // namespace
 
@@ -62,7 +66,7 @@ std::vector<uint> CrossChecker::marks() { return download<uint>(context_, marks_
 PictureDifference compare_pictures(const Picture& first, const Picture& second, const std::vector<uint>& marks) {
     PictureDifference difference;
     for (std::size_t i = 0; i < first.rgb.size(); ++i) {
-        if (std::memcmp(&first.rgb[i], &second.rgb[i], sizeof(vec3)) == 0) continue;
+        if (bits_of(first.rgb[i]) == bits_of(second.rgb[i])) continue;
         ++difference.differing;
         if (marks[i] == 0) ++difference.unexplained;
     }

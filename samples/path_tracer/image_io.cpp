@@ -32,7 +32,7 @@ vec3 tone_mapped(vec3 color) {
 
 std::uint8_t srgb_byte(float linear) {
     const float c = linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-    return static_cast<std::uint8_t>(std::clamp(c, 0.0f, 1.0f) * 255 + 0.5f);
+    return static_cast<std::uint8_t>(std::lround(std::clamp(c, 0.0f, 1.0f) * 255));
 }
 
 void write_png(const std::filesystem::path& file, const Picture& picture, float exposure) {

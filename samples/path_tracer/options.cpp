@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdlib>
-#include <sstream>
 
 #include "engine/core/error.h"
 #include "samples/path_tracer/image_io.h"
@@ -84,16 +83,7 @@ ContextDesc context_desc(const Options& options) {
     desc.log = [](std::string_view message) {
         std::fprintf(stderr, "path_tracer: %.*s\n", static_cast<int>(message.size()), message.data());
     };
-    const char* disabled = std::getenv("TWINRAY_DISABLE");
-    std::istringstream list(disabled ? disabled : "");
-    for (std::string feature; std::getline(list, feature, ',');) {
-        if (feature == "ray_query")
-            desc.use_ray_query = false;
-        else if (feature == "ray_tracing_pipeline")
-            desc.use_ray_tracing_pipeline = false;
-        else
-            fail("TWINRAY_DISABLE: unknown feature '", feature, "'; known are ray_query and ray_tracing_pipeline");
-    }
+    if (const char* disabled = std::getenv("TWINRAY_DISABLE")) disable_features(desc, disabled);
     return desc;
 }
 

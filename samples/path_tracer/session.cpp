@@ -20,12 +20,7 @@ constexpr uint default_height = 480;
 
 Scene load(const Options& options) {
     const std::string builtin = "builtin:", name = options.scene.string();
-    if (name.rfind(builtin, 0) != 0) {
-        Scene scene = load_scene(options.scene);
-        // push_scene wants them grouped.
-        std::ranges::stable_sort(scene.instances, {}, &Instance::mesh);
-        return scene;
-    }
+    if (name.rfind(builtin, 0) != 0) return load_scene(options.scene);
     if (name == builtin + "cornell-box") return cornell_box_scene();
     fail("'", name, "': unknown; there is builtin:cornell-box");
 }

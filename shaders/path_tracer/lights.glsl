@@ -44,8 +44,9 @@ vec3 environment_pixel(Environment env, int x, int y)
     return AT(env.pixels, uint(clamp(y, 0, int(env.height) - 1)) * env.width + min(column, env.width - 1u)).rgb;
 }
 
-// at: in pixels.
-vec3 environment_radiance(Environment env, vec2 at)
+// As seen, filtered. As light, the map is constant in each pixel, which is how it is sampled: near a sun a filtered
+// value could exceed the density of its own pixel a hundred times, and such samples are bright dots. at: in pixels.
+vec3 environment_seen(Environment env, vec2 at)
 {
     vec2 low = floor(at - 0.5);
     vec2 weight = at - 0.5 - low;
@@ -64,10 +65,7 @@ vec2 environment_position(Environment env, vec3 direction)
     return vec2(turns * float(env.width), angle * float(env.height));
 }
 
-float environment_pdf(Environment env, vec2 at)
-{
-    return env.chance * env.density_per_luminance * luminance(environment_pixel(env, int(at.x), int(at.y)));
-}
+float environment_pdf(Environment env, vec3 pixel) { return env.chance * env.density_per_luminance * luminance(pixel); }
 
 LightSample sample_environment(Environment env, vec2 u)
 {
@@ -83,8 +81,8 @@ LightSample sample_environment(Environment env, vec2 u)
     vec2 circle = unit_circle(x / float(env.width) - 0.5);
     LightSample light;
     light.direction = vec3(circle.x * sine, cosine, circle.y * sine);
-    light.radiance = environment_radiance(env, vec2(x, environment_position(env, light.direction).y));
-    light.pdf = env.chance * env.density_per_luminance * luminance(AT(env.pixels, row * env.width + column).rgb);
+    light.radiance = AT(env.pixels, row * env.width + column).rgb;
+    light.pdf = environment_pdf(env, light.radiance);
     light.is_delta = false;
     light.has_target = false;
     light.target = vec3(0.0);

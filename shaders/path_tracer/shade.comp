@@ -56,8 +56,12 @@ void add_environment(PathState path, Ray ray)
     if (!HAS_ENVIRONMENT) return;
     Environment env = AT(args.scene, 0).environment;
     vec2 at = environment_position(env, ray.direction);
-    float weight = found_weight(path.pdf, path.pdf > 0.0 ? environment_pdf(env, at) : 0.0);
-    add(path.pixel, path.throughput * environment_radiance(env, at) * weight);
+    if (path.pdf > 0.0)
+    {
+        vec3 pixel = environment_pixel(env, int(at.x), int(at.y));
+        add(path.pixel, path.throughput * pixel * found_weight(path.pdf, environment_pdf(env, pixel)));
+    }
+    else add(path.pixel, path.throughput * environment_seen(env, at));
 }
 
 void add_emission(Vertex vertex, Ray ray, Hit hit, uint flags)
