@@ -109,7 +109,7 @@ Counters Renderer::wave(const Tracing& tracing, const Batch& batch, uint count) 
     const uint next = 1 - current_;
     Commands commands(context_, "path tracer wave");
     trace(commands, tracing, {.rays = rays_[current_].ref<Ray>(), .hits = hits_.ref<Hit>(), .count = count},
-          {paths_[current_].address() + offsetof(PathState, pixel)}, sizeof(PathState));
+          {{paths_[current_].address() + offsetof(PathState, pixel)}, sizeof(PathState) / sizeof(uint)});
     clear_appended(commands);
     shade_.dispatch(commands,
                     {scene_.data(), rays_[current_].ref<Ray>(), hits_.ref<Hit>(), paths_[current_].ref<PathState>(),
@@ -132,7 +132,7 @@ void Renderer::shadow_rounds(const Tracing& tracing, uint count) {
                .hits = hits_.ref<Hit>(),
                .count = count,
                .query = has_alpha ? Query::closest : Query::any},
-              {shadows_[from].address() + offsetof(ShadowState, pixel)}, sizeof(ShadowState));
+              {{shadows_[from].address() + offsetof(ShadowState, pixel)}, sizeof(ShadowState) / sizeof(uint)});
         clear_appended(commands);
         shadow_.dispatch(
             commands,
@@ -145,11 +145,9 @@ void Renderer::shadow_rounds(const Tracing& tracing, uint count) {
     }
 }
 
-void Renderer::trace(Commands& commands, const Tracing& tracing, const TraceDesc& desc, Uints pixels,
-                     std::size_t pixel_stride) {
+void Renderer::trace(Commands& commands, const Tracing& tracing, const TraceDesc& desc, const RayPixels& pixels) {
     tracing.accel.trace(commands, tracing.view, desc);
-    if (tracing.observer)
-        tracing.observer->record(commands, desc, pixels, static_cast<uint>(pixel_stride / sizeof(uint)));
+    if (tracing.observer) tracing.observer->record(commands, desc, pixels);
 }
 
 void Renderer::clear_appended(Commands& commands) {

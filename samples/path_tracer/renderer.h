@@ -26,12 +26,18 @@ struct RenderStats {
     double seconds = 0;
 };
 
+// The pixel of ray i is first[i * stride].
+struct RayPixels {
+    Uints first;
+    uint stride = 0;  // in words
+};
+
 // Sees every batch of rays that is traced.
 class WaveObserver {
   public:
     virtual ~WaveObserver() = default;
-    // What was recorded before writes the hits of `desc`. The pixel of ray i is pixels[i * pixel_stride].
-    virtual void record(Commands& commands, const TraceDesc& desc, Uints pixels, uint pixel_stride) = 0;
+    // What was recorded before writes the hits of `desc`.
+    virtual void record(Commands& commands, const TraceDesc& desc, const RayPixels& pixels) = 0;
     // Everything recorded so far has run.
     virtual void collect() = 0;
 };
@@ -65,8 +71,7 @@ class Renderer {
     void trace_batch(const Tracing& tracing, const Batch& batch);
     Counters wave(const Tracing& tracing, const Batch& batch, uint count);
     void shadow_rounds(const Tracing& tracing, uint count);
-    void trace(Commands& commands, const Tracing& tracing, const TraceDesc& desc, Uints pixels,
-               std::size_t pixel_stride);
+    void trace(Commands& commands, const Tracing& tracing, const TraceDesc& desc, const RayPixels& pixels);
     void clear_appended(Commands& commands);
     Counters run(Commands& commands, const Tracing& tracing);
     Picture mean_picture();

@@ -35,7 +35,7 @@ FUNC BsdfSample no_sample()
 
 FUNC bool is_smooth(Bsdf bsdf) { return bsdf.alpha < SMOOTH_ALPHA || (bsdf.is_glass && bsdf.eta == 1.0f); }
 // Whether sampling lights can find anything.
-FUNC bool scatters(Bsdf bsdf) { return bsdf.is_glass ? !is_smooth(bsdf) : (!is_smooth(bsdf) || largest(bsdf.diffuse) > 0.0f); }
+FUNC bool scatters(Bsdf bsdf) { return !is_smooth(bsdf) || (!bsdf.is_glass && largest(bsdf.diffuse) > 0.0f); }
 
 FUNC vec3 schlick(Bsdf bsdf, float cosine)
 {

@@ -18,7 +18,8 @@ void main()
     Hit second = AT(args.second, i);
     bool is_same = first.hit == second.hit;
     if (args.is_any == 0u)
-        is_same = is_same && first.instance_index == second.instance_index && first.primitive_index == second.primitive_index;
+        is_same = is_same && first.instance_index == second.instance_index &&
+                  first.primitive_index == second.primitive_index;
     if (is_same) return;
     uint pixel = AT(args.pixels, i * args.pixel_stride);
     AT(args.marks, pixel) = 1u;

@@ -45,7 +45,8 @@ vec3 shading_normal(SceneData scene, Surface surface, uint flags, vec3 wo)
         float t = length(surface.tangent);
         float b = length(surface.bitangent);
         if (t > 0.0 && b > 0.0)
-            normal = normalize(surface.tangent * (mapped.x / t) + surface.bitangent * (mapped.y / b) + normal * mapped.z);
+            normal = normalize(surface.tangent * (mapped.x / t) + surface.bitangent * (mapped.y / b) +
+                               normal * mapped.z);
     }
     bool is_front = dot(surface.point.normal, wo) >= 0.0;
     normal = is_front ? normal : -normal;
@@ -88,7 +89,8 @@ Bsdf bsdf_of(SceneData scene, Surface surface, uint flags, vec3 color, bool is_f
     float roughness = AT(scene.materials, surface.material).roughness;
     if (HAS_TEXTURES && (flags & MATERIAL_ROUGHNESS_TEXTURE) != 0u)
     {
-        vec4 map = sample_texture(scene.images, AT(scene.materials, surface.material).roughness_texture, surface.uv, false);
+        TextureSlot slot = AT(scene.materials, surface.material).roughness_texture;
+        vec4 map = sample_texture(scene.images, slot, surface.uv, false);
         roughness *= map.g;
         metallic *= map.b;
     }

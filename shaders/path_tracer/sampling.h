@@ -12,7 +12,8 @@ FUNC vec2 unit_circle(float turns)
     float quarters = floor(turns * 4.0f + 0.5f);
     float x = (turns - quarters * 0.25f) * (2.0f * PI);
     float x2 = x * x;
-    float s = x * (1.0f + x2 * (-1.0f / 6.0f + x2 * (1.0f / 120.0f + x2 * (-1.0f / 5040.0f + x2 * (1.0f / 362880.0f)))));
+    float s = 1.0f + x2 * (-1.0f / 6.0f + x2 * (1.0f / 120.0f + x2 * (-1.0f / 5040.0f + x2 * (1.0f / 362880.0f))));
+    s = s * x;
     float c = 1.0f + x2 * (-0.5f + x2 * (1.0f / 24.0f + x2 * (-1.0f / 720.0f + x2 * (1.0f / 40320.0f))));
     int quadrant = int(quarters) & 3;
     vec2 even = (quadrant & 1) == 0 ? vec2(c, s) : vec2(-s, c);

@@ -188,7 +188,8 @@ void shade(PathState path, Ray ray, Hit hit)
     if (path.progress >> 16u >= args.max_depth) return;
     vertex.normal = shading_normal(AT(args.scene, 0), vertex.surface, flags, vertex.wo);
     vertex.bsdf = bsdf_of(AT(args.scene, 0), vertex.surface, flags, color.rgb, vertex.is_front, part.y);
-    if (STRATEGY != STRATEGY_BSDF && (HAS_ENVIRONMENT || HAS_LOCAL_LIGHTS) && scatters(vertex.bsdf)) light_directly(vertex);
+    bool samples_lights = STRATEGY != STRATEGY_BSDF && (HAS_ENVIRONMENT || HAS_LOCAL_LIGHTS);
+    if (samples_lights && scatters(vertex.bsdf)) light_directly(vertex);
     scatter(vertex);
 }
 

@@ -41,7 +41,8 @@ const float HALF_ULP = 5.9604644775390625e-08f; // 2^-24
 // The accelerators may round the inverse of the transform unlike us.
 const float SPAWN_MARGIN = 2.0f;
 
-// The point (1-u-v) a + u b + v c. The corner with the largest weight in the sum comes last.
+// The point (1-u-v) a + u b + v c, as a + (u (b - a) + v (c - a)): the corner is added last, so that only one rounding
+// is of the size of the coordinates.
 FUNC SurfacePoint surface_point(Placement placement, Corners corners, vec2 uv)
 {
     PRECISE vec3 edge1 = corners.b - corners.a;

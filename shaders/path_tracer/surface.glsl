@@ -26,7 +26,8 @@ struct TriangleData
 SurfaceVertex load_vertex(REF(SurfaceVertex) vertices, uint index)
 {
     Words64 words = Words64(uint64_t(vertices) + uint64_t(index) * 48ul);
-    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4), w5 = AT(words, 5);
+    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2);
+    uint64_t w3 = AT(words, 3), w4 = AT(words, 4), w5 = AT(words, 5);
     SurfaceVertex vertex;
     vertex.position = vec3(FLOATS(w0), FLOATS(w1).x);
     vertex.normal = vec3(FLOATS(w1).y, FLOATS(w2));
@@ -91,6 +92,11 @@ Corners corners_of(TriangleData data)
     return corners;
 }
 
+vec3 vertex_normal(TriangleData data, vec2 at)
+{
+    return data.corner[0].normal * (1.0 - at.x - at.y) + data.corner[1].normal * at.x + data.corner[2].normal * at.y;
+}
+
 vec2 interpolated_uv(TriangleData data, vec2 at)
 {
     return data.corner[0].uv * (1.0 - at.x - at.y) + data.corner[1].uv * at.x + data.corner[2].uv * at.y;
@@ -98,7 +104,7 @@ vec2 interpolated_uv(TriangleData data, vec2 at)
 
 vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placement, vec2 at)
 {
-    vec3 normal = data.corner[0].normal * (1.0 - at.x - at.y) + data.corner[1].normal * at.x + data.corner[2].normal * at.y;
+    vec3 normal = vertex_normal(data, at);
     if (dot(normal, normal) == 0.0) return point.normal;
     normal = normalize(transposed_times(placement.to_object, normal));
     // Files with vertex normals against their winding exist; the winding decides what is the front.
@@ -108,12 +114,13 @@ vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placem
 // Tangents of the file, else by the derivatives of uv. glTF's bitangent points to smaller v (up in the picture).
 void set_tangents(inout Surface surface, TriangleData data, vec2 at)
 {
-    vec4 tangent = data.corner[0].tangent * (1.0 - at.x - at.y) + data.corner[1].tangent * at.x + data.corner[2].tangent * at.y;
     if (data.corner[0].tangent.w != 0.0)
     {
-        vec3 normal = data.corner[0].normal * (1.0 - at.x - at.y) + data.corner[1].normal * at.x + data.corner[2].normal * at.y;
-        surface.tangent = transform_vector(surface.placement.to_world, tangent.xyz);
-        surface.bitangent = transform_vector(surface.placement.to_world, cross(normal, tangent.xyz) * data.corner[0].tangent.w);
+        vec3 tangent = data.corner[0].tangent.xyz * (1.0 - at.x - at.y) + data.corner[1].tangent.xyz * at.x +
+                       data.corner[2].tangent.xyz * at.y;
+        vec3 bitangent = cross(vertex_normal(data, at), tangent) * data.corner[0].tangent.w;
+        surface.tangent = transform_vector(surface.placement.to_world, tangent);
+        surface.bitangent = transform_vector(surface.placement.to_world, bitangent);
         return;
     }
     vec2 du = data.corner[1].uv - data.corner[0].uv;

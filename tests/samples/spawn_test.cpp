@@ -18,6 +18,8 @@ struct Case {
     Transform transform;
 };
 
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
 Transform turned(float scale, vec3 offset) {
     return {{vec4(0.8f * scale, 0, 0.6f * scale, offset.x), vec4(0, scale, 0, offset.y),
              vec4(-0.6f * scale, 0, 0.8f * scale, offset.z)}};
