@@ -77,7 +77,8 @@ std::vector<Candidate> make_candidates(Context& context, const Scene& scene) {
 
 double trace_once(const Candidate& candidate, const Buffer& rays, const Buffer& hits, std::uint64_t count) {
     Commands commands(candidate.accel->context(), "bench");
-    candidate.accel->trace(commands, candidate.accel->view(), {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = count});
+    candidate.accel->trace(commands, candidate.accel->view(),
+                           {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = count});
     commands.submit();
     return total_ms(commands.timings());
 }
@@ -93,7 +94,8 @@ Classes judge(const Oracle& oracle, const Candidate& candidate, const std::vecto
     }
     Classes classes;
     const bool ours = candidate.name == "sw";
-    const std::vector<Verdict> verdicts = ours ? classify_all(oracle, some_rays, some_hits, {}) : classify_all(oracle, some_rays, {}, some_hits);
+    const std::vector<Verdict> verdicts =
+        ours ? classify_all(oracle, some_rays, some_hits, {}) : classify_all(oracle, some_rays, {}, some_hits);
     for (const Verdict& verdict : verdicts) classes.add(ours ? *verdict.software : *verdict.hardware);
     return classes;
 }
@@ -102,17 +104,20 @@ void report(const BenchOptions& options, const Context& context, const std::vect
             const Scene& scene, const std::vector<Ray>& rays) {
     const Oracle oracle = Oracle::of(scene);
     const double triangles = static_cast<double>(std::max<std::size_t>(count_triangles(scene), 1));
-    std::cout << "  accelerator        build ms  Mrays/s   sw is faster by  bytes/triangle  agree or tie with float64\n";
+    std::cout
+        << "  accelerator        build ms  Mrays/s   sw is faster by  bytes/triangle  agree or tie with float64\n";
     for (const Candidate& candidate : candidates) {
         const double mrays = static_cast<double>(rays.size()) / candidate.median_ms() * 1e-3;
         const Classes classes = judge(oracle, candidate, rays);
-        const double sound = static_cast<double>(classes[Class::agree] + classes[Class::tie]) / static_cast<double>(classes.total());
+        const double sound =
+            static_cast<double>(classes[Class::agree] + classes[Class::tie]) / static_cast<double>(classes.total());
         const double ratio = candidate.median_ms() / candidates.front().median_ms();
         const double bytes = static_cast<double>(candidate.accel->structure_bytes()) / triangles;
-        std::cout << "  " << std::left << std::setw(16) << candidate.name << std::right << std::fixed << std::setprecision(1)
-                  << std::setw(11) << candidate.build_ms << std::setprecision(3) << std::setw(9) << mrays
-                  << std::setprecision(2) << std::setw(15) << ratio << 'x' << std::setprecision(1) << std::setw(16) << bytes
-                  << std::setprecision(4) << std::setw(17) << 100 * sound << " % of " << classes.total() << '\n';
+        std::cout << "  " << std::left << std::setw(16) << candidate.name << std::right << std::fixed
+                  << std::setprecision(1) << std::setw(11) << candidate.build_ms << std::setprecision(3) << std::setw(9)
+                  << mrays << std::setprecision(2) << std::setw(15) << ratio << 'x' << std::setprecision(1)
+                  << std::setw(16) << bytes << std::setprecision(4) << std::setw(17) << 100 * sound << " % of "
+                  << classes.total() << '\n';
         append_json(options.common.json, {{"schema", "twinray-bench/1"},
                                           {"device", describe(context)},
                                           {"scene", options.scene.string()},

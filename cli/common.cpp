@@ -52,7 +52,8 @@ std::vector<Ray> read_rays(const std::filesystem::path& file) {
     if (!in) fail("rays file '", file.string(), "' cannot be opened");
     const auto bytes = static_cast<std::uint64_t>(in.tellg());
     if (bytes % sizeof(Ray) != 0)
-        fail("rays file '", file.string(), "': ", bytes, " bytes is not a multiple of ", sizeof(Ray), ", the size of a ray");
+        fail("rays file '", file.string(), "': ", bytes, " bytes is not a multiple of ", sizeof(Ray),
+             ", the size of a ray");
     std::vector<Ray> rays(bytes / sizeof(Ray));
     in.seekg(0);
     if (!in.read(reinterpret_cast<char*>(rays.data()), static_cast<std::streamsize>(bytes)))

@@ -76,8 +76,7 @@ void judge(const Oracle& oracle, std::span<const Ray> rays, AbstractAccel& sw, A
             outcome.faulty.push_back(rays[i]);
         if (!hw) continue;
         outcome.hardware.add(*verdicts[i].hardware);
-        if (!is_same(software[i], hardware[i]))
-            ++outcome.disagreements[{*verdicts[i].software, *verdicts[i].hardware}];
+        if (!is_same(software[i], hardware[i])) ++outcome.disagreements[{*verdicts[i].software, *verdicts[i].hardware}];
     }
 }
 
@@ -94,17 +93,17 @@ void print(const RaySet& set, const Outcome& outcome, bool has_hardware) {
     std::cout << "  " << set.name << ": " << set.rays.size() << " rays\n";
     print_classes("SW", outcome.software);
     std::cout << "        SW_LEAK " << outcome.software[Class::sw_leak] << ", SW_FALSE "
-              << outcome.software[Class::sw_false] << ", T_ERR " << outcome.software[Class::t_err] << "; true rate below "
-              << std::setprecision(2) << upper_bound_95(faults, set.rays.size()) << " (95 %)\n";
+              << outcome.software[Class::sw_false] << ", T_ERR " << outcome.software[Class::t_err]
+              << "; true rate below " << std::setprecision(2) << upper_bound_95(faults, set.rays.size()) << " (95 %)\n";
     if (!has_hardware) return;
     print_classes("HW", outcome.hardware);
     std::cout << "    SW and HW name different hits on " << outcome.disagreeing() << " rays\n";
     for (const auto& [classes, count] : outcome.disagreements)
         std::cout << "        SW " << name(classes.first) << ", HW " << name(classes.second) << ": " << count << '\n';
     for (const Ray& ray : outcome.faulty)
-        std::cout << std::hexfloat << "    faulty: origin " << ray.origin.x << ' ' << ray.origin.y << ' ' << ray.origin.z
-                  << " direction " << ray.direction.x << ' ' << ray.direction.y << ' ' << ray.direction.z << " t "
-                  << ray.t_min << ' ' << ray.t_max << std::defaultfloat << '\n';
+        std::cout << std::hexfloat << "    faulty: origin " << ray.origin.x << ' ' << ray.origin.y << ' '
+                  << ray.origin.z << " direction " << ray.direction.x << ' ' << ray.direction.y << ' '
+                  << ray.direction.z << " t " << ray.t_min << ' ' << ray.t_max << std::defaultfloat << '\n';
 }
 
 nlohmann::json counts_json(const Classes& classes) {
@@ -118,22 +117,21 @@ void append_records(const VerifyOptions& options, const Context& context, const 
                     bool has_hardware) {
     const auto record = [&](const char* backend, const Classes& classes, double seconds) {
         const std::uint64_t faults = classes.faults_of_ours();
-        append_json(options.common.json,
-                    {{"schema", "twinray-report/1"},
-                     {"device", describe(context)},
-                     {"case", "verify." + set.name},
-                     {"scene", options.scene.string()},
-                     {"backend", backend},
-                     {"path", std::string(backend) == "hw" ? hardware_path(context) : "compute"},
-                     {"level", 1},
-                     {"reference", "f64"},
-                     {"n", set.rays.size()},
-                     {"seed", options.common.seed},
-                     {"counts", counts_json(classes)},
-                     {"bound95", upper_bound_95(faults, set.rays.size())},
-                     {"seconds", seconds},
-                     {"pass", faults == 0},
-                     {"criterion", "SW_LEAK == 0 and SW_FALSE == 0 and T_ERR == 0"}});
+        append_json(options.common.json, {{"schema", "twinray-report/1"},
+                                          {"device", describe(context)},
+                                          {"case", "verify." + set.name},
+                                          {"scene", options.scene.string()},
+                                          {"backend", backend},
+                                          {"path", std::string(backend) == "hw" ? hardware_path(context) : "compute"},
+                                          {"level", 1},
+                                          {"reference", "f64"},
+                                          {"n", set.rays.size()},
+                                          {"seed", options.common.seed},
+                                          {"counts", counts_json(classes)},
+                                          {"bound95", upper_bound_95(faults, set.rays.size())},
+                                          {"seconds", seconds},
+                                          {"pass", faults == 0},
+                                          {"criterion", "SW_LEAK == 0 and SW_FALSE == 0 and T_ERR == 0"}});
     };
     record("sw", outcome.software, outcome.software_seconds);
     if (has_hardware) record("hw", outcome.hardware, outcome.hardware_seconds);
@@ -173,7 +171,8 @@ std::uint64_t run(const VerifyOptions& options) {
 }  // namespace
 
 void add_verify(CLI::App& app, int& exit_code) {
-    CLI::App* command = app.add_subcommand("verify", "compare HwTlas, SwTlas and the float64 referee; exit 1 on a fault of ours");
+    CLI::App* command =
+        app.add_subcommand("verify", "compare HwTlas, SwTlas and the float64 referee; exit 1 on a fault of ours");
     const auto options = std::make_shared<VerifyOptions>();
     command->add_option("scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
     CLI::Option* rays = command->add_option("--rays", options->rays, "raw 32-byte rays, little endian");

@@ -8,7 +8,7 @@
 
 int main() {
     using namespace twinray;
-    Context context;       // or adopt your VkDevice: Context(AdoptedDevice{...})
+    Context context;  // or adopt your VkDevice: Context(AdoptedDevice{...})
     SwTlas software(context);
     HwTlas hardware(context);
     for (AbstractAccel* accel : {static_cast<AbstractAccel*>(&software), static_cast<AbstractAccel*>(&hardware)}) {

@@ -67,18 +67,19 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
 }
 
 Uints Builder::record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
-    const MortonArgs args{batch.blocks,      batch.boxes,        batch.centroids, batch.codes,       batch.pairs.keys,
-                          batch.pairs.values, batch.tree_of, batch.block_count, 0};
+    const MortonArgs args{batch.blocks,  batch.boxes,       batch.centroids,
+                          batch.codes,   batch.pairs.keys,  batch.pairs.values,
+                          batch.tree_of, batch.block_count, 0};
     morton_.dispatch_groups(commands, args, batch.block_count);
-    RadixSort::Pairs sorted = sort_.record(commands, batch.pairs, batch.spare, batch.counters, plan.leaf_count, morton_bits);
+    RadixSort::Pairs sorted =
+        sort_.record(commands, batch.pairs, batch.spare, batch.counters, plan.leaf_count, morton_bits);
     if (plan.tree_bits == 0) return sorted.values;
     const RadixSort::Pairs other = sorted.keys.address == batch.pairs.keys.address ? batch.spare : batch.pairs;
     tree_keys_.dispatch(commands, {batch.tree_of, sorted.values, sorted.keys, plan.leaf_count, 0}, plan.leaf_count);
     return sort_.record(commands, sorted, other, batch.counters, plan.leaf_count, plan.tree_bits).values;
 }
 
-void Builder::record_hierarchy(Commands& commands, const Batch& batch, Uints order,
-                               bool leaves_are_sorted) const {
+void Builder::record_hierarchy(Commands& commands, const Batch& batch, Uints order, bool leaves_are_sorted) const {
     const HierarchyArgs args{batch.trees, batch.blocks,  batch.boxes,       batch.codes,
                              order,       batch.meeting, batch.block_count, leaves_are_sorted ? 1u : 0u};
     hierarchy_.dispatch_groups(commands, args, batch.block_count);

@@ -26,8 +26,7 @@ class Builder {
     struct Batch;
     Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const;
     Uints record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
-    void record_hierarchy(Commands& commands, const Batch& batch, Uints order,
-                          bool leaves_are_sorted) const;
+    void record_hierarchy(Commands& commands, const Batch& batch, Uints order, bool leaves_are_sorted) const;
 
     RadixSort sort_;
     Kernel<TriangleLeavesArgs> leaves_triangles_;

@@ -22,7 +22,11 @@ double half_area(const LeafBox& box) {
 class Walk {
   public:
     Walk(std::span<const BvhNode> nodes, std::span<const LeafBox> leaf_boxes, TreeCheck& result)
-        : nodes_(nodes), leaf_boxes_(leaf_boxes), result_(result), seen_nodes_(nodes.size()), seen_leaves_(leaf_boxes.size()) {}
+        : nodes_(nodes),
+          leaf_boxes_(leaf_boxes),
+          result_(result),
+          seen_nodes_(nodes.size()),
+          seen_leaves_(leaf_boxes.size()) {}
 
     struct Below {
         LeafBox box = empty_box();
@@ -33,15 +37,15 @@ class Walk {
         result_.depth = std::max(result_.depth, depth);
         if (depth > max_depth) return violated(text("depth exceeds ", max_depth)), Below{};
         if (reference & LEAF_BIT) return visit_leaf(reference & ~LEAF_BIT);
-        if (reference >= nodes_.size())
-            return violated(text("node ", reference, " of ", nodes_.size())), Below{};
+        if (reference >= nodes_.size()) return violated(text("node ", reference, " of ", nodes_.size())), Below{};
         if (seen_nodes_[reference]) return violated(text("node ", reference, " is reached twice")), Below{};
         seen_nodes_[reference] = true;
         return visit_node(reference, depth);
     }
 
     void finish(const Bvh& bvh, const Below& all) {
-        if (!same(all.box.lo, bvh.lo) || !same(all.box.hi, bvh.hi)) violated("the root's box is not the union of the leaves");
+        if (!same(all.box.lo, bvh.lo) || !same(all.box.hi, bvh.hi))
+            violated("the root's box is not the union of the leaves");
         for (std::size_t i = 0; i < seen_leaves_.size(); ++i)
             if (!seen_leaves_[i]) violated(text("leaf ", i, " is not reached"));
         for (std::size_t i = 0; i < seen_nodes_.size(); ++i)
@@ -69,7 +73,8 @@ class Walk {
         if (!same(b.box.lo, node.lo1) || !same(b.box.hi, node.hi1))
             violated(text("node ", index, ": box 1 is not the union of what is below"));
         if (a.leaves + b.leaves != node.last - node.first + 1)
-            violated(text("node ", index, ": range ", node.first, "..", node.last, " for ", a.leaves + b.leaves, " leaves"));
+            violated(
+                text("node ", index, ": range ", node.first, "..", node.last, " for ", a.leaves + b.leaves, " leaves"));
         area_ += half_area(a.box) + half_area(b.box);
         return {{min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)}, a.leaves + b.leaves};
     }

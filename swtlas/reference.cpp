@@ -43,8 +43,8 @@ struct TopDown {
         const std::size_t split = highest_split(first, last);
         const auto [child0, box0] = build(first, split);
         const auto [child1, box1] = build(split + 1, last);
-        nodes[split] = {box0.lo, child0, box0.hi, child1, box1.lo, static_cast<uint>(first), box1.hi,
-                        static_cast<uint>(last)};
+        nodes[split] = {
+            box0.lo, child0, box0.hi, child1, box1.lo, static_cast<uint>(first), box1.hi, static_cast<uint>(last)};
         return {static_cast<uint>(split), joined(box0, box1)};
     }
 };
@@ -111,8 +111,7 @@ Hierarchy hierarchy(std::span<const LeafBox> boxes, std::span<const uint> codes,
     Hierarchy tree;
     if (boxes.empty()) return tree;
     tree.nodes.resize(boxes.size() - 1);
-    const auto [root, box] =
-        TopDown{boxes, codes, order, leaves_are_sorted, tree.nodes}.build(0, boxes.size() - 1);
+    const auto [root, box] = TopDown{boxes, codes, order, leaves_are_sorted, tree.nodes}.build(0, boxes.size() - 1);
     tree.root = root;
     tree.box = box;
     return tree;
@@ -134,7 +133,8 @@ std::size_t Scene::add_geometry(const MeshView& mesh) {
     const std::vector<LeafBox> boxes = leaves_triangles(mesh.positions, mesh.triangles);
     const std::vector<uint> codes = morton(boxes, centroids(boxes));
     const std::vector<uint> order = sort(codes);
-    geometries_.push_back({{}, hierarchy(boxes, codes, order, true), encode_triangles(mesh.positions, mesh.triangles, order)});
+    geometries_.push_back(
+        {{}, hierarchy(boxes, codes, order, true), encode_triangles(mesh.positions, mesh.triangles, order)});
     return geometries_.size() - 1;
 }
 
@@ -153,8 +153,10 @@ void Scene::build() {
     const std::vector<LeafBox> boxes = leaves_instances(records, instances_);
     const std::vector<uint> codes = morton(boxes, centroids(boxes));
     top_ = hierarchy(boxes, codes, sort(codes), false);
-    header_ = {{Ref<BvhNode>::to(top_.nodes.data()), top_.root, static_cast<uint>(boxes.size()), top_.box.lo, top_.box.hi},
-               Ref<SwInstance>::to(instances_.data()), instances_.size()};
+    header_ = {
+        {Ref<BvhNode>::to(top_.nodes.data()), top_.root, static_cast<uint>(boxes.size()), top_.box.lo, top_.box.hi},
+        Ref<SwInstance>::to(instances_.data()),
+        instances_.size()};
 }
 
 Hit Scene::trace(const Ray& ray, uint query, uint mask) const { return traverse(header_, ray, mask, query); }

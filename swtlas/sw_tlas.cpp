@@ -60,8 +60,12 @@ std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::build_geometr
         const std::uint64_t indices = offset + std::span(geometry.positions).size_bytes();
         commands.upload(input, std::span(geometry.positions), offset);
         commands.upload(input, std::span(geometry.triangles), indices);
-        trees.push_back({plan.first[i], counts[i], {input.address() + offset}, {input.address() + indices},
-                         header.triangles, {made->reference}});
+        trees.push_back({plan.first[i],
+                         counts[i],
+                         {input.address() + offset},
+                         {input.address() + indices},
+                         header.triangles,
+                         {made->reference}});
         offset = indices + std::span(geometry.triangles).size_bytes();
         built.push_back(std::move(made));
     }
@@ -107,7 +111,8 @@ SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {
     const auto& built = static_cast<const SwBuiltGeometry&>(built_geometry(handle));
     const SwGeometry header = download<SwGeometry>(context(), built.buffer, 1).front();
     const GeometryLayout layout = layout_geometry(header.bvh.leaf_count);
-    return {header.bvh, download<BvhNode>(context(), built.buffer, std::max(header.bvh.leaf_count, 1u) - 1, layout.nodes),
+    return {header.bvh,
+            download<BvhNode>(context(), built.buffer, std::max(header.bvh.leaf_count, 1u) - 1, layout.nodes),
             download<BvhTriangle>(context(), built.buffer, header.bvh.leaf_count, layout.triangles)};
 }
 
@@ -115,7 +120,9 @@ SwTlas::Tree SwTlas::download_scene() const {
     const auto& built = static_cast<const SwBuiltScene&>(built_scene());
     const SwScene header = download<SwScene>(context(), built.buffer, 1).front();
     const SceneLayout layout = layout_scene(header.bvh.leaf_count);
-    return {header.bvh, download<BvhNode>(context(), built.buffer, std::max(header.bvh.leaf_count, 1u) - 1, layout.nodes), {}};
+    return {header.bvh,
+            download<BvhNode>(context(), built.buffer, std::max(header.bvh.leaf_count, 1u) - 1, layout.nodes),
+            {}};
 }
 
 }  // namespace twinray

@@ -58,6 +58,7 @@ cat <<END
 scene                   $scene
 hardware picture        $PWD/$out/demo_hw.png
 software picture        $PWD/$out/demo_sw.png
+difference              $PWD/$out/demo_difference.png
 verify                  $PWD/$out/demo_verify.txt
 cross-check             $PWD/$out/demo_cross_check.txt
 END

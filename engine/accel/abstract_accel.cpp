@@ -37,8 +37,8 @@ AccelHandle AbstractAccel::push(const MeshView& mesh, std::span<const Transform>
     Placement placement{Geometry(mesh), nullptr, {}};
     for (std::size_t i = 0; i < transforms.size(); ++i) {
         const InstanceOptions option = options.empty() ? InstanceOptions{} : options[i];
-        placement.instances.push_back(make_instance_record(transforms[i], option.custom_index, option.mask,
-                                                           instance_name(name_, mesh.name, i)));
+        placement.instances.push_back(
+            make_instance_record(transforms[i], option.custom_index, option.mask, instance_name(name_, mesh.name, i)));
     }
     if (const std::size_t n = placement.geometry.non_finite_triangles)
         context_.warn(text(name_, ": mesh '", mesh.name, "': ", n, " of ", mesh.triangles.size(),

@@ -117,8 +117,8 @@ class AbstractAccel {
         const BuiltGeometry* built;
     };
 
-    virtual std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
-                                                                         std::span<const Geometry* const> geometries) = 0;
+    virtual std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(
+        Commands& commands, std::span<const Geometry* const> geometries) = 0;
     virtual std::unique_ptr<BuiltScene> build_scene(Commands& commands, std::span<const PlacedInstance> instances) = 0;
     // What an implementation built; throws Error on a dead handle or pending edits.
     const BuiltGeometry& built_geometry(AccelHandle handle) const;

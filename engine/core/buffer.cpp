@@ -20,9 +20,9 @@ VmaAllocationCreateInfo allocation_info(Memory memory) {
         info.usage = VMA_MEMORY_USAGE_AUTO_PREFER_DEVICE;
         return info;
     }
-    info.flags = VMA_ALLOCATION_CREATE_MAPPED_BIT | (memory == Memory::upload
-                                                         ? VMA_ALLOCATION_CREATE_HOST_ACCESS_SEQUENTIAL_WRITE_BIT
-                                                         : VMA_ALLOCATION_CREATE_HOST_ACCESS_RANDOM_BIT);
+    info.flags = VMA_ALLOCATION_CREATE_MAPPED_BIT |
+                 (memory == Memory::upload ? VMA_ALLOCATION_CREATE_HOST_ACCESS_SEQUENTIAL_WRITE_BIT
+                                           : VMA_ALLOCATION_CREATE_HOST_ACCESS_RANDOM_BIT);
     info.requiredFlags = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     return info;
 }

@@ -79,7 +79,8 @@ class Commands {
 };
 
 // Copies `count` elements back to the host; submits and waits.
-std::vector<std::byte> download_bytes(Context& context, const Buffer& buffer, std::uint64_t offset, std::uint64_t bytes);
+std::vector<std::byte> download_bytes(Context& context, const Buffer& buffer, std::uint64_t offset,
+                                      std::uint64_t bytes);
 
 template <class T>
 std::vector<T> download(Context& context, const Buffer& buffer, std::uint64_t count, std::uint64_t byte_offset = 0) {

@@ -61,9 +61,12 @@ std::string no_device_message(const DeviceChoice& choice) {
 void disable_features(ContextDesc& desc, const std::string& list) {
     std::istringstream names(list);
     for (std::string name; std::getline(names, name, ',');) {
-        if (name == "ray_query") desc.use_ray_query = false;
-        else if (name == "ray_tracing_pipeline") desc.use_ray_tracing_pipeline = false;
-        else fail("disabled features: '", name, "' is not ray_query or ray_tracing_pipeline");
+        if (name == "ray_query")
+            desc.use_ray_query = false;
+        else if (name == "ray_tracing_pipeline")
+            desc.use_ray_tracing_pipeline = false;
+        else
+            fail("disabled features: '", name, "' is not ray_query or ray_tracing_pipeline");
     }
 }
 
@@ -258,8 +261,10 @@ void Context::collect() {
 }
 
 void Context::warn(std::string_view message) const {
-    if (log_) log_(message);
-    else std::fprintf(stderr, "twinray: %.*s\n", static_cast<int>(message.size()), message.data());
+    if (log_)
+        log_(message);
+    else
+        std::fprintf(stderr, "twinray: %.*s\n", static_cast<int>(message.size()), message.data());
 }
 
 std::vector<std::string> Context::validation_messages() const {

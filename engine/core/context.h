@@ -30,7 +30,7 @@ struct ContextDesc {
     bool use_ray_query = true;             // false: leave the extension disabled although the device has it
     bool use_ray_tracing_pipeline = true;  // likewise
     PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;  // null: open the system's loader
-    Log log = {};                          // warnings and validation messages; empty = stderr
+    Log log = {};                                                // warnings and validation messages; empty = stderr
 };
 
 // Leaves features of the device unused: `list` holds ray_query and ray_tracing_pipeline, separated by commas. For
@@ -42,12 +42,12 @@ struct AdoptedDevice {
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physical_device = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE;
-    VkQueue queue = VK_NULL_HANDLE;      // must support compute
+    VkQueue queue = VK_NULL_HANDLE;  // must support compute
     std::uint32_t queue_family = 0;
     PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;  // required
-    std::uint32_t api_version = 0;       // the version that the instance was created with
-    DeviceFacts enabled;                 // what was *enabled* on the device: told by the host, never guessed
-    std::function<void()> lock_queue;    // held around each submission; may be empty
+    std::uint32_t api_version = 0;                               // the version that the instance was created with
+    DeviceFacts enabled;               // what was *enabled* on the device: told by the host, never guessed
+    std::function<void()> lock_queue;  // held around each submission; may be empty
     std::function<void()> unlock_queue;
     Log log;
 };

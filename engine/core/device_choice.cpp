@@ -18,7 +18,8 @@ std::string lower(std::string s) {
 }
 
 bool is_index(const std::string& request) {
-    return !request.empty() && std::all_of(request.begin(), request.end(), [](unsigned char c) { return std::isdigit(c); });
+    return !request.empty() &&
+           std::all_of(request.begin(), request.end(), [](unsigned char c) { return std::isdigit(c); });
 }
 
 bool is_requested(const DeviceFacts& device, std::size_t index, const std::string& request) {
@@ -64,14 +65,17 @@ DeviceChoice choose_device(std::span<const DeviceFacts> devices, const std::stri
     std::vector<std::string> reasons(devices.size());
     for (std::size_t i = 0; i < devices.size(); ++i) {
         const std::vector<std::string> missing = missing_for_software(devices[i]);
-        if (!is_requested(devices[i], i, request)) reasons[i] = text("does not match the request '", request, "'");
-        else if (!missing.empty()) reasons[i] = "lacks " + joined(missing);
+        if (!is_requested(devices[i], i, request))
+            reasons[i] = text("does not match the request '", request, "'");
+        else if (!missing.empty())
+            reasons[i] = "lacks " + joined(missing);
         else if (choice.index < 0 || rank(devices[i]) > rank(devices[static_cast<std::size_t>(choice.index)]))
             choice.index = static_cast<int>(i);
     }
     for (std::size_t i = 0; i < devices.size(); ++i) {
         if (static_cast<int>(i) == choice.index) continue;
-        if (reasons[i].empty()) reasons[i] = "ranks behind '" + devices[static_cast<std::size_t>(choice.index)].name + "'";
+        if (reasons[i].empty())
+            reasons[i] = "ranks behind '" + devices[static_cast<std::size_t>(choice.index)].name + "'";
         choice.rejections.push_back(text(i, " '", devices[i].name, "': ", reasons[i]));
     }
     return choice;

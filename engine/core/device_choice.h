@@ -36,8 +36,8 @@ std::vector<std::string> missing_for_software(const DeviceFacts& device);
 std::vector<std::string> missing_for_hardware(const DeviceFacts& device);
 
 struct DeviceChoice {
-    int index = -1;                        // into the given span; -1 = none fits
-    std::vector<std::string> rejections;   // one sentence for each device that was not chosen
+    int index = -1;                       // into the given span; -1 = none fits
+    std::vector<std::string> rejections;  // one sentence for each device that was not chosen
 };
 
 // request: "" = best (hardware ray tracing first, then discrete > integrated > virtual > cpu, then order),

@@ -26,7 +26,8 @@ std::vector<VkExtensionProperties> device_extensions(const VulkanFunctions& vk, 
     std::uint32_t count = 0;
     vk_check(vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "list device extensions");
     std::vector<VkExtensionProperties> extensions(count);
-    vk_check(vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()), "list device extensions");
+    vk_check(vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
+             "list device extensions");
     return extensions;
 }
 
@@ -53,8 +54,8 @@ void query_features(const VulkanFunctions& vk, VkPhysicalDevice device, DeviceFa
     facts.acceleration_structure = structure.accelerationStructure &&
                                    has_extension(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) &&
                                    has_extension(extensions, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME);
-    facts.ray_query = facts.acceleration_structure && query.rayQuery &&
-                      has_extension(extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME);
+    facts.ray_query =
+        facts.acceleration_structure && query.rayQuery && has_extension(extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME);
     facts.ray_tracing_pipeline = facts.acceleration_structure && pipeline.rayTracingPipeline &&
                                  has_extension(extensions, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
 }

@@ -31,8 +31,8 @@ VkPipeline new_pipeline(Context& context, const KernelDesc& desc, VkPipelineLayo
     info.stage.pSpecializationInfo = &specialization;
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkResult result = context.vk().vkCreateComputePipelines(context.device(), context.pipeline_cache(), 1, &info,
-                                                                  nullptr, &pipeline);
+    const VkResult result =
+        context.vk().vkCreateComputePipelines(context.device(), context.pipeline_cache(), 1, &info, nullptr, &pipeline);
     context.vk().vkDestroyShaderModule(context.device(), module, nullptr);
     if (result != VK_SUCCESS) fail("kernel '", desc.name, "': create the pipeline: ", name_of(result));
     return pipeline;
@@ -59,7 +59,8 @@ VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlag
     info.pushConstantRangeCount = 1;
     info.pPushConstantRanges = &range;
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    vk_check(context.vk().vkCreatePipelineLayout(context.device(), &info, nullptr, &layout), "create a pipeline layout");
+    vk_check(context.vk().vkCreatePipelineLayout(context.device(), &info, nullptr, &layout),
+             "create a pipeline layout");
     return layout;
 }
 

@@ -47,8 +47,6 @@ using Uints = Ref<uint>;
 inline vec2 floats_of(std::uint64_t word) {
     return {uintBitsToFloat(static_cast<uint>(word)), uintBitsToFloat(static_cast<uint>(word >> 32))};
 }
-inline uvec2 uints_of(std::uint64_t word) {
-    return {static_cast<uint>(word), static_cast<uint>(word >> 32)};
-}
+inline uvec2 uints_of(std::uint64_t word) { return {static_cast<uint>(word), static_cast<uint>(word >> 32)}; }
 
 }  // namespace twinray

@@ -23,8 +23,7 @@ glm::dvec3 offset(const Transform& t) { return {t.rows[0].w, t.rows[1].w, t.rows
 
 Transform rounded(const dmat3& linear, const glm::dvec3& offset) {
     Transform t;
-    for (int row = 0; row < 3; ++row)
-        t.rows[row] = vec4(linear[0][row], linear[1][row], linear[2][row], offset[row]);
+    for (int row = 0; row < 3; ++row) t.rows[row] = vec4(linear[0][row], linear[1][row], linear[2][row], offset[row]);
     return t;
 }
 

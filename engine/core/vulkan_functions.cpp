@@ -52,7 +52,8 @@ const char* name_of(VkResult result) {
         case VK_ERROR_LAYER_NOT_PRESENT: return "a layer is not installed";
         case VK_ERROR_EXTENSION_NOT_PRESENT: return "an extension is not supported";
         case VK_ERROR_FEATURE_NOT_PRESENT: return "a feature is not supported";
-        case VK_ERROR_INCOMPATIBLE_DRIVER: return "no compatible Vulkan driver (Debian: apt-get install mesa-vulkan-drivers)";
+        case VK_ERROR_INCOMPATIBLE_DRIVER:
+            return "no compatible Vulkan driver (Debian: apt-get install mesa-vulkan-drivers)";
         case VK_ERROR_TOO_MANY_OBJECTS: return "too many objects";
         case VK_TIMEOUT: return "timed out";
         default: return "Vulkan reported an unexpected result";

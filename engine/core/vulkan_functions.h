@@ -6,73 +6,73 @@
 #define VK_NO_PROTOTYPES
 #include <vulkan/vulkan_core.h>
 
-#define TWINRAY_GLOBAL_FUNCTIONS(F) \
-    F(vkCreateInstance)             \
+#define TWINRAY_GLOBAL_FUNCTIONS(F)           \
+    F(vkCreateInstance)                       \
     F(vkEnumerateInstanceExtensionProperties) \
     F(vkEnumerateInstanceLayerProperties)
 
-#define TWINRAY_INSTANCE_FUNCTIONS(F)        \
-    F(vkDestroyInstance)                     \
-    F(vkEnumeratePhysicalDevices)            \
-    F(vkEnumerateDeviceExtensionProperties)  \
-    F(vkGetPhysicalDeviceProperties2)        \
-    F(vkGetPhysicalDeviceFeatures2)          \
+#define TWINRAY_INSTANCE_FUNCTIONS(F)           \
+    F(vkDestroyInstance)                        \
+    F(vkEnumeratePhysicalDevices)               \
+    F(vkEnumerateDeviceExtensionProperties)     \
+    F(vkGetPhysicalDeviceProperties2)           \
+    F(vkGetPhysicalDeviceFeatures2)             \
     F(vkGetPhysicalDeviceQueueFamilyProperties) \
-    F(vkGetPhysicalDeviceMemoryProperties)   \
-    F(vkCreateDevice)                        \
+    F(vkGetPhysicalDeviceMemoryProperties)      \
+    F(vkCreateDevice)                           \
     F(vkGetDeviceProcAddr)
 
 // Present only with VK_EXT_debug_utils.
-#define TWINRAY_DEBUG_FUNCTIONS(F)      \
-    F(vkCreateDebugUtilsMessengerEXT)   \
-    F(vkDestroyDebugUtilsMessengerEXT)  \
-    F(vkSetDebugUtilsObjectNameEXT)     \
-    F(vkCmdBeginDebugUtilsLabelEXT)     \
+#define TWINRAY_DEBUG_FUNCTIONS(F)     \
+    F(vkCreateDebugUtilsMessengerEXT)  \
+    F(vkDestroyDebugUtilsMessengerEXT) \
+    F(vkSetDebugUtilsObjectNameEXT)    \
+    F(vkCmdBeginDebugUtilsLabelEXT)    \
     F(vkCmdEndDebugUtilsLabelEXT)
 
-#define TWINRAY_DEVICE_FUNCTIONS(F)     \
-    F(vkDestroyDevice)                  \
-    F(vkGetDeviceQueue)                 \
-    F(vkQueueSubmit)                    \
-    F(vkCreateCommandPool)              \
-    F(vkDestroyCommandPool)             \
-    F(vkAllocateCommandBuffers)         \
-    F(vkBeginCommandBuffer)             \
-    F(vkEndCommandBuffer)               \
-    F(vkCreateSemaphore)                \
-    F(vkDestroySemaphore)               \
-    F(vkWaitSemaphores)                 \
-    F(vkGetSemaphoreCounterValue)       \
-    F(vkCreateQueryPool)                \
-    F(vkDestroyQueryPool)               \
-    F(vkGetQueryPoolResults)            \
-    F(vkCmdResetQueryPool)              \
-    F(vkCmdWriteTimestamp)              \
-    F(vkCreateShaderModule)             \
-    F(vkDestroyShaderModule)            \
-    F(vkCreatePipelineCache)            \
-    F(vkDestroyPipelineCache)           \
-    F(vkCreatePipelineLayout)           \
-    F(vkDestroyPipelineLayout)          \
-    F(vkCreateComputePipelines)         \
-    F(vkDestroyPipeline)                \
-    F(vkCmdBindPipeline)                \
-    F(vkCmdPushConstants)               \
-    F(vkCmdDispatch)                    \
-    F(vkCmdPipelineBarrier)             \
-    F(vkCmdCopyBuffer)                  \
-    F(vkCmdFillBuffer)                  \
+#define TWINRAY_DEVICE_FUNCTIONS(F) \
+    F(vkDestroyDevice)              \
+    F(vkGetDeviceQueue)             \
+    F(vkQueueSubmit)                \
+    F(vkCreateCommandPool)          \
+    F(vkDestroyCommandPool)         \
+    F(vkAllocateCommandBuffers)     \
+    F(vkBeginCommandBuffer)         \
+    F(vkEndCommandBuffer)           \
+    F(vkCreateSemaphore)            \
+    F(vkDestroySemaphore)           \
+    F(vkWaitSemaphores)             \
+    F(vkGetSemaphoreCounterValue)   \
+    F(vkCreateQueryPool)            \
+    F(vkDestroyQueryPool)           \
+    F(vkGetQueryPoolResults)        \
+    F(vkCmdResetQueryPool)          \
+    F(vkCmdWriteTimestamp)          \
+    F(vkCreateShaderModule)         \
+    F(vkDestroyShaderModule)        \
+    F(vkCreatePipelineCache)        \
+    F(vkDestroyPipelineCache)       \
+    F(vkCreatePipelineLayout)       \
+    F(vkDestroyPipelineLayout)      \
+    F(vkCreateComputePipelines)     \
+    F(vkDestroyPipeline)            \
+    F(vkCmdBindPipeline)            \
+    F(vkCmdPushConstants)           \
+    F(vkCmdDispatch)                \
+    F(vkCmdPipelineBarrier)         \
+    F(vkCmdCopyBuffer)              \
+    F(vkCmdFillBuffer)              \
     F(vkGetBufferDeviceAddress)
 
 // Present only with VK_KHR_acceleration_structure and VK_KHR_ray_tracing_pipeline.
-#define TWINRAY_RAY_TRACING_FUNCTIONS(F)               \
-    F(vkCreateAccelerationStructureKHR)                \
-    F(vkDestroyAccelerationStructureKHR)               \
-    F(vkGetAccelerationStructureBuildSizesKHR)         \
-    F(vkGetAccelerationStructureDeviceAddressKHR)      \
-    F(vkCmdBuildAccelerationStructuresKHR)             \
-    F(vkCreateRayTracingPipelinesKHR)                  \
-    F(vkGetRayTracingShaderGroupHandlesKHR)            \
+#define TWINRAY_RAY_TRACING_FUNCTIONS(F)          \
+    F(vkCreateAccelerationStructureKHR)           \
+    F(vkDestroyAccelerationStructureKHR)          \
+    F(vkGetAccelerationStructureBuildSizesKHR)    \
+    F(vkGetAccelerationStructureDeviceAddressKHR) \
+    F(vkCmdBuildAccelerationStructuresKHR)        \
+    F(vkCreateRayTracingPipelinesKHR)             \
+    F(vkGetRayTracingShaderGroupHandlesKHR)       \
     F(vkCmdTraceRaysKHR)
 
 namespace twinray {

@@ -65,6 +65,8 @@ class MaterialReader {
         material.metallic_roughness_texture = slot(pbr.metallicRoughnessTexture, "metallicRoughnessTexture");
         material.emission_texture = slot(source.emissiveTexture, "emissiveTexture");
         material.normal_texture = slot(source.normalTexture, "normalTexture");
+        // Colours of a checkerboard warn; read as normals they would only spoil the shape.
+        if (textures_.is_placeholder(material.normal_texture)) material.normal_texture = {};
     }
 
     void read_extension(const std::string& name, const tinygltf::Value& extension, const std::string& object,

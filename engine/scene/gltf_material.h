@@ -7,7 +7,8 @@
 namespace twinray {
 
 // Fills scene.materials, one per glTF material in the same order, and scene.images with those that they use,
-// each decoded once. An image that cannot be read becomes a checkerboard, with a warning.
+// each decoded once. An image that cannot be read becomes a checkerboard, with a warning;
+// a normal map that cannot be read is left out.
 void read_gltf_materials(GltfFile& file, Scene& scene);
 
 }  // namespace twinray

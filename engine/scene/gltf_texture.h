@@ -17,6 +17,11 @@ class GltfTextures {
     // A reference inside an extension: member `key` of `parent`; no texture when it is absent.
     Texture read(const tinygltf::Value& parent, const std::string& key, const std::string& object);
 
+    // Whether its image could not be decoded.
+    bool is_placeholder(const Texture& texture) const {
+        return texture.image >= 0 && images_[std::size_t(texture.image)].is_placeholder;
+    }
+
   private:
     std::int32_t image_of(const tinygltf::Texture& texture, const std::string& object);
     Image decode(std::size_t image) const;

@@ -102,7 +102,7 @@ Image decode_image(std::span<const std::uint8_t> bytes, const std::string& objec
 
 Image checkerboard_image(const std::string& name) {
     constexpr uint size = 32, square = 4;
-    Image image{.name = name, .width = size, .height = size, .rgba = {}};
+    Image image{.name = name, .width = size, .height = size, .rgba = {}, .is_placeholder = true};
     for (uint y = 0; y < size; ++y)
         for (uint x = 0; x < size; ++x) {
             const std::uint8_t value = (x / square + y / square) % 2 == 0 ? 255 : 0;

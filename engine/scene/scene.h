@@ -19,6 +19,7 @@ struct Image {
     uint width = 0;
     uint height = 0;
     std::vector<std::uint8_t> rgba;
+    bool is_placeholder = false;  // a checkerboard in place of an image that could not be decoded
 };
 
 enum class Wrap : std::uint8_t { repeat, clamp_to_edge, mirrored_repeat };
@@ -40,8 +41,8 @@ struct Material {
     std::string name;
     vec4 base_color = vec4(1);  // linear
     float metallic = 1;
-    float roughness = 1;        // perceptual, as glTF; alpha = roughness^2
-    vec3 emission = vec3(0);    // linear, emissive_strength multiplied in
+    float roughness = 1;      // perceptual, as glTF; alpha = roughness^2
+    vec3 emission = vec3(0);  // linear, emissive_strength multiplied in
     float transmission = 0;
     float ior = 1.5f;
     float normal_scale = 1;
@@ -64,8 +65,8 @@ struct Instance {
 struct Camera {
     std::string name;
     Transform camera_to_world;
-    float vertical_fov = 0.8f;             // radians; perspective
-    std::optional<float> aspect;           // width / height when the file states one
+    float vertical_fov = 0.8f;                      // radians; perspective
+    std::optional<float> aspect;                    // width / height when the file states one
     std::optional<float> orthographic_half_height;  // set: orthographic, in world units
 };
 

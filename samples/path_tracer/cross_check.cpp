@@ -13,7 +13,16 @@ namespace {
 
 constexpr uint batch_capacity = 1 << 16;  // disagreements kept of one trace
 
-std::array<uint, 3> bits_of(vec3 value) { return std::bit_cast<std::array<uint, 3>>(value); }
+bool same_bits(vec3 a, vec3 b) {
+    return std::bit_cast<std::array<uint, 3>>(a) == std::bit_cast<std::array<uint, 3>>(b);
+}
+
+void draw_dot(Picture& picture, std::size_t pixel, vec3 color) {
+    const std::size_t x = pixel % picture.width, y = pixel / picture.width;
+    for (std::size_t row = y - (y > 0); row <= std::min<std::size_t>(y + 1, picture.height - 1); ++row)
+        for (std::size_t column = x - (x > 0); column <= std::min<std::size_t>(x + 1, picture.width - 1); ++column)
+            picture.rgb[row * picture.width + column] = color;
+}
 
 }  // namespace
 
@@ -66,11 +75,21 @@ std::vector<uint> CrossChecker::marks() { return download<uint>(context_, marks_
 PictureDifference compare_pictures(const Picture& first, const Picture& second, const std::vector<uint>& marks) {
     PictureDifference difference;
     for (std::size_t i = 0; i < first.rgb.size(); ++i) {
-        if (bits_of(first.rgb[i]) == bits_of(second.rgb[i])) continue;
+        if (same_bits(first.rgb[i], second.rgb[i])) continue;
         ++difference.differing;
         if (marks[i] == 0) ++difference.unexplained;
     }
     return difference;
+}
+
+Picture difference_picture(const Picture& first, const Picture& second, const std::vector<uint>& marks, float white) {
+    constexpr float dimming = 0.25f;
+    const vec3 explained = vec3(1, 0.8f, 0) * white, unexplained = vec3(1, 0, 0) * white;
+    Picture picture = first;
+    for (vec3& pixel : picture.rgb) pixel = vec3(dimming * luminance(pixel));
+    for (std::size_t i = 0; i < first.rgb.size(); ++i)
+        if (!same_bits(first.rgb[i], second.rgb[i])) draw_dot(picture, i, marks[i] ? explained : unexplained);
+    return picture;
 }
 
 }  // namespace twinray::path_tracer

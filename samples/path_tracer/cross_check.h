@@ -40,4 +40,8 @@ struct PictureDifference {
 };
 PictureDifference compare_pictures(const Picture& first, const Picture& second, const std::vector<uint>& marks);
 
+// To look at: `first`, dimmed and grey, with a dot of 3 x 3 pixels on every pixel that differs: yellow where a ray
+// disagreed, red where none did. White of the dots: `white`.
+Picture difference_picture(const Picture& first, const Picture& second, const std::vector<uint>& marks, float white);
+
 }  // namespace twinray::path_tracer

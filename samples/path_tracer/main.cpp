@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The sample path tracer: one scene, one picture, by either accelerator or by both against each other.
+#include <cmath>
 #include <cstdio>
 
 #include "engine/core/error.h"
@@ -37,12 +38,15 @@ int cross_check(const Options& options) {
     result.shadow_rays = renderer.stats().shadow_rays;
     result.disagreeing = checker.found();
     const Picture by_software = renderer.render(*software, options.quiet);
-    result.pictures = compare_pictures(by_hardware, by_software, checker.marks());
+    const std::vector<uint> marks = checker.marks();
+    result.pictures = compare_pictures(by_hardware, by_software, marks);
     classify_disagreements(session.scene, checker.kept(), result);
 
     const float exposure = session.exposure(options, by_hardware);
     write_picture(with_suffix(options.output, "_hw"), by_hardware, exposure);
     write_picture(with_suffix(options.output, "_sw"), by_software, exposure);
+    write_picture(with_suffix(options.output, "_difference"),
+                  difference_picture(by_hardware, by_software, marks, std::exp2(-exposure)), exposure);
     report_cross_check(options, session, result);
     return result.passed() ? 0 : 1;
 }

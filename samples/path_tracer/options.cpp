@@ -26,7 +26,8 @@ void add_files(CLI::App& app, Options& options) {
     app.add_option("--json", options.json, "append one line with what was rendered and how fast");
     app.add_option("--cross-check", options.cross_check,
                    "trace every ray with both accelerators and write what differs, .json or text; the pictures of both "
-                   "go to OUTPUT_hw and OUTPUT_sw; exit 1 on an unexplained difference or a fault of ours");
+                   "go to OUTPUT_hw and OUTPUT_sw, where they differ to OUTPUT_difference; exit 1 on an unexplained "
+                   "difference or a fault of ours");
 }
 
 void add_picture(CLI::App& app, Options& options) {

@@ -28,9 +28,12 @@ class Accel : public test::VulkanTest, public ::testing::WithParamInterface<Kind
     void SetUp() override {
         test::VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        if (GetParam() == Kind::software) accel_ = std::make_unique<SwTlas>(context());
-        else if (missing_for_hardware(context().facts()).empty()) accel_ = std::make_unique<HwTlas>(context());
-        else GTEST_SKIP() << context().facts().name << " has no such ray tracing";
+        if (GetParam() == Kind::software)
+            accel_ = std::make_unique<SwTlas>(context());
+        else if (missing_for_hardware(context().facts()).empty())
+            accel_ = std::make_unique<HwTlas>(context());
+        else
+            GTEST_SKIP() << context().facts().name << " has no such ray tracing";
     }
     void TearDown() override {
         accel_.reset();
@@ -47,7 +50,8 @@ class Accel : public test::VulkanTest, public ::testing::WithParamInterface<Kind
 std::string name_of_kind(const ::testing::TestParamInfo<Kind>& info) {
     return info.param == Kind::software ? "Software" : info.param == Kind::ray_query ? "RayQuery" : "Pipeline";
 }
-INSTANTIATE_TEST_SUITE_P(Every, Accel, ::testing::Values(Kind::software, Kind::ray_query, Kind::pipeline), name_of_kind);
+INSTANTIATE_TEST_SUITE_P(Every, Accel, ::testing::Values(Kind::software, Kind::ray_query, Kind::pipeline),
+                         name_of_kind);
 
 // The unit square at height z, facing up; rays go down onto it.
 Mesh square(float z) { return make_quad(vec3(0, 0, z), vec3(1, 0, 0), vec3(0, 1, 0)); }
@@ -181,7 +185,8 @@ TEST_P(Accel, MasksHideInstances) {
     const SyncPoint done = accel().sync();
     context().wait(done);
     const Ray ray = down(0.5f, 0.25f);
-    const Buffer rays(context(), {.name = "rays", .bytes = sizeof(Ray)}), hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
+    const Buffer rays(context(), {.name = "rays", .bytes = sizeof(Ray)}),
+        hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
     for (const auto& [mask, t] : {std::pair<std::uint8_t, float>{1, 9}, {2, 8}, {3, 8}, {4, -1}, {0xff, 8}}) {
         Commands commands(context(), "masks");
         {
@@ -261,15 +266,22 @@ TEST_P(Accel, WrongUseNamesTheObjectTheValueAndTheLimitAndChangesNothing) {
     const std::pair<std::function<void()>, const char*> cases[] = {
         {[&] { accel().push(wild); }, "mesh 'wild': triangle 1"},
         {[&] { accel().push(square(0), Transform{}, {.custom_index = 1u << 24}); }, "16777216"},
-        {[&] { accel().push(square(0), Transform::scaling({1, 1, 0})); }, "singular"},
-        {[&] { accel().push(square(0), Transform::translation({NAN, 0, 0})); }, "not finite"},
+        {[&] {
+             accel().push(square(0), Transform::scaling({1, 1, 0}));
+         },
+         "singular"},
+        {[&] {
+             accel().push(square(0), Transform::translation({NAN, 0, 0}));
+         },
+         "not finite"},
         {[&] { accel().push(square(0), std::vector<Transform>(2), three); }, "3 instance options for 2 transforms"},
         {[&] { accel().update_transform(pair, {}); }, "2 instances, not 1"},
         {[&] { accel().update_transforms(pair, std::vector<Transform>(5)); }, "5 transforms for the 2 instances"},
         {[&] { accel().update_transform_at(pair, 2, {}); }, "index 2 of the 2"},
         {[&] { accel().update_transform({999}, {}); }, "handle 999 is not alive"},
     };
-    for (const auto& [action, expected] : cases) EXPECT_NE(error_of(action).find(expected), std::string::npos) << error_of(action);
+    for (const auto& [action, expected] : cases)
+        EXPECT_NE(error_of(action).find(expected), std::string::npos) << error_of(action);
     EXPECT_EQ(accel().n_instances(), 2u);
     EXPECT_EQ(accel().view().revision, view.revision) << "no edit is pending";
 }
@@ -291,7 +303,8 @@ TEST_P(Accel, AgreesWithTheRefereeOnRandomScenes) {
     std::mt19937 random(2026);
     std::uniform_real_distribution<float> unit(-1, 1);
     Scene scene;
-    scene.meshes = {make_icosphere(3), make_soup(500, 9), make_box(vec3(-0.5f), vec3(0.5f)), make_grid(10, 10, 0.2f, 1)};
+    scene.meshes = {make_icosphere(3), make_soup(500, 9), make_box(vec3(-0.5f), vec3(0.5f)),
+                    make_grid(10, 10, 0.2f, 1)};
     for (uint mesh = 0; mesh < scene.meshes.size(); ++mesh)
         for (int i = 0; i < 12; ++i) {
             Transform transform;

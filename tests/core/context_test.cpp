@@ -20,9 +20,7 @@ TEST(ContextErrors, AnUnknownDeviceIsNamedWithTheReasons) {
     }
 }
 
-TEST(ContextErrors, AnIncompleteAdoptionIsRefused) {
-    EXPECT_THROW(Context(AdoptedDevice{}), Error);
-}
+TEST(ContextErrors, AnIncompleteAdoptionIsRefused) { EXPECT_THROW(Context(AdoptedDevice{}), Error); }
 
 TEST_F(ContextTest, UploadsAndDownloads) {
     std::vector<uint> values(1000);
@@ -35,7 +33,8 @@ TEST_F(ContextTest, UploadsAndDownloads) {
     }
     commands.submit();
     EXPECT_EQ(download<uint>(context(), buffer, 1000), values);
-    EXPECT_EQ(download<uint>(context(), buffer, 10, 400), std::vector<uint>(values.begin() + 100, values.begin() + 110));
+    EXPECT_EQ(download<uint>(context(), buffer, 10, 400),
+              std::vector<uint>(values.begin() + 100, values.begin() + 110));
 }
 
 TEST_F(ContextTest, CopiesBeyondABufferAreRefused) {
@@ -91,8 +90,10 @@ TEST(Validation, IsHeard) {
     if (!context) return;
     VkBufferCreateInfo wrong{};
     wrong.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;  // size 0 and no usage are both forbidden
-    const auto create = reinterpret_cast<PFN_vkCreateBuffer>(context->vk().vkGetDeviceProcAddr(context->device(), "vkCreateBuffer"));
-    const auto destroy = reinterpret_cast<PFN_vkDestroyBuffer>(context->vk().vkGetDeviceProcAddr(context->device(), "vkDestroyBuffer"));
+    const auto create =
+        reinterpret_cast<PFN_vkCreateBuffer>(context->vk().vkGetDeviceProcAddr(context->device(), "vkCreateBuffer"));
+    const auto destroy =
+        reinterpret_cast<PFN_vkDestroyBuffer>(context->vk().vkGetDeviceProcAddr(context->device(), "vkDestroyBuffer"));
     VkBuffer buffer = VK_NULL_HANDLE;
     create(context->device(), &wrong, nullptr, &buffer);
     destroy(context->device(), buffer, nullptr);

@@ -27,7 +27,8 @@ TEST(DeviceChoice, PrefersRayTracingThenDiscrete) {
 }
 
 TEST(DeviceChoice, TakesAnIndexOrAPartOfTheName) {
-    const std::vector<DeviceFacts> devices = {capable("Alpha One", DeviceKind::discrete), capable("Beta Two", DeviceKind::cpu)};
+    const std::vector<DeviceFacts> devices = {capable("Alpha One", DeviceKind::discrete),
+                                              capable("Beta Two", DeviceKind::cpu)};
     EXPECT_EQ(choose_device(devices, "1").index, 1);
     EXPECT_EQ(choose_device(devices, "two").index, 1);
     EXPECT_EQ(choose_device(devices, "gamma").index, -1);
@@ -38,7 +39,8 @@ TEST(DeviceChoice, SaysWhyEachOtherDeviceWasRejected) {
     DeviceFacts old = capable("old", DeviceKind::discrete);
     old.api_version = (1u << 22) | (1u << 12);
     old.shader_int64 = false;
-    const std::vector<DeviceFacts> devices = {old, capable("good", DeviceKind::cpu), capable("also good", DeviceKind::cpu)};
+    const std::vector<DeviceFacts> devices = {old, capable("good", DeviceKind::cpu),
+                                              capable("also good", DeviceKind::cpu)};
     const DeviceChoice choice = choose_device(devices, "");
     ASSERT_EQ(choice.index, 1);
     ASSERT_EQ(choice.rejections.size(), 2u);

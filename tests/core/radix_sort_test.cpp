@@ -26,10 +26,9 @@ class RadixSortTest : public test::VulkanTest {
             commands.upload(buffers[0], std::span(keys));
             commands.upload(buffers[1], std::span<const uint>(values));
         }
-        const RadixSort::Pairs result =
-            sort.record(commands, {{buffers[0].address()}, {buffers[1].address()}},
-                        {{buffers[2].address()}, {buffers[3].address()}}, {counters.address()},
-                        static_cast<uint>(keys.size()), bits);
+        const RadixSort::Pairs result = sort.record(commands, {{buffers[0].address()}, {buffers[1].address()}},
+                                                    {{buffers[2].address()}, {buffers[3].address()}},
+                                                    {counters.address()}, static_cast<uint>(keys.size()), bits);
         commands.submit();
         const bool in_place = result.values.address == buffers[1].address();
         return download<uint>(context(), buffers[in_place ? 1 : 3], keys.size());
@@ -51,7 +50,8 @@ TEST_F(RadixSortTest, EqualsStableSortForManyCountsAndWidths) {
         for (const uint bits : {1u, 6u, 9u, 30u}) {
             std::vector<uint> keys(count);
             for (uint& key : keys) key = static_cast<uint>(random()) & ((1u << bits) - 1);
-            EXPECT_EQ(sorted_values(sort, keys, bits), expected_values(keys, bits)) << count << " keys of " << bits << " bits";
+            EXPECT_EQ(sorted_values(sort, keys, bits), expected_values(keys, bits))
+                << count << " keys of " << bits << " bits";
         }
     }
 }

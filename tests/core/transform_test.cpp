@@ -56,7 +56,8 @@ TEST(Transform, TheShadersInverseIsAccurateToARoundingForWellConditionedMaps) {
         if (norm_m * norm_w > 1000) continue;  // nearly singular: the residual is checked where it matters
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c)
-                EXPECT_NEAR(computed[r][c], exact.rows[static_cast<std::size_t>(r)][c], norm_w * 0x1p-22) << "transform " << i;
+                EXPECT_NEAR(computed[r][c], exact.rows[static_cast<std::size_t>(r)][c], norm_w * 0x1p-22)
+                    << "transform " << i;
     }
 }
 

@@ -170,6 +170,14 @@ void expect_checkerboard(const json& image, const std::string& warning) {
     EXPECT_EQ(scene.images[0].rgba[1], 0);
 }
 
+TEST(GltfMaterial, ANormalMapThatCannotBeReadIsLeftOutWithAWarning) {
+    GltfBuilder gltf = textured_triangle({{"normalTexture", {{"index", 0}}}});
+    gltf.root["images"][0] = {{"uri", "missing.png"}};
+    const Scene scene = gltf.load();
+    EXPECT_TRUE(has_warning(scene, "missing.png': file not found"));
+    EXPECT_EQ(scene.materials[0].normal_texture.image, -1);
+}
+
 TEST(GltfMaterial, AnImageThatCannotBeShownIsACheckerboardWithAReason) {
     expect_checkerboard({{"uri", "missing.png"}}, "missing.png': file not found");
     expect_checkerboard({{"uri", "data:image/ktx2;base64," + base64("\xabKTX 20\xbb\r\n\x1a\n")}}, "KTX2");

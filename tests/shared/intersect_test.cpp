@@ -17,7 +17,8 @@ int hits_of(const Mesh& mesh, vec3 origin, vec3 direction) {
     int count = 0;
     for (const uvec3& corners : mesh.triangles) {
         TriangleHit hit;
-        count += intersect_triangle(mesh.positions[corners.x], mesh.positions[corners.y], mesh.positions[corners.z], space, hit);
+        count += intersect_triangle(mesh.positions[corners.x], mesh.positions[corners.y], mesh.positions[corners.z],
+                                    space, hit);
     }
     return count;
 }
@@ -95,7 +96,8 @@ TEST(ActiveTriangle, IsDecidedExactlyForCornersOnALine) {
         EXPECT_FALSE(is_active_triangle(a * scale, b * scale, c * scale));
         vec3 moved = b;
         moved[static_cast<int>(random() % 3)] += 0.25f;
-        const bool still_flat = cross(glm::dvec3(moved) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)) == glm::dvec3(0);
+        const bool still_flat =
+            cross(glm::dvec3(moved) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)) == glm::dvec3(0);
         EXPECT_EQ(is_active_triangle(a * scale, moved * scale, c * scale), !still_flat);
         flat += still_flat;
     }

@@ -39,7 +39,8 @@ void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh) {
     const reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, true);
     EXPECT_EQ(tree.bvh.root, twin.root) << mesh.name;
     EXPECT_TRUE(same_bytes(tree.nodes, twin.nodes)) << mesh.name;
-    EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(mesh.positions, mesh.triangles, order))) << mesh.name;
+    EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(mesh.positions, mesh.triangles, order)))
+        << mesh.name;
 }
 
 // n copies of one triangle: all centroids equal.
