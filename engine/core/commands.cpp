@@ -31,23 +31,55 @@ VkQueryPool new_timestamps(Context& context, std::uint32_t count) {
 }  // namespace
 
 Commands::Commands(Context& context, const std::string& name) : context_(context), name_(name) {
+    context.check_alive();
     const VulkanFunctions& vk = context.vk();
-    pool_ = new_pool(context);
-    queries_ = new_timestamps(context, 2 * max_timed_passes_);
-    VkCommandBufferAllocateInfo allocate{};
-    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    allocate.commandPool = pool_;
-    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    allocate.commandBufferCount = 1;
-    vk_check(vk.vkAllocateCommandBuffers(context.device(), &allocate, &handle_), "allocate a command buffer");
-    context.set_name(VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<std::uint64_t>(handle_), name_);
-    VkCommandBufferBeginInfo begin{};
-    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    vk_check(vk.vkBeginCommandBuffer(handle_, &begin), "begin a command buffer");
-    vk.vkCmdResetQueryPool(handle_, queries_, 0, 2 * max_timed_passes_);
+    try {
+        pool_ = new_pool(context);
+        VkCommandBufferAllocateInfo allocate{};
+        allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+        allocate.commandPool = pool_;
+        allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+        allocate.commandBufferCount = 1;
+        vk_check(vk.vkAllocateCommandBuffers(context.device(), &allocate, &handle_), "allocate a command buffer");
+        context.set_name(VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<std::uint64_t>(handle_), name_);
+        VkCommandBufferBeginInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+        info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+        vk_check(vk.vkBeginCommandBuffer(handle_, &info), "begin a command buffer");
+        begin();
+    } catch (...) {
+        if (pool_) vk.vkDestroyCommandPool(context.device(), pool_, nullptr);
+        throw;
+    }
     // Earlier submissions on this queue are ordered before, but their writes need to be made visible.
     end_pass();
+}
+
+Commands::Commands(Context& context, const std::string& name, const CallerCommands& caller)
+    : context_(context),
+      name_(name),
+      handle_(caller.handle),
+      consumer_stages_(caller.consumer_stages),
+      consumer_access_(caller.consumer_access | VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT),
+      done_(caller.done) {
+    context.check_alive();
+    if (!caller.handle) fail("commands '", name_, "': the caller's command buffer is null");
+    if (!caller.done.semaphore || !caller.done.value)
+        fail("commands '", name_, "': the caller must say with which semaphore and value (not 0) its commands are done");
+    begin();
+    context.announce(caller.done);
+    VkMemoryBarrier barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    barrier.srcAccessMask = caller.producer_access;
+    barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+    context.vk().vkCmdPipelineBarrier(handle_, caller.producer_stages | context.stages(), context.stages(), 0, 1,
+                                      &barrier, 0, nullptr, 0, nullptr);
+}
+
+void Commands::begin() {
+    if (context_.timestamp_period_ns() == 0) return;
+    queries_ = new_timestamps(context_, 2 * max_timed_passes_);
+    context_.vk().vkCmdResetQueryPool(handle_, queries_, 0, 2 * max_timed_passes_);
 }
 
 Commands::~Commands() {
@@ -61,16 +93,14 @@ Commands::Pass::Pass(Commands& commands, const std::string& name) : commands_(co
 
 Commands::Pass::~Pass() {
     Commands& c = commands_;
-    const std::uint32_t index = static_cast<std::uint32_t>(c.pass_names_.size()) - 1;
-    if (index < max_timed_passes_)
-        c.context_.vk().vkCmdWriteTimestamp(c.handle_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, c.queries_, 2 * index + 1);
+    c.write_timestamp(2 * static_cast<std::uint32_t>(c.pass_names_.size()) - 1);
     c.end_pass();
     if (c.context_.vk().vkCmdEndDebugUtilsLabelEXT) c.context_.vk().vkCmdEndDebugUtilsLabelEXT(c.handle_);
 }
 
 void Commands::begin_pass(const std::string& name) {
     if (in_pass_) fail("commands '", name_, "': pass '", name, "' starts inside pass '", pass_names_.back(), "'");
-    if (done_.value) fail("commands '", name_, "': pass '", name, "' recorded after submit");
+    if (pool_ && done_.value) fail("commands '", name_, "': pass '", name, "' recorded after submit");
     in_pass_ = true;
     pass_names_.push_back(name);
     if (context_.vk().vkCmdBeginDebugUtilsLabelEXT) {
@@ -79,18 +109,21 @@ void Commands::begin_pass(const std::string& name) {
         label.pLabelName = name.c_str();
         context_.vk().vkCmdBeginDebugUtilsLabelEXT(handle_, &label);
     }
-    const std::uint32_t index = static_cast<std::uint32_t>(pass_names_.size()) - 1;
-    if (index < max_timed_passes_)
-        context_.vk().vkCmdWriteTimestamp(handle_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, 2 * index);
+    write_timestamp(2 * static_cast<std::uint32_t>(pass_names_.size()) - 2);
+}
+
+void Commands::write_timestamp(std::uint32_t index) const {
+    if (queries_ && index < 2 * max_timed_passes_)
+        context_.vk().vkCmdWriteTimestamp(handle_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queries_, index);
 }
 
 void Commands::end_pass() {
     VkMemoryBarrier barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
     barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-    barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-    context_.vk().vkCmdPipelineBarrier(handle_, context_.stages(), context_.stages() | VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
-                                       &barrier, 0, nullptr, 0, nullptr);
+    barrier.dstAccessMask = consumer_access_;
+    context_.vk().vkCmdPipelineBarrier(handle_, context_.stages(), context_.stages() | consumer_stages_, 0, 1, &barrier,
+                                       0, nullptr, 0, nullptr);
     in_pass_ = false;
 }
 
@@ -117,6 +150,7 @@ void Commands::fill(const Buffer& target, std::uint64_t offset, std::uint64_t by
 }
 
 SyncPoint Commands::submit() {
+    if (is_of_caller()) fail("commands '", name_, "': they are the caller's to submit");
     vk_check(context_.vk().vkEndCommandBuffer(handle_), "end a command buffer");
     done_ = context_.submit(handle_);
     kept_.clear();  // retired behind the submission just made
@@ -125,6 +159,7 @@ SyncPoint Commands::submit() {
 
 std::vector<PassTiming> Commands::timings() const {
     context_.wait(done_);
+    if (!queries_) return {};
     const std::uint32_t count = std::min(static_cast<std::uint32_t>(pass_names_.size()), max_timed_passes_);
     std::vector<std::uint64_t> stamps(2 * count);
     if (count)

@@ -16,11 +16,27 @@ struct PassTiming {
     double ms = 0;
 };
 
+// A command buffer of the caller: begun, outside a render pass, for a queue of Context::queue_family(), submitted once.
+struct CallerCommands {
+    VkCommandBuffer handle = VK_NULL_HANDLE;
+    // A value of a timeline semaphore of the caller that the submission will signal. Until it is reached, twinray keeps
+    // what the commands use.
+    SyncPoint done;
+    // The caller's earlier work whose writes twinray must see, and the later work that uses what twinray writes.
+    VkPipelineStageFlags producer_stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
+    VkAccessFlags producer_access = VK_ACCESS_MEMORY_WRITE_BIT;
+    VkPipelineStageFlags consumer_stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
+    VkAccessFlags consumer_access = VK_ACCESS_MEMORY_READ_BIT;
+};
+
 // One command buffer, recorded as a straight line of named passes. The end of a pass is a global memory barrier, so
 // each pass sees all that earlier passes wrote; dispatches inside one pass must not depend on each other.
 class Commands {
   public:
+    // Own commands, submitted by submit().
     Commands(Context& context, const std::string& name);
+    // Records into the caller's. Throws Error unless caller.handle and caller.done are set.
+    Commands(Context& context, const std::string& name, const CallerCommands& caller);
     ~Commands();
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
@@ -53,25 +69,34 @@ class Commands {
     // Takes ownership until the GPU has finished these commands.
     void keep(Buffer&& temporary) { kept_.push_back(std::move(temporary)); }
 
-    // Once, at the end. The object may then be destroyed at any time.
+    // Once, at the end. The object may then be destroyed at any time. Throws Error for commands of the caller.
     SyncPoint submit();
+    bool is_of_caller() const { return !pool_; }
+    // When these commands are done: CallerCommands::done, or what submit() returned.
+    SyncPoint done() const { return done_; }
 
-    // After submit: waits for the GPU; one entry per pass in recording order.
+    // After the submission: waits for the GPU; one entry per pass in recording order, none where the queue has no
+    // timestamps.
     std::vector<PassTiming> timings() const;
 
     Context& context() const { return context_; }
     VkCommandBuffer handle() const { return handle_; }
 
   private:
+    void begin();
     void begin_pass(const std::string& name);
     void end_pass();
+    void write_timestamp(std::uint32_t index) const;
 
     static constexpr std::uint32_t max_timed_passes_ = 512;  // passes beyond it are recorded but not timed
     Context& context_;
     std::string name_;
-    VkCommandPool pool_ = VK_NULL_HANDLE;
+    VkCommandPool pool_ = VK_NULL_HANDLE;  // null: the caller's
     VkCommandBuffer handle_ = VK_NULL_HANDLE;
-    VkQueryPool queries_ = VK_NULL_HANDLE;
+    VkQueryPool queries_ = VK_NULL_HANDLE;  // null: the queue has no timestamps
+    // What follows the commands besides twinray itself.
+    VkPipelineStageFlags consumer_stages_ = VK_PIPELINE_STAGE_HOST_BIT;
+    VkAccessFlags consumer_access_ = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
     std::vector<std::string> pass_names_;
     std::vector<Buffer> kept_;
     bool in_pass_ = false;

@@ -49,6 +49,14 @@ std::vector<DeviceFacts> facts_of(const VulkanFunctions& vk, const std::vector<V
     return facts;
 }
 
+bool has_timestamps(const VulkanFunctions& vk, VkPhysicalDevice device, std::uint32_t family) {
+    std::uint32_t count = 0;
+    vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+    return family < count && families[family].timestampValidBits > 0;
+}
+
 std::string no_device_message(const DeviceChoice& choice) {
     std::string message = "no usable Vulkan device";
     for (const std::string& reason : choice.rejections) message += "\n  device " + reason;
@@ -113,7 +121,7 @@ Context::Context(const AdoptedDevice& adopted)
 
 Context::~Context() {
     try {
-        wait_for_gpu();
+        wait(last_submission());
     } catch (const Error& error) {
         warn(error.what());
     }
@@ -169,7 +177,8 @@ void Context::create_own_objects() {
     VkPhysicalDeviceProperties2 properties{};
     properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
     vk_.vkGetPhysicalDeviceProperties2(physical_device_, &properties);
-    timestamp_period_ns_ = properties.properties.limits.timestampPeriod;
+    if (has_timestamps(vk_, physical_device_, queue_family_))
+        timestamp_period_ns_ = properties.properties.limits.timestampPeriod;
     allocator_ = create_allocator(vk_, instance_, physical_device_, device_, api_version_);
 
     VkSemaphoreTypeCreateInfo type{};
@@ -205,7 +214,17 @@ VkPipelineStageFlags Context::stages() const {
     return stages;
 }
 
+void Context::check(VkResult result, const char* action) const {
+    is_lost_ |= result == VK_ERROR_DEVICE_LOST;
+    vk_check(result, action);
+}
+
+void Context::check_alive() const {
+    if (is_lost_) throw DeviceLost(text("device '", facts_.name, "': ", name_of(VK_ERROR_DEVICE_LOST)));
+}
+
 SyncPoint Context::submit(VkCommandBuffer commands) {
+    check_alive();
     const std::uint64_t value = submitted_ + 1;
     VkTimelineSemaphoreSubmitInfo timeline{};
     timeline.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
@@ -221,7 +240,7 @@ SyncPoint Context::submit(VkCommandBuffer commands) {
     if (lock_queue_) lock_queue_();
     const VkResult result = vk_.vkQueueSubmit(queue_, 1, &info, VK_NULL_HANDLE);
     if (unlock_queue_) unlock_queue_();
-    vk_check(result, "submit to the queue");
+    check(result, "submit to the queue");
     submitted_ = value;
     collect();
     return {timeline_, value};
@@ -229,32 +248,55 @@ SyncPoint Context::submit(VkCommandBuffer commands) {
 
 bool Context::is_reached(SyncPoint point) const {
     std::uint64_t value = 0;
-    vk_check(vk_.vkGetSemaphoreCounterValue(device_, point.semaphore, &value), "read the timeline");
+    check(vk_.vkGetSemaphoreCounterValue(device_, point.semaphore, &value), "read the timeline");
     return value >= point.value;
 }
 
 void Context::wait(SyncPoint point) const {
     if (!point.semaphore || !point.value) return;
+    check_alive();
     VkSemaphoreWaitInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
     info.semaphoreCount = 1;
     info.pSemaphores = &point.semaphore;
     info.pValues = &point.value;
-    vk_check(vk_.vkWaitSemaphores(device_, &info, UINT64_MAX), "wait for the GPU");
+    check(vk_.vkWaitSemaphores(device_, &info, UINT64_MAX), "wait for the GPU");
 }
 
 void Context::wait_for_gpu() {
     wait(last_submission());
+    for (const SyncPoint point : announced_) wait(point);
+    announced_.clear();
     collect();
 }
 
-void Context::retire(std::function<void()> destroy) { retired_.push_back({submitted_, std::move(destroy)}); }
+void Context::announce(SyncPoint point) {
+    for (SyncPoint& known : announced_) {
+        if (known.semaphore != point.semaphore) continue;
+        known.value = std::max(known.value, point.value);
+        return;
+    }
+    announced_.push_back(point);
+}
 
-void Context::collect() {
+void Context::retire(std::function<void()> destroy) {
+    retired_.push_back({submitted_, announced_, std::move(destroy)});
+}
+
+std::uint64_t Context::reached(VkSemaphore semaphore) const noexcept {
+    std::uint64_t value = 0;
+    const VkResult result = vk_.vkGetSemaphoreCounterValue(device_, semaphore, &value);
+    is_lost_ |= result == VK_ERROR_DEVICE_LOST;
+    return result == VK_SUCCESS ? value : 0;
+}
+
+void Context::collect() noexcept {
     if (retired_.empty() || !timeline_) return;
-    std::uint64_t reached = 0;
-    vk_check(vk_.vkGetSemaphoreCounterValue(device_, timeline_, &reached), "read the timeline");
-    while (!retired_.empty() && retired_.front().value <= reached) {
+    std::erase_if(announced_, [&](SyncPoint point) { return reached(point.semaphore) >= point.value; });
+    const std::uint64_t own = reached(timeline_);
+    const auto is_past = [&](SyncPoint point) { return reached(point.semaphore) >= point.value; };
+    while (!retired_.empty() && retired_.front().submitted <= own &&
+           std::ranges::all_of(retired_.front().announced, is_past)) {
         retired_.front().destroy();
         retired_.pop_front();
     }

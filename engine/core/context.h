@@ -69,7 +69,7 @@ class Context {
     VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
     std::uint32_t queue_family() const { return queue_family_; }
     const DeviceFacts& facts() const { return facts_; }  // what is enabled, not merely supported
-    float timestamp_period_ns() const { return timestamp_period_ns_; }
+    float timestamp_period_ns() const { return timestamp_period_ns_; }  // 0: the queue has no timestamps
 
     // Stages and accesses of everything that twinray records; used by its barriers.
     VkPipelineStageFlags stages() const;
@@ -78,11 +78,20 @@ class Context {
     SyncPoint submit(VkCommandBuffer commands);
     SyncPoint last_submission() const { return {timeline_, submitted_}; }
     bool is_reached(SyncPoint point) const;
-    void wait(SyncPoint point) const;  // throws Error on device loss
-    void wait_for_gpu();               // everything submitted so far; then frees what was retired
+    void wait(SyncPoint point) const;
+    // Waits for everything submitted or announced so far, then frees what was retired.
+    void wait_for_gpu();
 
-    // Runs `destroy` when everything submitted so far is done.
+    // Tells of work that the host submits itself and that uses what this context owns: nothing that is retired from
+    // now on is freed before `point`. Its timeline semaphore must live until a later wait_for_gpu() or this context's
+    // end, at which the host's own work must be done.
+    void announce(SyncPoint point);
+
+    // Runs `destroy` when everything submitted or announced so far is done.
     void retire(std::function<void()> destroy);
+
+    // Throws DeviceLost once the device has been lost.
+    void check_alive() const;
 
     void warn(std::string_view message) const;
     // Messages of the validation layer so far.
@@ -91,7 +100,8 @@ class Context {
 
   private:
     struct Retired {
-        std::uint64_t value;
+        std::uint64_t submitted;
+        std::vector<SyncPoint> announced;
         std::function<void()> destroy;
     };
     static VkBool32 VKAPI_PTR on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -99,7 +109,9 @@ class Context {
     void create_instance(const ContextDesc& desc);
     void create_device(const ContextDesc& desc);
     void create_own_objects();
-    void collect();
+    void check(VkResult result, const char* action) const;
+    std::uint64_t reached(VkSemaphore semaphore) const noexcept;  // 0 when it cannot be read
+    void collect() noexcept;
     void destroy_everything() noexcept;
 
     VulkanFunctions vk_;
@@ -118,8 +130,10 @@ class Context {
     VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
     VkSemaphore timeline_ = VK_NULL_HANDLE;
     std::uint64_t submitted_ = 0;
-    float timestamp_period_ns_ = 1;
+    float timestamp_period_ns_ = 0;
     std::deque<Retired> retired_;
+    std::vector<SyncPoint> announced_;  // the latest by semaphore, not known to be reached
+    mutable bool is_lost_ = false;
     mutable std::mutex messages_mutex_;
     std::vector<std::string> messages_;
 };

@@ -14,6 +14,13 @@ class Error : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+// The GPU stopped answering (VK_ERROR_DEVICE_LOST). Everything of that Context throws this from then on; only
+// destroying is left.
+class DeviceLost : public Error {
+  public:
+    using Error::Error;
+};
+
 // Joins values into one string: text("mesh '", name, "': index ", i, " of ", n).
 template <class... Parts>
 std::string text(const Parts&... parts) {

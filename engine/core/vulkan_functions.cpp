@@ -39,6 +39,7 @@ void VulkanFunctions::load_device(VkDevice device) {
 }
 
 void vk_check(VkResult result, const char* action) {
+    if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(text(action, ": ", name_of(result)));
     if (result != VK_SUCCESS) fail(action, ": ", name_of(result));
 }
 
