@@ -2,6 +2,7 @@
 // `twinray bench`: build times and trace rates of both accelerators on the same rays, interleaved in one process.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iomanip>
 #include <iostream>
 
@@ -22,18 +23,17 @@ struct BenchOptions {
 };
 
 struct Candidate {
-    std::string name;
-    std::unique_ptr<AbstractAccel> accel;
-    double build_ms = 0;
-    std::vector<double> trace_ms = {};
+    std::string name, backend, path;
+    std::function<std::unique_ptr<AbstractAccel>()> make;
+    std::unique_ptr<AbstractAccel> accel = {};
+    std::vector<double> build_ms = {}, trace_ms = {};
     std::vector<Hit> hits = {};
-
-    double median_ms() const {
-        std::vector<double> sorted = trace_ms;
-        std::sort(sorted.begin(), sorted.end());
-        return sorted[sorted.size() / 2];
-    }
 };
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
 
 // Pinhole rays over the scene from a corner above, in tiles of 8 x 8 pixels as a renderer would.
 std::vector<Ray> primary_rays(const Bounds& bounds, uint width) {
@@ -59,20 +59,25 @@ double total_ms(const std::vector<PassTiming>& timings) {
     return sum;
 }
 
-std::vector<Candidate> make_candidates(Context& context, const Scene& scene) {
+std::vector<Candidate> make_candidates(Context& context) {
     std::vector<Candidate> candidates;
-    candidates.push_back({"sw", std::make_unique<SwTlas>(context)});
-    if (missing_for_hardware(context.facts()).empty()) {
-        candidates.push_back({"hw", std::make_unique<HwTlas>(context)});
-        if (context.facts().builds_in_input_order)
-            candidates.push_back({"hw input order", std::make_unique<HwTlas>(context, BuildOrder::input)});
-    }
-    for (Candidate& candidate : candidates) {
-        push_scene(*candidate.accel, scene);
-        candidate.accel->sync();
-        candidate.build_ms = total_ms(candidate.accel->build_timings());
-    }
+    candidates.push_back({"sw", "sw", "compute", [&] { return std::make_unique<SwTlas>(context); }});
+    if (!missing_for_hardware(context.facts()).empty()) return candidates;
+    const auto add = [&](const char* name, BuildOrder order) {
+        candidates.push_back({name, "hw", HwTlas(context, order).trace_path(),
+                              [&context, order] { return std::make_unique<HwTlas>(context, order); }});
+    };
+    add("hw", BuildOrder::automatic);
+    if (context.facts().builds_in_input_order) add("hw input order", BuildOrder::input);
     return candidates;
+}
+
+// A build from nothing; the last one is kept.
+double build_once(Candidate& candidate, const Scene& scene) {
+    candidate.accel = candidate.make();
+    push_scene(*candidate.accel, scene);
+    candidate.accel->sync();
+    return total_ms(candidate.accel->build_timings());
 }
 
 double trace_once(const Candidate& candidate, const Buffer& rays, const Buffer& hits, std::uint64_t count) {
@@ -93,7 +98,7 @@ Classes judge(const Oracle& oracle, const Candidate& candidate, const std::vecto
         some_hits.push_back(candidate.hits[i]);
     }
     Classes classes;
-    const bool ours = candidate.name == "sw";
+    const bool ours = candidate.backend == "sw";
     const std::vector<Verdict> verdicts =
         ours ? classify_all(oracle, some_rays, some_hits, {}) : classify_all(oracle, some_rays, {}, some_hits);
     for (const Verdict& verdict : verdicts) classes.add(ours ? *verdict.software : *verdict.hardware);
@@ -107,31 +112,34 @@ void report(const BenchOptions& options, const Context& context, const std::vect
     std::cout
         << "  accelerator        build ms  Mrays/s   sw is faster by  bytes/triangle  agree or tie with float64\n";
     for (const Candidate& candidate : candidates) {
-        const double mrays = static_cast<double>(rays.size()) / candidate.median_ms() * 1e-3;
+        const double build_ms = median(candidate.build_ms);
+        const double mrays = static_cast<double>(rays.size()) / median(candidate.trace_ms) * 1e-3;
         const Classes classes = judge(oracle, candidate, rays);
         const double sound =
             static_cast<double>(classes[Class::agree] + classes[Class::tie]) / static_cast<double>(classes.total());
-        const double ratio = candidate.median_ms() / candidates.front().median_ms();
+        const double ratio = median(candidate.trace_ms) / median(candidates.front().trace_ms);
         const double bytes = static_cast<double>(candidate.accel->structure_bytes()) / triangles;
         std::cout << "  " << std::left << std::setw(16) << candidate.name << std::right << std::fixed
-                  << std::setprecision(1) << std::setw(11) << candidate.build_ms << std::setprecision(3) << std::setw(9)
-                  << mrays << std::setprecision(2) << std::setw(15) << ratio << 'x' << std::setprecision(1)
-                  << std::setw(16) << bytes << std::setprecision(4) << std::setw(17) << 100 * sound << " % of "
-                  << classes.total() << '\n';
+                  << std::setprecision(1) << std::setw(11) << build_ms << std::setprecision(3) << std::setw(9) << mrays
+                  << std::setprecision(2) << std::setw(15) << ratio << 'x' << std::setprecision(1) << std::setw(16)
+                  << bytes << std::setprecision(4) << std::setw(17) << 100 * sound << " % of " << classes.total()
+                  << '\n';
         append_json(options.common.json, {{"schema", "twinray-bench/1"},
                                           {"device", describe(context)},
                                           {"scene", options.scene.string()},
                                           {"rays", "primary"},
                                           {"n", rays.size()},
                                           {"rounds", options.rounds},
-                                          {"backend", candidate.name},
-                                          {"layout", candidate.name == "sw" ? "bvh2" : "driver"},
-                                          {"builder", candidate.name == "sw" ? "lbvh" : "driver"},
+                                          {"backend", candidate.backend},
+                                          {"path", candidate.path},
+                                          {"order", candidate.name == "hw input order" ? "input" : "sorted"},
+                                          {"layout", candidate.backend == "sw" ? "bvh2" : "driver"},
+                                          {"builder", candidate.backend == "sw" ? "lbvh" : "driver"},
                                           {"level", "watertight"},
                                           {"mrays_per_s", mrays},
-                                          {"build_ms", candidate.build_ms},
+                                          {"build_ms", build_ms},
                                           {"bytes_per_triangle", bytes},
-                                          {"sw_speedup", ratio},
+                                          {"vs_sw", 1 / ratio},
                                           {"agreement", sound}});
     }
 }
@@ -140,7 +148,7 @@ void run(const BenchOptions& options) {
     const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
     const std::unique_ptr<Context> context = make_context(options.common);
     const std::vector<Ray> rays = primary_rays(bounds_of(scene), options.width);
-    std::vector<Candidate> candidates = make_candidates(*context, scene);
+    std::vector<Candidate> candidates = make_candidates(*context);
     const Buffer ray_buffer(*context, {.name = "bench rays", .bytes = rays.size() * sizeof(Ray)});
     const Buffer hit_buffer(*context, {.name = "bench hits", .bytes = rays.size() * sizeof(Hit)});
     Commands upload(*context, "bench input");
@@ -152,14 +160,17 @@ void run(const BenchOptions& options) {
 
     std::cout << "bench " << options.scene.filename().string() << ": " << count_triangles(scene) << " triangles, "
               << rays.size() << " primary rays, median of " << options.rounds << " interleaved rounds, on "
-              << context->facts().name << "; HwTlas by " << hardware_path(*context) << '\n';
+              << context->facts().name << '\n';
     for (Candidate& candidate : candidates) {  // warm up: drivers compile at the first dispatch
+        build_once(candidate, scene);
         trace_once(candidate, ray_buffer, hit_buffer, rays.size());
         candidate.hits = download<Hit>(*context, hit_buffer, rays.size());
     }
     for (std::size_t round = 0; round < options.rounds; ++round)
-        for (Candidate& candidate : candidates)
+        for (Candidate& candidate : candidates) {
+            candidate.build_ms.push_back(build_once(candidate, scene));
             candidate.trace_ms.push_back(trace_once(candidate, ray_buffer, hit_buffer, rays.size()));
+        }
     report(options, *context, candidates, scene, rays);
 }
 
@@ -171,6 +182,9 @@ void add_bench(CLI::App& app, int&) {
     command->add_option("--scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
     command->add_option("--width", options->width, "pixels a side of the square of primary rays, a multiple of 8")
         ->check(CLI::Range(8, 4096))
+        ->check([](const std::string& width) {
+            return std::stoul(width) % 8 == 0 ? std::string() : width + " is not a multiple of 8";
+        })
         ->capture_default_str();
     command->add_option("--rounds", options->rounds)->check(CLI::Range(1, 1000))->capture_default_str();
     add_common_options(*command, options->common);

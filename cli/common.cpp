@@ -27,6 +27,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
 
 std::unique_ptr<Context> make_context(const CommonOptions& options) {
     ContextDesc desc{.device = options.device, .validation = options.validation};
+    if (options.quiet && !options.validation) desc.log = [](std::string_view) {};
     if (const char* disabled = std::getenv("TWINRAY_DISABLE")) disable_features(desc, disabled);
     return std::make_unique<Context>(desc);
 }
@@ -34,10 +35,6 @@ std::unique_ptr<Context> make_context(const CommonOptions& options) {
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const std::string& kind) {
     if (kind == "hw") return std::make_unique<HwTlas>(context);
     return std::make_unique<SwTlas>(context);
-}
-
-const char* hardware_path(const Context& context) {
-    return context.facts().ray_query ? "ray query" : "ray tracing pipeline";
 }
 
 Scene load_scene_with_warnings(const std::filesystem::path& file, bool quiet) {
@@ -49,7 +46,7 @@ Scene load_scene_with_warnings(const std::filesystem::path& file, bool quiet) {
 
 std::vector<Ray> read_rays(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary | std::ios::ate);
-    if (!in) fail("rays file '", file.string(), "' cannot be opened");
+    if (!in || std::filesystem::is_directory(file)) fail("rays file '", file.string(), "' cannot be opened");
     const auto bytes = static_cast<std::uint64_t>(in.tellg());
     if (bytes % sizeof(Ray) != 0)
         fail("rays file '", file.string(), "': ", bytes, " bytes is not a multiple of ", sizeof(Ray),
@@ -59,6 +56,12 @@ std::vector<Ray> read_rays(const std::filesystem::path& file) {
     if (!in.read(reinterpret_cast<char*>(rays.data()), static_cast<std::streamsize>(bytes)))
         fail("rays file '", file.string(), "' cannot be read");
     return rays;
+}
+
+void check_writable(const std::filesystem::path& file) {
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    if (!std::filesystem::is_directory(folder))
+        fail("'", file.string(), "': there is no folder '", folder.string(), "'");
 }
 
 void write_hits(const std::filesystem::path& file, const std::vector<Hit>& hits) {

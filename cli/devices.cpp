@@ -9,10 +9,7 @@ namespace twinray::cli {
 namespace {
 
 std::string verdict(const std::vector<std::string>& missing, const std::string& able) {
-    if (missing.empty()) return able;
-    std::string all;
-    for (const std::string& one : missing) all += (all.empty() ? "" : ", ") + one;
-    return "no: lacks " + all;
+    return missing.empty() ? able : "no: lacks " + joined(missing);
 }
 
 std::string hardware_able(const DeviceFacts& device) {

@@ -35,6 +35,7 @@ std::vector<Hit> trace_in_batches(AbstractAccel& accel, std::span<const Ray> ray
 }
 
 void run(const TraceOptions& options) {
+    check_writable(options.hits);
     const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
     const std::vector<Ray> rays = read_rays(options.rays);
     const std::unique_ptr<Context> context = make_context(options.common);

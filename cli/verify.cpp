@@ -12,6 +12,8 @@
 #include "engine/core/progress.h"
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/classify.h"
+#include "hwtlas/hw_tlas.h"
+#include "swtlas/sw_tlas.h"
 
 namespace twinray::cli {
 namespace {
@@ -47,6 +49,7 @@ constexpr std::size_t max_printed_faults = 5;
 
 std::vector<RaySet> ray_sets(const VerifyOptions& options, const Oracle& oracle, const Bounds& bounds) {
     if (!options.rays.empty()) return {{"file", read_rays(options.rays)}};
+    if (options.random + options.aimed == 0) fail("verify: --random 0 and --aimed 0 leave nothing to judge");
     const std::uint64_t seed = options.common.seed;
     return {{"random", random_rays(bounds, options.random, seed)},
             {"vertex", vertex_aimed_rays(oracle, options.aimed, seed)},
@@ -88,6 +91,13 @@ void print_classes(const char* accel, const Classes& classes) {
     std::cout << '\n';
 }
 
+void print_faulty(const std::vector<Ray>& rays) {
+    for (const Ray& ray : rays)
+        std::cout << std::hexfloat << "    faulty: origin " << ray.origin.x << ' ' << ray.origin.y << ' '
+                  << ray.origin.z << " direction " << ray.direction.x << ' ' << ray.direction.y << ' '
+                  << ray.direction.z << " t " << ray.t_min << ' ' << ray.t_max << std::defaultfloat << '\n';
+}
+
 void print(const RaySet& set, const Outcome& outcome, bool has_hardware) {
     const std::uint64_t faults = outcome.software.faults_of_ours();
     std::cout << "  " << set.name << ": " << set.rays.size() << " rays\n";
@@ -95,15 +105,12 @@ void print(const RaySet& set, const Outcome& outcome, bool has_hardware) {
     std::cout << "        SW_LEAK " << outcome.software[Class::sw_leak] << ", SW_FALSE "
               << outcome.software[Class::sw_false] << ", T_ERR " << outcome.software[Class::t_err]
               << "; true rate below " << std::setprecision(2) << upper_bound_95(faults, set.rays.size()) << " (95 %)\n";
+    print_faulty(outcome.faulty);
     if (!has_hardware) return;
     print_classes("HW", outcome.hardware);
     std::cout << "    SW and HW name different hits on " << outcome.disagreeing() << " rays\n";
     for (const auto& [classes, count] : outcome.disagreements)
         std::cout << "        SW " << name(classes.first) << ", HW " << name(classes.second) << ": " << count << '\n';
-    for (const Ray& ray : outcome.faulty)
-        std::cout << std::hexfloat << "    faulty: origin " << ray.origin.x << ' ' << ray.origin.y << ' '
-                  << ray.origin.z << " direction " << ray.direction.x << ' ' << ray.direction.y << ' '
-                  << ray.direction.z << " t " << ray.t_min << ' ' << ray.t_max << std::defaultfloat << '\n';
 }
 
 nlohmann::json counts_json(const Classes& classes) {
@@ -113,55 +120,76 @@ nlohmann::json counts_json(const Classes& classes) {
     return counts;
 }
 
+struct Judgement {
+    const char* backend;
+    std::string path;
+    const Classes& classes;
+    std::uint64_t faults;
+    const char* criterion;
+    double seconds;
+};
+
+void append_record(const VerifyOptions& options, const Context& context, const RaySet& set, const Judgement& judged) {
+    append_json(options.common.json, {{"schema", "twinray-report/1"},
+                                      {"device", describe(context)},
+                                      {"case", "verify." + set.name},
+                                      {"scene", options.scene.string()},
+                                      {"backend", judged.backend},
+                                      {"path", judged.path},
+                                      {"level", "watertight"},
+                                      {"reference", "f64"},
+                                      {"n", set.rays.size()},
+                                      {"seed", options.common.seed},
+                                      {"counts", counts_json(judged.classes)},
+                                      {"bound95", upper_bound_95(judged.faults, set.rays.size())},
+                                      {"seconds", judged.seconds},
+                                      {"pass", judged.faults == 0},
+                                      {"criterion", judged.criterion}});
+}
+
 void append_records(const VerifyOptions& options, const Context& context, const RaySet& set, const Outcome& outcome,
-                    bool has_hardware) {
-    const auto record = [&](const char* backend, const Classes& classes, double seconds) {
-        const std::uint64_t faults = classes.faults_of_ours();
-        append_json(options.common.json, {{"schema", "twinray-report/1"},
-                                          {"device", describe(context)},
-                                          {"case", "verify." + set.name},
-                                          {"scene", options.scene.string()},
-                                          {"backend", backend},
-                                          {"path", std::string(backend) == "hw" ? hardware_path(context) : "compute"},
-                                          {"level", 1},
-                                          {"reference", "f64"},
-                                          {"n", set.rays.size()},
-                                          {"seed", options.common.seed},
-                                          {"counts", counts_json(classes)},
-                                          {"bound95", upper_bound_95(faults, set.rays.size())},
-                                          {"seconds", seconds},
-                                          {"pass", faults == 0},
-                                          {"criterion", "SW_LEAK == 0 and SW_FALSE == 0 and T_ERR == 0"}});
-    };
-    record("sw", outcome.software, outcome.software_seconds);
-    if (has_hardware) record("hw", outcome.hardware, outcome.hardware_seconds);
+                    const HwTlas* hw) {
+    append_record(options, context, set,
+                  {"sw", "compute", outcome.software, outcome.software.faults_of_ours(),
+                   "SW_LEAK, SW_FALSE and T_ERR are 0", outcome.software_seconds});
+    if (hw)
+        append_record(options, context, set,
+                      {"hw", hw->trace_path(), outcome.hardware, outcome.hardware.faults_of_hardware(),
+                       "HW_LEAK, HW_FALSE, HW_T_ERR and HW_RANGE are 0", outcome.hardware_seconds});
+}
+
+// Built, and its kernel compiled, so that what is timed is tracing.
+void build(AbstractAccel& accel, const Scene& scene) {
+    push_scene(accel, scene);
+    const Ray ray{vec3(0), 0, vec3(1), 1};
+    static_cast<void>(accel.closest_hits(std::span(&ray, 1)));
 }
 
 // Returns the faults of ours.
 std::uint64_t run(const VerifyOptions& options) {
     const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
     const std::unique_ptr<Context> context = make_context(options.common);
-    const bool has_hardware = missing_for_hardware(context->facts()).empty();
-    const std::unique_ptr<AbstractAccel> sw = make_accel(*context, "sw");
-    const std::unique_ptr<AbstractAccel> hw = has_hardware ? make_accel(*context, "hw") : nullptr;
-    push_scene(*sw, scene);
-    if (hw) push_scene(*hw, scene);
+    SwTlas sw(*context);
+    const std::unique_ptr<HwTlas> hw =
+        missing_for_hardware(context->facts()).empty() ? std::make_unique<HwTlas>(*context) : nullptr;
+    build(sw, scene);
+    if (hw) build(*hw, scene);
     const Oracle oracle = Oracle::of(scene);
 
     std::cout << "verify " << options.scene.filename().string() << ": " << count_triangles(scene) << " triangles in "
               << scene.instances.size() << " instances, on " << context->facts().name << "; HwTlas by "
-              << (hw ? hardware_path(*context) : "nothing (unsupported on this device)") << '\n';
+              << (hw ? hw->trace_path() : "nothing (unsupported on this device)") << '\n';
     std::uint64_t faults = 0;
     for (const RaySet& set : ray_sets(options, oracle, bounds_of(scene))) {
         Outcome outcome;
         Progress progress("verify " + set.name, set.rays.size(), options.common.quiet);
         for (std::size_t first = 0; first < set.rays.size(); first += batch_size) {
             const auto batch = std::span(set.rays).subspan(first, std::min(batch_size, set.rays.size() - first));
-            judge(oracle, batch, *sw, hw.get(), outcome);
+            judge(oracle, batch, sw, hw.get(), outcome);
             progress.advance(batch.size());
         }
-        print(set, outcome, has_hardware);
-        append_records(options, *context, set, outcome, has_hardware);
+        print(set, outcome, hw != nullptr);
+        append_records(options, *context, set, outcome, hw.get());
         faults += outcome.software.faults_of_ours();
     }
     std::cout << (faults ? text(faults, " faults of ours") : std::string("no fault of ours")) << '\n';

@@ -16,9 +16,7 @@ namespace {
 
 Context& checked(Context& context) {
     const std::vector<std::string> missing = missing_for_hardware(context.facts());
-    std::string list;
-    for (const std::string& item : missing) list += (list.empty() ? "" : ", ") + item;
-    if (!missing.empty()) fail("HwTlas: device '", context.facts().name, "' lacks ", list);
+    if (!missing.empty()) fail("HwTlas: device '", context.facts().name, "' lacks ", joined(missing));
     return context;
 }
 

@@ -6,7 +6,7 @@
 #include "hwtlas/hw_tlas.h"
 #include "swtlas/sw_tlas.h"
 
-int main() {
+int main() try {
     using namespace twinray;
     Context context;  // or adopt your VkDevice: Context(AdoptedDevice{...})
     SwTlas software(context);
@@ -23,4 +23,7 @@ int main() {
         hit = accel->closest_hits({&ray, 1}).front();
         std::cout << "  behind it: custom index " << hit.custom_index << " at t = " << hit.t << '\n';
     }
+} catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
 }

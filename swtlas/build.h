@@ -10,7 +10,8 @@ namespace twinray {
 //
 //     leaves -> morton -> sort by code (-> sort by tree) -> hierarchy (-> encode triangles)
 //
-// Each stage is one kernel over all trees of the batch and has a serial twin of the same name in swtlas/reference.h.
+// Each stage is one kernel over all trees of the batch; what it computes has a serial twin of the same name in
+// swtlas/reference.h.
 class Builder {
   public:
     explicit Builder(Context& context);

@@ -27,8 +27,6 @@ struct TopDown {
     }
 
     std::size_t highest_split(std::size_t first, std::size_t last) const {
-        // Sorted codes differ most at their ends, so the first position that differs from `first` as much as `last`
-        // does is the cut; a linear search keeps the twin obvious.
         std::size_t best = first;
         for (std::size_t i = first + 1; i < last; ++i)
             if (split_after(i) > split_after(best)) best = i;

@@ -14,8 +14,14 @@ std::uint64_t next_accel_id() {
     return ++last;
 }
 
-std::string instance_name(const std::string& accel, std::string_view mesh, std::size_t index) {
-    return text(accel, ": mesh '", mesh, "', instance ", index);
+// Handles are unique in the process, so that one accelerator's are dead in another.
+std::uint64_t next_handle() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
+
+InstanceOptions options_of(const InstanceRecord& record) {
+    return {.custom_index = custom_index_of(record), .mask = static_cast<std::uint8_t>(mask_of(record))};
 }
 
 }  // namespace
@@ -37,22 +43,33 @@ AccelHandle AbstractAccel::push(const MeshView& mesh, std::span<const Transform>
     Placement placement{Geometry(mesh), nullptr, {}};
     for (std::size_t i = 0; i < transforms.size(); ++i) {
         const InstanceOptions option = options.empty() ? InstanceOptions{} : options[i];
-        placement.instances.push_back(
-            make_instance_record(transforms[i], option.custom_index, option.mask, instance_name(name_, mesh.name, i)));
+        placement.instances.push_back(checked_record(mesh.name, i, transforms[i], option));
     }
     if (const std::size_t n = placement.geometry.non_finite_triangles)
         context_.warn(text(name_, ": mesh '", mesh.name, "': ", n, " of ", mesh.triangles.size(),
                            " triangles have a non-finite vertex and are inactive"));
-    const AccelHandle handle{next_handle_++};
+    const AccelHandle handle{next_handle()};
     placements_.emplace(handle.id, std::move(placement));
     dirty_ = true;
     return handle;
 }
 
 bool AbstractAccel::erase(AccelHandle handle) {
-    const bool erased = placements_.erase(handle.id) > 0;
-    dirty_ |= erased;
-    return erased;
+    const auto found = placements_.find(handle.id);
+    if (found == placements_.end()) return false;
+    if (found->second.built) erased_.push_back(std::move(found->second.built));
+    placements_.erase(found);
+    dirty_ = true;
+    return true;
+}
+
+InstanceRecord AbstractAccel::checked_record(std::string_view mesh, std::size_t index, const Transform& transform,
+                                             const InstanceOptions& options) const {
+    std::string fault = fault_of(transform);
+    if (options.custom_index > max_custom_index)
+        fault = text("custom index ", options.custom_index, " exceeds 24 bits (at most ", max_custom_index, ")");
+    if (!fault.empty()) fail(name_, ": mesh '", mesh, "', instance ", index, ": ", fault);
+    return make_instance_record(transform, options.custom_index, options.mask);
 }
 
 AbstractAccel::Placement& AbstractAccel::live(AccelHandle handle, const char* action) {
@@ -74,10 +91,8 @@ void AbstractAccel::update_transforms(AccelHandle handle, std::span<const Transf
              " instances of handle ", handle.id);
     std::vector<InstanceRecord> records;
     for (std::size_t i = 0; i < transforms.size(); ++i) {
-        const InstanceRecord& old = placement.instances[i];
-        records.push_back(make_instance_record(transforms[i], custom_index_of(old),
-                                               static_cast<std::uint8_t>(mask_of(old)),
-                                               instance_name(name_, placement.geometry.name, i)));
+        const InstanceOptions options = options_of(placement.instances[i]);
+        records.push_back(checked_record(placement.geometry.name, i, transforms[i], options));
     }
     placement.instances = std::move(records);
     dirty_ = true;
@@ -89,8 +104,7 @@ void AbstractAccel::update_transform_at(AccelHandle handle, std::size_t index, c
         fail(name_, ": update_transform_at: index ", index, " of the ", placement.instances.size(),
              " instances of handle ", handle.id);
     InstanceRecord& record = placement.instances[index];
-    record = make_instance_record(transform, custom_index_of(record), static_cast<std::uint8_t>(mask_of(record)),
-                                  instance_name(name_, placement.geometry.name, index));
+    record = checked_record(placement.geometry.name, index, transform, options_of(record));
     dirty_ = true;
 }
 
@@ -107,8 +121,8 @@ std::size_t AbstractAccel::n_instances(AccelHandle handle) const {
 
 SyncPoint AbstractAccel::sync() {
     if (!dirty_) return synced_;
-    if (const std::size_t n = n_instances(); n > Geometry::max_triangles)
-        fail(name_, ": sync: ", n, " instances; at most ", Geometry::max_triangles, " fit");
+    if (const std::size_t n = n_instances(); n > max_instances)
+        fail(name_, ": sync: ", n, " instances; at most ", max_instances, " fit");
     auto commands = std::make_unique<Commands>(context_, name_ + " sync");
 
     std::vector<Placement*> pending;
@@ -131,6 +145,7 @@ SyncPoint AbstractAccel::sync() {
     }
     scene_ = std::move(scene);
     last_build_ = std::move(commands);
+    erased_.clear();
     world_bound_ = {};
     for (const PlacedInstance& instance : placed_instances())
         world_bound_.include(transformed(instance.geometry->bounds, transform_of(instance.record)));

@@ -132,6 +132,8 @@ class AbstractAccel {
         std::unique_ptr<BuiltGeometry> built;
         std::vector<InstanceRecord> instances;
     };
+    InstanceRecord checked_record(std::string_view mesh, std::size_t index, const Transform& transform,
+                                  const InstanceOptions& options) const;
     Placement& live(AccelHandle handle, const char* action);
     std::vector<PlacedInstance> placed_instances() const;
     std::vector<Hit> trace_host(std::span<const Ray> rays, Query query);
@@ -140,12 +142,12 @@ class AbstractAccel {
     std::string name_;
     std::uint64_t id_;
     std::map<std::uint64_t, Placement> placements_;  // in push order: ids only grow
-    std::uint64_t next_handle_ = 1;
     bool dirty_ = true;
     std::uint64_t revision_ = 0;
     SyncPoint synced_;
     Bounds world_bound_;
     std::unique_ptr<BuiltScene> scene_;
+    std::vector<std::unique_ptr<BuiltGeometry>> erased_;  // since the last sync: scene_ still refers to them
     std::unique_ptr<Commands> last_build_;
 };
 

@@ -36,11 +36,7 @@ Geometry::Geometry(const MeshView& mesh)
     bounds = bounds_of(mesh);
 }
 
-InstanceRecord make_instance_record(const Transform& transform, uint custom_index, std::uint8_t mask,
-                                    const std::string& object) {
-    if (custom_index > max_custom_index)
-        fail(object, ": custom index ", custom_index, " exceeds 24 bits (at most ", max_custom_index, ")");
-    static_cast<void>(inverse(transform, object.c_str()));
+InstanceRecord make_instance_record(const Transform& transform, uint custom_index, std::uint8_t mask) {
     InstanceRecord record{};
     for (int row = 0; row < 3; ++row) record.object_to_world[row] = transform.rows[static_cast<std::size_t>(row)];
     record.custom_index_mask = custom_index | (uint{mask} << 24);

@@ -21,17 +21,16 @@ struct Geometry {
     // Throws Error naming the mesh and the limit: an index out of range, more than max_triangles.
     explicit Geometry(const MeshView& mesh);
 
-    // Leaf positions have 24 bits in the bound on the tree's depth; 2^24 - 1 is also the least maxInstanceCount that
-    // Vulkan guarantees.
+    // Leaf positions have 24 bits in the bound on the tree's depth.
     static constexpr std::size_t max_triangles = (1u << 24) - 1;
 };
 
+constexpr std::size_t max_instances = (1u << 24) - 1;  // of an accelerator; what Vulkan guarantees at least
 constexpr uint max_custom_index = (1u << 24) - 1;
 
-// The record of one instance, geometry address left 0. Throws Error naming `object` for a singular or non-finite
-// transform and a custom index of more than 24 bits.
-InstanceRecord make_instance_record(const Transform& transform, uint custom_index, std::uint8_t mask,
-                                    const std::string& object);
+// The record of one instance, geometry address left 0, for a transform without fault_of() and a custom index up to
+// max_custom_index.
+InstanceRecord make_instance_record(const Transform& transform, uint custom_index, std::uint8_t mask);
 Transform transform_of(const InstanceRecord& record);
 
 // A box around `bounds` under `transform`: float64 arithmetic, rounded outward.

@@ -40,7 +40,7 @@ class Buffer {
     const std::string& name() const { return name_; }
     std::byte* mapped() const { return mapped_; }  // null for Memory::device
 
-    // The typed address of element `first`, as kernels take it.
+    // The typed address of what lies at an offset, as kernels take it.
     template <class T>
     Ref<T> ref(std::uint64_t byte_offset = 0) const {
         return {address_ + byte_offset};

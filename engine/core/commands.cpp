@@ -28,6 +28,12 @@ VkQueryPool new_timestamps(Context& context, std::uint32_t count) {
     return pool;
 }
 
+void check_range(const Buffer& buffer, std::uint64_t offset, std::uint64_t bytes, const char* action) {
+    if (offset > buffer.bytes() || bytes > buffer.bytes() - offset)
+        fail("buffer '", buffer.name(), "': ", action, " of ", bytes, " bytes at ", offset, " exceeds its ",
+             buffer.bytes(), " bytes");
+}
+
 }  // namespace
 
 Commands::Commands(Context& context, const std::string& name) : context_(context), name_(name) {
@@ -129,9 +135,7 @@ void Commands::end_pass() {
 
 void Commands::upload(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data) {
     if (data.empty()) return;
-    if (offset + data.size() > target.bytes())
-        fail("buffer '", target.name(), "': upload of ", data.size(), " bytes at ", offset, " exceeds its ",
-             target.bytes(), " bytes");
+    check_range(target, offset, data.size(), "upload");
     Buffer staging(context_, {.name = "staging for " + target.name(), .bytes = data.size(), .memory = Memory::upload});
     std::memcpy(staging.mapped(), data.data(), data.size());
     copy(staging, 0, target, offset, data.size());
@@ -141,16 +145,21 @@ void Commands::upload(const Buffer& target, std::uint64_t offset, std::span<cons
 void Commands::copy(const Buffer& from, std::uint64_t from_offset, const Buffer& to, std::uint64_t to_offset,
                     std::uint64_t bytes) {
     if (bytes == 0) return;
+    check_range(from, from_offset, bytes, "copy");
+    check_range(to, to_offset, bytes, "copy");
     const VkBufferCopy region{from_offset, to_offset, bytes};
     context_.vk().vkCmdCopyBuffer(handle_, from.handle(), to.handle(), 1, &region);
 }
 
 void Commands::fill(const Buffer& target, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word) {
-    if (bytes) context_.vk().vkCmdFillBuffer(handle_, target.handle(), offset, bytes, word);
+    if (bytes == 0) return;
+    check_range(target, offset, bytes, "fill");
+    context_.vk().vkCmdFillBuffer(handle_, target.handle(), offset, bytes, word);
 }
 
 SyncPoint Commands::submit() {
     if (is_of_caller()) fail("commands '", name_, "': they are the caller's to submit");
+    if (done_.value) fail("commands '", name_, "': submitted twice");
     vk_check(context_.vk().vkEndCommandBuffer(handle_), "end a command buffer");
     done_ = context_.submit(handle_);
     kept_.clear();  // retired behind the submission just made
@@ -177,9 +186,7 @@ std::vector<PassTiming> Commands::timings() const {
 std::vector<std::byte> download_bytes(Context& context, const Buffer& buffer, std::uint64_t offset,
                                       std::uint64_t bytes) {
     if (bytes == 0) return {};
-    if (offset + bytes > buffer.bytes())
-        fail("buffer '", buffer.name(), "': download of ", bytes, " bytes at ", offset, " exceeds its ", buffer.bytes(),
-             " bytes");
+    check_range(buffer, offset, bytes, "download");
     Buffer readback(context, {.name = "readback of " + buffer.name(), .bytes = bytes, .memory = Memory::readback});
     Commands commands(context, "download");
     {

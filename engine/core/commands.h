@@ -103,7 +103,7 @@ class Commands {
     SyncPoint done_;
 };
 
-// Copies `count` elements back to the host; submits and waits.
+// Copies a range back to the host; submits and waits.
 std::vector<std::byte> download_bytes(Context& context, const Buffer& buffer, std::uint64_t offset,
                                       std::uint64_t bytes);
 

@@ -315,7 +315,7 @@ std::vector<std::string> Context::validation_messages() const {
 }
 
 void Context::set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const {
-    if (!vk_.vkSetDebugUtilsObjectNameEXT || !messenger_) return;
+    if (!vk_.vkSetDebugUtilsObjectNameEXT) return;
     VkDebugUtilsObjectNameInfoEXT info{};
     info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
     info.objectType = type;

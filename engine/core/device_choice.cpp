@@ -28,12 +28,6 @@ bool is_requested(const DeviceFacts& device, std::size_t index, const std::strin
     return lower(device.name).find(lower(request)) != std::string::npos;
 }
 
-std::string joined(const std::vector<std::string>& parts) {
-    std::string all;
-    for (const std::string& part : parts) all += (all.empty() ? "" : ", ") + part;
-    return all;
-}
-
 // Larger is better.
 auto rank(const DeviceFacts& device) {
     return std::tuple(missing_for_hardware(device).empty(), -static_cast<int>(device.kind));

@@ -27,6 +27,11 @@ Transform rounded(const dmat3& linear, const glm::dvec3& offset) {
     return t;
 }
 
+Transform rounded_inverse(const Transform& t) {
+    const dmat3 linear = glm::inverse(linear_part(t));
+    return rounded(linear, -(linear * offset(t)));
+}
+
 }  // namespace
 
 Transform Transform::translation(vec3 offset) {
@@ -60,15 +65,22 @@ Transform operator*(const Transform& a, const Transform& b) {
 
 double determinant(const Transform& transform) { return glm::determinant(linear_part(transform)); }
 
-Transform inverse(const Transform& transform, const char* object) {
+std::string fault_of(const Transform& transform) {
     for (const vec4& row : transform.rows)
         for (int column = 0; column < 4; ++column)
-            if (!std::isfinite(row[column])) fail(object, ": transform entry ", row[column], " is not finite");
+            if (!std::isfinite(row[column])) return text("transform entry ", row[column], " is not finite");
     const double det = determinant(transform);
-    if (det == 0.0 || !std::isfinite(det))
-        fail(object, ": transform is singular (determinant ", det, "; it must be finite and not 0)");
-    const dmat3 linear = glm::inverse(linear_part(transform));
-    return rounded(linear, -(linear * offset(transform)));
+    if (det == 0.0) return "transform is singular (its determinant is 0)";
+    for (const vec4& row : rounded_inverse(transform).rows)
+        for (int column = 0; column < 4; ++column)
+            if (!std::isfinite(row[column]))
+                return text("transform has no inverse in float32 (its determinant is ", det, ")");
+    return "";
+}
+
+Transform inverse(const Transform& transform, const char* object) {
+    if (const std::string fault = fault_of(transform); !fault.empty()) fail(object, ": ", fault);
+    return rounded_inverse(transform);
 }
 
 }  // namespace twinray

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include <glm/mat4x4.hpp>
 
@@ -32,8 +33,12 @@ Transform operator*(const Transform& a, const Transform& b);
 // Determinant of the linear part, in float64.
 double determinant(const Transform& transform);
 
-// The inverse, computed in float64 and rounded once. Throws Error, naming `object`, when an entry is not finite
-// or the linear part is singular (an exactly zero or non-finite determinant).
+// Why the map cannot place an instance, "" if it can: an entry is not finite, the linear part is singular (a
+// determinant of exactly 0), or the inverse exceeds float32.
+std::string fault_of(const Transform& transform);
+
+// The inverse, computed in float64 and rounded once. Throws Error, naming `object`, when there is a
+// fault_of(transform).
 Transform inverse(const Transform& transform, const char* object);
 
 }  // namespace twinray

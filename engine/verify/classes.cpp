@@ -61,6 +61,10 @@ std::uint64_t Classes::faults_of_ours() const {
     return (*this)[Class::sw_leak] + (*this)[Class::sw_false] + (*this)[Class::t_err];
 }
 
+std::uint64_t Classes::faults_of_hardware() const {
+    return (*this)[Class::hw_leak] + (*this)[Class::hw_false] + (*this)[Class::hw_t_err] + (*this)[Class::hw_range];
+}
+
 double upper_bound_95(std::uint64_t count, std::uint64_t trials) {
     if (count >= trials) return 1;
     const double n = static_cast<double>(trials);

@@ -40,7 +40,8 @@ struct Classes {
     void add(Class kind) { ++counts[static_cast<std::size_t>(kind)]; }
     Classes& operator+=(const Classes& other);
     std::uint64_t total() const;
-    std::uint64_t faults_of_ours() const;
+    std::uint64_t faults_of_ours() const;      // sw_leak, sw_false, t_err
+    std::uint64_t faults_of_hardware() const;  // hw_leak, hw_false, hw_t_err, hw_range
 };
 
 // One-sided 95 % upper confidence bound of a probability after `count` events in `trials` (Clopper and Pearson

@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "engine/core/error.h"
+#include "engine/scene/bytes.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -44,8 +46,12 @@ void write_png(const std::filesystem::path& file, const Picture& picture, float 
         for (int i = 0; i < 3; ++i) bytes.push_back(srgb_byte(color[i]));
     }
     const int width = static_cast<int>(picture.width), height = static_cast<int>(picture.height);
-    if (!stbi_write_png(file.string().c_str(), width, height, 3, bytes.data(), 3 * width))
-        fail("'", file.string(), "': cannot write the picture");
+    std::ofstream out(file, std::ios::binary);
+    const auto write = [](void* stream, void* data, int size) {
+        static_cast<std::ofstream*>(stream)->write(static_cast<const char*>(data), size);
+    };
+    const bool encoded = stbi_write_png_to_func(write, &out, width, height, 3, bytes.data(), 3 * width) != 0;
+    if (!encoded || !out.flush()) fail("'", file.string(), "': cannot write the picture");
 }
 
 void write_exr(const std::filesystem::path& file, const Picture& picture) {
@@ -81,11 +87,11 @@ float automatic_exposure(const Picture& picture) {
 }
 
 bool is_picture_file(const std::filesystem::path& file) {
-    return file.extension() == ".png" || file.extension() == ".exr";
+    return lower_suffix(file) == ".png" || lower_suffix(file) == ".exr";
 }
 
 void write_picture(const std::filesystem::path& file, const Picture& picture, float exposure) {
-    if (file.extension() == ".exr")
+    if (lower_suffix(file) == ".exr")
         write_exr(file, picture);
     else
         write_png(file, picture, exposure);

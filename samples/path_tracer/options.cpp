@@ -45,7 +45,8 @@ void add_picture(CLI::App& app, Options& options) {
                    "which camera of the scene; -1 frames the whole scene, as do scenes without")
         ->check(CLI::Range(-1, 1 << 20))
         ->capture_default_str();
-    app.add_option("--exposure", options.exposure, "stops, for .png; default: 0 under the default sky, else automatic");
+    app.add_option("--exposure", options.exposure, "stops, for .png; default: 0 under the default sky, else automatic")
+        ->check(CLI::Range(-100.0f, 100.0f));
 }
 
 void add_machine(CLI::App& app, Options& options) {
@@ -81,8 +82,8 @@ ContextDesc context_desc(const Options& options) {
     desc.name = "path_tracer";
     desc.device = options.device;
     desc.validation = options.validation;
-    desc.log = [](std::string_view message) {
-        std::fprintf(stderr, "path_tracer: %.*s\n", static_cast<int>(message.size()), message.data());
+    desc.log = [is_silent = options.quiet && !options.validation](std::string_view message) {
+        if (!is_silent) std::fprintf(stderr, "path_tracer: %.*s\n", static_cast<int>(message.size()), message.data());
     };
     if (const char* disabled = std::getenv("TWINRAY_DISABLE")) disable_features(desc, disabled);
     return desc;

@@ -134,16 +134,20 @@ FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float area_a, float area_b, fl
 {
     PRECISE float det = area_a + area_b;
     det = det + area_c;
-    PRECISE float za = area_a * a.z;
-    PRECISE float zb = area_b * b.z;
-    PRECISE float zc = area_c * c.z;
+    // Divided before it is multiplied: a product of three lengths leaves the range of float32 at 1e13 and at 1e-13.
+    PRECISE float weight_a = area_a / det;
+    PRECISE float weight_b = area_b / det;
+    PRECISE float weight_c = area_c / det;
+    PRECISE float za = weight_a * a.z;
+    PRECISE float zb = weight_b * b.z;
+    PRECISE float zc = weight_c * c.z;
     PRECISE float z = za + zb;
     z = z + zc;
-    PRECISE float scaled = z * shear_z;
+    PRECISE float t = z * shear_z;
     TriangleHit hit;
-    hit.t = scaled / det;
-    hit.u = area_b / det;
-    hit.v = area_c / det;
+    hit.t = t;
+    hit.u = weight_b;
+    hit.v = weight_c;
     return hit;
 }
 

@@ -22,11 +22,11 @@ layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) coherent buffer SharedNodes { BvhNode items[]; };
 
 // Larger = separates higher up. Codes decide; positions only between equal codes.
-uint64_t split_after(uint position)
+uint64_t split_after(BuildTree tree, uint position)
 {
     uint a = AT(args.codes, AT(args.order, position));
     uint b = AT(args.codes, AT(args.order, position + 1u));
-    return (uint64_t(a ^ b) << 32) | uint64_t(position ^ (position + 1u));
+    return (uint64_t(a ^ b) << 32) | uint64_t((position - tree.first) ^ (position - tree.first + 1u));
 }
 
 void climb(BuildTree tree, uint position)
@@ -40,7 +40,7 @@ void climb(BuildTree tree, uint position)
     uint self = LEAF_BIT | ((args.leaves_are_sorted != 0u ? position : element) - tree.first);
     while (first != tree.first || last != tree_last)
     {
-        bool joins_right = first == tree.first || (last != tree_last && split_after(last) < split_after(first - 1u));
+        bool joins_right = first == tree.first || (last != tree_last && split_after(tree, last) < split_after(tree, first - 1u));
         uint split = joins_right ? last : first - 1u;
         uint node = split - tree.first;
         if (joins_right)

@@ -68,13 +68,24 @@ TEST_F(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsTwin) {
     }
 }
 
+TEST_F(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
+    SwTlas accel(context());
+    const Mesh meshes[] = {make_soup(5, 1), equal_triangles(1000), make_soup(3, 2), equal_triangles(77)};
+    std::vector<AccelHandle> handles;
+    for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
+    accel.sync();
+    for (std::size_t i = 0; i < handles.size(); ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i]);
+}
+
 TEST_F(SwBuild, LargeMeshesAreSound) {
     for (const uint n : {100'000u, 1'000'000u}) {
         SwTlas accel(context());
         const Mesh mesh = make_soup(n, 7, 0.01f);
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
-        expect_sound(accel.download_geometry(handle), mesh);
+        const SwTlas::Tree tree = accel.download_geometry(handle);
+        expect_sound(tree, mesh);
+        if (n == 100'000) expect_twin(tree, mesh);
     }
 }
 
@@ -138,7 +149,7 @@ TEST_F(SwBuild, TheSceneTreeIsSoundOverInstances) {
     for (int i = 0; i < 777; ++i) {
         transforms.push_back(Transform::translation({place(random), place(random), place(random)}) *
                              Transform::scaling({1.5f, -0.25f, 3}));
-        records.push_back(make_instance_record(transforms.back(), 0, 0xff, "test"));
+        records.push_back(make_instance_record(transforms.back(), 0, 0xff));
     }
     accel.push(mesh, transforms);
     accel.sync();
@@ -155,6 +166,8 @@ TEST_F(SwBuild, TheSceneTreeIsSoundOverInstances) {
 
     const SwTlas::Tree tree = accel.download_scene();
     for (const std::string& violation : check_tree(tree.bvh, tree.nodes, boxes).violations) ADD_FAILURE() << violation;
+    const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
+    EXPECT_TRUE(same_bytes(tree.nodes, reference::hierarchy(boxes, codes, reference::sort(codes), false).nodes));
 }
 
 TEST(TreeCheck, NamesWhatIsWrong) {
