@@ -29,14 +29,16 @@ VkAccelerationStructureBuildGeometryInfoKHR build_info(const StructureBuild& bui
     VkAccelerationStructureBuildGeometryInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
     info.type = build.type;
-    info.flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR;
+    info.flags = build.flags;
     info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
     info.geometryCount = 1;
     info.pGeometries = &build.geometry;
     return info;
 }
 
-VkAccelerationStructureBuildSizesInfoKHR build_sizes(const Context& context, const StructureBuild& build) {
+}  // namespace
+
+VkAccelerationStructureBuildSizesInfoKHR sizes_of(const Context& context, const StructureBuild& build) {
     const VkAccelerationStructureBuildGeometryInfoKHR info = build_info(build);
     VkAccelerationStructureBuildSizesInfoKHR sizes{};
     sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
@@ -45,7 +47,9 @@ VkAccelerationStructureBuildSizesInfoKHR build_sizes(const Context& context, con
     return sizes;
 }
 
-}  // namespace
+Buffer make_build_scratch(Context& context, const std::string& name, std::uint64_t bytes) {
+    return Buffer(context, {.name = name, .bytes = bytes, .alignment = scratch_alignment(context)});
+}
 
 AccelerationStructure::AccelerationStructure(Context& context, const std::string& name,
                                              VkAccelerationStructureTypeKHR type, std::uint64_t bytes)
@@ -96,7 +100,7 @@ std::vector<AccelerationStructure> build_structures(Commands& commands, const st
     std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;
     std::uint64_t scratch_bytes = 0;
     for (const StructureBuild& build : builds) {
-        const VkAccelerationStructureBuildSizesInfoKHR sizes = build_sizes(context, build);
+        const VkAccelerationStructureBuildSizesInfoKHR sizes = sizes_of(context, build);
         structures.emplace_back(context, build.name, build.type, sizes.accelerationStructureSize);
         VkAccelerationStructureBuildGeometryInfoKHR info = build_info(build);
         info.dstAccelerationStructure = structures.back().handle();
@@ -106,7 +110,7 @@ std::vector<AccelerationStructure> build_structures(Commands& commands, const st
         ranges.push_back({build.primitive_count, 0, 0, 0});
         scratch_bytes += round_up(sizes.buildScratchSize, alignment);
     }
-    Buffer scratch(context, {.name = pass_name + " scratch", .bytes = scratch_bytes, .alignment = alignment});
+    Buffer scratch = make_build_scratch(context, pass_name + " scratch", scratch_bytes);
     std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> range_of;
     for (std::size_t i = 0; i < infos.size(); ++i) {
         infos[i].scratchData.deviceAddress += scratch.address();
@@ -117,6 +121,21 @@ std::vector<AccelerationStructure> build_structures(Commands& commands, const st
                                                      infos.data(), range_of.data());
     commands.keep(std::move(scratch));
     return structures;
+}
+
+void rebuild_structure(Commands& commands, const std::string& pass_name, const StructureBuild& build, BuildMode mode,
+                       const AccelerationStructure& target, const Buffer& scratch) {
+    VkAccelerationStructureBuildGeometryInfoKHR info = build_info(build);
+    info.dstAccelerationStructure = target.handle();
+    info.scratchData.deviceAddress = scratch.address();
+    if (mode == BuildMode::update) {
+        info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
+        info.srcAccelerationStructure = target.handle();
+    }
+    const VkAccelerationStructureBuildRangeInfoKHR range{build.primitive_count, 0, 0, 0};
+    const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
+    const auto pass = commands.pass(pass_name);
+    commands.context().vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), 1, &info, &ranges);
 }
 
 }  // namespace twinray

@@ -36,11 +36,21 @@ struct StructureBuild {
     VkAccelerationStructureTypeKHR type;
     VkAccelerationStructureGeometryKHR geometry;
     std::uint32_t primitive_count;
+    VkBuildAccelerationStructureFlagsKHR flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR;
 };
+
+// Memory that a build of up to primitive_count primitives takes.
+VkAccelerationStructureBuildSizesInfoKHR sizes_of(const Context& context, const StructureBuild& build);
+Buffer make_build_scratch(Context& context, const std::string& name, std::uint64_t bytes);
 
 // Creates the structures and builds all of them with one command in one pass called `pass_name`. What the geometries
 // point to must have been written by earlier passes. The scratch memory is kept by `commands`.
 std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
                                                     std::span<const StructureBuild> builds);
+
+enum class BuildMode : std::uint8_t { build, update };
+// Builds one structure into memory that exists. update: its last build allowed that, and had as many primitives.
+void rebuild_structure(Commands& commands, const std::string& pass_name, const StructureBuild& build, BuildMode mode,
+                       const AccelerationStructure& target, const Buffer& scratch);
 
 }  // namespace twinray

@@ -47,6 +47,7 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
             const Geometry& geometry = *geometries[i];
             const BlasInput input = blas_input(geometry, reorder);
             if (input.is_empty()) continue;
+            blases[i].bounds = input.bounds;
             Buffer positions = upload(commands, "blas positions " + geometry.name, input.positions);
             Buffer triangles = upload(commands, "blas triangles " + geometry.name, input.triangles);
             blases[i].original_triangles = upload(commands, "blas order " + geometry.name, input.original);

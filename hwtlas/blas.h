@@ -3,16 +3,18 @@
 
 #include "engine/accel/geometry.h"
 #include "hwtlas/acceleration_structure.h"
+#include "hwtlas/hw_scene.h"
 
 namespace twinray {
 
-// The built form of one mesh. Empty, with reference 0, when the mesh has nothing that could be hit: Vulkan takes an
-// instance of reference 0 as inactive.
+// The built form of one mesh. Without a structure when the mesh has nothing that could be hit: Vulkan takes an instance
+// of address 0 as inactive.
 struct Blas {
+    Bounds bounds;  // of the active triangles
     AccelerationStructure structure;
     Buffer original_triangles;  // uint each; empty when the order was kept
 
-    std::uint64_t reference() const { return structure.address(); }
+    HwGeometry block() const { return {bounds.lo, bounds.hi, structure.address(), original_triangles.ref<uint>()}; }
     std::uint64_t bytes() const { return structure.bytes() + original_triangles.bytes(); }
 };
 

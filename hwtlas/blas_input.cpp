@@ -25,7 +25,10 @@ BlasInput blas_input(const Geometry& geometry, bool reorder) {
     input.triangles.reserve(geometry.triangles.size());
     for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
         const uvec3 corners = geometry.triangles[reorder ? input.original[i] : i];
-        input.triangles.push_back(is_active(corners) ? corners : uvec3(anchor));
+        const bool active = is_active(corners);
+        input.triangles.push_back(active ? corners : uvec3(anchor));
+        if (!active) continue;
+        for (int corner = 0; corner < 3; ++corner) input.bounds.include(geometry.positions[corners[corner]]);
     }
     return input;
 }

@@ -14,6 +14,7 @@ namespace twinray {
 struct BlasInput {
     std::vector<vec3> positions;
     std::vector<uvec3> triangles;
+    Bounds bounds;               // of the active triangles
     std::vector<uint> original;  // place in `triangles` -> the mesh's triangle; empty: not reordered
 
     bool is_empty() const { return triangles.empty(); }  // the mesh has nothing that could be hit

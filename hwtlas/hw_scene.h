@@ -2,7 +2,7 @@
 // HwScene and HwTraceArgs for C++.
 #pragma once
 
-#include "engine/core/ray.h"
+#include "engine/accel/world_bound.h"
 
 namespace twinray {
 using std::uint64_t;
@@ -10,5 +10,6 @@ using std::uint64_t;
 #include "shaders/shared/hw_scene.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(HwInstance) == 16 && sizeof(HwScene) == 16 && sizeof(HwTraceArgs) == 32);
+static_assert(sizeof(HwGeometry) == 40 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 16 &&
+              sizeof(HwTraceArgs) == 32);
 }  // namespace twinray

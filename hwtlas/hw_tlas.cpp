@@ -5,7 +5,6 @@
 
 #include "engine/core/error.h"
 #include "hwtlas/blas.h"
-#include "hwtlas/tlas.h"
 #include "hwtlas_trace_query.spv.h"
 #include "hwtlas_trace_rchit.spv.h"
 #include "hwtlas_trace_rgen.spv.h"
@@ -24,11 +23,8 @@ std::size_t index_of(Query query) { return static_cast<std::size_t>(query); }
 
 }  // namespace
 
-struct HwTlas::HwGeometry : BuiltGeometry {
-    explicit HwGeometry(Blas&& built) : blas(std::move(built)) {
-        reference = blas.reference();
-        bytes = blas.bytes();
-    }
+struct HwTlas::HwBuiltGeometry : BuiltGeometry {
+    explicit HwBuiltGeometry(Blas&& built) : blas(std::move(built)) { bytes = blas.bytes(); }
     Blas blas;
 };
 
@@ -43,7 +39,8 @@ struct HwTlas::HwTopLevel : BuiltScene {
 HwTlas::HwTlas(Context& context, BuildOrder order)
     : AbstractAccel(checked(context), "HwTlas"),
       reorder_(order == BuildOrder::morton ||
-               (order == BuildOrder::automatic && context.facts().builds_in_input_order)) {
+               (order == BuildOrder::automatic && context.facts().builds_in_input_order)),
+      tlas_builder_(context, reorder_) {
     create_pipelines(Query::closest);
     create_pipelines(Query::any);
 }
@@ -70,23 +67,35 @@ const char* HwTlas::trace_path() const {
 }
 
 std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> HwTlas::build_geometries(
-    Commands& commands, std::span<const Geometry* const> geometries) {
+    Commands& commands, std::span<const GeometryInput> inputs) {
+    if (inputs.empty()) return {};
+    std::vector<const Geometry*> geometries;
+    for (const GeometryInput& input : inputs) geometries.push_back(input.geometry);
     std::vector<std::unique_ptr<BuiltGeometry>> built;
     for (Blas& blas : build_blases(commands, geometries, reorder_))
-        built.push_back(std::make_unique<HwGeometry>(std::move(blas)));
+        built.push_back(std::make_unique<HwBuiltGeometry>(std::move(blas)));
+    const auto pass = commands.pass("hwtlas geometry blocks");
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+        commands.write(*inputs[i].block, static_cast<const HwBuiltGeometry&>(*built[i]).blas.block());
     return built;
 }
 
-std::unique_ptr<AbstractAccel::BuiltScene> HwTlas::build_scene(Commands& commands,
-                                                               std::span<const PlacedInstance> instances) {
-    std::vector<TlasInstance> placed;
-    placed.reserve(instances.size());
-    for (const PlacedInstance& instance : instances) {
-        const Blas& blas = static_cast<const HwGeometry*>(instance.built)->blas;
-        const Bounds bounds_world = transformed(instance.geometry->bounds, transform_of(instance.record));
-        placed.push_back({instance.record, bounds_world.center(), blas.original_triangles.ref<uint>()});
+std::unique_ptr<AbstractAccel::BuiltScene> HwTlas::build_scene(Commands& commands, const SceneInput& input,
+                                                               const BuiltScene* current) {
+    const auto* level = static_cast<const HwTopLevel*>(current);
+    std::unique_ptr<HwTopLevel> made;
+    const std::size_t capacity = capacity_for(input.count, level ? level->tlas.capacity : 0);
+    if (!level || capacity != level->tlas.capacity) {
+        made = std::make_unique<HwTopLevel>(tlas_builder_.make(commands, capacity));
+        level = made.get();
     }
-    return std::make_unique<HwTopLevel>(build_tlas(commands, placed, reorder_));
+    tlas_builder_.record_build(commands, level->tlas, {input.records, input.count, input.bound}, input.will_move);
+    return made;
+}
+
+void HwTlas::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
+    tlas_builder_.record_update(commands, static_cast<const HwTopLevel&>(current).tlas,
+                                {input.records, input.count, input.bound});
 }
 
 void HwTlas::record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const {

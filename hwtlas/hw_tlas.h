@@ -6,6 +6,7 @@
 #include "engine/accel/abstract_accel.h"
 #include "engine/core/kernel.h"
 #include "hwtlas/ray_tracing_pipeline.h"
+#include "hwtlas/tlas.h"
 
 namespace twinray {
 
@@ -30,16 +31,19 @@ class HwTlas : public AbstractAccel {
 
   protected:
     std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
-                                                                 std::span<const Geometry* const> geometries) override;
-    std::unique_ptr<BuiltScene> build_scene(Commands& commands, std::span<const PlacedInstance> instances) override;
+                                                                 std::span<const GeometryInput> inputs) override;
+    std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
+                                            const BuiltScene* current) override;
+    void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
     void record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const override;
 
   private:
-    struct HwGeometry;
+    struct HwBuiltGeometry;
     struct HwTopLevel;
     void create_pipelines(Query query);
 
     bool reorder_;
+    TlasBuilder tlas_builder_;
     // By Query; only those of the chosen path exist.
     std::array<std::unique_ptr<Kernel<HwTraceArgs>>, 2> kernels_;
     std::array<std::unique_ptr<RayTracingPipeline>, 2> pipelines_;

@@ -5,70 +5,99 @@
 #include <cstddef>
 #include <utility>
 
-#include "hwtlas/order.h"
+#include "hwtlas_gather_instances.spv.h"
+#include "hwtlas_instance_codes.spv.h"
 
 namespace twinray {
 namespace {
 
-// The driver reads the very records that the accelerator keeps.
+// The driver reads records with the layout of those that the accelerator keeps.
 static_assert(sizeof(InstanceRecord) == sizeof(VkAccelerationStructureInstanceKHR));
 static_assert(offsetof(VkAccelerationStructureInstanceKHR, transform) == offsetof(InstanceRecord, object_to_world));
 static_assert(offsetof(VkAccelerationStructureInstanceKHR, accelerationStructureReference) ==
               offsetof(InstanceRecord, geometry));
 
 constexpr std::uint64_t record_alignment = 16;  // of the device address of an array of instances
+constexpr std::uint32_t group_size = 256;       // of both kernels
+constexpr std::uint32_t morton_bits = 30;
 
-std::vector<uint> order_of(std::span<const TlasInstance> instances, bool reorder) {
-    std::vector<uint> order(instances.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<uint>(i);
-    if (!reorder) return order;
-    std::vector<vec3> centers;
-    for (const TlasInstance& instance : instances) centers.push_back(instance.center_world);
-    return morton_order(centers);
-}
-
-StructureBuild build_of(const Buffer& records, std::size_t count) {
+StructureBuild build_of(const Buffer& driver_records, std::size_t count, bool can_update) {
     StructureBuild build{};
     build.name = "tlas";
     build.type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR;
     build.primitive_count = static_cast<std::uint32_t>(count);
+    if (can_update) build.flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR;
     build.geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
     build.geometry.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
     build.geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
     build.geometry.geometry.instances.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR;
-    build.geometry.geometry.instances.data.deviceAddress = records.address();
+    build.geometry.geometry.instances.data.deviceAddress = driver_records.address();
     return build;
 }
 
 }  // namespace
 
-Tlas build_tlas(Commands& commands, std::span<const TlasInstance> instances, bool reorder) {
-    std::vector<InstanceRecord> records;
-    std::vector<HwInstance> table;
-    for (const uint i : order_of(instances, reorder)) {
-        records.push_back(instances[i].record);
-        if (reorder) table.push_back({instances[i].original_triangles, i, 0});
-    }
-    Context& context = commands.context();
+TlasBuilder::TlasBuilder(Context& context, bool reorder)
+    : context_(context),
+      reorder_(reorder),
+      sort_(context),
+      codes_(context,
+             {.name = "hwtlas_instance_codes", .spirv = hwtlas_instance_codes_spirv, .group_size = group_size}),
+      gather_(context,
+              {.name = "hwtlas_gather_instances", .spirv = hwtlas_gather_instances_spirv, .group_size = group_size}) {}
+
+Tlas TlasBuilder::make(Commands& commands, std::size_t capacity) const {
     Tlas tlas;
-    // Room for one record even if there is none: the build needs a valid address.
-    Buffer record_buffer(context, {.name = "tlas records",
-                                   .bytes = std::max<std::size_t>(records.size(), 1) * sizeof(InstanceRecord),
-                                   .alignment = record_alignment});
-    tlas.instances = Buffer(context, {.name = "tlas instances", .bytes = table.size() * sizeof(HwInstance)});
-    tlas.scene = Buffer(context, {.name = "hw scene", .bytes = sizeof(HwScene)});
-    {
-        const auto pass = commands.pass("hwtlas_upload_instances");
-        commands.upload(record_buffer, std::span<const InstanceRecord>(records));
-        commands.upload(tlas.instances, std::span<const HwInstance>(table));
-    }
-    const StructureBuild build = build_of(record_buffer, records.size());
-    tlas.structure = std::move(build_structures(commands, "hwtlas_build_tlas", {&build, 1}).front());
-    commands.keep(std::move(record_buffer));
-    const HwScene scene{tlas.structure.address(), tlas.instances.ref<HwInstance>()};
-    const auto pass = commands.pass("hwtlas_upload_scene");
-    commands.upload(tlas.scene, std::span(&scene, 1));
+    tlas.capacity = capacity;
+    tlas.driver_records = Buffer(
+        context_, {.name = "tlas records", .bytes = capacity * sizeof(InstanceRecord), .alignment = record_alignment});
+    tlas.instances =
+        Buffer(context_, {.name = "tlas instances", .bytes = reorder_ ? capacity * sizeof(HwInstance) : 0});
+    tlas.scene = Buffer(context_, {.name = "hw scene", .bytes = sizeof(HwScene)});
+    // Room for either kind of build, so that the first move does not change the structure's address.
+    const StructureBuild fixed = build_of(tlas.driver_records, capacity, false);
+    const VkAccelerationStructureBuildSizesInfoKHR sizes[] = {
+        sizes_of(context_, fixed), sizes_of(context_, build_of(tlas.driver_records, capacity, true))};
+    tlas.structure =
+        AccelerationStructure(context_, fixed.name, fixed.type,
+                              std::max(sizes[0].accelerationStructureSize, sizes[1].accelerationStructureSize));
+    tlas.scratch = make_build_scratch(
+        context_, "tlas scratch",
+        std::max({sizes[0].buildScratchSize, sizes[1].buildScratchSize, sizes[1].updateScratchSize}));
+    const auto pass = commands.pass("hwtlas scene");
+    commands.write(tlas.scene, HwScene{tlas.structure.address(), tlas.instances.ref<HwInstance>()});
     return tlas;
+}
+
+Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) const {
+    if (!reorder_ || input.count == 0) return {};
+    const std::uint64_t bytes = (std::uint64_t{input.count} * sizeof(uint) + 15) / 16 * 16;
+    Buffer scratch(context_, {.name = "tlas sort scratch", .bytes = 4 * bytes + RadixSort::counter_bytes(input.count)});
+    const auto part = [&](std::uint64_t i) { return scratch.ref<uint>(i * bytes); };
+    codes_.dispatch(commands, {input.records, input.bound, part(0), part(1), input.count, 0}, input.count);
+    const RadixSort::Pairs sorted =
+        sort_.record(commands, {part(0), part(1)}, {part(2), part(3)}, part(4), input.count, morton_bits);
+    commands.keep(std::move(scratch));
+    return sorted.values;
+}
+
+void TlasBuilder::record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order) const {
+    gather_.dispatch(commands,
+                     {input.records, order, tlas.driver_records.ref<InstanceRecord>(), tlas.instances.ref<HwInstance>(),
+                      input.count, 0},
+                     input.count);
+}
+
+void TlasBuilder::record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const {
+    record_gather(commands, tlas, input, record_order(commands, input));
+    rebuild_structure(commands, "hwtlas_build_tlas", build_of(tlas.driver_records, input.count, can_update),
+                      BuildMode::build, tlas.structure, tlas.scratch);
+}
+
+void TlasBuilder::record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const {
+    record_gather(commands, tlas, input, {});
+    rebuild_structure(commands, "hwtlas_update_tlas", build_of(tlas.driver_records, input.count, true),
+                      BuildMode::update, tlas.structure, tlas.scratch);
 }
 
 }  // namespace twinray

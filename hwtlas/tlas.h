@@ -1,28 +1,52 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "engine/accel/instance_record.h"
+#include "engine/core/kernel.h"
+#include "engine/core/radix_sort.h"
 #include "hwtlas/acceleration_structure.h"
 #include "hwtlas/hw_scene.h"
 
 namespace twinray {
 
-struct TlasInstance {
-    InstanceRecord record;
-    vec3 center_world;         // of its box; read only when reordering
-    Uints original_triangles;  // of its Blas; read only when reordering
-};
-
-// The top level on the device.
+// The top level on the device, with room for `capacity` instances. No instances at all is allowed: every ray misses.
 struct Tlas {
+    std::size_t capacity = 0;
     AccelerationStructure structure;
-    Buffer instances;  // HwInstance each; empty when the order was kept
-    Buffer scene;      // one HwScene
+    Buffer driver_records;  // what the driver builds from
+    Buffer instances;       // HwInstance each; empty when the order is kept
+    Buffer scene;           // one HwScene
+    Buffer scratch;
 
     std::uint64_t bytes() const { return structure.bytes() + instances.bytes() + scene.bytes(); }
 };
 
-// Records upload and build. No instances at all is allowed: every ray misses.
-Tlas build_tlas(Commands& commands, std::span<const TlasInstance> instances, bool reorder);
+struct TlasInput {
+    Ref<InstanceRecord> records;
+    uint count = 0;
+    Ref<WorldBound> bound;  // read only when reordering
+};
+
+// Makes and builds top levels.
+class TlasBuilder {
+  public:
+    // reorder: presort for drivers that build in input order.
+    TlasBuilder(Context& context, bool reorder);
+
+    Tlas make(Commands& commands, std::size_t capacity) const;
+    // can_update: record_update() may follow.
+    void record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const;
+    // The instances only moved since the last build.
+    void record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const;
+
+  private:
+    Uints record_order(Commands& commands, const TlasInput& input) const;
+    void record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order) const;
+
+    Context& context_;
+    bool reorder_;
+    RadixSort sort_;
+    Kernel<HwCodesArgs> codes_;
+    Kernel<HwGatherArgs> gather_;
+};
 
 }  // namespace twinray

@@ -6,6 +6,8 @@
 #include "swtlas_leaves_instances.spv.h"
 #include "swtlas_leaves_triangles.spv.h"
 #include "swtlas_morton.spv.h"
+#include "swtlas_parents.spv.h"
+#include "swtlas_refit.spv.h"
 #include "swtlas_tree_keys.spv.h"
 
 namespace twinray {
@@ -36,7 +38,9 @@ Builder::Builder(Context& context)
       morton_(context, stage("swtlas_morton", swtlas_morton_spirv)),
       tree_keys_(context, stage("swtlas_tree_keys", swtlas_tree_keys_spirv)),
       hierarchy_(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv)),
-      encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv)) {}
+      encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv)),
+      parents_(context, stage("swtlas_parents", swtlas_parents_spirv)),
+      refit_(context, stage("swtlas_refit", swtlas_refit_spirv)) {}
 
 Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const {
     const BuildScratch& at = plan.scratch;
@@ -45,9 +49,10 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
     const std::vector<CentroidBounds> empty(trees.size(), {uvec3(all), uvec3(none)});
     {
         const auto pass = commands.pass("swtlas build input");
-        commands.upload(scratch, trees, at.trees);
-        commands.upload(scratch, std::span(plan.blocks), at.blocks);
-        commands.upload(scratch, std::span(empty), at.centroids);
+        const Commands::Piece pieces[] = {{at.trees, std::as_bytes(trees)},
+                                          {at.blocks, std::as_bytes(std::span(plan.blocks))},
+                                          {at.centroids, std::as_bytes(std::span(empty))}};
+        commands.upload_pieces(scratch, pieces);
         commands.fill(scratch, at.meeting, std::uint64_t{plan.leaf_count} * sizeof(uint), NOTHING);
     }
     const std::uint64_t base = scratch.address();
@@ -104,6 +109,23 @@ void Builder::record_instances(Commands& commands, const BuildPlan& plan, const 
         commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
         batch.block_count);
     record_hierarchy(commands, batch, record_order(commands, plan, batch), false);
+}
+
+void Builder::record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
+                           Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
+    if (plan.leaf_count == 0) return;
+    const Batch batch = begin(commands, plan, std::span(&tree, 1));
+    // Nothing is sorted here: that scratch holds the parents.
+    const Uints node_parents = batch.pairs.keys, leaf_parents = batch.pairs.values;
+    leaves_instances_.dispatch_groups(
+        commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
+        batch.block_count);
+    parents_.dispatch_groups(commands, {batch.trees, batch.blocks, node_parents, leaf_parents, batch.block_count, 0},
+                             batch.block_count);
+    refit_.dispatch_groups(
+        commands,
+        {batch.trees, batch.blocks, batch.boxes, node_parents, leaf_parents, batch.meeting, batch.block_count, 0},
+        batch.block_count);
 }
 
 }  // namespace twinray

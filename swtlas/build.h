@@ -21,6 +21,9 @@ class Builder {
     // One tree over the records; fills `instances`.
     void record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
                           Ref<SwInstance> instances) const;
+    // New boxes, and new `instances`, for the topology that record_instances left behind.
+    void record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
+                      Ref<SwInstance> instances) const;
 
   private:
     // The addresses of a batch's scratch regions.
@@ -36,6 +39,8 @@ class Builder {
     Kernel<TreeKeysArgs> tree_keys_;
     Kernel<HierarchyArgs> hierarchy_;
     Kernel<EncodeTrianglesArgs> encode_triangles_;
+    Kernel<ParentsArgs> parents_;
+    Kernel<RefitArgs> refit_;
 };
 
 }  // namespace twinray

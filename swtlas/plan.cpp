@@ -65,7 +65,6 @@ BuildPlan plan_build(std::span<const uint> leaf_counts) {
 
 GeometryLayout layout_geometry(uint triangle_count) {
     Arena arena;
-    arena.take<SwGeometry>(1);
     const std::uint64_t nodes = arena.take<BvhNode>(inner_count(triangle_count));
     const std::uint64_t triangles = arena.take<BvhTriangle>(triangle_count);
     return {nodes, triangles, arena.bytes};

@@ -60,11 +60,10 @@ std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, s
     std::vector<LeafBox> boxes;
     instances.clear();
     for (const InstanceRecord& record : records) {
-        const Rows to_object =
-            inverse_of({record.object_to_world[0], record.object_to_world[1], record.object_to_world[2]});
+        const Rows to_world = to_world_of(record), to_object = inverse_of(to_world);
         SwInstance instance{{to_object.r0, to_object.r1, to_object.r2}, {}, {}, NOTHING, record.custom_index_mask};
         LeafBox box = empty_box();
-        if (record.geometry) {
+        if (record.geometry && is_usable(to_world, to_object)) {
             const SwGeometry& geometry = *reinterpret_cast<const SwGeometry*>(record.geometry);
             instance.nodes = geometry.bvh.nodes;
             instance.triangles = geometry.triangles;
@@ -140,8 +139,8 @@ void Scene::add_instance(std::size_t geometry, const InstanceRecord& record) { p
 
 void Scene::build() {
     for (BuiltGeometry& geometry : geometries_)
-        geometry.header = {{Ref<BvhNode>::to(geometry.tree.nodes.data()), geometry.tree.root,
-                            static_cast<uint>(geometry.triangles.size()), geometry.tree.box.lo, geometry.tree.box.hi},
+        geometry.header = {{geometry.tree.box.lo, geometry.tree.box.hi, Ref<BvhNode>::to(geometry.tree.nodes.data()),
+                            geometry.tree.root, static_cast<uint>(geometry.triangles.size())},
                            Ref<BvhTriangle>::to(geometry.triangles.data())};
     std::vector<InstanceRecord> records;
     for (auto [geometry, record] : placed_) {
@@ -152,7 +151,7 @@ void Scene::build() {
     const std::vector<uint> codes = morton(boxes, centroids(boxes));
     top_ = hierarchy(boxes, codes, sort(codes), false);
     header_ = {
-        {Ref<BvhNode>::to(top_.nodes.data()), top_.root, static_cast<uint>(boxes.size()), top_.box.lo, top_.box.hi},
+        {top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), top_.root, static_cast<uint>(boxes.size())},
         Ref<SwInstance>::to(instances_.data()),
         instances_.size()};
 }

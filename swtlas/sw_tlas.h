@@ -24,8 +24,10 @@ class SwTlas final : public AbstractAccel {
     struct SwBuiltGeometry;
     struct SwBuiltScene;
     std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
-                                                                 std::span<const Geometry* const> geometries) override;
-    std::unique_ptr<BuiltScene> build_scene(Commands& commands, std::span<const PlacedInstance> instances) override;
+                                                                 std::span<const GeometryInput> inputs) override;
+    std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
+                                            const BuiltScene* current) override;
+    void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
     void record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const override;
 
     Builder builder_;

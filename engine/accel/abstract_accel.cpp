@@ -24,10 +24,14 @@ InstanceOptions options_of(const InstanceRecord& record) {
     return {.custom_index = custom_index_of(record), .mask = static_cast<std::uint8_t>(mask_of(record))};
 }
 
+InstanceState state_of(const InstanceRecord& record) {
+    return {transform_of(record), custom_index_of(record), static_cast<std::uint8_t>(mask_of(record))};
+}
+
 }  // namespace
 
 AbstractAccel::AbstractAccel(Context& context, std::string name)
-    : context_(context), name_(std::move(name)), id_(next_accel_id()) {}
+    : context_(context), name_(std::move(name)), id_(next_accel_id()), instances_(context), bound_(context) {}
 
 AbstractAccel::~AbstractAccel() = default;
 
@@ -40,17 +44,15 @@ AccelHandle AbstractAccel::push(const MeshView& mesh, std::span<const Transform>
     if (!options.empty() && options.size() != transforms.size())
         fail(name_, ": mesh '", mesh.name, "': ", options.size(), " instance options for ", transforms.size(),
              " transforms; the lengths must match");
-    Placement placement{Geometry(mesh), nullptr, {}};
-    for (std::size_t i = 0; i < transforms.size(); ++i) {
-        const InstanceOptions option = options.empty() ? InstanceOptions{} : options[i];
-        placement.instances.push_back(checked_record(mesh.name, i, transforms[i], option));
-    }
-    if (const std::size_t n = placement.geometry.non_finite_triangles)
-        context_.warn(text(name_, ": mesh '", mesh.name, "': ", n, " of ", mesh.triangles.size(),
-                           " triangles have a non-finite vertex and are inactive"));
+    Placement placement{
+        Geometry(mesh), Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}), nullptr, {}};
+    for (std::size_t i = 0; i < transforms.size(); ++i)
+        placement.instances.records.push_back(
+            checked_record(placement, i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
+    warn_of_inactive_triangles(placement.geometry);
     const AccelHandle handle{next_handle()};
     placements_.emplace(handle.id, std::move(placement));
-    dirty_ = true;
+    mark(Dirty::structure);
     return handle;
 }
 
@@ -59,164 +61,147 @@ bool AbstractAccel::erase(AccelHandle handle) {
     if (found == placements_.end()) return false;
     if (found->second.built) erased_.push_back(std::move(found->second.built));
     placements_.erase(found);
-    dirty_ = true;
+    mark(Dirty::structure);
     return true;
 }
 
-InstanceRecord AbstractAccel::checked_record(std::string_view mesh, std::size_t index, const Transform& transform,
+void AbstractAccel::update(AccelHandle handle, const MeshView& mesh) {
+    Placement& placement = live(handle, "update");
+    Geometry geometry(mesh);
+    warn_of_inactive_triangles(geometry);
+    if (placement.built) erased_.push_back(std::move(placement.built));
+    placement.geometry = std::move(geometry);
+    mark(Dirty::structure);
+}
+
+InstanceRecord AbstractAccel::checked_record(const Placement& placement, std::size_t index, const Transform& transform,
                                              const InstanceOptions& options) const {
     std::string fault = fault_of(transform);
     if (options.custom_index > max_custom_index)
         fault = text("custom index ", options.custom_index, " exceeds 24 bits (at most ", max_custom_index, ")");
-    if (!fault.empty()) fail(name_, ": mesh '", mesh, "', instance ", index, ": ", fault);
-    return make_instance_record(transform, options.custom_index, options.mask);
+    if (!fault.empty()) fail(name_, ": mesh '", placement.geometry.name, "', instance ", index, ": ", fault);
+    InstanceRecord record = make_instance_record(transform, options.custom_index, options.mask);
+    record.geometry = placement.block.address();
+    return record;
 }
 
-AbstractAccel::Placement& AbstractAccel::live(AccelHandle handle, const char* action) {
+void AbstractAccel::warn_of_inactive_triangles(const Geometry& geometry) const {
+    if (geometry.non_finite_triangles)
+        context_.warn(text(name_, ": mesh '", geometry.name, "': ", geometry.non_finite_triangles, " of ",
+                           geometry.triangles.size(), " triangles have a non-finite vertex and are inactive"));
+}
+
+const AbstractAccel::Placement& AbstractAccel::live(AccelHandle handle, const char* action) const {
     const auto found = placements_.find(handle.id);
     if (found == placements_.end()) fail(name_, ": ", action, ": handle ", handle.id, " is not alive");
     return found->second;
 }
 
+AbstractAccel::Placement& AbstractAccel::live(AccelHandle handle, const char* action) {
+    return const_cast<Placement&>(std::as_const(*this).live(handle, action));
+}
+
 void AbstractAccel::update_transform(AccelHandle handle, const Transform& transform) {
-    if (const std::size_t n = live(handle, "update_transform").instances.size(); n != 1)
+    if (const std::size_t n = live(handle, "update_transform").instances.records.size(); n != 1)
         fail(name_, ": update_transform: handle ", handle.id, " has ", n, " instances, not 1; use update_transforms");
     update_transform_at(handle, 0, transform);
 }
 
 void AbstractAccel::update_transforms(AccelHandle handle, std::span<const Transform> transforms) {
     Placement& placement = live(handle, "update_transforms");
-    if (transforms.size() != placement.instances.size())
-        fail(name_, ": update_transforms: ", transforms.size(), " transforms for the ", placement.instances.size(),
-             " instances of handle ", handle.id);
+    check_count(handle, placement, transforms.size());
     std::vector<InstanceRecord> records;
-    for (std::size_t i = 0; i < transforms.size(); ++i) {
-        const InstanceOptions options = options_of(placement.instances[i]);
-        records.push_back(checked_record(placement.geometry.name, i, transforms[i], options));
-    }
-    placement.instances = std::move(records);
-    dirty_ = true;
+    records.reserve(transforms.size());
+    for (std::size_t i = 0; i < transforms.size(); ++i)
+        records.push_back(checked_record(placement, i, transforms[i], options_of(placement.instances.records[i])));
+    placement.instances.edit_all(std::move(records));
+    mark(Dirty::transforms);
+}
+
+void AbstractAccel::update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count) {
+    Placement& placement = live(handle, "update_transforms");
+    check_count(handle, placement, count);
+    if (!transforms.address || transforms.address % 4)
+        fail(name_, ": update_transforms: device address ", transforms.address, " must be a multiple of 4 and not 0");
+    placement.instances.replace_transforms(transforms);
+    mark(Dirty::transforms);
+}
+
+void AbstractAccel::check_count(AccelHandle handle, const Placement& placement, std::size_t count) const {
+    if (const std::size_t n = placement.instances.records.size(); count != n)
+        fail(name_, ": update_transforms: ", count, " transforms for the ", n, " instances of handle ", handle.id);
+}
+
+void AbstractAccel::check_index(AccelHandle handle, const Placement& placement, std::size_t index,
+                                const char* action) const {
+    if (const std::size_t n = placement.instances.records.size(); index >= n)
+        fail(name_, ": ", action, ": index ", index, " of the ", n, " instances of handle ", handle.id);
 }
 
 void AbstractAccel::update_transform_at(AccelHandle handle, std::size_t index, const Transform& transform) {
     Placement& placement = live(handle, "update_transform_at");
-    if (index >= placement.instances.size())
-        fail(name_, ": update_transform_at: index ", index, " of the ", placement.instances.size(),
-             " instances of handle ", handle.id);
-    InstanceRecord& record = placement.instances[index];
-    record = checked_record(placement.geometry.name, index, transform, options_of(record));
-    dirty_ = true;
+    check_index(handle, placement, index, "update_transform_at");
+    const InstanceOptions options = options_of(placement.instances.records[index]);
+    placement.instances.edit(index, checked_record(placement, index, transform, options));
+    mark(Dirty::transforms);
+}
+
+InstanceRange AbstractAccel::instance_buffer(AccelHandle handle) const {
+    const Placement& placement = live(handle, "instance_buffer");
+    if (dirty_ == Dirty::structure || !placement.instances.first)
+        fail(name_, ": instance_buffer: edits are pending; call sync() first");
+    const std::uint64_t offset = *placement.instances.first * sizeof(InstanceRecord);
+    const Buffer& buffer = instances_.buffer();
+    return {buffer.handle(), offset, buffer.ref<InstanceRecord>(offset), placement.instances.records.size()};
+}
+
+void AbstractAccel::mark_transforms_dirty(AccelHandle handle) {
+    Placement& placement = live(handle, "mark_transforms_dirty");
+    if (!placement.instances.first)
+        fail(name_, ": mark_transforms_dirty: handle ", handle.id, " is not on the device yet; call sync() first");
+    placement.instances.device_wrote = true;
+    mark(Dirty::transforms);
 }
 
 std::size_t AbstractAccel::n_instances() const {
     std::size_t count = 0;
-    for (const auto& [id, placement] : placements_) count += placement.instances.size();
+    for (const auto& [id, placement] : placements_) count += placement.instances.records.size();
     return count;
 }
 
 std::size_t AbstractAccel::n_instances(AccelHandle handle) const {
     const auto found = placements_.find(handle.id);
-    return found == placements_.end() ? 0 : found->second.instances.size();
+    return found == placements_.end() ? 0 : found->second.instances.records.size();
 }
 
-SyncPoint AbstractAccel::sync() {
-    if (!dirty_) return synced_;
-    if (const std::size_t n = n_instances(); n > max_instances)
-        fail(name_, ": sync: ", n, " instances; at most ", max_instances, " fit");
-    auto commands = std::make_unique<Commands>(context_, name_ + " sync");
-
-    std::vector<Placement*> pending;
-    std::vector<const Geometry*> geometries;
-    for (auto& [id, placement] : placements_) {
-        if (placement.built) continue;
-        pending.push_back(&placement);
-        geometries.push_back(&placement.geometry);
-    }
-    std::vector<std::unique_ptr<BuiltGeometry>> built = build_geometries(*commands, geometries);
-    for (std::size_t i = 0; i < pending.size(); ++i) pending[i]->built = std::move(built[i]);
-
-    std::unique_ptr<BuiltScene> scene;
-    try {
-        scene = build_scene(*commands, placed_instances());
-        synced_ = commands->submit();
-    } catch (...) {
-        for (Placement* placement : pending) placement->built.reset();
-        throw;
-    }
-    scene_ = std::move(scene);
-    last_build_ = std::move(commands);
-    erased_.clear();
-    world_bound_ = {};
-    for (const PlacedInstance& instance : placed_instances())
-        world_bound_.include(transformed(instance.geometry->bounds, transform_of(instance.record)));
-    dirty_ = false;
-    ++revision_;
-    return synced_;
+InstanceState AbstractAccel::get_instance(AccelHandle handle, std::size_t index) const {
+    check_index(handle, live(handle, "get_instance"), index, "get_instance");
+    return get_instances(handle)[index];
 }
 
-std::vector<AbstractAccel::PlacedInstance> AbstractAccel::placed_instances() const {
-    std::vector<PlacedInstance> instances;
-    instances.reserve(n_instances());
-    for (const auto& [id, placement] : placements_) {
-        for (InstanceRecord record : placement.instances) {
-            record.geometry = placement.built->reference;
-            instances.push_back({record, &placement.geometry, placement.built.get()});
-        }
-    }
-    return instances;
+std::vector<InstanceState> AbstractAccel::get_instances(AccelHandle handle) const {
+    const InstanceSlice& slice = live(handle, "get_instances").instances;
+    std::vector<InstanceRecord> records = slice.records;
+    if (slice.device_wrote && slice.first)
+        records = download<InstanceRecord>(context_, instances_.buffer(), records.size(),
+                                           *slice.first * sizeof(InstanceRecord));
+    for (std::size_t i = slice.edited_first; i < slice.edited_last; ++i) records[i] = slice.records[i];
+    std::vector<InstanceState> states;
+    for (const InstanceRecord& record : records) states.push_back(state_of(record));
+    return states;
 }
 
 const AbstractAccel::BuiltGeometry& AbstractAccel::built_geometry(AccelHandle handle) const {
-    const auto found = placements_.find(handle.id);
-    if (found == placements_.end()) fail(name_, ": handle ", handle.id, " is not alive");
-    if (!found->second.built) fail(name_, ": handle ", handle.id, " is not built yet; call sync() first");
-    return *found->second.built;
+    const Placement& placement = live(handle, "built geometry");
+    if (!placement.built) fail(name_, ": handle ", handle.id, " is not built yet; call sync() first");
+    return *placement.built;
 }
+
+const Buffer& AbstractAccel::geometry_block(AccelHandle handle) const { return live(handle, "geometry block").block; }
 
 const AbstractAccel::BuiltScene& AbstractAccel::built_scene() const {
     if (!scene_) fail(name_, ": the scene is not built yet; call sync() first");
     return *scene_;
-}
-
-AccelView AbstractAccel::view() const {
-    if (dirty_) fail(name_, ": view: edits are pending; call sync() first");
-    return {scene_->address, id_, revision_};
-}
-
-void AbstractAccel::trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const {
-    if (view.accel != id_) fail(name_, ": trace: the view belongs to another accelerator");
-    if (view.revision != revision_)
-        fail(name_, ": trace: stale view of revision ", view.revision, "; the accelerator is at ", revision_);
-    if (desc.rays.address % 4 || desc.hits.address % 4)
-        fail(name_, ": trace: rays at ", desc.rays.address, " and hits at ", desc.hits.address,
-             " must be aligned to 4 bytes");
-    if (desc.count == 0) return;
-    if (desc.count > UINT32_MAX) fail(name_, ": trace: ", desc.count, " rays; at most ", UINT32_MAX, " in one call");
-    if (!desc.rays.address || !desc.hits.address) fail(name_, ": trace: the address of rays or hits is 0");
-    record_trace(commands, desc, view.scene);
-}
-
-std::vector<Hit> AbstractAccel::closest_hits(std::span<const Ray> rays) { return trace_host(rays, Query::closest); }
-std::vector<Hit> AbstractAccel::any_hits(std::span<const Ray> rays) { return trace_host(rays, Query::any); }
-
-std::vector<Hit> AbstractAccel::trace_host(std::span<const Ray> rays, Query query) {
-    sync();
-    if (rays.empty()) return {};
-    const Buffer ray_buffer(context_, {.name = "rays", .bytes = rays.size_bytes()});
-    const Buffer hit_buffer(context_, {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
-    Commands commands(context_, name_ + " trace");
-    {
-        const auto pass = commands.pass("upload rays");
-        commands.upload(ray_buffer, rays);
-    }
-    trace(commands, view(),
-          {.rays = ray_buffer.ref<Ray>(), .hits = hit_buffer.ref<Hit>(), .count = rays.size(), .query = query});
-    commands.submit();
-    return download<Hit>(context_, hit_buffer, rays.size());
-}
-
-std::vector<PassTiming> AbstractAccel::build_timings() const {
-    return last_build_ ? last_build_->timings() : std::vector<PassTiming>{};
 }
 
 std::uint64_t AbstractAccel::structure_bytes() const {

@@ -3,11 +3,14 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "engine/accel/geometry.h"
+#include "engine/accel/instance_array.h"
+#include "engine/accel/world_bound.h"
 #include "engine/core/commands.h"
 #include "engine/core/ray.h"
 #include "engine/core/transform.h"
@@ -26,7 +29,23 @@ struct InstanceOptions {
     std::uint8_t mask = 0xff;  // an instance is seen by rays whose mask shares a bit
 };
 
-// What kernels need to trace: valid until the next sync() that changes something.
+// An instance as the accelerator holds it.
+struct InstanceState {
+    Transform transform;
+    uint custom_index = 0;
+    std::uint8_t mask = 0xff;
+};
+
+// The records of one handle's instances on the device, for kernels that move them. They may write object_to_world (12
+// floats at offset 0 of each record) and must leave the rest. Valid as long as revision() does not change.
+struct InstanceRange {
+    VkBuffer buffer = VK_NULL_HANDLE;
+    std::uint64_t offset = 0;     // of the first record, in bytes
+    Ref<InstanceRecord> records;  // its device address
+    std::size_t count = 0;
+};
+
+// What kernels need to trace: valid until the next sync() after which revision() has grown.
 struct AccelView {
     std::uint64_t scene = 0;     // device address of the accelerator's scene block (SwScene or HwScene)
     std::uint64_t accel = 0;     // which accelerator made it
@@ -59,26 +78,48 @@ class AbstractAccel {
                      std::span<const InstanceOptions> options = {});
     // False if the handle is dead already.
     bool erase(AccelHandle handle);
-    // The handle must have exactly one instance.
+    // Another mesh for all instances of the handle.
+    void update(AccelHandle handle, const MeshView& mesh);
+
+    // Transforms; custom indices and masks stay. update_transform wants a handle with exactly one instance,
+    // update_transforms one transform per instance.
     void update_transform(AccelHandle handle, const Transform& transform);
-    // One transform per instance of the handle; custom indices and masks stay.
     void update_transforms(AccelHandle handle, std::span<const Transform> transforms);
     void update_transform_at(AccelHandle handle, std::size_t index, const Transform& transform);
+    // The same from device memory, read by the next sync. Nobody checks what lies there: an instance whose transform is
+    // singular or not finite becomes inactive, and the accelerator warns how many.
+    void update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count);
+    // The caller's kernels write into instance_buffer(), then mark_transforms_dirty() lets the next sync take it over.
+    InstanceRange instance_buffer(AccelHandle handle) const;
+    void mark_transforms_dirty(AccelHandle handle);
 
     bool is_valid(AccelHandle handle) const { return placements_.contains(handle.id); }
+    // Waits for the GPU if kernels may have moved the instances.
+    InstanceState get_instance(AccelHandle handle, std::size_t index) const;
+    std::vector<InstanceState> get_instances(AccelHandle handle) const;
     std::size_t n_instances() const;
     std::size_t n_instances(AccelHandle handle) const;  // 0 for a dead handle
     std::size_t n_geometries() const { return placements_.size(); }
 
     // Builds what changed since the last sync and returns the point at which the GPU has built it; a clean
-    // accelerator does nothing. What in-flight work may still read is freed when the timeline has passed it.
+    // accelerator does nothing. Where only transforms changed, the top level is refitted in place and views stay valid.
+    // It never waits for the GPU: what in-flight work may still read is freed when the timeline has passed it.
     SyncPoint sync();
+    // The same into the caller's command buffer. Whatever uses the result must run after it, and hosts that trace
+    // through closest_hits() must have submitted it. If this throws, the command buffer must be reset.
+    void sync(Commands& commands);
     // Throws Error if edits are pending.
     AccelView view() const;
-    // Counts the syncs that changed something.
+    // Counts the syncs that changed more than transforms: views of before are stale.
     std::uint64_t revision() const { return revision_; }
-    // A box around all live instances at the last sync; empty for an empty accelerator.
-    Bounds world_bound() const { return world_bound_; }
+
+    // A box around all live instances at the last sync: the box of each geometry under its transform, rounded outward.
+    // Empty for an empty accelerator. Waits for the last sync if it is not done.
+    Bounds world_bound() const;
+    // The same without waiting: nothing while the last sync is not done.
+    std::optional<Bounds> world_bound_if_ready() const;
+    // The same on the device, for kernels that run after the last sync.
+    Ref<WorldBound> world_bound_on_device() const { return bound_.result(); }
 
     // Records the trace; the hits are visible to later passes. Throws Error on a stale or foreign view.
     void trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const;
@@ -87,7 +128,7 @@ class AbstractAccel {
     std::vector<Hit> any_hits(std::span<const Ray> rays);
 
     void wait_for_gpu() { context_.wait_for_gpu(); }
-    // GPU time per pass of the last sync that built something; waits for it.
+    // GPU time per pass of the last sync() that built something into commands of its own; waits for it.
     std::vector<PassTiming> build_timings() const;
     // Bytes of device memory that the built structure holds.
     std::uint64_t structure_bytes() const;
@@ -101,8 +142,13 @@ class AbstractAccel {
     // A geometry as the implementation built it.
     struct BuiltGeometry {
         virtual ~BuiltGeometry() = default;
-        std::uint64_t reference = 0;  // what InstanceRecord::geometry holds
         std::uint64_t bytes = 0;
+    };
+    // What to build a geometry from. `block` is what InstanceRecord::geometry points at, geometry_block_bytes long; the
+    // implementation fills it, beginning with a GeometryBox. It stays when the geometry is replaced.
+    struct GeometryInput {
+        const Geometry* geometry;
+        const Buffer* block;
     };
     // The top level as the implementation built it.
     struct BuiltScene {
@@ -110,42 +156,74 @@ class AbstractAccel {
         std::uint64_t address = 0;  // what AccelView::scene holds
         std::uint64_t bytes = 0;
     };
-    // One instance of the new top level: its record and the geometry it places.
-    struct PlacedInstance {
-        InstanceRecord record;
-        const Geometry* geometry;
-        const BuiltGeometry* built;
+    // What to build the top level from, all on the device by the time it runs.
+    struct SceneInput {
+        Ref<InstanceRecord> records;
+        uint count = 0;
+        Ref<WorldBound> bound;
+        bool will_move = false;  // refits may follow
     };
+    static constexpr std::uint64_t geometry_block_bytes = 64;
 
-    virtual std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(
-        Commands& commands, std::span<const Geometry* const> geometries) = 0;
-    virtual std::unique_ptr<BuiltScene> build_scene(Commands& commands, std::span<const PlacedInstance> instances) = 0;
+    virtual std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
+                                                                         std::span<const GeometryInput> inputs) = 0;
+    // Builds into the memory of `current` where that suffices, and then returns null.
+    virtual std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
+                                                    const BuiltScene* current) = 0;
+    // Adapts `current`, built with will_move, to instances that only moved.
+    virtual void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) = 0;
     // What an implementation built; throws Error on a dead handle or pending edits.
     const BuiltGeometry& built_geometry(AccelHandle handle) const;
+    const Buffer& geometry_block(AccelHandle handle) const;
     const BuiltScene& built_scene() const;
 
     virtual void record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const = 0;
 
   private:
+    // What one push placed.
     struct Placement {
         Geometry geometry;
-        std::unique_ptr<BuiltGeometry> built;
-        std::vector<InstanceRecord> instances;
+        Buffer block;                          // see GeometryInput
+        std::unique_ptr<BuiltGeometry> built;  // null: `geometry` is not built yet
+        InstanceSlice instances;
     };
-    InstanceRecord checked_record(std::string_view mesh, std::size_t index, const Transform& transform,
+    // What a sync recorded, to be committed once it is certain to run.
+    struct Staged {
+        std::vector<Placement*> building;
+        std::vector<std::unique_ptr<BuiltGeometry>> built;
+        std::vector<InstanceSlice*> slices;
+        InstanceArray::Staged instances;
+        std::unique_ptr<BuiltScene> scene;
+        bool has_moved = false;
+    };
+    enum class Dirty : std::uint8_t { no, transforms, structure };
+
+    void mark(Dirty what) { dirty_ = std::max(dirty_, what); }
+    InstanceRecord checked_record(const Placement& placement, std::size_t index, const Transform& transform,
                                   const InstanceOptions& options) const;
     Placement& live(AccelHandle handle, const char* action);
-    std::vector<PlacedInstance> placed_instances() const;
+    const Placement& live(AccelHandle handle, const char* action) const;
+    void warn_of_inactive_triangles(const Geometry& geometry) const;
+    void check_count(AccelHandle handle, const Placement& placement, std::size_t count) const;
+    void check_index(AccelHandle handle, const Placement& placement, std::size_t index, const char* action) const;
+    Staged stage(Commands& commands);
+    void stage_geometries(Commands& commands, Staged& staged);
+    void stage_scene(Commands& commands, Staged& staged);
+    void commit(Staged&& staged, SyncPoint done);
+    void warn_of_unusable_instances();
     std::vector<Hit> trace_host(std::span<const Ray> rays, Query query);
 
     Context& context_;
     std::string name_;
     std::uint64_t id_;
+    InstanceArray instances_;
+    WorldBoundKernel bound_;
     std::map<std::uint64_t, Placement> placements_;  // in push order: ids only grow
-    bool dirty_ = true;
+    Dirty dirty_ = Dirty::structure;
+    bool has_moved_ = false;  // transforms have changed after a build, so that builds allow refits
     std::uint64_t revision_ = 0;
     SyncPoint synced_;
-    Bounds world_bound_;
+    uint warned_unusable_ = 0;
     std::unique_ptr<BuiltScene> scene_;
     std::vector<std::unique_ptr<BuiltGeometry>> erased_;  // since the last sync: scene_ still refers to them
     std::unique_ptr<Commands> last_build_;

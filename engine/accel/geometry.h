@@ -15,7 +15,6 @@ struct Geometry {
     std::string name;
     std::vector<vec3> positions;
     std::vector<uvec3> triangles;
-    Bounds bounds;
     std::size_t non_finite_triangles = 0;  // inactive: never hit, still counted
 
     // Throws Error naming the mesh and the limit: an index out of range, more than max_triangles.
@@ -32,8 +31,5 @@ constexpr uint max_custom_index = (1u << 24) - 1;
 // max_custom_index.
 InstanceRecord make_instance_record(const Transform& transform, uint custom_index, std::uint8_t mask);
 Transform transform_of(const InstanceRecord& record);
-
-// A box around `bounds` under `transform`: float64 arithmetic, rounded outward.
-Bounds transformed(const Bounds& bounds, const Transform& transform);
 
 }  // namespace twinray

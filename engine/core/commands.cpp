@@ -71,7 +71,8 @@ Commands::Commands(Context& context, const std::string& name, const CallerComman
     context.check_alive();
     if (!caller.handle) fail("commands '", name_, "': the caller's command buffer is null");
     if (!caller.done.semaphore || !caller.done.value)
-        fail("commands '", name_, "': the caller must say with which semaphore and value (not 0) its commands are done");
+        fail("commands '", name_,
+             "': the caller must say with which semaphore and value (not 0) its commands are done");
     begin();
     context.announce(caller.done);
     VkMemoryBarrier barrier{};
@@ -134,11 +135,34 @@ void Commands::end_pass() {
 }
 
 void Commands::upload(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data) {
-    if (data.empty()) return;
-    check_range(target, offset, data.size(), "upload");
-    Buffer staging(context_, {.name = "staging for " + target.name(), .bytes = data.size(), .memory = Memory::upload});
-    std::memcpy(staging.mapped(), data.data(), data.size());
-    copy(staging, 0, target, offset, data.size());
+    const Piece piece{offset, data};
+    upload_pieces(target, std::span(&piece, 1));
+}
+
+void Commands::write_bytes(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data) {
+    check_range(target, offset, data.size(), "write");
+    context_.vk().vkCmdUpdateBuffer(handle_, target.handle(), offset, data.size(), data.data());
+}
+
+void Commands::upload_pieces(const Buffer& target, std::span<const Piece> pieces) {
+    std::vector<VkBufferCopy> regions;
+    std::uint64_t bytes = 0;
+    for (const Piece& piece : pieces) {
+        if (piece.data.empty()) continue;
+        check_range(target, piece.offset, piece.data.size(), "upload");
+        regions.push_back({bytes, piece.offset, piece.data.size()});
+        bytes += piece.data.size();
+    }
+    if (regions.empty()) return;
+    Buffer staging(context_, {.name = "staging for " + target.name(), .bytes = bytes, .memory = Memory::upload});
+    std::byte* next = staging.mapped();
+    for (const Piece& piece : pieces) {
+        if (piece.data.empty()) continue;
+        std::memcpy(next, piece.data.data(), piece.data.size());
+        next += piece.data.size();
+    }
+    context_.vk().vkCmdCopyBuffer(handle_, staging.handle(), target.handle(),
+                                  static_cast<std::uint32_t>(regions.size()), regions.data());
     keep(std::move(staging));
 }
 

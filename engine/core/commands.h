@@ -61,6 +61,17 @@ class Commands {
     void upload(const Buffer& target, std::span<const T> data, std::uint64_t offset = 0) {
         upload(target, offset, std::as_bytes(data));
     }
+    // A value of at most 64 KiB, without staging.
+    template <class T>
+    void write(const Buffer& target, const T& value, std::uint64_t offset = 0) {
+        write_bytes(target, offset, std::as_bytes(std::span(&value, 1)));
+    }
+    // Many pieces through one staging buffer and one copy.
+    struct Piece {
+        std::uint64_t offset;  // in the target
+        std::span<const std::byte> data;
+    };
+    void upload_pieces(const Buffer& target, std::span<const Piece> pieces);
     void copy(const Buffer& from, std::uint64_t from_offset, const Buffer& to, std::uint64_t to_offset,
               std::uint64_t bytes);
     // bytes must be a multiple of 4.
@@ -83,6 +94,7 @@ class Commands {
     VkCommandBuffer handle() const { return handle_; }
 
   private:
+    void write_bytes(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data);
     void begin();
     void begin_pass(const std::string& name);
     void end_pass();

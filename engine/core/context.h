@@ -68,7 +68,7 @@ class Context {
     VmaAllocator allocator() const { return allocator_; }
     VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
     std::uint32_t queue_family() const { return queue_family_; }
-    const DeviceFacts& facts() const { return facts_; }  // what is enabled, not merely supported
+    const DeviceFacts& facts() const { return facts_; }                 // what is enabled, not merely supported
     float timestamp_period_ns() const { return timestamp_period_ns_; }  // 0: the queue has no timestamps
 
     // Stages and accesses of everything that twinray records; used by its barriers.

@@ -43,6 +43,7 @@ struct Ref {
 using Words64 = Ref<std::uint64_t>;
 using Floats = Ref<float>;
 using Uints = Ref<uint>;
+using Vec4s = Ref<vec4>;
 
 inline vec2 floats_of(std::uint64_t word) {
     return {uintBitsToFloat(static_cast<uint>(word)), uintBitsToFloat(static_cast<uint>(word >> 32))};

@@ -62,6 +62,7 @@
     F(vkCmdPipelineBarrier)         \
     F(vkCmdCopyBuffer)              \
     F(vkCmdFillBuffer)              \
+    F(vkCmdUpdateBuffer)            \
     F(vkGetBufferDeviceAddress)
 
 // Present only with VK_KHR_acceleration_structure and VK_KHR_ray_tracing_pipeline.

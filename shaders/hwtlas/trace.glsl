@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the ray query kernel and the ray tracing pipeline share. Needs ray.h and hw_scene.h before it.
+// What the ray query kernel and the ray tracing pipeline share. Needs hw_scene.h before it.
 #ifndef TWINRAY_HWTLAS_TRACE_GLSL
 #define TWINRAY_HWTLAS_TRACE_GLSL
 

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_ray_query : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/ray.h"
+#include "shaders/shared/world_bound.h"
 #include "shaders/shared/hw_scene.h"
 #include "shaders/hwtlas/trace.glsl"
 

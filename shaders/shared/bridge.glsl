@@ -26,6 +26,7 @@
 BUFFER_OF_WORDS(Words64, uint64_t, 8);
 BUFFER_OF_WORDS(Floats, float, 4);
 BUFFER_OF_WORDS(Uints, uint, 4);
+BUFFER_OF_WORDS(Vec4s, vec4, 4);
 
 // Linear index of this group and this invocation; Kernel::dispatch spreads large counts over x and y. Macros, because
 // gl_WorkGroupSize has its value only after the shader's local_size declaration, which follows this include.

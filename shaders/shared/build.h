@@ -102,6 +102,30 @@ struct HierarchyArgs
     uint leaves_are_sorted; // 1: leaf references count sorted leaves; 0: they are the leaf's own index
 };
 
+// Leads from a child to its parent: node << 1 | side, NOTHING for the root.
+struct ParentsArgs
+{
+    REF(BuildTree) trees;
+    REF(BuildBlock) blocks;
+    Uints node_parents; // by inner node, of all trees of the batch
+    Uints leaf_parents; // by leaf
+    uint block_count;
+    uint reserved;
+};
+
+// New boxes for an old topology.
+struct RefitArgs
+{
+    REF(BuildTree) trees;
+    REF(BuildBlock) blocks;
+    REF(LeafBox) boxes;
+    Uints node_parents;
+    Uints leaf_parents;
+    Uints arrived; // by inner node: NOTHING before its first child is done
+    uint block_count;
+    uint reserved;
+};
+
 struct EncodeTrianglesArgs
 {
     REF(BuildTree) trees;

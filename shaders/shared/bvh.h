@@ -38,15 +38,15 @@ BUFFER_OF(BvhTriangle, 8);
 
 struct Bvh
 {
+    vec3 lo; // around all active leaves; lo > hi: there are none
+    vec3 hi;
     REF(BvhNode) nodes;
     uint root;
     uint leaf_count;
-    vec3 lo; // around all finite leaves
-    vec3 hi;
 };
 BUFFER_OF(Bvh, 8);
 
-// What InstanceRecord::geometry points at for the software accelerator.
+// What InstanceRecord::geometry points at for the software accelerator. Begins with a GeometryBox.
 struct SwGeometry
 {
     Bvh bvh;

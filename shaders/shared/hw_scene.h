@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: MIT
-// What the hardware accelerator leaves on the device and what its trace kernels take. Needs ray.h before it.
+// What the hardware accelerator leaves on the device and what its trace kernels take. Needs ray.h and world_bound.h before it.
 #ifndef TWINRAY_SHARED_HW_SCENE_H
 #define TWINRAY_SHARED_HW_SCENE_H
+
+// What InstanceRecord::geometry points at for the hardware accelerator. Begins with a GeometryBox.
+struct HwGeometry
+{
+    vec3 lo;
+    vec3 hi;
+    uint64_t blas;    // device address of the bottom-level structure; 0: nothing can be hit
+    Uints triangles;  // triangle of the built geometry -> triangle of the mesh; null: the same
+};
+BUFFER_OF(HwGeometry, 8);
 
 // Leads from one instance as the driver numbers it back to the user's numbering.
 struct HwInstance
@@ -18,6 +28,28 @@ struct HwScene
     REF(HwInstance) instances;  // by InstanceId; null without HAS_REMAP
 };
 BUFFER_OF(HwScene, 8);
+
+// Morton codes of the instances' centers, for drivers that build in input order.
+struct HwCodesArgs
+{
+    REF(InstanceRecord) records;
+    REF(WorldBound) bound;
+    Uints keys;
+    Uints order;
+    uint count;
+    uint reserved;
+};
+
+// What the driver builds from: the records in their build order, each with the address of its bottom-level structure.
+struct HwGatherArgs
+{
+    REF(InstanceRecord) records;
+    Uints order;                // null: the order that `instances` has already
+    REF(InstanceRecord) driver_records;
+    REF(HwInstance) instances;  // null: the records keep their order
+    uint count;
+    uint reserved;
+};
 
 // Both trace paths take it as push constants.
 struct HwTraceArgs

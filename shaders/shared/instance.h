@@ -2,16 +2,44 @@
 // One placement of a geometry: the bytes of VkAccelerationStructureInstanceKHR, read by both accelerators.
 #ifndef TWINRAY_SHARED_INSTANCE_H
 #define TWINRAY_SHARED_INSTANCE_H
+#include "shaders/shared/ray.h"
+#include "shaders/shared/transform.h"
 
 struct InstanceRecord
 {
     vec4 object_to_world[3];   // rows of a 3x4 matrix
     uint custom_index_mask;    // 24-bit custom index, 8-bit mask in the high byte
     uint sbt_offset_flags;     // 24-bit shader binding table offset (0), 8-bit VkGeometryInstanceFlagsKHR
-    uint64_t geometry;         // address of the built geometry; 0 = inactive
+    uint64_t geometry;         // address of the accelerator's block for the geometry; 0 = inactive
 };
 BUFFER_OF(InstanceRecord, 16);
 
+// What the block of every geometry begins with: a box around its active triangles in object space. lo > hi: it has none.
+struct GeometryBox
+{
+    vec3 lo;
+    vec3 hi;
+};
+BUFFER_OF(GeometryBox, 8);
+
 FUNC uint custom_index_of(InstanceRecord instance) { return instance.custom_index_mask & 0xffffffu; }
 FUNC uint mask_of(InstanceRecord instance) { return instance.custom_index_mask >> 24u; }
+
+FUNC Rows to_world_of(InstanceRecord instance)
+{
+    Rows rows;
+    rows.r0 = instance.object_to_world[0];
+    rows.r1 = instance.object_to_world[1];
+    rows.r2 = instance.object_to_world[2];
+    return rows;
+}
+
+// Whether a map has no entry that is infinite or NaN. An instance whose transform or its inverse has one is inactive:
+// kernels write transforms, too, and nobody can throw there.
+FUNC bool is_finite_map(Rows m)
+{
+    return is_finite(vec3(m.r0.x, m.r0.y, m.r0.z)) && is_finite(vec3(m.r1.x, m.r1.y, m.r1.z)) &&
+           is_finite(vec3(m.r2.x, m.r2.y, m.r2.z)) && is_finite(vec3(m.r0.w, m.r1.w, m.r2.w));
+}
+FUNC bool is_usable(Rows to_world, Rows to_object) { return is_finite_map(to_world) && is_finite_map(to_object); }
 #endif

@@ -11,10 +11,7 @@ layout(push_constant, scalar) uniform Push { InstanceLeavesArgs args; };
 LeafBox place_instance(uint index)
 {
     InstanceRecord record = AT(args.records, index);
-    Rows to_world;
-    to_world.r0 = record.object_to_world[0];
-    to_world.r1 = record.object_to_world[1];
-    to_world.r2 = record.object_to_world[2];
+    Rows to_world = to_world_of(record);
     Rows to_object = inverse_of(to_world);
     SwInstance instance;
     instance.world_to_object[0] = to_object.r0;
@@ -23,7 +20,7 @@ LeafBox place_instance(uint index)
     instance.custom_index_mask = record.custom_index_mask;
     instance.root = NOTHING;
     LeafBox box = empty_box();
-    if (record.geometry != 0ul)
+    if (record.geometry != 0ul && is_usable(to_world, to_object))
     {
         SwGeometry geometry = AT(REF(SwGeometry)(record.geometry), 0);
         instance.nodes = geometry.bvh.nodes;

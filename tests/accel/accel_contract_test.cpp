@@ -43,6 +43,27 @@ class Accel : public test::VulkanTest, public ::testing::WithParamInterface<Kind
     Hit closest(const Ray& ray) { return accel().closest_hits(std::span(&ray, 1)).front(); }
     Hit any(const Ray& ray) { return accel().any_hits(std::span(&ray, 1)).front(); }
 
+    template <class T>
+    Buffer device_copy(const std::vector<T>& values) {
+        Buffer buffer(context(), {.name = "test input", .bytes = values.size() * sizeof(T)});
+        Commands commands(context(), "test input");
+        {
+            const auto pass = commands.pass("test input");
+            commands.upload(buffer, std::span<const T>(values));
+        }
+        commands.submit();
+        return buffer;
+    }
+
+    // Through this very view.
+    Hit trace(const AccelView& view, const Ray& ray) {
+        const Buffer rays = device_copy(std::vector<Ray>{ray}), hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
+        Commands commands(context(), "trace");
+        accel().trace(commands, view, {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
+        commands.submit();
+        return download<Hit>(context(), hits, 1).front();
+    }
+
   private:
     std::unique_ptr<AbstractAccel> accel_;
 };
@@ -295,11 +316,155 @@ TEST_P(Accel, StaleViewsAreRefused) {
     EXPECT_NE(error_of([&] { accel().view(); }).find("sync"), std::string::npos);
     accel().sync();
     const AccelView stale = accel().view();
-    accel().update_transform(handle, Transform::translation({1, 0, 0}));
+    accel().update(handle, square(1));
     accel().sync();
     Commands commands(context(), "stale");
     EXPECT_NE(error_of([&] { accel().trace(commands, stale, {.rays = {16}, .hits = {16}, .count = 1}); }).find("stale"),
               std::string::npos);
+}
+
+TEST_P(Accel, MovesKeepTheViewAndShowInIt) {
+    const AccelHandle handle = accel().push(square(0), std::vector<Transform>(3));
+    accel().sync();
+    const AccelView view = accel().view();
+    for (int step = 1; step <= 3; ++step) {
+        accel().update_transform_at(handle, 1, Transform::translation({0, 0, static_cast<float>(step)}));
+        accel().sync();
+        EXPECT_EQ(accel().revision(), view.revision);
+        EXPECT_EQ(accel().view().scene, view.scene);
+        const Hit hit = trace(view, down(0.5f, 0.25f));
+        EXPECT_EQ(hit.t, 10.0f - static_cast<float>(step));
+        EXPECT_EQ(hit.instance_index, 1u);
+    }
+}
+
+TEST_P(Accel, UpdateReplacesTheMeshOfAllInstancesOfItsHandle) {
+    const Transform places[] = {Transform{}, Transform::translation({5, 0, 0})};
+    const InstanceOptions options[] = {{.custom_index = 3}, {.custom_index = 4}};
+    const AccelHandle handle = accel().push(square(0), places, options);
+    accel().sync();
+    accel().update(handle, make_icosphere(3));
+    EXPECT_EQ(closest(down(0.1f, 0.2f)).custom_index, 3u);
+    const Hit hit = closest(down(5.1f, 0.2f));
+    EXPECT_EQ(hit.custom_index, 4u);
+    EXPECT_NEAR(hit.t, 9.0f, 0.1f);
+    EXPECT_LT(accel().world_bound().lo.x, -0.9f);
+    accel().update(handle, Mesh{});
+    EXPECT_EQ(closest(down(0.1f, 0.2f)).hit, 0u);
+    EXPECT_TRUE(accel().world_bound().is_empty());
+    accel().update(handle, square(2));
+    EXPECT_EQ(closest(down(5.5f, 0.25f)).t, 8.0f);
+}
+
+TEST_P(Accel, TransformsComeFromDeviceMemory) {
+    const AccelHandle other = accel().push(square(-5));
+    const AccelHandle handle = accel().push(square(0), std::vector<Transform>(3),
+                                            std::vector<InstanceOptions>{{.custom_index = 1}, {.custom_index = 2}, {}});
+    const std::vector<Transform> moved = {Transform::translation({2, 0, 1}), Transform::translation({4, 0, 2}),
+                                          Transform::translation({6, 0, 3})};
+    const Buffer source = device_copy(moved);
+    accel().update_transforms(handle, source.ref<Transform>(), 3);
+    EXPECT_EQ(closest(down(2.5f, 0.25f)).t, 9.0f);
+    EXPECT_EQ(closest(down(4.5f, 0.25f)).custom_index, 2u);
+    EXPECT_EQ(accel().get_instance(handle, 2).transform, moved[2]);
+    // A host edit that comes later wins, and only where it was made.
+    accel().update_transforms(handle, source.ref<Transform>(), 3);
+    accel().update_transform_at(handle, 0, Transform::translation({0, 0, 5}));
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 5.0f);
+    EXPECT_EQ(closest(down(6.5f, 0.25f)).t, 7.0f);
+    // What the device holds survives a change of structure.
+    accel().erase(other);
+    accel().push(square(-3));
+    EXPECT_EQ(closest(down(4.5f, 0.25f)).t, 8.0f);
+    EXPECT_EQ(closest(down(4.5f, 0.25f)).instance_index, 1u);
+    EXPECT_EQ(accel().get_instances(handle)[1].transform, moved[1]);
+    accel().update_transforms(handle, std::vector<Transform>(3));
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 10.0f);
+    EXPECT_EQ(closest(down(4.5f, 0.25f)).hit, 0u);
+}
+
+TEST_P(Accel, KernelsMoveInstancesInTheirBuffer) {
+    const AccelHandle handle = accel().push(square(0), std::vector<Transform>(2));
+    EXPECT_NE(error_of([&] { accel().instance_buffer(handle); }).find("sync"), std::string::npos);
+    accel().sync();
+    const InstanceRange range = accel().instance_buffer(handle);
+    EXPECT_EQ(range.count, 2u);
+    const Transform up = Transform::translation({0, 0, 6});
+    Commands commands(context(), "move");
+    {
+        const auto pass = commands.pass("move");
+        context().vk().vkCmdUpdateBuffer(commands.handle(), range.buffer, range.offset + sizeof(InstanceRecord),
+                                         sizeof up, &up);
+    }
+    commands.submit();
+    accel().mark_transforms_dirty(handle);
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 4.0f);
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).instance_index, 1u);
+    EXPECT_EQ(accel().get_instance(handle, 1).transform, up);
+    EXPECT_EQ(accel().get_instance(handle, 0).transform, Transform{});
+    EXPECT_EQ(accel().world_bound().hi.z, 6.0f);
+}
+
+TEST_P(Accel, UnusableTransformsFromTheDeviceAreInactiveAndCounted) {
+    const AccelHandle handle = accel().push(square(0), std::vector<Transform>(4));
+    const Buffer source =
+        device_copy<Transform>({Transform::translation({0, 0, NAN}), Transform::scaling({1, 0, 1}),
+                                Transform::translation({0, 0, 1}), Transform::translation({INFINITY, 0, 0})});
+    accel().update_transforms(handle, source.ref<Transform>(), 4);
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 9.0f);
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).instance_index, 2u);
+    EXPECT_EQ(accel().world_bound().lo.z, 1.0f);
+    accel().update_transform_at(handle, 2, Transform::translation({0, 0, 2}));
+    accel().sync();
+    EXPECT_TRUE(was_logged("3 instances have a transform that is singular or not finite"));
+}
+
+TEST_P(Accel, InstancesTellTheirState) {
+    const Transform place = Transform::translation({1, 2, 3});
+    const AccelHandle handle = accel().push(square(0), place, {.custom_index = 9, .mask = 0x0f});
+    EXPECT_EQ(accel().get_instance(handle, 0).transform, place);
+    EXPECT_EQ(accel().get_instance(handle, 0).custom_index, 9u);
+    EXPECT_EQ(accel().get_instance(handle, 0).mask, 0x0f);
+    accel().update_transform(handle, {});
+    EXPECT_EQ(accel().get_instances(handle).size(), 1u);
+    EXPECT_EQ(accel().get_instance(handle, 0).custom_index, 9u);
+    EXPECT_NE(error_of([&] { accel().get_instance(handle, 1); }).find("index 1 of the 1"), std::string::npos);
+}
+
+TEST_P(Accel, TheWorldBoundIsThatOfFloat64RoundedOutward) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    const Mesh mesh = make_soup(20, 4);
+    const Bounds local = bounds_of(mesh);
+    const auto handle = accel().push(mesh, std::vector<Transform>(7));
+    for (int round = 0; round < 20; ++round) {
+        std::vector<Transform> transforms(7);
+        glm::dvec3 lo(INFINITY), hi(-INFINITY);
+        for (Transform& transform : transforms) {
+            for (vec4& row : transform.rows) row = vec4(unit(random), unit(random), unit(random), 30 * unit(random));
+            for (int axis = 0; axis < 3; ++axis) {
+                const vec4 row = transform.rows[static_cast<std::size_t>(axis)];
+                double low = row.w, high = row.w;
+                for (int i = 0; i < 3; ++i) {
+                    const double a = double{row[i]} * local.lo[i], b = double{row[i]} * local.hi[i];
+                    low += std::min(a, b);
+                    high += std::max(a, b);
+                }
+                lo[axis] = std::min(lo[axis], low);
+                hi[axis] = std::max(hi[axis], high);
+            }
+        }
+        accel().update_transforms(handle, transforms);
+        accel().sync();
+        const Bounds bound = accel().world_bound();
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_LE(bound.lo[axis], lo[axis]);
+            EXPECT_GT(std::nextafter(bound.lo[axis], INFINITY), lo[axis]);
+            EXPECT_GE(bound.hi[axis], hi[axis]);
+            EXPECT_LT(std::nextafter(bound.hi[axis], -INFINITY), hi[axis]);
+        }
+        EXPECT_EQ(accel().world_bound_if_ready()->lo, bound.lo);
+    }
 }
 
 TEST_P(Accel, AViewStaysGoodUntilTheNextSyncWhateverIsEdited) {
@@ -308,16 +473,7 @@ TEST_P(Accel, AViewStaysGoodUntilTheNextSyncWhateverIsEdited) {
     const AccelView view = accel().view();
     accel().erase(handle);
     const Ray ray = down(0.5f, 0.25f);
-    const Buffer rays(context(), {.name = "rays", .bytes = sizeof(Ray)}),
-        hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
-    Commands commands(context(), "view of before");
-    {
-        const auto pass = commands.pass("input");
-        commands.upload(rays, std::span(&ray, 1));
-    }
-    accel().trace(commands, view, {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
-    commands.submit();
-    EXPECT_EQ(download<Hit>(context(), hits, 1).front().t, 9.0f);
+    EXPECT_EQ(trace(view, ray).t, 9.0f);
     EXPECT_EQ(closest(ray).hit, 0u);
 }
 

@@ -30,6 +30,12 @@ void VulkanTest::SetUp() {
     if (!context_ && HasFailure()) FAIL() << "no device";
 }
 
+bool VulkanTest::was_logged(const std::string& part) const {
+    for (const std::string& message : log_)
+        if (message.find(part) != std::string::npos) return true;
+    return false;
+}
+
 void VulkanTest::TearDown() {
     if (!context_) return;
     const std::size_t logged = log_.size();

@@ -21,6 +21,8 @@ class VulkanTest : public ::testing::Test {
     void TearDown() override;  // fails on validation messages
     virtual ContextDesc context_desc() const { return {}; }
     Context& context() { return *context_; }
+    // Whether a warning that contains this has come.
+    bool was_logged(const std::string& part) const;
 
   private:
     std::unique_ptr<Context> context_;

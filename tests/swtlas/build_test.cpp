@@ -159,7 +159,7 @@ TEST_F(SwBuild, TheSceneTreeIsSoundOverInstances) {
         const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
         return reference::hierarchy(boxes, codes, reference::sort(codes), true);
     }();
-    const SwGeometry header{{{}, geometry.root, 10, geometry.box.lo, geometry.box.hi}, {}};
+    const SwGeometry header{{geometry.box.lo, geometry.box.hi, {}, geometry.root, 10}, {}};
     for (InstanceRecord& record : records) record.geometry = Ref<SwGeometry>::to(&header).address;
     std::vector<SwInstance> instances;
     const std::vector<LeafBox> boxes = reference::leaves_instances(records, instances);
@@ -176,7 +176,7 @@ TEST(TreeCheck, NamesWhatIsWrong) {
     const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
     const reference::Hierarchy good = reference::hierarchy(boxes, codes, order, false);
-    const Bvh bvh{{}, good.root, 20, good.box.lo, good.box.hi};
+    const Bvh bvh{good.box.lo, good.box.hi, {}, good.root, 20};
     EXPECT_TRUE(check_tree(bvh, good.nodes, boxes).violations.empty());
 
     std::vector<BvhNode> shrunk = good.nodes;

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "engine/accel/instance_array.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine_copy_transforms.spv.h"
+
+namespace twinray {
+namespace {
+
+constexpr std::uint64_t stride = sizeof(InstanceRecord);
+
+bool lies_on_device(const InstanceSlice& slice) { return slice.first && slice.device_wrote; }
+
+std::span<const std::byte> bytes_of(const InstanceSlice& slice, std::size_t first, std::size_t last) {
+    return std::as_bytes(std::span(slice.records).subspan(first, last - first));
+}
+
+}  // namespace
+
+std::size_t capacity_for(std::size_t count, std::size_t capacity) {
+    constexpr std::size_t least = 16;
+    const bool is_far_too_large = capacity > least && count < capacity / 4;
+    if (count <= capacity && !is_far_too_large) return capacity;
+    return std::max(is_far_too_large || capacity == 0 ? count : count + count / 2, least);
+}
+
+void InstanceSlice::edit(std::size_t index, const InstanceRecord& record) {
+    records[index] = record;
+    if (edited_first == edited_last) edited_first = edited_last = index;
+    edited_first = std::min(edited_first, index);
+    edited_last = std::max(edited_last, index + 1);
+}
+
+void InstanceSlice::edit_all(std::vector<InstanceRecord>&& all) {
+    records = std::move(all);
+    device_wrote = false;
+    incoming = {};
+    edited_first = 0;
+    edited_last = records.size();
+}
+
+void InstanceSlice::replace_transforms(Ref<Transform> transforms) {
+    incoming = transforms;
+    device_wrote = true;
+    edited_first = edited_last = 0;
+}
+
+InstanceArray::InstanceArray(Context& context)
+    : context_(context),
+      copy_transforms_(context, {.name = "engine_copy_transforms", .spirv = engine_copy_transforms_spirv}) {}
+
+bool InstanceArray::must_replace(const Staged& staged, std::span<InstanceSlice* const> slices) const {
+    if (capacity_for(staged.count, capacity()) != capacity()) return true;
+    for (std::size_t i = 0; i < slices.size(); ++i)
+        if (lies_on_device(*slices[i]) && slices[i]->first != staged.firsts[i]) return true;
+    return false;
+}
+
+InstanceArray::Staged InstanceArray::stage(Commands& commands, std::span<InstanceSlice* const> slices) const {
+    Staged staged;
+    for (const InstanceSlice* slice : slices) {
+        staged.firsts.push_back(staged.count);
+        staged.count += slice->records.size();
+    }
+    if (must_replace(staged, slices)) {
+        const std::size_t room = capacity_for(staged.count, capacity());
+        staged.replacement.emplace(context_, BufferDesc{.name = "instance records", .bytes = room * stride});
+    }
+    const Buffer& target = staged.replacement ? *staged.replacement : buffer_;
+    staged.records = target.ref<InstanceRecord>();
+    record_moves(commands, staged, slices);
+    record_uploads(commands, staged, slices);
+    record_incoming(commands, staged, slices);
+    record_edits(commands, staged, slices);
+    return staged;
+}
+
+void InstanceArray::record_moves(Commands& commands, const Staged& staged,
+                                 std::span<InstanceSlice* const> slices) const {
+    if (!staged.replacement || std::none_of(slices.begin(), slices.end(), [](auto* s) { return lies_on_device(*s); }))
+        return;
+    const auto pass = commands.pass("instance moves");
+    for (std::size_t i = 0; i < slices.size(); ++i)
+        if (lies_on_device(*slices[i]))
+            commands.copy(buffer_, *slices[i]->first * stride, *staged.replacement, staged.firsts[i] * stride,
+                          slices[i]->records.size() * stride);
+}
+
+void InstanceArray::record_uploads(Commands& commands, const Staged& staged,
+                                   std::span<InstanceSlice* const> slices) const {
+    std::vector<Commands::Piece> pieces;
+    for (std::size_t i = 0; i < slices.size(); ++i) {
+        const InstanceSlice& slice = *slices[i];
+        if (lies_on_device(slice) || (!staged.replacement && slice.first == staged.firsts[i])) continue;
+        pieces.push_back({staged.firsts[i] * stride, bytes_of(slice, 0, slice.records.size())});
+    }
+    if (pieces.empty()) return;
+    const auto pass = commands.pass("instance upload");
+    commands.upload_pieces(staged.replacement ? *staged.replacement : buffer_, pieces);
+}
+
+void InstanceArray::record_incoming(Commands& commands, const Staged& staged,
+                                    std::span<InstanceSlice* const> slices) const {
+    for (std::size_t i = 0; i < slices.size(); ++i) {
+        const InstanceSlice& slice = *slices[i];
+        if (!slice.incoming.address) continue;
+        const auto count = static_cast<uint>(slice.records.size());
+        copy_transforms_.dispatch(
+            commands, {{staged.records.address + staged.firsts[i] * stride}, {slice.incoming.address}, count, 0},
+            count);
+    }
+}
+
+void InstanceArray::record_edits(Commands& commands, const Staged& staged,
+                                 std::span<InstanceSlice* const> slices) const {
+    std::vector<Commands::Piece> pieces;
+    for (std::size_t i = 0; i < slices.size(); ++i) {
+        const InstanceSlice& slice = *slices[i];
+        if (slice.edited_first == slice.edited_last) continue;
+        pieces.push_back(
+            {(staged.firsts[i] + slice.edited_first) * stride, bytes_of(slice, slice.edited_first, slice.edited_last)});
+    }
+    if (pieces.empty()) return;
+    const auto pass = commands.pass("instance edits");
+    commands.upload_pieces(staged.replacement ? *staged.replacement : buffer_, pieces);
+}
+
+void InstanceArray::commit(Staged&& staged, std::span<InstanceSlice* const> slices) {
+    if (staged.replacement) buffer_ = std::move(*staged.replacement);
+    for (std::size_t i = 0; i < slices.size(); ++i) {
+        slices[i]->first = staged.firsts[i];
+        slices[i]->incoming = {};
+        slices[i]->edited_first = slices[i]->edited_last = 0;
+    }
+}
+
+}  // namespace twinray

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/accel/instance_record.h"
+#include "engine/core/kernel.h"
+#include "engine/core/transform.h"
+
+namespace twinray {
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/copy_transforms.h"
+#include "engine/core/bridge_end.h"
+
+// How many instances to make room for: what there is room for already where `count` fits well, else `count` with spare
+// room when it grows.
+std::size_t capacity_for(std::size_t count, std::size_t capacity);
+
+// The instances of one handle, and what the device's copy of them has and lacks.
+struct InstanceSlice {
+    std::vector<InstanceRecord> records;  // as the host last wrote them
+    std::optional<std::size_t> first;     // where they start in the device's array; none: not there yet
+    bool device_wrote = false;            // transforms on the device may be newer than `records`
+    Ref<Transform> incoming;              // device memory that the next sync copies the transforms from; 0 = none
+    // Records [edited_first, edited_last) were changed by the host since the last sync, and after `incoming` was set.
+    std::size_t edited_first = 0;
+    std::size_t edited_last = 0;
+
+    void edit(std::size_t index, const InstanceRecord& record);
+    void edit_all(std::vector<InstanceRecord>&& all);
+    void replace_transforms(Ref<Transform> transforms);
+};
+
+// The records of all instances on the device: one array in push order, that keeps what kernels wrote into it.
+class InstanceArray {
+  public:
+    explicit InstanceArray(Context& context);
+
+    // What stage() recorded, to be committed once it is certain to run.
+    struct Staged {
+        std::vector<std::size_t> firsts;
+        std::size_t count = 0;
+        Ref<InstanceRecord> records;
+        std::optional<Buffer> replacement;  // when the array grew, shrank, or device-written records moved
+    };
+    // Records what brings these slices, in this order, to the device.
+    Staged stage(Commands& commands, std::span<InstanceSlice* const> slices) const;
+    void commit(Staged&& staged, std::span<InstanceSlice* const> slices);
+
+    const Buffer& buffer() const { return buffer_; }
+
+  private:
+    std::size_t capacity() const { return buffer_.bytes() / sizeof(InstanceRecord); }
+    bool must_replace(const Staged& staged, std::span<InstanceSlice* const> slices) const;
+    void record_moves(Commands& commands, const Staged& staged, std::span<InstanceSlice* const> slices) const;
+    void record_uploads(Commands& commands, const Staged& staged, std::span<InstanceSlice* const> slices) const;
+    void record_incoming(Commands& commands, const Staged& staged, std::span<InstanceSlice* const> slices) const;
+    void record_edits(Commands& commands, const Staged& staged, std::span<InstanceSlice* const> slices) const;
+
+    Context& context_;
+    Kernel<CopyTransformsArgs> copy_transforms_;
+    Buffer buffer_;
+};
+
+}  // namespace twinray

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// The one place that builds: stage records everything, commit takes it over once it is certain to run.
+#include <utility>
+
+#include "engine/accel/abstract_accel.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+
+SyncPoint AbstractAccel::sync() {
+    if (dirty_ == Dirty::no) return synced_;
+    auto commands = std::make_unique<Commands>(context_, name_ + " sync");
+    Staged staged = stage(*commands);
+    commit(std::move(staged), commands->submit());
+    last_build_ = std::move(commands);
+    return synced_;
+}
+
+void AbstractAccel::sync(Commands& commands) {
+    if (!commands.is_of_caller()) fail(name_, ": sync: own commands are not for recording into; call sync()");
+    if (dirty_ != Dirty::no) commit(stage(commands), commands.done());
+}
+
+AbstractAccel::Staged AbstractAccel::stage(Commands& commands) {
+    if (const std::size_t n = n_instances(); n > max_instances)
+        fail(name_, ": sync: ", n, " instances; at most ", max_instances, " fit");
+    warn_of_unusable_instances();
+    Staged staged;
+    for (auto& [id, placement] : placements_) staged.slices.push_back(&placement.instances);
+    stage_geometries(commands, staged);
+    staged.instances = instances_.stage(commands, staged.slices);
+    bound_.record(commands, staged.instances.records, static_cast<uint>(staged.instances.count));
+    stage_scene(commands, staged);
+    return staged;
+}
+
+void AbstractAccel::stage_geometries(Commands& commands, Staged& staged) {
+    std::vector<GeometryInput> inputs;
+    for (auto& [id, placement] : placements_) {
+        if (placement.built) continue;
+        staged.building.push_back(&placement);
+        inputs.push_back({&placement.geometry, &placement.block});
+    }
+    staged.built = build_geometries(commands, inputs);
+}
+
+void AbstractAccel::stage_scene(Commands& commands, Staged& staged) {
+    staged.has_moved = has_moved_ || (scene_ && dirty_ == Dirty::transforms);
+    const SceneInput input{staged.instances.records, static_cast<uint>(staged.instances.count), bound_.result(),
+                           staged.has_moved};
+    // The first move rebuilds: nothing is paid for refits before.
+    if (scene_ && has_moved_ && dirty_ == Dirty::transforms)
+        refit_scene(commands, input, *scene_);
+    else
+        staged.scene = build_scene(commands, input, scene_.get());
+}
+
+void AbstractAccel::commit(Staged&& staged, SyncPoint done) {
+    for (std::size_t i = 0; i < staged.building.size(); ++i) staged.building[i]->built = std::move(staged.built[i]);
+    has_moved_ = staged.has_moved;
+    revision_ += dirty_ == Dirty::structure;
+    if (staged.scene) scene_ = std::move(staged.scene);
+    instances_.commit(std::move(staged.instances), staged.slices);
+    erased_.clear();
+    dirty_ = Dirty::no;
+    synced_ = done;
+}
+
+void AbstractAccel::warn_of_unusable_instances() {
+    if (!synced_.value || !context_.is_reached(synced_)) return;
+    const uint count = bound_.read().unusable_count;
+    if (count && count != warned_unusable_)
+        context_.warn(text(name_, ": ", count,
+                           " instances have a transform that is singular or not finite, written on "
+                           "the device; they are inactive"));
+    warned_unusable_ = count;
+}
+
+Bounds AbstractAccel::world_bound() const {
+    context_.wait(synced_);
+    return world_bound_if_ready().value_or(Bounds{});
+}
+
+std::optional<Bounds> AbstractAccel::world_bound_if_ready() const {
+    if (!synced_.value) return Bounds{};
+    if (!context_.is_reached(synced_)) return std::nullopt;
+    const WorldBound bound = bound_.read();
+    return Bounds{bound.lo, bound.hi};
+}
+
+std::vector<PassTiming> AbstractAccel::build_timings() const {
+    return last_build_ ? last_build_->timings() : std::vector<PassTiming>{};
+}
+
+}  // namespace twinray

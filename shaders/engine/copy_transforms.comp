@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// Transforms from the caller's device memory into instance records; ids, masks and flags stay.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/copy_transforms.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { CopyTransformsArgs args; };
+
+void main()
+{
+    uint index = global_index();
+    if (index >= args.count) return;
+    AT(args.records, index).object_to_world[0] = AT(args.rows, 3u * index);
+    AT(args.records, index).object_to_world[1] = AT(args.rows, 3u * index + 1u);
+    AT(args.records, index).object_to_world[2] = AT(args.rows, 3u * index + 2u);
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/world_bound.h"
+#include "shaders/shared/hw_scene.h"
+layout(local_size_x = 256) in;
+layout(push_constant, scalar) uniform Push { HwGatherArgs args; };
+
+void main()
+{
+    uint place = global_index();
+    if (place >= args.count) return;
+    bool has_table = uint64_t(args.instances) != 0ul;
+    bool has_order = uint64_t(args.order) != 0ul;
+    uint index = has_order ? AT(args.order, place) : (has_table ? AT(args.instances, place).instance_index : place);
+    InstanceRecord record = AT(args.records, index);
+    HwGeometry geometry = AT(REF(HwGeometry)(record.geometry), 0);
+    Rows to_world = to_world_of(record);
+    bool usable = is_usable(to_world, inverse_of(to_world));
+    record.geometry = usable ? geometry.blas : 0ul;
+    AT(args.driver_records, place) = record;
+    if (!has_table) return;
+    HwInstance instance;
+    instance.triangles = geometry.triangles;
+    instance.instance_index = index;
+    instance.pad = 0u;
+    AT(args.instances, place) = instance;
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/world_bound.h"
+#include "shaders/shared/hw_scene.h"
+layout(local_size_x = 256) in;
+layout(push_constant, scalar) uniform Push { HwCodesArgs args; };
+
+const uint LAST = 0x3fffffffu; // of what cannot be hit
+
+uint code_of(InstanceRecord record)
+{
+    if (record.geometry == 0ul) return LAST;
+    GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);
+    Rows to_world = to_world_of(record);
+    if (!(box.lo.x <= box.hi.x) || !is_finite_map(to_world)) return LAST;
+    vec3 center = transform_point(to_world, box.lo * 0.5f + box.hi * 0.5f);
+    WorldBound bound = AT(args.bound, 0);
+    return morton_code(center, bound.lo, bound.hi);
+}
+
+void main()
+{
+    uint index = global_index();
+    if (index >= args.count) return;
+    AT(args.keys, index) = code_of(AT(args.records, index));
+    AT(args.order, index) = index;
+}

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#ifndef TWINRAY_SHARED_COPY_TRANSFORMS_H
+#define TWINRAY_SHARED_COPY_TRANSFORMS_H
+#include "shaders/shared/instance.h"
+
+struct CopyTransformsArgs
+{
+    REF(InstanceRecord) records;
+    Vec4s rows; // three a transform, 48 bytes
+    uint count;
+    uint reserved;
+};
+#endif

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// A box around all instances, from the box of each geometry and the transforms, rounded outward.
+#ifndef TWINRAY_SHARED_WORLD_BOUND_H
+#define TWINRAY_SHARED_WORLD_BOUND_H
+#include "shaders/shared/exact.h"
+#include "shaders/shared/instance.h"
+#include "shaders/shared/morton.h"
+
+const uint WORLD_BOUND_GROUP = 256u;
+
+struct WorldBound
+{
+    vec3 lo; // lo > hi: nothing can be hit
+    vec3 hi;
+    uint unusable_count; // instances whose transform is singular or not finite
+    uint reserved;
+};
+BUFFER_OF(WorldBound, 4);
+
+// The same while groups add to it, as ordered bits (see ordered_bits).
+struct WorldBoundBits
+{
+    uvec3 lo;
+    uvec3 hi;
+    uint unusable_count;
+    uint groups_done;
+};
+BUFFER_OF(WorldBoundBits, 4);
+
+struct WorldBoundArgs
+{
+    REF(InstanceRecord) records;
+    REF(WorldBoundBits) bits;
+    REF(WorldBound) result;
+    uint count;
+    uint group_count;
+};
+
+// The float next to x on the way to minus infinity. Zero and denormals go to the least normal float below: devices may
+// flush what lies between.
+FUNC float next_below(float x)
+{
+    const float LEAST_NORMAL = 1.17549435082e-38f;
+    uint bits = floatBitsToUint(x);
+    if (abs(x) < LEAST_NORMAL) return x < 0.0f ? -2.0f * LEAST_NORMAL : -LEAST_NORMAL;
+    return uintBitsToFloat(x > 0.0f ? bits - 1u : bits + 1u);
+}
+
+// A float not above a.x b.x + a.y b.y + a.z b.z + c, and the largest such one for all but the rarest operands: the sum
+// in doubled precision (see accurate_dot), rounded down.
+FUNC float dot_below(vec3 a, vec3 b, float c)
+{
+    PRECISE float p0 = a.x * b.x;
+    PRECISE float p1 = a.y * b.y;
+    PRECISE float p2 = a.z * b.z;
+    PRECISE float s0 = c + p0;
+    PRECISE float s1 = s0 + p1;
+    PRECISE float s2 = s1 + p2;
+    PRECISE float low = sum_error(c, p0, s0) + product_error(a.x, b.x, p0);
+    low = low + sum_error(s0, p1, s1);
+    low = low + product_error(a.y, b.y, p1);
+    low = low + sum_error(s1, p2, s2);
+    low = low + product_error(a.z, b.z, p2);
+    PRECISE float result = s2 + low;
+    float error = sum_error(s2, low, result);
+    // Veltkamp's splitting overflows near the end of the range; then plain rounding and a wide step must do.
+    if (!(abs(low) < uintBitsToFloat(0x7f800000u))) return s2 - abs(s2) * 2.384185791015625e-07f;
+    return error < 0.0f ? next_below(result) : result;
+}
+
+// The least coordinate that `row` gives to the points of the box (lo, hi), rounded down.
+FUNC float reach_below(vec4 row, vec3 lo, vec3 hi)
+{
+    vec3 corner = vec3(row.x > 0.0f ? lo.x : hi.x, row.y > 0.0f ? lo.y : hi.y, row.z > 0.0f ? lo.z : hi.z);
+    return dot_below(vec3(row.x, row.y, row.z), corner, row.w);
+}
+
+// A box around `box` under `m`.
+FUNC GeometryBox box_in_world(GeometryBox box, Rows m)
+{
+    GeometryBox world;
+    world.lo = vec3(reach_below(m.r0, box.lo, box.hi), reach_below(m.r1, box.lo, box.hi), reach_below(m.r2, box.lo, box.hi));
+    world.hi = -vec3(reach_below(-m.r0, box.lo, box.hi), reach_below(-m.r1, box.lo, box.hi),
+                     reach_below(-m.r2, box.lo, box.hi));
+    return world;
+}
+#endif

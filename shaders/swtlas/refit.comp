@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// New boxes for an old topology: each leaf climbs with its box, and of the two children that arrive at a node the second
+// goes on with both.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/build.h"
+layout(local_size_x = BUILD_GROUP) in;
+layout(push_constant, scalar) uniform Push { RefitArgs args; };
+
+// The nodes as seen by all groups, not through caches of one.
+layout(buffer_reference, scalar, buffer_reference_align = 16) coherent buffer SharedNodes { BvhNode items[]; };
+
+void climb(BuildTree tree, uint leaf)
+{
+    SharedNodes nodes = SharedNodes(uint64_t(AT(tree.bvh, 0).nodes));
+    LeafBox box = AT(args.boxes, leaf);
+    uint parent = AT(args.leaf_parents, leaf);
+    while (parent != NOTHING)
+    {
+        uint node = parent >> 1u;
+        bool is_second = (parent & 1u) != 0u;
+        if (is_second)
+        {
+            nodes.items[node].lo1 = box.lo;
+            nodes.items[node].hi1 = box.hi;
+        }
+        else
+        {
+            nodes.items[node].lo0 = box.lo;
+            nodes.items[node].hi0 = box.hi;
+        }
+        memoryBarrierBuffer();
+        if (atomicAdd(AT(args.arrived, tree.first + node), 1u) == NOTHING) return;
+        memoryBarrierBuffer();
+        box.lo = min(box.lo, is_second ? nodes.items[node].lo0 : nodes.items[node].lo1);
+        box.hi = max(box.hi, is_second ? nodes.items[node].hi0 : nodes.items[node].hi1);
+        parent = AT(args.node_parents, tree.first + node);
+    }
+    AT(tree.bvh, 0).lo = box.lo;
+    AT(tree.bvh, 0).hi = box.hi;
+}
+
+void main()
+{
+    if (group_index() >= args.block_count) return;
+    BuildBlock block = AT(args.blocks, group_index());
+    if (gl_LocalInvocationIndex >= block.count) return;
+    climb(AT(args.trees, block.tree), block.first + gl_LocalInvocationIndex);
+}
