@@ -22,8 +22,8 @@ std::span<const std::byte> bytes_of(const InstanceSlice& slice, std::size_t firs
 std::size_t capacity_for(std::size_t count, std::size_t capacity) {
     constexpr std::size_t least = 16;
     const bool is_far_too_large = capacity > least && count < capacity / 4;
-    if (count <= capacity && !is_far_too_large) return capacity;
-    return std::max(is_far_too_large || capacity == 0 ? count : count + count / 2, least);
+    if (capacity == 0 || is_far_too_large) return std::max(count, least);
+    return count <= capacity ? capacity : count + count / 2;
 }
 
 void InstanceSlice::edit(std::size_t index, const InstanceRecord& record) {

@@ -1,91 +1,22 @@
 // SPDX-License-Identifier: MIT
 // One body for every accelerator: the software one, and the hardware one through each way of tracing.
 #include <cmath>
-#include <functional>
 #include <random>
 
-#include "engine/core/error.h"
-#include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/classify.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
-#include "tests/support/device.h"
+#include "tests/accel/accel_fixture.h"
 
 namespace twinray {
 namespace {
 
-enum class Kind { software, ray_query, pipeline };
+using test::down;
+using test::error_of;
+using test::Kind;
+using test::square;
 
-class Accel : public test::VulkanTest, public ::testing::WithParamInterface<Kind> {
-  protected:
-    ContextDesc context_desc() const override {
-        ContextDesc desc;
-        desc.use_ray_query = GetParam() == Kind::ray_query;
-        desc.use_ray_tracing_pipeline = GetParam() == Kind::pipeline;
-        return desc;
-    }
-    void SetUp() override {
-        test::VulkanTest::SetUp();
-        if (IsSkipped() || HasFatalFailure()) return;
-        if (GetParam() == Kind::software)
-            accel_ = std::make_unique<SwTlas>(context());
-        else if (missing_for_hardware(context().facts()).empty())
-            accel_ = std::make_unique<HwTlas>(context());
-        else
-            GTEST_SKIP() << context().facts().name << " has no such ray tracing";
-    }
-    void TearDown() override {
-        accel_.reset();
-        test::VulkanTest::TearDown();
-    }
-    AbstractAccel& accel() { return *accel_; }
-    Hit closest(const Ray& ray) { return accel().closest_hits(std::span(&ray, 1)).front(); }
-    Hit any(const Ray& ray) { return accel().any_hits(std::span(&ray, 1)).front(); }
-
-    template <class T>
-    Buffer device_copy(const std::vector<T>& values) {
-        Buffer buffer(context(), {.name = "test input", .bytes = values.size() * sizeof(T)});
-        Commands commands(context(), "test input");
-        {
-            const auto pass = commands.pass("test input");
-            commands.upload(buffer, std::span<const T>(values));
-        }
-        commands.submit();
-        return buffer;
-    }
-
-    // Through this very view.
-    Hit trace(const AccelView& view, const Ray& ray) {
-        const Buffer rays = device_copy(std::vector<Ray>{ray}), hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
-        Commands commands(context(), "trace");
-        accel().trace(commands, view, {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
-        commands.submit();
-        return download<Hit>(context(), hits, 1).front();
-    }
-
-  private:
-    std::unique_ptr<AbstractAccel> accel_;
-};
-
-std::string name_of_kind(const ::testing::TestParamInfo<Kind>& info) {
-    return info.param == Kind::software ? "Software" : info.param == Kind::ray_query ? "RayQuery" : "Pipeline";
-}
-INSTANTIATE_TEST_SUITE_P(Every, Accel, ::testing::Values(Kind::software, Kind::ray_query, Kind::pipeline),
-                         name_of_kind);
-
-// The unit square at height z, facing up; rays go down onto it.
-Mesh square(float z) { return make_quad(vec3(0, 0, z), vec3(1, 0, 0), vec3(0, 1, 0)); }
-Ray down(float x, float y) { return {vec3(x, y, 10), 0, vec3(0, 0, -1), INFINITY}; }
-
-std::string error_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
-}
+class Accel : public test::AccelTest {};
+TWINRAY_OVER_EVERY_ACCEL(Accel);
 
 TEST_P(Accel, FindsTheClosestHitAndFillsEveryField) {
     accel().push(square(1));

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// A fixture that runs a test over every accelerator: the software one, and the hardware one through each way of
+// tracing.
+#pragma once
+
+#include <functional>
+
+#include "engine/core/error.h"
+#include "engine/scene/shapes.h"
+#include "hwtlas/hw_tlas.h"
+#include "swtlas/sw_tlas.h"
+#include "tests/support/device.h"
+
+namespace twinray::test {
+
+enum class Kind { software, ray_query, pipeline };
+
+class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> {
+  protected:
+    ContextDesc context_desc() const override {
+        ContextDesc desc;
+        desc.use_ray_query = GetParam() == Kind::ray_query;
+        desc.use_ray_tracing_pipeline = GetParam() == Kind::pipeline;
+        return desc;
+    }
+    void SetUp() override {
+        VulkanTest::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        if (!is_ours() && !missing_for_hardware(context().facts()).empty())
+            GTEST_SKIP() << context().facts().name << " has no such ray tracing";
+        accel_ = make_accel();
+    }
+    void TearDown() override {
+        accel_.reset();
+        VulkanTest::TearDown();
+    }
+
+    bool is_ours() const { return GetParam() == Kind::software; }
+    std::unique_ptr<AbstractAccel> make_accel() {
+        if (is_ours()) return std::make_unique<SwTlas>(context());
+        return std::make_unique<HwTlas>(context());
+    }
+    AbstractAccel& accel() { return *accel_; }
+    Hit closest(const Ray& ray) { return accel().closest_hits(std::span(&ray, 1)).front(); }
+    Hit any(const Ray& ray) { return accel().any_hits(std::span(&ray, 1)).front(); }
+
+    template <class T>
+    Buffer device_copy(const std::vector<T>& values) {
+        Buffer buffer(context(), {.name = "test input", .bytes = values.size() * sizeof(T)});
+        Commands commands(context(), "test input");
+        {
+            const auto pass = commands.pass("test input");
+            commands.upload(buffer, std::span<const T>(values));
+        }
+        commands.submit();
+        return buffer;
+    }
+
+    // Through this very view.
+    Hit trace(const AccelView& view, const Ray& ray) {
+        const Buffer rays = device_copy(std::vector<Ray>{ray}), hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
+        Commands commands(context(), "trace");
+        accel().trace(commands, view, {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
+        commands.submit();
+        return download<Hit>(context(), hits, 1).front();
+    }
+
+  private:
+    std::unique_ptr<AbstractAccel> accel_;
+};
+
+inline std::string name_of_kind(const ::testing::TestParamInfo<Kind>& info) {
+    return info.param == Kind::software ? "Software" : info.param == Kind::ray_query ? "RayQuery" : "Pipeline";
+}
+
+// The unit square at height z, facing up; rays go down onto it.
+inline Mesh square(float z) { return make_quad(vec3(0, 0, z), vec3(1, 0, 0), vec3(0, 1, 0)); }
+inline Ray down(float x, float y) { return {vec3(x, y, 10), 0, vec3(0, 0, -1), INFINITY}; }
+
+inline std::string error_of(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace twinray::test
+
+#define TWINRAY_OVER_EVERY_ACCEL(Fixture)                                                                         \
+    INSTANTIATE_TEST_SUITE_P(Every, Fixture,                                                                      \
+                             ::testing::Values(::twinray::test::Kind::software, ::twinray::test::Kind::ray_query, \
+                                               ::twinray::test::Kind::pipeline),                                  \
+                             ::twinray::test::name_of_kind)

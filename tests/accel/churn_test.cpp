@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// Long histories of edits, judged by the float64 referee after every sync.
+#include <random>
+
+#include "engine/core/vma.h"
+#include "engine/verify/aimed_rays.h"
+#include "engine/verify/classify.h"
+#include "tests/accel/accel_fixture.h"
+
+namespace twinray {
+namespace {
+
+class Churn : public test::AccelTest {
+  protected:
+    // What the accelerator should hold, in push order.
+    struct Placed {
+        AccelHandle handle;
+        Mesh mesh;
+        std::vector<Transform> transforms;
+        std::vector<Buffer> sources = {};  // device memory that the next sync reads
+    };
+
+    Transform random_transform() {
+        Transform transform;
+        for (vec4& row : transform.rows) row = vec4(unit_(random_), unit_(random_), unit_(random_), 4 * unit_(random_));
+        return fault_of(transform).empty() ? transform : Transform{};
+    }
+    std::vector<Transform> random_transforms(std::size_t count) {
+        std::vector<Transform> transforms;
+        for (std::size_t i = 0; i < count; ++i) transforms.push_back(random_transform());
+        return transforms;
+    }
+    Mesh random_mesh() {
+        const uint size = static_cast<uint>(random_() % 40);
+        return random_() % 4 == 0 ? make_box(vec3(-0.5f), vec3(0.5f)) : make_soup(size, static_cast<uint>(random_()));
+    }
+    Placed& any_placed() { return placed_[random_() % placed_.size()]; }
+
+    void push();
+    void erase();
+    void move_by_host();
+    void move_one();
+    void move_by_device();
+    void edit();
+    void expect_exact_counts();
+    void expect_agreement(std::size_t rays);
+    std::uint64_t memory() {
+        context().wait_for_gpu();
+        return allocated_bytes(context().allocator());
+    }
+
+    std::mt19937 random_{20'261'121};
+    std::uniform_real_distribution<float> unit_{-1, 1};
+    std::vector<Placed> placed_;
+};
+TWINRAY_OVER_EVERY_ACCEL(Churn);
+
+void Churn::push() {
+    Placed placed{{}, random_mesh(), random_transforms(random_() % 4)};
+    placed.handle = accel().push(placed.mesh, placed.transforms);
+    placed_.push_back(std::move(placed));
+}
+
+void Churn::erase() {
+    const std::size_t victim = random_() % placed_.size();
+    EXPECT_TRUE(accel().erase(placed_[victim].handle));
+    EXPECT_FALSE(accel().erase(placed_[victim].handle));
+    placed_.erase(placed_.begin() + static_cast<std::ptrdiff_t>(victim));
+}
+
+void Churn::move_by_host() {
+    Placed& placed = any_placed();
+    placed.transforms = random_transforms(placed.transforms.size());
+    accel().update_transforms(placed.handle, placed.transforms);
+}
+
+void Churn::move_one() {
+    Placed& placed = any_placed();
+    if (placed.transforms.empty()) return;
+    const std::size_t index = random_() % placed.transforms.size();
+    placed.transforms[index] = random_transform();
+    accel().update_transform_at(placed.handle, index, placed.transforms[index]);
+}
+
+void Churn::move_by_device() {
+    Placed& placed = any_placed();
+    if (placed.transforms.empty()) return;
+    placed.transforms = random_transforms(placed.transforms.size());
+    placed.sources.push_back(device_copy(placed.transforms));
+    accel().update_transforms(placed.handle, placed.sources.back().ref<Transform>(), placed.transforms.size());
+}
+
+void Churn::edit() {
+    const auto kind = random_() % 16;
+    if (placed_.empty() || (kind < 3 && placed_.size() < 24)) return push();
+    if (kind < 6) return erase();
+    if (kind < 9) return move_by_host();
+    if (kind < 12) return move_one();
+    if (kind < 14) return move_by_device();
+    Placed& placed = any_placed();
+    placed.mesh = random_mesh();
+    accel().update(placed.handle, placed.mesh);
+}
+
+void Churn::expect_exact_counts() {
+    std::size_t instances = 0;
+    for (const Placed& placed : placed_) {
+        instances += placed.transforms.size();
+        ASSERT_EQ(accel().n_instances(placed.handle), placed.transforms.size());
+    }
+    ASSERT_EQ(accel().n_instances(), instances);
+    ASSERT_EQ(accel().n_geometries(), placed_.size());
+}
+
+void Churn::expect_agreement(std::size_t count) {
+    Scene scene;
+    for (const Placed& placed : placed_) {
+        for (const Transform& transform : placed.transforms)
+            scene.instances.push_back({"", static_cast<uint>(scene.meshes.size()), transform});
+        scene.meshes.push_back(placed.mesh);
+    }
+    Bounds bounds = bounds_of(scene);
+    if (bounds.is_empty()) bounds = {vec3(-1), vec3(1)};
+    const std::vector<Ray> rays = random_rays(bounds, count, random_());
+    const std::vector<Hit> hits = accel().closest_hits(rays);
+    const Oracle oracle = Oracle::of(scene);
+    Classes classes;
+    for (const Verdict& verdict :
+         is_ours() ? classify_all(oracle, rays, hits, {}) : classify_all(oracle, rays, {}, hits))
+        classes.add(is_ours() ? *verdict.software : *verdict.hardware);
+    ASSERT_EQ(classes.faults_of_ours() + classes.faults_of_hardware(), 0u);
+}
+
+TEST_P(Churn, TenThousandEditsInAThousandSyncsAgreeWithTheReferee) {
+    accel().sync();
+    const std::uint64_t before = memory();
+    for (int round = 0; round < 1000; ++round) {
+        for (int i = 0; i < 10; ++i) edit();
+        ASSERT_NO_FATAL_FAILURE(expect_exact_counts()) << "round " << round;
+        ASSERT_NO_FATAL_FAILURE(expect_agreement(32)) << "round " << round;
+        for (Placed& placed : placed_) placed.sources.clear();
+    }
+    while (!placed_.empty()) erase();
+    accel().sync();
+    accel().sync();
+    EXPECT_EQ(memory(), before) << "bytes in live allocations";
+}
+
+TEST_P(Churn, FiveHundredMovesKeepEverythingInPlace) {
+    for (int i = 0; i < 8; ++i) push();
+    accel().sync();
+    move_by_host();
+    accel().sync();
+    const AccelView view = accel().view();
+    const std::uint64_t before = memory();
+    for (int round = 0; round < 500; ++round) {
+        move_by_host();
+        move_one();
+        accel().sync();
+        ASSERT_EQ(accel().view().scene, view.scene);
+        ASSERT_EQ(accel().revision(), view.revision);
+        if (round % 25 != 0) continue;
+        ASSERT_NO_FATAL_FAILURE(expect_agreement(64)) << "round " << round;
+    }
+    EXPECT_LE(memory(), before) << "bytes in live allocations";
+}
+
+TEST_P(Churn, ManyInstancesDrainToNothingAndFillAgain) {
+    accel().sync();
+    const std::uint64_t before = memory();
+    for (int round = 0; round < 2; ++round) {
+        for (int i = 0; i < 50; ++i) {
+            placed_.push_back({{}, random_mesh(), random_transforms(100)});
+            placed_.back().handle = accel().push(placed_.back().mesh, placed_.back().transforms);
+        }
+        ASSERT_NO_FATAL_FAILURE(expect_exact_counts());
+        ASSERT_NO_FATAL_FAILURE(expect_agreement(500));
+        while (!placed_.empty()) erase();
+        EXPECT_EQ(closest(test::down(0, 0)).hit, 0u);
+        EXPECT_TRUE(accel().world_bound().is_empty());
+    }
+    accel().sync();
+    EXPECT_EQ(memory(), before) << "bytes in live allocations";
+}
+
+}  // namespace
+}  // namespace twinray
