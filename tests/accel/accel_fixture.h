@@ -41,6 +41,7 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
         return std::make_unique<HwTlas>(context());
     }
     AbstractAccel& accel() { return *accel_; }
+    void drop_accel() { accel_.reset(); }
     Hit closest(const Ray& ray) { return accel().closest_hits(std::span(&ray, 1)).front(); }
     Hit any(const Ray& ray) { return accel().any_hits(std::span(&ray, 1)).front(); }
 

@@ -139,35 +139,64 @@ TEST_F(SwBuild, ASecondBuildIsBitIdentical) {
     EXPECT_TRUE(same_bytes(trees[0].triangles, trees[1].triangles));
 }
 
-TEST_F(SwBuild, TheSceneTreeIsSoundOverInstances) {
-    SwTlas accel(context());
-    const Mesh mesh = make_soup(10, 1);
-    std::mt19937 random(3);
+// The scene tree over these placements of one mesh, and the boxes of its leaves by the serial twin.
+std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms) {
+    const std::vector<LeafBox> triangles = reference::leaves_triangles(mesh.positions, mesh.triangles);
+    LeafBox all = empty_box();
+    for (const LeafBox& box : triangles) all = {min(all.lo, box.lo), max(all.hi, box.hi)};
+    const SwGeometry block{{all.lo, all.hi, {}, 0, static_cast<uint>(triangles.size())}, {}};
+    std::vector<InstanceRecord> records;
+    for (const Transform& transform : transforms) {
+        records.push_back(make_instance_record(transform, 0, 0xff));
+        records.back().geometry = Ref<SwGeometry>::to(&block).address;
+    }
+    std::vector<SwInstance> instances;
+    return reference::leaves_instances(records, instances);
+}
+
+std::vector<Transform> scattered(std::size_t count, uint seed) {
+    std::mt19937 random(seed);
     std::uniform_real_distribution<float> place(-50, 50);
     std::vector<Transform> transforms;
-    std::vector<InstanceRecord> records;
-    for (int i = 0; i < 777; ++i) {
+    for (std::size_t i = 0; i < count; ++i)
         transforms.push_back(Transform::translation({place(random), place(random), place(random)}) *
                              Transform::scaling({1.5f, -0.25f, 3}));
-        records.push_back(make_instance_record(transforms.back(), 0, 0xff));
-    }
+    return transforms;
+}
+
+TEST_F(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
+    SwTlas accel(context());
+    const Mesh mesh = make_soup(10, 1);
+    const std::vector<Transform> transforms = scattered(777, 3);
     accel.push(mesh, transforms);
     accel.sync();
-
-    const reference::Hierarchy geometry = [&] {
-        const std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);
-        const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
-        return reference::hierarchy(boxes, codes, reference::sort(codes), true);
-    }();
-    const SwGeometry header{{geometry.box.lo, geometry.box.hi, {}, geometry.root, 10}, {}};
-    for (InstanceRecord& record : records) record.geometry = Ref<SwGeometry>::to(&header).address;
-    std::vector<SwInstance> instances;
-    const std::vector<LeafBox> boxes = reference::leaves_instances(records, instances);
-
     const SwTlas::Tree tree = accel.download_scene();
+    const std::vector<LeafBox> boxes = instance_boxes(mesh, transforms);
     for (const std::string& violation : check_tree(tree.bvh, tree.nodes, boxes).violations) ADD_FAILURE() << violation;
     const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
     EXPECT_TRUE(same_bytes(tree.nodes, reference::hierarchy(boxes, codes, reference::sort(codes), false).nodes));
+}
+
+TEST_F(SwBuild, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
+    const Mesh mesh = make_soup(10, 1);
+    for (const std::size_t count : {1u, 2u, 3u, 255u, 256u, 257u, 1000u}) {
+        SwTlas accel(context());
+        const AccelHandle handle = accel.push(mesh, scattered(count, 1));
+        accel.sync();
+        accel.update_transforms(handle, scattered(count, 2));  // the first move rebuilds
+        accel.sync();
+        const SwTlas::Tree before = accel.download_scene();
+        const std::vector<Transform> moved = scattered(count, 3);
+        accel.update_transforms(handle, moved);
+        accel.sync();
+        const SwTlas::Tree after = accel.download_scene();
+        for (const std::string& violation : check_tree(after.bvh, after.nodes, instance_boxes(mesh, moved)).violations)
+            ADD_FAILURE() << count << ": " << violation;
+        for (std::size_t i = 0; i < before.nodes.size(); ++i) {
+            EXPECT_EQ(after.nodes[i].child0, before.nodes[i].child0);
+            EXPECT_EQ(after.nodes[i].child1, before.nodes[i].child1);
+        }
+    }
 }
 
 TEST(TreeCheck, NamesWhatIsWrong) {

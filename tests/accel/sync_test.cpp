@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// sync() never waits, does nothing on a clean accelerator, and records into the caller's command buffer.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "engine/core/vma.h"
+#include "tests/accel/accel_fixture.h"
+#include "tests/support/caller.h"
+
+namespace twinray {
+namespace {
+
+using test::down;
+using test::error_of;
+using test::square;
+using Clock = std::chrono::steady_clock;
+
+double microseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+class Sync : public test::AccelTest {
+  protected:
+    // Keeps the queue busy for a second or two.
+    SyncPoint occupy_queue() {
+        constexpr std::uint64_t bytes = 256 << 20;
+        if (!filled_.bytes()) filled_ = Buffer(context(), {.name = "filled", .bytes = bytes});
+        Commands commands(context(), "occupy");
+        for (std::uint32_t word = 0; word < 30; ++word) {
+            const auto pass = commands.pass("fill");
+            commands.fill(filled_, 0, bytes, word);
+        }
+        return commands.submit();
+    }
+
+    void TearDown() override {
+        filled_ = {};
+        test::AccelTest::TearDown();
+    }
+
+  private:
+    Buffer filled_;
+};
+TWINRAY_OVER_EVERY_ACCEL(Sync);
+
+TEST_P(Sync, NeverWaitsWhileTheQueueIsBusy) {
+    const AccelHandle mover = accel().push(square(0), std::vector<Transform>(100));
+    accel().sync();
+    accel().update_transforms(mover, std::vector<Transform>(100));
+    context().wait(accel().sync());
+    context().wait(occupy_queue());
+    const SyncPoint busy = occupy_queue();
+    std::vector<double> times;
+    std::vector<AccelHandle> pushed;
+    for (int i = 0; i < 100; ++i) {
+        if (i % 10 == 5)
+            pushed.push_back(accel().push(square(1), Transform::translation({0, 0, 0.01f * static_cast<float>(i)})));
+        if (i % 20 == 15) accel().erase(pushed.front());
+        accel().update_transform_at(mover, static_cast<std::size_t>(i),
+                                    Transform::translation({3, 0, static_cast<float>(i)}));
+        const auto start = Clock::now();
+        accel().sync();
+        times.push_back(microseconds_since(start));
+    }
+    EXPECT_FALSE(context().is_reached(busy)) << "the queue was not busy for long enough to show anything";
+    std::sort(times.begin(), times.end());
+    std::printf("100 syncs behind a busy queue: median %.0f, 95 %% below %.0f, longest %.0f microseconds\n", times[50],
+                times[95], times[99]);
+    EXPECT_LT(times[50], 50'000);
+    EXPECT_EQ(accel().world_bound_if_ready(), std::nullopt);
+    EXPECT_EQ(closest(down(3.5f, 0.25f)).hit, 1u);
+    EXPECT_EQ(accel().world_bound().hi.z, 99.0f);
+    EXPECT_TRUE(context().is_reached(busy));
+}
+
+TEST_P(Sync, ACleanOneIsFree) {
+    accel().push(square(0));
+    const SyncPoint done = accel().sync();
+    context().wait_for_gpu();
+    const std::uint64_t bytes = allocated_bytes(context().allocator());
+    const auto start = Clock::now();
+    for (int i = 0; i < 1000; ++i) ASSERT_EQ(accel().sync().value, done.value);
+    const double each = microseconds_since(start) / 1000;
+    std::printf("a clean sync takes %.4f microseconds\n", each);
+    EXPECT_LT(each, 1);
+    EXPECT_EQ(allocated_bytes(context().allocator()), bytes);
+    EXPECT_EQ(context().last_submission().value, done.value);
+}
+
+TEST_P(Sync, BuildsAndTracesInTheCallersCommandBufferOnTheCallersTimeline) {
+    test::Caller caller(context());
+    const AccelHandle handle = accel().push(square(0));
+    const Buffer rays = device_copy(std::vector<Ray>{down(0.5f, 0.25f)});
+    const Buffer hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
+    for (int frame = 0; frame < 5; ++frame) {
+        accel().update_transform(handle, Transform::translation({0, 0, static_cast<float>(frame)}));
+        if (frame == 3) accel().push(square(5));
+        const SyncPoint own = context().last_submission();
+        const CallerCommands buffer = caller.begin();
+        {
+            Commands commands(context(), "frame", buffer);
+            accel().sync(commands);
+            accel().trace(commands, accel().view(), {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
+        }
+        EXPECT_EQ(context().last_submission().value, own.value) << "twinray submitted something itself";
+        EXPECT_EQ(accel().world_bound_if_ready(), std::nullopt);
+        caller.submit(buffer);
+        EXPECT_EQ(accel().world_bound().lo.z, static_cast<float>(frame));
+        EXPECT_EQ(download<Hit>(context(), hits, 1).front().t, frame < 3 ? 10.0f - static_cast<float>(frame) : 5.0f);
+    }
+}
+
+TEST_P(Sync, WhatTheCallersCommandsUseOutlivesThem) {
+    test::Caller caller(context());
+    accel().push(make_icosphere(4));
+    context().wait(accel().sync());
+    const AccelView view = accel().view();
+    const Buffer rays = device_copy(std::vector<Ray>{down(0.1f, 0.2f)});
+    const Buffer hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
+    context().wait_for_gpu();
+    const CallerCommands buffer = caller.begin();
+    {
+        Commands commands(context(), "late frame", buffer);
+        accel().trace(commands, view, {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
+    }
+    const std::uint64_t bytes = allocated_bytes(context().allocator());
+    drop_accel();
+    context().wait(Commands(context(), "collects").submit());
+    Commands(context(), "collects").submit();
+    EXPECT_EQ(allocated_bytes(context().allocator()), bytes) << "freed before the caller's commands are done";
+    caller.submit(buffer);
+    EXPECT_NEAR(download<Hit>(context(), hits, 1).front().t, 9.0f, 0.1f);
+}
+
+TEST_P(Sync, CallersCommandsMustBeComplete) {
+    EXPECT_NE(error_of([&] { Commands(context(), "frame", CallerCommands{}); }).find("command buffer is null"),
+              std::string::npos);
+    test::Caller caller(context());
+    CallerCommands buffer = caller.begin();
+    buffer.done.value = 0;
+    EXPECT_NE(error_of([&] { Commands(context(), "frame", buffer); }).find("with which semaphore and value"),
+              std::string::npos);
+}
+
+TEST_P(Sync, OwnCommandsAreNotForRecordingInto) {
+    Commands commands(context(), "own");
+    EXPECT_NE(error_of([&] { accel().sync(commands); }).find("call sync()"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace twinray
