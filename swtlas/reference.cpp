@@ -61,7 +61,8 @@ std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, s
     instances.clear();
     for (const InstanceRecord& record : records) {
         const Rows to_world = to_world_of(record), to_object = inverse_of(to_world);
-        SwInstance instance{{to_object.r0, to_object.r1, to_object.r2}, {}, {}, NOTHING, record.custom_index_mask};
+        SwInstance instance{
+            {to_object.r0, to_object.r1, to_object.r2}, {}, {}, NOTHING, record.custom_index_mask, flags_of(record), 0};
         LeafBox box = empty_box();
         if (record.geometry && is_usable(to_world, to_object)) {
             const SwGeometry& geometry = *reinterpret_cast<const SwGeometry*>(record.geometry);
@@ -156,6 +157,6 @@ void Scene::build() {
         instances_.size()};
 }
 
-Hit Scene::trace(const Ray& ray, uint query, uint mask) const { return traverse(header_, ray, mask, query); }
+Hit Scene::trace(const Ray& ray, uint query, uint mask) const { return traverse(header_, ray, mask, 0, query); }
 
 }  // namespace twinray::reference

@@ -20,13 +20,7 @@ std::uint64_t next_handle() {
     return ++last;
 }
 
-InstanceOptions options_of(const InstanceRecord& record) {
-    return {.custom_index = custom_index_of(record), .mask = static_cast<std::uint8_t>(mask_of(record))};
-}
-
-InstanceState state_of(const InstanceRecord& record) {
-    return {transform_of(record), custom_index_of(record), static_cast<std::uint8_t>(mask_of(record))};
-}
+InstanceState state_of(const InstanceRecord& record) { return {transform_of(record), options_of(record)}; }
 
 }  // namespace
 
@@ -80,7 +74,7 @@ InstanceRecord AbstractAccel::checked_record(const Placement& placement, std::si
     if (options.custom_index > max_custom_index)
         fault = text("custom index ", options.custom_index, " exceeds 24 bits (at most ", max_custom_index, ")");
     if (!fault.empty()) fail(name_, ": mesh '", placement.geometry.name, "', instance ", index, ": ", fault);
-    InstanceRecord record = make_instance_record(transform, options.custom_index, options.mask);
+    InstanceRecord record = make_instance_record(transform, options);
     record.geometry = placement.block.address();
     return record;
 }
@@ -185,7 +179,7 @@ std::vector<InstanceState> AbstractAccel::get_instances(AccelHandle handle) cons
     if (slice.device_wrote && slice.first)
         records = download<InstanceRecord>(context_, instances_.buffer(), records.size(),
                                            *slice.first * sizeof(InstanceRecord));
-    for (std::size_t i = slice.edited_first; i < slice.edited_last; ++i) records[i] = slice.records[i];
+    for (const std::size_t i : slice.edited) records[i] = slice.records[i];
     std::vector<InstanceState> states;
     for (const InstanceRecord& record : records) states.push_back(state_of(record));
     return states;

@@ -24,16 +24,10 @@ struct AccelHandle {
     bool operator==(const AccelHandle&) const = default;
 };
 
-struct InstanceOptions {
-    uint custom_index = 0;     // returned in Hit::custom_index; at most 2^24 - 1
-    std::uint8_t mask = 0xff;  // an instance is seen by rays whose mask shares a bit
-};
-
 // An instance as the accelerator holds it.
 struct InstanceState {
     Transform transform;
-    uint custom_index = 0;
-    std::uint8_t mask = 0xff;
+    InstanceOptions options;
 };
 
 // The records of one handle's instances on the device, for kernels that move them. They may write object_to_world (12
@@ -54,12 +48,18 @@ struct AccelView {
 
 enum class Query : std::uint8_t { closest, any };
 
+// Which triangles are not hit: those seen from the back, or from the front. The front is the side that
+// (v1 - v0) x (v2 - v0) points to, in object space: there the corners appear counter-clockwise.
+enum class Cull : std::uint8_t { none, back, front };
+constexpr uint flags_of(Cull cull) { return cull == Cull::none ? 0 : cull == Cull::back ? CULL_BACK : CULL_FRONT; }
+
 struct TraceDesc {
     Ref<Ray> rays;  // device address of count rays, 4-byte aligned
     Ref<Hit> hits;  // device address of count hits, written
     std::uint64_t count = 0;
     Query query = Query::closest;
     std::uint8_t mask = 0xff;
+    Cull cull = Cull::none;
 };
 
 // The contract that both accelerators fulfil. Edits only note what changes; sync() is the only place that builds, and
@@ -81,7 +81,7 @@ class AbstractAccel {
     // Another mesh for all instances of the handle.
     void update(AccelHandle handle, const MeshView& mesh);
 
-    // Transforms; custom indices and masks stay. update_transform wants a handle with exactly one instance,
+    // Transforms; custom indices, masks and flags stay. update_transform wants a handle with exactly one instance,
     // update_transforms one transform per instance.
     void update_transform(AccelHandle handle, const Transform& transform);
     void update_transforms(AccelHandle handle, std::span<const Transform> transforms);

@@ -22,11 +22,20 @@ Geometry::Geometry(const MeshView& mesh)
       triangles(mesh.triangles.begin(), mesh.triangles.end()),
       non_finite_triangles(checked_count(mesh)) {}
 
-InstanceRecord make_instance_record(const Transform& transform, uint custom_index, std::uint8_t mask) {
+InstanceRecord make_instance_record(const Transform& transform, const InstanceOptions& options) {
     InstanceRecord record{};
     for (int row = 0; row < 3; ++row) record.object_to_world[row] = transform.rows[static_cast<std::size_t>(row)];
-    record.custom_index_mask = custom_index | (uint{mask} << 24);
+    record.custom_index_mask = options.custom_index | (uint{options.mask} << 24);
+    record.sbt_offset_flags =
+        (options.no_culling ? INSTANCE_NO_CULLING << 24 : 0) | (options.turned ? INSTANCE_TURNED << 24 : 0);
     return record;
+}
+
+InstanceOptions options_of(const InstanceRecord& record) {
+    return {.custom_index = custom_index_of(record),
+            .mask = static_cast<std::uint8_t>(mask_of(record)),
+            .no_culling = (flags_of(record) & INSTANCE_NO_CULLING) != 0,
+            .turned = (flags_of(record) & INSTANCE_TURNED) != 0};
 }
 
 Transform transform_of(const InstanceRecord& record) {

@@ -27,9 +27,19 @@ struct Geometry {
 constexpr std::size_t max_instances = (1u << 24) - 1;  // of an accelerator; what Vulkan guarantees at least
 constexpr uint max_custom_index = (1u << 24) - 1;
 
+struct InstanceOptions {
+    uint custom_index = 0;     // returned in Hit::custom_index; at most 2^24 - 1
+    std::uint8_t mask = 0xff;  // an instance is seen by rays whose mask shares a bit
+    bool no_culling = false;   // both sides are hit by rays that cull, too
+    bool turned = false;       // front and back exchanged
+
+    bool operator==(const InstanceOptions&) const = default;
+};
+
 // The record of one instance, geometry address left 0, for a transform without fault_of() and a custom index up to
 // max_custom_index.
-InstanceRecord make_instance_record(const Transform& transform, uint custom_index, std::uint8_t mask);
+InstanceRecord make_instance_record(const Transform& transform, const InstanceOptions& options = {});
+InstanceOptions options_of(const InstanceRecord& record);
 Transform transform_of(const InstanceRecord& record);
 
 }  // namespace twinray

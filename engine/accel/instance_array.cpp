@@ -28,23 +28,22 @@ std::size_t capacity_for(std::size_t count, std::size_t capacity) {
 
 void InstanceSlice::edit(std::size_t index, const InstanceRecord& record) {
     records[index] = record;
-    if (edited_first == edited_last) edited_first = edited_last = index;
-    edited_first = std::min(edited_first, index);
-    edited_last = std::max(edited_last, index + 1);
+    if (!all_edited) edited.insert(index);
 }
 
 void InstanceSlice::edit_all(std::vector<InstanceRecord>&& all) {
     records = std::move(all);
     device_wrote = false;
     incoming = {};
-    edited_first = 0;
-    edited_last = records.size();
+    edited.clear();
+    all_edited = true;
 }
 
 void InstanceSlice::replace_transforms(Ref<Transform> transforms) {
     incoming = transforms;
     device_wrote = true;
-    edited_first = edited_last = 0;
+    edited.clear();
+    all_edited = false;
 }
 
 InstanceArray::InstanceArray(Context& context)
@@ -118,9 +117,9 @@ void InstanceArray::record_edits(Commands& commands, const Staged& staged,
     std::vector<Commands::Piece> pieces;
     for (std::size_t i = 0; i < slices.size(); ++i) {
         const InstanceSlice& slice = *slices[i];
-        if (slice.edited_first == slice.edited_last) continue;
-        pieces.push_back(
-            {(staged.firsts[i] + slice.edited_first) * stride, bytes_of(slice, slice.edited_first, slice.edited_last)});
+        if (slice.all_edited) pieces.push_back({staged.firsts[i] * stride, bytes_of(slice, 0, slice.records.size())});
+        for (const std::size_t index : slice.edited)
+            pieces.push_back({(staged.firsts[i] + index) * stride, bytes_of(slice, index, index + 1)});
     }
     if (pieces.empty()) return;
     const auto pass = commands.pass("instance edits");
@@ -132,7 +131,8 @@ void InstanceArray::commit(Staged&& staged, std::span<InstanceSlice* const> slic
     for (std::size_t i = 0; i < slices.size(); ++i) {
         slices[i]->first = staged.firsts[i];
         slices[i]->incoming = {};
-        slices[i]->edited_first = slices[i]->edited_last = 0;
+        slices[i]->edited.clear();
+        slices[i]->all_edited = false;
     }
 }
 

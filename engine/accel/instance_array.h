@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "engine/accel/instance_record.h"
@@ -23,9 +24,10 @@ struct InstanceSlice {
     std::optional<std::size_t> first;     // where they start in the device's array; none: not there yet
     bool device_wrote = false;            // transforms on the device may be newer than `records`
     Ref<Transform> incoming;              // device memory that the next sync copies the transforms from; 0 = none
-    // Records [edited_first, edited_last) were changed by the host since the last sync, and after `incoming` was set.
-    std::size_t edited_first = 0;
-    std::size_t edited_last = 0;
+    // Records that the host changed since the last sync and after `incoming` was set. Not a range: what lies between
+    // two of them may be newer on the device.
+    std::set<std::size_t> edited;
+    bool all_edited = false;
 
     void edit(std::size_t index, const InstanceRecord& record);
     void edit_all(std::vector<InstanceRecord>&& all);

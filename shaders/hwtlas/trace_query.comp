@@ -12,7 +12,7 @@ layout(local_size_x = 64) in;
 
 Hit trace(Ray ray)
 {
-    const uint flags = gl_RayFlagsOpaqueEXT | (IS_ANY ? gl_RayFlagsTerminateOnFirstHitEXT : 0u);
+    uint flags = args.flags | gl_RayFlagsOpaqueEXT | (IS_ANY ? gl_RayFlagsTerminateOnFirstHitEXT : 0u);
     rayQueryEXT query;
     rayQueryInitializeEXT(query, accelerationStructureEXT(AT(args.scene, 0).tlas), flags, args.mask, ray.origin,
                           max(ray.t_min, 0.0f), ray.direction, ray.t_max);

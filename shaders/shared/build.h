@@ -142,6 +142,8 @@ struct SwTraceArgs
     REF(Hit) hits;
     uint count;
     uint mask;
+    uint flags;
+    uint reserved;
 };
 
 FUNC bool is_active(LeafBox box) { return box.lo.x <= box.hi.x; }

@@ -62,6 +62,8 @@ struct SwInstance
     REF(BvhTriangle) triangles;
     uint root;
     uint custom_index_mask;
+    uint flags; // of the instance: INSTANCE_*
+    uint reserved;
 };
 BUFFER_OF(SwInstance, 8);
 

@@ -59,6 +59,8 @@ struct HwTraceArgs
     REF(Hit) hits;
     uint count;
     uint mask;  // low 8 bits: sees the instances that share a bit
+    uint flags;
+    uint reserved;
 };
 
 // Ids of the specialisation constants of the trace kernels.

@@ -22,6 +22,12 @@ struct GeometryBox
 };
 BUFFER_OF(GeometryBox, 8);
 
+// Flags of an instance, with the values of VkGeometryInstanceFlagBitsKHR. The front of a triangle is the side
+// that (v1 - v0) x (v2 - v0) points to, in object space; TURNED exchanges front and back.
+const uint INSTANCE_NO_CULLING = 1u;
+const uint INSTANCE_TURNED = 2u;
+
+FUNC uint flags_of(InstanceRecord instance) { return instance.sbt_offset_flags >> 24u; }
 FUNC uint custom_index_of(InstanceRecord instance) { return instance.custom_index_mask & 0xffffffu; }
 FUNC uint mask_of(InstanceRecord instance) { return instance.custom_index_mask >> 24u; }
 

@@ -127,6 +127,7 @@ struct TriangleHit
     float t;
     float u;
     float v;
+    bool along; // the normal (v1 - v0) x (v2 - v0) points along the ray, not against it
 };
 
 // t, u, v where the ray crosses the plane of the sheared corners, from their edge functions.
@@ -148,6 +149,7 @@ FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float area_a, float area_b, fl
     hit.t = t;
     hit.u = weight_b;
     hit.v = weight_c;
+    hit.along = (det > 0.0f) == (shear_z > 0.0f);
     return hit;
 }
 

@@ -30,6 +30,10 @@ BUFFER_OF(Hit, 4);
 const uint QUERY_CLOSEST = 0u; // the hit with smallest t, then lowest (instance, primitive)
 const uint QUERY_ANY = 1u;     // whichever hit is found first
 
+// Flags of a trace, with the values of SPIR-V's ray flags.
+const uint CULL_BACK = 0x10u;  // triangles seen from behind are not hit
+const uint CULL_FRONT = 0x20u;
+
 FUNC Hit miss()
 {
     Hit hit;

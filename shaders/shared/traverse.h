@@ -46,9 +46,17 @@ FUNC BvhTriangle load_triangle(REF(BvhTriangle) triangles, uint index)
     return triangle;
 }
 
-// Traces a ray through the instances whose mask shares a bit with `mask`. The closest hit is the one with smallest t,
+// Which side an instance's triangles hide from a ray: CULL_FRONT, CULL_BACK or 0.
+FUNC uint culled_side(uint ray_flags, uint instance_flags)
+{
+    uint side = ray_flags & (CULL_BACK | CULL_FRONT);
+    if (side == 0u || (instance_flags & INSTANCE_NO_CULLING) != 0u) return 0u;
+    return (instance_flags & INSTANCE_TURNED) != 0u ? side ^ (CULL_BACK | CULL_FRONT) : side;
+}
+
+// Traces a ray through the instances whose mask shares a bit with `mask`; flags: CULL_BACK or CULL_FRONT or 0. The closest hit is the one with smallest t,
 // then lowest (instance, primitive), whatever the order of traversal; with QUERY_ANY it is the first one found.
-FUNC Hit traverse(SwScene scene, Ray ray, uint mask, uint query)
+FUNC Hit traverse(SwScene scene, Ray ray, uint mask, uint flags, uint query)
 {
     Hit best = miss();
     if (!is_traceable(ray)) return best;
@@ -60,6 +68,7 @@ FUNC Hit traverse(SwScene scene, Ray ray, uint mask, uint query)
     bool in_instance = false;
     uint instance_index = 0u;
     uint custom_index = 0u;
+    uint culled = 0u;
 
     uint stack[STACK_SIZE];
     uint height = 1u;
@@ -88,7 +97,8 @@ FUNC Hit traverse(SwScene scene, Ray ray, uint mask, uint query)
         {
             BvhTriangle triangle = load_triangle(triangles, cursor & ~LEAF_BIT);
             TriangleHit hit;
-            if (intersect_triangle(triangle.v0, triangle.v1, triangle.v2, space, hit) && hit.t > t_min)
+            if (intersect_triangle(triangle.v0, triangle.v1, triangle.v2, space, hit) && hit.t > t_min &&
+                (culled == 0u || culled != (hit.along ? CULL_BACK : CULL_FRONT)))
             {
                 bool lower = best.hit != 0u && (instance_index < best.instance_index ||
                              (instance_index == best.instance_index && triangle.primitive_index < best.primitive_index));
@@ -121,6 +131,7 @@ FUNC Hit traverse(SwScene scene, Ray ray, uint mask, uint query)
                 nodes = instance.nodes;
                 triangles = instance.triangles;
                 custom_index = instance.custom_index_mask & 0xffffffu;
+                culled = culled_side(flags, instance.flags);
                 stack[height] = END_OF_INSTANCE;
                 height = height + 1u;
                 in_instance = true;

@@ -18,6 +18,8 @@ LeafBox place_instance(uint index)
     instance.world_to_object[1] = to_object.r1;
     instance.world_to_object[2] = to_object.r2;
     instance.custom_index_mask = record.custom_index_mask;
+    instance.flags = flags_of(record);
+    instance.reserved = 0u;
     instance.root = NOTHING;
     LeafBox box = empty_box();
     if (record.geometry != 0ul && is_usable(to_world, to_object))

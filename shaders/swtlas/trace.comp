@@ -13,5 +13,5 @@ void main()
 {
     uint i = global_index();
     if (i >= args.count) return;
-    AT(args.hits, i) = traverse(AT(args.scene, 0), AT(args.rays, i), args.mask, QUERY);
+    AT(args.hits, i) = traverse(AT(args.scene, 0), AT(args.rays, i), args.mask, args.flags, QUERY);
 }

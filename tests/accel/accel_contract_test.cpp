@@ -303,6 +303,10 @@ TEST_P(Accel, TransformsComeFromDeviceMemory) {
     accel().update_transform_at(handle, 0, Transform::translation({0, 0, 5}));
     EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 5.0f);
     EXPECT_EQ(closest(down(6.5f, 0.25f)).t, 7.0f);
+    accel().update_transforms(handle, source.ref<Transform>(), 3);
+    accel().update_transform_at(handle, 0, Transform{});
+    accel().update_transform_at(handle, 2, moved[2]);
+    EXPECT_EQ(closest(down(4.5f, 0.25f)).t, 8.0f) << "between two host edits";
     // What the device holds survives a change of structure.
     accel().erase(other);
     accel().push(square(-3));
@@ -354,12 +358,48 @@ TEST_P(Accel, InstancesTellTheirState) {
     const Transform place = Transform::translation({1, 2, 3});
     const AccelHandle handle = accel().push(square(0), place, {.custom_index = 9, .mask = 0x0f});
     EXPECT_EQ(accel().get_instance(handle, 0).transform, place);
-    EXPECT_EQ(accel().get_instance(handle, 0).custom_index, 9u);
-    EXPECT_EQ(accel().get_instance(handle, 0).mask, 0x0f);
+    EXPECT_EQ(accel().get_instance(handle, 0).options.custom_index, 9u);
+    EXPECT_EQ(accel().get_instance(handle, 0).options.mask, 0x0f);
     accel().update_transform(handle, {});
     EXPECT_EQ(accel().get_instances(handle).size(), 1u);
-    EXPECT_EQ(accel().get_instance(handle, 0).custom_index, 9u);
+    EXPECT_EQ(accel().get_instance(handle, 0).options.custom_index, 9u);
     EXPECT_NE(error_of([&] { accel().get_instance(handle, 1); }).find("index 1 of the 1"), std::string::npos);
+}
+
+// The square faces up: a ray down sees its front, the ray up its back.
+TEST_P(Accel, CullingHidesOneSideAndInstancesMayTurnOrRefuseIt) {
+    const InstanceOptions options[] = {
+        {}, {.turned = true}, {.no_culling = true}, {.no_culling = true, .turned = true}};
+    std::vector<Transform> places;
+    for (int i = 0; i < 4; ++i) places.push_back(Transform::translation({2.0f * static_cast<float>(i), 0, 0}));
+    accel().push(square(0), places, options);
+    const Transform mirrored = Transform::translation({9, 0, 0}) * Transform::scaling({-1, 1, 1});
+    accel().push(square(0), mirrored);  // facing is decided in object space
+    accel().sync();
+    std::vector<Ray> rays;
+    for (int i = 0; i < 5; ++i) {
+        const float x = i == 4 ? 8.5f : 2.0f * static_cast<float>(i) + 0.5f;
+        rays.push_back(down(x, 0.25f));
+        rays.push_back({vec3(x, 0.25f, -10), 0, vec3(0, 0, 1), INFINITY});
+    }
+    const Buffer input = device_copy(rays), hits(context(), {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
+    const std::pair<Cull, std::vector<uint>> cases[] = {{Cull::none, {1, 1, 1, 1, 1, 1, 1, 1, 1, 1}},
+                                                        {Cull::back, {1, 0, 0, 1, 1, 1, 1, 1, 1, 0}},
+                                                        {Cull::front, {0, 1, 1, 0, 1, 1, 1, 1, 0, 1}}};
+    for (const Query query : {Query::closest, Query::any})
+        for (const auto& [cull, expected] : cases) {
+            Commands commands(context(), "culling");
+            accel().trace(commands, accel().view(),
+                          {.rays = input.ref<Ray>(),
+                           .hits = hits.ref<Hit>(),
+                           .count = rays.size(),
+                           .query = query,
+                           .cull = cull});
+            commands.submit();
+            const std::vector<Hit> found = download<Hit>(context(), hits, rays.size());
+            for (std::size_t i = 0; i < rays.size(); ++i)
+                EXPECT_EQ(found[i].hit, expected[i]) << "ray " << i << ", cull " << static_cast<int>(cull);
+        }
 }
 
 TEST_P(Accel, TheWorldBoundIsThatOfFloat64RoundedOutward) {

@@ -36,6 +36,10 @@ class Churn : public test::AccelTest {
     }
     Placed& any_placed() { return placed_[random_() % placed_.size()]; }
 
+    void TearDown() override {
+        placed_.clear();
+        test::AccelTest::TearDown();
+    }
     void push();
     void erase();
     void move_by_host();

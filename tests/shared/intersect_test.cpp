@@ -135,8 +135,8 @@ TEST(Traverse, TheTwinOfTheWholeAcceleratorTracesOnTheCpu) {
     reference::Scene scene;
     const Mesh sphere = make_icosphere(4, 2);
     const std::size_t geometry = scene.add_geometry(sphere);
-    scene.add_instance(geometry, make_instance_record(Transform::translation({0, 0, -5}), 7, 0xff));
-    scene.add_instance(geometry, make_instance_record(Transform::translation({0, 0, -15}), 8, 0xff));
+    scene.add_instance(geometry, make_instance_record(Transform::translation({0, 0, -5}), {.custom_index = 7}));
+    scene.add_instance(geometry, make_instance_record(Transform::translation({0, 0, -15}), {.custom_index = 8}));
     scene.build();
     std::mt19937 random(5);
     std::uniform_real_distribution<float> unit(-1, 1);

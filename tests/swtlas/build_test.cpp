@@ -147,7 +147,7 @@ std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transfor
     const SwGeometry block{{all.lo, all.hi, {}, 0, static_cast<uint>(triangles.size())}, {}};
     std::vector<InstanceRecord> records;
     for (const Transform& transform : transforms) {
-        records.push_back(make_instance_record(transform, 0, 0xff));
+        records.push_back(make_instance_record(transform));
         records.back().geometry = Ref<SwGeometry>::to(&block).address;
     }
     std::vector<SwInstance> instances;
