@@ -4,10 +4,11 @@
 set(parts twinray_engine twinray_swtlas twinray_hwtlas)
 set_target_properties(${parts} PROPERTIES POSITION_INDEPENDENT_CODE ON INTERPROCEDURAL_OPTIMIZATION OFF)
 foreach(part ${parts})
-    # Without the first, position-independent code does not inline what another library could replace. Without the
-    # second, variables of inline functions stay global whatever objcopy is told.
+    # Without the first, position-independent code does not inline what another library could replace. The sections
+    # let a host that links with --gc-sections leave out what it does not use, as from an archive of many objects.
+    # Without the last, variables of inline functions stay global whatever objcopy is told.
     target_compile_options(${part} PRIVATE
-        $<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition>
+        "$<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition;-ffunction-sections;-fdata-sections>"
         $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-gnu-unique>)
     list(APPEND objects $<TARGET_OBJECTS:${part}>)
 endforeach()
