@@ -1,7 +1,9 @@
-# One place for how twinray's own code is compiled. GPU kernels have serial twins in C++ that must round alike, so
-# contraction is off everywhere.
+# One place for how twinray's own code is compiled, but no host's. GPU kernels have serial twins in C++ that must round
+# alike, so contraction is off everywhere.
 add_library(twinray_options INTERFACE)
 target_compile_features(twinray_options INTERFACE cxx_std_20)
+# No code of ours calls a global vk* function; in the headers this would decide for the host, too.
+target_compile_definitions(twinray_options INTERFACE VK_NO_PROTOTYPES=)
 target_include_directories(twinray_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(twinray_options INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off>)

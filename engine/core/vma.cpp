@@ -3,7 +3,6 @@
 #define VMA_STATIC_VULKAN_FUNCTIONS 0
 #define VMA_DYNAMIC_VULKAN_FUNCTIONS 1
 #define VMA_VULKAN_VERSION 1003000
-#define VK_NO_PROTOTYPES
 #include <vulkan/vulkan_core.h>
 
 #include <vk_mem_alloc.h>

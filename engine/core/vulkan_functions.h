@@ -3,7 +3,6 @@
 // members of one table per device, so that a host may link the Vulkan loader, volk or another copy beside it.
 #pragma once
 
-#define VK_NO_PROTOTYPES
 #include <vulkan/vulkan_core.h>
 
 #define TWINRAY_GLOBAL_FUNCTIONS(F)           \

@@ -1,0 +1,39 @@
+# What `cmake --install` puts in place: the library, its public headers with the GLSL that kernels of a host include,
+# and package files for find_package(twinray) and pkg-config.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(headers_dir ${CMAKE_INSTALL_INCLUDEDIR}/twinray)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/twinray)
+set(generated_dir ${PROJECT_BINARY_DIR}/package)
+
+install(TARGETS twinray EXPORT twinrayTargets INCLUDES DESTINATION ${headers_dir})
+install(EXPORT twinrayTargets NAMESPACE twinray:: DESTINATION ${package_dir})
+if(TARGET twinray_cli)
+    set_target_properties(twinray_cli PROPERTIES INSTALL_RPATH $ORIGIN/../${CMAKE_INSTALL_LIBDIR})
+    install(TARGETS twinray_cli)
+endif()
+
+# Headers whose types come from a private dependency stay behind.
+install(DIRECTORY engine swtlas hwtlas DESTINATION ${headers_dir}
+        FILES_MATCHING PATTERN "*.h" PATTERN "gltf_*.h" EXCLUDE)
+install(DIRECTORY shaders/shared DESTINATION ${headers_dir}/shaders)
+
+# A static library leaves it to the host to link what it uses itself.
+set(find_link_only "")
+set(requires_link_only "")
+if(NOT BUILD_SHARED_LIBS)
+    set(find_link_only "find_dependency(ZLIB)\nfind_dependency(OpenEXR CONFIG)\nfind_dependency(assimp CONFIG)")
+    set(requires_link_only "OpenEXR assimp zlib")
+endif()
+configure_package_config_file(cmake/twinrayConfig.cmake.in ${generated_dir}/twinrayConfig.cmake
+                              INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${generated_dir}/twinrayConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${generated_dir}/twinrayConfig.cmake ${generated_dir}/twinrayConfigVersion.cmake
+        DESTINATION ${package_dir})
+
+# Relative to the file itself, so that an installed tree can be moved.
+file(RELATIVE_PATH prefix_from_pc ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+string(REGEX REPLACE "/$" "" prefix_from_pc ${prefix_from_pc})
+configure_file(cmake/twinray.pc.in ${generated_dir}/twinray.pc @ONLY)
+install(FILES ${generated_dir}/twinray.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Links object files into one in which only strong symbols of namespace twinray, and the tables of its classes, are
+# global; every other becomes local.
+#   cmake/merge_objects.sh LINKER NM OBJCOPY OUTPUT.o INPUT.o...
+set -euo pipefail
+
+linker=$1 nm=$2 objcopy=$3 output=$4
+shift 4
+merged=$output.merged exports=$output.exports
+# Groups go: a linker drops a group that a host's object has too, and our local names would point into nothing.
+"$linker" -r --force-group-allocation -o "$merged" "$@"
+"$nm" --extern-only --defined-only --no-demangle "$merged" |
+    awk '$2 ~ /[TDBR]/ && $3 ~ /^_ZNK?7twinray/ { print $3 }
+         $2 ~ /[DRV]/ && $3 ~ /^_ZT[ISTV]N7twinray/ { print $3 }' >"$exports"
+"$objcopy" --keep-global-symbols="$exports" "$merged" "$output"
+rm "$merged" "$exports"

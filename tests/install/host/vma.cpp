@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+#define VK_NO_PROTOTYPES
+#define VMA_IMPLEMENTATION
+#include <vk_mem_alloc.h>

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Checks an installed folder of headers: that each finds what it includes, that none needs more of other libraries than
+# Vulkan and GLM, and that a kernel of a host finds the shared GLSL.
+#   tools/check_headers.sh CXX GLSLANG_VALIDATOR FOLDER
+set -euo pipefail
+
+if (($# != 3)); then
+    echo "usage: tools/check_headers.sh CXX GLSLANG_VALIDATOR FOLDER" >&2
+    exit 2
+fi
+cxx=$1 glslang=$2 folder=$(realpath "$3")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# The bridge's two halves and what stands between them are parts of other headers.
+mapfile -t headers < <(cd "$folder" && find engine swtlas hwtlas -name '*.h' ! -name 'bridge_*.h' | sort)
+printf '#include "%s"\n' "${headers[@]}" >"$work/all.cpp"
+"$cxx" -std=c++20 -I"$folder" -fsyntax-only -Wall -Wextra -Werror -MD -MF "$work/all.d" "$work/all.cpp"
+
+private='/(vk_mem_alloc|stb_[a-z_]*|tiny_gltf[a-z_0-9]*|zlib)\.h|/(assimp|OpenEXR|Imath|nlohmann)/'
+if leaks=$(grep -oE "[^ ]*($private)[^ ]*" "$work/all.d"); then
+    printf '%s\n' "$leaks"
+    echo "check_headers: the private headers above are reached from public ones" >&2
+    exit 1
+fi
+
+cat >"$work/kernel.comp" <<'GLSL'
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/build.h"
+#include "shaders/shared/traverse.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { SwTraceArgs args; };
+
+void main()
+{
+    AT(args.hits, 0) = traverse(AT(args.scene, 0), AT(args.rays, 0), args.mask, QUERY_CLOSEST);
+}
+GLSL
+"$glslang" --quiet -V --target-env vulkan1.2 -I"$folder" -o "$work/kernel.spv" "$work/kernel.comp"
+echo "check_headers: ${#headers[@]} headers and a kernel need nothing private"
