@@ -196,9 +196,9 @@ std::vector<PassTiming> Commands::timings() const {
     const std::uint32_t count = std::min(static_cast<std::uint32_t>(pass_names_.size()), max_timed_passes_);
     std::vector<std::uint64_t> stamps(2 * count);
     if (count)
-        vk_check(context_.vk().vkGetQueryPoolResults(context_.device(), queries_, 0, 2 * count, stamps.size() * 8,
-                                                     stamps.data(), 8, VK_QUERY_RESULT_64_BIT),
-                 "read timestamps");
+        context_.check(context_.vk().vkGetQueryPoolResults(context_.device(), queries_, 0, 2 * count, stamps.size() * 8,
+                                                           stamps.data(), 8, VK_QUERY_RESULT_64_BIT),
+                       "read timestamps");
     std::vector<PassTiming> timings;
     for (std::uint32_t i = 0; i < count; ++i) {
         const double ticks = static_cast<double>(stamps[2 * i + 1] - stamps[2 * i]);
