@@ -107,7 +107,7 @@ Commands::Pass::~Pass() {
 
 void Commands::begin_pass(const std::string& name) {
     if (in_pass_) fail("commands '", name_, "': pass '", name, "' starts inside pass '", pass_names_.back(), "'");
-    if (pool_ && done_.value) fail("commands '", name_, "': pass '", name, "' recorded after submit");
+    if (is_ended_) fail("commands '", name_, "': pass '", name, "' recorded after submit");
     in_pass_ = true;
     pass_names_.push_back(name);
     if (context_.vk().vkCmdBeginDebugUtilsLabelEXT) {
@@ -183,7 +183,8 @@ void Commands::fill(const Buffer& target, std::uint64_t offset, std::uint64_t by
 
 SyncPoint Commands::submit() {
     if (is_of_caller()) fail("commands '", name_, "': they are the caller's to submit");
-    if (done_.value) fail("commands '", name_, "': submitted twice");
+    if (is_ended_) fail("commands '", name_, "': submitted twice");
+    is_ended_ = true;
     vk_check(context_.vk().vkEndCommandBuffer(handle_), "end a command buffer");
     done_ = context_.submit(handle_);
     kept_.clear();  // retired behind the submission just made
