@@ -345,14 +345,14 @@ VkBool32 VKAPI_PTR Context::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, V
     return VK_FALSE;
 }
 
-std::vector<DeviceFacts> list_devices() {
+std::vector<DeviceFacts> list_devices(PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
     VulkanFunctions vk;
-    vk.load_global(nullptr);
+    vk.load_global(get_instance_proc_addr);
     const VkInstance instance = new_instance(vk, "twinray devices", false);
     vk.load_instance(instance);
-    const std::vector<DeviceFacts> facts = facts_of(vk, physical_devices(vk, instance));
-    vk.vkDestroyInstance(instance, nullptr);
-    return facts;
+    const auto destroy = [&vk](VkInstance made) { vk.vkDestroyInstance(made, nullptr); };
+    const std::unique_ptr<VkInstance_T, decltype(destroy)> owner(instance, destroy);
+    return facts_of(vk, physical_devices(vk, instance));
 }
 
 }  // namespace twinray

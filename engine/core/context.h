@@ -140,7 +140,7 @@ class Context {
     std::vector<std::string> messages_;
 };
 
-// Every Vulkan device with what it offers. Throws Error when there is no Vulkan at all.
-std::vector<DeviceFacts> list_devices();
+// Every Vulkan device with what it offers. Throws Error when there is no Vulkan at all. Null: the system's loader.
+std::vector<DeviceFacts> list_devices(PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr);
 
 }  // namespace twinray
