@@ -107,7 +107,7 @@ Commands::Pass::~Pass() {
 
 void Commands::begin_pass(const std::string& name) {
     if (in_pass_) fail("commands '", name_, "': pass '", name, "' starts inside pass '", pass_names_.back(), "'");
-    if (pool_ && done_.value) fail("commands '", name_, "': pass '", name, "' recorded after submit");
+    if (is_ended_) fail("commands '", name_, "': pass '", name, "' recorded after submit");
     in_pass_ = true;
     pass_names_.push_back(name);
     if (context_.vk().vkCmdBeginDebugUtilsLabelEXT) {
@@ -183,7 +183,8 @@ void Commands::fill(const Buffer& target, std::uint64_t offset, std::uint64_t by
 
 SyncPoint Commands::submit() {
     if (is_of_caller()) fail("commands '", name_, "': they are the caller's to submit");
-    if (done_.value) fail("commands '", name_, "': submitted twice");
+    if (is_ended_) fail("commands '", name_, "': submitted twice");
+    is_ended_ = true;
     vk_check(context_.vk().vkEndCommandBuffer(handle_), "end a command buffer");
     done_ = context_.submit(handle_);
     kept_.clear();  // retired behind the submission just made
@@ -196,9 +197,9 @@ std::vector<PassTiming> Commands::timings() const {
     const std::uint32_t count = std::min(static_cast<std::uint32_t>(pass_names_.size()), max_timed_passes_);
     std::vector<std::uint64_t> stamps(2 * count);
     if (count)
-        vk_check(context_.vk().vkGetQueryPoolResults(context_.device(), queries_, 0, 2 * count, stamps.size() * 8,
-                                                     stamps.data(), 8, VK_QUERY_RESULT_64_BIT),
-                 "read timestamps");
+        context_.check(context_.vk().vkGetQueryPoolResults(context_.device(), queries_, 0, 2 * count, stamps.size() * 8,
+                                                           stamps.data(), 8, VK_QUERY_RESULT_64_BIT),
+                       "read timestamps");
     std::vector<PassTiming> timings;
     for (std::uint32_t i = 0; i < count; ++i) {
         const double ticks = static_cast<double>(stamps[2 * i + 1] - stamps[2 * i]);

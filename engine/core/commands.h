@@ -20,7 +20,7 @@ struct PassTiming {
 struct CallerCommands {
     VkCommandBuffer handle = VK_NULL_HANDLE;
     // A value of a timeline semaphore of the caller that the submission will signal. Until it is reached, twinray keeps
-    // what the commands use.
+    // what the commands use; so it must be reached, from the host or by a later value, even if they are given up.
     SyncPoint done;
     // The caller's earlier work whose writes twinray must see, and the later work that uses what twinray writes.
     VkPipelineStageFlags producer_stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
@@ -80,7 +80,8 @@ class Commands {
     // Takes ownership until the GPU has finished these commands.
     void keep(Buffer&& temporary) { kept_.push_back(std::move(temporary)); }
 
-    // Once, at the end. The object may then be destroyed at any time. Throws Error for commands of the caller.
+    // Once, at the end, even if it fails. The object may then be destroyed at any time. Throws Error for commands of
+    // the caller.
     SyncPoint submit();
     bool is_of_caller() const { return !pool_; }
     // When these commands are done: CallerCommands::done, or what submit() returned.
@@ -112,6 +113,7 @@ class Commands {
     std::vector<std::string> pass_names_;
     std::vector<Buffer> kept_;
     bool in_pass_ = false;
+    bool is_ended_ = false;
     SyncPoint done_;
 };
 

@@ -2,8 +2,11 @@
 #include "engine/core/context.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <memory>
 #include <sstream>
+#include <thread>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -120,12 +123,18 @@ Context::Context(const AdoptedDevice& adopted)
 }
 
 Context::~Context() {
+    finish();
+    destroy_everything();
+}
+
+// What the GPU still uses must not be destroyed, even where waiting for it fails: reading the timeline needs no memory.
+void Context::finish() noexcept {
     try {
         wait(last_submission());
     } catch (const Error& error) {
         warn(error.what());
+        while (!is_lost_ && reached(timeline_) < submitted_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    destroy_everything();
 }
 
 void Context::create_instance(const ContextDesc& desc) {
@@ -247,14 +256,15 @@ SyncPoint Context::submit(VkCommandBuffer commands) {
 }
 
 bool Context::is_reached(SyncPoint point) const {
+    check_alive();
     std::uint64_t value = 0;
     check(vk_.vkGetSemaphoreCounterValue(device_, point.semaphore, &value), "read the timeline");
     return value >= point.value;
 }
 
 void Context::wait(SyncPoint point) const {
-    if (!point.semaphore || !point.value) return;
     check_alive();
+    if (!point.semaphore || !point.value) return;
     VkSemaphoreWaitInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
     info.semaphoreCount = 1;
@@ -335,14 +345,14 @@ VkBool32 VKAPI_PTR Context::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, V
     return VK_FALSE;
 }
 
-std::vector<DeviceFacts> list_devices() {
+std::vector<DeviceFacts> list_devices(PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
     VulkanFunctions vk;
-    vk.load_global(nullptr);
+    vk.load_global(get_instance_proc_addr);
     const VkInstance instance = new_instance(vk, "twinray devices", false);
     vk.load_instance(instance);
-    const std::vector<DeviceFacts> facts = facts_of(vk, physical_devices(vk, instance));
-    vk.vkDestroyInstance(instance, nullptr);
-    return facts;
+    const auto destroy = [&vk](VkInstance made) { vk.vkDestroyInstance(made, nullptr); };
+    const std::unique_ptr<VkInstance_T, decltype(destroy)> owner(instance, destroy);
+    return facts_of(vk, physical_devices(vk, instance));
 }
 
 }  // namespace twinray

@@ -92,6 +92,8 @@ class Context {
 
     // Throws DeviceLost once the device has been lost.
     void check_alive() const;
+    // vk_check for what may report the loss of the device, which is remembered.
+    void check(VkResult result, const char* action) const;
 
     void warn(std::string_view message) const;
     // Messages of the validation layer so far.
@@ -109,7 +111,7 @@ class Context {
     void create_instance(const ContextDesc& desc);
     void create_device(const ContextDesc& desc);
     void create_own_objects();
-    void check(VkResult result, const char* action) const;
+    void finish() noexcept;
     std::uint64_t reached(VkSemaphore semaphore) const noexcept;  // 0 when it cannot be read
     void collect() noexcept;
     void destroy_everything() noexcept;
@@ -138,7 +140,7 @@ class Context {
     std::vector<std::string> messages_;
 };
 
-// Every Vulkan device with what it offers. Throws Error when there is no Vulkan at all.
-std::vector<DeviceFacts> list_devices();
+// Every Vulkan device with what it offers. Throws Error when there is no Vulkan at all. Null: the system's loader.
+std::vector<DeviceFacts> list_devices(PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr);
 
 }  // namespace twinray

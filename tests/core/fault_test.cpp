@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// What fails in Vulkan without an accelerator: see tests/accel/fault_test.cpp.
+#include "engine/core/commands.h"
+#include "engine/core/error.h"
+#include "engine/core/vma.h"
+#include "tests/support/caller.h"
+#include "tests/support/device.h"
+#include "tests/support/fault_injection.h"
+
+namespace twinray {
+namespace {
+
+using test::Counts;
+using test::every_call;
+using test::FaultInjector;
+using test::may_be_harmless;
+using test::Outcome;
+using test::outcome_of;
+
+class FaultsOfCore : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        ContextDesc desc;
+        desc.get_instance_proc_addr = faults_.entry();
+        context_ = test::make_context(desc);
+    }
+    void TearDown() override {
+        if (!context_) return;
+        for (const std::string& message : context_->validation_messages()) ADD_FAILURE() << message;
+        context_.reset();
+        EXPECT_TRUE(faults_.live().empty());
+        EXPECT_EQ(faults_.wrong_destructions(), 0u);
+    }
+    FaultInjector& faults() { return faults_; }
+    Context& context() { return *context_; }
+    // Whether wait_for_gpu() has anything to wait for.
+    bool must_wait() {
+        faults_.inject({.function = "vkWaitSemaphores", .count = every_call});
+        const Outcome outcome = outcome_of([&] { context_->wait_for_gpu(); });
+        faults_.heal();
+        return outcome != Outcome::done;
+    }
+
+  private:
+    FaultInjector faults_;
+    std::unique_ptr<Context> context_;
+};
+
+TEST_F(FaultsOfCore, MemoryThatCannotBeMappedIsRefused) {
+    faults().inject({.function = "vkMapMemory", .count = every_call});
+    std::string what;
+    EXPECT_EQ(outcome_of([&] { Buffer(context(), {.name = "staged", .bytes = 64, .memory = Memory::upload}); }, &what),
+              Outcome::error);
+    EXPECT_NE(what.find("buffer 'staged' of 64 bytes"), std::string::npos) << what;
+    faults().heal();
+    EXPECT_NE(Buffer(context(), {.name = "staged", .bytes = 64, .memory = Memory::upload}).mapped(), nullptr);
+}
+
+TEST_F(FaultsOfCore, CommandsWhoseSubmissionFailedAreSpent) {
+    for (const char* function : {"vkEndCommandBuffer", "vkQueueSubmit"}) {
+        Commands commands(context(), "spent");
+        faults().inject({.function = function});
+        EXPECT_EQ(outcome_of([&] { commands.submit(); }), Outcome::error);
+        faults().heal();
+        EXPECT_EQ(outcome_of([&] { commands.submit(); }), Outcome::error);
+        EXPECT_EQ(outcome_of([&] { static_cast<void>(commands.pass("late")); }), Outcome::error);
+    }
+    Commands(context(), "after").submit();
+}
+
+TEST_F(FaultsOfCore, RecordingForTheHost) {
+    const Buffer target(context(), {.name = "target", .bytes = 16});
+    const std::vector<uint> values(4);
+    test::Caller host(context());
+    for (std::uint64_t n = 1; !HasFailure(); ++n) {
+        context().wait_for_gpu();
+        const Counts before = faults().live_objects();
+        const std::uint64_t bytes = allocated_bytes(context().allocator());
+        const CallerCommands recorded = host.begin();
+        faults().inject({.first = n});
+        const Outcome outcome = outcome_of([&] {
+            Commands commands(context(), "for the host", recorded);
+            const auto pass = commands.pass("upload");
+            commands.upload(target, std::span<const uint>(values));
+        });
+        faults().heal();
+        SCOPED_TRACE(text("call ", n, ", ", faults().failed()));
+        EXPECT_TRUE(outcome == (faults().injected() ? Outcome::error : Outcome::done) ||
+                    may_be_harmless(faults().failed()));
+        const bool is_over = !faults().injected();
+        EXPECT_FALSE(n == 1 && must_wait()) << "for commands that were never begun";
+        host.submit(recorded);
+        context().wait_for_gpu();
+        EXPECT_EQ(allocated_bytes(context().allocator()), bytes);
+        EXPECT_EQ(faults().live_objects(), before);
+        if (is_over) break;
+    }
+}
+
+// Another instance beside the context's.
+TEST_F(FaultsOfCore, ListingTheDevices) {
+    const Counts before = faults().live();
+    for (std::uint64_t n = 1; !HasFailure(); ++n) {
+        faults().inject({.first = n});
+        const Outcome outcome = outcome_of([&] { list_devices(faults().entry()); });
+        faults().heal();
+        SCOPED_TRACE(text("call ", n, ", ", faults().failed()));
+        EXPECT_EQ(faults().live(), before);
+        EXPECT_EQ(outcome, faults().injected() ? Outcome::error : Outcome::done);
+        if (!faults().injected()) return;
+    }
+}
+
+}  // namespace
+}  // namespace twinray

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// Vulkan that fails on demand, above the layers and the driver and without a hook in the library: contexts take a
+// vkGetInstanceProcAddr, and this one hands out wrappers that count calls, fail the chosen ones and know what is alive.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "engine/core/vulkan_functions.h"
+
+namespace twinray::test {
+
+// Which calls fail, counted from when it was told. The default is none.
+struct Fault {
+    std::string_view function = {};      // "" = every one that can return `result`
+    std::uint64_t first = 1;             // the first call to fail; 1 = the next
+    std::uint64_t count = 1;             // how many fail from there on
+    VkResult result = VK_ERROR_UNKNOWN;  // unknown: the natural error of each function
+};
+
+constexpr std::uint64_t every_call = UINT64_MAX;
+
+using Counts = std::map<std::string, std::size_t>;
+
+// One at a time, around the contexts that use it. What fails is not passed on, except that a device that is reported
+// lost is first waited for: the work of a lost device counts as finished.
+class FaultInjector {
+  public:
+    FaultInjector();
+    ~FaultInjector();
+    FaultInjector(const FaultInjector&) = delete;
+    FaultInjector& operator=(const FaultInjector&) = delete;
+
+    PFN_vkGetInstanceProcAddr entry() const;
+
+    void inject(const Fault& fault);
+    void heal() { armed_ = false; }
+    std::uint64_t calls() const { return calls_; }         // that `fault` could have failed, since inject()
+    std::uint64_t injected() const { return injected_; }   // that failed, since inject()
+    const std::string& failed() const { return failed_; }  // the function that failed last, since inject()
+
+    // How many objects are alive, by type ("VkBuffer"); types of which none is are left out. Command buffers go with
+    // their pool and are not counted.
+    Counts live() const;
+    // Without the memory: VMA keeps a block for the next allocation. allocated_bytes() tells what of it is used.
+    Counts live_objects() const;
+    // How many objects were destroyed that were not alive, or outlived their device.
+    std::size_t wrong_destructions() const { return wrong_destructions_; }
+    VkInstance instance() const { return instance_; }  // the last one made
+
+    // For the wrappers.
+    struct Function {
+        const char* name;
+        VkResult error;
+        bool may_lose_device;
+    };
+    VkResult enter(const Function& function);
+    void created(const char* type, void* handle);
+    void destroyed(const char* type, void* handle);
+
+  private:
+    bool is_picked(const Function& function) const;
+    void wait_for_devices() const;
+
+    bool armed_ = false;
+    Fault fault_;
+    std::string function_;
+    std::uint64_t calls_ = 0, injected_ = 0;
+    std::string failed_;
+    std::set<std::pair<std::string, void*>> live_;
+    std::size_t wrong_destructions_ = 0;
+    VkInstance instance_ = VK_NULL_HANDLE;
+};
+
+// Where VMA has another way to the same memory, or where nothing but the freeing of memory waits for the answer.
+bool may_be_harmless(const std::string& function);
+
+enum class Outcome { done, error, lost };
+
+// What an action came to, and the text of its Error.
+Outcome outcome_of(const std::function<void()>& action, std::string* what = nullptr);
+
+}  // namespace twinray::test
