@@ -36,7 +36,7 @@ layout(push_constant, scalar) uniform Push { SwTraceArgs args; };
 
 void main()
 {
-    AT(args.hits, 0) = traverse(AT(args.scene, 0), AT(args.rays, 0), args.mask, QUERY_CLOSEST);
+    AT(args.hits, 0) = traverse(AT(args.scene, 0), AT(args.rays, 0), args.mask, args.flags, QUERY_CLOSEST);
 }
 GLSL
 "$glslang" --quiet -V --target-env vulkan1.2 -I"$folder" -o "$work/kernel.spv" "$work/kernel.comp"
