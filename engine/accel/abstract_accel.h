@@ -105,9 +105,9 @@ class AbstractAccel {
     // accelerator does nothing. Where only transforms changed, the top level is refitted in place and views stay valid.
     // It never waits for the GPU: what in-flight work may still read is freed when the timeline has passed it.
     SyncPoint sync();
-    // The same into the caller's command buffer, which must then be submitted: from here on the accelerator counts on it.
-    // Whatever uses the result must run after it; closest_hits() wants it submitted before. If this throws, the command
-    // buffer must not be submitted (and CallerCommands::done be reached without it).
+    // The same into the caller's command buffer, which must then be submitted: from here on the accelerator counts on
+    // it. Whatever uses the result must run after it; closest_hits() wants it submitted before. If this throws, the
+    // command buffer must not be submitted (and CallerCommands::done be reached without it).
     void sync(Commands& commands);
     // Throws Error if edits are pending.
     AccelView view() const;
