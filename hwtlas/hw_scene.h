@@ -11,5 +11,5 @@ using std::uint64_t;
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(HwGeometry) == 40 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 16 &&
-              sizeof(HwTraceArgs) == 40);
+              sizeof(HwTraceArgs) == 48);
 }  // namespace twinray

@@ -99,8 +99,9 @@ void HwTlas::refit_scene(Commands& commands, const SceneInput& input, const Buil
 }
 
 void HwTlas::record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const {
-    const HwTraceArgs args{{scene},   desc.rays,           desc.hits, static_cast<uint>(desc.count),
-                           desc.mask, flags_of(desc.cull), 0};
+    const HwTraceArgs args{
+        {scene},   desc.rays,           desc.hits, desc.indirect_count, static_cast<uint>(desc.count),
+        desc.mask, flags_of(desc.cull), 0};
     if (const auto& kernel = kernels_[index_of(desc.query)])
         kernel->dispatch(commands, args, desc.count);
     else

@@ -155,13 +155,12 @@ void RayTracingPipeline::trace(Commands& commands, const HwTraceArgs& args) cons
     const std::uint32_t per_launch = limits_.maxRayDispatchInvocationCount / launch_width * launch_width;
     for (std::uint64_t first = 0; first < args.count; first += per_launch) {
         HwTraceArgs part = args;
-        part.rays.address += first * sizeof(Ray);
-        part.hits.address += first * sizeof(Hit);
-        part.count = static_cast<uint>(std::min<std::uint64_t>(args.count - first, per_launch));
-        const std::uint32_t width = std::min(part.count, launch_width);
+        part.first = static_cast<uint>(first);
+        part.count = static_cast<uint>(std::min<std::uint64_t>(args.count, first + per_launch));
+        const std::uint32_t count = part.count - part.first, width = std::min(count, launch_width);
         vk.vkCmdPushConstants(commands.handle(), layout_, stages, 0, sizeof(part), &part);
-        vk.vkCmdTraceRaysKHR(commands.handle(), &generation, &miss, &hit, &callable, width,
-                             (part.count + width - 1) / width, 1);
+        vk.vkCmdTraceRaysKHR(commands.handle(), &generation, &miss, &hit, &callable, width, (count + width - 1) / width,
+                             1);
     }
 }
 

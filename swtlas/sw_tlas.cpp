@@ -117,8 +117,9 @@ void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const Buil
 }
 
 void SwTlas::record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const {
-    const SwTraceArgs args{{scene},   desc.rays,           desc.hits, static_cast<uint>(desc.count),
-                           desc.mask, flags_of(desc.cull), 0};
+    const SwTraceArgs args{
+        {scene},   desc.rays,           desc.hits, desc.indirect_count, static_cast<uint>(desc.count),
+        desc.mask, flags_of(desc.cull), 0};
     (desc.query == Query::any ? trace_any_ : trace_closest_).dispatch(commands, args, desc.count);
 }
 

@@ -57,6 +57,7 @@ struct TraceDesc {
     Ref<Ray> rays;  // device address of count rays, 4-byte aligned
     Ref<Hit> hits;  // device address of count hits, written
     std::uint64_t count = 0;
+    Uints indirect_count = {};  // device address of a uint, or 0: traces min(count, that many) rays, hits beyond stay
     Query query = Query::closest;
     std::uint8_t mask = 0xff;
     Cull cull = Cull::none;

@@ -14,9 +14,9 @@ void AbstractAccel::trace(Commands& commands, const AccelView& view, const Trace
     if (view.accel != id_) fail(name_, ": trace: the view belongs to another accelerator");
     if (view.revision != revision_)
         fail(name_, ": trace: stale view of revision ", view.revision, "; the accelerator is at ", revision_);
-    if (desc.rays.address % 4 || desc.hits.address % 4)
-        fail(name_, ": trace: rays at ", desc.rays.address, " and hits at ", desc.hits.address,
-             " must be aligned to 4 bytes");
+    if (desc.rays.address % 4 || desc.hits.address % 4 || desc.indirect_count.address % 4)
+        fail(name_, ": trace: rays at ", desc.rays.address, ", hits at ", desc.hits.address, " and indirect count at ",
+             desc.indirect_count.address, " must be aligned to 4 bytes");
     if (desc.count == 0) return;
     if (desc.count > UINT32_MAX) fail(name_, ": trace: ", desc.count, " rays; at most ", UINT32_MAX, " in one call");
     if (!desc.rays.address || !desc.hits.address) fail(name_, ": trace: the address of rays or hits is 0");

@@ -28,7 +28,7 @@ Hit trace(Ray ray)
 void main()
 {
     uint i = global_index();
-    if (i >= args.count) return;
+    if (i >= ray_count(args.count, args.indirect_count)) return;
     Ray ray = AT(args.rays, i);
     Hit hit = miss();
     if (is_traceable(ray)) hit = trace(ray);

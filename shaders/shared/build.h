@@ -140,6 +140,7 @@ struct SwTraceArgs
     REF(SwScene) scene;
     REF(Ray) rays;
     REF(Hit) hits;
+    Uints indirect_count; // null, or where a smaller count may stand
     uint count;
     uint mask;
     uint flags;

@@ -57,10 +57,11 @@ struct HwTraceArgs
     REF(HwScene) scene;
     REF(Ray) rays;
     REF(Hit) hits;
-    uint count;
+    Uints indirect_count; // null, or where a smaller count may stand
+    uint count; // where it ends
     uint mask;  // low 8 bits: sees the instances that share a bit
     uint flags;
-    uint reserved;
+    uint first; // ray that the launch begins with
 };
 
 // Ids of the specialisation constants of the trace kernels.

@@ -34,6 +34,14 @@ const uint QUERY_ANY = 1u;     // whichever hit is found first
 const uint CULL_BACK = 0x10u;  // triangles seen from behind are not hit
 const uint CULL_FRONT = 0x20u;
 
+// How many rays to trace: `count`, or what a kernel has written if that is less.
+FUNC uint ray_count(uint count, Uints indirect_count)
+{
+    if (uint64_t(indirect_count) == 0ul) return count;
+    uint written = AT(indirect_count, 0);
+    return written < count ? written : count;
+}
+
 FUNC Hit miss()
 {
     Hit hit;

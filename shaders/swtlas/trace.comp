@@ -12,6 +12,6 @@ layout(push_constant, scalar) uniform Push { SwTraceArgs args; };
 void main()
 {
     uint i = global_index();
-    if (i >= args.count) return;
+    if (i >= ray_count(args.count, args.indirect_count)) return;
     AT(args.hits, i) = traverse(AT(args.scene, 0), AT(args.rays, i), args.mask, args.flags, QUERY);
 }

@@ -402,6 +402,53 @@ TEST_P(Accel, CullingHidesOneSideAndInstancesMayTurnOrRefuseIt) {
         }
 }
 
+TEST_P(Accel, TheCountOfRaysMayComeFromTheDevice) {
+    accel().push(square(0));
+    accel().sync();
+    const std::vector<Ray> rays(300, down(0.5f, 0.25f));
+    const Hit untouched{7, 7, 7, 7, 7, 7, 7, 7};
+    for (const auto& [written, traced] :
+         {std::pair<uint, std::size_t>{0, 0}, {1, 1}, {257, 257}, {300, 300}, {9000, 300}}) {
+        const Buffer input = device_copy(rays), hits = device_copy(std::vector<Hit>(300, untouched));
+        const Buffer count = device_copy(std::vector<uint>{written});
+        Commands commands(context(), "indirect count");
+        accel().trace(commands, accel().view(),
+                      {.rays = input.ref<Ray>(),
+                       .hits = hits.ref<Hit>(),
+                       .count = rays.size(),
+                       .indirect_count = count.ref<uint>()});
+        commands.submit();
+        const std::vector<Hit> found = download<Hit>(context(), hits, rays.size());
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            ASSERT_EQ(found[i].hit, i < traced ? 1u : 7u) << "ray " << i << " of " << written;
+    }
+}
+
+TEST_P(Accel, SixteenMillionRaysGoInOneCall) {
+    accel().push(square(0));
+    accel().sync();
+    constexpr std::uint64_t count = 16'000'000;
+    const Buffer rays(context(), {.name = "rays", .bytes = count * sizeof(Ray)}),
+        hits(context(), {.name = "hits", .bytes = count * sizeof(Hit)});
+    const Ray ray = down(0.5f, 0.25f);
+    Commands commands(context(), "many rays");
+    {
+        const auto pass = commands.pass("all rays are void");
+        commands.fill(rays, 0, rays.bytes(), 0);
+    }
+    const std::uint64_t some[] = {0, 1, 8'388'608, 15'999'999};
+    {
+        const auto pass = commands.pass("but these");
+        for (const std::uint64_t i : some) commands.write(rays, ray, i * sizeof(Ray));
+    }
+    accel().trace(commands, accel().view(), {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = count});
+    commands.submit();
+    for (const std::uint64_t i : some)
+        EXPECT_EQ(download<Hit>(context(), hits, 1, i * sizeof(Hit)).front().t, 10.0f) << i;
+    EXPECT_EQ(download<Hit>(context(), hits, 1, 2 * sizeof(Hit)).front().t, -1.0f);
+    EXPECT_EQ(download<Hit>(context(), hits, 1, (count - 2) * sizeof(Hit)).front().t, -1.0f);
+}
+
 TEST_P(Accel, TheWorldBoundIsThatOfFloat64RoundedOutward) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> unit(-1, 1);
