@@ -38,9 +38,9 @@ FUNC float sum_error(float a, float b, float s)
     return error;
 }
 
-// a.x b.x + a.y b.y + a.z b.z + c as if in twice the precision, rounded once (Ogita, Rump, Oishi, "Accurate sum and
-// dot product", 2005).
-FUNC float accurate_dot(vec3 a, vec3 b, float c)
+// a.x b.x + a.y b.y + a.z b.z + c in doubled precision: the sum rounded in float32, which is returned, and what is missing
+// from it (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005).
+FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing)
 {
     PRECISE float p0 = a.x * b.x;
     PRECISE float p1 = a.y * b.y;
@@ -53,7 +53,16 @@ FUNC float accurate_dot(vec3 a, vec3 b, float c)
     low = low + product_error(a.y, b.y, p1);
     low = low + sum_error(s1, p2, s2);
     low = low + product_error(a.z, b.z, p2);
-    PRECISE float result = s2 + low;
+    missing = low;
+    return s2;
+}
+
+// The same, rounded once.
+FUNC float accurate_dot(vec3 a, vec3 b, float c)
+{
+    float missing = 0.0f;
+    PRECISE float sum = doubled_dot(a, b, c, missing);
+    PRECISE float result = sum + missing;
     return result;
 }
 #endif

@@ -46,26 +46,15 @@ FUNC float next_below(float x)
     return uintBitsToFloat(x > 0.0f ? bits - 1u : bits + 1u);
 }
 
-// A float not above a.x b.x + a.y b.y + a.z b.z + c, and the largest such one for all but the rarest operands: the sum
-// in doubled precision (see accurate_dot), rounded down.
+// A float not above a.x b.x + a.y b.y + a.z b.z + c, and the largest such one for all but the rarest operands.
 FUNC float dot_below(vec3 a, vec3 b, float c)
 {
-    PRECISE float p0 = a.x * b.x;
-    PRECISE float p1 = a.y * b.y;
-    PRECISE float p2 = a.z * b.z;
-    PRECISE float s0 = c + p0;
-    PRECISE float s1 = s0 + p1;
-    PRECISE float s2 = s1 + p2;
-    PRECISE float low = sum_error(c, p0, s0) + product_error(a.x, b.x, p0);
-    low = low + sum_error(s0, p1, s1);
-    low = low + product_error(a.y, b.y, p1);
-    low = low + sum_error(s1, p2, s2);
-    low = low + product_error(a.z, b.z, p2);
-    PRECISE float result = s2 + low;
-    float error = sum_error(s2, low, result);
+    float missing = 0.0f;
+    PRECISE float sum = doubled_dot(a, b, c, missing);
     // Veltkamp's splitting overflows near the end of the range; then plain rounding and a wide step must do.
-    if (!(abs(low) < uintBitsToFloat(0x7f800000u))) return s2 - abs(s2) * 2.384185791015625e-07f;
-    return error < 0.0f ? next_below(result) : result;
+    if (!(abs(missing) < uintBitsToFloat(0x7f800000u))) return sum - abs(sum) * 2.384185791015625e-07f;
+    PRECISE float result = sum + missing;
+    return sum_error(sum, missing, result) < 0.0f ? next_below(result) : result;
 }
 
 // The least coordinate that `row` gives to the points of the box (lo, hi), rounded down.
