@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One body for every accelerator: the software one, and the hardware one through each way of tracing.
+// One body for every accelerator: the software one, and the hardware one through each way of tracing. Long because it is
+// the contract, row by row: one fact a test, in one place.
 #include <cmath>
 #include <random>
 
