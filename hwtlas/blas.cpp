@@ -15,14 +15,19 @@ Buffer upload(Commands& commands, const std::string& name, const std::vector<T>&
     return buffer;
 }
 
-StructureBuild build_of(const std::string& name, const Buffer& positions, const Buffer& triangles) {
+StructureBuild build_of(const std::string& name, VkGeometryTypeKHR type, std::size_t primitive_count) {
     StructureBuild build{};
     build.name = "blas " + name;
     build.type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR;
-    build.primitive_count = static_cast<std::uint32_t>(triangles.bytes() / sizeof(uvec3));
+    build.primitive_count = static_cast<std::uint32_t>(primitive_count);
     build.geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
-    build.geometry.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
+    build.geometry.geometryType = type;
     build.geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
+    return build;
+}
+
+StructureBuild build_of_triangles(const std::string& name, const Buffer& positions, const Buffer& triangles) {
+    StructureBuild build = build_of(name, VK_GEOMETRY_TYPE_TRIANGLES_KHR, triangles.bytes() / sizeof(uvec3));
     VkAccelerationStructureGeometryTrianglesDataKHR& data = build.geometry.geometry.triangles;
     data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
     data.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
@@ -31,6 +36,27 @@ StructureBuild build_of(const std::string& name, const Buffer& positions, const 
     data.maxVertex = static_cast<std::uint32_t>(positions.bytes() / sizeof(vec3)) - 1;
     data.indexType = VK_INDEX_TYPE_UINT32;
     data.indexData.deviceAddress = triangles.address();
+    return build;
+}
+
+StructureBuild build_of_boxes(const std::string& name, const Buffer& boxes) {
+    static_assert(sizeof(Bounds) == sizeof(VkAabbPositionsKHR));
+    StructureBuild build = build_of(name, VK_GEOMETRY_TYPE_AABBS_KHR, boxes.bytes() / sizeof(Bounds));
+    VkAccelerationStructureGeometryAabbsDataKHR& data = build.geometry.geometry.aabbs;
+    data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_AABBS_DATA_KHR;
+    data.data.deviceAddress = boxes.address();
+    data.stride = sizeof(Bounds);
+    return build;
+}
+
+// Uploads the input and says how to build from it.
+StructureBuild record_input(Commands& commands, const std::string& name, const BlasInput& input) {
+    Buffer positions = upload(commands, "blas positions " + name, input.positions);
+    Buffer triangles = upload(commands, "blas triangles " + name, input.triangles);
+    Buffer boxes = upload(commands, "blas boxes " + name, input.boxes);
+    const StructureBuild build =
+        input.boxes.empty() ? build_of_triangles(name, positions, triangles) : build_of_boxes(name, boxes);
+    for (Buffer* buffer : {&positions, &triangles, &boxes}) commands.keep(std::move(*buffer));
     return build;
 }
 
@@ -46,15 +72,12 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
         for (std::size_t i = 0; i < geometries.size(); ++i) {
             const Geometry& geometry = *geometries[i];
             const BlasInput input = blas_input(geometry, reorder);
+            blases[i].kind = geometry.kind;
             if (input.is_empty()) continue;
             blases[i].bounds = input.bounds;
-            Buffer positions = upload(commands, "blas positions " + geometry.name, input.positions);
-            Buffer triangles = upload(commands, "blas triangles " + geometry.name, input.triangles);
-            blases[i].original_triangles = upload(commands, "blas order " + geometry.name, input.original);
-            builds.push_back(build_of(geometry.name, positions, triangles));
+            blases[i].original = upload(commands, "blas order " + geometry.name, input.original);
+            builds.push_back(record_input(commands, geometry.name, input));
             built.push_back(i);
-            commands.keep(std::move(positions));
-            commands.keep(std::move(triangles));
         }
     }
     std::vector<AccelerationStructure> structures = build_structures(commands, "hwtlas_build_blases", builds);

@@ -7,15 +7,16 @@
 
 namespace twinray {
 
-// The built form of one mesh. Without a structure when the mesh has nothing that could be hit: Vulkan takes an instance
+// The built form of one geometry. Without a structure when it has nothing that could be hit: Vulkan takes an instance
 // of address 0 as inactive.
 struct Blas {
-    Bounds bounds;  // of the active triangles
+    uint kind = GEOMETRY_TRIANGLES;
+    Bounds bounds;  // of the active primitives
     AccelerationStructure structure;
-    Buffer original_triangles;  // uint each; empty when the order was kept
+    Buffer original;  // see BlasInput, uint each; empty when the order was kept
 
-    HwGeometry block() const { return {bounds.lo, bounds.hi, structure.address(), original_triangles.ref<uint>()}; }
-    std::uint64_t bytes() const { return structure.bytes() + original_triangles.bytes(); }
+    HwGeometry block() const { return {bounds.lo, bounds.hi, structure.address(), original.ref<uint>(), kind, 0}; }
+    std::uint64_t bytes() const { return structure.bytes() + original.bytes(); }
 };
 
 // Records upload and build of all of them, in order. reorder: presort for drivers that build in input order.

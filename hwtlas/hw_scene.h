@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// HwScene and HwTraceArgs for C++.
+// HwScene for C++.
 #pragma once
 
 #include "engine/accel/world_bound.h"
@@ -10,6 +10,5 @@ using std::uint64_t;
 #include "shaders/shared/hw_scene.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(HwGeometry) == 40 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 16 &&
-              sizeof(HwTraceArgs) == 48);
+static_assert(sizeof(HwGeometry) == 48 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 16);
 }  // namespace twinray

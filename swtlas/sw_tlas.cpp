@@ -10,10 +10,6 @@
 namespace twinray {
 namespace {
 
-KernelDesc trace_kernel(const char* name, uint query) {
-    return {.name = name, .spirv = swtlas_trace_spirv, .group_size = 64, .constants = {{0, query}}};
-}
-
 Bvh empty_bvh(std::uint64_t nodes) { return {vec3(INFINITY), vec3(-INFINITY), {nodes}, NOTHING, 0}; }
 
 }  // namespace
@@ -35,11 +31,16 @@ struct SwTlas::SwBuiltScene : BuiltScene {
     Ref<SwInstance> instances() const { return {address + layout_scene(capacity).instances}; }
 };
 
-SwTlas::SwTlas(Context& context)
-    : AbstractAccel(context, "SwTlas"),
-      builder_(context),
-      trace_closest_(context, trace_kernel("swtlas_trace closest", QUERY_CLOSEST)),
-      trace_any_(context, trace_kernel("swtlas_trace any", QUERY_ANY)) {}
+SwTlas::SwTlas(Context& context) : AbstractAccel(context, "SwTlas"), builder_(context) {}
+
+Capability SwTlas::capability_on(const DeviceFacts&, Feature feature) {
+    switch (feature) {
+        case Feature::level_refined:
+        case Feature::level_certified: return {feature, Support::unsupported, "the software traversal is watertight"};
+        case Feature::compaction: return {feature, Support::native, "its arrays have their exact size when built"};
+        default: return {feature, Support::native, ""};
+    }
+}
 
 std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::build_geometries(
     Commands& commands, std::span<const GeometryInput> inputs) {
@@ -52,8 +53,9 @@ std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::build_geometr
         bytes += data.size();
     };
     for (const GeometryInput& input : inputs) {
-        counts.push_back(static_cast<uint>(input.geometry->triangles.size()));
+        counts.push_back(static_cast<uint>(input.geometry->primitive_count()));
         place(std::as_bytes(std::span(input.geometry->positions)));
+        place(std::as_bytes(std::span(input.geometry->boxes)));
         place(std::as_bytes(std::span(input.geometry->triangles)));
     }
     const BuildPlan plan = plan_build(counts);
@@ -70,12 +72,14 @@ std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::build_geometr
                 context(), {.name = "SwTlas geometry '" + inputs[i].geometry->name + "'", .bytes = layout.bytes});
             made->bytes = layout.bytes;
             const std::uint64_t base = made->buffer.address();
-            const SwGeometry block{empty_bvh(base + layout.nodes), {base + layout.triangles}};
+            const Geometry& geometry = *inputs[i].geometry;
+            const bool has_boxes = geometry.kind == GEOMETRY_BOXES;
+            const SwGeometry block{empty_bvh(base + layout.nodes), {base + layout.triangles}, geometry.kind, 0};
             commands.write(*inputs[i].block, block);
             trees.push_back({plan.first[i],
                              counts[i],
-                             {source.address() + pieces[2 * i].offset},
-                             {source.address() + pieces[2 * i + 1].offset},
+                             {source.address() + pieces[3 * i + (has_boxes ? 1 : 0)].offset},
+                             {has_boxes ? 0 : source.address() + pieces[3 * i + 2].offset},
                              block.triangles,
                              {inputs[i].block->address()}});
             built.push_back(std::move(made));
@@ -116,11 +120,9 @@ void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const Buil
                           scene.instances());
 }
 
-void SwTlas::record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const {
-    const SwTraceArgs args{
-        {scene},   desc.rays,           desc.hits, desc.indirect_count, static_cast<uint>(desc.count),
-        desc.mask, flags_of(desc.cull), 0};
-    (desc.query == Query::any ? trace_any_ : trace_closest_).dispatch(commands, args, desc.count);
+std::unique_ptr<TraceProgram> SwTlas::create_program(const TraceProgramCode* code, uint features) const {
+    return std::make_unique<KernelProgram>(context(), id(), features, code ? code->name : "swtlas_trace",
+                                           code ? code->software : std::span<const std::uint32_t>(swtlas_trace_spirv));
 }
 
 SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {

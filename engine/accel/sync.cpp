@@ -59,6 +59,7 @@ void AbstractAccel::commit(Staged&& staged, SyncPoint done) {
     for (std::size_t i = 0; i < staged.building.size(); ++i) staged.building[i]->built = std::move(staged.built[i]);
     has_moved_ = staged.has_moved;
     revision_ += dirty_ == Dirty::structure;
+    if (dirty_ == Dirty::structure) features_ = features_of_placements();
     if (staged.scene) scene_ = std::move(staged.scene);
     instances_.commit(std::move(staged.instances), staged.slices);
     erased_.clear();

@@ -19,6 +19,7 @@ void main()
     Rows to_world = to_world_of(record);
     bool usable = is_usable(to_world, inverse_of(to_world));
     record.geometry = usable ? geometry.blas : 0ul;
+    record.sbt_offset_flags |= geometry.kind; // the hit group of a pipeline
     AT(args.driver_records, place) = record;
     if (!has_table) return;
     HwInstance instance;
