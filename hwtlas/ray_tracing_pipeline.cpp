@@ -93,7 +93,10 @@ VkRayTracingShaderGroupCreateInfoKHR hit_group(std::uint32_t closest_hit, std::u
 }  // namespace
 
 RayTracingPipeline::RayTracingPipeline(Context& context, const RayTracingPipelineDesc& desc)
-    : context_(context), name_(desc.name), limits_(limits_of(context)) {
+    : context_(context),
+      name_(desc.name),
+      limits_(limits_of(context)),
+      launch_limit_(std::min(limits_.maxRayDispatchInvocationCount, desc.launch_limit)) {
     layout_ = create_push_constant_layout(context, stages, sizeof(TraceArgs));
     try {
         create_pipeline(desc);
@@ -174,7 +177,8 @@ void RayTracingPipeline::trace(Commands& commands, const TraceArgs& args) const 
     hit.size = 2 * record_bytes_;
     const auto pass = commands.pass(name_);
     vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, pipeline_);
-    const std::uint32_t per_launch = limits_.maxRayDispatchInvocationCount / launch_width * launch_width;
+    // Whole rows; a device's limit is at least 2^30.
+    const std::uint32_t per_launch = std::max(launch_limit_ / launch_width, 1u) * launch_width;
     for (std::uint64_t first = 0; first < args.count; first += per_launch) {
         TraceArgs part = args;
         part.first = static_cast<uint>(first);

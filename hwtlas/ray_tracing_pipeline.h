@@ -18,6 +18,7 @@ struct RayTracingPipelineDesc {
     std::span<const std::uint32_t> any_hit;         // of all geometry that is not opaque; empty: none
     std::span<const std::uint32_t> intersection;    // of boxes; empty: none
     std::vector<SpecializationConstant> constants;  // of all stages
+    std::uint32_t launch_limit = UINT32_MAX;        // invocations in one launch, if the device allows more
 };
 
 // A pipeline of a few shaders with its shader binding table, whose only input is TraceArgs as push constants. Instances
@@ -39,6 +40,7 @@ class RayTracingPipeline {
     Context& context_;
     std::string name_;
     VkPhysicalDeviceRayTracingPipelinePropertiesKHR limits_{};
+    std::uint32_t launch_limit_;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkPipeline pipeline_ = VK_NULL_HANDLE;
     Buffer table_;
