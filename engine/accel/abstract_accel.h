@@ -185,6 +185,8 @@ class AbstractAccel {
     // With `code`, or with the accelerator's own code where the scene needs no program.
     virtual std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const = 0;
     std::uint64_t id() const { return id_; }
+    // What closest_hits() and any_hits() do.
+    virtual std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc);
 
   private:
     // What one push placed.
@@ -226,7 +228,6 @@ class AbstractAccel {
     void warn_of_unusable_instances();
     const TraceProgram& program_for(const AccelView& view, const TraceDesc& desc) const;
     void check_desc(const AccelView& view, const TraceDesc& desc) const;
-    std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc);
 
     Context& context_;
     std::string name_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One body for every accelerator: the software one, and the hardware one through each way of tracing. Long because it is
-// the contract, row by row: one fact a test, in one place.
+// One body for every accelerator: the software one, and the hardware one through each way of tracing. Long because it
+// is the contract, row by row: one fact a test, in one place.
 #include <cmath>
 #include <random>
 
@@ -13,11 +13,10 @@ namespace {
 
 using test::down;
 using test::error_of;
-using test::Kind;
 using test::square;
 
 class Accel : public test::AccelTest {};
-TWINRAY_OVER_EVERY_ACCEL(Accel);
+TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFEREE(Accel);
 
 TEST_P(Accel, FindsTheClosestHitAndFillsEveryField) {
     accel().push(square(1));
@@ -138,14 +137,9 @@ TEST_P(Accel, MasksHideInstances) {
     const SyncPoint done = accel().sync();
     context().wait(done);
     const Ray ray = down(0.5f, 0.25f);
-    const Buffer rays(context(), {.name = "rays", .bytes = sizeof(Ray)}),
-        hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
+    const Buffer rays = device_copy(std::vector<Ray>{ray}), hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
     for (const auto& [mask, t] : {std::pair<std::uint8_t, float>{1, 9}, {2, 8}, {3, 8}, {4, -1}, {0xff, 8}}) {
         Commands commands(context(), "masks");
-        {
-            const auto pass = commands.pass("input");
-            commands.upload(rays, std::span(&ray, 1));
-        }
         accel().trace(commands, accel().view(),
                       {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1, .mask = mask});
         commands.submit();
@@ -432,16 +426,18 @@ TEST_P(Accel, SixteenMillionRaysGoInOneCall) {
     const Buffer rays(context(), {.name = "rays", .bytes = count * sizeof(Ray)}),
         hits(context(), {.name = "hits", .bytes = count * sizeof(Hit)});
     const Ray ray = down(0.5f, 0.25f);
-    Commands commands(context(), "many rays");
+    Commands input(context(), "many rays");
     {
-        const auto pass = commands.pass("all rays are void");
-        commands.fill(rays, 0, rays.bytes(), 0);
+        const auto pass = input.pass("all rays are void");
+        input.fill(rays, 0, rays.bytes(), 0);
     }
     const std::uint64_t some[] = {0, 1, 8'388'608, 15'999'999};
     {
-        const auto pass = commands.pass("but these");
-        for (const std::uint64_t i : some) commands.write(rays, ray, i * sizeof(Ray));
+        const auto pass = input.pass("but these");
+        for (const std::uint64_t i : some) input.write(rays, ray, i * sizeof(Ray));
     }
+    input.submit();
+    Commands commands(context(), "one call");
     accel().trace(commands, accel().view(), {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = count});
     commands.submit();
     for (const std::uint64_t i : some)
@@ -542,7 +538,7 @@ TEST_P(Accel, AgreesWithTheRefereeOnRandomScenes) {
     for (const Ray& ray : vertex_aimed_rays(oracle, 5'000, 2)) rays.push_back(ray);
     for (const Ray& ray : edge_aimed_rays(oracle, 5'000, 3)) rays.push_back(ray);
 
-    const bool ours = GetParam() == Kind::software;
+    const bool ours = is_ours();
     const std::vector<Hit> hits = accel().closest_hits(rays);
     Classes classes;
     for (const Verdict& verdict : ours ? classify_all(oracle, rays, hits, {}) : classify_all(oracle, rays, {}, hits))
