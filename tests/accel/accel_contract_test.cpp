@@ -2,6 +2,7 @@
 // One body for every accelerator: the software one, and the hardware one through each way of tracing. Long because it
 // is the contract, row by row: one fact a test, in one place.
 #include <cmath>
+#include <cstddef>
 #include <random>
 
 #include "engine/verify/aimed_rays.h"
@@ -119,6 +120,7 @@ TEST_P(Accel, NonFiniteVerticesHideNothingElse) {
         EXPECT_EQ(hit.hit, 1u);
         EXPECT_GE(hit.primitive_index, 2u);
     }
+    EXPECT_TRUE(was_logged("2 of 130 triangles have a non-finite vertex and are inactive"));
 }
 
 TEST_P(Accel, InstancesMoveScaleRotateAndMirror) {
@@ -166,6 +168,30 @@ TEST_P(Accel, ManyInstancesOfOneMeshKeepTheirOptions) {
     EXPECT_EQ(closest(down(114.5f, 0.25f)).hit, 0u);
 }
 
+TEST_P(Accel, PushCopiesTheMesh) {
+    Mesh mesh = square(0);
+    accel().push(mesh);
+    for (vec3& position : mesh.positions) position.z = 3;
+    mesh = {};
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 10.0f);
+}
+
+TEST_P(Accel, AGeometryMayHaveNoInstances) {
+    const AccelHandle handle = accel().push(square(0), std::span<const Transform>{});
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).hit, 0u);
+    EXPECT_TRUE(accel().world_bound().is_empty());
+    EXPECT_TRUE(accel().is_valid(handle));
+    EXPECT_EQ(accel().n_instances(), 0u);
+    EXPECT_EQ(accel().n_geometries(), 1u);
+    EXPECT_TRUE(accel().get_instances(handle).empty());
+    EXPECT_EQ(accel().instance_buffer(handle).count, 0u);
+}
+
+TEST_P(Accel, CustomIndicesHave24Bits) {
+    accel().push(square(0), Transform{}, {.custom_index = 0xffffff, .mask = 0x80});
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).custom_index, 0xffffffu);
+}
+
 TEST_P(Accel, EraseKeepsTheOrderOfTheOthers) {
     const AccelHandle first = accel().push(square(0));
     const AccelHandle second = accel().push(square(1));
@@ -180,6 +206,79 @@ TEST_P(Accel, EraseKeepsTheOrderOfTheOthers) {
     EXPECT_EQ(hit.instance_index, 1u);
     EXPECT_EQ(accel().n_instances(), 2u);
     EXPECT_EQ(accel().n_geometries(), 2u);
+}
+
+TEST_P(Accel, ErasingEverythingLeavesAnEmptyAcceleratorThatFillsAgain) {
+    std::vector<AccelHandle> handles;
+    for (int i = 0; i < 40; ++i) handles.push_back(accel().push(square(static_cast<float>(i) / 10)));
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).instance_index, 39u);
+    for (const AccelHandle handle : handles) EXPECT_TRUE(accel().erase(handle));
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).hit, 0u);
+    EXPECT_TRUE(accel().world_bound().is_empty());
+    EXPECT_EQ(accel().n_instances() + accel().n_geometries(), 0u);
+    accel().push(square(2));
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 8.0f);
+}
+
+TEST_P(Accel, HandlesAreNeverReused) {
+    const AccelHandle first = accel().push(square(0));
+    EXPECT_TRUE(accel().erase(first));
+    const AccelHandle second = accel().push(square(0));
+    EXPECT_NE(first, second);
+    EXPECT_FALSE(accel().is_valid(first));
+    EXPECT_FALSE(accel().is_valid(AccelHandle{})) << "the default is dead";
+}
+
+TEST_P(Accel, ADeadHandleIsRefusedByEveryCallThatNeedsALiveOne) {
+    const AccelHandle dead = accel().push(square(0));
+    accel().sync();
+    accel().erase(dead);
+    const std::vector<Transform> one(1);
+    const Buffer source = device_copy(one);
+    const std::function<void()> calls[] = {
+        [&] { accel().update(dead, square(1)); },
+        [&] { accel().update_transform(dead, {}); },
+        [&] { accel().update_transforms(dead, one); },
+        [&] { accel().update_transforms(dead, source.ref<Transform>(), 1); },
+        [&] { accel().update_transform_at(dead, 0, {}); },
+        [&] { static_cast<void>(accel().instance_buffer(dead)); },
+        [&] { accel().mark_transforms_dirty(dead); },
+        [&] { static_cast<void>(accel().get_instance(dead, 0)); },
+        [&] { static_cast<void>(accel().get_instances(dead)); },
+    };
+    for (const std::function<void()>& call : calls)
+        EXPECT_NE(error_of(call).find(text("handle ", dead.id, " is not alive")), std::string::npos) << error_of(call);
+    EXPECT_FALSE(accel().erase(dead));
+    EXPECT_EQ(accel().n_instances(dead), 0u);
+}
+
+TEST_P(Accel, TheRevisionCountsChangesOfStructureOnly) {
+    const AccelHandle handle = accel().push(square(0));
+    accel().sync();
+    const std::uint64_t built = accel().revision();
+    accel().sync();
+    EXPECT_EQ(accel().revision(), built);
+    accel().update_transform(handle, Transform::translation({1, 0, 0}));
+    accel().sync();
+    accel().update_transform(handle, {});
+    accel().sync();
+    EXPECT_EQ(accel().revision(), built) << "moves";
+    accel().update(handle, square(1));
+    EXPECT_EQ(accel().revision(), built) << "not before the sync";
+    accel().sync();
+    EXPECT_EQ(accel().revision(), built + 1);
+    accel().push(square(2));
+    accel().erase(handle);
+    accel().sync();
+    EXPECT_EQ(accel().revision(), built + 2) << "one sync, one step";
+}
+
+TEST_P(Accel, WaitingForTheGpuReachesTheLastSync) {
+    accel().push(square(0));
+    const SyncPoint done = accel().sync();
+    accel().wait_for_gpu();
+    EXPECT_TRUE(context().is_reached(done));
+    EXPECT_TRUE(accel().world_bound_if_ready().has_value());
 }
 
 TEST_P(Accel, ACleanSyncDoesNothing) {
@@ -229,12 +328,21 @@ TEST_P(Accel, WrongUseNamesTheObjectTheValueAndTheLimitAndChangesNothing) {
         {[&] { accel().update_transform(pair, {}); }, "2 instances, not 1"},
         {[&] { accel().update_transforms(pair, std::vector<Transform>(5)); }, "5 transforms for the 2 instances"},
         {[&] { accel().update_transform_at(pair, 2, {}); }, "index 2 of the 2"},
+        {[&] { accel().update_transforms(pair, {18}, 2); }, "device address 18 must be a multiple of 4 and not 0"},
+        {[&] { accel().update_transforms(pair, {16}, 3); }, "3 transforms for the 2 instances"},
+        {[&] {
+             accel().update_transforms(pair, std::vector<Transform>{{}, Transform::scaling({0, 1, 1})});
+         },
+         "instance 1: transform is singular"},
+        {[&] { accel().update(pair, wild); }, "mesh 'wild': triangle 1"},
         {[&] { accel().update_transform({~0ull}, {}); }, "handle 18446744073709551615 is not alive"},
     };
     for (const auto& [action, expected] : cases)
         EXPECT_NE(error_of(action).find(expected), std::string::npos) << error_of(action);
     EXPECT_EQ(accel().n_instances(), 2u);
     EXPECT_EQ(accel().view().revision, view.revision) << "no edit is pending";
+    EXPECT_EQ(accel().get_instance(pair, 0).transform, Transform{});
+    EXPECT_EQ(trace(view, down(0.5f, 0.25f)).t, 10.0f);
 }
 
 TEST_P(Accel, StaleViewsAreRefused) {
@@ -247,6 +355,70 @@ TEST_P(Accel, StaleViewsAreRefused) {
     Commands commands(context(), "stale");
     EXPECT_NE(error_of([&] { accel().trace(commands, stale, {.rays = {16}, .hits = {16}, .count = 1}); }).find("stale"),
               std::string::npos);
+}
+
+TEST_P(Accel, ViewsOfAnotherAcceleratorAreRefused) {
+    const std::unique_ptr<AbstractAccel> other = make_accel();
+    for (AbstractAccel* each : {&accel(), other.get()}) {
+        each->push(square(0));
+        each->sync();
+    }
+    Commands commands(context(), "foreign");
+    const TraceDesc desc{.rays = {16}, .hits = {16}, .count = 1};
+    EXPECT_NE(error_of([&] { accel().trace(commands, other->view(), desc); }).find("another accelerator"),
+              std::string::npos);
+}
+
+TEST_P(Accel, TraceRefusesAddressesAndCountsItCannotServe) {
+    accel().push(square(0));
+    accel().sync();
+    const AccelView view = accel().view();
+    Commands commands(context(), "refused");
+    const std::pair<TraceDesc, const char*> cases[] = {
+        {{.rays = {18}, .hits = {16}, .count = 1}, "rays at 18"},
+        {{.rays = {16}, .hits = {17}, .count = 1}, "hits at 17"},
+        {{.rays = {16}, .hits = {16}, .count = 1, .indirect_count = {2}}, "indirect count at 2"},
+        {{.rays = {0}, .hits = {16}, .count = 1}, "address of rays or hits is 0"},
+        {{.rays = {16}, .hits = {0}, .count = 1}, "address of rays or hits is 0"},
+        {{.rays = {16}, .hits = {16}, .count = 1ull << 32}, "4294967296 rays; at most 4294967295"},
+    };
+    for (const auto& [desc, expected] : cases) {
+        const std::string what = error_of([&, refused = desc] { accel().trace(commands, view, refused); });
+        EXPECT_NE(what.find(expected), std::string::npos) << what;
+    }
+    accel().trace(commands, view, {.rays = {}, .hits = {}, .count = 0});
+    commands.submit();
+    EXPECT_TRUE(accel().closest_hits({}).empty());
+}
+
+TEST_P(Accel, HitsAreVisibleToLaterPassesOfTheSameCommands) {
+    accel().push(square(0));
+    accel().sync();
+    const Buffer rays = device_copy(std::vector<Ray>{down(0.5f, 0.25f)}), hits = device_copy(std::vector<Hit>(1)),
+                 copy = device_copy(std::vector<Hit>(1));
+    Commands commands(context(), "trace and use");
+    accel().trace(commands, accel().view(), {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
+    {
+        const auto pass = commands.pass("use");
+        commands.copy(hits, 0, copy, 0, sizeof(Hit));
+    }
+    commands.submit();
+    EXPECT_EQ(download<Hit>(context(), copy, 1).front().t, 10.0f);
+}
+
+// Where hardware finds two triangles at one distance, the driver chooses.
+TEST_P(Accel, EqualDistancesAreDecidedByInstanceThenPrimitive) {
+    Mesh twice = square(0);
+    for (const uvec3 triangle : square(0).triangles) twice.triangles.push_back(triangle);
+    accel().push(twice, Transform::translation({0, 0, -1}));
+    accel().push(twice, std::vector<Transform>(9));
+    for (const vec3 at : {vec3(0.7f, 0.2f, 0), vec3(0.2f, 0.7f, 0)}) {
+        const Hit hit = closest(down(at.x, at.y));
+        EXPECT_EQ(hit.t, 10.0f);
+        if (!is_ours()) continue;
+        EXPECT_EQ(hit.instance_index, 1u);
+        EXPECT_LT(hit.primitive_index, 2u);
+    }
 }
 
 TEST_P(Accel, MovesKeepTheViewAndShowInIt) {
@@ -313,9 +485,33 @@ TEST_P(Accel, TransformsComeFromDeviceMemory) {
     EXPECT_EQ(closest(down(4.5f, 0.25f)).hit, 0u);
 }
 
+TEST_P(Accel, NewTransformsKeepCustomIndicesMasksAndFlags) {
+    const std::vector<InstanceOptions> options = {
+        {.custom_index = 5, .mask = 0x11}, {.custom_index = 6, .mask = 0x22, .no_culling = true, .turned = true}};
+    const AccelHandle pair = accel().push(square(0), std::vector<Transform>(2), options);
+    const std::vector<Transform> moved = {Transform::translation({0, 0, 1}), Transform::translation({0, 0, 2})};
+    const auto expect_kept = [&] {
+        accel().sync();
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_EQ(accel().get_instance(pair, i).transform, moved[i]);
+            EXPECT_EQ(accel().get_instance(pair, i).options, options[i]);
+        }
+        EXPECT_EQ(closest(down(0.5f, 0.25f)).custom_index, 6u);
+    };
+    accel().update_transforms(pair, moved);
+    expect_kept();
+    accel().update_transforms(pair, std::vector<Transform>(2));
+    for (std::size_t i = 0; i < 2; ++i) accel().update_transform_at(pair, i, moved[i]);
+    expect_kept();
+    const Buffer source = device_copy(moved);
+    accel().update_transforms(pair, source.ref<Transform>(), 2);
+    expect_kept();
+}
+
 TEST_P(Accel, KernelsMoveInstancesInTheirBuffer) {
     const AccelHandle handle = accel().push(square(0), std::vector<Transform>(2));
-    EXPECT_NE(error_of([&] { accel().instance_buffer(handle); }).find("sync"), std::string::npos);
+    EXPECT_NE(error_of([&] { accel().instance_buffer(handle); }).find("call sync() first"), std::string::npos);
+    EXPECT_NE(error_of([&] { accel().mark_transforms_dirty(handle); }).find("call sync() first"), std::string::npos);
     accel().sync();
     const InstanceRange range = accel().instance_buffer(handle);
     EXPECT_EQ(range.count, 2u);
@@ -480,6 +676,26 @@ TEST_P(Accel, TheWorldBoundIsThatOfFloat64RoundedOutward) {
         }
         EXPECT_EQ(accel().world_bound_if_ready()->lo, bound.lo);
     }
+}
+
+// As the count of rays of a trace, which reads it on the device.
+TEST_P(Accel, KernelsReadTheWorldBoundOnTheDevice) {
+    const AccelHandle handle = accel().push(square(0), std::vector<Transform>(3));
+    const Buffer source =
+        device_copy<Transform>({Transform::scaling({0, 1, 1}), Transform{}, Transform::scaling({1, 1, 0})});
+    accel().update_transforms(handle, source.ref<Transform>(), 3);
+    accel().sync();
+    const Buffer rays = device_copy(std::vector<Ray>(5, down(0.5f, 0.25f))), hits = device_copy(std::vector<Hit>(5));
+    Commands commands(context(), "count from the bound");
+    accel().trace(commands, accel().view(),
+                  {.rays = rays.ref<Ray>(),
+                   .hits = hits.ref<Hit>(),
+                   .count = 5,
+                   .indirect_count = {accel().world_bound_on_device().address + offsetof(WorldBound, unusable_count)}});
+    commands.submit();
+    const std::vector<Hit> found = download<Hit>(context(), hits, 5);
+    EXPECT_EQ(found[1].hit, 1u);
+    EXPECT_EQ(found[2].hit, 0u) << "two instances are unusable";
 }
 
 TEST_P(Accel, AViewStaysGoodUntilTheNextSyncWhateverIsEdited) {
