@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "swtlas/built.h"
 #include "swtlas_trace.spv.h"
 
 namespace twinray {
@@ -13,10 +14,6 @@ namespace {
 Bvh empty_bvh(std::uint64_t nodes) { return {vec3(INFINITY), vec3(-INFINITY), {nodes}, NOTHING, 0}; }
 
 }  // namespace
-
-struct SwTlas::SwBuiltGeometry : BuiltGeometry {
-    Buffer buffer;  // see layout_geometry
-};
 
 struct SwTlas::SwBuiltScene : BuiltScene {
     Buffer buffer;  // see layout_scene
@@ -67,10 +64,7 @@ std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::build_geometr
         commands.upload_pieces(source, pieces);
         for (std::size_t i = 0; i < inputs.size(); ++i) {
             const GeometryLayout layout = layout_geometry(counts[i]);
-            auto made = std::make_unique<SwBuiltGeometry>();
-            made->buffer = Buffer(
-                context(), {.name = "SwTlas geometry '" + inputs[i].geometry->name + "'", .bytes = layout.bytes});
-            made->bytes = layout.bytes;
+            auto made = std::make_unique<SwBuiltGeometry>(context(), inputs[i].geometry->name, layout.bytes);
             const std::uint64_t base = made->buffer.address();
             const Geometry& geometry = *inputs[i].geometry;
             const bool has_boxes = geometry.kind == GEOMETRY_BOXES;

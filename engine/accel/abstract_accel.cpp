@@ -62,6 +62,19 @@ AccelHandle AbstractAccel::place(Geometry&& geometry, std::span<const Transform>
     return handle;
 }
 
+AccelHandle AbstractAccel::push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
+                                      std::span<const InstanceRecord> records) {
+    Placement placement{std::move(geometry), std::move(block), std::move(built), {}};
+    for (const InstanceRecord& record : records) {
+        placement.instances.records.push_back(make_instance_record(transform_of(record), options_of(record)));
+        placement.instances.records.back().geometry = placement.block.address();
+    }
+    const AccelHandle handle{next_handle()};
+    placements_.emplace(handle.id, std::move(placement));
+    mark(Dirty::structure);
+    return handle;
+}
+
 bool AbstractAccel::erase(AccelHandle handle) {
     const auto found = placements_.find(handle.id);
     if (found == placements_.end()) return false;
@@ -201,6 +214,12 @@ std::size_t AbstractAccel::n_instances(AccelHandle handle) const {
     return found == placements_.end() ? 0 : found->second.instances.records.size();
 }
 
+std::vector<AccelHandle> AbstractAccel::handles() const {
+    std::vector<AccelHandle> alive;
+    for (const auto& [id, placement] : placements_) alive.push_back({id});
+    return alive;
+}
+
 InstanceState AbstractAccel::get_instance(AccelHandle handle, std::size_t index) const {
     check_index(handle, live(handle, "get_instance"), index, "get_instance");
     return get_instances(handle)[index];
@@ -225,6 +244,7 @@ const AbstractAccel::BuiltGeometry& AbstractAccel::built_geometry(AccelHandle ha
 }
 
 const Buffer& AbstractAccel::geometry_block(AccelHandle handle) const { return live(handle, "geometry block").block; }
+const Geometry& AbstractAccel::geometry(AccelHandle handle) const { return live(handle, "geometry").geometry; }
 
 const AbstractAccel::BuiltScene& AbstractAccel::built_scene() const {
     if (!scene_) fail(name_, ": the scene is not built yet; call sync() first");

@@ -93,6 +93,7 @@ class AbstractAccel {
     std::size_t n_instances() const;
     std::size_t n_instances(AccelHandle handle) const;  // 0 for a dead handle
     std::size_t n_geometries() const { return placements_.size(); }
+    std::vector<AccelHandle> handles() const;  // those alive, in push order
 
     // Builds what changed since the last sync and returns the point at which the GPU has built it; a clean
     // accelerator does nothing. Where only transforms changed, the top level is refitted in place and views stay valid.
@@ -178,6 +179,13 @@ class AbstractAccel {
     // What an implementation built; throws Error on a dead handle or pending edits.
     const BuiltGeometry& built_geometry(AccelHandle handle) const;
     const Buffer& geometry_block(AccelHandle handle) const;
+    const Geometry& geometry(AccelHandle handle) const;  // throws Error on a dead handle
+    // Throws Error if edits are pending.
+    void check_synced(const char* action) const;
+    // Places what is built already; `block` is filled by commands submitted before the next sync. The records, which
+    // need not name the block, may hold what push() would refuse: transforms that kernels have made unusable.
+    AccelHandle push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
+                           std::span<const InstanceRecord> records);
     const BuiltScene& built_scene() const;
 
     // FEATURE_* of whatever the scene holds.
