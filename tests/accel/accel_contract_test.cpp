@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One body for every accelerator: the software one, and the hardware one through each way of tracing. Long because it
-// is the contract, row by row: one fact a test, in one place.
+// One body for every accelerator: the software one, the hardware one through each way of tracing, and the referee. Long
+// because it is the contract, row by row: one fact a test, in one place. docs/contract.md lists them.
 #include <cmath>
 #include <cstddef>
 #include <random>

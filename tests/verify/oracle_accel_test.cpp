@@ -61,6 +61,27 @@ TEST_F(OracleAccelerator, AnswersInFloat64RoundedOnce) {
     }
 }
 
+TEST_F(OracleAccelerator, RefusesWhatNeedsGpuCode) {
+    OracleAccel accel(context());
+    const Bounds box{vec3(0), vec3(1, 2, 3)};
+    const AccelHandle handle = accel.push(BoxesView{"box", std::span(&box, 1)});
+    accel.sync();
+    EXPECT_EQ(accel.world_bound().hi, vec3(1, 2, 3));
+    test::expect_contains(test::error_of([&] { accel.closest_hits(std::span(&down, 1)); }), "the scene has boxes");
+    TraceProgramCode code;
+    code.name = "spheres";
+    test::expect_contains(test::error_of([&] { static_cast<void>(accel.make_program(code)); }),
+                          "OracleAccel: program 'spheres': the host runs no GPU code");
+    accel.update(handle, square());
+    EXPECT_EQ(accel.closest_hits(std::span(&down, 1)).front().t, 10.0f);
+    accel.push(square(), Transform{}, {.filtered = true});
+    test::expect_contains(test::error_of([&] { accel.any_hits(std::span(&down, 1)); }), "filtered instances");
+    for (const Feature feature : {Feature::boxes, Feature::filters, Feature::kernel_queries, Feature::save_and_load}) {
+        EXPECT_EQ(accel.capability(feature).support, Support::unsupported);
+        EXPECT_FALSE(accel.capability(feature).note.empty());
+    }
+}
+
 TEST(ReportedT, LiesInsideTheOpenIntervalOrIsNone) {
     const auto between = [](double t, float t_min, float t_max) {
         return reported_t(t, {vec3(0), t_min, vec3(0, 0, 1), t_max});
