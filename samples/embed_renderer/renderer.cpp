@@ -20,8 +20,8 @@
 namespace twinray::embed_renderer {
 namespace {
 
-const vec3 to_sun = glm::normalize(vec3(0.6f, 1, 0.35f));
-const vec3 sun_color(2.1f, 1.95f, 1.7f), sky_color(0.45f, 0.55f, 0.7f);
+const vec3 to_sun = glm::normalize(vec3(-0.8f, 1, 0.25f));
+const vec3 sun_color(1.25f, 1.15f, 1.0f), sky_color(0.3f, 0.36f, 0.45f);
 constexpr float ao_reach = 0.15f;     // of the scene's diagonal
 constexpr float near_plane = 0.001f;  // likewise
 

@@ -29,11 +29,11 @@ Stage make_stage(Scene scene, uint ball_count, bool has_ground) {
     const vec3 size = stage.bounds.size();
     const float width = std::max({size.x, size.z, 0.25f * size.y});
     stage.center = vec3(stage.bounds.center().x, stage.bounds.lo.y, stage.bounds.center().z);
-    stage.orbit = 0.62f * width;
-    stage.ball_radius = 0.06f * width;
+    stage.orbit = 0.75f * width;
+    stage.ball_radius = 0.09f * width;
     stage.ball_count = ball_count;
     if (has_ground) {
-        const float reach = 8 * width;
+        const float reach = 60 * width;  // to the horizon
         Mesh ground = make_quad(stage.center - vec3(reach, 0, reach), {0, 0, 2 * reach}, {2 * reach, 0, 0});
         ground.name = "ground";
         add(scene, std::move(ground), vec3(0.6f), 1);

@@ -28,7 +28,7 @@ class PassTimer {
     std::vector<Lap> laps() const;
 
   private:
-    static constexpr std::uint32_t max_stamps_ = 32;
+    static constexpr std::uint32_t max_stamps_ = 64;
     void stamp(VkCommandBuffer commands);
 
     const Device& device_;
