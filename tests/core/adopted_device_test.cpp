@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <atomic>
 #include <cmath>
+#include <mutex>
+#include <thread>
 
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
@@ -45,6 +48,27 @@ TEST_F(AdoptedDeviceTest, BothAcceleratorsTraceOnIt) {
     EXPECT_EQ(host_.locked, 0) << "each lock of the queue is undone";
     EXPECT_GT(host_.submissions, 0);
     EXPECT_FALSE(host_.device.enabled.shader_float64) << "nobody enabled it";
+}
+
+// The layer complains of a queue that two threads use at once.
+TEST_F(AdoptedDeviceTest, TheHostSubmitsFromAnotherThreadUnderTheSameLock) {
+    ASSERT_TRUE(host_.create());
+    std::mutex mutex;
+    host_.device.lock_queue = [&] { mutex.lock(); };
+    host_.device.unlock_queue = [&] { mutex.unlock(); };
+    std::atomic<bool> is_over = false;
+    std::thread other([&] {
+        while (!is_over) {
+            const std::lock_guard lock(mutex);
+            vkQueueSubmit(host_.device.queue, 0, nullptr, VK_NULL_HANDLE);
+        }
+    });
+    {
+        Context context(host_.device);
+        for (int i = 0; i < 500; ++i) Commands(context, "nothing").submit();
+    }
+    is_over = true;
+    other.join();
 }
 
 // Features and extensions of the host's own, some of them the same: the layer would complain of what is there twice.
