@@ -38,7 +38,7 @@ Device::Device(const DeviceDesc& desc) : log_(desc.log) {
     try {
         create_instance(desc.validation);
         choose(desc.device);
-        create_device();
+        create_device(desc);
         create_allocator();
     } catch (...) {
         destroy();
@@ -120,7 +120,7 @@ void Device::choose(const std::string& request) {
 }
 
 // The renderer asks for what it wants, twinray adds what it needs.
-void Device::create_device() {
+void Device::create_device(const DeviceDesc& desc) {
     const float priority = 1;
     VkDeviceQueueCreateInfo queue{};
     queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
@@ -135,7 +135,10 @@ void Device::create_device() {
     info.pNext = &own;
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
-    DeviceRequirements requirements(query_device_facts(vkGetInstanceProcAddr, instance_, physical_));
+    DeviceFacts wanted = query_device_facts(vkGetInstanceProcAddr, instance_, physical_);
+    wanted.ray_query &= desc.use_ray_query;
+    wanted.ray_tracing_pipeline &= desc.use_ray_tracing_pipeline;
+    DeviceRequirements requirements(wanted);
     requirements.add_to(info);
     require(vkCreateDevice(physical_, &info, nullptr, &device_), "create a device");
     enabled_ = enabled_facts(vkGetInstanceProcAddr, instance_, physical_, info);

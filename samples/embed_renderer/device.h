@@ -17,7 +17,9 @@ namespace twinray::embed_renderer {
 struct DeviceDesc {
     std::string device = {};  // "" = best; an index or a part of the name
     bool validation = false;
-    Log log = {};  // what twinray and the validation layer say
+    bool use_ray_query = true;             // false: do not enable it although the device has it
+    bool use_ray_tracing_pipeline = true;  // likewise
+    Log log = {};                          // what twinray and the validation layer say
 };
 
 class Device {
@@ -46,7 +48,7 @@ class Device {
                                          const VkDebugUtilsMessengerCallbackDataEXT*, void*);
     void create_instance(bool validation);
     void choose(const std::string& request);
-    void create_device();
+    void create_device(const DeviceDesc& desc);
     void create_allocator();
     void destroy();
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A renderer that has Vulkan, memory and frames of its own, and lets twinray trace its shadows.
 #include <cstdio>
+#include <cstdlib>
 
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
@@ -17,6 +18,17 @@ std::filesystem::path frame_file(const Options& options, uint frame) {
     return options.output / name;
 }
 
+// With what TWINRAY_DISABLE, a comma-separated list of ray_query and ray_tracing_pipeline, leaves unused.
+DeviceDesc device_desc(const Options& options, const Log& log) {
+    ContextDesc used;
+    if (const char* disabled = std::getenv("TWINRAY_DISABLE")) disable_features(used, disabled);
+    return {.device = options.device,
+            .validation = options.validation,
+            .use_ray_query = used.use_ray_query,
+            .use_ray_tracing_pipeline = used.use_ray_tracing_pipeline,
+            .log = log};
+}
+
 int run(const Options& options) {
     if (!options.output.empty()) std::filesystem::create_directories(options.output);
     const Stage stage = make_stage(load(options.scene.string()), options.balls, !options.no_ground);
@@ -25,7 +37,7 @@ int run(const Options& options) {
             std::fprintf(stderr, "embed_renderer: %.*s\n", static_cast<int>(message.size()), message.data());
     };
     for (const std::string& warning : stage.scene.warnings) log(warning);
-    const Device device({.device = options.device, .validation = options.validation, .log = log});
+    const Device device(device_desc(options, log));
     std::vector<std::vector<PassTimer::Lap>> laps;
     {
         Renderer renderer(device, stage, options);

@@ -34,12 +34,16 @@ class EmbedRenderer : public ::testing::Test {
     void SetUp() override {
         const std::unique_ptr<Context> context = test::make_context();
         if (!context) GTEST_SKIP() << "no usable device";
+        has_pipeline_ = context->facts().ray_tracing_pipeline;
         has_hardware_ = missing_for_hardware(context->facts()).empty();
     }
     // One frame for each of `turns`.
-    std::vector<FrameResult> render(const Options& options, const std::vector<float>& turns) {
+    std::vector<FrameResult> render(const Options& options, const std::vector<float>& turns,
+                                    bool use_ray_query = true) {
         const Stage stage = make_stage(tower(), options.balls, true);
-        const Device device({.validation = true, .log = [](std::string_view message) { ADD_FAILURE() << message; }});
+        const Device device({.validation = true, .use_ray_query = use_ray_query, .log = [](std::string_view message) {
+                                 ADD_FAILURE() << message;
+                             }});
         std::vector<FrameResult> frames;
         {
             Renderer renderer(device, stage, options);
@@ -49,7 +53,7 @@ class EmbedRenderer : public ::testing::Test {
         EXPECT_EQ(device.validation_message_count(), 0u);
         return frames;
     }
-    bool has_hardware_ = false;
+    bool has_hardware_ = false, has_pipeline_ = false;
 };
 
 float light(const FrameResult& frame, std::size_t pixel) { return path_tracer::luminance(frame.picture.rgb[pixel]); }
@@ -75,6 +79,14 @@ TEST_F(EmbedRenderer, BothAcceleratorsShowTheSame) {
         EXPECT_EQ(software[i].rays.shadow, hardware[i].rays.shadow);
     }
     EXPECT_EQ(software[0].laps.size(), 7u);
+}
+
+// On devices without ray queries the traces run in another stage of the GPU.
+TEST_F(EmbedRenderer, ARayTracingPipelineShowsTheSame) {
+    if (!has_pipeline_) GTEST_SKIP() << "no ray tracing pipelines";
+    const std::vector<FrameResult> software = render(small("sw"), {0, 0.1f});
+    const std::vector<FrameResult> pipeline = render(small("hw"), {0, 0.1f}, false);
+    for (std::size_t i = 0; i < software.size(); ++i) EXPECT_LE(differing(software[i], pipeline[i]), 10u);
 }
 
 class EmbedRendererBy : public EmbedRenderer, public ::testing::WithParamInterface<const char*> {
