@@ -61,8 +61,8 @@ class Context {
     SyncPoint submit(VkCommandBuffer commands);
     // The next submission, whichever call makes it (Commands::submit, AbstractAccel::sync, ...), runs its `stages` only
     // once the GPU has reached `point`, on a timeline semaphore of the host, and sees what was written before it; one
-    // that fails leaves it to the one after. The host may submit the work that signals it later; until it is
-    // signalled, whoever waits for that submission, this context's end included, waits too.
+    // that fails leaves it to the one after. The host may submit the work that signals it later, on another
+    // queue; until it is signalled, whoever waits for that submission, this context's end included, waits too.
     void wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
     SyncPoint last_submission() const { return {timeline_, submitted_}; }
     bool is_reached(SyncPoint point) const;
