@@ -36,9 +36,11 @@ auto rank(const DeviceFacts& device) {
 }  // namespace
 
 std::string Requirement::sentence() const {
-    const std::string needs = text(of == Of::everything ? "twinray" : "HwTlas", " needs ", what, " because ", why);
-    if (is_met) return needs + "; this device has it";
-    return needs + "; this device lacks it" + (of == Of::everything ? "" : ", SwTlas works without");
+    constexpr const char* who[] = {"twinray needs ", "HwTlas needs ", "Level::refined and above need "};
+    constexpr const char* rest[] = {"", ", SwTlas works without", ", Level::watertight works without"};
+    const auto i = static_cast<std::size_t>(of);
+    return text(who[i], what, " because ", why, is_met ? "; this device has it" : "; this device lacks it",
+                is_met ? "" : rest[i]);
 }
 
 std::vector<Requirement> requirements_of(const DeviceFacts& device) {
@@ -57,6 +59,7 @@ std::vector<Requirement> requirements_of(const DeviceFacts& device) {
         {"VK_KHR_acceleration_structure", "the driver builds its structures", hardware, device.acceleration_structure},
         {"VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline", "it traces through one of them", hardware,
          device.ray_query || device.ray_tracing_pipeline},
+        {"shaderFloat64", "they compute the hit that counts again in float64", refinement, device.shader_float64},
     };
 }
 
@@ -70,7 +73,7 @@ std::vector<std::string> missing_for_software(const DeviceFacts& device) {
 std::vector<std::string> missing_for_hardware(const DeviceFacts& device) {
     std::vector<std::string> missing;
     for (const Requirement& requirement : requirements_of(device))
-        if (!requirement.is_met) missing.push_back(requirement.what);
+        if (!requirement.is_met && requirement.of != Requirement::Of::refinement) missing.push_back(requirement.what);
     return missing;
 }
 

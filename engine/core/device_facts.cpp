@@ -126,7 +126,7 @@ void DeviceRequirements::add_to(VkDeviceCreateInfo& info) {
 
 void DeviceRequirements::switch_on(VkDeviceCreateInfo& info, FeatureStructs& structs) const {
     for (const FeatureBit& bit : feature_bits())
-        if (bit.is_used && supported_.*bit.fact) provide_bit(info, structs, bit) = VK_TRUE;
+        if (supported_.*bit.fact) provide_bit(info, structs, bit) = VK_TRUE;
 }
 
 }  // namespace twinray

@@ -15,22 +15,21 @@ constexpr VkStructureType structure = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERA
 constexpr VkStructureType query = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
 constexpr VkStructureType pipeline = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
 
-constexpr FeatureBit alone(bool DeviceFacts::*fact, const char* name, VkStructureType type, std::size_t offset,
-                           bool is_used = true) {
-    return {fact, name, is_used, type, offset, type, offset};
+constexpr FeatureBit alone(bool DeviceFacts::*fact, const char* name, VkStructureType type, std::size_t offset) {
+    return {fact, name, type, offset, type, offset};
 }
 
 constexpr FeatureBit bits[] = {
     alone(&DeviceFacts::shader_int64, "shaderInt64", core, offsetof(VkPhysicalDeviceFeatures2, features.shaderInt64)),
     alone(&DeviceFacts::shader_float64, "shaderFloat64", core,
-          offsetof(VkPhysicalDeviceFeatures2, features.shaderFloat64), false),
-    {&DeviceFacts::timeline_semaphore, "timelineSemaphore", true, timeline,
+          offsetof(VkPhysicalDeviceFeatures2, features.shaderFloat64)),
+    {&DeviceFacts::timeline_semaphore, "timelineSemaphore", timeline,
      offsetof(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore), vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, timelineSemaphore)},
-    {&DeviceFacts::buffer_device_address, "bufferDeviceAddress", true, address,
+    {&DeviceFacts::buffer_device_address, "bufferDeviceAddress", address,
      offsetof(VkPhysicalDeviceBufferDeviceAddressFeatures, bufferDeviceAddress), vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, bufferDeviceAddress)},
-    {&DeviceFacts::scalar_block_layout, "scalarBlockLayout", true, layout,
+    {&DeviceFacts::scalar_block_layout, "scalarBlockLayout", layout,
      offsetof(VkPhysicalDeviceScalarBlockLayoutFeatures, scalarBlockLayout), vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, scalarBlockLayout)},
     alone(&DeviceFacts::acceleration_structure, "accelerationStructure", structure,

@@ -29,7 +29,6 @@ struct FeatureStructs {
 struct FeatureBit {
     bool DeviceFacts::*fact;
     const char* name;
-    bool is_used;         // twinray enables it where it can; else it is only reported
     VkStructureType own;  // which of FeatureStructs, and where in it
     std::size_t own_offset;
     VkStructureType gathered;  // the struct of the Vulkan version that took the feature in; `own` where none has
