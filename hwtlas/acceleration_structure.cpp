@@ -36,6 +36,22 @@ VkAccelerationStructureBuildGeometryInfoKHR build_info(const StructureBuild& bui
     return info;
 }
 
+VkAccelerationStructureBuildGeometryInfoKHR build_info(const StructureWork& work, std::uint64_t scratch) {
+    VkAccelerationStructureBuildGeometryInfoKHR info = build_info(work.build);
+    info.dstAccelerationStructure = work.target->handle();
+    info.scratchData.deviceAddress = scratch;
+    if (work.mode == BuildMode::update) {
+        info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
+        info.srcAccelerationStructure = work.target->handle();
+    }
+    return info;
+}
+
+std::uint64_t scratch_bytes(const Context& context, const StructureWork& work) {
+    const VkAccelerationStructureBuildSizesInfoKHR sizes = sizes_of(context, work.build);
+    return work.mode == BuildMode::update ? sizes.updateScratchSize : sizes.buildScratchSize;
+}
+
 }  // namespace
 
 VkAccelerationStructureBuildSizesInfoKHR sizes_of(const Context& context, const StructureBuild& build) {
@@ -90,52 +106,52 @@ AccelerationStructure& AccelerationStructure::operator=(AccelerationStructure&& 
     return *this;
 }
 
-std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
-                                                    std::span<const StructureBuild> builds) {
-    if (builds.empty()) return {};
+void record_builds(Commands& commands, const std::string& pass_name, std::span<const StructureWork> work) {
+    if (work.empty()) return;
     Context& context = commands.context();
     const std::uint64_t alignment = scratch_alignment(context);
-    std::vector<AccelerationStructure> structures;
+    std::vector<std::uint64_t> offsets;
+    std::uint64_t bytes = 0;
+    for (const StructureWork& one : work) {
+        offsets.push_back(bytes);
+        bytes += round_up(scratch_bytes(context, one), alignment);
+    }
+    Buffer scratch = make_build_scratch(context, pass_name + " scratch", bytes);
     std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
+    // lavapipe applies firstVertex twice; offsets live in the addresses instead, and all of these stay 0.
     std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;
-    std::uint64_t scratch_bytes = 0;
-    for (const StructureBuild& build : builds) {
-        const VkAccelerationStructureBuildSizesInfoKHR sizes = sizes_of(context, build);
-        structures.emplace_back(context, build.name, build.type, sizes.accelerationStructureSize);
-        VkAccelerationStructureBuildGeometryInfoKHR info = build_info(build);
-        info.dstAccelerationStructure = structures.back().handle();
-        info.scratchData.deviceAddress = scratch_bytes;  // an offset until the buffer exists
-        infos.push_back(info);
-        // lavapipe applies firstVertex twice; offsets live in the addresses instead, and all of these stay 0.
-        ranges.push_back({build.primitive_count, 0, 0, 0});
-        scratch_bytes += round_up(sizes.buildScratchSize, alignment);
+    for (std::size_t i = 0; i < work.size(); ++i) {
+        infos.push_back(build_info(work[i], scratch.address() + offsets[i]));
+        ranges.push_back({work[i].build.primitive_count, 0, 0, 0});
     }
-    Buffer scratch = make_build_scratch(context, pass_name + " scratch", scratch_bytes);
     std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> range_of;
-    for (std::size_t i = 0; i < infos.size(); ++i) {
-        infos[i].scratchData.deviceAddress += scratch.address();
-        range_of.push_back(&ranges[i]);
-    }
+    for (const VkAccelerationStructureBuildRangeInfoKHR& range : ranges) range_of.push_back(&range);
     const auto pass = commands.pass(pass_name);
     context.vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), static_cast<std::uint32_t>(infos.size()),
                                                      infos.data(), range_of.data());
     commands.keep(std::move(scratch));
-    return structures;
 }
 
-void rebuild_structure(Commands& commands, const std::string& pass_name, const StructureBuild& build, BuildMode mode,
-                       const AccelerationStructure& target, const Buffer& scratch) {
-    VkAccelerationStructureBuildGeometryInfoKHR info = build_info(build);
-    info.dstAccelerationStructure = target.handle();
-    info.scratchData.deviceAddress = scratch.address();
-    if (mode == BuildMode::update) {
-        info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
-        info.srcAccelerationStructure = target.handle();
-    }
-    const VkAccelerationStructureBuildRangeInfoKHR range{build.primitive_count, 0, 0, 0};
+void record_build(Commands& commands, const std::string& pass_name, const StructureWork& work, const Buffer& scratch) {
+    const VkAccelerationStructureBuildGeometryInfoKHR info = build_info(work, scratch.address());
+    const VkAccelerationStructureBuildRangeInfoKHR range{work.build.primitive_count, 0, 0, 0};
     const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
     const auto pass = commands.pass(pass_name);
     commands.context().vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), 1, &info, &ranges);
+}
+
+std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
+                                                    std::span<const StructureBuild> builds) {
+    std::vector<AccelerationStructure> structures;
+    structures.reserve(builds.size());
+    std::vector<StructureWork> work;
+    for (const StructureBuild& build : builds) {
+        structures.emplace_back(commands.context(), build.name, build.type,
+                                sizes_of(commands.context(), build).accelerationStructureSize);
+        work.push_back({build, BuildMode::build, &structures.back()});
+    }
+    record_builds(commands, pass_name, work);
+    return structures;
 }
 
 }  // namespace twinray

@@ -43,14 +43,22 @@ struct StructureBuild {
 VkAccelerationStructureBuildSizesInfoKHR sizes_of(const Context& context, const StructureBuild& build);
 Buffer make_build_scratch(Context& context, const std::string& name, std::uint64_t bytes);
 
-// Creates the structures and builds all of them with one command in one pass called `pass_name`. What the geometries
-// point to must have been written by earlier passes. The scratch memory is kept by `commands`.
+enum class BuildMode : std::uint8_t { build, update };
+
+// A build into memory that exists. update: the last build allowed that, and had as many primitives.
+struct StructureWork {
+    StructureBuild build;
+    BuildMode mode;
+    const AccelerationStructure* target;
+};
+
+// Builds all of them with one command in one pass called `pass_name`. What the geometries point to must have been
+// written by earlier passes. The scratch memory is kept by `commands`.
+void record_builds(Commands& commands, const std::string& pass_name, std::span<const StructureWork> work);
+// The same for one, in scratch memory of the caller.
+void record_build(Commands& commands, const std::string& pass_name, const StructureWork& work, const Buffer& scratch);
+// Creates the structures, then record_builds().
 std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
                                                     std::span<const StructureBuild> builds);
-
-enum class BuildMode : std::uint8_t { build, update };
-// Builds one structure into memory that exists. update: its last build allowed that, and had as many primitives.
-void rebuild_structure(Commands& commands, const std::string& pass_name, const StructureBuild& build, BuildMode mode,
-                       const AccelerationStructure& target, const Buffer& scratch);
 
 }  // namespace twinray

@@ -15,26 +15,26 @@ Buffer upload(Commands& commands, const std::string& name, const std::vector<T>&
     return buffer;
 }
 
-StructureBuild build_of(const std::string& name, const Buffer& positions, const Buffer& triangles) {
+}  // namespace
+
+StructureBuild triangle_build(const std::string& name, std::uint64_t positions, uint vertex_count,
+                              uint triangle_count) {
     StructureBuild build{};
     build.name = "blas " + name;
     build.type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR;
-    build.primitive_count = static_cast<std::uint32_t>(triangles.bytes() / sizeof(uvec3));
+    build.primitive_count = triangle_count;
     build.geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
     build.geometry.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
     build.geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
     VkAccelerationStructureGeometryTrianglesDataKHR& data = build.geometry.geometry.triangles;
     data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
     data.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
-    data.vertexData.deviceAddress = positions.address();
+    data.vertexData.deviceAddress = positions;
     data.vertexStride = sizeof(vec3);
-    data.maxVertex = static_cast<std::uint32_t>(positions.bytes() / sizeof(vec3)) - 1;
+    data.maxVertex = vertex_count - 1;
     data.indexType = VK_INDEX_TYPE_UINT32;
-    data.indexData.deviceAddress = triangles.address();
     return build;
 }
-
-}  // namespace
 
 std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries, bool reorder) {
     std::vector<Blas> blases(geometries.size());
@@ -51,7 +51,10 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
             Buffer positions = upload(commands, "blas positions " + geometry.name, input.positions);
             Buffer triangles = upload(commands, "blas triangles " + geometry.name, input.triangles);
             blases[i].original_triangles = upload(commands, "blas order " + geometry.name, input.original);
-            builds.push_back(build_of(geometry.name, positions, triangles));
+            builds.push_back(triangle_build(geometry.name, positions.address(),
+                                            static_cast<uint>(input.positions.size()),
+                                            static_cast<uint>(input.triangles.size())));
+            builds.back().geometry.geometry.triangles.indexData.deviceAddress = triangles.address();
             built.push_back(i);
             commands.keep(std::move(positions));
             commands.keep(std::move(triangles));

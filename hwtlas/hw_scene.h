@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// HwScene and HwTraceArgs for C++.
+// What kernels of the hardware accelerator share with C++.
 #pragma once
 
 #include "engine/accel/world_bound.h"
@@ -8,8 +8,9 @@ namespace twinray {
 using std::uint64_t;
 #include "engine/core/bridge_begin.h"
 #include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_triangles.h"
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(HwGeometry) == 40 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 16 &&
-              sizeof(HwTraceArgs) == 48);
+              sizeof(HwTraceArgs) == 48 && sizeof(HwTrianglesArgs) == 72);
 }  // namespace twinray

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
-#include "hwtlas/blas.h"
+#include "hwtlas/moving_blas.h"
 #include "hwtlas_trace_query.spv.h"
 #include "hwtlas_trace_rchit.spv.h"
 #include "hwtlas_trace_rgen.spv.h"
@@ -26,6 +26,10 @@ std::size_t index_of(Query query) { return static_cast<std::size_t>(query); }
 struct HwTlas::HwBuiltGeometry : BuiltGeometry {
     explicit HwBuiltGeometry(Blas&& built) : blas(std::move(built)) { bytes = blas.bytes(); }
     Blas blas;
+
+    static const Blas* of(const BuiltGeometry* built) {
+        return built ? &static_cast<const HwBuiltGeometry*>(built)->blas : nullptr;
+    }
 };
 
 struct HwTlas::HwTopLevel : BuiltScene {
@@ -40,6 +44,7 @@ HwTlas::HwTlas(Context& context, BuildOrder order)
     : AbstractAccel(checked(context), "HwTlas"),
       reorder_(order == BuildOrder::morton ||
                (order == BuildOrder::automatic && context.facts().builds_in_input_order)),
+      moving_(std::make_unique<MovingBlasBuilder>(context, reorder_)),
       tlas_builder_(context, reorder_) {
     create_pipelines(Query::closest);
     create_pipelines(Query::any);
@@ -66,17 +71,55 @@ const char* HwTlas::trace_path() const {
     return kernels_[index_of(Query::closest)] ? "ray query" : "ray tracing pipeline";
 }
 
-std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> HwTlas::build_geometries(
-    Commands& commands, std::span<const GeometryInput> inputs) {
-    if (inputs.empty()) return {};
+// Those whose vertices the host alone has.
+void HwTlas::build_still(Commands& commands, std::span<const GeometryInput> inputs, Built& built) {
     std::vector<const Geometry*> geometries;
-    for (const GeometryInput& input : inputs) geometries.push_back(input.geometry);
-    std::vector<std::unique_ptr<BuiltGeometry>> built;
-    for (Blas& blas : build_blases(commands, geometries, reorder_))
-        built.push_back(std::make_unique<HwBuiltGeometry>(std::move(blas)));
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        if (inputs[i].mesh.indices.address) continue;
+        geometries.push_back(inputs[i].geometry);
+        places.push_back(i);
+    }
+    if (places.empty()) return;
+    std::vector<Blas> blases = build_blases(commands, geometries, reorder_);
     const auto pass = commands.pass("hwtlas geometry blocks");
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        commands.write(*inputs[places[i]].block, blases[i].block());
+        built[places[i]] = std::make_unique<HwBuiltGeometry>(std::move(blases[i]));
+    }
+}
+
+// Into the memory of `current` where it was made for meshes that move.
+MovingMesh HwTlas::prepare_moving(const GeometryInput& input, std::unique_ptr<BuiltGeometry>& built) const {
+    const auto count = static_cast<uint>(input.geometry->triangles.size());
+    const Blas* blas = HwBuiltGeometry::of(input.current);
+    if (!blas || !blas->can_update) {
+        built = std::make_unique<HwBuiltGeometry>(moving_->make(input.geometry->name, count));
+        blas = HwBuiltGeometry::of(built.get());
+    }
+    return {input.mesh, count, input.block, blas};
+}
+
+HwTlas::Built HwTlas::build_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
+    Built built(inputs.size());
+    build_still(commands, inputs, built);
+    std::vector<MovingMesh> moving;
     for (std::size_t i = 0; i < inputs.size(); ++i)
-        commands.write(*inputs[i].block, static_cast<const HwBuiltGeometry&>(*built[i]).blas.block());
+        if (inputs[i].mesh.indices.address) moving.push_back(prepare_moving(inputs[i], built[i]));
+    moving_->record(commands, moving, BuildMode::build);
+    return built;
+}
+
+// The first time, a structure that can be updated must be built: nothing is paid for that before.
+HwTlas::Built HwTlas::refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
+    Built built(inputs.size());
+    std::vector<MovingMesh> builds, updates;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const MovingMesh mesh = prepare_moving(inputs[i], built[i]);
+        (built[i] ? builds : updates).push_back(mesh);
+    }
+    moving_->record(commands, builds, BuildMode::build);
+    moving_->record(commands, updates, BuildMode::update);
     return built;
 }
 

@@ -10,6 +10,9 @@
 
 namespace twinray {
 
+class MovingBlasBuilder;
+struct MovingMesh;
+
 // The order in which triangles and instances go to the driver. Results do not depend on it.
 enum class BuildOrder : std::uint8_t {
     automatic,  // morton where DeviceFacts::builds_in_input_order, else input
@@ -30,8 +33,9 @@ class HwTlas : public AbstractAccel {
     bool reorders() const { return reorder_; }
 
   protected:
-    std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
-                                                                 std::span<const GeometryInput> inputs) override;
+    using Built = std::vector<std::unique_ptr<BuiltGeometry>>;
+    Built build_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
+    Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
                                             const BuiltScene* current) override;
     void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
@@ -41,8 +45,11 @@ class HwTlas : public AbstractAccel {
     struct HwBuiltGeometry;
     struct HwTopLevel;
     void create_pipelines(Query query);
+    void build_still(Commands& commands, std::span<const GeometryInput> inputs, Built& built);
+    MovingMesh prepare_moving(const GeometryInput& input, std::unique_ptr<BuiltGeometry>& built) const;
 
     bool reorder_;
+    std::unique_ptr<MovingBlasBuilder> moving_;
     TlasBuilder tlas_builder_;
     // By Query; only those of the chosen path exist.
     std::array<std::unique_ptr<Kernel<HwTraceArgs>>, 2> kernels_;

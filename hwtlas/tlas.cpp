@@ -90,14 +90,16 @@ void TlasBuilder::record_gather(Commands& commands, const Tlas& tlas, const Tlas
 
 void TlasBuilder::record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const {
     record_gather(commands, tlas, input, record_order(commands, input));
-    rebuild_structure(commands, "hwtlas_build_tlas", build_of(tlas.driver_records, input.count, can_update),
-                      BuildMode::build, tlas.structure, tlas.scratch);
+    twinray::record_build(commands, "hwtlas_build_tlas",
+                          {build_of(tlas.driver_records, input.count, can_update), BuildMode::build, &tlas.structure},
+                          tlas.scratch);
 }
 
 void TlasBuilder::record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const {
     record_gather(commands, tlas, input, {});
-    rebuild_structure(commands, "hwtlas_update_tlas", build_of(tlas.driver_records, input.count, true),
-                      BuildMode::update, tlas.structure, tlas.scratch);
+    twinray::record_build(commands, "hwtlas_update_tlas",
+                          {build_of(tlas.driver_records, input.count, true), BuildMode::update, &tlas.structure},
+                          tlas.scratch);
 }
 
 }  // namespace twinray

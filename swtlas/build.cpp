@@ -8,6 +8,7 @@
 #include "swtlas_morton.spv.h"
 #include "swtlas_parents.spv.h"
 #include "swtlas_refit.spv.h"
+#include "swtlas_refit_triangles.spv.h"
 #include "swtlas_tree_keys.spv.h"
 
 namespace twinray {
@@ -40,7 +41,8 @@ Builder::Builder(Context& context)
       hierarchy_(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv)),
       encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv)),
       parents_(context, stage("swtlas_parents", swtlas_parents_spirv)),
-      refit_(context, stage("swtlas_refit", swtlas_refit_spirv)) {}
+      refit_(context, stage("swtlas_refit", swtlas_refit_spirv)),
+      refit_triangles_(context, stage("swtlas_refit_triangles", swtlas_refit_triangles_spirv)) {}
 
 Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const {
     const BuildScratch& at = plan.scratch;
@@ -111,21 +113,34 @@ void Builder::record_instances(Commands& commands, const BuildPlan& plan, const 
     record_hierarchy(commands, batch, record_order(commands, plan, batch), false);
 }
 
-void Builder::record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
-                           Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
-    if (plan.leaf_count == 0) return;
-    const Batch batch = begin(commands, plan, std::span(&tree, 1));
-    // Nothing is sorted here: that scratch holds the parents.
+// The boxes of all inner nodes from those of the leaves.
+void Builder::record_climb(Commands& commands, const Batch& batch) const {
+    // Nothing is sorted in a refit: that scratch holds the parents.
     const Uints node_parents = batch.pairs.keys, leaf_parents = batch.pairs.values;
-    leaves_instances_.dispatch_groups(
-        commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
-        batch.block_count);
     parents_.dispatch_groups(commands, {batch.trees, batch.blocks, node_parents, leaf_parents, batch.block_count, 0},
                              batch.block_count);
     refit_.dispatch_groups(
         commands,
         {batch.trees, batch.blocks, batch.boxes, node_parents, leaf_parents, batch.meeting, batch.block_count, 0},
         batch.block_count);
+}
+
+void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const {
+    if (plan.leaf_count == 0) return;
+    const Batch batch = begin(commands, plan, trees);
+    refit_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.boxes, batch.block_count, 0},
+                                     batch.block_count);
+    record_climb(commands, batch);
+}
+
+void Builder::record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
+                           Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
+    if (plan.leaf_count == 0) return;
+    const Batch batch = begin(commands, plan, std::span(&tree, 1));
+    leaves_instances_.dispatch_groups(
+        commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
+        batch.block_count);
+    record_climb(commands, batch);
 }
 
 }  // namespace twinray

@@ -21,6 +21,8 @@ class Builder {
     // One tree over the records; fills `instances`.
     void record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
                           Ref<SwInstance> instances) const;
+    // New boxes and corners for trees that record_triangles left behind, whose vertices moved.
+    void record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const;
     // New boxes, and new `instances`, for the topology that record_instances left behind.
     void record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
                       Ref<SwInstance> instances) const;
@@ -31,6 +33,7 @@ class Builder {
     Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const;
     Uints record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_hierarchy(Commands& commands, const Batch& batch, Uints order, bool leaves_are_sorted) const;
+    void record_climb(Commands& commands, const Batch& batch) const;
 
     RadixSort sort_;
     Kernel<TriangleLeavesArgs> leaves_triangles_;
@@ -41,6 +44,7 @@ class Builder {
     Kernel<EncodeTrianglesArgs> encode_triangles_;
     Kernel<ParentsArgs> parents_;
     Kernel<RefitArgs> refit_;
+    Kernel<RefitTrianglesArgs> refit_triangles_;
 };
 
 }  // namespace twinray

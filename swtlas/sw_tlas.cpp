@@ -19,7 +19,11 @@ Bvh empty_bvh(std::uint64_t nodes) { return {vec3(INFINITY), vec3(-INFINITY), {n
 }  // namespace
 
 struct SwTlas::SwBuiltGeometry : BuiltGeometry {
-    Buffer buffer;  // see layout_geometry
+    GeometryLayout layout;
+    Buffer buffer;
+
+    Ref<BvhTriangle> triangles() const { return buffer.ref<BvhTriangle>(layout.triangles); }
+    SwGeometry block() const { return {empty_bvh(buffer.address() + layout.nodes), triangles()}; }
 };
 
 struct SwTlas::SwBuiltScene : BuiltScene {
@@ -41,49 +45,89 @@ SwTlas::SwTlas(Context& context)
       trace_closest_(context, trace_kernel("swtlas_trace closest", QUERY_CLOSEST)),
       trace_any_(context, trace_kernel("swtlas_trace any", QUERY_ANY)) {}
 
-std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::build_geometries(
-    Commands& commands, std::span<const GeometryInput> inputs) {
-    if (inputs.empty()) return {};
+std::vector<uint> SwTlas::triangle_counts(std::span<const GeometryInput> inputs) {
     std::vector<uint> counts;
+    for (const GeometryInput& input : inputs) counts.push_back(static_cast<uint>(input.geometry->triangles.size()));
+    return counts;
+}
+
+// Where the meshes lie on the device; those that are not there yet are uploaded.
+std::vector<DeviceMesh> SwTlas::record_meshes(Commands& commands, std::span<const GeometryInput> inputs) {
     std::vector<Commands::Piece> pieces;
     std::uint64_t bytes = 0;
     const auto place = [&](std::span<const std::byte> data) {
         pieces.push_back({bytes, data});
         bytes += data.size();
+        return pieces.back().offset;
     };
+    std::vector<DeviceMesh> meshes;
     for (const GeometryInput& input : inputs) {
-        counts.push_back(static_cast<uint>(input.geometry->triangles.size()));
-        place(std::as_bytes(std::span(input.geometry->positions)));
-        place(std::as_bytes(std::span(input.geometry->triangles)));
+        meshes.push_back(input.mesh);
+        if (input.mesh.indices.address) continue;
+        meshes.back().positions.address = place(std::as_bytes(std::span(input.geometry->positions)));
+        meshes.back().indices.address = place(std::as_bytes(std::span(input.geometry->triangles)));
     }
-    const BuildPlan plan = plan_build(counts);
     Buffer source(context(), {.name = "swtlas geometry input", .bytes = bytes});
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        if (inputs[i].mesh.indices.address) continue;
+        meshes[i].positions.address += source.address();
+        meshes[i].indices.address += source.address();
+    }
+    commands.upload_pieces(source, pieces);
+    commands.keep(std::move(source));
+    return meshes;
+}
+
+std::unique_ptr<SwTlas::SwBuiltGeometry> SwTlas::make_geometry(const Geometry& geometry) {
+    auto made = std::make_unique<SwBuiltGeometry>();
+    made->layout = layout_geometry(static_cast<uint>(geometry.triangles.size()));
+    made->bytes = made->layout.bytes;
+    made->buffer = Buffer(context(), {.name = "SwTlas geometry '" + geometry.name + "'", .bytes = made->bytes});
+    return made;
+}
+
+std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::build_geometries(
+    Commands& commands, std::span<const GeometryInput> inputs) {
+    if (inputs.empty()) return {};
+    const std::vector<uint> counts = triangle_counts(inputs);
+    const BuildPlan plan = plan_build(counts);
     std::vector<std::unique_ptr<BuiltGeometry>> built;
     std::vector<BuildTree> trees;
     {
         const auto pass = commands.pass("swtlas geometry input");
-        commands.upload_pieces(source, pieces);
+        const std::vector<DeviceMesh> meshes = record_meshes(commands, inputs);
         for (std::size_t i = 0; i < inputs.size(); ++i) {
-            const GeometryLayout layout = layout_geometry(counts[i]);
-            auto made = std::make_unique<SwBuiltGeometry>();
-            made->buffer = Buffer(
-                context(), {.name = "SwTlas geometry '" + inputs[i].geometry->name + "'", .bytes = layout.bytes});
-            made->bytes = layout.bytes;
-            const std::uint64_t base = made->buffer.address();
-            const SwGeometry block{empty_bvh(base + layout.nodes), {base + layout.triangles}};
-            commands.write(*inputs[i].block, block);
+            std::unique_ptr<SwBuiltGeometry> made;
+            if (!inputs[i].current) made = make_geometry(*inputs[i].geometry);
+            const auto& target = made ? *made : static_cast<const SwBuiltGeometry&>(*inputs[i].current);
+            commands.write(*inputs[i].block, target.block());
             trees.push_back({plan.first[i],
                              counts[i],
-                             {source.address() + pieces[2 * i].offset},
-                             {source.address() + pieces[2 * i + 1].offset},
-                             block.triangles,
+                             meshes[i].positions,
+                             meshes[i].indices,
+                             target.triangles(),
                              {inputs[i].block->address()}});
             built.push_back(std::move(made));
         }
     }
-    commands.keep(std::move(source));
     builder_.record_triangles(commands, plan, trees);
     return built;
+}
+
+std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::refit_geometries(
+    Commands& commands, std::span<const GeometryInput> inputs) {
+    const std::vector<uint> counts = triangle_counts(inputs);
+    const BuildPlan plan = plan_build(counts);
+    std::vector<BuildTree> trees;
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+        trees.push_back({plan.first[i],
+                         counts[i],
+                         inputs[i].mesh.positions,
+                         inputs[i].mesh.indices,
+                         static_cast<const SwBuiltGeometry&>(*inputs[i].current).triangles(),
+                         {inputs[i].block->address()}});
+    builder_.record_triangle_refit(commands, plan, trees);
+    return std::vector<std::unique_ptr<BuiltGeometry>>(inputs.size());
 }
 
 std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& commands, const SceneInput& input,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/accel/abstract_accel.h"
 
+#include <algorithm>
 #include <atomic>
 #include <utility>
 
@@ -25,7 +26,12 @@ InstanceState state_of(const InstanceRecord& record) { return {transform_of(reco
 }  // namespace
 
 AbstractAccel::AbstractAccel(Context& context, std::string name)
-    : context_(context), name_(std::move(name)), id_(next_accel_id()), instances_(context), bound_(context) {}
+    : context_(context),
+      name_(std::move(name)),
+      id_(next_accel_id()),
+      vertices_(context),
+      instances_(context),
+      bound_(context) {}
 
 AbstractAccel::~AbstractAccel() = default;
 
@@ -39,7 +45,7 @@ AccelHandle AbstractAccel::push(const MeshView& mesh, std::span<const Transform>
         fail(name_, ": mesh '", mesh.name, "': ", options.size(), " instance options for ", transforms.size(),
              " transforms; the lengths must match");
     Placement placement{
-        Geometry(mesh), Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}), nullptr, {}};
+        Geometry(mesh), Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}), nullptr, {}, {}};
     for (std::size_t i = 0; i < transforms.size(); ++i)
         placement.instances.records.push_back(
             checked_record(placement, i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
@@ -65,7 +71,40 @@ void AbstractAccel::update(AccelHandle handle, const MeshView& mesh) {
     warn_of_inactive_triangles(geometry);
     if (placement.built) erased_.push_back(std::move(placement.built));
     placement.geometry = std::move(geometry);
+    placement.vertices = {};
     mark(Dirty::structure);
+}
+
+AbstractAccel::Placement& AbstractAccel::checked_for_vertices(AccelHandle handle, std::size_t count) {
+    Placement& placement = live(handle, "update_vertices");
+    const Geometry& geometry = placement.geometry;
+    if (const std::size_t n = geometry.positions.size(); count != n)
+        fail(name_, ": update_vertices: mesh '", geometry.name, "': ", count, " positions for its ", n,
+             " vertices; update() changes their number");
+    return placement;
+}
+
+void AbstractAccel::update_vertices(AccelHandle handle, std::span<const vec3> positions) {
+    Placement& placement = checked_for_vertices(handle, positions.size());
+    Geometry& geometry = placement.geometry;
+    const std::size_t inactive = count_non_finite_triangles({geometry.name, positions, geometry.triangles});
+    std::copy(positions.begin(), positions.end(), geometry.positions.begin());
+    geometry.non_finite_triangles = inactive;
+    warn_of_inactive_triangles(geometry);
+    if (geometry.triangles.empty()) return;
+    placement.vertices.incoming = {};
+    placement.vertices.edited = placement.built || placement.vertices.on_device();
+    mark(Dirty::moves);
+}
+
+void AbstractAccel::update_vertices(AccelHandle handle, Floats positions, std::size_t count) {
+    Placement& placement = checked_for_vertices(handle, count);
+    if (!positions.address || positions.address % 4)
+        fail(name_, ": update_vertices: device address ", positions.address, " must be a multiple of 4 and not 0");
+    if (placement.geometry.triangles.empty()) return;
+    placement.vertices.incoming = positions;
+    placement.vertices.edited = true;
+    mark(Dirty::moves);
 }
 
 InstanceRecord AbstractAccel::checked_record(const Placement& placement, std::size_t index, const Transform& transform,
@@ -109,7 +148,7 @@ void AbstractAccel::update_transforms(AccelHandle handle, std::span<const Transf
     for (std::size_t i = 0; i < transforms.size(); ++i)
         records.push_back(checked_record(placement, i, transforms[i], options_of(placement.instances.records[i])));
     placement.instances.edit_all(std::move(records));
-    mark(Dirty::transforms);
+    mark(Dirty::moves);
 }
 
 void AbstractAccel::update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count) {
@@ -118,7 +157,7 @@ void AbstractAccel::update_transforms(AccelHandle handle, Ref<Transform> transfo
     if (!transforms.address || transforms.address % 4)
         fail(name_, ": update_transforms: device address ", transforms.address, " must be a multiple of 4 and not 0");
     placement.instances.replace_transforms(transforms);
-    mark(Dirty::transforms);
+    mark(Dirty::moves);
 }
 
 void AbstractAccel::check_count(AccelHandle handle, const Placement& placement, std::size_t count) const {
@@ -137,7 +176,7 @@ void AbstractAccel::update_transform_at(AccelHandle handle, std::size_t index, c
     check_index(handle, placement, index, "update_transform_at");
     const InstanceOptions options = options_of(placement.instances.records[index]);
     placement.instances.edit(index, checked_record(placement, index, transform, options));
-    mark(Dirty::transforms);
+    mark(Dirty::moves);
 }
 
 InstanceRange AbstractAccel::instance_buffer(AccelHandle handle) const {
@@ -154,7 +193,7 @@ void AbstractAccel::mark_transforms_dirty(AccelHandle handle) {
     if (!placement.instances.first)
         fail(name_, ": mark_transforms_dirty: handle ", handle.id, " is not on the device yet; call sync() first");
     placement.instances.device_wrote = true;
-    mark(Dirty::transforms);
+    mark(Dirty::moves);
 }
 
 std::size_t AbstractAccel::n_instances() const {

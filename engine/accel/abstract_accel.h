@@ -10,6 +10,7 @@
 
 #include "engine/accel/geometry.h"
 #include "engine/accel/instance_array.h"
+#include "engine/accel/vertices.h"
 #include "engine/accel/world_bound.h"
 #include "engine/core/commands.h"
 #include "engine/core/ray.h"
@@ -81,6 +82,13 @@ class AbstractAccel {
     bool erase(AccelHandle handle);
     // Another mesh for all instances of the handle.
     void update(AccelHandle handle, const MeshView& mesh);
+    // New positions for the vertices of the handle's mesh, as many as it has; the triangles stay. The next sync refits
+    // the geometry in place: views stay valid. A triangle with a corner that is not finite, or without an area, is
+    // inactive until it is moved back.
+    void update_vertices(AccelHandle handle, std::span<const vec3> positions);
+    // The same from device memory, count times 3 tightly packed floats, read by the next sync. Nobody checks what lies
+    // there.
+    void update_vertices(AccelHandle handle, Floats positions, std::size_t count);
 
     // Transforms; custom indices, masks and flags stay. update_transform wants a handle with exactly one instance,
     // update_transforms one transform per instance.
@@ -103,7 +111,8 @@ class AbstractAccel {
     std::size_t n_geometries() const { return placements_.size(); }
 
     // Builds what changed since the last sync and returns the point at which the GPU has built it; a clean
-    // accelerator does nothing. Where only transforms changed, the top level is refitted in place and views stay valid.
+    // accelerator does nothing. Where only transforms and vertices changed, everything is refitted in place and views
+    // stay valid.
     // It never waits for the GPU: what in-flight work may still read is freed when the timeline has passed it.
     SyncPoint sync();
     // The same into the caller's command buffer, which must then be submitted: from here on the accelerator counts on
@@ -112,7 +121,7 @@ class AbstractAccel {
     void sync(Commands& commands);
     // Throws Error if edits are pending.
     AccelView view() const;
-    // Counts the syncs that changed more than transforms: views of before are stale.
+    // Counts the syncs that changed more than transforms and vertices: views of before are stale.
     std::uint64_t revision() const { return revision_; }
 
     // A box around all live instances at the last sync: the box of each geometry under its transform, rounded outward.
@@ -151,6 +160,8 @@ class AbstractAccel {
     struct GeometryInput {
         const Geometry* geometry;
         const Buffer* block;
+        DeviceMesh mesh;               // where it is not null, this is built from, not the host's copy
+        const BuiltGeometry* current;  // of an earlier sync and the same triangles, or null
     };
     // The top level as the implementation built it.
     struct BuiltScene {
@@ -167,7 +178,11 @@ class AbstractAccel {
     };
     static constexpr std::uint64_t geometry_block_bytes = 64;
 
+    // One entry per input; null where the memory of `current` suffices.
     virtual std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
+                                                                         std::span<const GeometryInput> inputs) = 0;
+    // Adapts `current` to vertices that moved. One entry per input; null where its memory suffices.
+    virtual std::vector<std::unique_ptr<BuiltGeometry>> refit_geometries(Commands& commands,
                                                                          std::span<const GeometryInput> inputs) = 0;
     // Builds into the memory of `current` where that suffices, and then returns null.
     virtual std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
@@ -187,18 +202,20 @@ class AbstractAccel {
         Geometry geometry;
         Buffer block;                          // see GeometryInput
         std::unique_ptr<BuiltGeometry> built;  // null: `geometry` is not built yet
+        VertexSlice vertices;
         InstanceSlice instances;
     };
     // What a sync recorded, to be committed once it is certain to run.
     struct Staged {
+        VertexArrays::Staged vertices;
         std::vector<Placement*> building;
-        std::vector<std::unique_ptr<BuiltGeometry>> built;
+        std::vector<std::unique_ptr<BuiltGeometry>> built;  // null: what it had was adapted
         std::vector<InstanceSlice*> slices;
         InstanceArray::Staged instances;
         std::unique_ptr<BuiltScene> scene;
         bool has_moved = false;
     };
-    enum class Dirty : std::uint8_t { no, transforms, structure };
+    enum class Dirty : std::uint8_t { no, moves, structure };  // moves: of instances and of vertices
 
     void mark(Dirty what) { dirty_ = std::max(dirty_, what); }
     InstanceRecord checked_record(const Placement& placement, std::size_t index, const Transform& transform,
@@ -206,9 +223,11 @@ class AbstractAccel {
     Placement& live(AccelHandle handle, const char* action);
     const Placement& live(AccelHandle handle, const char* action) const;
     void warn_of_inactive_triangles(const Geometry& geometry) const;
+    Placement& checked_for_vertices(AccelHandle handle, std::size_t count);
     void check_count(AccelHandle handle, const Placement& placement, std::size_t count) const;
     void check_index(AccelHandle handle, const Placement& placement, std::size_t index, const char* action) const;
     Staged stage(Commands& commands);
+    void stage_vertices(Commands& commands, Staged& staged);
     void stage_geometries(Commands& commands, Staged& staged);
     void stage_scene(Commands& commands, Staged& staged);
     void commit(Staged&& staged, SyncPoint done);
@@ -218,11 +237,12 @@ class AbstractAccel {
     Context& context_;
     std::string name_;
     std::uint64_t id_;
+    VertexArrays vertices_;
     InstanceArray instances_;
     WorldBoundKernel bound_;
     std::map<std::uint64_t, Placement> placements_;  // in push order: ids only grow
     Dirty dirty_ = Dirty::structure;
-    bool has_moved_ = false;  // transforms have changed after a build, so that builds allow refits
+    bool has_moved_ = false;  // something has moved after a build, so that builds allow refits
     std::uint64_t revision_ = 0;
     SyncPoint synced_;
     uint warned_unusable_ = 0;

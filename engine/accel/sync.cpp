@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The one place that builds: stage records everything, commit takes it over once it is certain to run.
+#include <algorithm>
 #include <utility>
 
 #include "engine/accel/abstract_accel.h"
@@ -34,29 +35,49 @@ AbstractAccel::Staged AbstractAccel::stage(Commands& commands) {
     return staged;
 }
 
+void AbstractAccel::stage_vertices(Commands& commands, Staged& staged) {
+    std::vector<VertexArrays::Item> moved;
+    for (auto& [id, placement] : placements_)
+        if (placement.vertices.edited) moved.push_back({&placement.geometry, &placement.vertices});
+    staged.vertices = vertices_.stage(commands, std::move(moved));
+}
+
 void AbstractAccel::stage_geometries(Commands& commands, Staged& staged) {
-    std::vector<GeometryInput> inputs;
+    stage_vertices(commands, staged);
+    std::vector<GeometryInput> builds, refits;
+    std::vector<Placement*> refitting;
+    std::size_t moved = 0;
     for (auto& [id, placement] : placements_) {
-        if (placement.built) continue;
-        staged.building.push_back(&placement);
-        inputs.push_back({&placement.geometry, &placement.block});
+        const bool is_moved = placement.vertices.edited;
+        const DeviceMesh mesh = is_moved ? staged.vertices.mesh(moved++) : DeviceMesh{};
+        if (placement.built && !is_moved) continue;
+        (placement.built ? refitting : staged.building).push_back(&placement);
+        (placement.built ? refits : builds)
+            .push_back({&placement.geometry, &placement.block, mesh, placement.built.get()});
     }
-    staged.built = build_geometries(commands, inputs);
+    staged.built = build_geometries(commands, builds);
+    for (auto& refitted : refit_geometries(commands, refits)) staged.built.push_back(std::move(refitted));
+    staged.building.insert(staged.building.end(), refitting.begin(), refitting.end());
 }
 
 void AbstractAccel::stage_scene(Commands& commands, Staged& staged) {
-    staged.has_moved = has_moved_ || (scene_ && dirty_ == Dirty::transforms);
+    staged.has_moved = has_moved_ || (scene_ && dirty_ == Dirty::moves);
     const SceneInput input{staged.instances.records, static_cast<uint>(staged.instances.count), bound_.result(),
                            staged.has_moved};
-    // The first move rebuilds: nothing is paid for refits before.
-    if (scene_ && has_moved_ && dirty_ == Dirty::transforms)
+    // The first move rebuilds: nothing is paid for refits before. So does a geometry that was built anew: its instances
+    // may have been inactive before, which a refit cannot change.
+    const bool is_built_anew =
+        std::any_of(staged.built.begin(), staged.built.end(), [](auto& b) { return b != nullptr; });
+    if (scene_ && has_moved_ && dirty_ == Dirty::moves && !is_built_anew)
         refit_scene(commands, input, *scene_);
     else
         staged.scene = build_scene(commands, input, scene_.get());
 }
 
 void AbstractAccel::commit(Staged&& staged, SyncPoint done) {
-    for (std::size_t i = 0; i < staged.building.size(); ++i) staged.building[i]->built = std::move(staged.built[i]);
+    for (std::size_t i = 0; i < staged.building.size(); ++i)
+        if (staged.built[i]) staged.building[i]->built = std::move(staged.built[i]);
+    VertexArrays::commit(std::move(staged.vertices));
     has_moved_ = staged.has_moved;
     revision_ += dirty_ == Dirty::structure;
     if (staged.scene) scene_ = std::move(staged.scene);

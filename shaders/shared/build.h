@@ -126,6 +126,15 @@ struct RefitArgs
     uint reserved;
 };
 
+struct RefitTrianglesArgs
+{
+    REF(BuildTree) trees;
+    REF(BuildBlock) blocks;
+    REF(LeafBox) boxes; // by place in the tree's order
+    uint block_count;
+    uint reserved;
+};
+
 struct EncodeTrianglesArgs
 {
     REF(BuildTree) trees;
@@ -166,11 +175,6 @@ FUNC vec3 center_of(LeafBox box)
     return center;
 }
 
-FUNC vec3 load_position(Floats positions, uint vertex)
-{
-    return vec3(AT(positions, vertex * 3u), AT(positions, vertex * 3u + 1u), AT(positions, vertex * 3u + 2u));
-}
-
 FUNC BvhTriangle fetch_triangle(BuildTree tree, uint primitive)
 {
     BvhTriangle triangle;
@@ -189,6 +193,16 @@ FUNC LeafBox box_of_triangle(BvhTriangle t)
     box.lo = min(t.v0, min(t.v1, t.v2));
     box.hi = max(t.v0, max(t.v1, t.v2));
     return box;
+}
+
+// As traversal wants it.
+FUNC BvhTriangle without_inactive_corners(BvhTriangle t)
+{
+    if (is_active_triangle(t.v0, t.v1, t.v2)) return t;
+    t.v0 = vec3(0.0f);
+    t.v1 = vec3(0.0f);
+    t.v2 = vec3(0.0f);
+    return t;
 }
 
 // A box around object_to_world applied to the box (lo, hi), widened by the rounding of this arithmetic and by how far

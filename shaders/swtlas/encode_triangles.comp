@@ -15,11 +15,5 @@ void main()
     uint position = block.first + gl_LocalInvocationIndex;
     BuildTree tree = AT(args.trees, block.tree);
     BvhTriangle triangle = fetch_triangle(tree, AT(args.order, position) - tree.first);
-    if (!is_active_triangle(triangle.v0, triangle.v1, triangle.v2))
-    {
-        triangle.v0 = vec3(0.0f);
-        triangle.v1 = vec3(0.0f);
-        triangle.v2 = vec3(0.0f);
-    }
-    AT(tree.triangles, position - tree.first) = triangle;
+    AT(tree.triangles, position - tree.first) = without_inactive_corners(triangle);
 }

@@ -46,6 +46,8 @@ class Churn : public test::AccelTest {
     void move_one();
     void move_by_device();
     void move();
+    std::vector<vec3> random_positions(const Mesh& mesh);
+    void move_vertices();
     void edit();
     void aim_at_triangles(const Scene& scene, std::vector<Ray>& rays);
     void expect_exact_counts();
@@ -58,6 +60,7 @@ class Churn : public test::AccelTest {
     std::mt19937 random_{20'261'121};
     std::uniform_real_distribution<float> unit_{-1, 1};
     std::vector<Placed> placed_;
+    std::size_t vertex_edits_ = 0;
 };
 TWINRAY_OVER_EVERY_ACCEL(Churn);
 
@@ -96,10 +99,33 @@ void Churn::move_by_device() {
     accel().update_transforms(placed.handle, placed.sources.back().ref<Transform>(), placed.transforms.size());
 }
 
+// Most of the time a small change; now and then a corner that is not finite.
+std::vector<vec3> Churn::random_positions(const Mesh& mesh) {
+    std::vector<vec3> positions = mesh.positions;
+    const float size = random_() % 4 == 0 ? 1.0f : 0.05f;
+    for (vec3& position : positions) {
+        position = is_finite(position) ? position : vec3(0);
+        position += size * vec3(unit_(random_), unit_(random_), unit_(random_));
+    }
+    if (!positions.empty() && random_() % 8 == 0) positions[random_() % positions.size()].y = NAN;
+    return positions;
+}
+
+void Churn::move_vertices() {
+    Placed& placed = any_placed();
+    placed.mesh.positions = random_positions(placed.mesh);
+    ++vertex_edits_;
+    if (placed.mesh.positions.empty() || random_() % 2 == 0)
+        return accel().update_vertices(placed.handle, placed.mesh.positions);
+    placed.sources.push_back(device_copy(placed.mesh.positions));
+    accel().update_vertices(placed.handle, placed.sources.back().ref<float>(), placed.mesh.positions.size());
+}
+
 void Churn::move() {
-    const auto kind = random_() % 3;
+    const auto kind = random_() % 5;
     if (kind == 0) return move_by_host();
     if (kind == 1) return move_one();
+    if (kind > 2) return move_vertices();
     move_by_device();
 }
 
@@ -170,19 +196,23 @@ TEST_P(Churn, TenThousandEditsInAThousandSyncsAgreeWithTheReferee) {
     accel().sync();
     accel().sync();
     EXPECT_EQ(memory(), before) << "bytes in live allocations";
+    EXPECT_GT(vertex_edits_, 2000u);
 }
 
 TEST_P(Churn, FiveHundredMovesKeepEverythingInPlace) {
     for (int i = 0; i < 8; ++i) push();
     accel().sync();
     move_by_host();
+    for (Placed& placed : placed_) accel().update_vertices(placed.handle, placed.mesh.positions);
     accel().sync();
     const AccelView view = accel().view();
     const std::uint64_t before = memory();
     for (int round = 0; round < 500; ++round) {
         move_by_host();
         move_one();
+        move_vertices();
         accel().sync();
+        for (Placed& placed : placed_) placed.sources.clear();
         ASSERT_EQ(accel().view().scene, view.scene);
         ASSERT_EQ(accel().revision(), view.revision);
         if (round % 25 != 0) continue;

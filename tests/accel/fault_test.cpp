@@ -206,6 +206,23 @@ TEST_P(Faults, TheSyncOfAMove) {
     check_end(moved);
 }
 
+// The first time it builds what can be refitted, from then on it refits in place.
+TEST_P(Faults, TheSyncOfMovedVertices) {
+    World deformed = world();
+    deformed.push_base();
+    for (const Memory where : {Memory::upload, Memory::device})
+        for (const bool is_first : {true, false}) {
+            const auto next = [&]() -> World& {
+                if (is_first) deformed.renew_tower();
+                deformed.sync();
+                deformed.deform(where);
+                return deformed;
+            };
+            fail_every_call(next, [](World& w) { w.sync(); });
+        }
+    check_end(deformed);
+}
+
 TEST_P(Faults, Pushing) {
     World pushed = world();
     pushed.push_base();

@@ -199,6 +199,38 @@ TEST_F(SwBuild, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
     }
 }
 
+TEST_F(SwBuild, ARefittedGeometryIsSoundAndKeepsItsTopology) {
+    SwTlas accel(context());
+    std::vector<Mesh> meshes;
+    std::vector<AccelHandle> handles;
+    std::vector<SwTlas::Tree> before;
+    for (const uint n : {1u, 2u, 3u, 255u, 256u, 257u, 1000u}) {
+        meshes.push_back(make_soup(n, n));
+        handles.push_back(accel.push(meshes.back()));
+    }
+    accel.sync();
+    for (const AccelHandle handle : handles) before.push_back(accel.download_geometry(handle));
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        meshes[i].positions = make_soup(static_cast<uint>(meshes[i].triangles.size()), 77).positions;
+        if (i > 3) meshes[i].positions[100].y = NAN;
+        accel.update_vertices(handles[i], meshes[i].positions);
+    }
+    accel.sync();
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const SwTlas::Tree after = accel.download_geometry(handles[i]);
+        expect_sound(after, meshes[i]);
+        std::vector<uint> order;
+        for (const BvhTriangle& triangle : before[i].triangles) order.push_back(triangle.primitive_index);
+        EXPECT_TRUE(
+            same_bytes(after.triangles, reference::encode_triangles(meshes[i].positions, meshes[i].triangles, order)));
+        EXPECT_EQ(after.bvh.nodes.address, before[i].bvh.nodes.address);
+        for (std::size_t node = 0; node < after.nodes.size(); ++node) {
+            EXPECT_EQ(after.nodes[node].child0, before[i].nodes[node].child0);
+            EXPECT_EQ(after.nodes[node].child1, before[i].nodes[node].child1);
+        }
+    }
+}
+
 TEST(TreeCheck, NamesWhatIsWrong) {
     const Mesh mesh = make_soup(20, 1);
     const std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/accel/geometry.h"
+#include "engine/core/kernel.h"
+
+namespace twinray {
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/copy_floats.h"
+#include "engine/core/bridge_end.h"
+
+// A mesh in device memory: 3 floats a vertex, 3 indices a triangle. Null: it is on the host alone.
+struct DeviceMesh {
+    Floats positions;
+    Uints indices;
+};
+
+// What the device has of one geometry's mesh and lacks. Nothing until a vertex is first moved, so that meshes that keep
+// their shape do not pay; from then on the device's copy is what everything is built from.
+struct VertexSlice {
+    Buffer positions, indices;
+    bool edited = false;  // moved since the last sync, by the host, or by `incoming`
+    Floats incoming;      // device memory that the next sync copies the positions from; 0 = Geometry::positions
+
+    bool on_device() const { return indices.bytes() != 0; }
+};
+
+// Brings moved vertices to the device.
+class VertexArrays {
+  public:
+    explicit VertexArrays(Context& context);
+
+    struct Item {
+        const Geometry* geometry;  // has triangles
+        VertexSlice* slice;        // edited
+    };
+    // What stage() recorded, to be committed once it is certain to run.
+    struct Staged {
+        std::vector<Item> items;
+        std::vector<VertexSlice> made;  // by item: buffers for a slice that had none
+        DeviceMesh mesh(std::size_t item) const;
+    };
+    Staged stage(Commands& commands, std::vector<Item> items) const;
+    static void commit(Staged&& staged);
+
+  private:
+    Context& context_;
+    Kernel<CopyFloatsArgs> copy_floats_;
+};
+
+}  // namespace twinray
