@@ -2,6 +2,7 @@
 // What kernels of the hardware accelerator share with C++.
 #pragma once
 
+#include "engine/accel/surface_area.h"
 #include "engine/accel/world_bound.h"
 
 namespace twinray {
@@ -12,5 +13,5 @@ using std::uint64_t;
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(HwGeometry) == 40 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 16 &&
-              sizeof(HwTraceArgs) == 48 && sizeof(HwTrianglesArgs) == 72);
+              sizeof(HwTraceArgs) == 48 && sizeof(HwTrianglesArgs) == 80 && sizeof(HwGatherArgs) == 48);
 }  // namespace twinray

@@ -97,7 +97,7 @@ MovingMesh HwTlas::prepare_moving(const GeometryInput& input, std::unique_ptr<Bu
         built = std::make_unique<HwBuiltGeometry>(moving_->make(input.geometry->name, count));
         blas = HwBuiltGeometry::of(built.get());
     }
-    return {input.mesh, count, input.block, blas};
+    return {input.mesh, count, input.block, blas, input.cost};
 }
 
 HwTlas::Built HwTlas::build_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
@@ -132,13 +132,14 @@ std::unique_ptr<AbstractAccel::BuiltScene> HwTlas::build_scene(Commands& command
         made = std::make_unique<HwTopLevel>(tlas_builder_.make(commands, capacity));
         level = made.get();
     }
-    tlas_builder_.record_build(commands, level->tlas, {input.records, input.count, input.bound}, input.will_move);
+    tlas_builder_.record_build(commands, level->tlas, {input.records, input.count, input.bound, input.cost},
+                               input.will_move);
     return made;
 }
 
 void HwTlas::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
     tlas_builder_.record_update(commands, static_cast<const HwTopLevel&>(current).tlas,
-                                {input.records, input.count, input.bound});
+                                {input.records, input.count, input.bound, input.cost});
 }
 
 void HwTlas::record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const {

@@ -30,6 +30,7 @@ StructureBuild build_of(const std::string& name, std::uint64_t corners, uint tri
 struct MovingBlasBuilder::Batch {
     std::span<const MovingMesh> meshes;
     std::vector<HwTrianglesArgs> args;
+    std::vector<AreaWork> areas;
 
     void dispatch(Commands& commands, const Kernel<HwTrianglesArgs>& kernel) const {
         const auto pass = commands.pass(kernel.name());
@@ -41,6 +42,7 @@ MovingBlasBuilder::MovingBlasBuilder(Context& context, bool reorder)
     : context_(context),
       reorder_(reorder),
       sort_(context),
+      areas_(context),
       bound_(context, kernel("hwtlas_triangle_bound", hwtlas_triangle_bound_spirv)),
       codes_(context, kernel("hwtlas_triangle_codes", hwtlas_triangle_codes_spirv)),
       gather_(context, kernel("hwtlas_gather_triangles", hwtlas_gather_triangles_spirv)) {}
@@ -57,7 +59,8 @@ Blas MovingBlasBuilder::make(const std::string& name, uint triangle_count) const
     return blas;
 }
 
-MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<const MovingMesh> meshes) const {
+MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<const MovingMesh> meshes,
+                                                  BuildMode mode) const {
     const WorldBoundBits none{uvec3(ordered_bits(INFINITY)), uvec3(ordered_bits(-INFINITY)), 0, 0};
     std::uint64_t corner_bytes = 0;
     for (const MovingMesh& mesh : meshes) corner_bytes += std::uint64_t{mesh.triangle_count} * 3 * sizeof(vec3);
@@ -67,7 +70,10 @@ MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<
         const auto pass = commands.pass("hwtlas blas bounds");
         commands.upload(bits, std::span<const WorldBoundBits>(std::vector(meshes.size(), none)));
     }
-    Batch batch{meshes, {}};
+    Batch batch{meshes, {}, {}};
+    for (const MovingMesh& mesh : meshes)
+        batch.areas.push_back({mesh.triangle_count, {mesh.block->address()}, mesh.cost, mode == BuildMode::build});
+    areas_.reserve(commands, batch.areas);
     std::uint64_t next = 0;
     for (const MovingMesh& mesh : meshes) {
         const uint n = mesh.triangle_count;
@@ -79,6 +85,7 @@ MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<
                               {},
                               mesh.blas->original_triangles.ref<uint>(),
                               corners.ref<float>(next),
+                              batch.areas[batch.args.size()].items,
                               n,
                               (n + WORLD_BOUND_GROUP - 1) / WORLD_BOUND_GROUP});
         next += std::uint64_t{n} * 3 * sizeof(vec3);
@@ -118,10 +125,11 @@ void MovingBlasBuilder::record(Commands& commands, std::span<const MovingMesh> m
         const auto pass = commands.pass("hwtlas geometry blocks");
         for (const MovingMesh& mesh : meshes) commands.write(*mesh.block, mesh.blas->block());
     }
-    Batch batch = begin(commands, meshes);
+    Batch batch = begin(commands, meshes, mode);
     batch.dispatch(commands, bound_);
     if (reorder_ && mode == BuildMode::build) record_order(commands, batch);
     batch.dispatch(commands, gather_);
+    areas_.record(commands, std::move(batch.areas));
     record_structures(commands, batch, mode);
 }
 

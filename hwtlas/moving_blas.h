@@ -13,6 +13,7 @@ struct MovingMesh {
     uint triangle_count;
     const Buffer* block;  // HwGeometry; gets the mesh's box, and by a build the addresses of `blas`
     const Blas* blas;     // can_update
+    CostTarget cost;
 };
 
 // Builds bottom levels from vertices in device memory, and updates them. Kernels prepare what blas_input() prepares on
@@ -28,13 +29,14 @@ class MovingBlasBuilder {
 
   private:
     struct Batch;
-    Batch begin(Commands& commands, std::span<const MovingMesh> meshes) const;
+    Batch begin(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode) const;
     void record_order(Commands& commands, Batch& batch) const;
     void record_structures(Commands& commands, const Batch& batch, BuildMode mode) const;
 
     Context& context_;
     bool reorder_;
     RadixSort sort_;
+    SurfaceArea areas_;
     Kernel<HwTrianglesArgs> bound_, codes_, gather_;
 };
 

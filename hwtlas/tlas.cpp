@@ -41,6 +41,7 @@ TlasBuilder::TlasBuilder(Context& context, bool reorder)
     : context_(context),
       reorder_(reorder),
       sort_(context),
+      areas_(context),
       codes_(context,
              {.name = "hwtlas_instance_codes", .spirv = hwtlas_instance_codes_spirv, .group_size = group_size}),
       gather_(context,
@@ -81,22 +82,26 @@ Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) cons
     return sorted.values;
 }
 
-void TlasBuilder::record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order) const {
+void TlasBuilder::record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order,
+                                bool is_build) const {
+    std::vector<AreaWork> areas = {{input.count, {input.bound.address}, input.cost, is_build}};
+    areas_.reserve(commands, areas);
     gather_.dispatch(commands,
                      {input.records, order, tlas.driver_records.ref<InstanceRecord>(), tlas.instances.ref<HwInstance>(),
-                      input.count, 0},
+                      areas[0].items, input.count, 0},
                      input.count);
+    areas_.record(commands, std::move(areas));
 }
 
 void TlasBuilder::record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const {
-    record_gather(commands, tlas, input, record_order(commands, input));
+    record_gather(commands, tlas, input, record_order(commands, input), true);
     twinray::record_build(commands, "hwtlas_build_tlas",
                           {build_of(tlas.driver_records, input.count, can_update), BuildMode::build, &tlas.structure},
                           tlas.scratch);
 }
 
 void TlasBuilder::record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const {
-    record_gather(commands, tlas, input, {});
+    record_gather(commands, tlas, input, {}, false);
     twinray::record_build(commands, "hwtlas_update_tlas",
                           {build_of(tlas.driver_records, input.count, true), BuildMode::update, &tlas.structure},
                           tlas.scratch);

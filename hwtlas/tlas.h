@@ -23,7 +23,8 @@ struct Tlas {
 struct TlasInput {
     Ref<InstanceRecord> records;
     uint count = 0;
-    Ref<WorldBound> bound;  // read only when reordering
+    Ref<WorldBound> bound;
+    CostTarget cost;
 };
 
 // Makes and builds top levels.
@@ -40,11 +41,12 @@ class TlasBuilder {
 
   private:
     Uints record_order(Commands& commands, const TlasInput& input) const;
-    void record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order) const;
+    void record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order, bool is_build) const;
 
     Context& context_;
     bool reorder_;
     RadixSort sort_;
+    SurfaceArea areas_;
     Kernel<HwCodesArgs> codes_;
     Kernel<HwGatherArgs> gather_;
 };

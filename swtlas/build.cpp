@@ -6,6 +6,7 @@
 #include "swtlas_leaves_instances.spv.h"
 #include "swtlas_leaves_triangles.spv.h"
 #include "swtlas_morton.spv.h"
+#include "swtlas_node_areas.spv.h"
 #include "swtlas_parents.spv.h"
 #include "swtlas_refit.spv.h"
 #include "swtlas_refit_triangles.spv.h"
@@ -34,9 +35,11 @@ struct Builder::Batch {
 
 Builder::Builder(Context& context)
     : sort_(context),
+      areas_(context),
       leaves_triangles_(context, stage("swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
       leaves_instances_(context, stage("swtlas_leaves_instances", swtlas_leaves_instances_spirv)),
       morton_(context, stage("swtlas_morton", swtlas_morton_spirv)),
+      node_areas_(context, stage("swtlas_node_areas", swtlas_node_areas_spirv)),
       tree_keys_(context, stage("swtlas_tree_keys", swtlas_tree_keys_spirv)),
       hierarchy_(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv)),
       encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv)),
@@ -123,6 +126,22 @@ void Builder::record_climb(Commands& commands, const Batch& batch) const {
         commands,
         {batch.trees, batch.blocks, batch.boxes, node_parents, leaf_parents, batch.meeting, batch.block_count, 0},
         batch.block_count);
+}
+
+void Builder::record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const {
+    std::vector<AreaWork> work;
+    for (const Measured& tree : trees) {
+        const std::uint64_t groups = (std::uint64_t{inner_count(tree.leaf_count)} + AREA_GROUP - 1) / AREA_GROUP;
+        work.push_back({groups, {tree.tree.address}, tree.target, is_build});
+    }
+    areas_.reserve(commands, work);
+    if (!work.empty()) {
+        const auto pass = commands.pass(node_areas_.name());
+        for (std::size_t i = 0; i < trees.size(); ++i)
+            node_areas_.dispatch_groups(commands, {trees[i].tree, work[i].items, inner_count(trees[i].leaf_count), 0},
+                                        work[i].item_count);
+    }
+    areas_.record(commands, std::move(work));
 }
 
 void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const {

@@ -27,6 +27,14 @@ class Builder {
     void record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
                       Ref<SwInstance> instances) const;
 
+    // What sah() tells of finished trees.
+    struct Measured {
+        Ref<Bvh> tree;
+        uint leaf_count;
+        CostTarget target;
+    };
+    void record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const;
+
   private:
     // The addresses of a batch's scratch regions.
     struct Batch;
@@ -36,9 +44,11 @@ class Builder {
     void record_climb(Commands& commands, const Batch& batch) const;
 
     RadixSort sort_;
+    SurfaceArea areas_;
     Kernel<TriangleLeavesArgs> leaves_triangles_;
     Kernel<InstanceLeavesArgs> leaves_instances_;
     Kernel<MortonArgs> morton_;
+    Kernel<NodeAreasArgs> node_areas_;
     Kernel<TreeKeysArgs> tree_keys_;
     Kernel<HierarchyArgs> hierarchy_;
     Kernel<EncodeTrianglesArgs> encode_triangles_;

@@ -22,8 +22,6 @@ struct Arena {
     }
 };
 
-uint inner_count(uint leaf_count) { return std::max(leaf_count, 1u) - 1u; }
-
 BuildScratch layout_scratch(const BuildPlan& plan) {
     const uint n = plan.leaf_count;
     Arena arena;
@@ -45,6 +43,8 @@ BuildScratch layout_scratch(const BuildPlan& plan) {
 }
 
 }  // namespace
+
+uint inner_count(uint leaf_count) { return std::max(leaf_count, 1u) - 1u; }
 
 BuildPlan plan_build(std::span<const uint> leaf_counts) {
     BuildPlan plan;

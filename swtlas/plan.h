@@ -28,6 +28,8 @@ struct BuildPlan {
 // Throws Error if the batch has 2^32 leaves or more.
 BuildPlan plan_build(std::span<const uint> leaf_counts);
 
+uint inner_count(uint leaf_count);
+
 // Where the parts of a built geometry lie in its buffer; its SwGeometry is the geometry block.
 struct GeometryLayout {
     std::uint64_t nodes = 0, triangles = 0, bytes = 0;

@@ -51,6 +51,15 @@ std::vector<uint> SwTlas::triangle_counts(std::span<const GeometryInput> inputs)
     return counts;
 }
 
+std::vector<Builder::Measured> SwTlas::measured(std::span<const GeometryInput> inputs) {
+    std::vector<Builder::Measured> trees;
+    for (const GeometryInput& input : inputs)
+        if (input.cost.result.address)
+            trees.push_back(
+                {{input.block->address()}, static_cast<uint>(input.geometry->triangles.size()), input.cost});
+    return trees;
+}
+
 // Where the meshes lie on the device; those that are not there yet are uploaded.
 std::vector<DeviceMesh> SwTlas::record_meshes(Commands& commands, std::span<const GeometryInput> inputs) {
     std::vector<Commands::Piece> pieces;
@@ -111,6 +120,7 @@ std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::build_geometr
         }
     }
     builder_.record_triangles(commands, plan, trees);
+    builder_.record_costs(commands, measured(inputs), true);
     return built;
 }
 
@@ -126,7 +136,11 @@ std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::refit_geometr
                          inputs[i].mesh.indices,
                          static_cast<const SwBuiltGeometry&>(*inputs[i].current).triangles(),
                          {inputs[i].block->address()}});
+    std::vector<Builder::Measured> costs = measured(inputs);
+    std::erase_if(costs, [](const Builder::Measured& tree) { return !tree.target.is_first; });
+    builder_.record_costs(commands, costs, true);
     builder_.record_triangle_refit(commands, plan, trees);
+    builder_.record_costs(commands, measured(inputs), false);
     return std::vector<std::unique_ptr<BuiltGeometry>>(inputs.size());
 }
 
@@ -151,6 +165,8 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
     }
     builder_.record_instances(commands, plan_build(std::span(&input.count, 1)), scene->tree(input.count), input.records,
                               scene->instances());
+    const Builder::Measured measured{{scene->address}, input.count, input.cost};
+    builder_.record_costs(commands, std::span(&measured, 1), true);
     return made;
 }
 
@@ -158,6 +174,8 @@ void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const Buil
     const auto& scene = static_cast<const SwBuiltScene&>(current);
     builder_.record_refit(commands, plan_build(std::span(&input.count, 1)), scene.tree(input.count), input.records,
                           scene.instances());
+    const Builder::Measured measured{{scene.address}, input.count, input.cost};
+    builder_.record_costs(commands, std::span(&measured, 1), false);
 }
 
 void SwTlas::record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const {

@@ -28,6 +28,7 @@ class SwTlas final : public AbstractAccel {
     std::vector<std::unique_ptr<BuiltGeometry>> refit_geometries(Commands& commands,
                                                                  std::span<const GeometryInput> inputs) override;
     static std::vector<uint> triangle_counts(std::span<const GeometryInput> inputs);
+    static std::vector<Builder::Measured> measured(std::span<const GeometryInput> inputs);
     std::vector<DeviceMesh> record_meshes(Commands& commands, std::span<const GeometryInput> inputs);
     std::unique_ptr<SwBuiltGeometry> make_geometry(const Geometry& geometry);
     std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,

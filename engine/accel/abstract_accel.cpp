@@ -31,7 +31,8 @@ AbstractAccel::AbstractAccel(Context& context, std::string name)
       id_(next_accel_id()),
       vertices_(context),
       instances_(context),
-      bound_(context) {}
+      bound_(context),
+      scene_costs_(context) {}
 
 AbstractAccel::~AbstractAccel() = default;
 

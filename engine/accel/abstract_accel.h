@@ -132,6 +132,23 @@ class AbstractAccel {
     // The same on the device, for kernels that run after the last sync.
     Ref<WorldBound> world_bound_on_device() const { return bound_.result(); }
 
+    // How good the trees still are: the areas of the boxes of all children, leaves too, over the area of the root's
+    // box, a measure of the time that rays take (the surface area heuristic); 0 where the root's box has no area.
+    // Measured by the GPU in float32, with pairwise sums: right to 1e-5 of itself. What a driver builds is hidden: for
+    // HwTlas it is an estimate, the cost of the tree that halves the driver's input again and again. The form without a
+    // handle is about the top level, measured in each sync, the other about a geometry, measured from its first
+    // update_vertices() on: nothing before. They wait for the last sync that measured.
+    std::optional<double> sah() const { return sah_of(scene_costs_, Wait::yes); }
+    std::optional<double> sah(AccelHandle handle) const;
+    // The same without waiting: the latest that the GPU has done since the tree was last built; nothing while it has
+    // none.
+    std::optional<double> sah_if_ready() const { return sah_of(scene_costs_, Wait::no); }
+    std::optional<double> sah_if_ready(AccelHandle handle) const;
+    // A sync rebuilds what it would refit where sah_if_ready() has grown past this ratio to what it was at the last
+    // build; addresses and views stay. At least 1; infinity: never. Throws Error otherwise.
+    double rebuild_ratio() const { return rebuild_ratio_; }
+    void set_rebuild_ratio(double ratio);
+
     // Records the trace; the hits are visible to later passes. Throws Error on a stale or foreign view.
     void trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const;
     // Host convenience: syncs, uploads, traces, waits and downloads.
@@ -162,6 +179,7 @@ class AbstractAccel {
         const Buffer* block;
         DeviceMesh mesh;               // where it is not null, this is built from, not the host's copy
         const BuiltGeometry* current;  // of an earlier sync and the same triangles, or null
+        CostTarget cost;               // wants the cost measured that sah() tells, unless null
     };
     // The top level as the implementation built it.
     struct BuiltScene {
@@ -175,8 +193,10 @@ class AbstractAccel {
         uint count = 0;
         Ref<WorldBound> bound;
         bool will_move = false;  // refits may follow
+        CostTarget cost;         // as in GeometryInput
     };
     static constexpr std::uint64_t geometry_block_bytes = 64;
+    static constexpr double default_rebuild_ratio = 1.5;
 
     // One entry per input; null where the memory of `current` suffices.
     virtual std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
@@ -208,11 +228,13 @@ class AbstractAccel {
     // What a sync recorded, to be committed once it is certain to run.
     struct Staged {
         VertexArrays::Staged vertices;
+        std::vector<bool> is_rebuilt;  // by item of `vertices`
         std::vector<Placement*> building;
         std::vector<std::unique_ptr<BuiltGeometry>> built;  // null: what it had was adapted
         std::vector<InstanceSlice*> slices;
         InstanceArray::Staged instances;
         std::unique_ptr<BuiltScene> scene;
+        bool is_scene_built = false;  // not refitted
         bool has_moved = false;
     };
     enum class Dirty : std::uint8_t { no, moves, structure };  // moves: of instances and of vertices
@@ -231,6 +253,9 @@ class AbstractAccel {
     void stage_geometries(Commands& commands, Staged& staged);
     void stage_scene(Commands& commands, Staged& staged);
     void commit(Staged&& staged, SyncPoint done);
+    enum class Wait : std::uint8_t { no, yes };
+    std::optional<double> sah_of(const CostLog& costs, Wait wait) const;
+    bool has_degraded(const CostLog& costs) const;
     void warn_of_unusable_instances();
     std::vector<Hit> trace_host(std::span<const Ray> rays, Query query);
 
@@ -240,6 +265,8 @@ class AbstractAccel {
     VertexArrays vertices_;
     InstanceArray instances_;
     WorldBoundKernel bound_;
+    CostLog scene_costs_;
+    double rebuild_ratio_ = default_rebuild_ratio;
     std::map<std::uint64_t, Placement> placements_;  // in push order: ids only grow
     Dirty dirty_ = Dirty::structure;
     bool has_moved_ = false;  // something has moved after a build, so that builds allow refits

@@ -46,14 +46,18 @@ void AbstractAccel::stage_geometries(Commands& commands, Staged& staged) {
     stage_vertices(commands, staged);
     std::vector<GeometryInput> builds, refits;
     std::vector<Placement*> refitting;
-    std::size_t moved = 0;
     for (auto& [id, placement] : placements_) {
+        GeometryInput input{&placement.geometry, &placement.block, {}, placement.built.get(), {}};
         const bool is_moved = placement.vertices.edited;
-        const DeviceMesh mesh = is_moved ? staged.vertices.mesh(moved++) : DeviceMesh{};
         if (placement.built && !is_moved) continue;
-        (placement.built ? refitting : staged.building).push_back(&placement);
-        (placement.built ? refits : builds)
-            .push_back({&placement.geometry, &placement.block, mesh, placement.built.get()});
+        const bool is_refit = placement.built && !has_degraded(placement.vertices.costs);
+        if (is_moved) {
+            input.mesh = staged.vertices.mesh(staged.is_rebuilt.size());
+            input.cost = staged.vertices.cost_target(staged.is_rebuilt.size());
+            staged.is_rebuilt.push_back(!is_refit);
+        }
+        (is_refit ? refitting : staged.building).push_back(&placement);
+        (is_refit ? refits : builds).push_back(input);
     }
     staged.built = build_geometries(commands, builds);
     for (auto& refitted : refit_geometries(commands, refits)) staged.built.push_back(std::move(refitted));
@@ -63,21 +67,25 @@ void AbstractAccel::stage_geometries(Commands& commands, Staged& staged) {
 void AbstractAccel::stage_scene(Commands& commands, Staged& staged) {
     staged.has_moved = has_moved_ || (scene_ && dirty_ == Dirty::moves);
     const SceneInput input{staged.instances.records, static_cast<uint>(staged.instances.count), bound_.result(),
-                           staged.has_moved};
+                           staged.has_moved, scene_costs_.target()};
     // The first move rebuilds: nothing is paid for refits before. So does a geometry that was built anew: its instances
     // may have been inactive before, which a refit cannot change.
     const bool is_built_anew =
-        std::any_of(staged.built.begin(), staged.built.end(), [](auto& b) { return b != nullptr; });
-    if (scene_ && has_moved_ && dirty_ == Dirty::moves && !is_built_anew)
-        refit_scene(commands, input, *scene_);
-    else
+        std::any_of(staged.built.begin(), staged.built.end(), [](const auto& built) { return built != nullptr; });
+    staged.is_scene_built =
+        !scene_ || !has_moved_ || dirty_ != Dirty::moves || is_built_anew || has_degraded(scene_costs_);
+    if (staged.is_scene_built)
         staged.scene = build_scene(commands, input, scene_.get());
+    else
+        refit_scene(commands, input, *scene_);
 }
 
 void AbstractAccel::commit(Staged&& staged, SyncPoint done) {
     for (std::size_t i = 0; i < staged.building.size(); ++i)
         if (staged.built[i]) staged.building[i]->built = std::move(staged.built[i]);
-    VertexArrays::commit(std::move(staged.vertices));
+    const std::vector<VertexSlice*> moved = VertexArrays::commit(std::move(staged.vertices));
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i]->costs.commit(staged.is_rebuilt[i], done);
+    scene_costs_.commit(staged.is_scene_built, done);
     has_moved_ = staged.has_moved;
     revision_ += dirty_ == Dirty::structure;
     if (staged.scene) scene_ = std::move(staged.scene);

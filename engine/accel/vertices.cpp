@@ -14,6 +14,7 @@ VertexSlice make_buffers(Context& context, const Geometry& geometry) {
         context, {.name = "vertices of '" + geometry.name + "'", .bytes = std::span(geometry.positions).size_bytes()});
     made.indices = Buffer(
         context, {.name = "indices of '" + geometry.name + "'", .bytes = std::span(geometry.triangles).size_bytes()});
+    made.costs = CostLog(context);
     return made;
 }
 
@@ -21,11 +22,6 @@ VertexSlice make_buffers(Context& context, const Geometry& geometry) {
 
 VertexArrays::VertexArrays(Context& context)
     : context_(context), copy_floats_(context, {.name = "engine_copy_floats", .spirv = engine_copy_floats_spirv}) {}
-
-DeviceMesh VertexArrays::Staged::mesh(std::size_t item) const {
-    const VertexSlice& slice = items[item].slice->on_device() ? *items[item].slice : made[item];
-    return {slice.positions.ref<float>(), slice.indices.ref<uint>()};
-}
 
 VertexArrays::Staged VertexArrays::stage(Commands& commands, std::vector<Item> items) const {
     Staged staged;
@@ -46,13 +42,16 @@ VertexArrays::Staged VertexArrays::stage(Commands& commands, std::vector<Item> i
     return staged;
 }
 
-void VertexArrays::commit(Staged&& staged) {
+std::vector<VertexSlice*> VertexArrays::commit(Staged&& staged) {
+    std::vector<VertexSlice*> slices;
     for (std::size_t i = 0; i < staged.items.size(); ++i) {
         VertexSlice& slice = *staged.items[i].slice;
         if (!slice.on_device()) slice = std::move(staged.made[i]);
         slice.edited = false;
         slice.incoming = {};
+        slices.push_back(&slice);
     }
+    return slices;
 }
 
 }  // namespace twinray

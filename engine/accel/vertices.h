@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/accel/geometry.h"
+#include "engine/accel/surface_area.h"
 #include "engine/core/kernel.h"
 
 namespace twinray {
@@ -22,10 +23,12 @@ struct DeviceMesh {
 // their shape do not pay; from then on the device's copy is what everything is built from.
 struct VertexSlice {
     Buffer positions, indices;
+    CostLog costs;        // of the geometry's tree
     bool edited = false;  // moved since the last sync, by the host, or by `incoming`
     Floats incoming;      // device memory that the next sync copies the positions from; 0 = Geometry::positions
 
     bool on_device() const { return indices.bytes() != 0; }
+    DeviceMesh mesh() const { return {positions.ref<float>(), indices.ref<uint>()}; }
 };
 
 // Brings moved vertices to the device.
@@ -41,10 +44,17 @@ class VertexArrays {
     struct Staged {
         std::vector<Item> items;
         std::vector<VertexSlice> made;  // by item: buffers for a slice that had none
-        DeviceMesh mesh(std::size_t item) const;
+        DeviceMesh mesh(std::size_t item) const { return slice(item).mesh(); }
+        CostTarget cost_target(std::size_t item) const { return slice(item).costs.target(); }
+
+      private:
+        const VertexSlice& slice(std::size_t item) const {
+            return items[item].slice->on_device() ? *items[item].slice : made[item];
+        }
     };
     Staged stage(Commands& commands, std::vector<Item> items) const;
-    static void commit(Staged&& staged);
+    // Returns the slices, by item.
+    static std::vector<VertexSlice*> commit(Staged&& staged);
 
   private:
     Context& context_;

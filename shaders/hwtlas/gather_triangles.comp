@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/world_bound.h"
+#include "shaders/shared/surface_area.h"
 #include "shaders/shared/hw_scene.h"
 #include "shaders/shared/hw_triangles.h"
 #include "shaders/hwtlas/mesh_triangle.glsl"
@@ -27,7 +28,14 @@ void main()
     uint index = has_order ? AT(args.order, place) : (has_table ? AT(args.table, place) : place);
     if (has_order) AT(args.table, place) = index;
     MeshTriangle triangle = load_triangle(args, index);
-    if (!triangle.is_active)
+    AreaItem area = no_area();
+    if (triangle.is_active)
+    {
+        GeometryBox box = box_of(triangle);
+        area.lo = box.lo;
+        area.hi = box.hi;
+    }
+    else
     {
         HwGeometry geometry = AT(args.geometry, 0);
         vec3 anchor = geometry.lo.x <= geometry.hi.x ? geometry.lo : vec3(0.0f);
@@ -35,6 +43,7 @@ void main()
         triangle.v1 = anchor;
         triangle.v2 = anchor;
     }
+    AT(args.areas, place) = area;
     store(3u * place, triangle.v0);
     store(3u * place + 1u, triangle.v1);
     store(3u * place + 2u, triangle.v2);

@@ -5,6 +5,7 @@
 #extension GL_EXT_ray_query : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/world_bound.h"
+#include "shaders/shared/surface_area.h"
 #include "shaders/shared/hw_scene.h"
 #include "shaders/hwtlas/trace.glsl"
 

@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/world_bound.h"
+#include "shaders/shared/surface_area.h"
 #include "shaders/shared/hw_scene.h"
 #include "shaders/shared/hw_triangles.h"
 #include "shaders/hwtlas/mesh_triangle.glsl"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the hardware accelerator leaves on the device and what its trace kernels take. Needs ray.h and world_bound.h before it.
+// What the hardware accelerator leaves on the device and what its trace kernels take. Needs ray.h, world_bound.h and
+// surface_area.h before it.
 #ifndef TWINRAY_SHARED_HW_SCENE_H
 #define TWINRAY_SHARED_HW_SCENE_H
 
@@ -47,6 +48,7 @@ struct HwGatherArgs
     Uints order;                // null: the order that `instances` has already
     REF(InstanceRecord) driver_records;
     REF(HwInstance) instances;  // null: the records keep their order
+    REF(AreaItem) areas;        // the boxes in the world, in build order
     uint count;
     uint reserved;
 };

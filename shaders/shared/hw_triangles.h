@@ -15,6 +15,7 @@ struct HwTrianglesArgs
     Uints order;              // place -> triangle of the mesh; null: the order that `table` has already
     Uints table;              // the same, kept for the trace kernels; null: the mesh's order
     Floats corners;           // 9 a triangle, by place
+    REF(AreaItem) areas;      // their boxes
     uint count;
     uint group_count;
 };

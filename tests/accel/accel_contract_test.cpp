@@ -16,8 +16,28 @@ using test::error_of;
 using test::Kind;
 using test::square;
 
-class Accel : public test::AccelTest {};
+class Accel : public test::AccelTest {
+  protected:
+    // With the referee, on a mesh that is all there is.
+    void expect_agreement(const Mesh& mesh);
+};
 TWINRAY_OVER_EVERY_ACCEL(Accel);
+
+void Accel::expect_agreement(const Mesh& mesh) {
+    Scene scene;
+    scene.meshes = {mesh};
+    scene.instances = {{"", 0, Transform{}}};
+    const Oracle oracle = Oracle::of(scene);
+    std::vector<Ray> rays = random_rays(bounds_of(mesh), 2000, 1);
+    for (const Ray& ray : vertex_aimed_rays(oracle, 500, 2)) rays.push_back(ray);
+    const std::vector<Hit> hits = accel().closest_hits(rays);
+    const bool ours = GetParam() == Kind::software;
+    Classes classes;
+    for (const Verdict& verdict : ours ? classify_all(oracle, rays, hits, {}) : classify_all(oracle, rays, {}, hits))
+        classes.add(ours ? *verdict.software : *verdict.hardware);
+    EXPECT_EQ(classes.faults_of_ours(), 0u);
+    EXPECT_EQ(classes[Class::hw_false] + classes[Class::hw_t_err] + classes[Class::hw_range], 0u);
+}
 
 TEST_P(Accel, FindsTheClosestHitAndFillsEveryField) {
     accel().push(square(1));
@@ -240,6 +260,9 @@ TEST_P(Accel, WrongUseNamesTheObjectTheValueAndTheLimitAndChangesNothing) {
         {[&] { accel().update_vertices(pair, Floats{18}, 4); }, "device address 18 must be a multiple of 4"},
         {[&] { accel().update_vertices(pair, Floats{}, 4); }, "device address 0"},
         {[&] { accel().update_vertices({~0ull}, std::vector<vec3>(4)); }, "is not alive"},
+        {[&] { accel().set_rebuild_ratio(0.5); }, "rebuild ratio 0.5 must be at least 1"},
+        {[&] { accel().set_rebuild_ratio(NAN); }, "rebuild ratio nan"},
+        {[&] { (void)accel().sah({~0ull}); }, "is not alive"},
         {[&] { accel().update_transform({~0ull}, {}); }, "handle 18446744073709551615 is not alive"},
     };
     for (const auto& [action, expected] : cases)
@@ -567,20 +590,7 @@ TEST_P(Accel, MovedVerticesAgreeWithTheReferee) {
             for (std::size_t i = 0; i < mesh.positions.size(); ++i)
                 mesh.positions[i] *= 1 + 0.3f * std::sin(static_cast<float>(i * (i + 1)) + static_cast<float>(round));
             accel().update_vertices(handle, mesh.positions);
-            Scene scene;
-            scene.meshes = {mesh};
-            scene.instances = {{"", 0, Transform{}}};
-            const Oracle oracle = Oracle::of(scene);
-            std::vector<Ray> rays = random_rays(bounds_of(mesh), 2000, 1);
-            for (const Ray& ray : vertex_aimed_rays(oracle, 500, 2)) rays.push_back(ray);
-            const std::vector<Hit> hits = accel().closest_hits(rays);
-            const bool ours = GetParam() == Kind::software;
-            Classes classes;
-            for (const Verdict& verdict :
-                 ours ? classify_all(oracle, rays, hits, {}) : classify_all(oracle, rays, {}, hits))
-                classes.add(ours ? *verdict.software : *verdict.hardware);
-            EXPECT_EQ(classes.faults_of_ours(), 0u);
-            EXPECT_EQ(classes[Class::hw_false] + classes[Class::hw_t_err] + classes[Class::hw_range], 0u);
+            expect_agreement(mesh);
             EXPECT_EQ(accel().world_bound().lo, bounds_of(mesh).lo);
             EXPECT_EQ(accel().world_bound().hi, bounds_of(mesh).hi);
         }
@@ -640,6 +650,71 @@ TEST_P(Accel, AMeshMayVanishAndAppearByItsVertices) {
     EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 10.0f);
     accel().update_vertices(accel().push(Mesh{}), std::span<const vec3>{});
     EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 10.0f);
+}
+
+std::vector<Transform> row_of(std::size_t count, uint shuffle_seed) {
+    std::vector<Transform> transforms;
+    for (std::size_t i = 0; i < count; ++i)
+        transforms.push_back(Transform::translation({2.0f * static_cast<float>(i), 0, 0}));
+    std::mt19937 random(shuffle_seed);
+    if (shuffle_seed) std::shuffle(transforms.begin(), transforms.end(), random);
+    return transforms;
+}
+
+TEST_P(Accel, MovesRaiseTheCostUntilASyncRebuilds) {
+    EXPECT_EQ(accel().sah(), std::nullopt);
+    const AccelHandle handle = accel().push(square(0), row_of(500, 0));
+    accel().sync();
+    const double good = *accel().sah();
+    accel().update_transforms(handle, row_of(500, 0));
+    accel().sync();
+    EXPECT_EQ(*accel().sah(), good) << "the first move rebuilds";
+    const AccelView view = accel().view();
+    accel().set_rebuild_ratio(INFINITY);
+    for (const uint seed : {1u, 2u, 3u}) {
+        accel().update_transforms(handle, row_of(500, seed));
+        accel().sync();
+        EXPECT_GT(*accel().sah(), 3 * good) << "refitted";
+    }
+    accel().set_rebuild_ratio(2);
+    EXPECT_EQ(accel().rebuild_ratio(), 2);
+    accel().update_transforms(handle, row_of(500, 4));
+    accel().sync();
+    EXPECT_NEAR(*accel().sah(), good, 0.2 * good) << "rebuilt";
+    EXPECT_EQ(accel().sah_if_ready(), accel().sah());
+    accel().update_transforms(handle, row_of(500, 4));
+    accel().sync();
+    EXPECT_NEAR(*accel().sah(), good, 0.2 * good) << "refitted again";
+    EXPECT_EQ(accel().revision(), view.revision);
+    EXPECT_EQ(trace(view, down(100.5f, 0.25f)).hit, 1u);
+}
+
+TEST_P(Accel, MovedVerticesRaiseTheCostUntilASyncRebuilds) {
+    Mesh mesh = make_soup(700, 1, 0.05f);
+    const AccelHandle handle = accel().push(mesh);
+    accel().sync();
+    EXPECT_EQ(accel().sah(handle), std::nullopt) << "nothing is measured before";
+    const AccelView view = accel().view();
+    accel().update_vertices(handle, mesh.positions);
+    accel().sync();
+    const double good = *accel().sah(handle);
+    accel().set_rebuild_ratio(INFINITY);
+    const std::vector<vec3> others = make_soup(700, 2, 0.05f).positions;
+    const Buffer on_device = device_copy(others);
+    for (int round = 0; round < 2; ++round) {
+        accel().update_vertices(handle, on_device.ref<float>(), others.size());
+        accel().sync();
+        EXPECT_GT(*accel().sah(handle), 2 * good) << "refitted";
+    }
+    accel().set_rebuild_ratio(1.25);
+    accel().update_vertices(handle, on_device.ref<float>(), others.size());
+    accel().sync();
+    EXPECT_NEAR(*accel().sah(handle), good, 0.1 * good) << "rebuilt from what the device holds";
+    EXPECT_EQ(accel().sah_if_ready(handle), accel().sah(handle));
+    EXPECT_EQ(accel().revision(), view.revision);
+    EXPECT_EQ(accel().view().scene, view.scene);
+    mesh.positions = others;
+    expect_agreement(mesh);
 }
 
 TEST_P(Accel, AViewStaysGoodUntilTheNextSyncWhateverIsEdited) {

@@ -47,6 +47,7 @@ TWINRAY_OVER_EVERY_ACCEL(Sync);
 
 TEST_P(Sync, NeverWaitsWhileTheQueueIsBusy) {
     const AccelHandle mover = accel().push(square(0), std::vector<Transform>(100));
+    const AccelHandle shaken = accel().push(make_icosphere(3), Transform::translation({20, 0, 0}));
     accel().sync();
     accel().update_transforms(mover, std::vector<Transform>(100));
     context().wait(accel().sync());
@@ -60,6 +61,7 @@ TEST_P(Sync, NeverWaitsWhileTheQueueIsBusy) {
         if (i % 20 == 15) accel().erase(pushed.front());
         accel().update_transform_at(mover, static_cast<std::size_t>(i),
                                     Transform::translation({3, 0, static_cast<float>(i)}));
+        if (i % 4 == 0) accel().update_vertices(shaken, make_icosphere(3).positions);
         const auto start = Clock::now();
         accel().sync();
         times.push_back(microseconds_since(start));
@@ -70,6 +72,7 @@ TEST_P(Sync, NeverWaitsWhileTheQueueIsBusy) {
                 times[95], times[99]);
     EXPECT_LT(times[50], 50'000);
     EXPECT_EQ(accel().world_bound_if_ready(), std::nullopt);
+    EXPECT_EQ(accel().sah_if_ready(), std::nullopt);
     EXPECT_EQ(closest(down(3.5f, 0.25f)).hit, 1u);
     EXPECT_EQ(accel().world_bound().hi.z, 99.0f);
     EXPECT_TRUE(context().is_reached(busy));

@@ -231,6 +231,30 @@ TEST_F(SwBuild, ARefittedGeometryIsSoundAndKeepsItsTopology) {
     }
 }
 
+TEST_F(SwBuild, TheCostOnTheDeviceIsThatOfTheChecker) {
+    for (const uint n : {1u, 2u, 3u, 256u, 257u, 258u, 1000u, 70'000u}) {
+        SwTlas accel(context());
+        Mesh mesh = make_soup(n, 5, 0.1f);
+        const std::vector<Transform> transforms = scattered(std::min(n, 1000u), n);
+        const AccelHandle handle = accel.push(mesh, transforms);
+        accel.sync();
+        EXPECT_EQ(accel.sah(handle), std::nullopt) << "not measured before its vertices move";
+        const SwTlas::Tree top = accel.download_scene();
+        const double expected = check_tree(top.bvh, top.nodes, instance_boxes(mesh, transforms)).sah;
+        EXPECT_NEAR(*accel.sah(), expected, 1e-5 * expected) << n;
+        for (const uint seed : {6u, 7u}) {
+            mesh.positions = make_soup(n, seed, 0.1f).positions;
+            if (n > 3) mesh.positions[5].x = INFINITY;
+            accel.update_vertices(handle, mesh.positions);
+            accel.sync();
+            const SwTlas::Tree tree = accel.download_geometry(handle);
+            const double cost = check_tree(tree.bvh, tree.nodes, boxes_of(tree.triangles, mesh)).sah;
+            EXPECT_NEAR(*accel.sah(handle), cost, 1e-5 * cost) << n;
+            EXPECT_EQ(accel.sah_if_ready(handle), accel.sah(handle));
+        }
+    }
+}
+
 TEST(TreeCheck, NamesWhatIsWrong) {
     const Mesh mesh = make_soup(20, 1);
     const std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);
