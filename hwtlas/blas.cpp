@@ -50,10 +50,13 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
             blases[i].bounds = input.bounds;
             Buffer positions = upload(commands, "blas positions " + geometry.name, input.positions);
             Buffer triangles = upload(commands, "blas triangles " + geometry.name, input.triangles);
-            blases[i].original_triangles = upload(commands, "blas order " + geometry.name, input.original);
+            if (reorder)
+                blases[i].original_triangles =
+                    std::make_shared<const Buffer>(upload(commands, "blas order " + geometry.name, input.original));
             builds.push_back(triangle_build(geometry.name, positions.address(),
                                             static_cast<uint>(input.positions.size()),
                                             static_cast<uint>(input.triangles.size())));
+            builds.back().flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
             builds.back().geometry.geometry.triangles.indexData.deviceAddress = triangles.address();
             built.push_back(i);
             commands.keep(std::move(positions));
@@ -61,7 +64,17 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
         }
     }
     std::vector<AccelerationStructure> structures = build_structures(commands, "hwtlas_build_blases", builds);
-    for (std::size_t i = 0; i < built.size(); ++i) blases[built[i]].structure = std::move(structures[i]);
+    if (built.empty()) return blases;
+    std::vector<const AccelerationStructure*> asked;
+    for (std::size_t i = 0; i < built.size(); ++i) {
+        blases[built[i]].structure = std::move(structures[i]);
+        asked.push_back(&blases[built[i]].structure);
+    }
+    const auto compacted = std::make_shared<CompactedSizes>(commands, asked);
+    for (std::size_t i = 0; i < built.size(); ++i) {
+        blases[built[i]].compacted = compacted;
+        blases[built[i]].place = i;
+    }
     return blases;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
+
 #include "engine/accel/geometry.h"
-#include "hwtlas/acceleration_structure.h"
+#include "hwtlas/compaction.h"
 #include "hwtlas/hw_scene.h"
 
 namespace twinray {
@@ -12,11 +14,14 @@ namespace twinray {
 struct Blas {
     Bounds bounds;  // of the active triangles; empty where the device alone knows them
     AccelerationStructure structure;
-    Buffer original_triangles;  // uint each; empty when the order was kept
-    bool can_update = false;    // made by MovingBlasBuilder
+    std::shared_ptr<const Buffer> original_triangles;  // uint each; null when the order was kept
+    bool can_update = false;                           // made by MovingBlasBuilder; others may be compacted, once
+    std::shared_ptr<CompactedSizes> compacted;         // null: cannot be compacted
+    std::size_t place = 0;                             // in `compacted`
 
-    HwGeometry block() const { return {bounds.lo, bounds.hi, structure.address(), original_triangles.ref<uint>()}; }
-    std::uint64_t bytes() const { return structure.bytes() + original_triangles.bytes(); }
+    Uints table() const { return original_triangles ? original_triangles->ref<uint>() : Uints{}; }
+    HwGeometry block() const { return {bounds.lo, bounds.hi, structure.address(), table()}; }
+    std::uint64_t bytes() const { return structure.bytes() + (original_triangles ? original_triangles->bytes() : 0); }
 };
 
 // A build of triangles from a device address; with uint indices unless the caller changes that.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "hwtlas/hw_tlas.h"
 
+#include <cstddef>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -120,6 +121,29 @@ HwTlas::Built HwTlas::refit_geometries(Commands& commands, std::span<const Geome
     }
     moving_->record(commands, builds, BuildMode::build);
     moving_->record(commands, updates, BuildMode::update);
+    return built;
+}
+
+bool HwTlas::can_compact(const BuiltGeometry& built, SyncPoint done) const {
+    const Blas& blas = *HwBuiltGeometry::of(&built);
+    const auto bytes = blas.compacted ? blas.compacted->of(blas.place, done) : std::nullopt;
+    return bytes && *bytes < blas.structure.bytes();
+}
+
+HwTlas::Built HwTlas::compact_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
+    Built built;
+    if (inputs.empty()) return built;
+    const auto pass = commands.pass("hwtlas_compact_blases");
+    for (const GeometryInput& input : inputs) {
+        const Blas& large = *HwBuiltGeometry::of(input.current);
+        Blas blas;
+        blas.bounds = large.bounds;
+        blas.structure = record_compaction(commands, "blas " + input.geometry->name, large.structure,
+                                           large.compacted->bytes_of(large.place));
+        blas.original_triangles = large.original_triangles;
+        commands.write(*input.block, blas.structure.address(), offsetof(HwGeometry, blas));
+        built.push_back(std::make_unique<HwBuiltGeometry>(std::move(blas)));
+    }
     return built;
 }
 

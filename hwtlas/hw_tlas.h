@@ -36,6 +36,8 @@ class HwTlas : public AbstractAccel {
     using Built = std::vector<std::unique_ptr<BuiltGeometry>>;
     Built build_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
+    bool can_compact(const BuiltGeometry& built, SyncPoint done) const override;
+    Built compact_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
                                             const BuiltScene* current) override;
     void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;

@@ -54,8 +54,8 @@ Blas MovingBlasBuilder::make(const std::string& name, uint triangle_count) const
     blas.structure =
         AccelerationStructure(context_, build.name, build.type, sizes_of(context_, build).accelerationStructureSize);
     if (reorder_)
-        blas.original_triangles =
-            Buffer(context_, {.name = "blas order " + name, .bytes = std::uint64_t{triangle_count} * sizeof(uint)});
+        blas.original_triangles = std::make_shared<const Buffer>(
+            context_, BufferDesc{.name = "blas order " + name, .bytes = std::uint64_t{triangle_count} * sizeof(uint)});
     return blas;
 }
 
@@ -83,7 +83,7 @@ MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<
                               bits.ref<WorldBoundBits>(batch.args.size() * sizeof none),
                               {},
                               {},
-                              mesh.blas->original_triangles.ref<uint>(),
+                              mesh.blas->table(),
                               corners.ref<float>(next),
                               batch.areas[batch.args.size()].items,
                               n,

@@ -45,8 +45,12 @@ AccelHandle AbstractAccel::push(const MeshView& mesh, std::span<const Transform>
     if (!options.empty() && options.size() != transforms.size())
         fail(name_, ": mesh '", mesh.name, "': ", options.size(), " instance options for ", transforms.size(),
              " transforms; the lengths must match");
-    Placement placement{
-        Geometry(mesh), Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}), nullptr, {}, {}};
+    Placement placement{Geometry(mesh),
+                        Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}),
+                        nullptr,
+                        {},
+                        {},
+                        {}};
     for (std::size_t i = 0; i < transforms.size(); ++i)
         placement.instances.records.push_back(
             checked_record(placement, i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));

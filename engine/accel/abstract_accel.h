@@ -119,6 +119,10 @@ class AbstractAccel {
     // it. Whatever uses the result must run after it; closest_hits() wants it submitted before. If this throws, the
     // command buffer must not be submitted (and CallerCommands::done be reached without it).
     void sync(Commands& commands);
+    // Whether geometries could go into less memory now (bottom levels of drivers can, once the GPU has built them,
+    // until their vertices move). If so the next sync moves them, as every sync does that has other work, too; views
+    // stay valid. A clean accelerator does not do so by itself: it would have to ask in each sync.
+    bool compact();
     // Throws Error if edits are pending.
     AccelView view() const;
     // Counts the syncs that changed more than transforms and vertices: views of before are stale.
@@ -181,6 +185,11 @@ class AbstractAccel {
         const BuiltGeometry* current;  // of an earlier sync and the same triangles, or null
         CostTarget cost;               // wants the cost measured that sah() tells, unless null
     };
+    // Whether what was built by `done` could be smaller; nothing may wait.
+    virtual bool can_compact(const BuiltGeometry&, SyncPoint) const { return false; }
+    // Moves each `current`, of which can_compact() is true, into less memory.
+    virtual std::vector<std::unique_ptr<BuiltGeometry>> compact_geometries(Commands& commands,
+                                                                           std::span<const GeometryInput> inputs);
     // The top level as the implementation built it.
     struct BuiltScene {
         virtual ~BuiltScene() = default;
@@ -222,22 +231,26 @@ class AbstractAccel {
         Geometry geometry;
         Buffer block;                          // see GeometryInput
         std::unique_ptr<BuiltGeometry> built;  // null: `geometry` is not built yet
+        SyncPoint built_at;
         VertexSlice vertices;
         InstanceSlice instances;
     };
+    struct Work;
     // What a sync recorded, to be committed once it is certain to run.
     struct Staged {
         VertexArrays::Staged vertices;
         std::vector<bool> is_rebuilt;  // by item of `vertices`
         std::vector<Placement*> building;
-        std::vector<std::unique_ptr<BuiltGeometry>> built;  // null: what it had was adapted
+        std::vector<std::unique_ptr<BuiltGeometry>> built;  // by `building`
         std::vector<InstanceSlice*> slices;
         InstanceArray::Staged instances;
         std::unique_ptr<BuiltScene> scene;
         bool is_scene_built = false;  // not refitted
         bool has_moved = false;
+
+        void add(const Work& work, std::vector<std::unique_ptr<BuiltGeometry>>&& done);
     };
-    enum class Dirty : std::uint8_t { no, moves, structure };  // moves: of instances and of vertices
+    enum class Dirty : std::uint8_t { no, compaction, moves, structure };  // moves: of instances and of vertices
 
     void mark(Dirty what) { dirty_ = std::max(dirty_, what); }
     InstanceRecord checked_record(const Placement& placement, std::size_t index, const Transform& transform,
@@ -256,6 +269,7 @@ class AbstractAccel {
     enum class Wait : std::uint8_t { no, yes };
     std::optional<double> sah_of(const CostLog& costs, Wait wait) const;
     bool has_degraded(const CostLog& costs) const;
+    bool is_compactable(const Placement& placement) const;
     void warn_of_unusable_instances();
     std::vector<Hit> trace_host(std::span<const Ray> rays, Query query);
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// How good the trees still are, and when that makes a sync rebuild.
+// How good and how small the structures are, and when that makes a sync rebuild or compact them.
+#include <algorithm>
+
 #include "engine/accel/abstract_accel.h"
 #include "engine/core/error.h"
 
@@ -27,6 +29,22 @@ void AbstractAccel::set_rebuild_ratio(double ratio) {
 bool AbstractAccel::has_degraded(const CostLog& costs) const {
     const std::optional<TreeCost> cost = costs.newest(context_);
     return cost && cost->now > rebuild_ratio_ * cost->at_build;
+}
+
+bool AbstractAccel::is_compactable(const Placement& placement) const {
+    return placement.built && !placement.vertices.edited && can_compact(*placement.built, placement.built_at);
+}
+
+bool AbstractAccel::compact() {
+    const bool any = std::any_of(placements_.begin(), placements_.end(),
+                                 [&](const auto& entry) { return is_compactable(entry.second); });
+    if (any) mark(Dirty::compaction);
+    return any;
+}
+
+std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> AbstractAccel::compact_geometries(
+    Commands&, std::span<const GeometryInput> inputs) {
+    return std::vector<std::unique_ptr<BuiltGeometry>>(inputs.size());
 }
 
 }  // namespace twinray

@@ -8,6 +8,25 @@
 
 namespace twinray {
 
+// Geometries of which the same is wanted.
+struct AbstractAccel::Work {
+    std::vector<Placement*> placements;
+    std::vector<GeometryInput> inputs;
+
+    void add(Placement& placement, const GeometryInput& input) {
+        placements.push_back(&placement);
+        inputs.push_back(input);
+    }
+};
+
+void AbstractAccel::Staged::add(const Work& work, std::vector<std::unique_ptr<BuiltGeometry>>&& done) {
+    for (std::size_t i = 0; i < done.size(); ++i) {
+        if (!done[i]) continue;  // what it had was adapted
+        building.push_back(work.placements[i]);
+        built.push_back(std::move(done[i]));
+    }
+}
+
 SyncPoint AbstractAccel::sync() {
     if (dirty_ == Dirty::no) return synced_;
     auto commands = std::make_unique<Commands>(context_, name_ + " sync");
@@ -44,24 +63,25 @@ void AbstractAccel::stage_vertices(Commands& commands, Staged& staged) {
 
 void AbstractAccel::stage_geometries(Commands& commands, Staged& staged) {
     stage_vertices(commands, staged);
-    std::vector<GeometryInput> builds, refits;
-    std::vector<Placement*> refitting;
+    Work builds, refits, compactions;
     for (auto& [id, placement] : placements_) {
         GeometryInput input{&placement.geometry, &placement.block, {}, placement.built.get(), {}};
-        const bool is_moved = placement.vertices.edited;
-        if (placement.built && !is_moved) continue;
-        const bool is_refit = placement.built && !has_degraded(placement.vertices.costs);
-        if (is_moved) {
+        const bool is_refit = placement.vertices.edited && placement.built && !has_degraded(placement.vertices.costs);
+        if (placement.vertices.edited) {
             input.mesh = staged.vertices.mesh(staged.is_rebuilt.size());
             input.cost = staged.vertices.cost_target(staged.is_rebuilt.size());
             staged.is_rebuilt.push_back(!is_refit);
         }
-        (is_refit ? refitting : staged.building).push_back(&placement);
-        (is_refit ? refits : builds).push_back(input);
+        if (is_refit)
+            refits.add(placement, input);
+        else if (!placement.built || placement.vertices.edited)
+            builds.add(placement, input);
+        else if (is_compactable(placement))
+            compactions.add(placement, input);
     }
-    staged.built = build_geometries(commands, builds);
-    for (auto& refitted : refit_geometries(commands, refits)) staged.built.push_back(std::move(refitted));
-    staged.building.insert(staged.building.end(), refitting.begin(), refitting.end());
+    staged.add(builds, build_geometries(commands, builds.inputs));
+    staged.add(refits, refit_geometries(commands, refits.inputs));
+    staged.add(compactions, compact_geometries(commands, compactions.inputs));
 }
 
 void AbstractAccel::stage_scene(Commands& commands, Staged& staged) {
@@ -70,10 +90,8 @@ void AbstractAccel::stage_scene(Commands& commands, Staged& staged) {
                            staged.has_moved, scene_costs_.target()};
     // The first move rebuilds: nothing is paid for refits before. So does a geometry that was built anew: its instances
     // may have been inactive before, which a refit cannot change.
-    const bool is_built_anew =
-        std::any_of(staged.built.begin(), staged.built.end(), [](const auto& built) { return built != nullptr; });
     staged.is_scene_built =
-        !scene_ || !has_moved_ || dirty_ != Dirty::moves || is_built_anew || has_degraded(scene_costs_);
+        !scene_ || !has_moved_ || dirty_ != Dirty::moves || !staged.built.empty() || has_degraded(scene_costs_);
     if (staged.is_scene_built)
         staged.scene = build_scene(commands, input, scene_.get());
     else
@@ -81,8 +99,10 @@ void AbstractAccel::stage_scene(Commands& commands, Staged& staged) {
 }
 
 void AbstractAccel::commit(Staged&& staged, SyncPoint done) {
-    for (std::size_t i = 0; i < staged.building.size(); ++i)
-        if (staged.built[i]) staged.building[i]->built = std::move(staged.built[i]);
+    for (std::size_t i = 0; i < staged.building.size(); ++i) {
+        staged.building[i]->built = std::move(staged.built[i]);
+        staged.building[i]->built_at = done;
+    }
     const std::vector<VertexSlice*> moved = VertexArrays::commit(std::move(staged.vertices));
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i]->costs.commit(staged.is_rebuilt[i], done);
     scene_costs_.commit(staged.is_scene_built, done);
