@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "engine/accel/batches.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -45,11 +46,6 @@ VkAccelerationStructureBuildGeometryInfoKHR build_info(const StructureWork& work
         info.srcAccelerationStructure = work.target->handle();
     }
     return info;
-}
-
-std::uint64_t scratch_bytes(const Context& context, const StructureWork& work) {
-    const VkAccelerationStructureBuildSizesInfoKHR sizes = sizes_of(context, work.build);
-    return work.mode == BuildMode::update ? sizes.updateScratchSize : sizes.buildScratchSize;
 }
 
 }  // namespace
@@ -106,51 +102,46 @@ AccelerationStructure& AccelerationStructure::operator=(AccelerationStructure&& 
     return *this;
 }
 
-void record_builds(Commands& commands, const std::string& pass_name, std::span<const StructureWork> work) {
-    if (work.empty()) return;
-    Context& context = commands.context();
-    const std::uint64_t alignment = scratch_alignment(context);
-    std::vector<std::uint64_t> offsets;
-    std::uint64_t bytes = 0;
-    for (const StructureWork& one : work) {
-        offsets.push_back(bytes);
-        bytes += round_up(scratch_bytes(context, one), alignment);
-    }
-    Buffer scratch = make_build_scratch(context, pass_name + " scratch", bytes);
+std::uint64_t scratch_bytes_of(const Context& context, const StructureWork& work) {
+    const VkAccelerationStructureBuildSizesInfoKHR sizes = sizes_of(context, work.build);
+    return round_up(work.mode == BuildMode::update ? sizes.updateScratchSize : sizes.buildScratchSize,
+                    scratch_alignment(context));
+}
+
+void record_builds(Commands& commands, const std::string& pass_name, std::span<const StructureWork> work,
+                   std::uint64_t scratch) {
     std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
     // lavapipe applies firstVertex twice; offsets live in the addresses instead, and all of these stay 0.
     std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;
-    for (std::size_t i = 0; i < work.size(); ++i) {
-        infos.push_back(build_info(work[i], scratch.address() + offsets[i]));
-        ranges.push_back({work[i].build.primitive_count, 0, 0, 0});
+    for (const StructureWork& one : work) {
+        infos.push_back(build_info(one, scratch));
+        ranges.push_back({one.build.primitive_count, 0, 0, 0});
+        scratch += scratch_bytes_of(commands.context(), one);
     }
     std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> range_of;
     for (const VkAccelerationStructureBuildRangeInfoKHR& range : ranges) range_of.push_back(&range);
     const auto pass = commands.pass(pass_name);
-    context.vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), static_cast<std::uint32_t>(infos.size()),
-                                                     infos.data(), range_of.data());
-    commands.keep(std::move(scratch));
-}
-
-void record_build(Commands& commands, const std::string& pass_name, const StructureWork& work, const Buffer& scratch) {
-    const VkAccelerationStructureBuildGeometryInfoKHR info = build_info(work, scratch.address());
-    const VkAccelerationStructureBuildRangeInfoKHR range{work.build.primitive_count, 0, 0, 0};
-    const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
-    const auto pass = commands.pass(pass_name);
-    commands.context().vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), 1, &info, &ranges);
+    commands.context().vk().vkCmdBuildAccelerationStructuresKHR(
+        commands.handle(), static_cast<std::uint32_t>(infos.size()), infos.data(), range_of.data());
 }
 
 std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
-                                                    std::span<const StructureBuild> builds) {
+                                                    std::span<const StructureBuild> builds, std::uint64_t budget) {
+    Context& context = commands.context();
     std::vector<AccelerationStructure> structures;
     structures.reserve(builds.size());
     std::vector<StructureWork> work;
+    std::vector<std::uint64_t> scratch_bytes;
     for (const StructureBuild& build : builds) {
-        structures.emplace_back(commands.context(), build.name, build.type,
-                                sizes_of(commands.context(), build).accelerationStructureSize);
+        structures.emplace_back(context, build.name, build.type, sizes_of(context, build).accelerationStructureSize);
         work.push_back({build, BuildMode::build, &structures.back()});
+        scratch_bytes.push_back(scratch_bytes_of(context, work.back()));
     }
-    record_builds(commands, pass_name, work);
+    const Batches batches = cut_into_batches(scratch_bytes, budget);
+    Buffer scratch = make_build_scratch(context, pass_name + " scratch", batches.scratch_bytes);
+    for (const Batches::Run& run : batches.runs)
+        record_builds(commands, pass_name, std::span(work).subspan(run.first, run.count), scratch.address());
+    commands.keep(std::move(scratch));
     return structures;
 }
 

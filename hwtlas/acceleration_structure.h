@@ -52,13 +52,15 @@ struct StructureWork {
     const AccelerationStructure* target;
 };
 
-// Builds all of them with one command in one pass called `pass_name`. What the geometries point to must have been
-// written by earlier passes. The scratch memory is kept by `commands`.
-void record_builds(Commands& commands, const std::string& pass_name, std::span<const StructureWork> work);
-// The same for one, in scratch memory of the caller.
-void record_build(Commands& commands, const std::string& pass_name, const StructureWork& work, const Buffer& scratch);
-// Creates the structures, then record_builds().
+// Scratch memory that it takes, a multiple of the alignment that the device wants.
+std::uint64_t scratch_bytes_of(const Context& context, const StructureWork& work);
+// Builds all of them with one command in one pass called `pass_name`, their scratch one after the other from the
+// address `scratch` on, as make_build_scratch() aligns it. What the geometries point to must have been written by
+// earlier passes.
+void record_builds(Commands& commands, const std::string& pass_name, std::span<const StructureWork> work,
+                   std::uint64_t scratch);
+// Creates the structures and builds them, in batches whose scratch fits into `budget`.
 std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
-                                                    std::span<const StructureBuild> builds);
+                                                    std::span<const StructureBuild> builds, std::uint64_t budget);
 
 }  // namespace twinray

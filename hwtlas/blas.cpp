@@ -36,7 +36,8 @@ StructureBuild triangle_build(const std::string& name, std::uint64_t positions, 
     return build;
 }
 
-std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries, bool reorder) {
+std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries,
+                               const BlasOptions& options) {
     std::vector<Blas> blases(geometries.size());
     std::vector<StructureBuild> builds;
     std::vector<std::size_t> built;  // builds[i] belongs to blases[built[i]]
@@ -45,12 +46,12 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
         const auto pass = commands.pass("hwtlas_upload_meshes");
         for (std::size_t i = 0; i < geometries.size(); ++i) {
             const Geometry& geometry = *geometries[i];
-            const BlasInput input = blas_input(geometry, reorder);
+            const BlasInput input = blas_input(geometry, options.reorder);
             if (input.is_empty()) continue;
             blases[i].bounds = input.bounds;
             Buffer positions = upload(commands, "blas positions " + geometry.name, input.positions);
             Buffer triangles = upload(commands, "blas triangles " + geometry.name, input.triangles);
-            if (reorder)
+            if (options.reorder)
                 blases[i].original_triangles =
                     std::make_shared<const Buffer>(upload(commands, "blas order " + geometry.name, input.original));
             builds.push_back(triangle_build(geometry.name, positions.address(),
@@ -63,7 +64,8 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
             commands.keep(std::move(triangles));
         }
     }
-    std::vector<AccelerationStructure> structures = build_structures(commands, "hwtlas_build_blases", builds);
+    std::vector<AccelerationStructure> structures =
+        build_structures(commands, "hwtlas_build_blases", builds, options.scratch_budget);
     if (built.empty()) return blases;
     std::vector<const AccelerationStructure*> asked;
     for (std::size_t i = 0; i < built.size(); ++i) {

@@ -27,7 +27,12 @@ struct Blas {
 // A build of triangles from a device address; with uint indices unless the caller changes that.
 StructureBuild triangle_build(const std::string& name, std::uint64_t positions, uint vertex_count, uint triangle_count);
 
-// Records upload and build of all of them, in order. reorder: presort for drivers that build in input order.
-std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries, bool reorder);
+struct BlasOptions {
+    bool reorder;                  // presort for drivers that build in input order
+    std::uint64_t scratch_budget;  // bytes
+};
+// Records upload and build of all of them, in order.
+std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries,
+                               const BlasOptions& options);
 
 }  // namespace twinray

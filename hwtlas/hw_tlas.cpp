@@ -82,7 +82,7 @@ void HwTlas::build_still(Commands& commands, std::span<const GeometryInput> inpu
         places.push_back(i);
     }
     if (places.empty()) return;
-    std::vector<Blas> blases = build_blases(commands, geometries, reorder_);
+    std::vector<Blas> blases = build_blases(commands, geometries, {reorder_, scratch_budget()});
     const auto pass = commands.pass("hwtlas geometry blocks");
     for (std::size_t i = 0; i < places.size(); ++i) {
         commands.write(*inputs[places[i]].block, blases[i].block());
@@ -107,7 +107,7 @@ HwTlas::Built HwTlas::build_geometries(Commands& commands, std::span<const Geome
     std::vector<MovingMesh> moving;
     for (std::size_t i = 0; i < inputs.size(); ++i)
         if (inputs[i].mesh.indices.address) moving.push_back(prepare_moving(inputs[i], built[i]));
-    moving_->record(commands, moving, BuildMode::build);
+    moving_->record(commands, moving, BuildMode::build, scratch_budget());
     return built;
 }
 
@@ -119,8 +119,8 @@ HwTlas::Built HwTlas::refit_geometries(Commands& commands, std::span<const Geome
         const MovingMesh mesh = prepare_moving(inputs[i], built[i]);
         (built[i] ? builds : updates).push_back(mesh);
     }
-    moving_->record(commands, builds, BuildMode::build);
-    moving_->record(commands, updates, BuildMode::update);
+    moving_->record(commands, builds, BuildMode::build, scratch_budget());
+    moving_->record(commands, updates, BuildMode::update, scratch_budget());
     return built;
 }
 

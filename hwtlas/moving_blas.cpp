@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/accel/batches.h"
 #include "hwtlas_gather_triangles.spv.h"
 #include "hwtlas_triangle_bound.spv.h"
 #include "hwtlas_triangle_codes.spv.h"
@@ -25,12 +26,35 @@ StructureBuild build_of(const std::string& name, std::uint64_t corners, uint tri
     return build;
 }
 
+constexpr std::uint64_t aligned(std::uint64_t bytes) { return (bytes + 15) / 16 * 16; }
+
+struct SortScratch {
+    std::uint64_t address;
+    uint count;
+
+    std::uint64_t part_bytes() const { return aligned(std::uint64_t{count} * sizeof(uint)); }
+    std::uint64_t bytes() const { return 4 * part_bytes() + aligned(RadixSort::counter_bytes(count)); }
+    Uints part(std::uint64_t i) const { return {address + i * part_bytes()}; }
+};
+
+std::uint64_t corner_bytes(uint triangle_count) { return aligned(std::uint64_t{triangle_count} * 3 * sizeof(vec3)); }
+
+AreaWork area_of(const MovingMesh& mesh, BuildMode mode) {
+    return {mesh.triangle_count, {mesh.block->address()}, mesh.cost, mode == BuildMode::build};
+}
+
+StructureWork work_of(const MovingMesh& mesh, BuildMode mode, Floats corners) {
+    return {build_of("", corners.address, mesh.triangle_count), mode, &mesh.blas->structure};
+}
+
 }  // namespace
 
 struct MovingBlasBuilder::Batch {
-    std::span<const MovingMesh> meshes;
     std::vector<HwTrianglesArgs> args;
+    std::vector<SortScratch> sorts;
     std::vector<AreaWork> areas;
+    std::vector<StructureWork> work;
+    std::uint64_t build_scratch = 0;
 
     void dispatch(Commands& commands, const Kernel<HwTrianglesArgs>& kernel) const {
         const auto pass = commands.pass(kernel.name());
@@ -59,78 +83,88 @@ Blas MovingBlasBuilder::make(const std::string& name, uint triangle_count) const
     return blas;
 }
 
+// In front of it all, with the alignment that the driver wants: its own.
+std::uint64_t MovingBlasBuilder::scratch_bytes(const MovingMesh& mesh, BuildMode mode) const {
+    const uint n = mesh.triangle_count;
+    return scratch_bytes_of(context_, work_of(mesh, mode, {})) + corner_bytes(n) + sizeof(WorldBoundBits) +
+           aligned(area_of(mesh, mode).bytes()) +
+           (reorder_ && mode == BuildMode::build ? SortScratch{0, n}.bytes() : 0);
+}
+
 MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<const MovingMesh> meshes,
-                                                  BuildMode mode) const {
-    const WorldBoundBits none{uvec3(ordered_bits(INFINITY)), uvec3(ordered_bits(-INFINITY)), 0, 0};
-    std::uint64_t corner_bytes = 0;
-    for (const MovingMesh& mesh : meshes) corner_bytes += std::uint64_t{mesh.triangle_count} * 3 * sizeof(vec3);
-    Buffer bits(context_, {.name = "blas bounds", .bytes = meshes.size() * sizeof none});
-    Buffer corners(context_, {.name = "blas corners", .bytes = corner_bytes});
-    {
-        const auto pass = commands.pass("hwtlas blas bounds");
-        commands.upload(bits, std::span<const WorldBoundBits>(std::vector(meshes.size(), none)));
-    }
-    Batch batch{meshes, {}, {}};
-    for (const MovingMesh& mesh : meshes)
-        batch.areas.push_back({mesh.triangle_count, {mesh.block->address()}, mesh.cost, mode == BuildMode::build});
-    areas_.reserve(commands, batch.areas);
-    std::uint64_t next = 0;
+                                                  BuildMode mode, const Buffer& scratch) const {
+    Batch batch;
+    batch.build_scratch = scratch.address();
+    std::uint64_t next = scratch.address();
+    const auto take = [&](std::uint64_t bytes) { return std::exchange(next, next + bytes); };
+    for (const MovingMesh& mesh : meshes) take(scratch_bytes_of(context_, work_of(mesh, mode, {})));
+    const std::uint64_t bits = take(meshes.size() * sizeof(WorldBoundBits));
     for (const MovingMesh& mesh : meshes) {
         const uint n = mesh.triangle_count;
+        batch.areas.push_back(area_of(mesh, mode));
+        SurfaceArea::place(take(aligned(batch.areas.back().bytes())), std::span(&batch.areas.back(), 1));
+        if (reorder_ && mode == BuildMode::build) batch.sorts.push_back({take(SortScratch{0, n}.bytes()), n});
+        const Floats corners{take(corner_bytes(n))};
+        batch.work.push_back(work_of(mesh, mode, corners));
         batch.args.push_back({mesh.mesh.positions,
                               mesh.mesh.indices,
                               mesh.block->ref<HwGeometry>(),
-                              bits.ref<WorldBoundBits>(batch.args.size() * sizeof none),
+                              {bits + batch.args.size() * sizeof(WorldBoundBits)},
                               {},
                               {},
                               mesh.blas->table(),
-                              corners.ref<float>(next),
-                              batch.areas[batch.args.size()].items,
+                              corners,
+                              batch.areas.back().items,
                               n,
                               (n + WORLD_BOUND_GROUP - 1) / WORLD_BOUND_GROUP});
-        next += std::uint64_t{n} * 3 * sizeof(vec3);
     }
-    commands.keep(std::move(bits));
-    commands.keep(std::move(corners));
+    const WorldBoundBits none{uvec3(ordered_bits(INFINITY)), uvec3(ordered_bits(-INFINITY)), 0, 0};
+    const auto pass = commands.pass("hwtlas blas bounds");
+    commands.upload(scratch, std::span<const WorldBoundBits>(std::vector(meshes.size(), none)),
+                    bits - scratch.address());
     return batch;
 }
 
 void MovingBlasBuilder::record_order(Commands& commands, Batch& batch) const {
-    for (HwTrianglesArgs& args : batch.args) {
-        const std::uint64_t bytes = (std::uint64_t{args.count} * sizeof(uint) + 15) / 16 * 16;
-        Buffer scratch(context_,
-                       {.name = "blas sort scratch", .bytes = 4 * bytes + RadixSort::counter_bytes(args.count)});
-        const auto part = [&](std::uint64_t i) { return scratch.ref<uint>(i * bytes); };
-        args.keys = part(0);
-        args.order = part(1);
+    for (std::size_t i = 0; i < batch.sorts.size(); ++i) {
+        const SortScratch& sort = batch.sorts[i];
+        HwTrianglesArgs& args = batch.args[i];
+        args.keys = sort.part(0);
+        args.order = sort.part(1);
         codes_.dispatch(commands, args, args.count);
         const RadixSort::Pairs sorted =
-            sort_.record(commands, {part(0), part(1)}, {part(2), part(3)}, part(4), args.count, morton_bits);
+            sort_.record(commands, {sort.part(0), sort.part(1)}, {sort.part(2), sort.part(3)}, sort.part(4), args.count,
+                         morton_bits);
         args.order = sorted.values;
-        commands.keep(std::move(scratch));
     }
 }
 
-void MovingBlasBuilder::record_structures(Commands& commands, const Batch& batch, BuildMode mode) const {
-    std::vector<StructureWork> work;
-    for (std::size_t i = 0; i < batch.meshes.size(); ++i)
-        work.push_back(
-            {build_of("", batch.args[i].corners.address, batch.args[i].count), mode, &batch.meshes[i].blas->structure});
-    record_builds(commands, mode == BuildMode::build ? "hwtlas_build_blases" : "hwtlas_update_blases", work);
+void MovingBlasBuilder::record_batch(Commands& commands, Batch& batch) const {
+    batch.dispatch(commands, bound_);
+    record_order(commands, batch);
+    batch.dispatch(commands, gather_);
+    areas_.record(commands, std::move(batch.areas));
+    const bool is_update = batch.work.front().mode == BuildMode::update;
+    record_builds(commands, is_update ? "hwtlas_update_blases" : "hwtlas_build_blases", batch.work,
+                  batch.build_scratch);
 }
 
-void MovingBlasBuilder::record(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode) const {
+void MovingBlasBuilder::record(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode,
+                               std::uint64_t scratch_budget) const {
     if (meshes.empty()) return;
     if (mode == BuildMode::build) {
         const auto pass = commands.pass("hwtlas geometry blocks");
         for (const MovingMesh& mesh : meshes) commands.write(*mesh.block, mesh.blas->block());
     }
-    Batch batch = begin(commands, meshes, mode);
-    batch.dispatch(commands, bound_);
-    if (reorder_ && mode == BuildMode::build) record_order(commands, batch);
-    batch.dispatch(commands, gather_);
-    areas_.record(commands, std::move(batch.areas));
-    record_structures(commands, batch, mode);
+    std::vector<std::uint64_t> bytes;
+    for (const MovingMesh& mesh : meshes) bytes.push_back(scratch_bytes(mesh, mode));
+    const Batches batches = cut_into_batches(bytes, scratch_budget);
+    Buffer scratch = make_build_scratch(context_, "moving blas scratch", batches.scratch_bytes);
+    for (const Batches::Run& run : batches.runs) {
+        Batch batch = begin(commands, meshes.subspan(run.first, run.count), mode, scratch);
+        record_batch(commands, batch);
+    }
+    commands.keep(std::move(scratch));
 }
 
 }  // namespace twinray

@@ -24,14 +24,16 @@ class MovingBlasBuilder {
 
     // With room for a mesh of so many triangles, not built yet.
     Blas make(const std::string& name, uint triangle_count) const;
-    // update: every mesh was built before.
-    void record(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode) const;
+    // In batches whose scratch fits into `scratch_budget`. update: every mesh was built before.
+    void record(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode,
+                std::uint64_t scratch_budget) const;
 
   private:
     struct Batch;
-    Batch begin(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode) const;
+    std::uint64_t scratch_bytes(const MovingMesh& mesh, BuildMode mode) const;
+    Batch begin(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode, const Buffer& scratch) const;
+    void record_batch(Commands& commands, Batch& batch) const;
     void record_order(Commands& commands, Batch& batch) const;
-    void record_structures(Commands& commands, const Batch& batch, BuildMode mode) const;
 
     Context& context_;
     bool reorder_;

@@ -85,7 +85,7 @@ Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) cons
 void TlasBuilder::record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order,
                                 bool is_build) const {
     std::vector<AreaWork> areas = {{input.count, {input.bound.address}, input.cost, is_build}};
-    areas_.reserve(commands, areas);
+    SurfaceArea::place(commands, areas);
     gather_.dispatch(commands,
                      {input.records, order, tlas.driver_records.ref<InstanceRecord>(), tlas.instances.ref<HwInstance>(),
                       areas[0].items, input.count, 0},
@@ -95,16 +95,14 @@ void TlasBuilder::record_gather(Commands& commands, const Tlas& tlas, const Tlas
 
 void TlasBuilder::record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const {
     record_gather(commands, tlas, input, record_order(commands, input), true);
-    twinray::record_build(commands, "hwtlas_build_tlas",
-                          {build_of(tlas.driver_records, input.count, can_update), BuildMode::build, &tlas.structure},
-                          tlas.scratch);
+    const StructureWork work{build_of(tlas.driver_records, input.count, can_update), BuildMode::build, &tlas.structure};
+    record_builds(commands, "hwtlas_build_tlas", std::span(&work, 1), tlas.scratch.address());
 }
 
 void TlasBuilder::record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const {
     record_gather(commands, tlas, input, {}, false);
-    twinray::record_build(commands, "hwtlas_update_tlas",
-                          {build_of(tlas.driver_records, input.count, true), BuildMode::update, &tlas.structure},
-                          tlas.scratch);
+    const StructureWork work{build_of(tlas.driver_records, input.count, true), BuildMode::update, &tlas.structure};
+    record_builds(commands, "hwtlas_update_tlas", std::span(&work, 1), tlas.scratch.address());
 }
 
 }  // namespace twinray

@@ -47,9 +47,17 @@ Builder::Builder(Context& context)
       refit_(context, stage("swtlas_refit", swtlas_refit_spirv)),
       refit_triangles_(context, stage("swtlas_refit_triangles", swtlas_refit_triangles_spirv)) {}
 
-Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const {
+// One tree, in scratch of its own.
+Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, const BuildTree& tree) const {
+    Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = plan.scratch.bytes});
+    const Batch batch = begin(commands, plan, std::span(&tree, 1), scratch);
+    commands.keep(std::move(scratch));
+    return batch;
+}
+
+Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                              const Buffer& scratch) const {
     const BuildScratch& at = plan.scratch;
-    Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = at.bytes});
     const uint none = ordered_bits(-INFINITY), all = ordered_bits(INFINITY);
     const std::vector<CentroidBounds> empty(trees.size(), {uvec3(all), uvec3(none)});
     {
@@ -61,19 +69,17 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
         commands.fill(scratch, at.meeting, std::uint64_t{plan.leaf_count} * sizeof(uint), NOTHING);
     }
     const std::uint64_t base = scratch.address();
-    const Batch batch{{base + at.trees},
-                      {base + at.blocks},
-                      {base + at.boxes},
-                      {base + at.centroids},
-                      {base + at.codes},
-                      {plan.tree_bits ? base + at.tree_of : 0},
-                      {base + at.meeting},
-                      {base + at.counters},
-                      {{base + at.keys[0]}, {base + at.order[0]}},
-                      {{base + at.keys[1]}, {base + at.order[1]}},
-                      static_cast<uint>(plan.blocks.size())};
-    commands.keep(std::move(scratch));
-    return batch;
+    return {{base + at.trees},
+            {base + at.blocks},
+            {base + at.boxes},
+            {base + at.centroids},
+            {base + at.codes},
+            {plan.tree_bits ? base + at.tree_of : 0},
+            {base + at.meeting},
+            {base + at.counters},
+            {{base + at.keys[0]}, {base + at.order[0]}},
+            {{base + at.keys[1]}, {base + at.order[1]}},
+            static_cast<uint>(plan.blocks.size())};
 }
 
 Uints Builder::record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
@@ -95,9 +101,10 @@ void Builder::record_hierarchy(Commands& commands, const Batch& batch, Uints ord
     hierarchy_.dispatch_groups(commands, args, batch.block_count);
 }
 
-void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const {
+void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                               const Buffer& scratch) const {
     if (plan.leaf_count == 0) return;
-    const Batch batch = begin(commands, plan, trees);
+    const Batch batch = begin(commands, plan, trees, scratch);
     leaves_triangles_.dispatch_groups(
         commands, {batch.trees, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0}, batch.block_count);
     const Uints order = record_order(commands, plan, batch);
@@ -109,7 +116,7 @@ void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::s
 void Builder::record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
                                Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
     if (plan.leaf_count == 0) return;
-    const Batch batch = begin(commands, plan, std::span(&tree, 1));
+    const Batch batch = begin(commands, plan, tree);
     leaves_instances_.dispatch_groups(
         commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
         batch.block_count);
@@ -134,7 +141,7 @@ void Builder::record_costs(Commands& commands, std::span<const Measured> trees, 
         const std::uint64_t groups = (std::uint64_t{inner_count(tree.leaf_count)} + AREA_GROUP - 1) / AREA_GROUP;
         work.push_back({groups, {tree.tree.address}, tree.target, is_build});
     }
-    areas_.reserve(commands, work);
+    SurfaceArea::place(commands, work);
     if (!work.empty()) {
         const auto pass = commands.pass(node_areas_.name());
         for (std::size_t i = 0; i < trees.size(); ++i)
@@ -144,9 +151,10 @@ void Builder::record_costs(Commands& commands, std::span<const Measured> trees, 
     areas_.record(commands, std::move(work));
 }
 
-void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const {
+void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                                    const Buffer& scratch) const {
     if (plan.leaf_count == 0) return;
-    const Batch batch = begin(commands, plan, trees);
+    const Batch batch = begin(commands, plan, trees, scratch);
     refit_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.boxes, batch.block_count, 0},
                                      batch.block_count);
     record_climb(commands, batch);
@@ -155,7 +163,7 @@ void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, s
 void Builder::record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
                            Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
     if (plan.leaf_count == 0) return;
-    const Batch batch = begin(commands, plan, std::span(&tree, 1));
+    const Batch batch = begin(commands, plan, tree);
     leaves_instances_.dispatch_groups(
         commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
         batch.block_count);

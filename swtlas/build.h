@@ -17,12 +17,15 @@ class Builder {
     explicit Builder(Context& context);
 
     // trees[i] has leaf_counts[i] triangles; its Bvh must name its node array already and describe an empty tree.
-    void record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const;
+    // `scratch` has plan.scratch.bytes at least.
+    void record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                          const Buffer& scratch) const;
     // One tree over the records; fills `instances`.
     void record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
                           Ref<SwInstance> instances) const;
     // New boxes and corners for trees that record_triangles left behind, whose vertices moved.
-    void record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const;
+    void record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                               const Buffer& scratch) const;
     // New boxes, and new `instances`, for the topology that record_instances left behind.
     void record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
                       Ref<SwInstance> instances) const;
@@ -38,7 +41,9 @@ class Builder {
   private:
     // The addresses of a batch's scratch regions.
     struct Batch;
-    Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const;
+    Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                const Buffer& scratch) const;
+    Batch begin(Commands& commands, const BuildPlan& plan, const BuildTree& tree) const;
     Uints record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_hierarchy(Commands& commands, const Batch& batch, Uints order, bool leaves_are_sorted) const;
     void record_climb(Commands& commands, const Batch& batch) const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/accel/batches.h"
 #include "engine/core/error.h"
 #include "swtlas_trace.spv.h"
 
@@ -18,11 +19,22 @@ Bvh empty_bvh(std::uint64_t nodes) { return {vec3(INFINITY), vec3(-INFINITY), {n
 
 }  // namespace
 
+struct SwTlas::Batch {
+    std::span<const GeometryInput> inputs;
+    std::vector<uint> counts = {};
+    BuildPlan plan = {};
+};
+
 struct SwTlas::SwBuiltGeometry : BuiltGeometry {
     GeometryLayout layout;
     Buffer buffer;
 
     Ref<BvhTriangle> triangles() const { return buffer.ref<BvhTriangle>(layout.triangles); }
+    // Of input i of a batch, over a mesh on the device.
+    BuildTree tree(const Batch& batch, std::size_t i, const DeviceMesh& mesh) const {
+        const std::uint64_t block = batch.inputs[i].block->address();
+        return {batch.plan.first[i], batch.counts[i], mesh.positions, mesh.indices, triangles(), {block}};
+    }
     SwGeometry block() const { return {empty_bvh(buffer.address() + layout.nodes), triangles()}; }
 };
 
@@ -45,10 +57,28 @@ SwTlas::SwTlas(Context& context)
       trace_closest_(context, trace_kernel("swtlas_trace closest", QUERY_CLOSEST)),
       trace_any_(context, trace_kernel("swtlas_trace any", QUERY_ANY)) {}
 
-std::vector<uint> SwTlas::triangle_counts(std::span<const GeometryInput> inputs) {
-    std::vector<uint> counts;
-    for (const GeometryInput& input : inputs) counts.push_back(static_cast<uint>(input.geometry->triangles.size()));
-    return counts;
+// Bytes of what must be uploaded to build from it.
+std::uint64_t SwTlas::source_bytes(const GeometryInput& input) {
+    if (input.mesh.indices.address) return 0;
+    return std::span(input.geometry->positions).size_bytes() + std::span(input.geometry->triangles).size_bytes();
+}
+
+// Calls `record` for one batch after the other, all in the same scratch: that of the build, then the sources.
+void SwTlas::record_batches(Commands& commands, std::span<const GeometryInput> inputs,
+                            const std::function<void(const Batch&, const Buffer& scratch)>& record) {
+    std::vector<std::uint64_t> shares;
+    for (const GeometryInput& input : inputs)
+        shares.push_back(scratch_share(static_cast<uint>(input.geometry->triangles.size())) + source_bytes(input));
+    const Batches batches = cut_into_batches(shares, scratch_budget());
+    Buffer scratch(context(), {.name = "swtlas geometry scratch", .bytes = batches.scratch_bytes});
+    for (const Batches::Run& run : batches.runs) {
+        Batch batch{inputs.subspan(run.first, run.count)};
+        for (const GeometryInput& input : batch.inputs)
+            batch.counts.push_back(static_cast<uint>(input.geometry->triangles.size()));
+        batch.plan = plan_build(batch.counts);
+        record(batch, scratch);
+    }
+    commands.keep(std::move(scratch));
 }
 
 std::vector<Builder::Measured> SwTlas::measured(std::span<const GeometryInput> inputs) {
@@ -61,29 +91,22 @@ std::vector<Builder::Measured> SwTlas::measured(std::span<const GeometryInput> i
 }
 
 // Where the meshes lie on the device; those that are not there yet are uploaded.
-std::vector<DeviceMesh> SwTlas::record_meshes(Commands& commands, std::span<const GeometryInput> inputs) {
+std::vector<DeviceMesh> SwTlas::record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch) {
     std::vector<Commands::Piece> pieces;
-    std::uint64_t bytes = 0;
+    std::uint64_t next = batch.plan.scratch.bytes;
     const auto place = [&](std::span<const std::byte> data) {
-        pieces.push_back({bytes, data});
-        bytes += data.size();
-        return pieces.back().offset;
+        pieces.push_back({next, data});
+        next += data.size();
+        return scratch.address() + pieces.back().offset;
     };
     std::vector<DeviceMesh> meshes;
-    for (const GeometryInput& input : inputs) {
+    for (const GeometryInput& input : batch.inputs) {
         meshes.push_back(input.mesh);
         if (input.mesh.indices.address) continue;
         meshes.back().positions.address = place(std::as_bytes(std::span(input.geometry->positions)));
         meshes.back().indices.address = place(std::as_bytes(std::span(input.geometry->triangles)));
     }
-    Buffer source(context(), {.name = "swtlas geometry input", .bytes = bytes});
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-        if (inputs[i].mesh.indices.address) continue;
-        meshes[i].positions.address += source.address();
-        meshes[i].indices.address += source.address();
-    }
-    commands.upload_pieces(source, pieces);
-    commands.keep(std::move(source));
+    commands.upload_pieces(scratch, pieces);
     return meshes;
 }
 
@@ -95,53 +118,45 @@ std::unique_ptr<SwTlas::SwBuiltGeometry> SwTlas::make_geometry(const Geometry& g
     return made;
 }
 
-std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::build_geometries(
-    Commands& commands, std::span<const GeometryInput> inputs) {
-    if (inputs.empty()) return {};
-    const std::vector<uint> counts = triangle_counts(inputs);
-    const BuildPlan plan = plan_build(counts);
-    std::vector<std::unique_ptr<BuiltGeometry>> built;
+void SwTlas::record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built) {
     std::vector<BuildTree> trees;
     {
         const auto pass = commands.pass("swtlas geometry input");
-        const std::vector<DeviceMesh> meshes = record_meshes(commands, inputs);
-        for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const std::vector<DeviceMesh> meshes = record_meshes(commands, batch, scratch);
+        for (std::size_t i = 0; i < batch.inputs.size(); ++i) {
+            const GeometryInput& input = batch.inputs[i];
             std::unique_ptr<SwBuiltGeometry> made;
-            if (!inputs[i].current) made = make_geometry(*inputs[i].geometry);
-            const auto& target = made ? *made : static_cast<const SwBuiltGeometry&>(*inputs[i].current);
-            commands.write(*inputs[i].block, target.block());
-            trees.push_back({plan.first[i],
-                             counts[i],
-                             meshes[i].positions,
-                             meshes[i].indices,
-                             target.triangles(),
-                             {inputs[i].block->address()}});
+            if (!input.current) made = make_geometry(*input.geometry);
+            const auto& target = made ? *made : static_cast<const SwBuiltGeometry&>(*input.current);
+            commands.write(*input.block, target.block());
+            trees.push_back(target.tree(batch, i, meshes[i]));
             built.push_back(std::move(made));
         }
     }
-    builder_.record_triangles(commands, plan, trees);
-    builder_.record_costs(commands, measured(inputs), true);
+    builder_.record_triangles(commands, batch.plan, trees, scratch);
+    builder_.record_costs(commands, measured(batch.inputs), true);
+}
+
+SwTlas::Built SwTlas::build_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
+    Built built;
+    record_batches(commands, inputs,
+                   [&](const Batch& batch, const Buffer& scratch) { record_build(commands, batch, scratch, built); });
     return built;
 }
 
-std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::refit_geometries(
-    Commands& commands, std::span<const GeometryInput> inputs) {
-    const std::vector<uint> counts = triangle_counts(inputs);
-    const BuildPlan plan = plan_build(counts);
-    std::vector<BuildTree> trees;
-    for (std::size_t i = 0; i < inputs.size(); ++i)
-        trees.push_back({plan.first[i],
-                         counts[i],
-                         inputs[i].mesh.positions,
-                         inputs[i].mesh.indices,
-                         static_cast<const SwBuiltGeometry&>(*inputs[i].current).triangles(),
-                         {inputs[i].block->address()}});
-    std::vector<Builder::Measured> costs = measured(inputs);
-    std::erase_if(costs, [](const Builder::Measured& tree) { return !tree.target.is_first; });
-    builder_.record_costs(commands, costs, true);
-    builder_.record_triangle_refit(commands, plan, trees);
-    builder_.record_costs(commands, measured(inputs), false);
-    return std::vector<std::unique_ptr<BuiltGeometry>>(inputs.size());
+SwTlas::Built SwTlas::refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
+    record_batches(commands, inputs, [&](const Batch& batch, const Buffer& scratch) {
+        std::vector<BuildTree> trees;
+        for (std::size_t i = 0; i < batch.inputs.size(); ++i)
+            trees.push_back(
+                static_cast<const SwBuiltGeometry&>(*batch.inputs[i].current).tree(batch, i, batch.inputs[i].mesh));
+        std::vector<Builder::Measured> as_built = measured(batch.inputs);
+        std::erase_if(as_built, [](const Builder::Measured& tree) { return !tree.target.is_first; });
+        builder_.record_costs(commands, as_built, true);
+        builder_.record_triangle_refit(commands, batch.plan, trees, scratch);
+        builder_.record_costs(commands, measured(batch.inputs), false);
+    });
+    return Built(inputs.size());
 }
 
 std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& commands, const SceneInput& input,

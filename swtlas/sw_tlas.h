@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
+
 #include "engine/accel/abstract_accel.h"
 #include "swtlas/build.h"
 
@@ -23,13 +25,16 @@ class SwTlas final : public AbstractAccel {
   private:
     struct SwBuiltGeometry;
     struct SwBuiltScene;
-    std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
-                                                                 std::span<const GeometryInput> inputs) override;
-    std::vector<std::unique_ptr<BuiltGeometry>> refit_geometries(Commands& commands,
-                                                                 std::span<const GeometryInput> inputs) override;
-    static std::vector<uint> triangle_counts(std::span<const GeometryInput> inputs);
+    struct Batch;
+    using Built = std::vector<std::unique_ptr<BuiltGeometry>>;
+    Built build_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
+    Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
+    static std::uint64_t source_bytes(const GeometryInput& input);
     static std::vector<Builder::Measured> measured(std::span<const GeometryInput> inputs);
-    std::vector<DeviceMesh> record_meshes(Commands& commands, std::span<const GeometryInput> inputs);
+    void record_batches(Commands& commands, std::span<const GeometryInput> inputs,
+                        const std::function<void(const Batch&, const Buffer& scratch)>& record);
+    void record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built);
+    static std::vector<DeviceMesh> record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch);
     std::unique_ptr<SwBuiltGeometry> make_geometry(const Geometry& geometry);
     std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
                                             const BuiltScene* current) override;

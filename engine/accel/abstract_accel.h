@@ -123,6 +123,11 @@ class AbstractAccel {
     // until their vertices move). If so the next sync moves them, as every sync does that has other work, too; views
     // stay valid. A clean accelerator does not do so by itself: it would have to ask in each sync.
     bool compact();
+    // Bytes of device memory that a sync may take for building geometries beyond what it keeps: they are built in
+    // batches that fit, of one at least, and batches use the same memory one after the other. Results do not depend on
+    // it. What the host uploads is staged on top. Default: 64 MiB.
+    std::uint64_t scratch_budget() const { return scratch_budget_; }
+    void set_scratch_budget(std::uint64_t bytes) { scratch_budget_ = bytes; }
     // Throws Error if edits are pending.
     AccelView view() const;
     // Counts the syncs that changed more than transforms and vertices: views of before are stale.
@@ -281,6 +286,7 @@ class AbstractAccel {
     WorldBoundKernel bound_;
     CostLog scene_costs_;
     double rebuild_ratio_ = default_rebuild_ratio;
+    std::uint64_t scratch_budget_ = 64 << 20;
     std::map<std::uint64_t, Placement> placements_;  // in push order: ids only grow
     Dirty dirty_ = Dirty::structure;
     bool has_moved_ = false;  // something has moved after a build, so that builds allow refits

@@ -42,17 +42,21 @@ std::optional<TreeCost> CostLog::newest(const Context& context) const {
 SurfaceArea::SurfaceArea(Context& context)
     : join_(context, {.name = "engine_join_areas", .spirv = engine_join_areas_spirv, .group_size = AREA_GROUP}) {}
 
-void SurfaceArea::reserve(Commands& commands, std::span<AreaWork> work) const {
-    std::uint64_t count = 0;
-    for (const AreaWork& tree : work) count += tree.item_count + groups_of(tree.item_count);
-    if (count == 0) return;
-    Buffer items(commands.context(), {.name = "area items", .bytes = count * sizeof(AreaItem)});
-    std::uint64_t next = items.address();
-    const auto take = [&](std::uint64_t n) { return Ref<AreaItem>{std::exchange(next, next + n * sizeof(AreaItem))}; };
+std::uint64_t AreaWork::bytes() const { return (item_count + groups_of(item_count)) * sizeof(AreaItem); }
+
+void SurfaceArea::place(std::uint64_t address, std::span<AreaWork> work) {
     for (AreaWork& tree : work) {
-        tree.items = take(tree.item_count);
-        tree.joined = take(groups_of(tree.item_count));
+        tree.items.address = address;
+        tree.joined.address = address + tree.item_count * sizeof(AreaItem);
+        address += tree.bytes();
     }
+}
+
+void SurfaceArea::place(Commands& commands, std::span<AreaWork> work) {
+    std::uint64_t bytes = 0;
+    for (const AreaWork& tree : work) bytes += tree.bytes();
+    Buffer items(commands.context(), {.name = "area items", .bytes = bytes});
+    place(items.address(), work);
     commands.keep(std::move(items));
 }
 

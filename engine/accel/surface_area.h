@@ -52,15 +52,19 @@ struct AreaWork {
     Ref<GeometryBox> root;
     CostTarget target;
     bool is_build;
-    Ref<AreaItem> items = {}, joined = {};  // set by SurfaceArea::reserve()
+    Ref<AreaItem> items = {}, joined = {};  // written by the caller's kernels; see SurfaceArea::place()
+
+    std::uint64_t bytes() const;  // of both
 };
 
 class SurfaceArea {
   public:
     explicit SurfaceArea(Context& context);
 
-    // Makes room for the items of all trees, which the caller's kernels then write.
-    void reserve(Commands& commands, std::span<AreaWork> work) const;
+    // Puts the items of all trees into memory from `address` on, AreaWork::bytes() each.
+    static void place(std::uint64_t address, std::span<AreaWork> work);
+    // The same in memory of their own.
+    static void place(Commands& commands, std::span<AreaWork> work);
     void record(Commands& commands, std::vector<AreaWork> work) const;
 
   private:

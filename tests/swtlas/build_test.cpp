@@ -77,6 +77,22 @@ TEST_F(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
     for (std::size_t i = 0; i < handles.size(); ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i]);
 }
 
+TEST_F(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
+    std::vector<Mesh> meshes;
+    for (const uint n : {700u, 0u, 1u, 2048u, 3000u, 5u, 257u}) meshes.push_back(make_soup(n, n));
+    for (const std::uint64_t budget : {std::uint64_t{0}, std::uint64_t{200'000}, UINT64_MAX}) {
+        SwTlas accel(context());
+        accel.set_scratch_budget(budget);
+        std::vector<AccelHandle> handles;
+        for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
+        accel.sync();
+        for (std::size_t i = 0; i < meshes.size(); ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i]);
+        for (std::size_t i = 0; i < meshes.size(); ++i) accel.update_vertices(handles[i], meshes[i].positions);
+        accel.sync();
+        for (std::size_t i = 0; i < meshes.size(); ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i]);
+    }
+}
+
 TEST_F(SwBuild, LargeMeshesAreSound) {
     for (const uint n : {100'000u, 1'000'000u}) {
         SwTlas accel(context());
