@@ -4,6 +4,8 @@
 
 #include "cli/common.h"
 #include "engine/core/error.h"
+#include "hwtlas/hw_tlas.h"
+#include "swtlas/sw_tlas.h"
 
 namespace twinray::cli {
 namespace {
@@ -19,6 +21,31 @@ std::string hardware_able(const DeviceFacts& device) {
     return able;
 }
 
+using CapabilityOn = Capability (*)(const DeviceFacts&, Feature);
+
+nlohmann::json describe_capabilities(const DeviceFacts& device, CapabilityOn capability_on) {
+    nlohmann::json all;
+    for (std::size_t i = 0; i < feature_count; ++i) {
+        const Capability capability = capability_on(device, static_cast<Feature>(i));
+        all[name_of(capability.feature)] = name_of(capability.support);
+    }
+    return all;
+}
+
+// One line for each kind of support, with notes.
+void print_capabilities(const DeviceFacts& device, CapabilityOn capability_on) {
+    for (const Support support : {Support::native, Support::emulated, Support::unsupported}) {
+        std::vector<std::string> features;
+        for (std::size_t i = 0; i < feature_count; ++i) {
+            const Capability capability = capability_on(device, static_cast<Feature>(i));
+            if (capability.support != support) continue;
+            features.push_back(name_of(capability.feature) +
+                               (capability.note.empty() ? "" : " (" + capability.note + ")"));
+        }
+        if (!features.empty()) std::cout << "             " << name_of(support) << ": " << joined(features) << '\n';
+    }
+}
+
 nlohmann::json describe_device(std::size_t index, const DeviceFacts& device) {
     return {{"index", index},
             {"name", device.name},
@@ -28,7 +55,9 @@ nlohmann::json describe_device(std::size_t index, const DeviceFacts& device) {
             {"hw_missing", missing_for_hardware(device)},
             {"ray_query", device.ray_query},
             {"ray_tracing_pipeline", device.ray_tracing_pipeline},
-            {"float64", device.shader_float64}};
+            {"float64", device.shader_float64},
+            {"sw", describe_capabilities(device, SwTlas::capability_on)},
+            {"hw", describe_capabilities(device, HwTlas::capability_on)}};
 }
 
 void print_devices(const std::filesystem::path& json) {
@@ -41,9 +70,11 @@ void print_devices(const std::filesystem::path& json) {
                   << name_of(device.kind) << ")\n"
                   << "     driver  " << device.driver << ", Vulkan " << VK_API_VERSION_MAJOR(api) << '.'
                   << VK_API_VERSION_MINOR(api) << '.' << VK_API_VERSION_PATCH(api) << '\n'
-                  << "     SwTlas  " << verdict(missing_for_software(device), "yes") << '\n'
-                  << "     HwTlas  " << verdict(missing_for_hardware(device), hardware_able(device)) << '\n'
-                  << "     float64 in shaders  " << (device.shader_float64 ? "yes" : "no") << '\n';
+                  << "     SwTlas  " << verdict(missing_for_software(device), "yes") << '\n';
+        if (missing_for_software(device).empty()) print_capabilities(device, SwTlas::capability_on);
+        std::cout << "     HwTlas  " << verdict(missing_for_hardware(device), hardware_able(device)) << '\n';
+        if (missing_for_hardware(device).empty()) print_capabilities(device, HwTlas::capability_on);
+        std::cout << "     float64 in shaders  " << (device.shader_float64 ? "yes" : "no") << '\n';
         append_json(json, describe_device(i, device));
     }
     for (const std::string& rejection : choice.rejections) std::cout << "not the default: device " << rejection << '\n';

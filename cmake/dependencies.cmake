@@ -8,7 +8,6 @@ find_package(nlohmann_json CONFIG REQUIRED)
 find_package(OpenEXR CONFIG REQUIRED)
 find_package(assimp CONFIG REQUIRED)
 
-find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)
 find_program(SPIRV_VAL spirv-val REQUIRED)
 
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)

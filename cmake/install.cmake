@@ -17,7 +17,8 @@ endif()
 # Headers whose types come from a private dependency stay behind.
 install(DIRECTORY engine swtlas hwtlas DESTINATION ${headers_dir}
         FILES_MATCHING PATTERN "*.h" PATTERN "gltf_*.h" EXCLUDE)
-install(DIRECTORY shaders/shared DESTINATION ${headers_dir}/shaders)
+install(DIRECTORY shaders/shared shaders/hwtlas shaders/engine DESTINATION ${headers_dir}/shaders)
+install(DIRECTORY shaders/twinray/ DESTINATION ${headers_dir})
 
 # A static library leaves it to the host to link what it uses itself.
 set(find_link_only "")
@@ -27,10 +28,11 @@ if(NOT BUILD_SHARED_LIBS)
     set(requires_link_only "OpenEXR assimp zlib")
 endif()
 configure_package_config_file(cmake/twinrayConfig.cmake.in ${generated_dir}/twinrayConfig.cmake
-                              INSTALL_DESTINATION ${package_dir})
+                              INSTALL_DESTINATION ${package_dir} PATH_VARS headers_dir)
 write_basic_package_version_file(${generated_dir}/twinrayConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${generated_dir}/twinrayConfig.cmake ${generated_dir}/twinrayConfigVersion.cmake
         DESTINATION ${package_dir})
+install(FILES cmake/TwinrayShaders.cmake DESTINATION ${package_dir})
 
 # Relative to the file itself, so that an installed tree can be moved.
 file(RELATIVE_PATH prefix_from_pc ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})

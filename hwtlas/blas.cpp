@@ -15,23 +15,52 @@ Buffer upload(Commands& commands, const std::string& name, const std::vector<T>&
     return buffer;
 }
 
-}  // namespace
-
-StructureBuild triangle_build(const std::string& name, std::uint64_t positions, uint vertex_count,
-                              uint triangle_count) {
+StructureBuild build_of(const std::string& name, VkGeometryTypeKHR type, std::size_t primitive_count) {
     StructureBuild build{};
     build.name = "blas " + name;
     build.type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR;
-    build.primitive_count = triangle_count;
+    build.primitive_count = static_cast<std::uint32_t>(primitive_count);
     build.geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
-    build.geometry.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
+    build.geometry.geometryType = type;
     build.geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
+    return build;
+}
+
+StructureBuild build_of_boxes(const std::string& name, const Buffer& boxes) {
+    static_assert(sizeof(Bounds) == sizeof(VkAabbPositionsKHR));
+    StructureBuild build = build_of(name, VK_GEOMETRY_TYPE_AABBS_KHR, boxes.bytes() / sizeof(Bounds));
+    VkAccelerationStructureGeometryAabbsDataKHR& data = build.geometry.geometry.aabbs;
+    data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_AABBS_DATA_KHR;
+    data.data.deviceAddress = boxes.address();
+    data.stride = sizeof(Bounds);
+    return build;
+}
+
+// Uploads the input and says how to build from it.
+StructureBuild record_input(Commands& commands, const std::string& name, const BlasInput& input) {
+    Buffer positions = upload(commands, "blas positions " + name, input.positions);
+    Buffer triangles = upload(commands, "blas triangles " + name, input.triangles);
+    Buffer boxes = upload(commands, "blas boxes " + name, input.boxes);
+    StructureBuild build =
+        input.boxes.empty() ? triangle_build(name, positions.address(), input.positions.size(), input.triangles.size())
+                            : build_of_boxes(name, boxes);
+    if (input.boxes.empty()) build.geometry.geometry.triangles.indexData.deviceAddress = triangles.address();
+    build.flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
+    for (Buffer* buffer : {&positions, &triangles, &boxes}) commands.keep(std::move(*buffer));
+    return build;
+}
+
+}  // namespace
+
+StructureBuild triangle_build(const std::string& name, std::uint64_t positions, std::size_t vertex_count,
+                              std::size_t triangle_count) {
+    StructureBuild build = build_of(name, VK_GEOMETRY_TYPE_TRIANGLES_KHR, triangle_count);
     VkAccelerationStructureGeometryTrianglesDataKHR& data = build.geometry.geometry.triangles;
     data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
     data.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
     data.vertexData.deviceAddress = positions;
     data.vertexStride = sizeof(vec3);
-    data.maxVertex = vertex_count - 1;
+    data.maxVertex = static_cast<std::uint32_t>(vertex_count) - 1;
     data.indexType = VK_INDEX_TYPE_UINT32;
     return build;
 }
@@ -47,21 +76,14 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
         for (std::size_t i = 0; i < geometries.size(); ++i) {
             const Geometry& geometry = *geometries[i];
             const BlasInput input = blas_input(geometry, options.reorder);
+            blases[i].kind = geometry.kind;
             if (input.is_empty()) continue;
             blases[i].bounds = input.bounds;
-            Buffer positions = upload(commands, "blas positions " + geometry.name, input.positions);
-            Buffer triangles = upload(commands, "blas triangles " + geometry.name, input.triangles);
             if (options.reorder)
-                blases[i].original_triangles =
+                blases[i].original =
                     std::make_shared<const Buffer>(upload(commands, "blas order " + geometry.name, input.original));
-            builds.push_back(triangle_build(geometry.name, positions.address(),
-                                            static_cast<uint>(input.positions.size()),
-                                            static_cast<uint>(input.triangles.size())));
-            builds.back().flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
-            builds.back().geometry.geometry.triangles.indexData.deviceAddress = triangles.address();
+            builds.push_back(record_input(commands, geometry.name, input));
             built.push_back(i);
-            commands.keep(std::move(positions));
-            commands.keep(std::move(triangles));
         }
     }
     std::vector<AccelerationStructure> structures =

@@ -9,23 +9,25 @@
 
 namespace twinray {
 
-// The built form of one mesh. Without a structure when the mesh has nothing that could be hit: Vulkan takes an instance
+// The built form of one geometry. Without a structure when it has nothing that could be hit: Vulkan takes an instance
 // of address 0 as inactive.
 struct Blas {
-    Bounds bounds;  // of the active triangles; empty where the device alone knows them
+    uint kind = GEOMETRY_TRIANGLES;
+    Bounds bounds;  // of the active primitives; empty where the device alone knows them
     AccelerationStructure structure;
-    std::shared_ptr<const Buffer> original_triangles;  // uint each; null when the order was kept
-    bool can_update = false;                           // made by MovingBlasBuilder; others may be compacted, once
-    std::shared_ptr<CompactedSizes> compacted;         // null: cannot be compacted
-    std::size_t place = 0;                             // in `compacted`
+    std::shared_ptr<const Buffer> original;     // see BlasInput, uint each; null when the order was kept
+    bool can_update = false;                    // made by MovingBlasBuilder; others may be compacted, once
+    std::shared_ptr<CompactedSizes> compacted;  // null: cannot be compacted
+    std::size_t place = 0;                      // in `compacted`
 
-    Uints table() const { return original_triangles ? original_triangles->ref<uint>() : Uints{}; }
-    HwGeometry block() const { return {bounds.lo, bounds.hi, structure.address(), table()}; }
-    std::uint64_t bytes() const { return structure.bytes() + (original_triangles ? original_triangles->bytes() : 0); }
+    Uints table() const { return original ? original->ref<uint>() : Uints{}; }
+    HwGeometry block() const { return {bounds.lo, bounds.hi, structure.address(), table(), kind, 0}; }
+    std::uint64_t bytes() const { return structure.bytes() + (original ? original->bytes() : 0); }
 };
 
 // A build of triangles from a device address; with uint indices unless the caller changes that.
-StructureBuild triangle_build(const std::string& name, std::uint64_t positions, uint vertex_count, uint triangle_count);
+StructureBuild triangle_build(const std::string& name, std::uint64_t positions, std::size_t vertex_count,
+                              std::size_t triangle_count);
 
 struct BlasOptions {
     bool reorder;                  // presort for drivers that build in input order

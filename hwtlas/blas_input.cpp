@@ -7,8 +7,24 @@
 #include "hwtlas/order.h"
 
 namespace twinray {
+namespace {
+
+BlasInput boxes_input(std::span<const Bounds> boxes, bool reorder) {
+    BlasInput input;
+    std::vector<vec3> centers;
+    for (const Bounds& box : boxes) {
+        centers.push_back(box.center());
+        input.bounds.include(box);
+    }
+    if (reorder) input.original = morton_order(centers);
+    for (std::size_t i = 0; i < boxes.size(); ++i) input.boxes.push_back(boxes[reorder ? input.original[i] : i]);
+    return input;
+}
+
+}  // namespace
 
 BlasInput blas_input(const Geometry& geometry, bool reorder) {
+    if (geometry.kind == GEOMETRY_BOXES) return boxes_input(geometry.boxes, reorder);
     const auto is_active = [&](uvec3 corners) {
         return is_active_triangle(geometry.positions[corners.x], geometry.positions[corners.y],
                                   geometry.positions[corners.z]);

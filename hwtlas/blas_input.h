@@ -14,10 +14,11 @@ namespace twinray {
 struct BlasInput {
     std::vector<vec3> positions;
     std::vector<uvec3> triangles;
-    Bounds bounds;               // of the active triangles
-    std::vector<uint> original;  // place in `triangles` -> the mesh's triangle; empty: not reordered
+    std::vector<Bounds> boxes;   // instead of both
+    Bounds bounds;               // of the active primitives
+    std::vector<uint> original;  // place in `triangles` or `boxes` -> the user's index; empty: not reordered
 
-    bool is_empty() const { return triangles.empty(); }  // the mesh has nothing that could be hit
+    bool is_empty() const { return bounds.is_empty(); }  // there is nothing that could be hit
 };
 
 BlasInput blas_input(const Geometry& geometry, bool reorder);

@@ -9,9 +9,9 @@ namespace twinray {
 using std::uint64_t;
 #include "engine/core/bridge_begin.h"
 #include "shaders/shared/hw_scene.h"
-#include "shaders/shared/hw_triangles.h"
+#include "shaders/shared/hw_build.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(HwGeometry) == 40 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 16 &&
-              sizeof(HwTraceArgs) == 48 && sizeof(HwTrianglesArgs) == 80 && sizeof(HwGatherArgs) == 48);
+static_assert(sizeof(HwGeometry) == 48 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 16 &&
+              sizeof(HwTrianglesArgs) == 80 && sizeof(HwGatherArgs) == 48);
 }  // namespace twinray

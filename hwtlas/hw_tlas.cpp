@@ -7,9 +7,7 @@
 #include "engine/core/error.h"
 #include "hwtlas/moving_blas.h"
 #include "hwtlas_trace_query.spv.h"
-#include "hwtlas_trace_rchit.spv.h"
-#include "hwtlas_trace_rgen.spv.h"
-#include "hwtlas_trace_rmiss.spv.h"
+#include "hwtlas/pipeline_program.h"
 
 namespace twinray {
 namespace {
@@ -19,8 +17,6 @@ Context& checked(Context& context) {
     if (!missing.empty()) fail("HwTlas: device '", context.facts().name, "' lacks ", joined(missing));
     return context;
 }
-
-std::size_t index_of(Query query) { return static_cast<std::size_t>(query); }
 
 }  // namespace
 
@@ -46,31 +42,34 @@ HwTlas::HwTlas(Context& context, BuildOrder order)
       reorder_(order == BuildOrder::morton ||
                (order == BuildOrder::automatic && context.facts().builds_in_input_order)),
       moving_(std::make_unique<MovingBlasBuilder>(context, reorder_)),
-      tlas_builder_(context, reorder_) {
-    create_pipelines(Query::closest);
-    create_pipelines(Query::any);
-}
+      tlas_builder_(context, reorder_) {}
 
 HwTlas::~HwTlas() = default;
 
-void HwTlas::create_pipelines(Query query) {
-    const std::vector<SpecializationConstant> constants = {{HW_HAS_REMAP, reorder_}, {HW_IS_ANY, query == Query::any}};
-    if (context().facts().ray_query)
-        kernels_[index_of(query)] = std::make_unique<Kernel<HwTraceArgs>>(
-            context(),
-            KernelDesc{.name = "hwtlas_trace_query", .spirv = hwtlas_trace_query_spirv, .constants = constants});
-    else
-        pipelines_[index_of(query)] = std::make_unique<RayTracingPipeline>(
-            context(), RayTracingPipelineDesc{.name = "hwtlas_trace",
-                                              .ray_generation = hwtlas_trace_rgen_spirv,
-                                              .miss = hwtlas_trace_rmiss_spirv,
-                                              .closest_hit = hwtlas_trace_rchit_spirv,
-                                              .constants = constants});
+Capability HwTlas::capability_on(const DeviceFacts& device, Feature feature) {
+    switch (feature) {
+        case Feature::deterministic_ties: return {feature, Support::unsupported, "the driver chooses"};
+        case Feature::kernel_queries:
+            if (device.ray_query) return {feature, Support::native, ""};
+            return {feature, Support::unsupported, "the device has no ray queries"};
+        case Feature::level_fast:
+        case Feature::level_watertight: return {feature, Support::native, "the driver's own test; verify measures it"};
+        case Feature::level_refined:
+        case Feature::level_certified: return {feature, Support::unsupported, "the driver's test is all there is"};
+        case Feature::save_and_load:
+            return {feature, Support::unsupported, "the driver's structures stay on its device"};
+        default: return {feature, Support::native, ""};
+    }
 }
 
-const char* HwTlas::trace_path() const {
-    return kernels_[index_of(Query::closest)] ? "ray query" : "ray tracing pipeline";
+std::unique_ptr<TraceProgram> HwTlas::create_program(const TraceProgramCode* code, uint features) const {
+    if (!context().facts().ray_query) return std::make_unique<PipelineProgram>(context(), id(), features, code);
+    return std::make_unique<KernelProgram>(
+        context(), id(), features, code ? code->name : "hwtlas_trace",
+        code ? code->ray_query : std::span<const std::uint32_t>(hwtlas_trace_query_spirv));
 }
+
+const char* HwTlas::trace_path() const { return context().facts().ray_query ? "ray query" : "ray tracing pipeline"; }
 
 // Those whose vertices the host alone has.
 void HwTlas::build_still(Commands& commands, std::span<const GeometryInput> inputs, Built& built) {
@@ -137,10 +136,11 @@ HwTlas::Built HwTlas::compact_geometries(Commands& commands, std::span<const Geo
     for (const GeometryInput& input : inputs) {
         const Blas& large = *HwBuiltGeometry::of(input.current);
         Blas blas;
+        blas.kind = large.kind;
         blas.bounds = large.bounds;
         blas.structure = record_compaction(commands, "blas " + input.geometry->name, large.structure,
                                            large.compacted->bytes_of(large.place));
-        blas.original_triangles = large.original_triangles;
+        blas.original = large.original;
         commands.write(*input.block, blas.structure.address(), offsetof(HwGeometry, blas));
         built.push_back(std::make_unique<HwBuiltGeometry>(std::move(blas)));
     }
@@ -164,16 +164,6 @@ std::unique_ptr<AbstractAccel::BuiltScene> HwTlas::build_scene(Commands& command
 void HwTlas::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
     tlas_builder_.record_update(commands, static_cast<const HwTopLevel&>(current).tlas,
                                 {input.records, input.count, input.bound, input.cost});
-}
-
-void HwTlas::record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const {
-    const HwTraceArgs args{
-        {scene},   desc.rays,           desc.hits, desc.indirect_count, static_cast<uint>(desc.count),
-        desc.mask, flags_of(desc.cull), 0};
-    if (const auto& kernel = kernels_[index_of(desc.query)])
-        kernel->dispatch(commands, args, desc.count);
-    else
-        pipelines_[index_of(desc.query)]->trace(commands, args);
 }
 
 }  // namespace twinray

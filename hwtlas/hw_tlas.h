@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-
 #include "engine/accel/abstract_accel.h"
-#include "engine/core/kernel.h"
-#include "hwtlas/ray_tracing_pipeline.h"
 #include "hwtlas/tlas.h"
 
 namespace twinray {
@@ -28,6 +24,11 @@ class HwTlas : public AbstractAccel {
     explicit HwTlas(Context& context, BuildOrder order = BuildOrder::automatic);
     ~HwTlas() override;
 
+    // What the hardware accelerator can do on a device that it runs on.
+    static Capability capability_on(const DeviceFacts& device, Feature feature);
+    Capability capability(Feature feature) const override { return capability_on(context().facts(), feature); }
+    bool is_software() const override { return false; }
+
     // "ray query" or "ray tracing pipeline".
     const char* trace_path() const;
     bool reorders() const { return reorder_; }
@@ -41,21 +42,18 @@ class HwTlas : public AbstractAccel {
     std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
                                             const BuiltScene* current) override;
     void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
-    void record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const override;
+    std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
+    uint own_features() const override { return reorder_ ? FEATURE_REMAP : 0; }
 
   private:
     struct HwBuiltGeometry;
     struct HwTopLevel;
-    void create_pipelines(Query query);
     void build_still(Commands& commands, std::span<const GeometryInput> inputs, Built& built);
     MovingMesh prepare_moving(const GeometryInput& input, std::unique_ptr<BuiltGeometry>& built) const;
 
     bool reorder_;
     std::unique_ptr<MovingBlasBuilder> moving_;
     TlasBuilder tlas_builder_;
-    // By Query; only those of the chosen path exist.
-    std::array<std::unique_ptr<Kernel<HwTraceArgs>>, 2> kernels_;
-    std::array<std::unique_ptr<RayTracingPipeline>, 2> pipelines_;
 };
 
 }  // namespace twinray

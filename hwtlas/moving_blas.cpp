@@ -78,7 +78,7 @@ Blas MovingBlasBuilder::make(const std::string& name, uint triangle_count) const
     blas.structure =
         AccelerationStructure(context_, build.name, build.type, sizes_of(context_, build).accelerationStructureSize);
     if (reorder_)
-        blas.original_triangles = std::make_shared<const Buffer>(
+        blas.original = std::make_shared<const Buffer>(
             context_, BufferDesc{.name = "blas order " + name, .bytes = std::uint64_t{triangle_count} * sizeof(uint)});
     return blas;
 }

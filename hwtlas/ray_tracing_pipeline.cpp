@@ -13,11 +13,13 @@ namespace {
 // Every device allows at least 65535 invocations along x; trace.rgen makes one index of x and y.
 constexpr std::uint32_t launch_width = 32768;
 
-constexpr VkShaderStageFlags stages =
-    VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_MISS_BIT_KHR | VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR;
+constexpr VkShaderStageFlags stages = VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_MISS_BIT_KHR |
+                                      VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR | VK_SHADER_STAGE_ANY_HIT_BIT_KHR |
+                                      VK_SHADER_STAGE_INTERSECTION_BIT_KHR;
 
-// Positions of the groups in the pipeline and of their records in the table.
-enum Group : std::uint32_t { ray_generation, miss_group, hit_group, group_count };
+// Positions of the groups in the pipeline and of their records in the table. The last two are hit records: what
+// shaders/hwtlas/gather_instances.comp writes into an instance, GEOMETRY_TRIANGLES or GEOMETRY_BOXES, chooses.
+enum Group : std::uint32_t { ray_generation, miss_group, triangle_group, box_group, group_count };
 
 VkPhysicalDeviceRayTracingPipelinePropertiesKHR limits_of(const Context& context) {
     VkPhysicalDeviceRayTracingPipelinePropertiesKHR limits{};
@@ -30,47 +32,72 @@ VkPhysicalDeviceRayTracingPipelinePropertiesKHR limits_of(const Context& context
     return limits;
 }
 
-VkRayTracingShaderGroupCreateInfoKHR group_of(std::uint32_t stage, VkRayTracingShaderGroupTypeKHR type) {
-    VkRayTracingShaderGroupCreateInfoKHR group{};
-    group.sType = VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR;
-    group.type = type;
-    group.generalShader = group.closestHitShader = group.anyHitShader = group.intersectionShader = VK_SHADER_UNUSED_KHR;
-    (type == VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR ? group.generalShader : group.closestHitShader) = stage;
-    return group;
-}
-
-// The three shader modules; they live until the pipeline has been made from them.
-class Modules {
+// The shader stages of a pipeline; their modules live until the pipeline has been made from them.
+class Stages {
   public:
-    Modules(Context& context, const RayTracingPipelineDesc& desc) : context_(context) {
-        try {
-            modules_[ray_generation] = create_shader_module(context, desc.ray_generation, desc.name + "_rgen");
-            modules_[miss_group] = create_shader_module(context, desc.miss, desc.name + "_rmiss");
-            modules_[hit_group] = create_shader_module(context, desc.closest_hit, desc.name + "_rchit");
-        } catch (...) {
-            destroy();
-            throw;
-        }
+    explicit Stages(Context& context) : context_(context) {}
+    ~Stages() {
+        for (const VkPipelineShaderStageCreateInfo& stage : stages_)
+            context_.vk().vkDestroyShaderModule(context_.device(), stage.module, nullptr);
     }
-    ~Modules() { destroy(); }
-    Modules(const Modules&) = delete;
-    Modules& operator=(const Modules&) = delete;
+    Stages(const Stages&) = delete;
+    Stages& operator=(const Stages&) = delete;
 
-    VkShaderModule operator[](Group group) const { return modules_[group]; }
+    // Its index, as groups name it; VK_SHADER_UNUSED_KHR for no code.
+    std::uint32_t add(VkShaderStageFlagBits stage, std::span<const std::uint32_t> spirv, const std::string& name) {
+        if (spirv.empty()) return VK_SHADER_UNUSED_KHR;
+        stages_.reserve(stages_.size() + 1);
+        VkPipelineShaderStageCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+        info.stage = stage;
+        info.module = create_shader_module(context_, spirv, name);
+        info.pName = "main";
+        stages_.push_back(info);
+        return static_cast<std::uint32_t>(stages_.size() - 1);
+    }
+    std::span<const VkPipelineShaderStageCreateInfo> specialized(const VkSpecializationInfo& specialization) {
+        for (VkPipelineShaderStageCreateInfo& stage : stages_) stage.pSpecializationInfo = &specialization;
+        return stages_;
+    }
 
   private:
-    void destroy() {
-        for (VkShaderModule module : modules_) context_.vk().vkDestroyShaderModule(context_.device(), module, nullptr);
-    }
     Context& context_;
-    std::array<VkShaderModule, group_count> modules_{};
+    std::vector<VkPipelineShaderStageCreateInfo> stages_;
 };
+
+VkRayTracingShaderGroupCreateInfoKHR general_group(std::uint32_t stage) {
+    return {VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR,
+            nullptr,
+            VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR,
+            stage,
+            VK_SHADER_UNUSED_KHR,
+            VK_SHADER_UNUSED_KHR,
+            VK_SHADER_UNUSED_KHR,
+            nullptr};
+}
+
+// Of triangles where there is no intersection.
+VkRayTracingShaderGroupCreateInfoKHR hit_group(std::uint32_t closest_hit, std::uint32_t any_hit,
+                                               std::uint32_t intersection) {
+    return {VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR,
+            nullptr,
+            intersection == VK_SHADER_UNUSED_KHR ? VK_RAY_TRACING_SHADER_GROUP_TYPE_TRIANGLES_HIT_GROUP_KHR
+                                                 : VK_RAY_TRACING_SHADER_GROUP_TYPE_PROCEDURAL_HIT_GROUP_KHR,
+            VK_SHADER_UNUSED_KHR,
+            closest_hit,
+            any_hit,
+            intersection,
+            nullptr};
+}
 
 }  // namespace
 
 RayTracingPipeline::RayTracingPipeline(Context& context, const RayTracingPipelineDesc& desc)
-    : context_(context), name_(desc.name), limits_(limits_of(context)) {
-    layout_ = create_push_constant_layout(context, stages, sizeof(HwTraceArgs));
+    : context_(context),
+      name_(desc.name),
+      limits_(limits_of(context)),
+      launch_limit_(std::min(limits_.maxRayDispatchInvocationCount, desc.launch_limit)) {
+    layout_ = create_push_constant_layout(context, stages, sizeof(TraceArgs));
     try {
         create_pipeline(desc);
         create_shader_binding_table();
@@ -97,24 +124,20 @@ void RayTracingPipeline::create_pipeline(const RayTracingPipelineDesc& desc) {
     }
     const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
                                               values.size() * 4, values.data()};
-    const Modules modules(context_, desc);
-    std::array<VkPipelineShaderStageCreateInfo, group_count> shaders{};
-    shaders[ray_generation].stage = VK_SHADER_STAGE_RAYGEN_BIT_KHR;
-    shaders[miss_group].stage = VK_SHADER_STAGE_MISS_BIT_KHR;
-    shaders[hit_group].stage = VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR;
-    for (const Group group : {ray_generation, miss_group, hit_group}) {
-        shaders[group].sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-        shaders[group].module = modules[group];
-        shaders[group].pName = "main";
-        shaders[group].pSpecializationInfo = &specialization;
-    }
-    const std::array groups = {group_of(ray_generation, VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR),
-                               group_of(miss_group, VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR),
-                               group_of(hit_group, VK_RAY_TRACING_SHADER_GROUP_TYPE_TRIANGLES_HIT_GROUP_KHR)};
+    Stages shaders(context_);
+    const std::uint32_t generation = shaders.add(VK_SHADER_STAGE_RAYGEN_BIT_KHR, desc.ray_generation, name_ + " rgen");
+    const std::uint32_t miss = shaders.add(VK_SHADER_STAGE_MISS_BIT_KHR, desc.miss, name_ + " rmiss");
+    const std::uint32_t closest = shaders.add(VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, desc.closest_hit, name_ + " rchit");
+    const std::uint32_t any = shaders.add(VK_SHADER_STAGE_ANY_HIT_BIT_KHR, desc.any_hit, name_ + " rahit");
+    const std::uint32_t box = shaders.add(VK_SHADER_STAGE_INTERSECTION_BIT_KHR, desc.intersection, name_ + " rint");
+    const std::span<const VkPipelineShaderStageCreateInfo> modules = shaders.specialized(specialization);
+    const std::array<VkRayTracingShaderGroupCreateInfoKHR, group_count> groups = {
+        general_group(generation), general_group(miss), hit_group(closest, any, VK_SHADER_UNUSED_KHR),
+        hit_group(closest, any, box)};
     VkRayTracingPipelineCreateInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR;
-    info.stageCount = group_count;
-    info.pStages = shaders.data();
+    info.stageCount = static_cast<std::uint32_t>(modules.size());
+    info.pStages = modules.data();
     info.groupCount = group_count;
     info.pGroups = groups.data();
     info.maxPipelineRayRecursionDepth = 1;
@@ -125,7 +148,8 @@ void RayTracingPipeline::create_pipeline(const RayTracingPipelineDesc& desc) {
     context_.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), name_);
 }
 
-// One record per group, each at the start of a region of its own: regions start at multiples of the base alignment.
+// One record per group, each at a multiple of the base alignment, where regions may start; the hit records are one
+// region.
 void RayTracingPipeline::create_shader_binding_table() {
     const std::uint32_t handle_bytes = limits_.shaderGroupHandleSize;
     const std::uint64_t alignment = std::max(limits_.shaderGroupBaseAlignment, limits_.shaderGroupHandleAlignment);
@@ -143,18 +167,20 @@ void RayTracingPipeline::create_shader_binding_table() {
         std::memcpy(table_.mapped() + group * record_bytes_, handles.data() + group * handle_bytes, handle_bytes);
 }
 
-void RayTracingPipeline::trace(Commands& commands, const HwTraceArgs& args) const {
+void RayTracingPipeline::trace(Commands& commands, const TraceArgs& args) const {
     const VulkanFunctions& vk = context_.vk();
     const auto region = [&](Group group) {
         return VkStridedDeviceAddressRegionKHR{table_.address() + group * record_bytes_, record_bytes_, record_bytes_};
     };
-    const VkStridedDeviceAddressRegionKHR generation = region(ray_generation), miss = region(miss_group),
-                                          hit = region(hit_group), callable{};
+    const VkStridedDeviceAddressRegionKHR generation = region(ray_generation), miss = region(miss_group), callable{};
+    VkStridedDeviceAddressRegionKHR hit = region(triangle_group);
+    hit.size = 2 * record_bytes_;
     const auto pass = commands.pass(name_);
     vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, pipeline_);
-    const std::uint32_t per_launch = limits_.maxRayDispatchInvocationCount / launch_width * launch_width;
+    // Whole rows; a device's limit is at least 2^30.
+    const std::uint32_t per_launch = std::max(launch_limit_ / launch_width, 1u) * launch_width;
     for (std::uint64_t first = 0; first < args.count; first += per_launch) {
-        HwTraceArgs part = args;
+        TraceArgs part = args;
         part.first = static_cast<uint>(first);
         part.count = static_cast<uint>(std::min<std::uint64_t>(args.count, first + per_launch));
         const std::uint32_t count = part.count - part.first, width = std::min(count, launch_width);

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/accel/trace_args.h"
 #include "engine/core/kernel.h"
-#include "hwtlas/hw_scene.h"
 
 namespace twinray {
 
@@ -15,10 +15,14 @@ struct RayTracingPipelineDesc {
     std::span<const std::uint32_t> ray_generation;
     std::span<const std::uint32_t> miss;
     std::span<const std::uint32_t> closest_hit;
+    std::span<const std::uint32_t> any_hit;         // of all geometry that is not opaque; empty: none
+    std::span<const std::uint32_t> intersection;    // of boxes; empty: none
     std::vector<SpecializationConstant> constants;  // of all stages
+    std::uint32_t launch_limit = UINT32_MAX;        // invocations in one launch, if the device allows more
 };
 
-// A pipeline of three shaders with its shader binding table, whose only input is HwTraceArgs as push constants.
+// A pipeline of a few shaders with its shader binding table, whose only input is TraceArgs as push constants. Instances
+// of triangles take the first hit record, those of boxes the second.
 class RayTracingPipeline {
   public:
     RayTracingPipeline(Context& context, const RayTracingPipelineDesc& desc);
@@ -27,7 +31,7 @@ class RayTracingPipeline {
     RayTracingPipeline& operator=(const RayTracingPipeline&) = delete;
 
     // Launches args.count invocations, in several launches where the device's limit asks for it. Opens a pass.
-    void trace(Commands& commands, const HwTraceArgs& args) const;
+    void trace(Commands& commands, const TraceArgs& args) const;
 
   private:
     void create_pipeline(const RayTracingPipelineDesc& desc);
@@ -36,6 +40,7 @@ class RayTracingPipeline {
     Context& context_;
     std::string name_;
     VkPhysicalDeviceRayTracingPipelinePropertiesKHR limits_{};
+    std::uint32_t launch_limit_;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkPipeline pipeline_ = VK_NULL_HANDLE;
     Buffer table_;

@@ -69,6 +69,7 @@ std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, s
             instance.nodes = geometry.bvh.nodes;
             instance.triangles = geometry.triangles;
             instance.root = geometry.bvh.root;
+            instance.kind = geometry.kind;
             box = box_of_instance(record, geometry.bvh.lo, geometry.bvh.hi, to_object);
         }
         instances.push_back(instance);
@@ -138,7 +139,9 @@ void Scene::build() {
     for (BuiltGeometry& geometry : geometries_)
         geometry.header = {{geometry.tree.box.lo, geometry.tree.box.hi, Ref<BvhNode>::to(geometry.tree.nodes.data()),
                             geometry.tree.root, static_cast<uint>(geometry.triangles.size())},
-                           Ref<BvhTriangle>::to(geometry.triangles.data())};
+                           Ref<BvhTriangle>::to(geometry.triangles.data()),
+                           GEOMETRY_TRIANGLES,
+                           0};
     std::vector<InstanceRecord> records;
     for (auto [geometry, record] : placed_) {
         record.geometry = Ref<SwGeometry>::to(&geometries_[geometry].header).address;
@@ -153,6 +156,8 @@ void Scene::build() {
         instances_.size()};
 }
 
-Hit Scene::trace(const Ray& ray, uint query, uint mask) const { return traverse(header_, ray, mask, 0, query); }
+Hit Scene::trace(const Ray& ray, uint query, uint mask) const {
+    return traverse(header_, ray, {mask, 0, query, LEVEL_WATERTIGHT, 0, 0});
+}
 
 }  // namespace twinray::reference

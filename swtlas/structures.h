@@ -4,6 +4,7 @@
 
 #include "engine/accel/instance_record.h"
 #include "engine/accel/surface_area.h"
+#include "engine/accel/trace_args.h"
 #include "engine/core/ray.h"
 #include "engine/core/sort_args.h"
 
@@ -15,5 +16,5 @@ namespace twinray {
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 80);
-static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 48 && sizeof(SwScene) == 56);
+static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 56 && sizeof(SwScene) == 56);
 }  // namespace twinray

@@ -11,10 +11,6 @@
 namespace twinray {
 namespace {
 
-KernelDesc trace_kernel(const char* name, uint query) {
-    return {.name = name, .spirv = swtlas_trace_spirv, .group_size = 64, .constants = {{0, query}}};
-}
-
 Bvh empty_bvh(std::uint64_t nodes) { return {vec3(INFINITY), vec3(-INFINITY), {nodes}, NOTHING, 0}; }
 
 }  // namespace
@@ -35,7 +31,7 @@ struct SwTlas::SwBuiltGeometry : BuiltGeometry {
         const std::uint64_t block = batch.inputs[i].block->address();
         return {batch.plan.first[i], batch.counts[i], mesh.positions, mesh.indices, triangles(), {block}};
     }
-    SwGeometry block() const { return {empty_bvh(buffer.address() + layout.nodes), triangles()}; }
+    SwGeometry block(uint kind) const { return {empty_bvh(buffer.address() + layout.nodes), triangles(), kind, 0}; }
 };
 
 struct SwTlas::SwBuiltScene : BuiltScene {
@@ -51,16 +47,22 @@ struct SwTlas::SwBuiltScene : BuiltScene {
     Ref<SwInstance> instances() const { return {address + layout_scene(capacity).instances}; }
 };
 
-SwTlas::SwTlas(Context& context)
-    : AbstractAccel(context, "SwTlas"),
-      builder_(context),
-      trace_closest_(context, trace_kernel("swtlas_trace closest", QUERY_CLOSEST)),
-      trace_any_(context, trace_kernel("swtlas_trace any", QUERY_ANY)) {}
+SwTlas::SwTlas(Context& context) : AbstractAccel(context, "SwTlas"), builder_(context) {}
+
+Capability SwTlas::capability_on(const DeviceFacts&, Feature feature) {
+    switch (feature) {
+        case Feature::level_refined:
+        case Feature::level_certified: return {feature, Support::unsupported, "the software traversal is watertight"};
+        case Feature::compaction: return {feature, Support::native, "its arrays have their exact size when built"};
+        default: return {feature, Support::native, ""};
+    }
+}
 
 // Bytes of what must be uploaded to build from it.
 std::uint64_t SwTlas::source_bytes(const GeometryInput& input) {
     if (input.mesh.indices.address) return 0;
-    return std::span(input.geometry->positions).size_bytes() + std::span(input.geometry->triangles).size_bytes();
+    return std::span(input.geometry->positions).size_bytes() + std::span(input.geometry->triangles).size_bytes() +
+           std::span(input.geometry->boxes).size_bytes();
 }
 
 // Calls `record` for one batch after the other, all in the same scratch: that of the build, then the sources.
@@ -68,13 +70,13 @@ void SwTlas::record_batches(Commands& commands, std::span<const GeometryInput> i
                             const std::function<void(const Batch&, const Buffer& scratch)>& record) {
     std::vector<std::uint64_t> shares;
     for (const GeometryInput& input : inputs)
-        shares.push_back(scratch_share(static_cast<uint>(input.geometry->triangles.size())) + source_bytes(input));
+        shares.push_back(scratch_share(static_cast<uint>(input.geometry->primitive_count())) + source_bytes(input));
     const Batches batches = cut_into_batches(shares, scratch_budget());
     Buffer scratch(context(), {.name = "swtlas geometry scratch", .bytes = batches.scratch_bytes});
     for (const Batches::Run& run : batches.runs) {
         Batch batch{inputs.subspan(run.first, run.count)};
         for (const GeometryInput& input : batch.inputs)
-            batch.counts.push_back(static_cast<uint>(input.geometry->triangles.size()));
+            batch.counts.push_back(static_cast<uint>(input.geometry->primitive_count()));
         batch.plan = plan_build(batch.counts);
         record(batch, scratch);
     }
@@ -103,8 +105,13 @@ std::vector<DeviceMesh> SwTlas::record_meshes(Commands& commands, const Batch& b
     for (const GeometryInput& input : batch.inputs) {
         meshes.push_back(input.mesh);
         if (input.mesh.indices.address) continue;
-        meshes.back().positions.address = place(std::as_bytes(std::span(input.geometry->positions)));
-        meshes.back().indices.address = place(std::as_bytes(std::span(input.geometry->triangles)));
+        const Geometry& geometry = *input.geometry;
+        if (geometry.kind == GEOMETRY_BOXES) {
+            meshes.back().positions.address = place(std::as_bytes(std::span(geometry.boxes)));
+            continue;
+        }
+        meshes.back().positions.address = place(std::as_bytes(std::span(geometry.positions)));
+        meshes.back().indices.address = place(std::as_bytes(std::span(geometry.triangles)));
     }
     commands.upload_pieces(scratch, pieces);
     return meshes;
@@ -112,7 +119,7 @@ std::vector<DeviceMesh> SwTlas::record_meshes(Commands& commands, const Batch& b
 
 std::unique_ptr<SwTlas::SwBuiltGeometry> SwTlas::make_geometry(const Geometry& geometry) {
     auto made = std::make_unique<SwBuiltGeometry>();
-    made->layout = layout_geometry(static_cast<uint>(geometry.triangles.size()));
+    made->layout = layout_geometry(static_cast<uint>(geometry.primitive_count()));
     made->bytes = made->layout.bytes;
     made->buffer = Buffer(context(), {.name = "SwTlas geometry '" + geometry.name + "'", .bytes = made->bytes});
     return made;
@@ -128,7 +135,7 @@ void SwTlas::record_build(Commands& commands, const Batch& batch, const Buffer& 
             std::unique_ptr<SwBuiltGeometry> made;
             if (!input.current) made = make_geometry(*input.geometry);
             const auto& target = made ? *made : static_cast<const SwBuiltGeometry&>(*input.current);
-            commands.write(*input.block, target.block());
+            commands.write(*input.block, target.block(input.geometry->kind));
             trees.push_back(target.tree(batch, i, meshes[i]));
             built.push_back(std::move(made));
         }
@@ -193,11 +200,9 @@ void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const Buil
     builder_.record_costs(commands, std::span(&measured, 1), false);
 }
 
-void SwTlas::record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const {
-    const SwTraceArgs args{
-        {scene},   desc.rays,           desc.hits, desc.indirect_count, static_cast<uint>(desc.count),
-        desc.mask, flags_of(desc.cull), 0};
-    (desc.query == Query::any ? trace_any_ : trace_closest_).dispatch(commands, args, desc.count);
+std::unique_ptr<TraceProgram> SwTlas::create_program(const TraceProgramCode* code, uint features) const {
+    return std::make_unique<KernelProgram>(context(), id(), features, code ? code->name : "swtlas_trace",
+                                           code ? code->software : std::span<const std::uint32_t>(swtlas_trace_spirv));
 }
 
 SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {

@@ -13,6 +13,11 @@ class SwTlas final : public AbstractAccel {
   public:
     explicit SwTlas(Context& context);
 
+    // What the software accelerator can do on a device that it runs on.
+    static Capability capability_on(const DeviceFacts& device, Feature feature);
+    Capability capability(Feature feature) const override { return capability_on(context().facts(), feature); }
+    bool is_software() const override { return true; }
+
     // For checks and tools: copies of the built trees, downloaded. Throws Error on a dead or unsynced handle.
     struct Tree {
         Bvh bvh;
@@ -39,11 +44,9 @@ class SwTlas final : public AbstractAccel {
     std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
                                             const BuiltScene* current) override;
     void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
-    void record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const override;
+    std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
 
     Builder builder_;
-    Kernel<SwTraceArgs> trace_closest_;
-    Kernel<SwTraceArgs> trace_any_;
 };
 
 }  // namespace twinray

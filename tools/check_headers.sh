@@ -28,16 +28,18 @@ fi
 cat >"$work/kernel.comp" <<'GLSL'
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
-#include "shaders/shared/build.h"
-#include "shaders/shared/traverse.h"
+#include "twinray/query.glsl"
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform Push { SwTraceArgs args; };
+layout(push_constant, scalar) uniform Push { TraceArgs args; };
 
 void main()
 {
-    AT(args.hits, 0) = traverse(AT(args.scene, 0), AT(args.rays, 0), args.mask, args.flags, QUERY_CLOSEST);
+    Hit hit;
+    if (closest_hit(args.scene, AT(args.rays, 0), hit)) AT(args.hits, 0) = hit;
 }
 GLSL
-"$glslang" --quiet -V --target-env vulkan1.2 -I"$folder" -o "$work/kernel.spv" "$work/kernel.comp"
+for accel in SW HW; do
+    "$glslang" --quiet -V --target-env vulkan1.2 -DTWINRAY_$accel -I"$folder" -I"$folder/.." \
+        -o "$work/kernel.spv" "$work/kernel.comp"
+done
 echo "check_headers: ${#headers[@]} headers and a kernel need nothing private"

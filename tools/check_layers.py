@@ -15,11 +15,12 @@ SEES = {  # besides itself and shaders/shared
     "swtlas": ENGINE, "hwtlas": ENGINE,
     "cli": PRODUCT,
     "samples": PRODUCT + ["shaders/path_tracer"], "bench": PRODUCT, "tests": PRODUCT + ["cli", "samples", "bench"],
-    "shaders": ["shaders/engine"],  # each folder of shaders, but shaders/shared, which sees nothing else
+    "shaders/twinray": ["shaders/hwtlas"],  # what users include
+    "shaders": ["shaders/engine"],  # each other folder of shaders, but shaders/shared, which sees nothing else
 }
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all
 SOURCE = re.compile(r"\.(h|hpp|c|cc|cpp|inl)$|" + GLSL.pattern)
-GENERATED = re.compile(r"\.spv\.h$|^twinray/")  # by the build: embedded kernels, headers as installed
+GENERATED = re.compile(r"\.(spv|trace_program)\.h$|^twinray_program\.glsl$|^twinray/")  # by the build, or as installed
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -37,8 +38,8 @@ def violation(root, source, bracket, target):
     if not exists or ".." in target.split("/"):
         return "no such file; includes are written from the root, those of other projects in <>"
     origin, seen = layer(source), layer(target)
-    kernels_of_others = GLSL.search(source) and origin in SEES and seen.startswith("shaders/")
-    sees = [] if origin == "shaders/shared" else SEES["shaders" if origin.startswith("shaders/") else origin]
+    kernels_of_others = GLSL.search(source) and not origin.startswith("shaders/") and seen.startswith("shaders/")
+    sees = [] if origin == "shaders/shared" else SEES[origin if origin in SEES else "shaders"]
     if seen in [origin, "shaders/shared"] + sees or kernels_of_others:
         return None
     return f"{origin} must not see {seen}"

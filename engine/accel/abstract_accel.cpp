@@ -37,15 +37,26 @@ AbstractAccel::AbstractAccel(Context& context, std::string name)
 AbstractAccel::~AbstractAccel() = default;
 
 AccelHandle AbstractAccel::push(const MeshView& mesh, const Transform& transform, const InstanceOptions& options) {
-    return push(mesh, std::span(&transform, 1), std::span(&options, 1));
+    return place(Geometry(mesh), std::span(&transform, 1), std::span(&options, 1));
 }
-
 AccelHandle AbstractAccel::push(const MeshView& mesh, std::span<const Transform> transforms,
                                 std::span<const InstanceOptions> options) {
+    return place(Geometry(mesh), transforms, options);
+}
+AccelHandle AbstractAccel::push(const BoxesView& boxes, const Transform& transform, const InstanceOptions& options) {
+    return place(Geometry(boxes), std::span(&transform, 1), std::span(&options, 1));
+}
+AccelHandle AbstractAccel::push(const BoxesView& boxes, std::span<const Transform> transforms,
+                                std::span<const InstanceOptions> options) {
+    return place(Geometry(boxes), transforms, options);
+}
+
+AccelHandle AbstractAccel::place(Geometry&& geometry, std::span<const Transform> transforms,
+                                 std::span<const InstanceOptions> options) {
     if (!options.empty() && options.size() != transforms.size())
-        fail(name_, ": mesh '", mesh.name, "': ", options.size(), " instance options for ", transforms.size(),
+        fail(name_, ": mesh '", geometry.name, "': ", options.size(), " instance options for ", transforms.size(),
              " transforms; the lengths must match");
-    Placement placement{Geometry(mesh),
+    Placement placement{std::move(geometry),
                         Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}),
                         nullptr,
                         {},
@@ -71,8 +82,16 @@ bool AbstractAccel::erase(AccelHandle handle) {
 }
 
 void AbstractAccel::update(AccelHandle handle, const MeshView& mesh) {
+    live(handle, "update");
+    replace(handle, Geometry(mesh));
+}
+void AbstractAccel::update(AccelHandle handle, const BoxesView& boxes) {
+    live(handle, "update");
+    replace(handle, Geometry(boxes));
+}
+
+void AbstractAccel::replace(AccelHandle handle, Geometry&& geometry) {
     Placement& placement = live(handle, "update");
-    Geometry geometry(mesh);
     warn_of_inactive_triangles(geometry);
     if (placement.built) erased_.push_back(std::move(placement.built));
     placement.geometry = std::move(geometry);
@@ -83,6 +102,8 @@ void AbstractAccel::update(AccelHandle handle, const MeshView& mesh) {
 AbstractAccel::Placement& AbstractAccel::checked_for_vertices(AccelHandle handle, std::size_t count) {
     Placement& placement = live(handle, "update_vertices");
     const Geometry& geometry = placement.geometry;
+    if (geometry.kind == GEOMETRY_BOXES)
+        fail(name_, ": update_vertices: handle ", handle.id, " holds boxes, '", geometry.name, "', not triangles");
     if (const std::size_t n = geometry.positions.size(); count != n)
         fail(name_, ": update_vertices: mesh '", geometry.name, "': ", count, " positions for its ", n,
              " vertices; update() changes their number");
@@ -110,6 +131,19 @@ void AbstractAccel::update_vertices(AccelHandle handle, Floats positions, std::s
     placement.vertices.incoming = positions;
     placement.vertices.edited = true;
     mark(Dirty::moves);
+}
+
+uint AbstractAccel::Placement::features() const {
+    if (instances.records.empty()) return 0;
+    const auto is_filtered = [](const InstanceRecord& record) { return (flags_of(record) & INSTANCE_FILTERED) != 0; };
+    const bool any_filtered = std::any_of(instances.records.begin(), instances.records.end(), is_filtered);
+    return (geometry.kind == GEOMETRY_BOXES ? FEATURE_BOXES : 0) | (any_filtered ? FEATURE_FILTERS : 0);
+}
+
+uint AbstractAccel::features_of_placements() const {
+    uint features = own_features();
+    for (const auto& [id, placement] : placements_) features |= placement.features();
+    return features;
 }
 
 InstanceRecord AbstractAccel::checked_record(const Placement& placement, std::size_t index, const Transform& transform,
@@ -240,6 +274,12 @@ const Buffer& AbstractAccel::geometry_block(AccelHandle handle) const { return l
 const AbstractAccel::BuiltScene& AbstractAccel::built_scene() const {
     if (!scene_) fail(name_, ": the scene is not built yet; call sync() first");
     return *scene_;
+}
+
+std::vector<Capability> AbstractAccel::capabilities() const {
+    std::vector<Capability> all;
+    for (std::size_t i = 0; i < feature_count; ++i) all.push_back(capability(static_cast<Feature>(i)));
+    return all;
 }
 
 std::uint64_t AbstractAccel::structure_bytes() const {

@@ -8,8 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "engine/accel/capability.h"
 #include "engine/accel/geometry.h"
 #include "engine/accel/instance_array.h"
+#include "engine/accel/trace_desc.h"
+#include "engine/accel/trace_program.h"
 #include "engine/accel/vertices.h"
 #include "engine/accel/world_bound.h"
 #include "engine/core/commands.h"
@@ -45,23 +48,7 @@ struct AccelView {
     std::uint64_t scene = 0;     // device address of the accelerator's scene block (SwScene or HwScene)
     std::uint64_t accel = 0;     // which accelerator made it
     std::uint64_t revision = 0;  // its revision() then
-};
-
-enum class Query : std::uint8_t { closest, any };
-
-// Which triangles are not hit: those seen from the back, or from the front. The front is the side that
-// (v1 - v0) x (v2 - v0) points to, in object space: there the corners appear counter-clockwise.
-enum class Cull : std::uint8_t { none, back, front };
-constexpr uint flags_of(Cull cull) { return cull == Cull::none ? 0 : cull == Cull::back ? CULL_BACK : CULL_FRONT; }
-
-struct TraceDesc {
-    Ref<Ray> rays;  // device address of count rays, 4-byte aligned
-    Ref<Hit> hits;  // device address of count hits, written
-    std::uint64_t count = 0;
-    Uints indirect_count = {};  // device address of a uint, or 0: traces min(count, that many) rays, hits beyond stay
-    Query query = Query::closest;
-    std::uint8_t mask = 0xff;
-    Cull cull = Cull::none;
+    uint features = 0;           // FEATURE_* that its scene has: what kernels may be specialised for
 };
 
 // The contract that both accelerators fulfil. Edits only note what changes; sync() is the only place that builds, and
@@ -78,10 +65,15 @@ class AbstractAccel {
     // One geometry, one instance per transform; options is empty or has one entry per transform.
     AccelHandle push(const MeshView& mesh, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
+    // The same for boxes, which only traces with a program can meet.
+    AccelHandle push(const BoxesView& boxes, const Transform& transform = {}, const InstanceOptions& options = {});
+    AccelHandle push(const BoxesView& boxes, std::span<const Transform> transforms,
+                     std::span<const InstanceOptions> options = {});
     // False if the handle is dead already.
     bool erase(AccelHandle handle);
-    // Another mesh for all instances of the handle.
+    // Another mesh, or other boxes, for all instances of the handle.
     void update(AccelHandle handle, const MeshView& mesh);
+    void update(AccelHandle handle, const BoxesView& boxes);
     // New positions for the vertices of the handle's mesh, as many as it has; the triangles stay. The next sync refits
     // the geometry in place: views stay valid. A triangle with a corner that is not finite, or without an area, is
     // inactive until it is moved back.
@@ -160,9 +152,18 @@ class AbstractAccel {
 
     // Records the trace; the hits are visible to later passes. Throws Error on a stale or foreign view.
     void trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const;
-    // Host convenience: syncs, uploads, traces, waits and downloads.
-    std::vector<Hit> closest_hits(std::span<const Ray> rays);
-    std::vector<Hit> any_hits(std::span<const Ray> rays);
+    // Host convenience: syncs, uploads, traces, waits and downloads. Of `desc` all counts but rays, hits, count and
+    // query.
+    std::vector<Hit> closest_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
+    std::vector<Hit> any_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
+    // A trace program for this accelerator, specialised for scenes that have no more than `features`.
+    std::unique_ptr<TraceProgram> make_program(const TraceProgramCode& code, uint features = FEATURES_ALL) const;
+
+    // What this accelerator can do on its device.
+    virtual Capability capability(Feature feature) const = 0;
+    std::vector<Capability> capabilities() const;
+    // Which of the two modules of a kernel with twinray/query.glsl fits.
+    virtual bool is_software() const = 0;
 
     void wait_for_gpu() { context_.wait_for_gpu(); }
     // GPU time per pass of the last sync() that built something into commands of its own; waits for it.
@@ -228,7 +229,11 @@ class AbstractAccel {
     const Buffer& geometry_block(AccelHandle handle) const;
     const BuiltScene& built_scene() const;
 
-    virtual void record_trace(Commands& commands, const TraceDesc& desc, std::uint64_t scene) const = 0;
+    // FEATURE_* of whatever the scene holds.
+    virtual uint own_features() const { return 0; }
+    // With `code`, or with the accelerator's own code where the scene needs no program.
+    virtual std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const = 0;
+    std::uint64_t id() const { return id_; }
 
   private:
     // What one push placed.
@@ -239,6 +244,8 @@ class AbstractAccel {
         SyncPoint built_at;
         VertexSlice vertices;
         InstanceSlice instances;
+
+        uint features() const;
     };
     struct Work;
     // What a sync recorded, to be committed once it is certain to run.
@@ -258,6 +265,9 @@ class AbstractAccel {
     enum class Dirty : std::uint8_t { no, compaction, moves, structure };  // moves: of instances and of vertices
 
     void mark(Dirty what) { dirty_ = std::max(dirty_, what); }
+    AccelHandle place(Geometry&& geometry, std::span<const Transform> transforms,
+                      std::span<const InstanceOptions> options);
+    void replace(AccelHandle handle, Geometry&& geometry);
     InstanceRecord checked_record(const Placement& placement, std::size_t index, const Transform& transform,
                                   const InstanceOptions& options) const;
     Placement& live(AccelHandle handle, const char* action);
@@ -275,8 +285,11 @@ class AbstractAccel {
     std::optional<double> sah_of(const CostLog& costs, Wait wait) const;
     bool has_degraded(const CostLog& costs) const;
     bool is_compactable(const Placement& placement) const;
+    uint features_of_placements() const;
     void warn_of_unusable_instances();
-    std::vector<Hit> trace_host(std::span<const Ray> rays, Query query);
+    const TraceProgram& program_for(const AccelView& view, const TraceDesc& desc) const;
+    void check_desc(const AccelView& view, const TraceDesc& desc) const;
+    std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc);
 
     Context& context_;
     std::string name_;
@@ -291,6 +304,8 @@ class AbstractAccel {
     Dirty dirty_ = Dirty::structure;
     bool has_moved_ = false;  // something has moved after a build, so that builds allow refits
     std::uint64_t revision_ = 0;
+    uint features_ = 0;                                  // of the scene that was built
+    mutable std::unique_ptr<TraceProgram> own_program_;  // made by the first trace
     SyncPoint synced_;
     uint warned_unusable_ = 0;
     std::unique_ptr<BuiltScene> scene_;

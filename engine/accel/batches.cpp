@@ -9,7 +9,7 @@ Batches cut_into_batches(std::span<const std::uint64_t> scratch_bytes, std::uint
     Batches batches;
     std::uint64_t bytes = 0;
     for (std::size_t i = 0; i < scratch_bytes.size(); ++i) {
-        if (i == 0 || scratch_bytes[i] > budget - std::min(bytes, budget)) {
+        if (i == 0 || bytes > budget || scratch_bytes[i] > budget - bytes) {
             batches.runs.push_back({i, 0});
             bytes = 0;
         }

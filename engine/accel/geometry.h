@@ -10,18 +10,30 @@
 
 namespace twinray {
 
-// A mesh as an accelerator keeps it: its own copy of what tracing needs.
+// Boxes in object space that stand for primitives of the user's, not owned. A trace program says how rays meet them.
+struct BoxesView {
+    std::string_view name;
+    std::span<const Bounds> boxes;
+};
+
+// A mesh or boxes as an accelerator keeps them: its own copy of what tracing needs.
 struct Geometry {
     std::string name;
-    std::vector<vec3> positions;
+    uint kind = GEOMETRY_TRIANGLES;
+    std::vector<vec3> positions;  // these three of GEOMETRY_TRIANGLES
     std::vector<uvec3> triangles;
     std::size_t non_finite_triangles = 0;  // inactive: never hit, still counted
+    std::vector<Bounds> boxes;             // of GEOMETRY_BOXES
 
-    // Throws Error naming the mesh and the limit: an index out of range, more than max_triangles.
+    // Throws Error naming the mesh and the limit: an index out of range, more than max_primitives.
     explicit Geometry(const MeshView& mesh);
+    // Throws Error naming the box: one that is empty or not finite, or more than max_primitives.
+    explicit Geometry(const BoxesView& boxes);
+
+    std::size_t primitive_count() const { return kind == GEOMETRY_BOXES ? boxes.size() : triangles.size(); }
 
     // Leaf positions have 24 bits in the bound on the tree's depth.
-    static constexpr std::size_t max_triangles = (1u << 24) - 1;
+    static constexpr std::size_t max_primitives = (1u << 24) - 1;
 };
 
 constexpr std::size_t max_instances = (1u << 24) - 1;  // of an accelerator; what Vulkan guarantees at least
@@ -32,6 +44,7 @@ struct InstanceOptions {
     std::uint8_t mask = 0xff;  // an instance is seen by rays whose mask shares a bit
     bool no_culling = false;   // both sides are hit by rays that cull, too
     bool turned = false;       // front and back exchanged
+    bool filtered = false;     // not opaque: a trace program decides about each hit
 
     bool operator==(const InstanceOptions&) const = default;
 };

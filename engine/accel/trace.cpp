@@ -7,37 +7,75 @@ namespace twinray {
 
 AccelView AbstractAccel::view() const {
     if (dirty_ != Dirty::no) fail(name_, ": view: edits are pending; call sync() first");
-    return {scene_->address, id_, revision_};
+    return {scene_->address, id_, revision_, features_};
 }
 
 void AbstractAccel::trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const {
+    check_desc(view, desc);
+    if (desc.count == 0) return;
+    if (!desc.rays.address || !desc.hits.address) fail(name_, ": trace: the address of rays or hits is 0");
+    const TraceArgs args{view.scene,          desc.rays,           desc.hits,
+                         desc.indirect_count, desc.user_data,      static_cast<uint>(desc.count),
+                         desc.mask,           flags_of(desc.cull), 0};
+    program_for(view, desc).record(commands, args, desc.query, desc.level);
+}
+
+void AbstractAccel::check_desc(const AccelView& view, const TraceDesc& desc) const {
     if (view.accel != id_) fail(name_, ": trace: the view belongs to another accelerator");
     if (view.revision != revision_)
         fail(name_, ": trace: stale view of revision ", view.revision, "; the accelerator is at ", revision_);
     if (desc.rays.address % 4 || desc.hits.address % 4 || desc.indirect_count.address % 4)
         fail(name_, ": trace: rays at ", desc.rays.address, ", hits at ", desc.hits.address, " and indirect count at ",
              desc.indirect_count.address, " must be aligned to 4 bytes");
-    if (desc.count == 0) return;
     if (desc.count > UINT32_MAX) fail(name_, ": trace: ", desc.count, " rays; at most ", UINT32_MAX, " in one call");
-    if (!desc.rays.address || !desc.hits.address) fail(name_, ": trace: the address of rays or hits is 0");
-    record_trace(commands, desc, view.scene);
+    if (const Capability level = capability(feature_of(desc.level)); level.support == Support::unsupported)
+        fail(name_, ": trace: ", name_of(level.feature), " is unsupported: ", level.note);
 }
 
-std::vector<Hit> AbstractAccel::closest_hits(std::span<const Ray> rays) { return trace_host(rays, Query::closest); }
-std::vector<Hit> AbstractAccel::any_hits(std::span<const Ray> rays) { return trace_host(rays, Query::any); }
+// Boxes that nothing can meet, and hits that nobody judges, are no answer.
+const TraceProgram& AbstractAccel::program_for(const AccelView& view, const TraceDesc& desc) const {
+    if (!desc.program && !own_program_) own_program_ = create_program(nullptr, own_features());
+    const TraceProgram& program = desc.program ? *desc.program : *own_program_;
+    if (program.accel() != id_) fail(name_, ": trace: program '", program.name(), "' was made by another accelerator");
+    if (const uint missing = view.features & ~program.features(); missing)
+        fail(name_, ": trace: the scene has ", missing & FEATURE_BOXES ? "boxes" : "filtered instances", ", and ",
+             desc.program ? "program '" + program.name() + "' is not specialised for them"
+                          : std::string("TraceDesc::program is not set"));
+    return program;
+}
 
-std::vector<Hit> AbstractAccel::trace_host(std::span<const Ray> rays, Query query) {
+std::unique_ptr<TraceProgram> AbstractAccel::make_program(const TraceProgramCode& code, uint features) const {
+    std::unique_ptr<TraceProgram> program = create_program(&code, features | own_features());
+    program->prepare(Query::closest, Level::watertight);
+    return program;
+}
+
+std::vector<Hit> AbstractAccel::closest_hits(std::span<const Ray> rays, const TraceDesc& desc) {
+    TraceDesc closest = desc;
+    closest.query = Query::closest;
+    return trace_host(rays, closest);
+}
+
+std::vector<Hit> AbstractAccel::any_hits(std::span<const Ray> rays, const TraceDesc& desc) {
+    TraceDesc any = desc;
+    any.query = Query::any;
+    return trace_host(rays, any);
+}
+
+std::vector<Hit> AbstractAccel::trace_host(std::span<const Ray> rays, TraceDesc desc) {
     sync();
     if (rays.empty()) return {};
     const Buffer ray_buffer(context_, {.name = "rays", .bytes = rays.size_bytes()});
     const Buffer hit_buffer(context_, {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
+    desc.rays = ray_buffer.ref<Ray>();
+    desc.hits = hit_buffer.ref<Hit>();
+    desc.count = rays.size();
     Commands commands(context_, name_ + " trace");
     {
         const auto pass = commands.pass("upload rays");
         commands.upload(ray_buffer, rays);
     }
-    trace(commands, view(),
-          {.rays = ray_buffer.ref<Ray>(), .hits = hit_buffer.ref<Hit>(), .count = rays.size(), .query = query});
+    trace(commands, view(), desc);
     commands.submit();
     return download<Hit>(context_, hit_buffer, rays.size());
 }

@@ -5,6 +5,7 @@
 #include "shaders/shared/world_bound.h"
 #include "shaders/shared/surface_area.h"
 #include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_build.h"
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { HwGatherArgs args; };
 
@@ -31,6 +32,7 @@ void main()
     }
     AT(args.areas, place) = area;
     record.geometry = usable ? geometry.blas : 0ul;
+    record.sbt_offset_flags |= geometry.kind; // the hit group of a pipeline
     AT(args.driver_records, place) = record;
     if (!has_table) return;
     HwInstance instance;

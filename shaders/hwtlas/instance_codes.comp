@@ -3,7 +3,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/world_bound.h"
-#include "shaders/shared/surface_area.h"
 #include "shaders/shared/hw_scene.h"
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { HwCodesArgs args; };

@@ -2,16 +2,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_ray_tracing : require
-#include "shaders/shared/bridge.glsl"
-#include "shaders/shared/world_bound.h"
-#include "shaders/shared/surface_area.h"
-#include "shaders/shared/hw_scene.h"
-#include "shaders/hwtlas/trace.glsl"
+#include "shaders/hwtlas/pipeline.glsl"
 
 layout(location = 0) rayPayloadInEXT Hit payload;
-hitAttributeEXT vec2 barycentrics;
+hitAttributeEXT vec2 uv; // barycentrics of a triangle, what the intersection gave for a box
 
 void main()
 {
-    payload = hit_of(uvec2(gl_InstanceID, gl_PrimitiveID), gl_InstanceCustomIndexEXT, gl_HitTEXT, barycentrics);
+    Candidate found = candidate_of(scene(), gl_InstanceID, gl_PrimitiveID, gl_InstanceCustomIndexEXT, trace_options());
+    payload = hit_of(found, gl_HitTEXT, uv);
 }

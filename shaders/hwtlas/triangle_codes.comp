@@ -6,7 +6,7 @@
 #include "shaders/shared/world_bound.h"
 #include "shaders/shared/surface_area.h"
 #include "shaders/shared/hw_scene.h"
-#include "shaders/shared/hw_triangles.h"
+#include "shaders/shared/hw_build.h"
 #include "shaders/hwtlas/mesh_triangle.glsl"
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { HwTrianglesArgs args; };

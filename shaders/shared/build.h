@@ -31,8 +31,8 @@ struct BuildTree
 {
     uint first;
     uint count;
-    Floats positions;          // 3 floats a vertex; triangles only
-    Uints indices;             // 3 indices a triangle; triangles only
+    Floats positions;          // 3 floats a vertex of triangles, 6 a box
+    Uints indices;             // 3 a triangle; null: boxes
     REF(BvhTriangle) triangles;
     REF(Bvh) bvh;
 };
@@ -144,18 +144,6 @@ struct EncodeTrianglesArgs
     uint reserved;
 };
 
-struct SwTraceArgs
-{
-    REF(SwScene) scene;
-    REF(Ray) rays;
-    REF(Hit) hits;
-    Uints indirect_count; // null, or where a smaller count may stand
-    uint count;
-    uint mask;
-    uint flags;
-    uint reserved;
-};
-
 FUNC bool is_active(LeafBox box) { return box.lo.x <= box.hi.x; }
 
 FUNC LeafBox empty_box()
@@ -175,9 +163,19 @@ FUNC vec3 center_of(LeafBox box)
     return center;
 }
 
-FUNC BvhTriangle fetch_triangle(BuildTree tree, uint primitive)
+FUNC bool has_boxes(BuildTree tree) { return uint64_t(tree.indices) == 0ul; }
+
+FUNC BvhTriangle fetch_primitive(BuildTree tree, uint primitive)
 {
     BvhTriangle triangle;
+    if (has_boxes(tree))
+    {
+        triangle.v0 = load_position(tree.positions, primitive * 2u);
+        triangle.v1 = load_position(tree.positions, primitive * 2u + 1u);
+        triangle.v2 = vec3(0.0f);
+        triangle.primitive_index = primitive;
+        return triangle;
+    }
     triangle.v0 = load_position(tree.positions, AT(tree.indices, primitive * 3u));
     triangle.v1 = load_position(tree.positions, AT(tree.indices, primitive * 3u + 1u));
     triangle.v2 = load_position(tree.positions, AT(tree.indices, primitive * 3u + 2u));
@@ -195,7 +193,17 @@ FUNC LeafBox box_of_triangle(BvhTriangle t)
     return box;
 }
 
-// As traversal wants it.
+FUNC LeafBox box_of_primitive(BuildTree tree, uint primitive)
+{
+    BvhTriangle fetched = fetch_primitive(tree, primitive);
+    if (!has_boxes(tree)) return box_of_triangle(fetched);
+    LeafBox box;
+    box.lo = fetched.v0;
+    box.hi = fetched.v1;
+    return box;
+}
+
+// A triangle as traversal wants it.
 FUNC BvhTriangle without_inactive_corners(BvhTriangle t)
 {
     if (is_active_triangle(t.v0, t.v1, t.v2)) return t;

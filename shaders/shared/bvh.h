@@ -26,7 +26,8 @@ struct BvhNode
 };
 BUFFER_OF(BvhNode, 16);
 
-// 40 bytes; all corners 0 for a triangle that is not active (see triangle.h), which is never hit.
+// 40 bytes; all corners 0 for a triangle that is not active (see triangle.h), which is never hit. Of a box, v0 and v1 are
+// its lowest and highest corner.
 struct BvhTriangle
 {
     vec3 v0;
@@ -51,6 +52,8 @@ struct SwGeometry
 {
     Bvh bvh;
     REF(BvhTriangle) triangles;
+    uint kind; // GEOMETRY_*
+    uint reserved;
 };
 BUFFER_OF(SwGeometry, 8);
 
@@ -63,7 +66,7 @@ struct SwInstance
     uint root;
     uint custom_index_mask;
     uint flags; // of the instance: INSTANCE_*
-    uint reserved;
+    uint kind;  // of its geometry
 };
 BUFFER_OF(SwInstance, 8);
 

@@ -26,6 +26,11 @@ BUFFER_OF(GeometryBox, 8);
 // that (v1 - v0) x (v2 - v0) points to, in object space; TURNED exchanges front and back.
 const uint INSTANCE_NO_CULLING = 1u;
 const uint INSTANCE_TURNED = 2u;
+const uint INSTANCE_FILTERED = 8u; // not opaque: the trace program decides about each hit
+
+// What a geometry is made of.
+const uint GEOMETRY_TRIANGLES = 0u;
+const uint GEOMETRY_BOXES = 1u;
 
 FUNC uint flags_of(InstanceRecord instance) { return instance.sbt_offset_flags >> 24u; }
 FUNC uint custom_index_of(InstanceRecord instance) { return instance.custom_index_mask & 0xffffffu; }

@@ -4,6 +4,7 @@
 #define TWINRAY_SHARED_TRAVERSE_H
 #include "shaders/shared/bvh.h"
 #include "shaders/shared/intersect.h"
+#include "shaders/shared/trace.h"
 #include "shaders/shared/transform.h"
 
 // Inner nodes on a path split on ever lower bits of (30-bit Morton code, 24-bit position), so a path has at most 54,
@@ -54,9 +55,78 @@ FUNC uint culled_side(uint ray_flags, uint instance_flags)
     return (instance_flags & INSTANCE_TURNED) != 0u ? side ^ (CULL_BACK | CULL_FRONT) : side;
 }
 
-// Traces a ray through the instances whose mask shares a bit with `mask`; flags: CULL_BACK or CULL_FRONT or 0. The closest hit is the one with smallest t,
-// then lowest (instance, primitive), whatever the order of traversal; with QUERY_ANY it is the first one found.
-FUNC Hit traverse(SwScene scene, Ray ray, uint mask, uint flags, uint query)
+// What traversal must know of the instance it is in.
+struct InInstance
+{
+    uint index;
+    uint custom_index;
+    uint culled; // side of its triangles that is not hit
+    bool has_boxes;
+    bool is_filtered;
+};
+
+FUNC InInstance enter_instance(SwInstance instance, uint index, TraceOptions options)
+{
+    InInstance inside;
+    inside.index = index;
+    inside.custom_index = instance.custom_index_mask & 0xffffffu;
+    inside.culled = culled_side(options.flags, instance.flags);
+    inside.has_boxes = (options.features & FEATURE_BOXES) != 0u && instance.kind == GEOMETRY_BOXES;
+    inside.is_filtered = (options.features & FEATURE_FILTERS) != 0u && (instance.flags & INSTANCE_FILTERED) != 0u;
+    return inside;
+}
+
+FUNC Candidate candidate_of(InInstance inside, uint primitive_index, TraceOptions options)
+{
+    Candidate candidate;
+    candidate.primitive_index = primitive_index;
+    candidate.instance_index = inside.index;
+    candidate.custom_index = inside.custom_index;
+    candidate.user_data = options.user_data;
+    return candidate;
+}
+
+FUNC bool intersect_box(BvhTriangle box, InInstance inside, RaySpace space, float t_min, float t_best,
+                        TraceOptions options, INOUT(TriangleHit) hit)
+{
+    float enter = 0.0f;
+    if (!enter_box(box.v0, box.v1, space, t_min, t_best, enter)) return false;
+    Ray ray_local;
+    ray_local.origin = space.origin;
+    ray_local.direction = space.direction;
+    ray_local.t_min = t_min;
+    ray_local.t_max = t_best;
+    vec2 uv = vec2(0.0f);
+    hit.t = 0.0f;
+    hit.along = false;
+    bool is_met = intersect_primitive(candidate_of(inside, box.primitive_index, options), ray_local, hit.t, uv);
+    hit.u = uv.x;
+    hit.v = uv.y;
+    return is_met;
+}
+
+// Whether the ray's line meets the primitive on a side that counts, and where.
+FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, float t_min, float t_best,
+                         TraceOptions options, INOUT(TriangleHit) hit)
+{
+    if (inside.has_boxes) return intersect_box(leaf, inside, space, t_min, t_best, options, hit);
+    bool is_met = false;
+    if (options.level == LEVEL_FAST) is_met = intersect_triangle_fast(leaf.v0, leaf.v1, leaf.v2, space, hit);
+    else is_met = intersect_triangle(leaf.v0, leaf.v1, leaf.v2, space, hit);
+    return is_met && (inside.culled == 0u || inside.culled != (hit.along ? CULL_BACK : CULL_FRONT));
+}
+
+// The order of hits: by t, then by (instance, primitive).
+FUNC bool comes_before(float t, uint instance_index, uint primitive_index, float t_best, Hit best)
+{
+    bool is_lower = best.hit != 0u && (instance_index < best.instance_index ||
+                    (instance_index == best.instance_index && primitive_index < best.primitive_index));
+    return t < t_best || (t == t_best && is_lower);
+}
+
+// Traces a ray. The closest hit is the first by comes_before, whatever the order of traversal; with QUERY_ANY it is the
+// first one found.
+FUNC Hit traverse(SwScene scene, Ray ray, TraceOptions options)
 {
     Hit best = miss();
     if (!is_traceable(ray)) return best;
@@ -66,9 +136,7 @@ FUNC Hit traverse(SwScene scene, Ray ray, uint mask, uint flags, uint query)
     REF(BvhNode) nodes = scene.bvh.nodes;
     REF(BvhTriangle) triangles = REF(BvhTriangle)(0ul);
     bool in_instance = false;
-    uint instance_index = 0u;
-    uint custom_index = 0u;
-    uint culled = 0u;
+    InInstance inside;
 
     uint stack[STACK_SIZE];
     uint height = 1u;
@@ -95,32 +163,29 @@ FUNC Hit traverse(SwScene scene, Ray ray, uint mask, uint flags, uint query)
         }
         else if (in_instance)
         {
-            BvhTriangle triangle = load_triangle(triangles, cursor & ~LEAF_BIT);
+            BvhTriangle leaf = load_triangle(triangles, cursor & ~LEAF_BIT);
             TriangleHit hit;
-            if (intersect_triangle(triangle.v0, triangle.v1, triangle.v2, space, hit) && hit.t > t_min &&
-                (culled == 0u || culled != (hit.along ? CULL_BACK : CULL_FRONT)))
+            if (intersect_leaf(leaf, inside, space, t_min, t_best, options, hit) && hit.t > t_min &&
+                comes_before(hit.t, inside.index, leaf.primitive_index, t_best, best) &&
+                (!inside.is_filtered ||
+                 accept_hit(candidate_of(inside, leaf.primitive_index, options), hit.t, vec2(hit.u, hit.v))))
             {
-                bool lower = best.hit != 0u && (instance_index < best.instance_index ||
-                             (instance_index == best.instance_index && triangle.primitive_index < best.primitive_index));
-                if (hit.t < t_best || (hit.t == t_best && lower))
-                {
-                    t_best = hit.t;
-                    best.hit = 1u;
-                    best.t = hit.t;
-                    best.u = hit.u;
-                    best.v = hit.v;
-                    best.primitive_index = triangle.primitive_index;
-                    best.instance_index = instance_index;
-                    best.custom_index = custom_index;
-                    if (query == QUERY_ANY) break;
-                }
+                t_best = hit.t;
+                best.hit = 1u;
+                best.t = hit.t;
+                best.u = hit.u;
+                best.v = hit.v;
+                best.primitive_index = leaf.primitive_index;
+                best.instance_index = inside.index;
+                best.custom_index = inside.custom_index;
+                if (options.query == QUERY_ANY) break;
             }
         }
         else
         {
-            instance_index = cursor & ~LEAF_BIT;
-            SwInstance instance = AT(scene.instances, instance_index);
-            bool visible = (instance.custom_index_mask >> 24u & mask) != 0u && instance.root != NOTHING;
+            uint index = cursor & ~LEAF_BIT;
+            SwInstance instance = AT(scene.instances, index);
+            bool visible = (instance.custom_index_mask >> 24u & options.mask) != 0u && instance.root != NOTHING;
             if (visible)
             {
                 Rows to_object;
@@ -130,8 +195,7 @@ FUNC Hit traverse(SwScene scene, Ray ray, uint mask, uint flags, uint query)
                 space = make_ray_space(transform_point(to_object, ray.origin), transform_vector(to_object, ray.direction), 0.0f);
                 nodes = instance.nodes;
                 triangles = instance.triangles;
-                custom_index = instance.custom_index_mask & 0xffffffu;
-                culled = culled_side(flags, instance.flags);
+                inside = enter_instance(instance, index, options);
                 stack[height] = END_OF_INSTANCE;
                 height = height + 1u;
                 in_instance = true;

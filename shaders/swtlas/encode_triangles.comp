@@ -14,6 +14,7 @@ void main()
     if (gl_LocalInvocationIndex >= block.count) return;
     uint position = block.first + gl_LocalInvocationIndex;
     BuildTree tree = AT(args.trees, block.tree);
-    BvhTriangle triangle = fetch_triangle(tree, AT(args.order, position) - tree.first);
-    AT(tree.triangles, position - tree.first) = without_inactive_corners(triangle);
+    BvhTriangle fetched = fetch_primitive(tree, AT(args.order, position) - tree.first);
+    if (!has_boxes(tree)) fetched = without_inactive_corners(fetched);
+    AT(tree.triangles, position - tree.first) = fetched;
 }

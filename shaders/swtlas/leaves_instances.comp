@@ -19,7 +19,7 @@ LeafBox place_instance(uint index)
     instance.world_to_object[2] = to_object.r2;
     instance.custom_index_mask = record.custom_index_mask;
     instance.flags = flags_of(record);
-    instance.reserved = 0u;
+    instance.kind = GEOMETRY_TRIANGLES;
     instance.root = NOTHING;
     LeafBox box = empty_box();
     if (record.geometry != 0ul && is_usable(to_world, to_object))
@@ -28,6 +28,7 @@ LeafBox place_instance(uint index)
         instance.nodes = geometry.bvh.nodes;
         instance.triangles = geometry.triangles;
         instance.root = geometry.bvh.root;
+        instance.kind = geometry.kind;
         box = box_of_instance(record, geometry.bvh.lo, geometry.bvh.hi, to_object);
     }
     AT(args.instances, index) = instance;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The box of each triangle, and the bounds of each tree's centroids.
+// The box of each triangle (or the box itself), and the bounds of each tree's centroids.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -16,7 +16,7 @@ void main()
     {
         uint leaf = block.first + gl_LocalInvocationIndex;
         BuildTree tree = AT(args.trees, block.tree);
-        box = box_of_triangle(fetch_triangle(tree, leaf - tree.first));
+        box = box_of_primitive(tree, leaf - tree.first);
         AT(args.boxes, leaf) = box;
     }
     add_centroids(args.centroids, block.tree, box);

@@ -15,7 +15,7 @@ void main()
     uint leaf = block.first + gl_LocalInvocationIndex;
     BuildTree tree = AT(args.trees, block.tree);
     uint place = leaf - tree.first;
-    BvhTriangle triangle = fetch_triangle(tree, AT(tree.triangles, place).primitive_index);
+    BvhTriangle triangle = fetch_primitive(tree, AT(tree.triangles, place).primitive_index);
     AT(args.boxes, leaf) = box_of_triangle(triangle);
     AT(tree.triangles, place) = without_inactive_corners(triangle);
 }

@@ -25,9 +25,12 @@ class HwTlasTest : public VulkanTest, public ::testing::WithParamInterface<Way> 
         VulkanTest::SetUp();
         if (IsSkipped()) return;
         if (HasFailure()) FAIL() << "no device";
-        if (!missing_for_hardware(context().facts()).empty()) GTEST_SKIP() << context().facts().name;
-        if (GetParam().use_ray_query && !context().facts().ray_query) GTEST_SKIP() << "no ray queries";
-        if (!GetParam().use_ray_query && !context().facts().ray_tracing_pipeline) GTEST_SKIP() << "no pipeline";
+        const DeviceFacts& facts = context().facts();
+        const bool has_way = GetParam().use_ray_query ? facts.ray_query : facts.ray_tracing_pipeline;
+        if (!has_way || !missing_for_hardware(facts).empty()) {
+            if (is_required("ray_tracing")) FAIL() << "TWINRAY_REQUIRE names ray_tracing";
+            GTEST_SKIP() << facts.name << " has no such ray tracing";
+        }
         accel_ = std::make_unique<HwTlas>(context(), GetParam().order);
     }
     void TearDown() override {

@@ -8,14 +8,18 @@
 
 namespace twinray::test {
 
+bool is_required(const char* what) {
+    const char* required = std::getenv("TWINRAY_REQUIRE");
+    return required && std::string_view(required).find(what) != std::string_view::npos;
+}
+
 std::unique_ptr<Context> make_context(ContextDesc desc) {
     desc.validation = true;
     try {
         return std::make_unique<Context>(desc);
     } catch (const Error& error) {
-        const char* required = std::getenv("TWINRAY_REQUIRE");
-        if (required && std::string_view(required).find("vulkan") != std::string_view::npos)
-            ADD_FAILURE() << "TWINRAY_REQUIRE=" << required << " but: " << error.what();
+        if (is_required("vulkan"))
+            ADD_FAILURE() << "TWINRAY_REQUIRE names vulkan, but: " << error.what();
         else
             [&] { GTEST_SKIP() << error.what(); }();
         return nullptr;

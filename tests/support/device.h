@@ -10,6 +10,9 @@
 
 namespace twinray::test {
 
+// Whether tests must fail rather than skip without this: TWINRAY_REQUIRE is a list of `vulkan` and `ray_tracing`.
+bool is_required(const char* what);
+
 // A validated context of its own, or null when this machine has no usable device: then the test has been skipped, or
 // failed when TWINRAY_REQUIRE names vulkan. Callers return at once on null.
 std::unique_ptr<Context> make_context(ContextDesc desc = {});

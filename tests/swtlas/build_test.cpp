@@ -160,7 +160,7 @@ std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transfor
     const std::vector<LeafBox> triangles = reference::leaves_triangles(mesh.positions, mesh.triangles);
     LeafBox all = empty_box();
     for (const LeafBox& box : triangles) all = {min(all.lo, box.lo), max(all.hi, box.hi)};
-    const SwGeometry block{{all.lo, all.hi, {}, 0, static_cast<uint>(triangles.size())}, {}};
+    const SwGeometry block{{all.lo, all.hi, {}, 0, static_cast<uint>(triangles.size())}, {}, GEOMETRY_TRIANGLES, 0};
     std::vector<InstanceRecord> records;
     for (const Transform& transform : transforms) {
         records.push_back(make_instance_record(transform));

@@ -1,0 +1,76 @@
+# Compiles GLSL for twinray, in its own build and in that of a host that found it. Each function gives <target> headers,
+# to be included by name:
+#
+#   twinray_add_kernel(<target> <name> <file>)         a compute kernel that includes twinray/query.glsl, once for each
+#                                                      accelerator: "<name>_sw.spv.h" with <name>_sw_spirv[], and
+#                                                      "<name>_hw.spv.h" with <name>_hw_spirv[]
+#   twinray_add_trace_program(<target> <name> <file>)  intersect_primitive and accept_hit, compiled into each way of
+#                                                      tracing: "<name>.trace_program.h" with the TraceProgramCode <name>
+#   twinray_compile_shader(<target> <name> <file> [option...])   "<name>.spv.h" with <name>_spirv[]; further options
+#                                                      of glslangValidator
+find_program(TWINRAY_GLSLANG_VALIDATOR glslangValidator DOC "compiler of GLSL to SPIR-V, of package glslang-tools")
+
+# Where "shaders/shared/..." and "twinray/query.glsl" are found: in the source tree, or beside the installed headers.
+get_filename_component(twinray_root ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
+if(EXISTS ${twinray_root}/shaders/twinray/query.glsl)
+    set(TWINRAY_SHADER_FOLDERS ${twinray_root} ${twinray_root}/shaders CACHE INTERNAL "")
+else()
+    set(TWINRAY_SHADER_FOLDERS ${TWINRAY_INCLUDE_DIR} ${TWINRAY_INCLUDE_DIR}/.. CACHE INTERNAL "")
+endif()
+
+function(twinray_compile_shader target name input)
+    if(NOT TWINRAY_GLSLANG_VALIDATOR)
+        message(FATAL_ERROR "twinray: shader ${name} needs glslangValidator (Debian: apt-get install glslang-tools)")
+    endif()
+    set(folder ${CMAKE_CURRENT_BINARY_DIR}/spirv)
+    file(MAKE_DIRECTORY ${folder})
+    set(flags --quiet -V --target-env vulkan1.2 ${ARGN})
+    foreach(include ${TWINRAY_SHADER_FOLDERS})
+        list(APPEND flags -I${include})
+    endforeach()
+    set(module ${folder}/${name}.spv)
+    set(header ${folder}/${name}.spv.h)
+    add_custom_command(
+        OUTPUT ${module} ${header}
+        COMMAND ${TWINRAY_GLSLANG_VALIDATOR} ${flags} --depfile ${module}.d -o ${module} ${input}
+        COMMAND ${TWINRAY_GLSLANG_VALIDATOR} ${flags} --vn ${name}_spirv -o ${header} ${input}
+        DEPENDS ${input}
+        DEPFILE ${module}.d
+        COMMENT "shader ${name}"
+        VERBATIM)
+    target_sources(${target} PRIVATE ${header})
+    target_include_directories(${target} PRIVATE ${folder})
+    set_property(TARGET ${target} APPEND PROPERTY TWINRAY_SPIRV ${module})
+endfunction()
+
+function(twinray_add_kernel target name file)
+    get_filename_component(input ${file} ABSOLUTE)
+    twinray_compile_shader(${target} ${name}_sw ${input} -DTWINRAY_SW)
+    twinray_compile_shader(${target} ${name}_hw ${input} -DTWINRAY_HW)
+endfunction()
+
+function(twinray_add_trace_program target name file)
+    get_filename_component(input ${file} ABSOLUTE)
+    get_filename_component(beside ${input} DIRECTORY)
+    set(folder ${CMAKE_CURRENT_BINARY_DIR}/spirv/${name})
+    configure_file(${input} ${folder}/twinray_program.glsl COPYONLY)
+    list(GET TWINRAY_SHADER_FOLDERS 0 root)
+    set(flags -DTWINRAY_PROGRAM -I${folder} -I${beside})
+    twinray_compile_shader(${target} ${name}_sw ${root}/shaders/engine/trace.comp ${flags} -DTWINRAY_SW)
+    twinray_compile_shader(${target} ${name}_hw ${root}/shaders/engine/trace.comp ${flags} -DTWINRAY_HW)
+    twinray_compile_shader(${target} ${name}_rahit ${root}/shaders/hwtlas/trace.rahit ${flags})
+    twinray_compile_shader(${target} ${name}_rint ${root}/shaders/hwtlas/trace.rint ${flags})
+    file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/spirv/${name}.trace_program.h @ONLY CONTENT [[
+#pragma once
+#include <cstdint>
+
+#include "@name@_hw.spv.h"
+#include "@name@_rahit.spv.h"
+#include "@name@_rint.spv.h"
+#include "@name@_sw.spv.h"
+#include "engine/accel/trace_program.h"
+
+inline const twinray::TraceProgramCode @name@{"@name@", @name@_sw_spirv, @name@_hw_spirv, @name@_rahit_spirv,
+                                              @name@_rint_spirv};
+]])
+endfunction()

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// What to trace, and how.
+#pragma once
+
+#include "engine/accel/trace_args.h"
+
+namespace twinray {
+
+class TraceProgram;
+
+enum class Query : std::uint8_t { closest, any };
+
+// How a ray is tested against triangles, from the fastest to the surest. The hardware accelerator always uses the
+// driver's own test: AbstractAccel::capability says what a level is there.
+enum class Level : std::uint8_t {
+    fast,        // Moeller-Trumbore: may lose rays at edges
+    watertight,  // exact edge signs: no leaks, a single hit at an edge
+    refined,     // and float64 for the hit that counts
+    certified,   // and the order of hits within error bounds
+};
+
+// Which triangles are not hit: those seen from the back, or from the front. The front is the side that
+// (v1 - v0) x (v2 - v0) points to, in object space: there the corners appear counter-clockwise.
+enum class Cull : std::uint8_t { none, back, front };
+constexpr uint flags_of(Cull cull) { return cull == Cull::none ? 0 : cull == Cull::back ? CULL_BACK : CULL_FRONT; }
+
+struct TraceDesc {
+    Ref<Ray> rays = {};  // device address of count rays, 4-byte aligned
+    Ref<Hit> hits = {};  // device address of count hits, written
+    std::uint64_t count = 0;
+    Uints indirect_count = {};  // device address of a uint, or 0: traces min(count, that many) rays, hits beyond stay
+    Query query = Query::closest;
+    std::uint8_t mask = 0xff;
+    Cull cull = Cull::none;
+    Level level = Level::watertight;
+    // Needed where the scene has boxes or filtered instances; made by AbstractAccel::make_program of the same
+    // accelerator, and kept alive until the GPU is done.
+    const TraceProgram* program = nullptr;
+    std::uint64_t user_data = 0;  // for the program: most often the device address of what its primitives are
+};
+
+}  // namespace twinray

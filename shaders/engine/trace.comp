@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Traces a batch of rays, one per invocation: a kernel like those of users.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "twinray/query.glsl"
+#ifdef TWINRAY_PROGRAM
+#include "twinray_program.glsl"
+#endif
+layout(local_size_x = 64) in;
+layout(constant_id = QUERY_CONSTANT) const uint TRACE_QUERY = QUERY_CLOSEST;
+layout(push_constant, scalar) uniform Push { TraceArgs args; };
+
+void main()
+{
+    uint i = global_index();
+    if (i >= ray_count(args.count, args.indirect_count)) return;
+    TraceOptions options = trace_options(args.mask, args.flags, TRACE_QUERY);
+    options.user_data = args.user_data;
+    AT(args.hits, i) = trace(args.scene, AT(args.rays, i), options);
+}

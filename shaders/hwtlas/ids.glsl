@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// From the driver's numbering back to the user's.
+#ifndef TWINRAY_HWTLAS_IDS_GLSL
+#define TWINRAY_HWTLAS_IDS_GLSL
+#include "shaders/shared/world_bound.h"
+#include "shaders/shared/hw_scene.h"
+#include "shaders/shared/trace.h"
+
+// instance_id, primitive_id: what the driver calls InstanceId and PrimitiveId.
+Candidate candidate_of(HwScene scene, uint instance_id, uint primitive_id, uint custom_index, TraceOptions options)
+{
+    Candidate candidate;
+    candidate.primitive_index = primitive_id;
+    candidate.instance_index = instance_id;
+    candidate.custom_index = custom_index;
+    candidate.user_data = options.user_data;
+    if ((options.features & FEATURE_REMAP) != 0u && uint64_t(scene.instances) != 0ul)
+    {
+        HwInstance instance = AT(scene.instances, instance_id);
+        candidate.instance_index = instance.instance_index;
+        candidate.primitive_index = AT(instance.triangles, primitive_id);
+    }
+    return candidate;
+}
+
+Hit hit_of(Candidate candidate, float t, vec2 uv)
+{
+    Hit hit;
+    hit.hit = 1u;
+    hit.t = t;
+    hit.primitive_index = candidate.primitive_index;
+    hit.custom_index = candidate.custom_index;
+    hit.u = uv.x;
+    hit.v = uv.y;
+    hit.instance_index = candidate.instance_index;
+    hit.flags = 0u;
+    return hit;
+}
+
+// What the driver is asked for.
+uint ray_flags(TraceOptions options, uint opaque, uint terminate_on_first_hit)
+{
+    uint flags = options.flags;
+    if ((options.features & FEATURE_FILTERS) == 0u) flags |= opaque;
+    if (options.query == QUERY_ANY) flags |= terminate_on_first_hit;
+    return flags;
+}
+#endif

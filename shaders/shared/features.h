@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// What a scene may have and traversal leaves out where it has not: one bit each of the specialisation constant
+// FEATURES, which AccelView::features gives for a scene. A kernel specialised for more than a scene has is right, too.
+#ifndef TWINRAY_SHARED_FEATURES_H
+#define TWINRAY_SHARED_FEATURES_H
+
+const uint FEATURE_BOXES = 1u;   // geometry of boxes, met by the intersection of a trace program
+const uint FEATURE_FILTERS = 2u; // instances whose hits a trace program may refuse
+const uint FEATURE_REMAP = 4u;   // hardware: triangles and instances were reordered for the driver
+const uint FEATURES_ALL = 7u;
+
+// How a ray is tested against triangles.
+const uint LEVEL_FAST = 0u;       // Moeller-Trumbore: may lose rays at edges
+const uint LEVEL_WATERTIGHT = 1u; // exact edge signs: no leaks, a single hit at an edge
+const uint LEVEL_REFINED = 2u;
+const uint LEVEL_CERTIFIED = 3u;
+
+// Ids of the specialisation constants.
+const uint QUERY_CONSTANT = 0u;      // QUERY_* of a batch kernel
+const uint FEATURES_CONSTANT = 100u; // of every kernel that includes twinray/query.glsl
+const uint LEVEL_CONSTANT = 101u;
+#endif

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// How to trace, and what a kernel that traces a batch takes: the same for both accelerators.
+#ifndef TWINRAY_SHARED_TRACE_H
+#define TWINRAY_SHARED_TRACE_H
+#include "shaders/shared/features.h"
+#include "shaders/shared/program.h"
+#include "shaders/shared/ray.h"
+
+struct TraceOptions
+{
+    uint mask;  // sees the instances that share a bit of its low 8
+    uint flags; // CULL_BACK, CULL_FRONT or 0
+    // The rest is constant in a kernel, so that it is compiled for it.
+    uint query;    // QUERY_*
+    uint level;    // LEVEL_*
+    uint features; // FEATURE_*
+    uint64_t user_data;
+};
+
+struct TraceArgs
+{
+    uint64_t scene; // AccelView::scene
+    REF(Ray) rays;
+    REF(Hit) hits;
+    Uints indirect_count; // null, or where a smaller count may stand
+    uint64_t user_data;
+    uint count; // where the rays of this launch end
+    uint mask;
+    uint flags;
+    uint first; // ray that the launch begins with
+};
+#endif

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Ray queries inside kernels, on either accelerator. Compile the kernel once with TWINRAY_SW and once with TWINRAY_HW
+// defined (twinray_add_kernel does both), and dispatch the one that fits the accelerator. HW needs VK_KHR_ray_query.
+//
+//     layout(push_constant, scalar) uniform Push { uint64_t accel; ... };   // AccelView::scene
+//     Hit hit;
+//     if (closest_hit(accel, ray, hit)) ...
+//     if (any_hit(accel, ray)) ...
+//
+// Specialise FEATURES_CONSTANT with AccelView::features to leave out what the scene does not need, and LEVEL_CONSTANT
+// with the level. With TWINRAY_PROGRAM defined, the kernel defines intersect_primitive and accept_hit itself (see
+// shaders/shared/program.h), before or after this include.
+#ifndef TWINRAY_QUERY_GLSL
+#define TWINRAY_QUERY_GLSL
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/trace.h"
+
+layout(constant_id = FEATURES_CONSTANT) const uint TRACE_FEATURES = FEATURES_ALL;
+layout(constant_id = LEVEL_CONSTANT) const uint TRACE_LEVEL = LEVEL_WATERTIGHT;
+
+#if defined(TWINRAY_SW)
+#include "shaders/shared/traverse.h"
+Hit trace(uint64_t accel, Ray ray, TraceOptions options) { return traverse(AT(REF(SwScene)(accel), 0), ray, options); }
+#elif defined(TWINRAY_HW)
+#extension GL_EXT_ray_query : require
+#include "shaders/hwtlas/ray_query.glsl"
+#else
+#error "twinray/query.glsl: define TWINRAY_SW or TWINRAY_HW"
+#endif
+
+TraceOptions trace_options(uint mask, uint flags, uint query)
+{
+    TraceOptions options;
+    options.mask = mask;
+    options.flags = flags;
+    options.query = query;
+    options.level = TRACE_LEVEL;
+    options.features = TRACE_FEATURES;
+    options.user_data = 0ul;
+    return options;
+}
+
+// The closest hit of the instances that share a bit with mask; flags: CULL_BACK, CULL_FRONT or 0. False: hit is a miss.
+bool closest_hit(uint64_t accel, Ray ray, uint mask, uint flags, out Hit hit)
+{
+    hit = trace(accel, ray, trace_options(mask, flags, QUERY_CLOSEST));
+    return hit.hit != 0u;
+}
+bool closest_hit(uint64_t accel, Ray ray, out Hit hit) { return closest_hit(accel, ray, 0xffu, 0u, hit); }
+
+// Whether anything lies on the ray.
+bool any_hit(uint64_t accel, Ray ray, uint mask, uint flags)
+{
+    return trace(accel, ray, trace_options(mask, flags, QUERY_ANY)).hit != 0u;
+}
+bool any_hit(uint64_t accel, Ray ray) { return any_hit(accel, ray, 0xffu, 0u); }
+#endif
