@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "engine/accel/batches.h"
 #include "hwtlas/blas_input.h"
 
 namespace twinray {
@@ -100,6 +101,22 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
         blases[built[i]].place = i;
     }
     return blases;
+}
+
+BuildBytes blas_bytes(const Context& context, std::span<const GeometrySize> meshes, const BlasOptions& options) {
+    BuildBytes bytes;
+    std::vector<std::uint64_t> scratch;
+    for (const GeometrySize& mesh : meshes) {
+        if (mesh.triangles == 0) continue;
+        StructureBuild build = triangle_build("", 0, mesh.vertices, mesh.triangles);
+        build.flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
+        bytes.structures +=
+            sizes_of(context, build).accelerationStructureSize + (options.reorder ? mesh.triangles * sizeof(uint) : 0);
+        bytes.scratch += mesh.vertices * sizeof(vec3) + mesh.triangles * sizeof(uvec3);
+        scratch.push_back(scratch_bytes_of(context, {build, BuildMode::build, nullptr}));
+    }
+    bytes.scratch += cut_into_batches(scratch, options.scratch_budget).scratch_bytes;
+    return bytes;
 }
 
 }  // namespace twinray

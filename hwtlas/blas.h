@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "engine/accel/geometry.h"
+#include "engine/accel/memory.h"
 #include "hwtlas/compaction.h"
 #include "hwtlas/hw_scene.h"
 
@@ -36,5 +37,8 @@ struct BlasOptions {
 // Records upload and build of all of them, in order.
 std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries,
                                const BlasOptions& options);
+
+// What that takes for meshes of triangles.
+BuildBytes blas_bytes(const Context& context, std::span<const GeometrySize> meshes, const BlasOptions& options);
 
 }  // namespace twinray

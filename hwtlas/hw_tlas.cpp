@@ -33,6 +33,8 @@ struct HwTlas::HwTopLevel : BuiltScene {
     explicit HwTopLevel(Tlas&& built) : tlas(std::move(built)) {
         address = tlas.scene.address();
         bytes = tlas.bytes();
+        scratch_bytes = tlas.scratch_bytes();
+        capacity = tlas.capacity;
     }
     Tlas tlas;
 };
@@ -121,6 +123,14 @@ HwTlas::Built HwTlas::refit_geometries(Commands& commands, std::span<const Geome
     moving_->record(commands, builds, BuildMode::build, scratch_budget());
     moving_->record(commands, updates, BuildMode::update, scratch_budget());
     return built;
+}
+
+BuildBytes HwTlas::geometry_bytes(std::span<const GeometrySize> geometries) const {
+    return blas_bytes(context(), geometries, {reorder_, scratch_budget()});
+}
+
+BuildBytes HwTlas::scene_bytes(std::size_t count, std::size_t capacity) const {
+    return tlas_builder_.bytes(count, capacity);
 }
 
 bool HwTlas::can_compact(const BuiltGeometry& built, SyncPoint done) const {

@@ -37,6 +37,8 @@ class HwTlas : public AbstractAccel {
     using Built = std::vector<std::unique_ptr<BuiltGeometry>>;
     Built build_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
+    BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const override;
+    BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
     bool can_compact(const BuiltGeometry& built, SyncPoint done) const override;
     Built compact_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,

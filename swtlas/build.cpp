@@ -135,6 +135,11 @@ void Builder::record_climb(Commands& commands, const Batch& batch) const {
         batch.block_count);
 }
 
+std::uint64_t Builder::cost_bytes(uint leaf_count) {
+    const std::uint64_t groups = (std::uint64_t{inner_count(leaf_count)} + AREA_GROUP - 1) / AREA_GROUP;
+    return AreaWork{groups, {}, {}, false}.bytes();
+}
+
 void Builder::record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const {
     std::vector<AreaWork> work;
     for (const Measured& tree : trees) {

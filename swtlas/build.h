@@ -36,6 +36,7 @@ class Builder {
         uint leaf_count;
         CostTarget target;
     };
+    static std::uint64_t cost_bytes(uint leaf_count);  // of scratch, for one tree
     void record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const;
 
   private:

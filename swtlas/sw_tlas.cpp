@@ -36,7 +36,6 @@ struct SwTlas::SwBuiltGeometry : BuiltGeometry {
 
 struct SwTlas::SwBuiltScene : BuiltScene {
     Buffer buffer;  // see layout_scene
-    uint capacity = 0;
 
     BuildTree tree(uint count) const {
         BuildTree tree{};
@@ -44,7 +43,7 @@ struct SwTlas::SwBuiltScene : BuiltScene {
         tree.bvh = {address};
         return tree;
     }
-    Ref<SwInstance> instances() const { return {address + layout_scene(capacity).instances}; }
+    Ref<SwInstance> instances() const { return {address + layout_scene(static_cast<uint>(capacity)).instances}; }
 };
 
 SwTlas::SwTlas(Context& context) : AbstractAccel(context, "SwTlas"), builder_(context) {}
@@ -170,17 +169,18 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
                                                                const BuiltScene* current) {
     const auto* scene = static_cast<const SwBuiltScene*>(current);
     std::unique_ptr<SwBuiltScene> made;
-    if (const auto capacity = static_cast<uint>(capacity_for(input.count, scene ? scene->capacity : 0));
+    if (const std::size_t capacity = capacity_for(input.count, scene ? scene->capacity : 0);
         !scene || capacity != scene->capacity) {
         made = std::make_unique<SwBuiltScene>();
         made->capacity = capacity;
-        made->buffer = Buffer(context(), {.name = "SwTlas scene", .bytes = layout_scene(capacity).bytes});
+        made->buffer =
+            Buffer(context(), {.name = "SwTlas scene", .bytes = layout_scene(static_cast<uint>(capacity)).bytes});
         made->address = made->buffer.address();
         made->bytes = made->buffer.bytes();
         scene = made.get();
     }
-    const SwScene header{empty_bvh(scene->address + layout_scene(scene->capacity).nodes), scene->instances(),
-                         input.count};
+    const SwScene header{empty_bvh(scene->address + layout_scene(static_cast<uint>(scene->capacity)).nodes),
+                         scene->instances(), input.count};
     {
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
@@ -190,6 +190,24 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
     const Builder::Measured measured{{scene->address}, input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), true);
     return made;
+}
+
+BuildBytes SwTlas::geometry_bytes(std::span<const GeometrySize> geometries) const {
+    BuildBytes bytes;
+    std::vector<std::uint64_t> shares;
+    for (const GeometrySize& size : geometries) {
+        const auto count = static_cast<uint>(size.triangles);
+        bytes.structures += layout_geometry(count).bytes;
+        shares.push_back(scratch_share(count) + size.vertices * sizeof(vec3) + size.triangles * sizeof(uvec3));
+    }
+    bytes.scratch = cut_into_batches(shares, scratch_budget()).scratch_bytes;
+    return bytes;
+}
+
+BuildBytes SwTlas::scene_bytes(std::size_t count, std::size_t capacity) const {
+    const auto leaves = static_cast<uint>(count);
+    return {layout_scene(static_cast<uint>(capacity)).bytes,
+            plan_build(std::span(&leaves, 1)).scratch.bytes + Builder::cost_bytes(leaves)};
 }
 
 void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
@@ -216,7 +234,7 @@ SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {
 SwTlas::Tree SwTlas::download_scene() const {
     const auto& built = static_cast<const SwBuiltScene&>(built_scene());
     const Bvh bvh = download<SwScene>(context(), built.buffer, 1).front().bvh;
-    const SceneLayout layout = layout_scene(built.capacity);
+    const SceneLayout layout = layout_scene(static_cast<uint>(built.capacity));
     return {bvh, download<BvhNode>(context(), built.buffer, std::max(bvh.leaf_count, 1u) - 1, layout.nodes), {}};
 }
 

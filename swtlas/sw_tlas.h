@@ -34,6 +34,8 @@ class SwTlas final : public AbstractAccel {
     using Built = std::vector<std::unique_ptr<BuiltGeometry>>;
     Built build_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
+    BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const override;
+    BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
     static std::uint64_t source_bytes(const GeometryInput& input);
     static std::vector<Builder::Measured> measured(std::span<const GeometryInput> inputs);
     void record_batches(Commands& commands, std::span<const GeometryInput> inputs,

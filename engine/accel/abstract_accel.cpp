@@ -282,11 +282,4 @@ std::vector<Capability> AbstractAccel::capabilities() const {
     return all;
 }
 
-std::uint64_t AbstractAccel::structure_bytes() const {
-    std::uint64_t bytes = scene_ ? scene_->bytes : 0;
-    for (const auto& [id, placement] : placements_)
-        if (placement.built) bytes += placement.built->bytes;
-    return bytes;
-}
-
 }  // namespace twinray

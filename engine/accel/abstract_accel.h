@@ -11,6 +11,7 @@
 #include "engine/accel/capability.h"
 #include "engine/accel/geometry.h"
 #include "engine/accel/instance_array.h"
+#include "engine/accel/memory.h"
 #include "engine/accel/trace_desc.h"
 #include "engine/accel/trace_program.h"
 #include "engine/accel/vertices.h"
@@ -168,8 +169,13 @@ class AbstractAccel {
     void wait_for_gpu() { context_.wait_for_gpu(); }
     // GPU time per pass of the last sync() that built something into commands of its own; waits for it.
     std::vector<PassTiming> build_timings() const;
-    // Bytes of device memory that the built structure holds.
-    std::uint64_t structure_bytes() const;
+    // As of the last sync; what older work may still read is not counted.
+    MemoryUsage memory_usage() const;
+    // What the next sync will take for geometries and a top level that are not built yet: exactly what the structures
+    // will be, but for meshes with nothing that could be hit, and all scratch. What the host uploads is staged on top.
+    BuildBytes memory_requirements() const;
+    // The same for an accelerator of nothing but such meshes and so many instances, before any is pushed.
+    BuildBytes memory_requirements(std::span<const GeometrySize> geometries, std::size_t instance_count) const;
 
     Context& context() const { return context_; }
     const std::string& name() const { return name_; }
@@ -201,6 +207,8 @@ class AbstractAccel {
         virtual ~BuiltScene() = default;
         std::uint64_t address = 0;  // what AccelView::scene holds
         std::uint64_t bytes = 0;
+        std::uint64_t scratch_bytes = 0;  // kept with it
+        std::size_t capacity = 0;         // instances that it has room for
     };
     // What to build the top level from, all on the device by the time it runs.
     struct SceneInput {
@@ -222,6 +230,10 @@ class AbstractAccel {
     // Builds into the memory of `current` where that suffices, and then returns null.
     virtual std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
                                                     const BuiltScene* current) = 0;
+    // What building them from the host's memory takes.
+    virtual BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const = 0;
+    // What building a top level for `count` instances takes, with room for `capacity`.
+    virtual BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const = 0;
     // Adapts `current`, built with will_move, to instances that only moved.
     virtual void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) = 0;
     // What an implementation built; throws Error on a dead handle or pending edits.

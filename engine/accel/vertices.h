@@ -28,6 +28,7 @@ struct VertexSlice {
     Floats incoming;      // device memory that the next sync copies the positions from; 0 = Geometry::positions
 
     bool on_device() const { return indices.bytes() != 0; }
+    std::uint64_t bytes() const { return positions.bytes() + indices.bytes() + costs.bytes(); }
     DeviceMesh mesh() const { return {positions.ref<float>(), indices.ref<uint>()}; }
 };
 

@@ -199,6 +199,45 @@ TEST_P(Churn, TenThousandEditsInAThousandSyncsAgreeWithTheReferee) {
     EXPECT_GT(vertex_edits_, 2000u);
 }
 
+// Against what the allocator has handed out, which rounds each buffer up.
+TEST_P(Churn, MemoryIsToldBeforeAndAfterItIsTaken) {
+    accel().sync();
+    const std::uint64_t empty = memory() - accel().memory_usage().total();
+    std::vector<GeometrySize> sizes;
+    std::size_t buffers = 8, instances = 0;
+    for (const uint count : {1u, 100u, 3000u}) {
+        placed_.push_back({{}, make_soup(count, count), random_transforms(count)});
+        placed_.back().handle = accel().push(placed_.back().mesh, placed_.back().transforms);
+        sizes.push_back({placed_.back().mesh.positions.size(), count});
+        instances += count;
+        buffers += 4;
+    }
+    const BuildBytes needed = accel().memory_requirements();
+    const std::unique_ptr<AbstractAccel> fresh = make_accel();
+    for (const Placed& placed : placed_) fresh->push(placed.mesh, placed.transforms);
+    EXPECT_EQ(accel().memory_requirements(sizes, instances).structures, fresh->memory_requirements().structures);
+    accel().sync();
+    EXPECT_EQ(accel().memory_usage().structures(), needed.structures);
+    EXPECT_GT(needed.scratch, instances * sizeof(uint));
+    EXPECT_EQ(accel().memory_requirements().structures, 0u) << "everything is built";
+    const auto expect_told = [&](const char* when) {
+        const std::uint64_t told = empty + accel().memory_usage().total(), held = memory();
+        EXPECT_GE(held + 64, told) << when;
+        EXPECT_LE(held, told + 256 * buffers) << when;
+    };
+    expect_told("built");
+    EXPECT_EQ(accel().memory_usage().vertices, 0u);
+    accel().update_vertices(placed_[2].handle, placed_[2].mesh.positions);
+    accel().sync();
+    EXPECT_GE(accel().memory_usage().vertices, 3000u * 4 * sizeof(vec3));
+    expect_told("moved");
+    const std::uint64_t large = accel().memory_usage().scene;
+    accel().erase(placed_[2].handle);
+    accel().sync();
+    EXPECT_LT(accel().memory_usage().scene, large / 10) << "the top level shrinks";
+    expect_told("erased");
+}
+
 TEST_P(Churn, FiveHundredMovesKeepEverythingInPlace) {
     for (int i = 0; i < 8; ++i) push();
     accel().sync();

@@ -128,7 +128,7 @@ World::State World::state() {
     state.n_instances = accel().n_instances();
     state.n_geometries = accel().n_geometries();
     state.revision = accel().revision();
-    state.structure_bytes = accel().structure_bytes();
+    state.structure_bytes = accel().memory_usage().structures();
     state.has_floor = accel().is_valid(floor_);
     state.has_tower = accel().is_valid(tower_);
     state.has_guest = accel().is_valid(guest_);

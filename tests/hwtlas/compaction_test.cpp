@@ -50,12 +50,12 @@ TEST_F(Compaction, HappensWhenAskedForAndKeepsViewsAndHits) {
     EXPECT_FALSE(accel().compact()) << "not built yet";
     sync_and_wait();
     const AccelView view = accel().view();
-    const std::uint64_t bytes = accel().structure_bytes();
+    const std::uint64_t bytes = accel().memory_usage().structures();
     sync_and_wait();
-    EXPECT_EQ(accel().structure_bytes(), bytes) << "a clean sync does nothing";
+    EXPECT_EQ(accel().memory_usage().structures(), bytes) << "a clean sync does nothing";
     EXPECT_TRUE(accel().compact());
     sync_and_wait();
-    EXPECT_EQ(accel().structure_bytes(), bytes - 3 * slack);
+    EXPECT_EQ(accel().memory_usage().structures(), bytes - 3 * slack);
     EXPECT_EQ(accel().revision(), view.revision);
     EXPECT_EQ(accel().view().scene, view.scene);
     for (const float x : {0.0f, 2.0f, 4.0f}) EXPECT_EQ(t_at(x), 9.0f);
@@ -66,10 +66,10 @@ TEST_F(Compaction, HappensInASyncThatHasOtherWork) {
     push_box(0);
     push_box(2);
     sync_and_wait();
-    const std::uint64_t bytes = accel().structure_bytes();
+    const std::uint64_t bytes = accel().memory_usage().structures();
     const AccelHandle third = push_box(4);
     sync_and_wait();
-    EXPECT_LT(accel().structure_bytes(), bytes + slack);
+    EXPECT_LT(accel().memory_usage().structures(), bytes + slack);
     accel().update_transform(third, Transform::translation({0, 0, 1}));
     sync_and_wait();
     EXPECT_FALSE(accel().compact());
