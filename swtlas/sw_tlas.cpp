@@ -6,6 +6,7 @@
 
 #include "engine/accel/batches.h"
 #include "engine/core/error.h"
+#include "swtlas/built.h"
 #include "swtlas_trace.spv.h"
 
 namespace twinray {
@@ -19,19 +20,12 @@ struct SwTlas::Batch {
     std::span<const GeometryInput> inputs;
     std::vector<uint> counts = {};
     BuildPlan plan = {};
-};
 
-struct SwTlas::SwBuiltGeometry : BuiltGeometry {
-    GeometryLayout layout;
-    Buffer buffer;
-
-    Ref<BvhTriangle> triangles() const { return buffer.ref<BvhTriangle>(layout.triangles); }
-    // Of input i of a batch, over a mesh on the device.
-    BuildTree tree(const Batch& batch, std::size_t i, const DeviceMesh& mesh) const {
-        const std::uint64_t block = batch.inputs[i].block->address();
-        return {batch.plan.first[i], batch.counts[i], mesh.positions, mesh.indices, triangles(), {block}};
+    // Of input i, over a mesh on the device.
+    BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const DeviceMesh& mesh) const {
+        return {plan.first[i], counts[i],          mesh.positions,
+                mesh.indices,  target.triangles(), {inputs[i].block->address()}};
     }
-    SwGeometry block(uint kind) const { return {empty_bvh(buffer.address() + layout.nodes), triangles(), kind, 0}; }
 };
 
 struct SwTlas::SwBuiltScene : BuiltScene {
@@ -116,14 +110,6 @@ std::vector<DeviceMesh> SwTlas::record_meshes(Commands& commands, const Batch& b
     return meshes;
 }
 
-std::unique_ptr<SwTlas::SwBuiltGeometry> SwTlas::make_geometry(const Geometry& geometry) {
-    auto made = std::make_unique<SwBuiltGeometry>();
-    made->layout = layout_geometry(static_cast<uint>(geometry.primitive_count()));
-    made->bytes = made->layout.bytes;
-    made->buffer = Buffer(context(), {.name = "SwTlas geometry '" + geometry.name + "'", .bytes = made->bytes});
-    return made;
-}
-
 void SwTlas::record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built) {
     std::vector<BuildTree> trees;
     {
@@ -132,10 +118,11 @@ void SwTlas::record_build(Commands& commands, const Batch& batch, const Buffer& 
         for (std::size_t i = 0; i < batch.inputs.size(); ++i) {
             const GeometryInput& input = batch.inputs[i];
             std::unique_ptr<SwBuiltGeometry> made;
-            if (!input.current) made = make_geometry(*input.geometry);
+            if (!input.current) made = std::make_unique<SwBuiltGeometry>(context(), *input.geometry);
             const auto& target = made ? *made : static_cast<const SwBuiltGeometry&>(*input.current);
-            commands.write(*input.block, target.block(input.geometry->kind));
-            trees.push_back(target.tree(batch, i, meshes[i]));
+            const SwGeometry block{empty_bvh(target.nodes().address), target.triangles(), input.geometry->kind, 0};
+            commands.write(*input.block, block);
+            trees.push_back(batch.tree(i, target, meshes[i]));
             built.push_back(std::move(made));
         }
     }
@@ -155,7 +142,7 @@ SwTlas::Built SwTlas::refit_geometries(Commands& commands, std::span<const Geome
         std::vector<BuildTree> trees;
         for (std::size_t i = 0; i < batch.inputs.size(); ++i)
             trees.push_back(
-                static_cast<const SwBuiltGeometry&>(*batch.inputs[i].current).tree(batch, i, batch.inputs[i].mesh));
+                batch.tree(i, static_cast<const SwBuiltGeometry&>(*batch.inputs[i].current), batch.inputs[i].mesh));
         std::vector<Builder::Measured> as_built = measured(batch.inputs);
         std::erase_if(as_built, [](const Builder::Measured& tree) { return !tree.target.is_first; });
         builder_.record_costs(commands, as_built, true);

@@ -72,6 +72,19 @@ AccelHandle AbstractAccel::place(Geometry&& geometry, std::span<const Transform>
     return handle;
 }
 
+AccelHandle AbstractAccel::push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
+                                      std::span<const InstanceRecord> records) {
+    Placement placement{std::move(geometry), std::move(block), std::move(built), {}, {}, {}};
+    for (const InstanceRecord& record : records) {
+        placement.instances.records.push_back(make_instance_record(transform_of(record), options_of(record)));
+        placement.instances.records.back().geometry = placement.block.address();
+    }
+    const AccelHandle handle{next_handle()};
+    placements_.emplace(handle.id, std::move(placement));
+    mark(Dirty::structure);
+    return handle;
+}
+
 bool AbstractAccel::erase(AccelHandle handle) {
     const auto found = placements_.find(handle.id);
     if (found == placements_.end()) return false;
@@ -119,12 +132,14 @@ void AbstractAccel::update_vertices(AccelHandle handle, std::span<const vec3> po
     warn_of_inactive_triangles(geometry);
     if (geometry.triangles.empty()) return;
     placement.vertices.incoming = {};
+    placement.vertices.device_wrote = false;
     placement.vertices.edited = placement.built || placement.vertices.on_device();
     mark(Dirty::moves);
 }
 
 void AbstractAccel::update_vertices(AccelHandle handle, Floats positions, std::size_t count) {
     Placement& placement = checked_for_vertices(handle, count);
+    if (!works_on_device()) fail(name_, ": update_vertices: vertices in device memory are unsupported");
     if (!positions.address || positions.address % 4)
         fail(name_, ": update_vertices: device address ", positions.address, " must be a multiple of 4 and not 0");
     if (placement.geometry.triangles.empty()) return;
@@ -246,6 +261,12 @@ std::size_t AbstractAccel::n_instances(AccelHandle handle) const {
     return found == placements_.end() ? 0 : found->second.instances.records.size();
 }
 
+std::vector<AccelHandle> AbstractAccel::handles() const {
+    std::vector<AccelHandle> alive;
+    for (const auto& [id, placement] : placements_) alive.push_back({id});
+    return alive;
+}
+
 InstanceState AbstractAccel::get_instance(AccelHandle handle, std::size_t index) const {
     check_index(handle, live(handle, "get_instance"), index, "get_instance");
     return get_instances(handle)[index];
@@ -270,6 +291,15 @@ const AbstractAccel::BuiltGeometry& AbstractAccel::built_geometry(AccelHandle ha
 }
 
 const Buffer& AbstractAccel::geometry_block(AccelHandle handle) const { return live(handle, "geometry block").block; }
+
+Geometry AbstractAccel::geometry(AccelHandle handle) const {
+    const Placement& placement = live(handle, "geometry");
+    Geometry geometry = placement.geometry;
+    if (!placement.vertices.device_wrote) return geometry;
+    geometry.positions = download<vec3>(context_, placement.vertices.positions, geometry.positions.size());
+    geometry.non_finite_triangles = count_non_finite_triangles({geometry.name, geometry.positions, geometry.triangles});
+    return geometry;
+}
 
 const AbstractAccel::BuiltScene& AbstractAccel::built_scene() const {
     if (!scene_) fail(name_, ": the scene is not built yet; call sync() first");

@@ -102,6 +102,7 @@ class AbstractAccel {
     std::size_t n_instances() const;
     std::size_t n_instances(AccelHandle handle) const;  // 0 for a dead handle
     std::size_t n_geometries() const { return placements_.size(); }
+    std::vector<AccelHandle> handles() const;  // those alive, in push order
 
     // Builds what changed since the last sync and returns the point at which the GPU has built it; a clean
     // accelerator does nothing. Where only transforms and vertices changed, everything is refitted in place and views
@@ -239,6 +240,14 @@ class AbstractAccel {
     // What an implementation built; throws Error on a dead handle or pending edits.
     const BuiltGeometry& built_geometry(AccelHandle handle) const;
     const Buffer& geometry_block(AccelHandle handle) const;
+    // With the vertices that the device has, for which it waits; throws Error on a dead handle.
+    Geometry geometry(AccelHandle handle) const;
+    // Throws Error if edits are pending.
+    void check_synced(const char* action) const;
+    // Places what is built already; `block` is filled by commands submitted before the next sync. The records, which
+    // need not name the block, may hold what push() would refuse: transforms that kernels have made unusable.
+    AccelHandle push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
+                           std::span<const InstanceRecord> records);
     const BuiltScene& built_scene() const;
 
     // FEATURE_* of whatever the scene holds.
@@ -246,6 +255,10 @@ class AbstractAccel {
     // With `code`, or with the accelerator's own code where the scene needs no program.
     virtual std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const = 0;
     std::uint64_t id() const { return id_; }
+    // False: the host answers, and neither reads vertices in device memory nor measures costs.
+    virtual bool works_on_device() const { return true; }
+    // What closest_hits() and any_hits() do.
+    virtual std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc);
 
   private:
     // What one push placed.
@@ -301,7 +314,6 @@ class AbstractAccel {
     void warn_of_unusable_instances();
     const TraceProgram& program_for(const AccelView& view, const TraceDesc& desc) const;
     void check_desc(const AccelView& view, const TraceDesc& desc) const;
-    std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc);
 
     Context& context_;
     std::string name_;

@@ -8,6 +8,7 @@
 namespace twinray {
 
 std::optional<double> AbstractAccel::sah_of(const CostLog& costs, Wait wait) const {
+    if (!works_on_device()) return std::nullopt;
     if (wait == Wait::yes && costs.last_point().value) context_.wait(costs.last_point());
     const std::optional<TreeCost> cost = costs.newest(context_);
     return cost ? std::optional<double>(cost->now) : std::nullopt;
@@ -27,7 +28,7 @@ void AbstractAccel::set_rebuild_ratio(double ratio) {
 }
 
 bool AbstractAccel::has_degraded(const CostLog& costs) const {
-    const std::optional<TreeCost> cost = costs.newest(context_);
+    const std::optional<TreeCost> cost = works_on_device() ? costs.newest(context_) : std::nullopt;
     return cost && cost->now > rebuild_ratio_ * cost->at_build;
 }
 

@@ -5,8 +5,12 @@
 
 namespace twinray {
 
+void AbstractAccel::check_synced(const char* action) const {
+    if (dirty_ != Dirty::no) fail(name_, ": ", action, ": edits are pending; call sync() first");
+}
+
 AccelView AbstractAccel::view() const {
-    if (dirty_ != Dirty::no) fail(name_, ": view: edits are pending; call sync() first");
+    check_synced("view");
     return {scene_->address, id_, revision_, features_};
 }
 

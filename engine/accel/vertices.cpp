@@ -46,7 +46,9 @@ std::vector<VertexSlice*> VertexArrays::commit(Staged&& staged) {
     std::vector<VertexSlice*> slices;
     for (std::size_t i = 0; i < staged.items.size(); ++i) {
         VertexSlice& slice = *staged.items[i].slice;
+        const bool incoming = slice.incoming.address != 0;
         if (!slice.on_device()) slice = std::move(staged.made[i]);
+        slice.device_wrote = incoming;
         slice.edited = false;
         slice.incoming = {};
         slices.push_back(&slice);

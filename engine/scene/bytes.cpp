@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <fstream>
+#include <random>
+#include <system_error>
 
 #include <zlib.h>
 
@@ -56,6 +59,30 @@ Bytes read_file(const std::filesystem::path& file) {
     in.read(reinterpret_cast<char*>(bytes.data()), size);
     if (in.gcount() != size) fail("'", file.string(), "': read ", in.gcount(), " of ", size, " bytes");
     return bytes;
+}
+
+void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> pieces) {
+    std::filesystem::path partial = file;
+    partial += text(".partial-", std::hex, std::random_device{}());
+    const auto give_up = [&](const std::string& reason) {
+        std::error_code ignored;
+        std::filesystem::remove(partial, ignored);
+        fail("'", file.string(), "': cannot be written: ", reason);
+    };
+    errno = 0;
+    std::ofstream out(partial, std::ios::binary);
+    for (const std::span<const std::byte> piece : pieces)
+        out.write(reinterpret_cast<const char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
+    out.close();
+    if (!out) give_up(std::generic_category().message(errno));
+    std::error_code error;
+    std::filesystem::rename(partial, file, error);
+    if (error) give_up(error.message());
+}
+
+std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t start) {
+    if (bytes.empty()) return start;  // zlib would start anew at null
+    return static_cast<std::uint32_t>(crc32_z(start, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 Bytes unpack_gzip(const Bytes& packed, const std::string& object) {

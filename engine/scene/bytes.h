@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,13 @@ using Bytes = std::vector<std::uint8_t>;
 
 // The whole file. Throws Error naming it when it is missing, not a regular file or cannot be read.
 Bytes read_file(const std::filesystem::path& file);
+
+// Writes the pieces, one after the other, whole or not at all: under another name in the same folder, renamed at the
+// end. Throws Error naming the file; what was there before is then still there.
+void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> pieces);
+
+// The CRC-32 of zlib, PNG and gzip; finds every error within 32 neighbouring bits. `start`: of what comes before.
+std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t start = 0);
 
 // Unpacks gzip data; `object` names its source in errors (damaged, truncated, more than 4 GiB unpacked).
 Bytes unpack_gzip(const Bytes& packed, const std::string& object);

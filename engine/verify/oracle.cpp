@@ -34,6 +34,19 @@ Box64 box_in_world(const Box64& box, const Placement64& placement) {
     return world;
 }
 
+std::vector<std::shared_ptr<const Geometry64>> built(std::span<const MeshView> meshes) {
+    std::vector<std::shared_ptr<const Geometry64>> geometries;
+    for (const MeshView& mesh : meshes) geometries.push_back(std::make_shared<const Geometry64>(mesh));
+    return geometries;
+}
+
+// Whether culling hides the triangle from the ray: `along` tells which of its sides the ray sees.
+bool is_culled(const InstanceOptions& instance, uint flags, bool along) {
+    if (instance.no_culling) return false;
+    const bool shows_its_back = along != instance.turned;
+    return (flags & (shows_its_back ? CULL_BACK : CULL_FRONT)) != 0;
+}
+
 }  // namespace
 
 Placement64::Placement64(const Transform& transform, const char* object)
@@ -49,19 +62,21 @@ Placement64::Placement64(const Transform& transform, const char* object)
 // The state of one query over all instances.
 struct Oracle::Search {
     Ray ray;
+    OracleQuery query;
     double t_min;
     double t_limit;  // culls boxes that start beyond it: t_max, then the best t
     SlabRay slabs;
     bool any = false;
     OracleHit best;
 
-    Search(const Ray& world, double scale, double condition)
+    Search(const Oracle& oracle, const Ray& world, const OracleQuery& leave_out)
         : ray(world),
+          query(leave_out),
           t_min(std::max(0.0, double{world.t_min})),
           t_limit(world.t_max),
           // Object space answers for a world ray that is off by the roundings of the inverse.
           slabs(glm::dvec3(world.origin), glm::dvec3(world.direction),
-                0x1p-48 * condition * (glm::length(glm::dvec3(world.origin)) + scale)) {}
+                0x1p-48 * oracle.condition_ * (glm::length(glm::dvec3(world.origin)) + oracle.bounds().max_abs())) {}
 
     bool is_done() const { return any && best.hit; }
 
@@ -75,18 +90,20 @@ struct Oracle::Search {
     }
 };
 
-Oracle::Oracle(std::span<const MeshView> geometries, std::span<const OracleInstance> instances) {
-    geometries_.reserve(geometries.size());
-    for (const MeshView& mesh : geometries) geometries_.emplace_back(mesh);
+Oracle::Oracle(std::span<const MeshView> geometries, std::span<const OracleInstance> instances)
+    : Oracle(built(geometries), instances) {}
+
+Oracle::Oracle(std::vector<std::shared_ptr<const Geometry64>> geometries, std::span<const OracleInstance> instances)
+    : geometries_(std::move(geometries)) {
     std::vector<Box64> boxes;
     for (std::size_t i = 0; i < instances.size(); ++i) {
         const OracleInstance& instance = instances[i];
         const std::string object = text("instance ", i);
         if (instance.geometry >= geometries_.size())
             fail(object, ": geometry ", instance.geometry, " of ", geometries_.size());
-        PlacedGeometry placed{instance.geometry, instance.custom_index,
+        PlacedGeometry placed{instance.geometry, instance.options,
                               Placement64(instance.object_to_world, object.c_str()), Box64{}};
-        const Box64& box = geometries_[instance.geometry].bounds();
+        const Box64& box = geometries_[instance.geometry]->bounds();
         if (!box.is_empty()) {
             placed.world_box = box_in_world(box, placed.placement);
             condition_ = std::max(condition_, placed.placement.condition);
@@ -101,22 +118,24 @@ Oracle::Oracle(std::span<const MeshView> geometries, std::span<const OracleInsta
 Oracle Oracle::of(const Scene& scene) {
     const std::vector<MeshView> geometries(scene.meshes.begin(), scene.meshes.end());
     std::vector<OracleInstance> instances;
-    for (const Instance& instance : scene.instances) instances.push_back({instance.mesh, instance.transform, 0});
+    for (const Instance& instance : scene.instances) instances.push_back({instance.mesh, instance.transform});
     return {geometries, instances};
 }
 
 template <bool BRUTE_FORCE>
 void Oracle::search_instance(uint instance, Search& search) const {
     const PlacedGeometry& placed = instances_[instance];
-    const Geometry64& geometry = geometries_[placed.geometry];
+    if (!(placed.options.mask & search.query.mask)) return;
+    const Geometry64& geometry = *geometries_[placed.geometry];
     const Interval64 clip = search.slabs.clip(placed.world_box);
     if (clip.is_empty()) return;
     const ObjectRay ray(placed.placement.point_to_object(glm::dvec3(search.ray.origin)),
                         placed.placement.vector_to_object(glm::dvec3(search.ray.direction)),
                         geometry.bounds().max_abs());
     const auto test = [&](const ActiveTriangle& triangle) {
-        if (const auto hit = triangle.intersect(ray, clip))
-            search.offer({true, hit->t, hit->u, hit->v, triangle.primitive, instance, placed.custom_index});
+        const auto hit = triangle.intersect(ray, clip);
+        if (hit && !is_culled(placed.options, search.query.flags, hit->along))
+            search.offer({true, hit->t, hit->u, hit->v, triangle.primitive, instance, placed.options.custom_index});
         return !search.is_done();
     };
     if constexpr (BRUTE_FORCE) {
@@ -134,23 +153,23 @@ void Oracle::search_all(Search& search) const {
     });
 }
 
-OracleHit Oracle::closest_hit(const Ray& ray) const {
+OracleHit Oracle::closest_hit(const Ray& ray, const OracleQuery& query) const {
     if (!is_traceable(ray)) return {};
-    Search search(ray, bounds().max_abs(), condition_);
+    Search search(*this, ray, query);
     search_all(search);
     return search.best;
 }
 
-OracleHit Oracle::closest_hit_brute_force(const Ray& ray) const {
+OracleHit Oracle::closest_hit_brute_force(const Ray& ray, const OracleQuery& query) const {
     if (!is_traceable(ray)) return {};
-    Search search(ray, bounds().max_abs(), condition_);
+    Search search(*this, ray, query);
     for (const uint instance : placed_) search_instance<true>(instance, search);
     return search.best;
 }
 
-bool Oracle::any_hit(const Ray& ray) const {
+bool Oracle::any_hit(const Ray& ray, const OracleQuery& query) const {
     if (!is_traceable(ray)) return false;
-    Search search(ray, bounds().max_abs(), condition_);
+    Search search(*this, ray, query);
     search.any = true;
     search_all(search);
     return search.best.hit;
@@ -160,7 +179,7 @@ std::vector<uint> Oracle::instances_hit(const Ray& ray, double t_limit) const {
     std::vector<uint> found;
     if (!is_traceable(ray)) return found;
     const double t_end = std::min(t_limit, double{ray.t_max});
-    const Search all(ray, bounds().max_abs(), condition_);
+    const Search all(*this, ray, {});
     bvh_.visit_leaves(all.slabs, all.t_min, t_end, [&](uint first, uint last) {
         for (uint i = first; i < last; ++i) {
             Search search = all;

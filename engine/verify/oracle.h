@@ -2,9 +2,11 @@
 // The referee: closest and any hits of a scene in float64 on the CPU, independent of both accelerators.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "engine/accel/geometry.h"
 #include "engine/core/ray.h"
 #include "engine/core/transform.h"
 #include "engine/scene/scene.h"
@@ -16,7 +18,13 @@ namespace twinray {
 struct OracleInstance {
     uint geometry = 0;  // index into the oracle's list
     Transform object_to_world;
-    uint custom_index = 0;  // handed through to OracleHit
+    InstanceOptions options = {};
+};
+
+// What a query leaves out, as TraceDesc says it.
+struct OracleQuery {
+    std::uint8_t mask = 0xff;  // instances whose mask shares no bit with it are not hit
+    uint flags = 0;            // CULL_BACK or CULL_FRONT: triangles that show that side are not hit
 };
 
 struct OracleHit {
@@ -47,31 +55,34 @@ struct Placement64 {
 };
 
 // Answers by the rules of docs and shaders/shared/ray.h: t_min < t < t_max, both exclusive; a negative t_min counts
-// as 0; rays that are not is_traceable() miss; no culling; triangles that are not finite or have no area are never
-// hit; the closest hit has the smallest t, then the lowest (instance, primitive). Immutable, so threads may share it.
+// as 0; rays that are not is_traceable() miss; triangles that are not finite or have no area are never hit, nor is what
+// the query leaves out; the closest hit has the smallest t, then the lowest (instance, primitive). Immutable, so
+// threads may share it.
 class Oracle {
   public:
     // Copies what it needs. Throws Error on an index out of range and on a singular or non-finite transform.
     Oracle(std::span<const MeshView> geometries, std::span<const OracleInstance> instances);
+    // Shares geometries that are built already; none may be null.
+    Oracle(std::vector<std::shared_ptr<const Geometry64>> geometries, std::span<const OracleInstance> instances);
     static Oracle of(const Scene& scene);
 
-    OracleHit closest_hit(const Ray& ray) const;
+    OracleHit closest_hit(const Ray& ray, const OracleQuery& query = {}) const;
     // The same answer, bit for bit, from testing every triangle.
-    OracleHit closest_hit_brute_force(const Ray& ray) const;
-    bool any_hit(const Ray& ray) const;
+    OracleHit closest_hit_brute_force(const Ray& ray, const OracleQuery& query = {}) const;
+    bool any_hit(const Ray& ray, const OracleQuery& query = {}) const;
 
-    // Instances that the ray hits at some t with t_min < t < t_limit, ascending.
+    // Instances, whatever their masks, that the ray hits at some t with t_min < t < t_limit, ascending.
     std::vector<uint> instances_hit(const Ray& ray, double t_limit) const;
 
     const Box64& bounds() const { return bvh_.bounds(); }  // of the active triangles in world space
     uint instance_count() const { return static_cast<uint>(instances_.size()); }
-    const Geometry64& geometry(uint instance) const { return geometries_[instances_[instance].geometry]; }
+    const Geometry64& geometry(uint instance) const { return *geometries_[instances_[instance].geometry]; }
     const Placement64& placement(uint instance) const { return instances_[instance].placement; }
 
   private:
     struct PlacedGeometry {
         uint geometry = 0;
-        uint custom_index = 0;
+        InstanceOptions options;
         Placement64 placement;
         Box64 world_box;  // empty when the geometry has no active triangle
     };
@@ -81,7 +92,7 @@ class Oracle {
     void search_instance(uint instance, Search& search) const;
     void search_all(Search& search) const;
 
-    std::vector<Geometry64> geometries_;
+    std::vector<std::shared_ptr<const Geometry64>> geometries_;
     std::vector<PlacedGeometry> instances_;
     std::vector<uint> placed_;  // instances with an active triangle: what the items of bvh_ are
     Bvh64 bvh_;

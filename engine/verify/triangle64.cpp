@@ -82,7 +82,9 @@ std::optional<TriangleHit64> ShearedRay::intersect(const Triangle64& triangle) c
     const double u = weight_b / sum;
     // Weights of one sign: t lies between the corners' depths however thin the triangle is.
     const double t = (weight_a / sum * a.z + u * b.z + v * c.z) * shear_.z;
-    return TriangleHit64{t, u, v};
+    // The sum is minus the doubled area of the image, whose normal's depth is that of the triangle's: shearing keeps
+    // it.
+    return TriangleHit64{t, u, v, (sum < 0) == (shear_.z > 0)};
 }
 
 }  // namespace twinray

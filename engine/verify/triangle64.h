@@ -15,6 +15,7 @@ struct TriangleHit64 {
     double t = 0;  // in units of the ray's direction
     double u = 0;  // the point is (1-u-v) v0 + u v1 + v v2
     double v = 0;
+    bool along = false;  // the ray runs along (v1 - v0) x (v2 - v0), and so sees the triangle from behind
 };
 
 // True when the three points span an area, decided exactly for every float32 input (NaN and infinity: false).

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
-// A fixture that runs a test over every accelerator: the software one, and the hardware one through each way of
-// tracing.
+// A fixture that runs a test over every accelerator: the software one, the hardware one through each way of tracing,
+// and the referee.
 #pragma once
 
 #include <functional>
 
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
+#include "engine/verify/oracle_accel.h"
 #include "hwtlas/hw_tlas.h"
 #include "swtlas/sw_tlas.h"
 #include "tests/support/device.h"
 
 namespace twinray::test {
 
-enum class Kind { software, ray_query, pipeline };
+enum class Kind { software, ray_query, pipeline, oracle };
 
 class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> {
   protected:
@@ -37,8 +38,10 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
         VulkanTest::TearDown();
     }
 
-    bool is_ours() const { return GetParam() == Kind::software; }
+    // Not the driver: held to every rule to the letter.
+    bool is_ours() const { return GetParam() == Kind::software || GetParam() == Kind::oracle; }
     std::unique_ptr<AbstractAccel> make_accel() {
+        if (GetParam() == Kind::oracle) return std::make_unique<OracleAccel>(context());
         if (is_ours()) return std::make_unique<SwTlas>(context());
         return std::make_unique<HwTlas>(context());
     }
@@ -73,7 +76,13 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
 };
 
 inline std::string name_of_kind(const ::testing::TestParamInfo<Kind>& info) {
-    return info.param == Kind::software ? "Software" : info.param == Kind::ray_query ? "RayQuery" : "Pipeline";
+    switch (info.param) {
+        case Kind::software: return "Software";
+        case Kind::ray_query: return "RayQuery";
+        case Kind::pipeline: return "Pipeline";
+        case Kind::oracle: return "Oracle";
+    }
+    return "";
 }
 
 // The unit square at height z, facing up; rays go down onto it.
@@ -95,4 +104,11 @@ inline std::string error_of(const std::function<void()>& action) {
     INSTANTIATE_TEST_SUITE_P(Every, Fixture,                                                                      \
                              ::testing::Values(::twinray::test::Kind::software, ::twinray::test::Kind::ray_query, \
                                                ::twinray::test::Kind::pipeline),                                  \
+                             ::twinray::test::name_of_kind)
+
+// Of the contract, which the referee answers too.
+#define TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFEREE(Fixture)                                                         \
+    INSTANTIATE_TEST_SUITE_P(Every, Fixture,                                                                      \
+                             ::testing::Values(::twinray::test::Kind::software, ::twinray::test::Kind::ray_query, \
+                                               ::twinray::test::Kind::pipeline, ::twinray::test::Kind::oracle),   \
                              ::twinray::test::name_of_kind)

@@ -164,6 +164,49 @@ TEST(Oracle, ListsTheInstancesThatARayHitsBeforeALimit) {
     EXPECT_EQ(oracle.instances_hit(ray, 8.0), (std::vector<uint>{7, 8}));
 }
 
+TEST(Oracle, MasksLeaveInstancesOut) {
+    const Oracle oracle =
+        oracle_of({cube()}, {{0, {}, {.custom_index = 1, .mask = 0x0f}},
+                             {0, Transform::translation({0, 0, 4}), {.custom_index = 2, .mask = 0x30}},
+                             {0, Transform::translation({0, 0, -4}), {.mask = 0}}});
+    const Ray ray = make_ray({0.5f, 0.3f, -9}, {0, 0, 1});
+    EXPECT_EQ(oracle.closest_hit(ray).custom_index, 1u);
+    EXPECT_EQ(oracle.closest_hit(ray, {.mask = 0x18}).custom_index, 1u);
+    EXPECT_EQ(oracle.closest_hit(ray, {.mask = 0x10}).custom_index, 2u);
+    EXPECT_FALSE(oracle.closest_hit(ray, {.mask = 0xc0}).hit);
+    EXPECT_FALSE(oracle.any_hit(ray, {.mask = 0xc0}));
+}
+
+// What is left after culling is what a search over all triangles of the side that faces the ray finds.
+TEST(Oracle, CullingKeepsTheTrianglesWhoseNormalTellsSo) {
+    const std::uint32_t seed = 81;
+    const Soup soup = random_soup(300, 0.5f, seed);
+    const Oracle all = oracle_of(soup);
+    std::size_t hits = 0;
+    for (const Ray& ray : random_rays({vec3(-1), vec3(1)}, 200, seed)) {
+        Soup sides[2];  // shows the front, the back
+        std::vector<uint> kept[2];
+        for (uint i = 0; i < soup.triangles.size(); ++i) {
+            const uvec3 t = soup.triangles[i];
+            const glm::dvec3 a(soup.positions[t.x]), b(soup.positions[t.y]), c(soup.positions[t.z]);
+            const bool is_back = glm::dot(glm::cross(b - a, c - a), glm::dvec3(ray.direction)) > 0;
+            sides[is_back].positions = soup.positions;
+            sides[is_back].triangles.push_back(t);
+            kept[is_back].push_back(i);
+        }
+        for (const bool cull_back : {false, true}) {
+            const OracleHit expected = oracle_of(sides[!cull_back]).closest_hit_brute_force(ray);
+            const OracleHit found = all.closest_hit(ray, {.flags = cull_back ? CULL_BACK : CULL_FRONT});
+            ASSERT_EQ(found.hit, expected.hit) << "seed " << seed;
+            if (!found.hit) continue;
+            ASSERT_EQ(found.t, expected.t);
+            ASSERT_EQ(found.primitive, kept[!cull_back][expected.primitive]);
+            ++hits;
+        }
+    }
+    EXPECT_GT(hits, 50u);
+}
+
 TEST(Oracle, WrongInputIsNamed) {
     Soup soup = cube();
     soup.triangles[3].y = 8;

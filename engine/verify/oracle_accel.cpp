@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "engine/verify/oracle_accel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "engine/core/error.h"
+#include "engine/verify/parallel.h"
+#include "engine_copy_items.spv.h"
+
+namespace twinray {
+namespace {
+
+// Exact: the corners are float32.
+GeometryBox box_of(const Geometry& geometry, const Geometry64& triangles) {
+    Bounds box{vec3(triangles.bounds().corners[0]), vec3(triangles.bounds().corners[1])};
+    for (const Bounds& each : geometry.boxes) box.include(each);
+    return {box.lo, box.hi};
+}
+
+Hit hit_of(const OracleHit& found, const Ray& ray) {
+    const std::optional<float> t = found.hit ? reported_t(found.t, ray) : std::nullopt;
+    if (!t) return miss();
+    return {1, *t, found.primitive, found.custom_index, float(found.u), float(found.v), found.instance, 0};
+}
+
+// As accelerators see it, a transform that kernels have made unusable hides the instance.
+OracleInstance placed(const InstanceRecord& record, uint geometry) {
+    OracleInstance instance{geometry, transform_of(record), options_of(record)};
+    if (fault_of(instance.object_to_world).empty()) return instance;
+    instance.object_to_world = {};
+    instance.options.mask = 0;
+    return instance;
+}
+
+}  // namespace
+
+std::optional<float> reported_t(double t, const Ray& ray) {
+    const float least = std::nextafter(std::max(0.0f, ray.t_min), INFINITY);
+    const float most = std::nextafter(ray.t_max, 0.0f);
+    if (least > most || t > std::numeric_limits<float>::max()) return std::nullopt;
+    return std::clamp(float(t), least, most);
+}
+
+struct OracleAccel::OracleGeometry : BuiltGeometry {
+    std::shared_ptr<const Geometry64> geometry;
+};
+
+// What the last sync left: the instance records, once its commands have run, and what they may point at.
+struct OracleAccel::OracleScene : BuiltScene {
+    Buffer records;
+    std::map<std::uint64_t, std::shared_ptr<const Geometry64>> geometries;  // by the address of their block
+    uint count = 0;
+};
+
+// The closest hit is one of those that Query::any may find.
+class OracleAccel::OracleProgram final : public TraceProgram {
+  public:
+    explicit OracleProgram(const OracleAccel& accel) : TraceProgram(accel.id(), 0, "oracle"), accel_(accel) {}
+    void prepare(Query, Level) const override {}
+    void record(Commands& commands, const TraceArgs& args, Query, Level) const override {
+        accel_.record_trace(commands, args);
+    }
+
+  private:
+    const OracleAccel& accel_;
+};
+
+OracleAccel::OracleAccel(Context& context)
+    : AbstractAccel(context, "OracleAccel"),
+      copy_items_(context, {.name = "engine_copy_items", .spirv = engine_copy_items_spirv}) {}
+
+Capability OracleAccel::capability(Feature feature) const {
+    switch (feature) {
+        case Feature::boxes:
+        case Feature::filters: return {feature, Support::unsupported, "the host runs no GPU code"};
+        case Feature::kernel_queries:
+        case Feature::save_and_load: return {feature, Support::unsupported, "nothing is built on the device"};
+        case Feature::refit_vertices: return {feature, Support::emulated, "from the host, by building anew"};
+        case Feature::level_fast:
+        case Feature::level_watertight:
+        case Feature::level_refined:
+        case Feature::level_certified: return {feature, Support::native, "float64, whatever the level"};
+        default: return {feature, Support::native, ""};
+    }
+}
+
+std::unique_ptr<TraceProgram> OracleAccel::create_program(const TraceProgramCode* code, uint) const {
+    if (code)
+        fail(name(), ": program '", code->name, "': the host runs no GPU code; boxes and filters are unsupported");
+    return std::make_unique<OracleProgram>(*this);
+}
+
+template <class T>
+void OracleAccel::record_copy(Commands& commands, Ref<T> from, Ref<T> to, std::size_t count) const {
+    copy_items_.dispatch(commands, {{from.address}, {to.address}, static_cast<uint>(count), sizeof(T) / sizeof(uint)},
+                         count);
+}
+
+// What lies there after all that has been submitted to the queue.
+template <class T>
+Buffer OracleAccel::read(Ref<T> from, std::size_t count) const {
+    Buffer buffer(context(), {.name = "oracle input", .bytes = count * sizeof(T), .memory = Memory::readback});
+    Commands commands(context(), "oracle input");
+    record_copy(commands, from, buffer.ref<T>(), count);
+    context().wait(commands.submit());
+    return buffer;
+}
+
+std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> OracleAccel::build_geometries(
+    Commands& commands, std::span<const GeometryInput> inputs) {
+    if (inputs.empty()) return {};
+    std::vector<std::unique_ptr<BuiltGeometry>> built;
+    const auto pass = commands.pass("oracle geometry blocks");
+    for (const GeometryInput& input : inputs) {
+        auto made = std::make_unique<OracleGeometry>();
+        made->geometry = std::make_shared<const Geometry64>(
+            MeshView(input.geometry->name, input.geometry->positions, input.geometry->triangles));
+        commands.write(*input.block, box_of(*input.geometry, *made->geometry));
+        geometries_[input.block->address()] = made->geometry;
+        built.push_back(std::move(made));
+    }
+    return built;
+}
+
+// The host's vertices are the latest: those in device memory are refused.
+std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> OracleAccel::refit_geometries(
+    Commands& commands, std::span<const GeometryInput> inputs) {
+    return build_geometries(commands, inputs);
+}
+
+BuildBytes OracleAccel::scene_bytes(std::size_t count, std::size_t) const {
+    return {std::max<std::size_t>(count, 1) * sizeof(InstanceRecord), 0};
+}
+
+std::unique_ptr<AbstractAccel::BuiltScene> OracleAccel::build_scene(Commands& commands, const SceneInput& input,
+                                                                    const BuiltScene*) {
+    auto made = std::make_unique<OracleScene>();
+    made->count = input.count;
+    made->bytes = std::max(input.count, 1u) * sizeof(InstanceRecord);
+    made->records = Buffer(context(), {.name = "oracle records", .bytes = made->bytes, .memory = Memory::readback});
+    std::erase_if(geometries_, [](const auto& named) { return named.second.expired(); });
+    for (const auto& [block, geometry] : geometries_) made->geometries.emplace(block, geometry.lock());
+    refit_scene(commands, input, *made);
+    return made;
+}
+
+void OracleAccel::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
+    if (input.count)
+        record_copy(commands, input.records, static_cast<const OracleScene&>(current).records.ref<InstanceRecord>(),
+                    input.count);
+}
+
+// Of the scene as the last sync, which must be done, has left it.
+Oracle OracleAccel::oracle() const {
+    const auto& scene = static_cast<const OracleScene&>(built_scene());
+    std::vector<InstanceRecord> records(scene.count);
+    if (scene.count) std::memcpy(records.data(), scene.records.mapped(), scene.count * sizeof(InstanceRecord));
+    std::vector<std::shared_ptr<const Geometry64>> geometries;
+    std::map<std::uint64_t, uint> index_of;
+    for (const auto& [block, geometry] : scene.geometries) {
+        index_of.emplace(block, static_cast<uint>(geometries.size()));
+        geometries.push_back(geometry);
+    }
+    std::vector<OracleInstance> instances;
+    for (const InstanceRecord& record : records) {
+        const auto geometry = index_of.find(record.geometry);
+        if (geometry == index_of.end())
+            fail(name(), ": instance ", instances.size(), ": a kernel has written its geometry's address");
+        instances.push_back(placed(record, geometry->second));
+    }
+    return {std::move(geometries), instances};
+}
+
+// The rays go ahead of the commands of the trace: host memory needs none.
+std::vector<Hit> OracleAccel::trace_host(std::span<const Ray> rays, TraceDesc desc) {
+    sync();
+    if (rays.empty()) return {};
+    const Buffer input(context(), {.name = "rays", .bytes = rays.size_bytes(), .memory = Memory::upload});
+    const Buffer hits(context(), {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
+    std::memcpy(input.mapped(), rays.data(), rays.size_bytes());
+    desc.rays = input.ref<Ray>();
+    desc.hits = hits.ref<Hit>();
+    desc.count = rays.size();
+    Commands commands(context(), "oracle trace");
+    trace(commands, view(), desc);
+    commands.submit();
+    return download<Hit>(context(), hits, rays.size());
+}
+
+void OracleAccel::record_trace(Commands& commands, const TraceArgs& args) const {
+    std::size_t count = args.count;
+    if (args.indirect_count.address) {
+        const Buffer written = read(args.indirect_count, 1);
+        count = std::min<std::size_t>(count, *reinterpret_cast<const uint*>(written.mapped()));
+    }
+    if (count == 0) return;
+    const Buffer input = read(args.rays, count);
+    if (!world_bound_if_ready())
+        fail(name(), ": trace: the last sync is not submitted yet; the host answers while it records");
+    Buffer hits(context(), {.name = "oracle hits", .bytes = count * sizeof(Hit), .memory = Memory::upload});
+    const Ray* const rays = reinterpret_cast<const Ray*>(input.mapped());
+    Hit* const found = reinterpret_cast<Hit*>(hits.mapped());
+    const Oracle referee = oracle();
+    const OracleQuery query{static_cast<std::uint8_t>(args.mask), args.flags};
+    parallel_for(count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) found[i] = hit_of(referee.closest_hit(rays[i], query), rays[i]);
+    });
+    record_copy(commands, hits.ref<Hit>(), args.hits, count);
+    commands.keep(std::move(hits));
+}
+
+}  // namespace twinray

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#ifndef TWINRAY_SHARED_COPY_ITEMS_H
+#define TWINRAY_SHARED_COPY_ITEMS_H
+
+struct CopyItemsArgs
+{
+    Uints from;
+    Uints to;
+    uint count;
+    uint words_per_item;
+};
+#endif

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+// Saving a built SwTlas and loading it again.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+
+#include "engine/core/error.h"
+#include "engine/scene/bytes.h"
+#include "engine/scene/shapes.h"
+#include "engine/verify/aimed_rays.h"
+#include "swtlas/sw_tlas.h"
+#include "tests/scene/temp_dir.h"
+#include "tests/support/device.h"
+#include "test_program.trace_program.h"
+
+namespace twinray {
+namespace {
+
+using test::error_of;
+using test::expect_contains;
+using Clock = std::chrono::steady_clock;
+
+class SwSave : public test::VulkanTest {
+  protected:
+    void move_on_device(SwTlas& accel, AccelHandle handle, const std::vector<Transform>& transforms) {
+        const Buffer source(context(), {.name = "source", .bytes = transforms.size() * sizeof(Transform)});
+        Commands commands(context(), "source");
+        {
+            const auto pass = commands.pass("source");
+            commands.upload(source, std::span<const Transform>(transforms));
+        }
+        commands.submit();
+        accel.update_transforms(handle, source.ref<Transform>(), transforms.size());
+        accel.sync();
+    }
+
+    // Geometries of every kind, one that was erased, options, and transforms that only the device knows.
+    std::vector<AccelHandle> fill(SwTlas& accel) {
+        std::vector<AccelHandle> handles;
+        handles.push_back(accel.push(make_icosphere(3), Transform::translation({2, 0, 0}), {.custom_index = 7}));
+        const AccelHandle gone = accel.push(make_soup(10, 4));
+        Mesh bad = make_soup(300, 5);
+        bad.positions[40].x = NAN;
+        handles.push_back(accel.push(bad, std::vector<Transform>(2),
+                                     std::vector<InstanceOptions>{{.mask = 0x0f, .turned = true}, {.mask = 0xf0}}));
+        handles.push_back(accel.push(Mesh{}));
+        handles.push_back(accel.push(make_soup(1, 6), Transform{}, {.custom_index = 0xffffff, .no_culling = true}));
+        handles.push_back(accel.push(make_box(vec3(-0.2f), vec3(0.2f)), std::vector<Transform>(3)));
+        accel.erase(gone);
+        accel.sync();
+        move_on_device(
+            accel, handles.back(),
+            {Transform::translation({0, 2, 0}), Transform::scaling({1, 0, 1}), Transform::translation({0, -2, NAN})});
+        return handles;
+    }
+
+    std::vector<Hit> trace(SwTlas& accel, const std::vector<Ray>& rays, const TraceDesc& how) {
+        accel.sync();
+        const Buffer input(context(), {.name = "rays", .bytes = rays.size() * sizeof(Ray)}),
+            hits(context(), {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
+        Commands commands(context(), "trace");
+        {
+            const auto pass = commands.pass("rays");
+            commands.upload(input, std::span<const Ray>(rays));
+        }
+        TraceDesc desc = how;
+        desc.rays = input.ref<Ray>();
+        desc.hits = hits.ref<Hit>();
+        desc.count = rays.size();
+        accel.trace(commands, accel.view(), desc);
+        commands.submit();
+        return download<Hit>(context(), hits, rays.size());
+    }
+
+    // Which hit an any-hit query finds depends on the order of the top level, and refits keep an older one.
+    void expect_equal_hits(SwTlas& a, SwTlas& b, bool same_top_level) {
+        std::vector<Ray> rays = random_rays({vec3(-3), vec3(3)}, 20'000, 5);
+        std::size_t hit_count = 0;
+        for (const Query query : {Query::closest, Query::any})
+            for (const std::uint8_t mask : {std::uint8_t{0xff}, std::uint8_t{0x10}, std::uint8_t{0x02}})
+                for (const Cull cull : {Cull::none, Cull::back}) {
+                    const TraceDesc how{.query = query, .mask = mask, .cull = cull};
+                    std::vector<Hit> first = trace(a, rays, how), second = trace(b, rays, how);
+                    for (const Hit& hit : first) hit_count += hit.hit;
+                    if (query == Query::any && !same_top_level)
+                        for (std::vector<Hit>* hits : {&first, &second})
+                            for (Hit& hit : *hits) hit = {hit.hit, 0, 0, 0, 0, 0, 0, 0};
+                    EXPECT_EQ(std::memcmp(first.data(), second.data(), first.size() * sizeof(Hit)), 0);
+                }
+        EXPECT_GT(hit_count, 3'000u);
+    }
+
+    test::TempDir folder_;
+};
+
+TEST_F(SwSave, WhatIsLoadedTracesBitForBitAndIsNotBuiltAgain) {
+    SwTlas accel(context());
+    const std::vector<AccelHandle> handles = fill(accel);
+    accel.save(folder_ / "scene.swtlas");
+    SwTlas::Loaded loaded = SwTlas::load(context(), folder_ / "scene.swtlas");
+    ASSERT_EQ(loaded.handles.size(), handles.size());
+    loaded.accel->sync();
+    EXPECT_FALSE(loaded.accel->build_timings().empty());
+    for (const PassTiming& pass : loaded.accel->build_timings())
+        EXPECT_EQ(pass.name.find("triangles"), std::string::npos) << "built again";
+    expect_equal_hits(accel, *loaded.accel, true);
+    for (std::size_t i = 0; i < handles.size(); ++i) {
+        const std::vector<InstanceState> before = accel.get_instances(handles[i]),
+                                         after = loaded.accel->get_instances(loaded.handles[i]);
+        ASSERT_EQ(after.size(), before.size());
+        for (std::size_t k = 0; k < before.size(); ++k) {
+            EXPECT_EQ(std::memcmp(&after[k].transform, &before[k].transform, sizeof(Transform)), 0);
+            EXPECT_EQ(after[k].options, before[k].options);
+        }
+    }
+    EXPECT_EQ(loaded.accel->world_bound().lo, accel.world_bound().lo);
+    loaded.accel->save(folder_ / "again.swtlas");
+    EXPECT_EQ(read_file(folder_ / "again.swtlas"), read_file(folder_ / "scene.swtlas"));
+}
+
+TEST_F(SwSave, WhatIsLoadedTakesEditsLikeAnyOther) {
+    SwTlas accel(context());
+    std::vector<AccelHandle> handles = fill(accel);
+    accel.save(folder_ / "scene.swtlas");
+    SwTlas::Loaded loaded = SwTlas::load(context(), folder_ / "scene.swtlas");
+    const auto edit = [&](SwTlas& target, const std::vector<AccelHandle>& at) {
+        target.sync();
+        target.erase(at[3]);
+        target.update(at[2], make_soup(50, 9));
+        target.update_transform(at[0], Transform::translation({-1, 0, 1}));
+        target.push(make_soup(20, 8), Transform::scaling({2, 2, 2}), {.custom_index = 99});
+        target.sync();
+        move_on_device(target, at[4], std::vector<Transform>(3, Transform::translation({0, 0, 1})));
+        target.update_transform_at(at[1], 1, Transform::translation({0, 1, 0}));
+        target.sync();
+    };
+    edit(accel, handles);
+    edit(*loaded.accel, loaded.handles);
+    expect_equal_hits(accel, *loaded.accel, false);
+    EXPECT_EQ(loaded.accel->n_geometries(), accel.n_geometries());
+}
+
+TEST_F(SwSave, BoxesAndFilteredInstancesComeBackToo) {
+    const std::vector<vec4> spheres = {vec4(0, 0, 0, 0.5f), vec4(1, 0, 0, 0.25f), vec4(0, 1, 1, 0.75f)};
+    std::vector<Bounds> boxes;
+    for (const vec4& sphere : spheres) boxes.push_back({vec3(sphere) - sphere.w, vec3(sphere) + sphere.w});
+    const Buffer user(context(), {.name = "spheres", .bytes = sizeof(vec4) * spheres.size()});
+    Commands commands(context(), "spheres");
+    {
+        const auto pass = commands.pass("spheres");
+        commands.upload(user, std::span<const vec4>(spheres));
+    }
+    commands.submit();
+    SwTlas accel(context());
+    accel.push(BoxesView{"spheres", boxes});
+    accel.push(make_icosphere(3), Transform::translation({0, 0, -1}), {.filtered = true});
+    accel.sync();
+    accel.save(folder_ / "boxes.swtlas");
+    const SwTlas::Loaded loaded = SwTlas::load(context(), folder_ / "boxes.swtlas");
+    const std::vector<Ray> rays = random_rays({vec3(-2), vec3(2)}, 5'000, 9);
+    std::vector<Hit> hits[2];
+    for (AbstractAccel* each : {&accel, loaded.accel.get()}) {
+        const auto program = each->make_program(test_program);
+        hits[each != &accel] = each->closest_hits(rays, {.program = program.get(), .user_data = user.address()});
+    }
+    EXPECT_EQ(std::memcmp(hits[0].data(), hits[1].data(), rays.size() * sizeof(Hit)), 0);
+    EXPECT_GT(std::count_if(hits[0].begin(), hits[0].end(), [](const Hit& h) { return h.hit && !h.instance_index; }),
+              50);
+    EXPECT_GT(std::count_if(hits[0].begin(), hits[0].end(), [](const Hit& h) { return h.instance_index == 1; }), 50);
+}
+
+TEST_F(SwSave, AnEmptyAcceleratorIsSavedToo) {
+    SwTlas accel(context());
+    accel.sync();
+    accel.save(folder_ / "empty.swtlas");
+    EXPECT_EQ(SwTlas::load(context(), folder_ / "empty.swtlas").accel->n_geometries(), 0u);
+}
+
+TEST_F(SwSave, PendingEditsAreNotSaved) {
+    SwTlas accel(context());
+    fill(accel);
+    const AccelHandle handle = accel.push(make_soup(3, 1));
+    expect_contains(error_of([&] { accel.save(folder_ / "a"); }), "SwTlas: save: edits are pending; call sync() first");
+    accel.sync();
+    accel.update_transform(handle, Transform::scaling({2, 2, 2}));
+    expect_contains(error_of([&] { accel.save(folder_ / "a"); }), "edits are pending");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a"));
+}
+
+TEST_F(SwSave, DamagedAndMissingFilesAreNamedAndLeaveNothingBehind) {
+    SwTlas accel(context());
+    fill(accel);
+    const std::filesystem::path file = folder_ / "scene.swtlas";
+    accel.save(file);
+    context().wait_for_gpu();
+    const Bytes good = read_file(file);
+    const auto refusal_of = [&](const Bytes& bytes) {
+        folder_.write("bad.swtlas", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        return error_of([&] { SwTlas::load(context(), folder_ / "bad.swtlas"); });
+    };
+    Bytes flipped = good;
+    flipped[good.size() / 2] ^= 4;
+    expect_contains(refusal_of(flipped), "bad.swtlas': geometry ");
+    expect_contains(refusal_of(flipped), "damaged: the checksum is ");
+    expect_contains(refusal_of(Bytes(good.begin(), good.end() - 1000)), "truncated");
+    expect_contains(refusal_of({}), "not a saved SwTlas");
+    expect_contains(error_of([&] { SwTlas::load(context(), folder_ / "missing"); }), "missing': file not found");
+}
+
+// A disk that is full: the limit on the size of files stands for it.
+TEST_F(SwSave, AFailedSaveLeavesTheOldFileAndNoOther) {
+    SwTlas accel(context());
+    fill(accel);
+    const std::filesystem::path file = folder_ / "scene.swtlas";
+    folder_.write("scene.swtlas", "old");
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{20'000, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    const std::string what = error_of([&] { accel.save(file); });
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    expect_contains(what, "scene.swtlas': cannot be written: File too large");
+    EXPECT_EQ(read_file(file), (Bytes{'o', 'l', 'd'}));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file.parent_path()), {}), 1);
+
+    expect_contains(error_of([&] { accel.save(folder_ / "no such folder/a"); }), "No such file or directory");
+    std::filesystem::create_directory(folder_ / "folder");
+    folder_.write("folder/inside", "");
+    expect_contains(error_of([&] { accel.save(folder_ / "folder"); }), "cannot be written: Is a directory");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file.parent_path()), {}), 2);
+    accel.save(file);
+    EXPECT_EQ(SwTlas::load(context(), file).handles.size(), 5u);
+}
+
+TEST_F(SwSave, LoadingIsMeasuredAgainstBuilding) {
+    const auto ms_since = [](Clock::time_point start) {
+        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    };
+    SwTlas(context()).closest_hits(std::vector<Ray>(1));
+    auto start = Clock::now();
+    SwTlas{context()};
+    const double compile = ms_since(start);  // the kernels: part of what follows
+    for (const uint n : {100'000u, 1'000'000u}) {
+        const Mesh mesh = make_soup(n, 7, 0.01f);
+        start = Clock::now();
+        SwTlas accel(context());
+        accel.push(mesh);
+        context().wait(accel.sync());
+        const double build = ms_since(start) - compile;
+        start = Clock::now();
+        accel.save(folder_ / "large.swtlas");
+        const double save = ms_since(start);
+        start = Clock::now();
+        const SwTlas::Loaded loaded = SwTlas::load(context(), folder_ / "large.swtlas");
+        context().wait(loaded.accel->sync());
+        const double load = ms_since(start) - compile;
+        std::printf("%u triangles, %.1f MB: built in %.0f ms, saved in %.0f ms, loaded in %.0f ms, %.2f of building\n",
+                    n, static_cast<double>(std::filesystem::file_size(folder_ / "large.swtlas")) / 1e6, build, save,
+                    load, load / build);
+    }
+}
+
+}  // namespace
+}  // namespace twinray

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// The file format of a saved SwTlas, without a device: what is accepted, and what is refused and how.
+#include "swtlas/saved.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <functional>
+
+#include "engine/scene/bytes.h"
+#include "engine/scene/shapes.h"
+#include "swtlas/reference.h"
+#include "tests/scene/temp_dir.h"
+
+namespace twinray {
+namespace {
+
+using test::error_of;
+using test::expect_contains;
+
+SavedGeometry saved(const Mesh& mesh, std::size_t instances) {
+    const std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);
+    const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
+    const std::vector<uint> order = reference::sort(codes);
+    const reference::Hierarchy tree = reference::hierarchy(boxes, codes, order, true);
+    std::vector<InstanceRecord> records;
+    for (uint i = 0; i < instances; ++i)
+        records.push_back(make_instance_record(Transform::translation({static_cast<float>(i), 0, 0}),
+                                               {.custom_index = i, .mask = 0x55, .turned = i % 2 == 1}));
+    return {Geometry(mesh),
+            {tree.box.lo, tree.box.hi, {}, tree.root, static_cast<uint>(boxes.size())},
+            tree.nodes,
+            reference::encode_triangles(mesh.positions, mesh.triangles, order),
+            records};
+}
+
+SavedGeometry saved_boxes() {
+    std::vector<Bounds> boxes;
+    std::vector<LeafBox> leaf_boxes;
+    for (int i = 0; i < 7; ++i) {
+        boxes.push_back({vec3(static_cast<float>(i)), vec3(static_cast<float>(i) + 2)});
+        leaf_boxes.push_back({boxes.back().lo, boxes.back().hi});
+    }
+    const std::vector<uint> codes = reference::morton(leaf_boxes, reference::centroids(leaf_boxes));
+    const std::vector<uint> order = reference::sort(codes);
+    const reference::Hierarchy tree = reference::hierarchy(leaf_boxes, codes, order, true);
+    std::vector<BvhTriangle> leaves;
+    for (const uint i : order) leaves.push_back({boxes[i].lo, boxes[i].hi, vec3(0), i});
+    return {Geometry(BoxesView{"boxes", boxes}), {tree.box.lo, tree.box.hi, {}, tree.root, 7}, tree.nodes, leaves, {}};
+}
+
+std::vector<SavedGeometry> some_geometries() {
+    Mesh bad = make_soup(9, 3);
+    bad.name = "with a NaN";
+    bad.positions[4].y = NAN;
+    std::vector<SavedGeometry> geometries;
+    for (const Mesh& mesh : {make_soup(20, 1), Mesh{}, make_soup(1, 2), bad})
+        geometries.push_back(saved(mesh, geometries.size()));
+    geometries.push_back(saved_boxes());
+    return geometries;
+}
+
+Bytes file_of(const std::vector<SavedGeometry>& geometries) {
+    const EncodedSave encoded = encode_save(geometries);
+    Bytes file;
+    const auto append = [&](std::span<const std::byte> piece) {
+        for (const std::byte byte : piece) file.push_back(static_cast<std::uint8_t>(byte));
+    };
+    append(encoded.head);
+    for (const std::span<const std::byte> piece : encoded.body) append(piece);
+    return file;
+}
+
+// The file with an edited header and first entry, and right checksums for both.
+Bytes resealed(Bytes file, const std::function<void(SavedHeader&, SavedEntry&)>& edit) {
+    SavedHeader header;
+    SavedEntry entry;
+    std::memcpy(&header, file.data(), sizeof header);
+    std::memcpy(&entry, file.data() + sizeof header, sizeof entry);
+    const std::uint64_t entries_bytes = header.geometry_count * sizeof entry;
+    edit(header, entry);
+    std::memcpy(file.data() + sizeof header, &entry, sizeof entry);
+    const std::span<const std::byte> all = std::as_bytes(std::span(file));
+    header.entries_checksum = crc32_of(all.subspan(sizeof header, entries_bytes));
+    std::memcpy(file.data(), &header, sizeof header);
+    header.checksum = crc32_of(all.first(offsetof(SavedHeader, checksum)));
+    std::memcpy(file.data(), &header, sizeof header);
+    return file;
+}
+
+std::string refusal(const Bytes& file) {
+    return error_of([&] { decode_save(file, "a.file"); });
+}
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+TEST(SavedFile, ComesBackBitForBit) {
+    const std::vector<SavedGeometry> before = some_geometries();
+    const std::vector<SavedGeometry> after = decode_save(file_of(before), "a.file");
+    ASSERT_EQ(after.size(), before.size());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        EXPECT_EQ(after[i].mesh.name, before[i].mesh.name);
+        EXPECT_EQ(after[i].mesh.non_finite_triangles, i == 3 ? 1u : 0u);
+        EXPECT_TRUE(same_bytes(after[i].mesh.positions, before[i].mesh.positions));
+        EXPECT_TRUE(same_bytes(after[i].mesh.triangles, before[i].mesh.triangles));
+        EXPECT_TRUE(same_bytes(after[i].mesh.boxes, before[i].mesh.boxes));
+        EXPECT_EQ(after[i].mesh.kind, before[i].mesh.kind);
+        EXPECT_TRUE(same_bytes(after[i].nodes, before[i].nodes));
+        EXPECT_TRUE(same_bytes(after[i].leaves, before[i].leaves));
+        EXPECT_TRUE(same_bytes(after[i].records, before[i].records));
+        EXPECT_EQ(after[i].bvh.root, before[i].bvh.root);
+        EXPECT_EQ(after[i].bvh.lo, before[i].bvh.lo);
+    }
+    EXPECT_TRUE(decode_save(file_of({}), "a.file").empty());
+}
+
+TEST(SavedFile, EveryFlippedBitIsFound) {
+    const Bytes good = file_of(some_geometries());
+    for (std::size_t bit = 0; bit < good.size() * 8; ++bit) {
+        Bytes bad = good;
+        bad[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
+        const std::string what = refusal(bad);
+        ASSERT_EQ(what.rfind("'a.file': ", 0), 0u) << "bit " << bit << ": " << what;
+    }
+    std::printf("%zu flipped bits, each refused\n", good.size() * 8);
+}
+
+TEST(SavedFile, EveryOtherLengthIsFound) {
+    const Bytes good = file_of(some_geometries());
+    for (std::size_t bytes = 0; bytes < good.size(); ++bytes) {
+        const std::string what = refusal(Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(bytes)));
+        ASSERT_NE(what.find(bytes < 8 ? "not a saved SwTlas" : "truncated"), std::string::npos)
+            << bytes << ": " << what;
+    }
+    Bytes longer = good;
+    longer.push_back(0);
+    expect_contains(refusal(longer), text("it has ", longer.size(), " bytes, and its header says ", good.size()));
+}
+
+TEST(SavedFile, OtherFormatsAreNamed) {
+    const Bytes good = file_of(some_geometries());
+    const std::string words = "solid cube\nfacet normal 0 0 1\n outer loop\n and so on, more than a header has bytes\n";
+    expect_contains(refusal(Bytes(words.begin(), words.end())), "not a saved SwTlas");
+    const auto edited = [&](const std::function<void(SavedHeader&)>& edit) {
+        return refusal(resealed(good, [&](SavedHeader& header, SavedEntry&) { edit(header); }));
+    };
+    expect_contains(edited([](SavedHeader& h) { h.version = 9; }), "format version 9; this library reads version 1");
+    expect_contains(edited([](SavedHeader& h) { h.byte_order = 0x04030201; }), "another byte order");
+    expect_contains(edited([](SavedHeader& h) { h.node_bytes = 80; }), "its node has 80 bytes; this library's has 64");
+    expect_contains(edited([](SavedHeader& h) { h.leaf_bytes = 48; }), "its leaf has 48 bytes; this library's has 40");
+    expect_contains(edited([](SavedHeader& h) { h.header_bytes = 72; }), "its header has 72 bytes");
+    expect_contains(edited([](SavedHeader& h) { h.entry_bytes = 80; }), "its entry has 80 bytes");
+    expect_contains(edited([](SavedHeader& h) { h.record_bytes = 0; }), "its instance record has 0 bytes");
+}
+
+// Nothing is allocated for them: 2^60 of anything would end the test.
+TEST(SavedFile, CountsBeyondTheFileAreRefusedWhateverTheChecksumsSay) {
+    const Bytes good = file_of(some_geometries());
+    for (const std::uint64_t count : {std::uint64_t{1} << 60, ~std::uint64_t{0}, std::uint64_t{1'000'000}}) {
+        expect_contains(refusal(resealed(good, [&](SavedHeader& h, SavedEntry&) { h.geometry_count = count; })),
+                        text(count, " geometries of 96 bytes exceed"));
+        for (const auto member :
+             {&SavedEntry::name_bytes, &SavedEntry::positions, &SavedEntry::triangles, &SavedEntry::boxes,
+              &SavedEntry::nodes, &SavedEntry::leaves, &SavedEntry::instances}) {
+            const std::string what = refusal(resealed(good, [&](SavedHeader&, SavedEntry& e) { e.*member = count; }));
+            expect_contains(what, "geometry 0: ");
+            expect_contains(what, " exceed the ");
+        }
+    }
+}
+
+// Checksums are right here: such a file is made, not damaged.
+TEST(SavedFile, TreesThatCannotBeWalkedSafelyAreRefused) {
+    const auto edited = [](const std::function<void(SavedGeometry&)>& edit) {
+        std::vector<SavedGeometry> geometries = some_geometries();
+        edit(geometries.front());
+        return refusal(file_of(geometries));
+    };
+    expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child0 = 1000; }), "node 1000 of 19");
+    expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child1 = LEAF_BIT | 20; }), "leaf 20 of 20");
+    expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child0 = g.bvh.root; }), "reached twice");
+    expect_contains(edited([](SavedGeometry& g) { g.bvh.root = 19; }), "node 19 of 19");
+    expect_contains(edited([](SavedGeometry& g) { g.bvh.root = NOTHING; }), "unsound tree");
+    expect_contains(edited([](SavedGeometry& g) { g.nodes[g.bvh.root].lo0.x += 1; }), "not the union");
+    expect_contains(edited([](SavedGeometry& g) { g.leaves[5].primitive_index = 20; }), "primitive 20 of 20");
+    expect_contains(edited([](SavedGeometry& g) { g.leaves.pop_back(); }), "19 leaves for 20 primitives");
+    expect_contains(edited([](SavedGeometry& g) { g.nodes.pop_back(); }), "18 nodes, not 19");
+    expect_contains(edited([](SavedGeometry& g) { g.mesh.triangles[7].y = 60; }), "triangle 7 has vertex index 60");
+    expect_contains(edited([](SavedGeometry& g) { g.mesh.kind = 2; }), "unknown kind of geometry 2");
+    expect_contains(edited([](SavedGeometry& g) { g.mesh.kind = GEOMETRY_BOXES; }), "20 triangles of 60 positions");
+    expect_contains(edited([](SavedGeometry& g) { g = saved_boxes(), g.mesh.boxes[2].hi.x = INFINITY; }), "box 2 from");
+    expect_contains(edited([](SavedGeometry& g) { g = saved_boxes(), g.leaves[2].v1.x += 1; }), "not the union");
+}
+
+}  // namespace
+}  // namespace twinray
