@@ -21,12 +21,13 @@ class CompactedSizes {
     // Of the structure at `place`; nothing while the GPU has not reached `built`, at which the commands are done.
     std::optional<std::uint64_t> of(std::size_t place, SyncPoint built);
     // The same once it has been told.
-    std::uint64_t bytes_of(std::size_t place) const { return bytes_[place]; }
+    std::uint64_t bytes_of(std::size_t place) const;
 
   private:
     Context& context_;
-    VkQueryPool queries_ = VK_NULL_HANDLE;  // null: read already
-    std::vector<std::uint64_t> bytes_;
+    Buffer bytes_;  // a word each, copied by the GPU: some drivers let vkGetQueryPoolResults wait for the whole queue
+    VkQueryPool queries_ = VK_NULL_HANDLE;
+    bool is_told_ = false;
 };
 
 // Records a copy of `bytes` bytes, in the caller's pass.

@@ -13,8 +13,9 @@ cxx=$1 glslang=$2 folder=$(realpath "$3")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# The bridge's two halves and what stands between them are parts of other headers.
-mapfile -t headers < <(cd "$folder" && find engine swtlas hwtlas -name '*.h' ! -name 'bridge_*.h' | sort)
+# The bridge's two halves and what stands between them are parts of other headers; the adapter goes with the host's
+# own Vulkan Memory Allocator.
+mapfile -t headers < <(cd "$folder" && find engine swtlas hwtlas -name '*.h' ! -name 'bridge_*.h' ! -name vma_adapter.h | sort)
 printf '#include "%s"\n' "${headers[@]}" >"$work/all.cpp"
 "$cxx" -std=c++20 -I"$folder" -fsyntax-only -Wall -Wextra -Werror -MD -MF "$work/all.d" "$work/all.cpp"
 

@@ -14,7 +14,9 @@ SEES = {  # besides itself and shaders/shared
     "engine/analysis": BASE, "engine/collide": BASE, "engine/verify": BASE,
     "swtlas": ENGINE, "hwtlas": ENGINE,
     "cli": PRODUCT,
-    "samples": PRODUCT + ["shaders/path_tracer"], "bench": PRODUCT, "tests": PRODUCT + ["cli", "samples", "bench"],
+    "samples": PRODUCT + ["shaders/path_tracer", "shaders/embed_renderer"],
+    "bench": PRODUCT, "tests": PRODUCT + ["cli", "samples", "bench"],
+    "shaders/embed_renderer": ["shaders/path_tracer"],
     "shaders/twinray": ["shaders/hwtlas"],  # what users include
     "shaders": ["shaders/engine"],  # each other folder of shaders, but shaders/shared, which sees nothing else
 }

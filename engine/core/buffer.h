@@ -6,15 +6,7 @@
 #include "engine/core/context.h"
 #include "engine/core/shader_bridge.h"
 
-typedef struct VmaAllocation_T* VmaAllocation;
-
 namespace twinray {
-
-enum class Memory : std::uint8_t {
-    device,    // fastest for the GPU, not mapped
-    upload,    // host writes once, GPU reads
-    readback,  // GPU writes, host reads
-};
 
 struct BufferDesc {
     std::string name;         // required: shows in errors, debuggers and validation messages
@@ -34,11 +26,11 @@ class Buffer {
     Buffer(Buffer&& other) noexcept;
     Buffer& operator=(Buffer&& other) noexcept;
 
-    VkBuffer handle() const { return handle_; }
+    VkBuffer handle() const { return made_.buffer; }
     std::uint64_t address() const { return address_; }
     std::uint64_t bytes() const { return bytes_; }
     const std::string& name() const { return name_; }
-    std::byte* mapped() const { return mapped_; }  // null for Memory::device
+    std::byte* mapped() const { return static_cast<std::byte*>(made_.mapped); }  // for upload and readback
 
     // The typed address of what lies at an offset, as kernels take it.
     template <class T>
@@ -48,11 +40,9 @@ class Buffer {
 
   private:
     Context* context_ = nullptr;
-    VkBuffer handle_ = VK_NULL_HANDLE;
-    VmaAllocation allocation_ = nullptr;
+    AllocatedBuffer made_;
     std::uint64_t address_ = 0;
     std::uint64_t bytes_ = 0;
-    std::byte* mapped_ = nullptr;
     std::string name_;
 };
 

@@ -2,15 +2,10 @@
 #include "engine/core/context.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
-#include <memory>
 #include <sstream>
-#include <thread>
-#include <utility>
 
 #include "engine/core/error.h"
-#include "engine/core/vma.h"
 
 namespace twinray {
 namespace {
@@ -86,7 +81,7 @@ Context::Context(const ContextDesc& desc) : log_(desc.log) {
     try {
         create_instance(desc);
         create_device(desc);
-        create_own_objects();
+        create_own_objects({});
     } catch (...) {
         destroy_everything();
         throw;
@@ -94,8 +89,7 @@ Context::Context(const ContextDesc& desc) : log_(desc.log) {
 }
 
 Context::Context(const AdoptedDevice& adopted)
-    : facts_(adopted.enabled),
-      log_(adopted.log),
+    : log_(adopted.log),
       owns_device_(false),
       instance_(adopted.instance),
       physical_device_(adopted.physical_device),
@@ -104,18 +98,17 @@ Context::Context(const AdoptedDevice& adopted)
       queue_family_(adopted.queue_family),
       api_version_(adopted.api_version),
       lock_queue_(adopted.lock_queue),
-      unlock_queue_(adopted.unlock_queue) {
+      unlock_queue_(adopted.unlock_queue),
+      pipeline_cache_(adopted.pipeline_cache) {
     if (!adopted.instance || !adopted.physical_device || !adopted.device || !adopted.queue ||
         !adopted.get_instance_proc_addr)
         fail("adopted device: instance, physical_device, device, queue and get_instance_proc_addr must all be set");
-    facts_.has_compute_queue = true;
-    if (const auto missing = missing_for_software(facts_); !missing.empty())
-        fail("adopted device '", facts_.name, "': ", missing.front(), " must be enabled on the VkDevice");
     vk_.load_global(adopted.get_instance_proc_addr);
     vk_.load_instance(instance_);
     vk_.load_device(device_);
+    facts_ = check_adoption(adopted, vk_);
     try {
-        create_own_objects();
+        create_own_objects(adopted.allocator);
     } catch (...) {
         destroy_everything();
         throw;
@@ -125,16 +118,6 @@ Context::Context(const AdoptedDevice& adopted)
 Context::~Context() {
     finish();
     destroy_everything();
-}
-
-// What the GPU still uses must not be destroyed, even where waiting for it fails: reading the timeline needs no memory.
-void Context::finish() noexcept {
-    try {
-        wait(last_submission());
-    } catch (const Error& error) {
-        warn(error.what());
-        while (!is_lost_ && reached(timeline_) < submitted_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
 }
 
 void Context::create_instance(const ContextDesc& desc) {
@@ -178,17 +161,20 @@ void Context::create_device(const ContextDesc& desc) {
     info.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions().size());
     info.ppEnabledExtensionNames = requirements.extensions().data();
     vk_check(vk_.vkCreateDevice(physical_device_, &info, nullptr, &device_), "create a Vulkan device");
+    state_features(info, facts_);
     vk_.load_device(device_);
     vk_.vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
 }
 
-void Context::create_own_objects() {
+void Context::create_own_objects(const AllocatorHooks& allocator) {
     VkPhysicalDeviceProperties2 properties{};
     properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
     vk_.vkGetPhysicalDeviceProperties2(physical_device_, &properties);
     if (has_timestamps(vk_, physical_device_, queue_family_))
         timestamp_period_ns_ = properties.properties.limits.timestampPeriod;
-    allocator_ = create_allocator(vk_, instance_, physical_device_, device_, api_version_);
+    const bool has_hooks = allocator.allocate || allocator.free;
+    allocator_ = has_hooks ? std::make_unique<Allocator>(allocator)
+                           : std::make_unique<Allocator>(vk_, instance_, physical_device_, device_, api_version_);
 
     VkSemaphoreTypeCreateInfo type{};
     type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
@@ -199,17 +185,19 @@ void Context::create_own_objects() {
     vk_check(vk_.vkCreateSemaphore(device_, &semaphore, nullptr, &timeline_), "create the timeline semaphore");
     set_name(VK_OBJECT_TYPE_SEMAPHORE, reinterpret_cast<std::uint64_t>(timeline_), "twinray timeline");
 
+    if (pipeline_cache_) return;
     VkPipelineCacheCreateInfo cache{};
     cache.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
     vk_check(vk_.vkCreatePipelineCache(device_, &cache, nullptr, &pipeline_cache_), "create the pipeline cache");
+    owns_pipeline_cache_ = true;
 }
 
 void Context::destroy_everything() noexcept {
     for (Retired& retired : retired_) retired.destroy();
     retired_.clear();
-    if (pipeline_cache_) vk_.vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
+    if (owns_pipeline_cache_) vk_.vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
     if (timeline_) vk_.vkDestroySemaphore(device_, timeline_, nullptr);
-    if (allocator_) destroy_allocator(allocator_);
+    allocator_.reset();
     if (!owns_device_) return;
     if (device_) vk_.vkDestroyDevice(device_, nullptr);
     if (messenger_) vk_.vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
@@ -230,86 +218,6 @@ void Context::check(VkResult result, const char* action) const {
 
 void Context::check_alive() const {
     if (is_lost_) throw DeviceLost(text("device '", facts_.name, "': ", name_of(VK_ERROR_DEVICE_LOST)));
-}
-
-SyncPoint Context::submit(VkCommandBuffer commands) {
-    check_alive();
-    const std::uint64_t value = submitted_ + 1;
-    VkTimelineSemaphoreSubmitInfo timeline{};
-    timeline.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
-    timeline.signalSemaphoreValueCount = 1;
-    timeline.pSignalSemaphoreValues = &value;
-    VkSubmitInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-    info.pNext = &timeline;
-    info.commandBufferCount = 1;
-    info.pCommandBuffers = &commands;
-    info.signalSemaphoreCount = 1;
-    info.pSignalSemaphores = &timeline_;
-    if (lock_queue_) lock_queue_();
-    const VkResult result = vk_.vkQueueSubmit(queue_, 1, &info, VK_NULL_HANDLE);
-    if (unlock_queue_) unlock_queue_();
-    check(result, "submit to the queue");
-    submitted_ = value;
-    collect();
-    return {timeline_, value};
-}
-
-bool Context::is_reached(SyncPoint point) const {
-    check_alive();
-    std::uint64_t value = 0;
-    check(vk_.vkGetSemaphoreCounterValue(device_, point.semaphore, &value), "read the timeline");
-    return value >= point.value;
-}
-
-void Context::wait(SyncPoint point) const {
-    check_alive();
-    if (!point.semaphore || !point.value) return;
-    VkSemaphoreWaitInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
-    info.semaphoreCount = 1;
-    info.pSemaphores = &point.semaphore;
-    info.pValues = &point.value;
-    check(vk_.vkWaitSemaphores(device_, &info, UINT64_MAX), "wait for the GPU");
-}
-
-void Context::wait_for_gpu() {
-    wait(last_submission());
-    for (const SyncPoint point : announced_) wait(point);
-    announced_.clear();
-    collect();
-}
-
-void Context::announce(SyncPoint point) {
-    for (SyncPoint& known : announced_) {
-        if (known.semaphore != point.semaphore) continue;
-        known.value = std::max(known.value, point.value);
-        return;
-    }
-    announced_.push_back(point);
-}
-
-void Context::retire(std::function<void()> destroy) {
-    retired_.push_back({submitted_, announced_, std::move(destroy)});
-}
-
-std::uint64_t Context::reached(VkSemaphore semaphore) const noexcept {
-    std::uint64_t value = 0;
-    const VkResult result = vk_.vkGetSemaphoreCounterValue(device_, semaphore, &value);
-    is_lost_ |= result == VK_ERROR_DEVICE_LOST;
-    return result == VK_SUCCESS ? value : 0;
-}
-
-void Context::collect() noexcept {
-    if (retired_.empty() || !timeline_) return;
-    std::erase_if(announced_, [&](SyncPoint point) { return reached(point.semaphore) >= point.value; });
-    const std::uint64_t own = reached(timeline_);
-    const auto is_past = [&](SyncPoint point) { return reached(point.semaphore) >= point.value; };
-    while (!retired_.empty() && retired_.front().submitted <= own &&
-           std::ranges::all_of(retired_.front().announced, is_past)) {
-        retired_.front().destroy();
-        retired_.pop_front();
-    }
 }
 
 void Context::warn(std::string_view message) const {

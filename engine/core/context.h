@@ -4,14 +4,13 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "engine/core/device_facts.h"
-
-typedef struct VmaAllocator_T* VmaAllocator;
+#include "engine/core/adopted_device.h"
 
 namespace twinray {
 
@@ -20,8 +19,6 @@ struct SyncPoint {
     VkSemaphore semaphore = VK_NULL_HANDLE;
     std::uint64_t value = 0;
 };
-
-using Log = std::function<void(std::string_view)>;
 
 struct ContextDesc {
     std::string name = "twinray";
@@ -37,26 +34,12 @@ struct ContextDesc {
 // programs that take it from their user, as TWINRAY_DISABLE. Throws Error naming anything else in the list.
 void disable_features(ContextDesc& desc, const std::string& list);
 
-// A device that the host created and keeps. Its objects are used, never changed, waited idle on or destroyed.
-struct AdoptedDevice {
-    VkInstance instance = VK_NULL_HANDLE;
-    VkPhysicalDevice physical_device = VK_NULL_HANDLE;
-    VkDevice device = VK_NULL_HANDLE;
-    VkQueue queue = VK_NULL_HANDLE;  // must support compute
-    std::uint32_t queue_family = 0;
-    PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;  // required
-    std::uint32_t api_version = 0;                               // the version that the instance was created with
-    DeviceFacts enabled;               // what was *enabled* on the device: told by the host, never guessed
-    std::function<void()> lock_queue;  // held around each submission; may be empty
-    std::function<void()> unlock_queue;
-    Log log;
-};
-
 // One device with its memory allocator, one queue and one timeline. Not copyable; used by one thread at a time.
 class Context {
   public:
     // Throws Error with the reason why each device was rejected if none fits.
     explicit Context(const ContextDesc& desc = {});
+    // Throws Error where check_adoption does.
     explicit Context(const AdoptedDevice& adopted);
     ~Context();
     Context(const Context&) = delete;
@@ -65,7 +48,7 @@ class Context {
     const VulkanFunctions& vk() const { return vk_; }
     VkDevice device() const { return device_; }
     VkPhysicalDevice physical_device() const { return physical_device_; }
-    VmaAllocator allocator() const { return allocator_; }
+    Allocator& allocator() const { return *allocator_; }
     VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
     std::uint32_t queue_family() const { return queue_family_; }
     const DeviceFacts& facts() const { return facts_; }                 // what is enabled, not merely supported
@@ -76,6 +59,11 @@ class Context {
 
     // Submits one primary command buffer; returns the point at which it is done. Frees what has been passed.
     SyncPoint submit(VkCommandBuffer commands);
+    // The next submission, whichever call makes it (Commands::submit, AbstractAccel::sync, ...), runs its `stages` only
+    // once the GPU has reached `point`, on a timeline semaphore of the host, and sees what was written before it; one
+    // that fails leaves it to the one after. The host may submit the work that signals it later; until it is
+    // signalled, whoever waits for that submission, this context's end included, waits too.
+    void wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
     SyncPoint last_submission() const { return {timeline_, submitted_}; }
     bool is_reached(SyncPoint point) const;
     void wait(SyncPoint point) const;
@@ -106,11 +94,16 @@ class Context {
         std::vector<SyncPoint> announced;
         std::function<void()> destroy;
     };
+    struct Wait {
+        SyncPoint point;
+        VkPipelineStageFlags stages;
+    };
     static VkBool32 VKAPI_PTR on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                          const VkDebugUtilsMessengerCallbackDataEXT*, void*);
     void create_instance(const ContextDesc& desc);
     void create_device(const ContextDesc& desc);
-    void create_own_objects();
+    void create_own_objects(const AllocatorHooks& allocator);
+    VkResult submit_signalling(VkCommandBuffer commands, std::uint64_t value) const;
     void finish() noexcept;
     std::uint64_t reached(VkSemaphore semaphore) const noexcept;  // 0 when it cannot be read
     void collect() noexcept;
@@ -128,10 +121,12 @@ class Context {
     std::uint32_t queue_family_ = 0;
     std::uint32_t api_version_ = VK_API_VERSION_1_2;
     std::function<void()> lock_queue_, unlock_queue_;
-    VmaAllocator allocator_ = nullptr;
+    std::unique_ptr<Allocator> allocator_;
     VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
+    bool owns_pipeline_cache_ = false;
     VkSemaphore timeline_ = VK_NULL_HANDLE;
     std::uint64_t submitted_ = 0;
+    std::vector<Wait> awaited_;  // by the next submission
     float timestamp_period_ns_ = 0;
     std::deque<Retired> retired_;
     std::vector<SyncPoint> announced_;  // the latest by semaphore, not known to be reached

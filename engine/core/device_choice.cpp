@@ -35,22 +35,42 @@ auto rank(const DeviceFacts& device) {
 
 }  // namespace
 
+std::string Requirement::sentence() const {
+    const std::string needs = text(of == Of::everything ? "twinray" : "HwTlas", " needs ", what, " because ", why);
+    if (is_met) return needs + "; this device has it";
+    return needs + "; this device lacks it" + (of == Of::everything ? "" : ", SwTlas works without");
+}
+
+std::vector<Requirement> requirements_of(const DeviceFacts& device) {
+    using enum Requirement::Of;
+    return {
+        {"Vulkan 1.2", "its kernels and its timeline are written for it", everything,
+         device.api_version >= version_1_2},
+        {"a compute queue", "all that it does are compute shaders", everything, device.has_compute_queue},
+        {"timelineSemaphore", "it never waits for the GPU: a timeline tells what may be freed", everything,
+         device.timeline_semaphore},
+        {"bufferDeviceAddress", "its kernels reach all data by address, without descriptor sets", everything,
+         device.buffer_device_address},
+        {"scalarBlockLayout", "structs have the same bytes on the host and on the GPU", everything,
+         device.scalar_block_layout},
+        {"shaderInt64", "its kernels compute with addresses", everything, device.shader_int64},
+        {"VK_KHR_acceleration_structure", "the driver builds its structures", hardware, device.acceleration_structure},
+        {"VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline", "it traces through one of them", hardware,
+         device.ray_query || device.ray_tracing_pipeline},
+    };
+}
+
 std::vector<std::string> missing_for_software(const DeviceFacts& device) {
     std::vector<std::string> missing;
-    if (device.api_version < version_1_2) missing.push_back("Vulkan 1.2");
-    if (!device.has_compute_queue) missing.push_back("a compute queue");
-    if (!device.timeline_semaphore) missing.push_back("timelineSemaphore");
-    if (!device.buffer_device_address) missing.push_back("bufferDeviceAddress");
-    if (!device.scalar_block_layout) missing.push_back("scalarBlockLayout");
-    if (!device.shader_int64) missing.push_back("shaderInt64");
+    for (const Requirement& requirement : requirements_of(device))
+        if (!requirement.is_met && requirement.of == Requirement::Of::everything) missing.push_back(requirement.what);
     return missing;
 }
 
 std::vector<std::string> missing_for_hardware(const DeviceFacts& device) {
-    std::vector<std::string> missing = missing_for_software(device);
-    if (!device.acceleration_structure) missing.push_back("VK_KHR_acceleration_structure");
-    if (!device.ray_query && !device.ray_tracing_pipeline)
-        missing.push_back("VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline");
+    std::vector<std::string> missing;
+    for (const Requirement& requirement : requirements_of(device))
+        if (!requirement.is_met) missing.push_back(requirement.what);
     return missing;
 }
 

@@ -30,7 +30,22 @@ struct DeviceFacts {
     bool builds_in_input_order = false;
 };
 
-// What the software accelerator and everything else of twinray needs and this device lacks, one phrase each.
+// One thing that twinray uses of a device.
+struct Requirement {
+    enum class Of : std::uint8_t { everything, hardware };  // what does not work without: all, or HwTlas alone
+    const char* what;
+    const char* why;  // "because ..."
+    Of of;
+    bool is_met;
+
+    // "twinray needs timelineSemaphore because ...", then "; this device has it" or "; this device lacks it" and,
+    // where that is so, what works without.
+    std::string sentence() const;
+};
+// All of them.
+std::vector<Requirement> requirements_of(const DeviceFacts& device);
+
+// What the software accelerator and everything else of twinray needs and this device lacks: Requirement::what.
 std::vector<std::string> missing_for_software(const DeviceFacts& device);
 // The same for the hardware accelerator (includes what software needs).
 std::vector<std::string> missing_for_hardware(const DeviceFacts& device);

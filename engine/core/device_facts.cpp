@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/device_facts.h"
 
+#include <algorithm>
 #include <cstring>
+
+#include "engine/core/error.h"
 
 namespace twinray {
 namespace {
@@ -16,12 +19,6 @@ DeviceKind kind_of(VkPhysicalDeviceType type) {
     }
 }
 
-bool has_extension(const std::vector<VkExtensionProperties>& extensions, const char* name) {
-    for (const VkExtensionProperties& extension : extensions)
-        if (std::strcmp(extension.extensionName, name) == 0) return true;
-    return false;
-}
-
 std::vector<VkExtensionProperties> device_extensions(const VulkanFunctions& vk, VkPhysicalDevice device) {
     std::uint32_t count = 0;
     vk_check(vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "list device extensions");
@@ -31,33 +28,30 @@ std::vector<VkExtensionProperties> device_extensions(const VulkanFunctions& vk, 
     return extensions;
 }
 
+// As if a device were created with everything that this one has.
 void query_features(const VulkanFunctions& vk, VkPhysicalDevice device, DeviceFacts& facts) {
     const std::vector<VkExtensionProperties> extensions = device_extensions(vk, device);
-    VkPhysicalDeviceRayTracingPipelineFeaturesKHR pipeline{
-        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR, nullptr, {}, {}, {}, {}, {}};
-    VkPhysicalDeviceRayQueryFeaturesKHR query{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR, &pipeline, {}};
-    VkPhysicalDeviceAccelerationStructureFeaturesKHR structure{
-        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR, &query, {}, {}, {}, {}, {}};
-    VkPhysicalDeviceVulkan12Features vulkan12{};
-    vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-    vulkan12.pNext = &structure;
-    VkPhysicalDeviceFeatures2 features{};
-    features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-    features.pNext = &vulkan12;
-    vk.vkGetPhysicalDeviceFeatures2(device, &features);
+    std::vector<const char*> names;
+    for (const VkExtensionProperties& extension : extensions) names.push_back(extension.extensionName);
+    FeatureStructs structs;
+    VkDeviceCreateInfo everything{};
+    for (const FeatureBit& bit : feature_bits())
+        if (bit.own != structs.core.sType) provide_bit(everything, structs, bit);
+    structs.core.pNext = const_cast<void*>(everything.pNext);
+    everything.pNext = &structs.core;
+    vk.vkGetPhysicalDeviceFeatures2(device, &structs.core);
+    everything.enabledExtensionCount = static_cast<std::uint32_t>(names.size());
+    everything.ppEnabledExtensionNames = names.data();
+    state_features(everything, facts);
+}
 
-    facts.timeline_semaphore = vulkan12.timelineSemaphore;
-    facts.buffer_device_address = vulkan12.bufferDeviceAddress;
-    facts.scalar_block_layout = vulkan12.scalarBlockLayout;
-    facts.shader_int64 = features.features.shaderInt64;
-    facts.shader_float64 = features.features.shaderFloat64;
-    facts.acceleration_structure = structure.accelerationStructure &&
-                                   has_extension(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) &&
-                                   has_extension(extensions, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME);
-    facts.ray_query =
-        facts.acceleration_structure && query.rayQuery && has_extension(extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME);
-    facts.ray_tracing_pipeline = facts.acceleration_structure && pipeline.rayTracingPipeline &&
-                                 has_extension(extensions, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+VulkanFunctions instance_functions(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance) {
+    VulkanFunctions vk;
+    vk.load_global(get_instance_proc_addr);
+    vk.load_instance(instance);
+    if (!vk.vkGetPhysicalDeviceFeatures2)
+        fail("facts of a device: its VkInstance was created for less than Vulkan 1.1; twinray needs 1.2");
+    return vk;
 }
 
 }  // namespace
@@ -99,34 +93,40 @@ DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice devic
     return facts;
 }
 
-DeviceRequirements::DeviceRequirements(const DeviceFacts& facts) {
-    features_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-    features_.features.shaderInt64 = VK_TRUE;
-    vulkan12_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-    vulkan12_.timelineSemaphore = VK_TRUE;
-    vulkan12_.bufferDeviceAddress = VK_TRUE;
-    vulkan12_.scalarBlockLayout = VK_TRUE;
-    features_.pNext = &vulkan12_;
-    if (!facts.acceleration_structure) return;
+DeviceFacts query_device_facts(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+                               VkPhysicalDevice device) {
+    return query_device_facts(instance_functions(get_instance_proc_addr, instance), device);
+}
 
-    extensions_ = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
-    acceleration_structure_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
-    acceleration_structure_.accelerationStructure = VK_TRUE;
-    vulkan12_.pNext = &acceleration_structure_;
-    void** next = &acceleration_structure_.pNext;
-    if (facts.ray_query) {
-        extensions_.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
-        ray_query_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
-        ray_query_.rayQuery = VK_TRUE;
-        *next = &ray_query_;
-        next = &ray_query_.pNext;
-    }
-    if (facts.ray_tracing_pipeline) {
-        extensions_.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
-        ray_tracing_pipeline_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
-        ray_tracing_pipeline_.rayTracingPipeline = VK_TRUE;
-        *next = &ray_tracing_pipeline_;
-    }
+DeviceFacts enabled_facts(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+                          VkPhysicalDevice device, const VkDeviceCreateInfo& info) {
+    DeviceFacts facts = query_device_facts(get_instance_proc_addr, instance, device);
+    state_features(info, facts);
+    return facts;
+}
+
+DeviceRequirements::DeviceRequirements(const DeviceFacts& supported) : supported_(supported) {
+    if (supported.acceleration_structure)
+        extensions_ = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
+    if (supported.ray_query) extensions_.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
+    if (supported.ray_tracing_pipeline) extensions_.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+    switch_on(alone_, alone_structs_);
+}
+
+void DeviceRequirements::add_to(VkDeviceCreateInfo& info) {
+    const std::span host(info.ppEnabledExtensionNames, info.enabledExtensionCount);
+    all_extensions_.assign(host.begin(), host.end());
+    for (const char* ours : extensions_)
+        if (std::ranges::none_of(host, [&](const char* theirs) { return std::strcmp(ours, theirs) == 0; }))
+            all_extensions_.push_back(ours);
+    info.enabledExtensionCount = static_cast<std::uint32_t>(all_extensions_.size());
+    info.ppEnabledExtensionNames = all_extensions_.data();
+    switch_on(info, added_structs_);
+}
+
+void DeviceRequirements::switch_on(VkDeviceCreateInfo& info, FeatureStructs& structs) const {
+    for (const FeatureBit& bit : feature_bits())
+        if (bit.is_used && supported_.*bit.fact) provide_bit(info, structs, bit) = VK_TRUE;
 }
 
 }  // namespace twinray

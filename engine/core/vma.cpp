@@ -8,11 +8,12 @@
 #include <vk_mem_alloc.h>
 
 #include "engine/core/vma.h"
+#include "engine/core/vma_adapter.h"
 
 namespace twinray {
 
-VmaAllocator create_allocator(const VulkanFunctions& vk, VkInstance instance, VkPhysicalDevice physical_device,
-                              VkDevice device, std::uint32_t api_version) {
+VmaAllocator create_vma(const VulkanFunctions& vk, VkInstance instance, VkPhysicalDevice physical_device,
+                        VkDevice device, std::uint32_t api_version) {
     VmaVulkanFunctions functions{};
     functions.vkGetInstanceProcAddr = vk.vkGetInstanceProcAddr;
     functions.vkGetDeviceProcAddr = vk.vkGetDeviceProcAddr;
@@ -28,12 +29,8 @@ VmaAllocator create_allocator(const VulkanFunctions& vk, VkInstance instance, Vk
     return allocator;
 }
 
-void destroy_allocator(VmaAllocator allocator) { vmaDestroyAllocator(allocator); }
+void destroy_vma(VmaAllocator allocator) { vmaDestroyAllocator(allocator); }
 
-std::uint64_t allocated_bytes(VmaAllocator allocator) {
-    VmaTotalStatistics statistics;
-    vmaCalculateStatistics(allocator, &statistics);
-    return statistics.total.statistics.allocationBytes;
-}
+AllocatorHooks vma_hooks(VmaAllocator allocator) { return hooks_of(allocator); }
 
 }  // namespace twinray

@@ -46,6 +46,7 @@
     F(vkDestroyQueryPool)           \
     F(vkGetQueryPoolResults)        \
     F(vkCmdResetQueryPool)          \
+    F(vkCmdCopyQueryPoolResults)    \
     F(vkCmdWriteTimestamp)          \
     F(vkCreateShaderModule)         \
     F(vkDestroyShaderModule)        \

@@ -71,6 +71,7 @@ TEST_P(Sync, NeverWaitsWhileTheQueueIsBusy) {
     std::printf("100 syncs behind a busy queue: median %.0f, 95 %% below %.0f, longest %.0f microseconds\n", times[50],
                 times[95], times[99]);
     EXPECT_LT(times[50], 50'000);
+    EXPECT_LT(times[99], 1'000'000) << "one of them waited";
     EXPECT_EQ(accel().world_bound_if_ready(), std::nullopt);
     EXPECT_EQ(accel().sah_if_ready(), std::nullopt);
     EXPECT_EQ(closest(down(3.5f, 0.25f)).hit, 1u);

@@ -1,128 +1,37 @@
 // SPDX-License-Identifier: MIT
-// A host that made its own instance and device through volk: both live in one program, because the library defines no
-// vk* symbol of its own.
-#include <gtest/gtest.h>
-
+#include <atomic>
 #include <cmath>
-
-#define VK_NO_PROTOTYPES
-#include <volk.h>
+#include <mutex>
+#include <thread>
 
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "hwtlas/hw_tlas.h"
 #include "swtlas/sw_tlas.h"
-#include "tests/support/device.h"
+#include "tests/core/host_device.h"
 
 namespace twinray {
 namespace {
 
-// What a renderer would own: created with the requirements that twinray publishes.
-struct Host {
-    VkInstance instance = VK_NULL_HANDLE;
-    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
-    AdoptedDevice device;
-    int locked = 0, submissions = 0;
-
-    bool create();
-    bool create_instance();
-    ~Host() {
-        if (device.device) vkDestroyDevice(device.device, nullptr);
-        if (messenger) vkDestroyDebugUtilsMessengerEXT(instance, messenger, nullptr);
-        if (instance) vkDestroyInstance(instance, nullptr);
-    }
-};
-
-VkBool32 VKAPI_PTR fail_test(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
-                             const VkDebugUtilsMessengerCallbackDataEXT* data, void*) {
-    ADD_FAILURE() << data->pMessage;
-    return VK_FALSE;
-}
-
-// With the validation layer, synchronisation included: any message fails the test.
-bool Host::create_instance() {
-    VkApplicationInfo application{};
-    application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-    application.apiVersion = VK_API_VERSION_1_2;
-    const VkValidationFeatureEnableEXT synchronisation = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
-    VkValidationFeaturesEXT features{};
-    features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
-    features.enabledValidationFeatureCount = 1;
-    features.pEnabledValidationFeatures = &synchronisation;
-    const char* layer = "VK_LAYER_KHRONOS_validation";
-    const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
-    VkInstanceCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-    info.pNext = &features;
-    info.pApplicationInfo = &application;
-    info.enabledLayerCount = 1;
-    info.ppEnabledLayerNames = &layer;
-    info.enabledExtensionCount = 2;
-    info.ppEnabledExtensionNames = extensions;
-    if (vkCreateInstance(&info, nullptr, &instance) != VK_SUCCESS) return false;
-    volkLoadInstance(instance);
-    VkDebugUtilsMessengerCreateInfoEXT listen{};
-    listen.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-    listen.messageSeverity =
-        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-    listen.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-    listen.pfnUserCallback = fail_test;
-    return vkCreateDebugUtilsMessengerEXT(instance, &listen, nullptr, &messenger) == VK_SUCCESS;
-}
-
-bool Host::create() {
-    if (volkInitialize() != VK_SUCCESS) return false;
-    if (!create_instance()) return false;
-    uint32_t count = 1;
-    VkPhysicalDevice physical = VK_NULL_HANDLE;
-    vkEnumeratePhysicalDevices(instance, &count, &physical);
-    if (count == 0) return false;
-
-    VulkanFunctions functions;
-    functions.load_global(vkGetInstanceProcAddr);
-    functions.load_instance(instance);
-    device.enabled = query_device_facts(functions, physical);
-    const DeviceRequirements requirements(device.enabled);
-    const float priority = 1;
-    VkDeviceQueueCreateInfo queue{};
-    queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
-    queue.queueFamilyIndex = static_cast<uint32_t>(compute_queue_family(functions, physical));
-    queue.queueCount = 1;
-    queue.pQueuePriorities = &priority;
-    VkDeviceCreateInfo create{};
-    create.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-    create.pNext = requirements.features();
-    create.queueCreateInfoCount = 1;
-    create.pQueueCreateInfos = &queue;
-    create.enabledExtensionCount = static_cast<uint32_t>(requirements.extensions().size());
-    create.ppEnabledExtensionNames = requirements.extensions().data();
-    if (vkCreateDevice(physical, &create, nullptr, &device.device) != VK_SUCCESS) return false;
-    volkLoadDevice(device.device);
-    device.instance = instance;
-    device.physical_device = physical;
-    device.queue_family = queue.queueFamilyIndex;
-    vkGetDeviceQueue(device.device, device.queue_family, 0, &device.queue);
-    device.get_instance_proc_addr = vkGetInstanceProcAddr;
-    device.api_version = VK_API_VERSION_1_2;
-    device.lock_queue = [this] { ++locked; };
-    device.unlock_queue = [this] {
-        --locked;
-        ++submissions;
-    };
-    return true;
-}
-
-class AdoptedDeviceTest : public ::testing::Test {
+class AdoptedDeviceTest : public test::HostTest {
   protected:
-    void SetUp() override {
-        if (!test::make_context()) GTEST_SKIP() << "no usable device";
-        ASSERT_TRUE(host_.create());
+    // What the adoption is refused with.
+    std::string refusal() {
+        try {
+            const Context context(host_.device);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "adopted";
     }
-    Host host_;
+    void expect_refusal(const std::string& part) {
+        const std::string found = refusal();
+        EXPECT_NE(found.find(part), std::string::npos) << found;
+    }
 };
 
-TEST_F(AdoptedDeviceTest, BothAcceleratorsTraceOnIt) {
-    Context context(host_.device);
+void expect_both_trace(const AdoptedDevice& device) {
+    Context context(device);
     std::vector<std::unique_ptr<AbstractAccel>> accels;
     accels.push_back(std::make_unique<SwTlas>(context));
     if (missing_for_hardware(context.facts()).empty()) accels.push_back(std::make_unique<HwTlas>(context));
@@ -131,13 +40,101 @@ TEST_F(AdoptedDeviceTest, BothAcceleratorsTraceOnIt) {
         const Ray ray{vec3(0.25f, 0.5f, 5), 0, vec3(0, 0, -1), INFINITY};
         EXPECT_EQ(accel->closest_hits(std::span(&ray, 1)).front().t, 4.0f) << accel->name();
     }
-    EXPECT_EQ(host_.locked, 0) << "each lock of the queue is undone";
-    EXPECT_GT(host_.submissions, 0);
 }
 
-TEST_F(AdoptedDeviceTest, WhatIsNotEnabledIsRefused) {
+TEST_F(AdoptedDeviceTest, BothAcceleratorsTraceOnIt) {
+    ASSERT_TRUE(host_.create());
+    expect_both_trace(host_.device);
+    EXPECT_EQ(host_.locked, 0) << "each lock of the queue is undone";
+    EXPECT_GT(host_.submissions, 0);
+    EXPECT_FALSE(host_.device.enabled.shader_float64) << "nobody enabled it";
+}
+
+// The layer complains of a queue that two threads use at once.
+TEST_F(AdoptedDeviceTest, TheHostSubmitsFromAnotherThreadUnderTheSameLock) {
+    ASSERT_TRUE(host_.create());
+    std::mutex mutex;
+    host_.device.lock_queue = [&] { mutex.lock(); };
+    host_.device.unlock_queue = [&] { mutex.unlock(); };
+    std::atomic<bool> is_over = false;
+    std::thread other([&] {
+        while (!is_over) {
+            const std::lock_guard lock(mutex);
+            vkQueueSubmit(host_.device.queue, 0, nullptr, VK_NULL_HANDLE);
+        }
+    });
+    {
+        Context context(host_.device);
+        for (int i = 0; i < 500; ++i) Commands(context, "nothing").submit();
+    }
+    is_over = true;
+    other.join();
+}
+
+// Features and extensions of the host's own, some of them the same: the layer would complain of what is there twice.
+TEST_F(AdoptedDeviceTest, BothAcceleratorsTraceOnADeviceThatEnablesMore) {
+    VkPhysicalDeviceVulkan12Features own{};
+    own.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    own.hostQueryReset = VK_TRUE;
+    VkPhysicalDeviceFeatures old_style{};
+    const char* extensions[] = {VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
+    host_.extend = [&](VkDeviceCreateInfo& info) {
+        old_style.shaderFloat64 = host_.supported.shader_float64;
+        info.pNext = &own;
+        info.pEnabledFeatures = &old_style;
+        info.enabledExtensionCount = host_.supported.acceleration_structure ? 1 : 0;
+        info.ppEnabledExtensionNames = extensions;
+    };
+    ASSERT_TRUE(host_.create());
+    EXPECT_TRUE(own.hostQueryReset && own.timelineSemaphore);
+    EXPECT_EQ(host_.device.enabled.shader_float64, host_.supported.shader_float64);
+    expect_both_trace(host_.device);
+}
+
+TEST_F(AdoptedDeviceTest, SoftwareAloneTracesWithoutTheExtensions) {
+    host_.wants_hardware = false;
+    ASSERT_TRUE(host_.create());
+    EXPECT_FALSE(missing_for_hardware(host_.device.enabled).empty());
+    expect_both_trace(host_.device);
+}
+
+// A host that tells what the driver supports instead of what it enabled.
+TEST_F(AdoptedDeviceTest, AnExtensionThatWasNotEnabledIsNotBelieved) {
+    host_.wants_hardware = false;
+    ASSERT_TRUE(host_.create());
+    if (!host_.supported.acceleration_structure) GTEST_SKIP() << "no ray tracing extensions";
+    host_.device.enabled = host_.supported;
+    expect_refusal("VK_KHR_acceleration_structure is told to be enabled but the VkDevice was created without");
+}
+
+TEST_F(AdoptedDeviceTest, WhatIsNotEnabledIsRefusedInWords) {
+    ASSERT_TRUE(host_.create());
     host_.device.enabled.timeline_semaphore = false;
-    EXPECT_THROW(Context context(host_.device), Error);
+    expect_refusal("twinray needs timelineSemaphore because it never waits for the GPU");
+}
+
+TEST_F(AdoptedDeviceTest, AnInstanceOfAnOlderVulkanIsRefused) {
+    ASSERT_TRUE(host_.create());
+    host_.device.api_version = VK_API_VERSION_1_1;
+    expect_refusal("twinray needs Vulkan 1.2");
+}
+
+TEST_F(AdoptedDeviceTest, AQueueFamilyThatDoesNotExistIsRefused) {
+    ASSERT_TRUE(host_.create());
+    host_.device.queue_family = 99;
+    expect_refusal("queue family 99 does not exist");
+}
+
+// The layer would complain of a cache that is destroyed twice.
+TEST_F(AdoptedDeviceTest, PipelinesGoIntoTheHostsCache) {
+    ASSERT_TRUE(host_.create());
+    VkPipelineCacheCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
+    VkPipelineCache& cache = host_.device.pipeline_cache;
+    ASSERT_EQ(vkCreatePipelineCache(host_.device.device, &info, nullptr, &cache), VK_SUCCESS);
+    EXPECT_EQ(Context(host_.device).pipeline_cache(), cache);
+    expect_both_trace(host_.device);
+    vkDestroyPipelineCache(host_.device.device, cache, nullptr);
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What fails in Vulkan without an accelerator: see tests/accel/fault_test.cpp.
+#include <chrono>
+#include <thread>
+
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
 #include "engine/core/vma.h"
@@ -66,6 +69,20 @@ TEST_F(FaultsOfCore, CommandsWhoseSubmissionFailedAreSpent) {
         EXPECT_EQ(outcome_of([&] { static_cast<void>(commands.pass("late")); }), Outcome::error);
     }
     Commands(context(), "after").submit();
+}
+
+TEST_F(FaultsOfCore, AFailedSubmissionLeavesItsWaitToTheNext) {
+    test::Caller host(context());
+    context().wait_before_next_submission(host.begin().done);
+    Commands failing(context(), "failing"), waiting(context(), "waiting");
+    faults().inject({.function = "vkQueueSubmit"});
+    EXPECT_EQ(outcome_of([&] { failing.submit(); }), Outcome::error);
+    faults().heal();
+    const SyncPoint point = waiting.submit();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_FALSE(context().is_reached(point));
+    host.signal();
+    context().wait(point);
 }
 
 TEST_F(FaultsOfCore, RecordingForTheHost) {

@@ -62,6 +62,16 @@ class Caller {
         info.pSignalSemaphores = &timeline_;
         vk_check(vk_.vkQueueSubmit(queue_, 1, &info, VK_NULL_HANDLE), "submit");
     }
+    // From the host, instead of submitting what was begun last.
+    void signal() {
+        VkSemaphoreSignalInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO;
+        info.semaphore = timeline_;
+        info.value = value_;
+        const auto signal =
+            reinterpret_cast<PFN_vkSignalSemaphore>(vk_.vkGetDeviceProcAddr(context_.device(), "vkSignalSemaphore"));
+        vk_check(signal(context_.device(), &info), "signal");
+    }
 
   private:
     Context& context_;

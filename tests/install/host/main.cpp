@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A program that has Vulkan already: its own way to call it, its own device, its own memory allocator. twinray comes
 // in as a guest and must neither replace nor disturb any of them. Exits with 0 if all of it works.
-#include <cstring>
+#include <algorithm>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -18,6 +18,8 @@
 #include <vulkan/vulkan.h>
 #endif
 #include <vk_mem_alloc.h>
+
+#include "engine/core/vma_adapter.h"
 
 namespace {
 
@@ -46,12 +48,9 @@ twinray::AdoptedDevice create_device() {
     vkEnumeratePhysicalDevices(host.instance, &count, &host.physical_device);
     require(count == 1, "no device");
 
-    twinray::VulkanFunctions functions;
-    functions.load_global(vkGetInstanceProcAddr);
-    functions.load_instance(host.instance);
-    host.enabled = twinray::query_device_facts(functions, host.physical_device);
-    host.queue_family = static_cast<std::uint32_t>(twinray::compute_queue_family(functions, host.physical_device));
-    const twinray::DeviceRequirements requirements(host.enabled);
+    twinray::DeviceRequirements requirements(
+        twinray::query_device_facts(vkGetInstanceProcAddr, host.instance, host.physical_device));
+    for (const twinray::Requirement& requirement : requirements.in_words()) std::cout << requirement.sentence() << '\n';
     const float priority = 1;
     VkDeviceQueueCreateInfo queue{};
     queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
@@ -60,13 +59,16 @@ twinray::AdoptedDevice create_device() {
     queue.pQueuePriorities = &priority;
     VkDeviceCreateInfo device{};
     device.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-    device.pNext = requirements.features();
+    VkPhysicalDeviceVulkan12Features own{};
+    own.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    own.hostQueryReset = VK_TRUE;
+    device.pNext = &own;
     device.queueCreateInfoCount = 1;
     device.pQueueCreateInfos = &queue;
-    device.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions().size());
-    device.ppEnabledExtensionNames = requirements.extensions().data();
+    requirements.add_to(device);
     require(vkCreateDevice(host.physical_device, &device, nullptr, &host.device) == VK_SUCCESS, "no device");
     vkGetDeviceQueue(host.device, host.queue_family, 0, &host.queue);
+    host.enabled = twinray::enabled_facts(vkGetInstanceProcAddr, host.instance, host.physical_device, device);
     return host;
 }
 
@@ -75,6 +77,7 @@ VmaAllocator create_allocator(const twinray::AdoptedDevice& host) {
     functions.vkGetInstanceProcAddr = vkGetInstanceProcAddr;
     functions.vkGetDeviceProcAddr = vkGetDeviceProcAddr;
     VmaAllocatorCreateInfo info{};
+    info.flags = VMA_ALLOCATOR_CREATE_BUFFER_DEVICE_ADDRESS_BIT;
     info.instance = host.instance;
     info.physicalDevice = host.physical_device;
     info.device = host.device;
@@ -85,26 +88,10 @@ VmaAllocator create_allocator(const twinray::AdoptedDevice& host) {
     return allocator;
 }
 
-// A mapped buffer of the host's own, written and read while twinray's memory lives beside it.
-void use_allocator(VmaAllocator allocator) {
-    VkBufferCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-    info.size = 4096;
-    info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    VmaAllocationCreateInfo memory{};
-    memory.usage = VMA_MEMORY_USAGE_AUTO;
-    memory.flags = VMA_ALLOCATION_CREATE_MAPPED_BIT | VMA_ALLOCATION_CREATE_HOST_ACCESS_RANDOM_BIT;
-    VkBuffer buffer = VK_NULL_HANDLE;
-    VmaAllocation allocation = nullptr;
-    VmaAllocationInfo mapped{};
-    require(vmaCreateBuffer(allocator, &info, &memory, &buffer, &allocation, &mapped) == VK_SUCCESS,
-            "the host's buffer cannot be created");
-    std::memset(mapped.pMappedData, 42, info.size);
-    require(static_cast<const char*>(mapped.pMappedData)[info.size - 1] == 42, "the host's buffer is not mapped");
+std::uint32_t live_allocations(VmaAllocator allocator) {
     VmaTotalStatistics statistics;
     vmaCalculateStatistics(allocator, &statistics);
-    require(statistics.total.statistics.allocationCount == 1, "the host's allocator holds what is not the host's");
-    vmaDestroyBuffer(allocator, buffer, allocation);
+    return statistics.total.statistics.allocationCount;
 }
 
 void trace(twinray::AbstractAccel& accel) {
@@ -127,21 +114,34 @@ void require_that_errors_arrive(twinray::AdoptedDevice host) {
     require(false, "a device without timeline semaphores was accepted");
 }
 
+void trace_with_both(const twinray::AdoptedDevice& host) {
+    twinray::Context context(host);
+    twinray::SwTlas software(context);
+    trace(software);
+    if (!twinray::missing_for_hardware(context.facts()).empty()) return;
+    twinray::HwTlas hardware(context);
+    trace(hardware);
+}
+
+// All memory of twinray's comes from the host's allocator, and goes back to it.
+void trace_in_memory_of(VmaAllocator allocator, twinray::AdoptedDevice host) {
+    host.allocator = twinray::hooks_of(allocator);
+    std::uint32_t most = 0;
+    host.lock_queue = [&] { most = std::max(most, live_allocations(allocator)); };
+    trace_with_both(host);
+    std::cout << "up to " << most << " buffers in the host's allocator\n";
+    require(most > 10, "the host's allocator does not see twinray's buffers");
+    require(live_allocations(allocator) == 0, "twinray kept memory of the host's allocator");
+}
+
 }  // namespace
 
 int main() try {
     const twinray::AdoptedDevice host = create_device();
     VmaAllocator allocator = create_allocator(host);
-    {
-        twinray::Context context(host);
-        twinray::SwTlas software(context);
-        trace(software);
-        if (twinray::missing_for_hardware(context.facts()).empty()) {
-            twinray::HwTlas hardware(context);
-            trace(hardware);
-        }
-        use_allocator(allocator);
-    }
+    trace_with_both(host);
+    require(live_allocations(allocator) == 0, "the host's allocator holds what is not the host's");
+    trace_in_memory_of(allocator, host);
     require_that_errors_arrive(host);
     vmaDestroyAllocator(allocator);
     vkDestroyDevice(host.device, nullptr);

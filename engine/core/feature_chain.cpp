@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/feature_chain.h"
+
+#include <cstring>
+
+namespace twinray {
+namespace {
+
+constexpr VkStructureType core = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+constexpr VkStructureType vulkan12 = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+constexpr VkStructureType timeline = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES;
+constexpr VkStructureType address = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES;
+constexpr VkStructureType layout = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES;
+constexpr VkStructureType structure = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
+constexpr VkStructureType query = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
+constexpr VkStructureType pipeline = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
+
+constexpr FeatureBit alone(bool DeviceFacts::*fact, const char* name, VkStructureType type, std::size_t offset,
+                           bool is_used = true) {
+    return {fact, name, is_used, type, offset, type, offset};
+}
+
+constexpr FeatureBit bits[] = {
+    alone(&DeviceFacts::shader_int64, "shaderInt64", core, offsetof(VkPhysicalDeviceFeatures2, features.shaderInt64)),
+    alone(&DeviceFacts::shader_float64, "shaderFloat64", core,
+          offsetof(VkPhysicalDeviceFeatures2, features.shaderFloat64), false),
+    {&DeviceFacts::timeline_semaphore, "timelineSemaphore", true, timeline,
+     offsetof(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore), vulkan12,
+     offsetof(VkPhysicalDeviceVulkan12Features, timelineSemaphore)},
+    {&DeviceFacts::buffer_device_address, "bufferDeviceAddress", true, address,
+     offsetof(VkPhysicalDeviceBufferDeviceAddressFeatures, bufferDeviceAddress), vulkan12,
+     offsetof(VkPhysicalDeviceVulkan12Features, bufferDeviceAddress)},
+    {&DeviceFacts::scalar_block_layout, "scalarBlockLayout", true, layout,
+     offsetof(VkPhysicalDeviceScalarBlockLayoutFeatures, scalarBlockLayout), vulkan12,
+     offsetof(VkPhysicalDeviceVulkan12Features, scalarBlockLayout)},
+    alone(&DeviceFacts::acceleration_structure, "accelerationStructure", structure,
+          offsetof(VkPhysicalDeviceAccelerationStructureFeaturesKHR, accelerationStructure)),
+    alone(&DeviceFacts::ray_query, "rayQuery", query, offsetof(VkPhysicalDeviceRayQueryFeaturesKHR, rayQuery)),
+    alone(&DeviceFacts::ray_tracing_pipeline, "rayTracingPipeline", pipeline,
+          offsetof(VkPhysicalDeviceRayTracingPipelineFeaturesKHR, rayTracingPipeline)),
+};
+
+VkBool32* bit_at(VkBaseOutStructure* node, std::size_t offset) {
+    return reinterpret_cast<VkBool32*>(reinterpret_cast<std::byte*>(node) + offset);
+}
+
+bool has_extension(const VkDeviceCreateInfo& info, const char* name) {
+    for (const char* extension : std::span(info.ppEnabledExtensionNames, info.enabledExtensionCount))
+        if (std::strcmp(extension, name) == 0) return true;
+    return false;
+}
+
+}  // namespace
+
+FeatureStructs::FeatureStructs() {
+    core.sType = twinray::core;
+    timeline.sType = twinray::timeline;
+    address.sType = twinray::address;
+    layout.sType = twinray::layout;
+    structure.sType = twinray::structure;
+    query.sType = twinray::query;
+    pipeline.sType = twinray::pipeline;
+}
+
+VkBaseOutStructure* FeatureStructs::find(VkStructureType type) {
+    void* all[] = {&core, &timeline, &address, &layout, &structure, &query, &pipeline};
+    for (void* node : all)
+        if (auto* base = static_cast<VkBaseOutStructure*>(node); base->sType == type) return base;
+    return nullptr;
+}
+
+std::span<const FeatureBit> feature_bits() { return bits; }
+
+VkBool32* find_bit(VkBaseOutStructure* chain, const FeatureBit& bit) {
+    for (; chain; chain = chain->pNext) {
+        if (chain->sType == bit.own) return bit_at(chain, bit.own_offset);
+        if (chain->sType == bit.gathered) return bit_at(chain, bit.gathered_offset);
+    }
+    return nullptr;
+}
+
+VkBool32& provide_bit(VkDeviceCreateInfo& info, FeatureStructs& ours, const FeatureBit& bit) {
+    auto* chain = static_cast<VkBaseOutStructure*>(const_cast<void*>(info.pNext));
+    if (VkBool32* found = find_bit(chain, bit)) return *found;
+    VkBaseOutStructure* added = ours.find(bit.own);
+    if (bit.own == core && info.pEnabledFeatures) {
+        // Vulkan forbids the one beside the other.
+        ours.core.features = *info.pEnabledFeatures;
+        info.pEnabledFeatures = nullptr;
+    }
+    added->pNext = chain;
+    info.pNext = added;
+    return *find_bit(added, bit);
+}
+
+void state_features(const VkDeviceCreateInfo& info, DeviceFacts& facts) {
+    auto* chain = static_cast<VkBaseOutStructure*>(const_cast<void*>(info.pNext));
+    VkPhysicalDeviceFeatures2 old_style{};
+    old_style.sType = core;
+    if (info.pEnabledFeatures) old_style.features = *info.pEnabledFeatures;
+    for (const FeatureBit& bit : bits) {
+        const VkBool32* found = find_bit(chain, bit);
+        if (!found && bit.own == core)
+            found = bit_at(reinterpret_cast<VkBaseOutStructure*>(&old_style), bit.own_offset);
+        facts.*bit.fact = found && *found;
+    }
+    facts.acceleration_structure &= has_extension(info, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) &&
+                                    has_extension(info, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME);
+    facts.ray_query &= facts.acceleration_structure && has_extension(info, VK_KHR_RAY_QUERY_EXTENSION_NAME);
+    facts.ray_tracing_pipeline &=
+        facts.acceleration_structure && has_extension(info, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+}
+
+const char* feature_beyond(const DeviceFacts& told, const DeviceFacts& supported) {
+    for (const FeatureBit& bit : bits)
+        if (told.*bit.fact && !(supported.*bit.fact)) return bit.name;
+    return nullptr;
+}
+
+}  // namespace twinray

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// Context's timeline: submitting, waiting, and freeing what the GPU has passed.
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "engine/core/context.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+
+void Context::wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages) {
+    if (!point.semaphore || !point.value || !stages)
+        fail("wait before the next submission: the semaphore, its value and the stages must not be 0");
+    awaited_.push_back({point, stages});
+}
+
+VkResult Context::submit_signalling(VkCommandBuffer commands, std::uint64_t value) const {
+    std::vector<VkSemaphore> semaphores;
+    std::vector<std::uint64_t> values;
+    std::vector<VkPipelineStageFlags> stages;
+    for (const Wait& wait : awaited_) {
+        semaphores.push_back(wait.point.semaphore);
+        values.push_back(wait.point.value);
+        stages.push_back(wait.stages);
+    }
+    VkTimelineSemaphoreSubmitInfo timeline{};
+    timeline.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
+    timeline.waitSemaphoreValueCount = static_cast<std::uint32_t>(values.size());
+    timeline.pWaitSemaphoreValues = values.data();
+    timeline.signalSemaphoreValueCount = 1;
+    timeline.pSignalSemaphoreValues = &value;
+    VkSubmitInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    info.pNext = &timeline;
+    info.waitSemaphoreCount = static_cast<std::uint32_t>(semaphores.size());
+    info.pWaitSemaphores = semaphores.data();
+    info.pWaitDstStageMask = stages.data();
+    info.commandBufferCount = 1;
+    info.pCommandBuffers = &commands;
+    info.signalSemaphoreCount = 1;
+    info.pSignalSemaphores = &timeline_;
+    if (lock_queue_) lock_queue_();
+    const VkResult result = vk_.vkQueueSubmit(queue_, 1, &info, VK_NULL_HANDLE);
+    if (unlock_queue_) unlock_queue_();
+    return result;
+}
+
+SyncPoint Context::submit(VkCommandBuffer commands) {
+    check_alive();
+    check(submit_signalling(commands, submitted_ + 1), "submit to the queue");
+    ++submitted_;
+    awaited_.clear();
+    collect();
+    return last_submission();
+}
+
+bool Context::is_reached(SyncPoint point) const {
+    check_alive();
+    std::uint64_t value = 0;
+    check(vk_.vkGetSemaphoreCounterValue(device_, point.semaphore, &value), "read the timeline");
+    return value >= point.value;
+}
+
+void Context::wait(SyncPoint point) const {
+    check_alive();
+    if (!point.semaphore || !point.value) return;
+    VkSemaphoreWaitInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
+    info.semaphoreCount = 1;
+    info.pSemaphores = &point.semaphore;
+    info.pValues = &point.value;
+    check(vk_.vkWaitSemaphores(device_, &info, UINT64_MAX), "wait for the GPU");
+}
+
+void Context::wait_for_gpu() {
+    wait(last_submission());
+    for (const SyncPoint point : announced_) wait(point);
+    announced_.clear();
+    collect();
+}
+
+void Context::announce(SyncPoint point) {
+    for (SyncPoint& known : announced_) {
+        if (known.semaphore != point.semaphore) continue;
+        known.value = std::max(known.value, point.value);
+        return;
+    }
+    announced_.push_back(point);
+}
+
+void Context::retire(std::function<void()> destroy) {
+    retired_.push_back({submitted_, announced_, std::move(destroy)});
+}
+
+std::uint64_t Context::reached(VkSemaphore semaphore) const noexcept {
+    std::uint64_t value = 0;
+    const VkResult result = vk_.vkGetSemaphoreCounterValue(device_, semaphore, &value);
+    is_lost_ |= result == VK_ERROR_DEVICE_LOST;
+    return result == VK_SUCCESS ? value : 0;
+}
+
+void Context::collect() noexcept {
+    if (retired_.empty() || !timeline_) return;
+    std::erase_if(announced_, [&](SyncPoint point) { return reached(point.semaphore) >= point.value; });
+    const std::uint64_t own = reached(timeline_);
+    const auto is_past = [&](SyncPoint point) { return reached(point.semaphore) >= point.value; };
+    while (!retired_.empty() && retired_.front().submitted <= own &&
+           std::ranges::all_of(retired_.front().announced, is_past)) {
+        retired_.front().destroy();
+        retired_.pop_front();
+    }
+}
+
+// What the GPU still uses must not be destroyed, even where waiting for it fails: reading the timeline needs no memory.
+void Context::finish() noexcept {
+    try {
+        wait(last_submission());
+    } catch (const Error& error) {
+        warn(error.what());
+        while (!is_lost_ && reached(timeline_) < submitted_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+}
+
+}  // namespace twinray

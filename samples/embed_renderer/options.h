@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "engine/core/shader_bridge.h"
+
+namespace twinray::embed_renderer {
+
+struct Options {
+    std::filesystem::path scene, output, json;  // output: a folder, or empty
+    std::string accel;                          // "hw", "sw", "" = hw where the device has it
+    std::string device;
+    uint frames = 8;
+    uint width = 960, height = 540;
+    uint shadow_rays = 4;  // per pixel; 0: no shadows
+    uint ao_rays = 4;      // likewise
+    float sun_angle = 2;   // degrees across; 0: hard shadows
+    uint balls = 12;
+    int camera = -1;  // -1: frame the scene
+    bool no_ground = false;
+    bool validation = false;
+    bool quiet = false;
+};
+
+// The options, or the exit status of a run that is over: help was shown (0) or the usage is wrong (2).
+struct ParsedOptions {
+    Options options;
+    std::optional<int> exit_status;
+};
+ParsedOptions parse_options(int argc, char** argv);
+
+}  // namespace twinray::embed_renderer

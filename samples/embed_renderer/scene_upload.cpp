@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "samples/embed_renderer/scene_upload.h"
+
+#include "samples/path_tracer/surface_records.h"
+
+namespace twinray::embed_renderer {
+
+SceneBuffers::SceneBuffers(const Device& device, const Scene& scene) : device_(device) {
+    instances_ = add_instances(scene);
+    materials_ = add(path_tracer::material_records(scene));
+    images_ = add_images(scene);
+    device.run_once([&](VkCommandBuffer commands) {
+        for (const Upload& upload : uploads_) {
+            const VkBufferCopy all{0, 0, upload.staging.bytes()};
+            vkCmdCopyBuffer(commands, upload.staging.handle(), buffers_[upload.target].handle(), 1, &all);
+        }
+    });
+    uploads_.clear();
+}
+
+template <class T>
+Ref<T> SceneBuffers::add(const std::vector<T>& values) {
+    const std::uint64_t bytes = values.size() * sizeof(T);
+    buffers_.emplace_back(device_, bytes);
+    if (bytes == 0) return {};
+    HostBuffer staging(device_, bytes, HostBuffer::Access::uploaded);
+    std::memcpy(staging.mapped(), values.data(), bytes);
+    uploads_.push_back({std::move(staging), buffers_.size() - 1});
+    return buffers_.back().ref<T>();
+}
+
+Ref<SurfaceInstance> SceneBuffers::add_instances(const Scene& scene) {
+    std::vector<SurfaceInstance> meshes(scene.meshes.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        meshes[i].vertices = add(path_tracer::vertex_records(scene.meshes[i]));
+        meshes[i].triangles = add(path_tracer::triangle_records(scene.meshes[i]));
+    }
+    std::vector<SurfaceInstance> records;
+    for (const Instance& instance : scene.instances) {
+        SurfaceInstance record = path_tracer::instance_record(instance.transform);
+        record.vertices = meshes[instance.mesh].vertices;
+        record.triangles = meshes[instance.mesh].triangles;
+        records.push_back(record);
+        triangle_counts_.push_back(static_cast<uint>(scene.meshes[instance.mesh].triangles.size()));
+    }
+    return add(records);
+}
+
+Ref<TexelGrid> SceneBuffers::add_images(const Scene& scene) {
+    std::vector<TexelGrid> grids;
+    for (const Image& image : scene.images) {
+        std::vector<uint> texels(std::size_t{image.width} * image.height);
+        std::memcpy(texels.data(), image.rgba.data(), texels.size() * sizeof(uint));
+        grids.push_back({add(texels), image.width, image.height});
+    }
+    return add(grids);
+}
+
+}  // namespace twinray::embed_renderer

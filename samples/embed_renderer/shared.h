@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// The structs that the renderer shares with its shaders, for C++.
+#pragma once
+
+#include "engine/accel/instance_record.h"
+#include "samples/path_tracer/shared.h"
+
+namespace twinray::embed_renderer {
+using path_tracer::CameraRays;
+using path_tracer::SurfaceInstance;
+using path_tracer::SurfaceMaterial;
+using path_tracer::TexelGrid;
+
+#include "engine/core/bridge_begin.h"
+#include "shaders/embed_renderer/frame.h"
+#include "engine/core/bridge_end.h"
+}  // namespace twinray::embed_renderer

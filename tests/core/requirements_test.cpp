@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+// What is told before a device is created, and what a device's info says: without a device.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+
+#include "engine/core/device_facts.h"
+
+namespace twinray {
+namespace {
+
+DeviceFacts capable() {
+    DeviceFacts facts;
+    facts.api_version = VK_API_VERSION_1_2;
+    facts.has_compute_queue = true;
+    for (const FeatureBit& bit : feature_bits()) facts.*bit.fact = true;
+    return facts;
+}
+
+struct Info : VkDeviceCreateInfo {
+    Info() : VkDeviceCreateInfo{} { sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO; }
+
+    // How often each type of struct stands in the chain.
+    std::map<VkStructureType, int> types() const {
+        std::map<VkStructureType, int> counts;
+        for (auto* node = static_cast<const VkBaseInStructure*>(pNext); node; node = node->pNext) ++counts[node->sType];
+        return counts;
+    }
+    int count_of(const char* extension) const {
+        int count = 0;
+        for (std::uint32_t i = 0; i < enabledExtensionCount; ++i)
+            count += std::strcmp(ppEnabledExtensionNames[i], extension) == 0;
+        return count;
+    }
+};
+
+void expect_all_on(const Info& info) {
+    DeviceFacts facts = capable();
+    for (const FeatureBit& bit : feature_bits()) facts.*bit.fact = false;
+    state_features(info, facts);
+    for (const FeatureBit& bit : feature_bits()) EXPECT_EQ(facts.*bit.fact, bit.is_used) << bit.name;
+    for (const auto& [type, count] : info.types()) EXPECT_EQ(count, 1) << type;
+    EXPECT_EQ(info.count_of(VK_KHR_RAY_QUERY_EXTENSION_NAME), 1);
+}
+
+TEST(Requirements, AreToldInSentences) {
+    DeviceFacts facts = capable();
+    for (const Requirement& met : requirements_of(facts))
+        EXPECT_NE(met.sentence().find("; this device has it"), std::string::npos) << met.sentence();
+    facts.shader_int64 = facts.acceleration_structure = false;
+    std::vector<std::string> lacking;
+    for (const Requirement& requirement : requirements_of(facts))
+        if (!requirement.is_met) lacking.push_back(requirement.sentence());
+    ASSERT_EQ(lacking.size(), 2u);
+    EXPECT_EQ(lacking[0], "twinray needs shaderInt64 because its kernels compute with addresses; this device lacks it");
+    EXPECT_EQ(lacking[1],
+              "HwTlas needs VK_KHR_acceleration_structure because the driver builds its structures; this device lacks "
+              "it, SwTlas works without");
+}
+
+TEST(Requirements, OfADeviceWithNothingElse) {
+    const DeviceRequirements requirements(capable());
+    Info info;
+    info.pNext = requirements.features();
+    info.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions().size());
+    info.ppEnabledExtensionNames = requirements.extensions().data();
+    expect_all_on(info);
+}
+
+TEST(Requirements, JoinAnEmptyInfo) {
+    DeviceRequirements requirements(capable());
+    Info info;
+    requirements.add_to(info);
+    expect_all_on(info);
+}
+
+TEST(Requirements, GoIntoTheHostsStructs) {
+    VkPhysicalDeviceAccelerationStructureFeaturesKHR structure{};
+    structure.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
+    VkPhysicalDeviceVulkan12Features vulkan12{};
+    vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    vulkan12.pNext = &structure;
+    vulkan12.descriptorIndexing = VK_TRUE;
+    VkPhysicalDeviceFeatures2 core{};
+    core.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    core.pNext = &vulkan12;
+    core.features.geometryShader = VK_TRUE;
+    const char* names[] = {VK_KHR_RAY_QUERY_EXTENSION_NAME, "VK_KHR_swapchain"};
+    Info info;
+    info.pNext = &core;
+    info.enabledExtensionCount = 2;
+    info.ppEnabledExtensionNames = names;
+    DeviceRequirements requirements(capable());
+    requirements.add_to(info);
+    expect_all_on(info);
+    EXPECT_TRUE(vulkan12.timelineSemaphore && vulkan12.bufferDeviceAddress && vulkan12.scalarBlockLayout);
+    EXPECT_TRUE(structure.accelerationStructure && core.features.shaderInt64);
+    EXPECT_TRUE(vulkan12.descriptorIndexing && core.features.geometryShader) << "the host's own";
+    EXPECT_EQ(info.count_of("VK_KHR_swapchain"), 1);
+    EXPECT_EQ(info.types().count(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES), 0u);
+}
+
+// Vulkan forbids these structs beside that of version 1.2, so the others must come as structs of one feature, too.
+TEST(Requirements, StandBesideStructsOfSingleFeatures) {
+    VkPhysicalDeviceTimelineSemaphoreFeatures timeline{};
+    timeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES;
+    Info info;
+    info.pNext = &timeline;
+    DeviceRequirements requirements(capable());
+    requirements.add_to(info);
+    expect_all_on(info);
+    EXPECT_TRUE(timeline.timelineSemaphore);
+    EXPECT_EQ(info.types().count(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES), 0u);
+}
+
+TEST(Requirements, TakeOverFeaturesInTheOldPlace) {
+    VkPhysicalDeviceFeatures features{};
+    features.wideLines = VK_TRUE;
+    Info info;
+    info.pEnabledFeatures = &features;
+    DeviceRequirements requirements(capable());
+    requirements.add_to(info);
+    expect_all_on(info);
+    EXPECT_EQ(info.pEnabledFeatures, nullptr) << "forbidden beside VkPhysicalDeviceFeatures2";
+    FeatureBit wide_lines = feature_bits().front();
+    wide_lines.own_offset = offsetof(VkPhysicalDeviceFeatures2, features.wideLines);
+    EXPECT_TRUE(*find_bit(static_cast<VkBaseOutStructure*>(const_cast<void*>(info.pNext)), wide_lines));
+}
+
+TEST(Requirements, LeaveOutWhatTheDeviceLacks) {
+    DeviceFacts facts = capable();
+    facts.ray_tracing_pipeline = false;
+    DeviceRequirements requirements(facts);
+    Info info;
+    requirements.add_to(info);
+    EXPECT_EQ(info.count_of(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME), 0);
+    EXPECT_EQ(info.types().count(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR), 0u);
+}
+
+TEST(EnabledFeatures, AFeatureWithoutItsExtensionIsNotEnabled) {
+    const DeviceRequirements requirements(capable());
+    Info info;
+    info.pNext = requirements.features();
+    DeviceFacts facts = capable();
+    state_features(info, facts);
+    EXPECT_FALSE(facts.acceleration_structure || facts.ray_query || facts.ray_tracing_pipeline);
+    EXPECT_TRUE(facts.timeline_semaphore);
+}
+
+TEST(EnabledFeatures, TheOldPlaceCounts) {
+    VkPhysicalDeviceFeatures features{};
+    features.shaderInt64 = VK_TRUE;
+    Info info;
+    info.pEnabledFeatures = &features;
+    DeviceFacts facts;
+    state_features(info, facts);
+    EXPECT_TRUE(facts.shader_int64);
+    EXPECT_FALSE(facts.timeline_semaphore);
+}
+
+TEST(EnabledFeatures, ThatTheDeviceLacksAreNamed) {
+    DeviceFacts supported = capable();
+    EXPECT_EQ(feature_beyond(capable(), supported), nullptr);
+    supported.ray_query = false;
+    EXPECT_STREQ(feature_beyond(capable(), supported), "rayQuery");
+    EXPECT_EQ(feature_beyond(supported, capable()), nullptr);
+}
+
+}  // namespace
+}  // namespace twinray

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Submissions of twinray's that wait on a timeline of the host.
+#include <chrono>
+#include <cstring>
+#include <thread>
+#include <utility>
+
+#include "engine/core/commands.h"
+#include "engine/core/error.h"
+#include "tests/core/host_device.h"
+#include "tests/support/device.h"
+
+namespace twinray {
+namespace {
+
+class WaitTest : public test::HostTest {
+  protected:
+    void SetUp() override {
+        test::HostTest::SetUp();
+        if (IsSkipped()) return;
+        ASSERT_TRUE(host_.create());
+        context_ = std::make_unique<Context>(host_.device);
+        VkSemaphoreTypeCreateInfo type{};
+        type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
+        type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+        VkSemaphoreCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+        info.pNext = &type;
+        ASSERT_EQ(vkCreateSemaphore(host_.device.device, &info, nullptr, &timeline_), VK_SUCCESS);
+    }
+    void TearDown() override {
+        context_.reset();
+        if (timeline_) vkDestroySemaphore(host_.device.device, timeline_, nullptr);
+    }
+    void signal(std::uint64_t value) {
+        VkSemaphoreSignalInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO;
+        info.semaphore = timeline_;
+        info.value = value;
+        EXPECT_EQ(vkSignalSemaphore(host_.device.device, &info), VK_SUCCESS);
+    }
+    Context& context() { return *context_; }
+    std::unique_ptr<Context> context_;
+    VkSemaphore timeline_ = VK_NULL_HANDLE;
+};
+
+TEST_F(WaitTest, ASubmissionSeesWhatTheHostWroteBeforeItsSignal) {
+    const Buffer from(context(), {.name = "from", .bytes = 4, .memory = Memory::upload});
+    const Buffer to(context(), {.name = "to", .bytes = 4, .memory = Memory::readback});
+    const auto write = [&](uint value) { std::memcpy(from.mapped(), &value, 4); };
+    write(1);
+    Commands commands(context(), "copy");
+    {
+        const auto pass = commands.pass("copy");
+        commands.copy(from, 0, to, 0, 4);
+    }
+    context().wait_before_next_submission({timeline_, 7}, VK_PIPELINE_STAGE_TRANSFER_BIT);
+    const SyncPoint copied = commands.submit();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_FALSE(context().is_reached(copied));
+    write(2);
+    signal(7);
+    context().wait(copied);
+    uint value = 0;
+    std::memcpy(&value, to.mapped(), 4);
+    EXPECT_EQ(value, 2u);
+    // The next one does not wait again: the layer would complain of a semaphore that is gone.
+    vkDestroySemaphore(host_.device.device, std::exchange(timeline_, VK_NULL_HANDLE), nullptr);
+    context().wait(Commands(context(), "does not wait").submit());
+}
+
+TEST_F(WaitTest, AWaitForNothingIsRefused) {
+    EXPECT_THROW(context().wait_before_next_submission({}), Error);
+    EXPECT_THROW(context().wait_before_next_submission({timeline_, 0}), Error);
+    EXPECT_THROW(context().wait_before_next_submission({timeline_, 1}, 0), Error);
+    context().wait(Commands(context(), "does not wait").submit());
+}
+
+}  // namespace
+}  // namespace twinray
