@@ -118,7 +118,7 @@ void report(const BenchOptions& options, const Context& context, const std::vect
         const double sound =
             static_cast<double>(classes[Class::agree] + classes[Class::tie]) / static_cast<double>(classes.total());
         const double ratio = median(candidate.trace_ms) / median(candidates.front().trace_ms);
-        const double bytes = static_cast<double>(candidate.accel->structure_bytes()) / triangles;
+        const double bytes = static_cast<double>(candidate.accel->memory_usage().structures()) / triangles;
         std::cout << "  " << std::left << std::setw(16) << candidate.name << std::right << std::fixed
                   << std::setprecision(1) << std::setw(11) << build_ms << std::setprecision(3) << std::setw(9) << mrays
                   << std::setprecision(2) << std::setw(15) << ratio << 'x' << std::setprecision(1) << std::setw(16)

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "engine/accel/batches.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -33,6 +34,17 @@ VkAccelerationStructureBuildGeometryInfoKHR build_info(const StructureBuild& bui
     info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
     info.geometryCount = 1;
     info.pGeometries = &build.geometry;
+    return info;
+}
+
+VkAccelerationStructureBuildGeometryInfoKHR build_info(const StructureWork& work, std::uint64_t scratch) {
+    VkAccelerationStructureBuildGeometryInfoKHR info = build_info(work.build);
+    info.dstAccelerationStructure = work.target->handle();
+    info.scratchData.deviceAddress = scratch;
+    if (work.mode == BuildMode::update) {
+        info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
+        info.srcAccelerationStructure = work.target->handle();
+    }
     return info;
 }
 
@@ -90,52 +102,47 @@ AccelerationStructure& AccelerationStructure::operator=(AccelerationStructure&& 
     return *this;
 }
 
-std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
-                                                    std::span<const StructureBuild> builds) {
-    if (builds.empty()) return {};
-    Context& context = commands.context();
-    const std::uint64_t alignment = scratch_alignment(context);
-    std::vector<AccelerationStructure> structures;
-    std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
-    std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;
-    std::uint64_t scratch_bytes = 0;
-    for (const StructureBuild& build : builds) {
-        const VkAccelerationStructureBuildSizesInfoKHR sizes = sizes_of(context, build);
-        structures.emplace_back(context, build.name, build.type, sizes.accelerationStructureSize);
-        VkAccelerationStructureBuildGeometryInfoKHR info = build_info(build);
-        info.dstAccelerationStructure = structures.back().handle();
-        info.scratchData.deviceAddress = scratch_bytes;  // an offset until the buffer exists
-        infos.push_back(info);
-        // lavapipe applies firstVertex twice; offsets live in the addresses instead, and all of these stay 0.
-        ranges.push_back({build.primitive_count, 0, 0, 0});
-        scratch_bytes += round_up(sizes.buildScratchSize, alignment);
-    }
-    Buffer scratch = make_build_scratch(context, pass_name + " scratch", scratch_bytes);
-    std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> range_of;
-    for (std::size_t i = 0; i < infos.size(); ++i) {
-        infos[i].scratchData.deviceAddress += scratch.address();
-        range_of.push_back(&ranges[i]);
-    }
-    const auto pass = commands.pass(pass_name);
-    context.vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), static_cast<std::uint32_t>(infos.size()),
-                                                     infos.data(), range_of.data());
-    commands.keep(std::move(scratch));
-    return structures;
+std::uint64_t scratch_bytes_of(const Context& context, const StructureWork& work) {
+    const VkAccelerationStructureBuildSizesInfoKHR sizes = sizes_of(context, work.build);
+    return round_up(work.mode == BuildMode::update ? sizes.updateScratchSize : sizes.buildScratchSize,
+                    scratch_alignment(context));
 }
 
-void rebuild_structure(Commands& commands, const std::string& pass_name, const StructureBuild& build, BuildMode mode,
-                       const AccelerationStructure& target, const Buffer& scratch) {
-    VkAccelerationStructureBuildGeometryInfoKHR info = build_info(build);
-    info.dstAccelerationStructure = target.handle();
-    info.scratchData.deviceAddress = scratch.address();
-    if (mode == BuildMode::update) {
-        info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
-        info.srcAccelerationStructure = target.handle();
+void record_builds(Commands& commands, const std::string& pass_name, std::span<const StructureWork> work,
+                   std::uint64_t scratch) {
+    std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
+    // lavapipe applies firstVertex twice; offsets live in the addresses instead, and all of these stay 0.
+    std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;
+    for (const StructureWork& one : work) {
+        infos.push_back(build_info(one, scratch));
+        ranges.push_back({one.build.primitive_count, 0, 0, 0});
+        scratch += scratch_bytes_of(commands.context(), one);
     }
-    const VkAccelerationStructureBuildRangeInfoKHR range{build.primitive_count, 0, 0, 0};
-    const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
+    std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> range_of;
+    for (const VkAccelerationStructureBuildRangeInfoKHR& range : ranges) range_of.push_back(&range);
     const auto pass = commands.pass(pass_name);
-    commands.context().vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), 1, &info, &ranges);
+    commands.context().vk().vkCmdBuildAccelerationStructuresKHR(
+        commands.handle(), static_cast<std::uint32_t>(infos.size()), infos.data(), range_of.data());
+}
+
+std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
+                                                    std::span<const StructureBuild> builds, std::uint64_t budget) {
+    Context& context = commands.context();
+    std::vector<AccelerationStructure> structures;
+    structures.reserve(builds.size());
+    std::vector<StructureWork> work;
+    std::vector<std::uint64_t> scratch_bytes;
+    for (const StructureBuild& build : builds) {
+        structures.emplace_back(context, build.name, build.type, sizes_of(context, build).accelerationStructureSize);
+        work.push_back({build, BuildMode::build, &structures.back()});
+        scratch_bytes.push_back(scratch_bytes_of(context, work.back()));
+    }
+    const Batches batches = cut_into_batches(scratch_bytes, budget);
+    Buffer scratch = make_build_scratch(context, pass_name + " scratch", batches.scratch_bytes);
+    for (const Batches::Run& run : batches.runs)
+        record_builds(commands, pass_name, std::span(work).subspan(run.first, run.count), scratch.address());
+    commands.keep(std::move(scratch));
+    return structures;
 }
 
 }  // namespace twinray

@@ -43,14 +43,24 @@ struct StructureBuild {
 VkAccelerationStructureBuildSizesInfoKHR sizes_of(const Context& context, const StructureBuild& build);
 Buffer make_build_scratch(Context& context, const std::string& name, std::uint64_t bytes);
 
-// Creates the structures and builds all of them with one command in one pass called `pass_name`. What the geometries
-// point to must have been written by earlier passes. The scratch memory is kept by `commands`.
-std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
-                                                    std::span<const StructureBuild> builds);
-
 enum class BuildMode : std::uint8_t { build, update };
-// Builds one structure into memory that exists. update: its last build allowed that, and had as many primitives.
-void rebuild_structure(Commands& commands, const std::string& pass_name, const StructureBuild& build, BuildMode mode,
-                       const AccelerationStructure& target, const Buffer& scratch);
+
+// A build into memory that exists. update: the last build allowed that, and had as many primitives.
+struct StructureWork {
+    StructureBuild build;
+    BuildMode mode;
+    const AccelerationStructure* target;
+};
+
+// Scratch memory that it takes, a multiple of the alignment that the device wants.
+std::uint64_t scratch_bytes_of(const Context& context, const StructureWork& work);
+// Builds all of them with one command in one pass called `pass_name`, their scratch one after the other from the
+// address `scratch` on, as make_build_scratch() aligns it. What the geometries point to must have been written by
+// earlier passes.
+void record_builds(Commands& commands, const std::string& pass_name, std::span<const StructureWork> work,
+                   std::uint64_t scratch);
+// Creates the structures and builds them, in batches whose scratch fits into `budget`.
+std::vector<AccelerationStructure> build_structures(Commands& commands, const std::string& pass_name,
+                                                    std::span<const StructureBuild> builds, std::uint64_t budget);
 
 }  // namespace twinray

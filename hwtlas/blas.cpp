@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "engine/accel/batches.h"
 #include "hwtlas/blas_input.h"
 
 namespace twinray {
@@ -26,19 +27,6 @@ StructureBuild build_of(const std::string& name, VkGeometryTypeKHR type, std::si
     return build;
 }
 
-StructureBuild build_of_triangles(const std::string& name, const Buffer& positions, const Buffer& triangles) {
-    StructureBuild build = build_of(name, VK_GEOMETRY_TYPE_TRIANGLES_KHR, triangles.bytes() / sizeof(uvec3));
-    VkAccelerationStructureGeometryTrianglesDataKHR& data = build.geometry.geometry.triangles;
-    data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
-    data.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
-    data.vertexData.deviceAddress = positions.address();
-    data.vertexStride = sizeof(vec3);
-    data.maxVertex = static_cast<std::uint32_t>(positions.bytes() / sizeof(vec3)) - 1;
-    data.indexType = VK_INDEX_TYPE_UINT32;
-    data.indexData.deviceAddress = triangles.address();
-    return build;
-}
-
 StructureBuild build_of_boxes(const std::string& name, const Buffer& boxes) {
     static_assert(sizeof(Bounds) == sizeof(VkAabbPositionsKHR));
     StructureBuild build = build_of(name, VK_GEOMETRY_TYPE_AABBS_KHR, boxes.bytes() / sizeof(Bounds));
@@ -54,15 +42,32 @@ StructureBuild record_input(Commands& commands, const std::string& name, const B
     Buffer positions = upload(commands, "blas positions " + name, input.positions);
     Buffer triangles = upload(commands, "blas triangles " + name, input.triangles);
     Buffer boxes = upload(commands, "blas boxes " + name, input.boxes);
-    const StructureBuild build =
-        input.boxes.empty() ? build_of_triangles(name, positions, triangles) : build_of_boxes(name, boxes);
+    StructureBuild build =
+        input.boxes.empty() ? triangle_build(name, positions.address(), input.positions.size(), input.triangles.size())
+                            : build_of_boxes(name, boxes);
+    if (input.boxes.empty()) build.geometry.geometry.triangles.indexData.deviceAddress = triangles.address();
+    build.flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
     for (Buffer* buffer : {&positions, &triangles, &boxes}) commands.keep(std::move(*buffer));
     return build;
 }
 
 }  // namespace
 
-std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries, bool reorder) {
+StructureBuild triangle_build(const std::string& name, std::uint64_t positions, std::size_t vertex_count,
+                              std::size_t triangle_count) {
+    StructureBuild build = build_of(name, VK_GEOMETRY_TYPE_TRIANGLES_KHR, triangle_count);
+    VkAccelerationStructureGeometryTrianglesDataKHR& data = build.geometry.geometry.triangles;
+    data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
+    data.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
+    data.vertexData.deviceAddress = positions;
+    data.vertexStride = sizeof(vec3);
+    data.maxVertex = static_cast<std::uint32_t>(vertex_count) - 1;
+    data.indexType = VK_INDEX_TYPE_UINT32;
+    return build;
+}
+
+std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries,
+                               const BlasOptions& options) {
     std::vector<Blas> blases(geometries.size());
     std::vector<StructureBuild> builds;
     std::vector<std::size_t> built;  // builds[i] belongs to blases[built[i]]
@@ -71,18 +76,47 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
         const auto pass = commands.pass("hwtlas_upload_meshes");
         for (std::size_t i = 0; i < geometries.size(); ++i) {
             const Geometry& geometry = *geometries[i];
-            const BlasInput input = blas_input(geometry, reorder);
+            const BlasInput input = blas_input(geometry, options.reorder);
             blases[i].kind = geometry.kind;
             if (input.is_empty()) continue;
             blases[i].bounds = input.bounds;
-            blases[i].original = upload(commands, "blas order " + geometry.name, input.original);
+            if (options.reorder)
+                blases[i].original =
+                    std::make_shared<const Buffer>(upload(commands, "blas order " + geometry.name, input.original));
             builds.push_back(record_input(commands, geometry.name, input));
             built.push_back(i);
         }
     }
-    std::vector<AccelerationStructure> structures = build_structures(commands, "hwtlas_build_blases", builds);
-    for (std::size_t i = 0; i < built.size(); ++i) blases[built[i]].structure = std::move(structures[i]);
+    std::vector<AccelerationStructure> structures =
+        build_structures(commands, "hwtlas_build_blases", builds, options.scratch_budget);
+    if (built.empty()) return blases;
+    std::vector<const AccelerationStructure*> asked;
+    for (std::size_t i = 0; i < built.size(); ++i) {
+        blases[built[i]].structure = std::move(structures[i]);
+        asked.push_back(&blases[built[i]].structure);
+    }
+    const auto compacted = std::make_shared<CompactedSizes>(commands, asked);
+    for (std::size_t i = 0; i < built.size(); ++i) {
+        blases[built[i]].compacted = compacted;
+        blases[built[i]].place = i;
+    }
     return blases;
+}
+
+BuildBytes blas_bytes(const Context& context, std::span<const GeometrySize> meshes, const BlasOptions& options) {
+    BuildBytes bytes;
+    std::vector<std::uint64_t> scratch;
+    for (const GeometrySize& mesh : meshes) {
+        if (mesh.triangles == 0) continue;
+        StructureBuild build = triangle_build("", 0, mesh.vertices, mesh.triangles);
+        build.flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
+        bytes.structures +=
+            sizes_of(context, build).accelerationStructureSize + (options.reorder ? mesh.triangles * sizeof(uint) : 0);
+        bytes.scratch += mesh.vertices * sizeof(vec3) + mesh.triangles * sizeof(uvec3);
+        scratch.push_back(scratch_bytes_of(context, {build, BuildMode::build, nullptr}));
+    }
+    bytes.scratch += cut_into_batches(scratch, options.scratch_budget).scratch_bytes;
+    return bytes;
 }
 
 }  // namespace twinray

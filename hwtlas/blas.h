@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
+
 #include "engine/accel/geometry.h"
-#include "hwtlas/acceleration_structure.h"
+#include "engine/accel/memory.h"
+#include "hwtlas/compaction.h"
 #include "hwtlas/hw_scene.h"
 
 namespace twinray {
@@ -11,15 +14,31 @@ namespace twinray {
 // of address 0 as inactive.
 struct Blas {
     uint kind = GEOMETRY_TRIANGLES;
-    Bounds bounds;  // of the active primitives
+    Bounds bounds;  // of the active primitives; empty where the device alone knows them
     AccelerationStructure structure;
-    Buffer original;  // see BlasInput, uint each; empty when the order was kept
+    std::shared_ptr<const Buffer> original;     // see BlasInput, uint each; null when the order was kept
+    bool can_update = false;                    // made by MovingBlasBuilder; others may be compacted, once
+    std::shared_ptr<CompactedSizes> compacted;  // null: cannot be compacted
+    std::size_t place = 0;                      // in `compacted`
 
-    HwGeometry block() const { return {bounds.lo, bounds.hi, structure.address(), original.ref<uint>(), kind, 0}; }
-    std::uint64_t bytes() const { return structure.bytes() + original.bytes(); }
+    Uints table() const { return original ? original->ref<uint>() : Uints{}; }
+    HwGeometry block() const { return {bounds.lo, bounds.hi, structure.address(), table(), kind, 0}; }
+    std::uint64_t bytes() const { return structure.bytes() + (original ? original->bytes() : 0); }
 };
 
-// Records upload and build of all of them, in order. reorder: presort for drivers that build in input order.
-std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries, bool reorder);
+// A build of triangles from a device address; with uint indices unless the caller changes that.
+StructureBuild triangle_build(const std::string& name, std::uint64_t positions, std::size_t vertex_count,
+                              std::size_t triangle_count);
+
+struct BlasOptions {
+    bool reorder;                  // presort for drivers that build in input order
+    std::uint64_t scratch_budget;  // bytes
+};
+// Records upload and build of all of them, in order.
+std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries,
+                               const BlasOptions& options);
+
+// What that takes for meshes of triangles.
+BuildBytes blas_bytes(const Context& context, std::span<const GeometrySize> meshes, const BlasOptions& options);
 
 }  // namespace twinray

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
-// HwScene for C++.
+// What kernels of the hardware accelerator share with C++.
 #pragma once
 
+#include "engine/accel/surface_area.h"
 #include "engine/accel/world_bound.h"
 
 namespace twinray {
 using std::uint64_t;
 #include "engine/core/bridge_begin.h"
 #include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_build.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(HwGeometry) == 48 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 16);
+static_assert(sizeof(HwGeometry) == 48 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 16 &&
+              sizeof(HwTrianglesArgs) == 80 && sizeof(HwGatherArgs) == 48);
 }  // namespace twinray

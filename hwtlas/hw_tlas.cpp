@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "hwtlas/hw_tlas.h"
 
+#include <cstddef>
 #include <utility>
 
 #include "engine/core/error.h"
-#include "hwtlas/blas.h"
+#include "hwtlas/moving_blas.h"
 #include "hwtlas_trace_query.spv.h"
 #include "hwtlas/pipeline_program.h"
 
@@ -22,12 +23,18 @@ Context& checked(Context& context) {
 struct HwTlas::HwBuiltGeometry : BuiltGeometry {
     explicit HwBuiltGeometry(Blas&& built) : blas(std::move(built)) { bytes = blas.bytes(); }
     Blas blas;
+
+    static const Blas* of(const BuiltGeometry* built) {
+        return built ? &static_cast<const HwBuiltGeometry*>(built)->blas : nullptr;
+    }
 };
 
 struct HwTlas::HwTopLevel : BuiltScene {
     explicit HwTopLevel(Tlas&& built) : tlas(std::move(built)) {
         address = tlas.scene.address();
         bytes = tlas.bytes();
+        scratch_bytes = tlas.scratch_bytes();
+        capacity = tlas.capacity;
     }
     Tlas tlas;
 };
@@ -36,6 +43,7 @@ HwTlas::HwTlas(Context& context, BuildOrder order)
     : AbstractAccel(checked(context), "HwTlas"),
       reorder_(order == BuildOrder::morton ||
                (order == BuildOrder::automatic && context.facts().builds_in_input_order)),
+      moving_(std::make_unique<MovingBlasBuilder>(context, reorder_)),
       tlas_builder_(context, reorder_) {}
 
 HwTlas::~HwTlas() = default;
@@ -65,17 +73,87 @@ std::unique_ptr<TraceProgram> HwTlas::create_program(const TraceProgramCode* cod
 
 const char* HwTlas::trace_path() const { return context().facts().ray_query ? "ray query" : "ray tracing pipeline"; }
 
-std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> HwTlas::build_geometries(
-    Commands& commands, std::span<const GeometryInput> inputs) {
-    if (inputs.empty()) return {};
+// Those whose vertices the host alone has.
+void HwTlas::build_still(Commands& commands, std::span<const GeometryInput> inputs, Built& built) {
     std::vector<const Geometry*> geometries;
-    for (const GeometryInput& input : inputs) geometries.push_back(input.geometry);
-    std::vector<std::unique_ptr<BuiltGeometry>> built;
-    for (Blas& blas : build_blases(commands, geometries, reorder_))
-        built.push_back(std::make_unique<HwBuiltGeometry>(std::move(blas)));
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        if (inputs[i].mesh.indices.address) continue;
+        geometries.push_back(inputs[i].geometry);
+        places.push_back(i);
+    }
+    if (places.empty()) return;
+    std::vector<Blas> blases = build_blases(commands, geometries, {reorder_, scratch_budget()});
     const auto pass = commands.pass("hwtlas geometry blocks");
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        commands.write(*inputs[places[i]].block, blases[i].block());
+        built[places[i]] = std::make_unique<HwBuiltGeometry>(std::move(blases[i]));
+    }
+}
+
+// Into the memory of `current` where it was made for meshes that move.
+MovingMesh HwTlas::prepare_moving(const GeometryInput& input, std::unique_ptr<BuiltGeometry>& built) const {
+    const auto count = static_cast<uint>(input.geometry->triangles.size());
+    const Blas* blas = HwBuiltGeometry::of(input.current);
+    if (!blas || !blas->can_update) {
+        built = std::make_unique<HwBuiltGeometry>(moving_->make(input.geometry->name, count));
+        blas = HwBuiltGeometry::of(built.get());
+    }
+    return {input.mesh, count, input.block, blas, input.cost};
+}
+
+HwTlas::Built HwTlas::build_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
+    Built built(inputs.size());
+    build_still(commands, inputs, built);
+    std::vector<MovingMesh> moving;
     for (std::size_t i = 0; i < inputs.size(); ++i)
-        commands.write(*inputs[i].block, static_cast<const HwBuiltGeometry&>(*built[i]).blas.block());
+        if (inputs[i].mesh.indices.address) moving.push_back(prepare_moving(inputs[i], built[i]));
+    moving_->record(commands, moving, BuildMode::build, scratch_budget());
+    return built;
+}
+
+// The first time, a structure that can be updated must be built: nothing is paid for that before.
+HwTlas::Built HwTlas::refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
+    Built built(inputs.size());
+    std::vector<MovingMesh> builds, updates;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const MovingMesh mesh = prepare_moving(inputs[i], built[i]);
+        (built[i] ? builds : updates).push_back(mesh);
+    }
+    moving_->record(commands, builds, BuildMode::build, scratch_budget());
+    moving_->record(commands, updates, BuildMode::update, scratch_budget());
+    return built;
+}
+
+BuildBytes HwTlas::geometry_bytes(std::span<const GeometrySize> geometries) const {
+    return blas_bytes(context(), geometries, {reorder_, scratch_budget()});
+}
+
+BuildBytes HwTlas::scene_bytes(std::size_t count, std::size_t capacity) const {
+    return tlas_builder_.bytes(count, capacity);
+}
+
+bool HwTlas::can_compact(const BuiltGeometry& built, SyncPoint done) const {
+    const Blas& blas = *HwBuiltGeometry::of(&built);
+    const auto bytes = blas.compacted ? blas.compacted->of(blas.place, done) : std::nullopt;
+    return bytes && *bytes < blas.structure.bytes();
+}
+
+HwTlas::Built HwTlas::compact_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
+    Built built;
+    if (inputs.empty()) return built;
+    const auto pass = commands.pass("hwtlas_compact_blases");
+    for (const GeometryInput& input : inputs) {
+        const Blas& large = *HwBuiltGeometry::of(input.current);
+        Blas blas;
+        blas.kind = large.kind;
+        blas.bounds = large.bounds;
+        blas.structure = record_compaction(commands, "blas " + input.geometry->name, large.structure,
+                                           large.compacted->bytes_of(large.place));
+        blas.original = large.original;
+        commands.write(*input.block, blas.structure.address(), offsetof(HwGeometry, blas));
+        built.push_back(std::make_unique<HwBuiltGeometry>(std::move(blas)));
+    }
     return built;
 }
 
@@ -88,13 +166,14 @@ std::unique_ptr<AbstractAccel::BuiltScene> HwTlas::build_scene(Commands& command
         made = std::make_unique<HwTopLevel>(tlas_builder_.make(commands, capacity));
         level = made.get();
     }
-    tlas_builder_.record_build(commands, level->tlas, {input.records, input.count, input.bound}, input.will_move);
+    tlas_builder_.record_build(commands, level->tlas, {input.records, input.count, input.bound, input.cost},
+                               input.will_move);
     return made;
 }
 
 void HwTlas::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
     tlas_builder_.record_update(commands, static_cast<const HwTopLevel&>(current).tlas,
-                                {input.records, input.count, input.bound});
+                                {input.records, input.count, input.bound, input.cost});
 }
 
 }  // namespace twinray

@@ -6,6 +6,9 @@
 
 namespace twinray {
 
+class MovingBlasBuilder;
+struct MovingMesh;
+
 // The order in which triangles and instances go to the driver. Results do not depend on it.
 enum class BuildOrder : std::uint8_t {
     automatic,  // morton where DeviceFacts::builds_in_input_order, else input
@@ -31,8 +34,13 @@ class HwTlas : public AbstractAccel {
     bool reorders() const { return reorder_; }
 
   protected:
-    std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
-                                                                 std::span<const GeometryInput> inputs) override;
+    using Built = std::vector<std::unique_ptr<BuiltGeometry>>;
+    Built build_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
+    Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
+    BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const override;
+    BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
+    bool can_compact(const BuiltGeometry& built, SyncPoint done) const override;
+    Built compact_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
                                             const BuiltScene* current) override;
     void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
@@ -42,8 +50,11 @@ class HwTlas : public AbstractAccel {
   private:
     struct HwBuiltGeometry;
     struct HwTopLevel;
+    void build_still(Commands& commands, std::span<const GeometryInput> inputs, Built& built);
+    MovingMesh prepare_moving(const GeometryInput& input, std::unique_ptr<BuiltGeometry>& built) const;
 
     bool reorder_;
+    std::unique_ptr<MovingBlasBuilder> moving_;
     TlasBuilder tlas_builder_;
 };
 

@@ -21,7 +21,7 @@ constexpr std::uint64_t record_alignment = 16;  // of the device address of an a
 constexpr std::uint32_t group_size = 256;       // of both kernels
 constexpr std::uint32_t morton_bits = 30;
 
-StructureBuild build_of(const Buffer& driver_records, std::size_t count, bool can_update) {
+StructureBuild build_of(std::uint64_t driver_records, std::size_t count, bool can_update) {
     StructureBuild build{};
     build.name = "tlas";
     build.type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR;
@@ -31,7 +31,7 @@ StructureBuild build_of(const Buffer& driver_records, std::size_t count, bool ca
     build.geometry.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
     build.geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
     build.geometry.geometry.instances.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR;
-    build.geometry.geometry.instances.data.deviceAddress = driver_records.address();
+    build.geometry.geometry.instances.data.deviceAddress = driver_records;
     return build;
 }
 
@@ -41,10 +41,28 @@ TlasBuilder::TlasBuilder(Context& context, bool reorder)
     : context_(context),
       reorder_(reorder),
       sort_(context),
+      areas_(context),
       codes_(context,
              {.name = "hwtlas_instance_codes", .spirv = hwtlas_instance_codes_spirv, .group_size = group_size}),
       gather_(context,
               {.name = "hwtlas_gather_instances", .spirv = hwtlas_gather_instances_spirv, .group_size = group_size}) {}
+
+// Room for either kind of build, so that the first move does not change the structure's address.
+TlasBuilder::Sizes TlasBuilder::sizes(std::size_t capacity) const {
+    const VkAccelerationStructureBuildSizesInfoKHR fixed = sizes_of(context_, build_of(0, capacity, false)),
+                                                   moving = sizes_of(context_, build_of(0, capacity, true));
+    return {std::max(fixed.accelerationStructureSize, moving.accelerationStructureSize),
+            std::max({fixed.buildScratchSize, moving.buildScratchSize, moving.updateScratchSize})};
+}
+
+BuildBytes TlasBuilder::bytes(std::size_t count, std::size_t capacity) const {
+    const Sizes sizes = this->sizes(capacity);
+    const std::uint64_t sort =
+        reorder_ && count ? 4 * ((count * sizeof(uint) + 15) / 16 * 16) + RadixSort::counter_bytes(count) : 0;
+    const AreaWork areas{count, {}, {}, false};
+    return {sizes.structure + (reorder_ ? capacity * sizeof(HwInstance) : 0) + sizeof(HwScene),
+            sizes.scratch + capacity * sizeof(InstanceRecord) + sort + areas.bytes()};
+}
 
 Tlas TlasBuilder::make(Commands& commands, std::size_t capacity) const {
     Tlas tlas;
@@ -54,16 +72,10 @@ Tlas TlasBuilder::make(Commands& commands, std::size_t capacity) const {
     tlas.instances =
         Buffer(context_, {.name = "tlas instances", .bytes = reorder_ ? capacity * sizeof(HwInstance) : 0});
     tlas.scene = Buffer(context_, {.name = "hw scene", .bytes = sizeof(HwScene)});
-    // Room for either kind of build, so that the first move does not change the structure's address.
-    const StructureBuild fixed = build_of(tlas.driver_records, capacity, false);
-    const VkAccelerationStructureBuildSizesInfoKHR sizes[] = {
-        sizes_of(context_, fixed), sizes_of(context_, build_of(tlas.driver_records, capacity, true))};
+    const Sizes sizes = this->sizes(capacity);
     tlas.structure =
-        AccelerationStructure(context_, fixed.name, fixed.type,
-                              std::max(sizes[0].accelerationStructureSize, sizes[1].accelerationStructureSize));
-    tlas.scratch = make_build_scratch(
-        context_, "tlas scratch",
-        std::max({sizes[0].buildScratchSize, sizes[1].buildScratchSize, sizes[1].updateScratchSize}));
+        AccelerationStructure(context_, "tlas", VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, sizes.structure);
+    tlas.scratch = make_build_scratch(context_, "tlas scratch", sizes.scratch);
     const auto pass = commands.pass("hwtlas scene");
     commands.write(tlas.scene, HwScene{tlas.structure.address(), tlas.instances.ref<HwInstance>()});
     return tlas;
@@ -81,23 +93,29 @@ Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) cons
     return sorted.values;
 }
 
-void TlasBuilder::record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order) const {
+void TlasBuilder::record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order,
+                                bool is_build) const {
+    std::vector<AreaWork> areas = {{input.count, {input.bound.address}, input.cost, is_build}};
+    SurfaceArea::place(commands, areas);
     gather_.dispatch(commands,
                      {input.records, order, tlas.driver_records.ref<InstanceRecord>(), tlas.instances.ref<HwInstance>(),
-                      input.count, 0},
+                      areas[0].items, input.count, 0},
                      input.count);
+    areas_.record(commands, std::move(areas));
 }
 
 void TlasBuilder::record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const {
-    record_gather(commands, tlas, input, record_order(commands, input));
-    rebuild_structure(commands, "hwtlas_build_tlas", build_of(tlas.driver_records, input.count, can_update),
-                      BuildMode::build, tlas.structure, tlas.scratch);
+    record_gather(commands, tlas, input, record_order(commands, input), true);
+    const StructureWork work{build_of(tlas.driver_records.address(), input.count, can_update), BuildMode::build,
+                             &tlas.structure};
+    record_builds(commands, "hwtlas_build_tlas", std::span(&work, 1), tlas.scratch.address());
 }
 
 void TlasBuilder::record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const {
-    record_gather(commands, tlas, input, {});
-    rebuild_structure(commands, "hwtlas_update_tlas", build_of(tlas.driver_records, input.count, true),
-                      BuildMode::update, tlas.structure, tlas.scratch);
+    record_gather(commands, tlas, input, {}, false);
+    const StructureWork work{build_of(tlas.driver_records.address(), input.count, true), BuildMode::update,
+                             &tlas.structure};
+    record_builds(commands, "hwtlas_update_tlas", std::span(&work, 1), tlas.scratch.address());
 }
 
 }  // namespace twinray

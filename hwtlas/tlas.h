@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "engine/accel/memory.h"
 #include "engine/core/kernel.h"
 #include "engine/core/radix_sort.h"
 #include "hwtlas/acceleration_structure.h"
@@ -18,12 +19,14 @@ struct Tlas {
     Buffer scratch;
 
     std::uint64_t bytes() const { return structure.bytes() + instances.bytes() + scene.bytes(); }
+    std::uint64_t scratch_bytes() const { return driver_records.bytes() + scratch.bytes(); }
 };
 
 struct TlasInput {
     Ref<InstanceRecord> records;
     uint count = 0;
-    Ref<WorldBound> bound;  // read only when reordering
+    Ref<WorldBound> bound;
+    CostTarget cost;
 };
 
 // Makes and builds top levels.
@@ -32,6 +35,7 @@ class TlasBuilder {
     // reorder: presort for drivers that build in input order.
     TlasBuilder(Context& context, bool reorder);
 
+    BuildBytes bytes(std::size_t count, std::size_t capacity) const;
     Tlas make(Commands& commands, std::size_t capacity) const;
     // can_update: record_update() may follow.
     void record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const;
@@ -39,12 +43,17 @@ class TlasBuilder {
     void record_update(Commands& commands, const Tlas& tlas, const TlasInput& input) const;
 
   private:
+    struct Sizes {
+        std::uint64_t structure, scratch;
+    };
+    Sizes sizes(std::size_t capacity) const;
     Uints record_order(Commands& commands, const TlasInput& input) const;
-    void record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order) const;
+    void record_gather(Commands& commands, const Tlas& tlas, const TlasInput& input, Uints order, bool is_build) const;
 
     Context& context_;
     bool reorder_;
     RadixSort sort_;
+    SurfaceArea areas_;
     Kernel<HwCodesArgs> codes_;
     Kernel<HwGatherArgs> gather_;
 };

@@ -6,8 +6,10 @@
 #include "swtlas_leaves_instances.spv.h"
 #include "swtlas_leaves_triangles.spv.h"
 #include "swtlas_morton.spv.h"
+#include "swtlas_node_areas.spv.h"
 #include "swtlas_parents.spv.h"
 #include "swtlas_refit.spv.h"
+#include "swtlas_refit_triangles.spv.h"
 #include "swtlas_tree_keys.spv.h"
 
 namespace twinray {
@@ -33,18 +35,29 @@ struct Builder::Batch {
 
 Builder::Builder(Context& context)
     : sort_(context),
+      areas_(context),
       leaves_triangles_(context, stage("swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
       leaves_instances_(context, stage("swtlas_leaves_instances", swtlas_leaves_instances_spirv)),
       morton_(context, stage("swtlas_morton", swtlas_morton_spirv)),
+      node_areas_(context, stage("swtlas_node_areas", swtlas_node_areas_spirv)),
       tree_keys_(context, stage("swtlas_tree_keys", swtlas_tree_keys_spirv)),
       hierarchy_(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv)),
       encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv)),
       parents_(context, stage("swtlas_parents", swtlas_parents_spirv)),
-      refit_(context, stage("swtlas_refit", swtlas_refit_spirv)) {}
+      refit_(context, stage("swtlas_refit", swtlas_refit_spirv)),
+      refit_triangles_(context, stage("swtlas_refit_triangles", swtlas_refit_triangles_spirv)) {}
 
-Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const {
+// One tree, in scratch of its own.
+Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, const BuildTree& tree) const {
+    Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = plan.scratch.bytes});
+    const Batch batch = begin(commands, plan, std::span(&tree, 1), scratch);
+    commands.keep(std::move(scratch));
+    return batch;
+}
+
+Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                              const Buffer& scratch) const {
     const BuildScratch& at = plan.scratch;
-    Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = at.bytes});
     const uint none = ordered_bits(-INFINITY), all = ordered_bits(INFINITY);
     const std::vector<CentroidBounds> empty(trees.size(), {uvec3(all), uvec3(none)});
     {
@@ -56,19 +69,17 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
         commands.fill(scratch, at.meeting, std::uint64_t{plan.leaf_count} * sizeof(uint), NOTHING);
     }
     const std::uint64_t base = scratch.address();
-    const Batch batch{{base + at.trees},
-                      {base + at.blocks},
-                      {base + at.boxes},
-                      {base + at.centroids},
-                      {base + at.codes},
-                      {plan.tree_bits ? base + at.tree_of : 0},
-                      {base + at.meeting},
-                      {base + at.counters},
-                      {{base + at.keys[0]}, {base + at.order[0]}},
-                      {{base + at.keys[1]}, {base + at.order[1]}},
-                      static_cast<uint>(plan.blocks.size())};
-    commands.keep(std::move(scratch));
-    return batch;
+    return {{base + at.trees},
+            {base + at.blocks},
+            {base + at.boxes},
+            {base + at.centroids},
+            {base + at.codes},
+            {plan.tree_bits ? base + at.tree_of : 0},
+            {base + at.meeting},
+            {base + at.counters},
+            {{base + at.keys[0]}, {base + at.order[0]}},
+            {{base + at.keys[1]}, {base + at.order[1]}},
+            static_cast<uint>(plan.blocks.size())};
 }
 
 Uints Builder::record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
@@ -90,9 +101,10 @@ void Builder::record_hierarchy(Commands& commands, const Batch& batch, Uints ord
     hierarchy_.dispatch_groups(commands, args, batch.block_count);
 }
 
-void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const {
+void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                               const Buffer& scratch) const {
     if (plan.leaf_count == 0) return;
-    const Batch batch = begin(commands, plan, trees);
+    const Batch batch = begin(commands, plan, trees, scratch);
     leaves_triangles_.dispatch_groups(
         commands, {batch.trees, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0}, batch.block_count);
     const Uints order = record_order(commands, plan, batch);
@@ -104,28 +116,63 @@ void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::s
 void Builder::record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
                                Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
     if (plan.leaf_count == 0) return;
-    const Batch batch = begin(commands, plan, std::span(&tree, 1));
+    const Batch batch = begin(commands, plan, tree);
     leaves_instances_.dispatch_groups(
         commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
         batch.block_count);
     record_hierarchy(commands, batch, record_order(commands, plan, batch), false);
 }
 
-void Builder::record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
-                           Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
-    if (plan.leaf_count == 0) return;
-    const Batch batch = begin(commands, plan, std::span(&tree, 1));
-    // Nothing is sorted here: that scratch holds the parents.
+// The boxes of all inner nodes from those of the leaves.
+void Builder::record_climb(Commands& commands, const Batch& batch) const {
+    // Nothing is sorted in a refit: that scratch holds the parents.
     const Uints node_parents = batch.pairs.keys, leaf_parents = batch.pairs.values;
-    leaves_instances_.dispatch_groups(
-        commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
-        batch.block_count);
     parents_.dispatch_groups(commands, {batch.trees, batch.blocks, node_parents, leaf_parents, batch.block_count, 0},
                              batch.block_count);
     refit_.dispatch_groups(
         commands,
         {batch.trees, batch.blocks, batch.boxes, node_parents, leaf_parents, batch.meeting, batch.block_count, 0},
         batch.block_count);
+}
+
+std::uint64_t Builder::cost_bytes(uint leaf_count) {
+    const std::uint64_t groups = (std::uint64_t{inner_count(leaf_count)} + AREA_GROUP - 1) / AREA_GROUP;
+    return AreaWork{groups, {}, {}, false}.bytes();
+}
+
+void Builder::record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const {
+    std::vector<AreaWork> work;
+    for (const Measured& tree : trees) {
+        const std::uint64_t groups = (std::uint64_t{inner_count(tree.leaf_count)} + AREA_GROUP - 1) / AREA_GROUP;
+        work.push_back({groups, {tree.tree.address}, tree.target, is_build});
+    }
+    SurfaceArea::place(commands, work);
+    if (!work.empty()) {
+        const auto pass = commands.pass(node_areas_.name());
+        for (std::size_t i = 0; i < trees.size(); ++i)
+            node_areas_.dispatch_groups(commands, {trees[i].tree, work[i].items, inner_count(trees[i].leaf_count), 0},
+                                        work[i].item_count);
+    }
+    areas_.record(commands, std::move(work));
+}
+
+void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                                    const Buffer& scratch) const {
+    if (plan.leaf_count == 0) return;
+    const Batch batch = begin(commands, plan, trees, scratch);
+    refit_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.boxes, batch.block_count, 0},
+                                     batch.block_count);
+    record_climb(commands, batch);
+}
+
+void Builder::record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
+                           Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
+    if (plan.leaf_count == 0) return;
+    const Batch batch = begin(commands, plan, tree);
+    leaves_instances_.dispatch_groups(
+        commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
+        batch.block_count);
+    record_climb(commands, batch);
 }
 
 }  // namespace twinray

@@ -17,30 +17,50 @@ class Builder {
     explicit Builder(Context& context);
 
     // trees[i] has leaf_counts[i] triangles; its Bvh must name its node array already and describe an empty tree.
-    void record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const;
+    // `scratch` has plan.scratch.bytes at least.
+    void record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                          const Buffer& scratch) const;
     // One tree over the records; fills `instances`.
     void record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
                           Ref<SwInstance> instances) const;
+    // New boxes and corners for trees that record_triangles left behind, whose vertices moved.
+    void record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                               const Buffer& scratch) const;
     // New boxes, and new `instances`, for the topology that record_instances left behind.
     void record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
                       Ref<SwInstance> instances) const;
 
+    // What sah() tells of finished trees.
+    struct Measured {
+        Ref<Bvh> tree;
+        uint leaf_count;
+        CostTarget target;
+    };
+    static std::uint64_t cost_bytes(uint leaf_count);  // of scratch, for one tree
+    void record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const;
+
   private:
     // The addresses of a batch's scratch regions.
     struct Batch;
-    Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees) const;
+    Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                const Buffer& scratch) const;
+    Batch begin(Commands& commands, const BuildPlan& plan, const BuildTree& tree) const;
     Uints record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_hierarchy(Commands& commands, const Batch& batch, Uints order, bool leaves_are_sorted) const;
+    void record_climb(Commands& commands, const Batch& batch) const;
 
     RadixSort sort_;
+    SurfaceArea areas_;
     Kernel<TriangleLeavesArgs> leaves_triangles_;
     Kernel<InstanceLeavesArgs> leaves_instances_;
     Kernel<MortonArgs> morton_;
+    Kernel<NodeAreasArgs> node_areas_;
     Kernel<TreeKeysArgs> tree_keys_;
     Kernel<HierarchyArgs> hierarchy_;
     Kernel<EncodeTrianglesArgs> encode_triangles_;
     Kernel<ParentsArgs> parents_;
     Kernel<RefitArgs> refit_;
+    Kernel<RefitTrianglesArgs> refit_triangles_;
 };
 
 }  // namespace twinray

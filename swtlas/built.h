@@ -2,17 +2,22 @@
 // What SwTlas keeps of what it has built.
 #pragma once
 
+#include "swtlas/plan.h"
 #include "swtlas/sw_tlas.h"
 
 namespace twinray {
 
 struct SwTlas::SwBuiltGeometry : BuiltGeometry {
-    Buffer buffer;  // see layout_geometry
+    GeometryLayout layout;
+    Buffer buffer;
 
-    SwBuiltGeometry(Context& context, const std::string& mesh, std::uint64_t buffer_bytes)
-        : buffer(context, {.name = "SwTlas geometry '" + mesh + "'", .bytes = buffer_bytes}) {
-        bytes = buffer_bytes;
+    SwBuiltGeometry(Context& context, const Geometry& geometry)
+        : layout(layout_geometry(static_cast<uint>(geometry.primitive_count()))),
+          buffer(context, {.name = "SwTlas geometry '" + geometry.name + "'", .bytes = layout.bytes}) {
+        bytes = layout.bytes;
     }
+    Ref<BvhNode> nodes() const { return buffer.ref<BvhNode>(layout.nodes); }
+    Ref<BvhTriangle> triangles() const { return buffer.ref<BvhTriangle>(layout.triangles); }
 };
 
 }  // namespace twinray

@@ -22,8 +22,6 @@ struct Arena {
     }
 };
 
-uint inner_count(uint leaf_count) { return std::max(leaf_count, 1u) - 1u; }
-
 BuildScratch layout_scratch(const BuildPlan& plan) {
     const uint n = plan.leaf_count;
     Arena arena;
@@ -45,6 +43,15 @@ BuildScratch layout_scratch(const BuildPlan& plan) {
 }
 
 }  // namespace
+
+// Alone it needs no tree_of; all other parts are as long or, rounded up one by one, longer.
+std::uint64_t scratch_share(uint leaf_count) {
+    Arena tree_of;
+    tree_of.take<uint>(leaf_count);
+    return plan_build(std::span(&leaf_count, 1)).scratch.bytes + tree_of.bytes;
+}
+
+uint inner_count(uint leaf_count) { return std::max(leaf_count, 1u) - 1u; }
 
 BuildPlan plan_build(std::span<const uint> leaf_counts) {
     BuildPlan plan;

@@ -28,6 +28,11 @@ struct BuildPlan {
 // Throws Error if the batch has 2^32 leaves or more.
 BuildPlan plan_build(std::span<const uint> leaf_counts);
 
+// What a tree of so many leaves adds to the scratch of its batch, at most.
+std::uint64_t scratch_share(uint leaf_count);
+
+uint inner_count(uint leaf_count);
+
 // Where the parts of a built geometry lie in its buffer; its SwGeometry is the geometry block.
 struct GeometryLayout {
     std::uint64_t nodes = 0, triangles = 0, bytes = 0;

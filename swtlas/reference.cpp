@@ -119,12 +119,8 @@ Hierarchy hierarchy(std::span<const LeafBox> boxes, std::span<const uint> codes,
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
                                           std::span<const uint> order) {
     std::vector<BvhTriangle> encoded;
-    for (const uint primitive : order) {
-        BvhTriangle triangle = gather(positions, triangles[primitive], primitive);
-        if (!is_active_triangle(triangle.v0, triangle.v1, triangle.v2))
-            triangle = {vec3(0), vec3(0), vec3(0), primitive};
-        encoded.push_back(triangle);
-    }
+    for (const uint primitive : order)
+        encoded.push_back(without_inactive_corners(gather(positions, triangles[primitive], primitive)));
     return encoded;
 }
 

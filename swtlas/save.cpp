@@ -38,16 +38,14 @@ SwTlas::Loaded SwTlas::load(Context& context, const std::filesystem::path& file)
 }
 
 AccelHandle SwTlas::push_saved(Commands& commands, SavedGeometry&& saved) {
-    const GeometryLayout layout = layout_geometry(saved.bvh.leaf_count);
     Buffer block(context(), {.name = "geometry block", .bytes = geometry_block_bytes});
-    auto built = std::make_unique<SwBuiltGeometry>(context(), saved.mesh.name, layout.bytes);
-    const std::uint64_t base = built->buffer.address();
-    saved.bvh.nodes = {base + layout.nodes};
+    auto built = std::make_unique<SwBuiltGeometry>(context(), saved.mesh);
+    saved.bvh.nodes = built->nodes();
     {
         const auto pass = commands.pass("swtlas load");
-        commands.write(block, SwGeometry{saved.bvh, {base + layout.triangles}, saved.mesh.kind, 0});
-        const Commands::Piece pieces[] = {{layout.nodes, std::as_bytes(std::span(saved.nodes))},
-                                          {layout.triangles, std::as_bytes(std::span(saved.leaves))}};
+        commands.write(block, SwGeometry{saved.bvh, built->triangles(), saved.mesh.kind, 0});
+        const Commands::Piece pieces[] = {{built->layout.nodes, std::as_bytes(std::span(saved.nodes))},
+                                          {built->layout.triangles, std::as_bytes(std::span(saved.leaves))}};
         commands.upload_pieces(built->buffer, pieces);
     }
     return push_built(std::move(saved.mesh), std::move(block), std::move(built), saved.records);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/accel/instance_record.h"
+#include "engine/accel/surface_area.h"
 #include "engine/accel/trace_args.h"
 #include "engine/core/ray.h"
 #include "engine/core/sort_args.h"

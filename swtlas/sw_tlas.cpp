@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/accel/batches.h"
 #include "engine/core/error.h"
 #include "swtlas/built.h"
 #include "swtlas_trace.spv.h"
@@ -15,9 +16,20 @@ Bvh empty_bvh(std::uint64_t nodes) { return {vec3(INFINITY), vec3(-INFINITY), {n
 
 }  // namespace
 
+struct SwTlas::Batch {
+    std::span<const GeometryInput> inputs;
+    std::vector<uint> counts = {};
+    BuildPlan plan = {};
+
+    // Of input i, over a mesh on the device.
+    BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const DeviceMesh& mesh) const {
+        return {plan.first[i], counts[i],          mesh.positions,
+                mesh.indices,  target.triangles(), {inputs[i].block->address()}};
+    }
+};
+
 struct SwTlas::SwBuiltScene : BuiltScene {
     Buffer buffer;  // see layout_scene
-    uint capacity = 0;
 
     BuildTree tree(uint count) const {
         BuildTree tree{};
@@ -25,7 +37,7 @@ struct SwTlas::SwBuiltScene : BuiltScene {
         tree.bvh = {address};
         return tree;
     }
-    Ref<SwInstance> instances() const { return {address + layout_scene(capacity).instances}; }
+    Ref<SwInstance> instances() const { return {address + layout_scene(static_cast<uint>(capacity)).instances}; }
 };
 
 SwTlas::SwTlas(Context& context) : AbstractAccel(context, "SwTlas"), builder_(context) {}
@@ -39,79 +51,158 @@ Capability SwTlas::capability_on(const DeviceFacts&, Feature feature) {
     }
 }
 
-std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> SwTlas::build_geometries(
-    Commands& commands, std::span<const GeometryInput> inputs) {
-    if (inputs.empty()) return {};
-    std::vector<uint> counts;
-    std::vector<Commands::Piece> pieces;
-    std::uint64_t bytes = 0;
-    const auto place = [&](std::span<const std::byte> data) {
-        pieces.push_back({bytes, data});
-        bytes += data.size();
-    };
-    for (const GeometryInput& input : inputs) {
-        counts.push_back(static_cast<uint>(input.geometry->primitive_count()));
-        place(std::as_bytes(std::span(input.geometry->positions)));
-        place(std::as_bytes(std::span(input.geometry->boxes)));
-        place(std::as_bytes(std::span(input.geometry->triangles)));
+// Bytes of what must be uploaded to build from it.
+std::uint64_t SwTlas::source_bytes(const GeometryInput& input) {
+    if (input.mesh.indices.address) return 0;
+    return std::span(input.geometry->positions).size_bytes() + std::span(input.geometry->triangles).size_bytes() +
+           std::span(input.geometry->boxes).size_bytes();
+}
+
+// Calls `record` for one batch after the other, all in the same scratch: that of the build, then the sources.
+void SwTlas::record_batches(Commands& commands, std::span<const GeometryInput> inputs,
+                            const std::function<void(const Batch&, const Buffer& scratch)>& record) {
+    std::vector<std::uint64_t> shares;
+    for (const GeometryInput& input : inputs)
+        shares.push_back(scratch_share(static_cast<uint>(input.geometry->primitive_count())) + source_bytes(input));
+    const Batches batches = cut_into_batches(shares, scratch_budget());
+    Buffer scratch(context(), {.name = "swtlas geometry scratch", .bytes = batches.scratch_bytes});
+    for (const Batches::Run& run : batches.runs) {
+        Batch batch{inputs.subspan(run.first, run.count)};
+        for (const GeometryInput& input : batch.inputs)
+            batch.counts.push_back(static_cast<uint>(input.geometry->primitive_count()));
+        batch.plan = plan_build(batch.counts);
+        record(batch, scratch);
     }
-    const BuildPlan plan = plan_build(counts);
-    Buffer source(context(), {.name = "swtlas geometry input", .bytes = bytes});
-    std::vector<std::unique_ptr<BuiltGeometry>> built;
+    commands.keep(std::move(scratch));
+}
+
+std::vector<Builder::Measured> SwTlas::measured(std::span<const GeometryInput> inputs) {
+    std::vector<Builder::Measured> trees;
+    for (const GeometryInput& input : inputs)
+        if (input.cost.result.address)
+            trees.push_back(
+                {{input.block->address()}, static_cast<uint>(input.geometry->triangles.size()), input.cost});
+    return trees;
+}
+
+// Where the meshes lie on the device; those that are not there yet are uploaded.
+std::vector<DeviceMesh> SwTlas::record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch) {
+    std::vector<Commands::Piece> pieces;
+    std::uint64_t next = batch.plan.scratch.bytes;
+    const auto place = [&](std::span<const std::byte> data) {
+        pieces.push_back({next, data});
+        next += data.size();
+        return scratch.address() + pieces.back().offset;
+    };
+    std::vector<DeviceMesh> meshes;
+    for (const GeometryInput& input : batch.inputs) {
+        meshes.push_back(input.mesh);
+        if (input.mesh.indices.address) continue;
+        const Geometry& geometry = *input.geometry;
+        if (geometry.kind == GEOMETRY_BOXES) {
+            meshes.back().positions.address = place(std::as_bytes(std::span(geometry.boxes)));
+            continue;
+        }
+        meshes.back().positions.address = place(std::as_bytes(std::span(geometry.positions)));
+        meshes.back().indices.address = place(std::as_bytes(std::span(geometry.triangles)));
+    }
+    commands.upload_pieces(scratch, pieces);
+    return meshes;
+}
+
+void SwTlas::record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built) {
     std::vector<BuildTree> trees;
     {
         const auto pass = commands.pass("swtlas geometry input");
-        commands.upload_pieces(source, pieces);
-        for (std::size_t i = 0; i < inputs.size(); ++i) {
-            const GeometryLayout layout = layout_geometry(counts[i]);
-            auto made = std::make_unique<SwBuiltGeometry>(context(), inputs[i].geometry->name, layout.bytes);
-            const std::uint64_t base = made->buffer.address();
-            const Geometry& geometry = *inputs[i].geometry;
-            const bool has_boxes = geometry.kind == GEOMETRY_BOXES;
-            const SwGeometry block{empty_bvh(base + layout.nodes), {base + layout.triangles}, geometry.kind, 0};
-            commands.write(*inputs[i].block, block);
-            trees.push_back({plan.first[i],
-                             counts[i],
-                             {source.address() + pieces[3 * i + (has_boxes ? 1 : 0)].offset},
-                             {has_boxes ? 0 : source.address() + pieces[3 * i + 2].offset},
-                             block.triangles,
-                             {inputs[i].block->address()}});
+        const std::vector<DeviceMesh> meshes = record_meshes(commands, batch, scratch);
+        for (std::size_t i = 0; i < batch.inputs.size(); ++i) {
+            const GeometryInput& input = batch.inputs[i];
+            std::unique_ptr<SwBuiltGeometry> made;
+            if (!input.current) made = std::make_unique<SwBuiltGeometry>(context(), *input.geometry);
+            const auto& target = made ? *made : static_cast<const SwBuiltGeometry&>(*input.current);
+            const SwGeometry block{empty_bvh(target.nodes().address), target.triangles(), input.geometry->kind, 0};
+            commands.write(*input.block, block);
+            trees.push_back(batch.tree(i, target, meshes[i]));
             built.push_back(std::move(made));
         }
     }
-    commands.keep(std::move(source));
-    builder_.record_triangles(commands, plan, trees);
+    builder_.record_triangles(commands, batch.plan, trees, scratch);
+    builder_.record_costs(commands, measured(batch.inputs), true);
+}
+
+SwTlas::Built SwTlas::build_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
+    Built built;
+    record_batches(commands, inputs,
+                   [&](const Batch& batch, const Buffer& scratch) { record_build(commands, batch, scratch, built); });
     return built;
+}
+
+SwTlas::Built SwTlas::refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
+    record_batches(commands, inputs, [&](const Batch& batch, const Buffer& scratch) {
+        std::vector<BuildTree> trees;
+        for (std::size_t i = 0; i < batch.inputs.size(); ++i)
+            trees.push_back(
+                batch.tree(i, static_cast<const SwBuiltGeometry&>(*batch.inputs[i].current), batch.inputs[i].mesh));
+        std::vector<Builder::Measured> as_built = measured(batch.inputs);
+        std::erase_if(as_built, [](const Builder::Measured& tree) { return !tree.target.is_first; });
+        builder_.record_costs(commands, as_built, true);
+        builder_.record_triangle_refit(commands, batch.plan, trees, scratch);
+        builder_.record_costs(commands, measured(batch.inputs), false);
+    });
+    return Built(inputs.size());
 }
 
 std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& commands, const SceneInput& input,
                                                                const BuiltScene* current) {
     const auto* scene = static_cast<const SwBuiltScene*>(current);
     std::unique_ptr<SwBuiltScene> made;
-    if (const auto capacity = static_cast<uint>(capacity_for(input.count, scene ? scene->capacity : 0));
+    if (const std::size_t capacity = capacity_for(input.count, scene ? scene->capacity : 0);
         !scene || capacity != scene->capacity) {
         made = std::make_unique<SwBuiltScene>();
         made->capacity = capacity;
-        made->buffer = Buffer(context(), {.name = "SwTlas scene", .bytes = layout_scene(capacity).bytes});
+        made->buffer =
+            Buffer(context(), {.name = "SwTlas scene", .bytes = layout_scene(static_cast<uint>(capacity)).bytes});
         made->address = made->buffer.address();
         made->bytes = made->buffer.bytes();
         scene = made.get();
     }
-    const SwScene header{empty_bvh(scene->address + layout_scene(scene->capacity).nodes), scene->instances(),
-                         input.count};
+    const SwScene header{empty_bvh(scene->address + layout_scene(static_cast<uint>(scene->capacity)).nodes),
+                         scene->instances(), input.count};
     {
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
     }
     builder_.record_instances(commands, plan_build(std::span(&input.count, 1)), scene->tree(input.count), input.records,
                               scene->instances());
+    const Builder::Measured measured{{scene->address}, input.count, input.cost};
+    builder_.record_costs(commands, std::span(&measured, 1), true);
     return made;
+}
+
+BuildBytes SwTlas::geometry_bytes(std::span<const GeometrySize> geometries) const {
+    BuildBytes bytes;
+    std::vector<std::uint64_t> shares;
+    for (const GeometrySize& size : geometries) {
+        const auto count = static_cast<uint>(size.triangles);
+        bytes.structures += layout_geometry(count).bytes;
+        shares.push_back(scratch_share(count) + size.vertices * sizeof(vec3) + size.triangles * sizeof(uvec3));
+    }
+    bytes.scratch = cut_into_batches(shares, scratch_budget()).scratch_bytes;
+    return bytes;
+}
+
+BuildBytes SwTlas::scene_bytes(std::size_t count, std::size_t capacity) const {
+    const auto leaves = static_cast<uint>(count);
+    return {layout_scene(static_cast<uint>(capacity)).bytes,
+            plan_build(std::span(&leaves, 1)).scratch.bytes + Builder::cost_bytes(leaves)};
 }
 
 void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
     const auto& scene = static_cast<const SwBuiltScene&>(current);
     builder_.record_refit(commands, plan_build(std::span(&input.count, 1)), scene.tree(input.count), input.records,
                           scene.instances());
+    const Builder::Measured measured{{scene.address}, input.count, input.cost};
+    builder_.record_costs(commands, std::span(&measured, 1), false);
 }
 
 std::unique_ptr<TraceProgram> SwTlas::create_program(const TraceProgramCode* code, uint features) const {
@@ -130,7 +221,7 @@ SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {
 SwTlas::Tree SwTlas::download_scene() const {
     const auto& built = static_cast<const SwBuiltScene&>(built_scene());
     const Bvh bvh = download<SwScene>(context(), built.buffer, 1).front().bvh;
-    const SceneLayout layout = layout_scene(built.capacity);
+    const SceneLayout layout = layout_scene(static_cast<uint>(built.capacity));
     return {bvh, download<BvhNode>(context(), built.buffer, std::max(bvh.leaf_count, 1u) - 1, layout.nodes), {}};
 }
 

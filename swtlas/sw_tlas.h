@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "engine/accel/abstract_accel.h"
 #include "swtlas/build.h"
@@ -46,8 +47,18 @@ class SwTlas final : public AbstractAccel {
     struct SwBuiltGeometry;
     struct SwBuiltScene;
     AccelHandle push_saved(Commands& commands, SavedGeometry&& saved);
-    std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
-                                                                 std::span<const GeometryInput> inputs) override;
+    struct Batch;
+    using Built = std::vector<std::unique_ptr<BuiltGeometry>>;
+    Built build_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
+    Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
+    BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const override;
+    BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
+    static std::uint64_t source_bytes(const GeometryInput& input);
+    static std::vector<Builder::Measured> measured(std::span<const GeometryInput> inputs);
+    void record_batches(Commands& commands, std::span<const GeometryInput> inputs,
+                        const std::function<void(const Batch&, const Buffer& scratch)>& record);
+    void record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built);
+    static std::vector<DeviceMesh> record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch);
     std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
                                             const BuiltScene* current) override;
     void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;

@@ -26,7 +26,13 @@ InstanceState state_of(const InstanceRecord& record) { return {transform_of(reco
 }  // namespace
 
 AbstractAccel::AbstractAccel(Context& context, std::string name)
-    : context_(context), name_(std::move(name)), id_(next_accel_id()), instances_(context), bound_(context) {}
+    : context_(context),
+      name_(std::move(name)),
+      id_(next_accel_id()),
+      vertices_(context),
+      instances_(context),
+      bound_(context),
+      scene_costs_(context) {}
 
 AbstractAccel::~AbstractAccel() = default;
 
@@ -50,8 +56,12 @@ AccelHandle AbstractAccel::place(Geometry&& geometry, std::span<const Transform>
     if (!options.empty() && options.size() != transforms.size())
         fail(name_, ": mesh '", geometry.name, "': ", options.size(), " instance options for ", transforms.size(),
              " transforms; the lengths must match");
-    Placement placement{
-        std::move(geometry), Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}), nullptr, {}};
+    Placement placement{std::move(geometry),
+                        Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}),
+                        nullptr,
+                        {},
+                        {},
+                        {}};
     for (std::size_t i = 0; i < transforms.size(); ++i)
         placement.instances.records.push_back(
             checked_record(placement, i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
@@ -64,7 +74,7 @@ AccelHandle AbstractAccel::place(Geometry&& geometry, std::span<const Transform>
 
 AccelHandle AbstractAccel::push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
                                       std::span<const InstanceRecord> records) {
-    Placement placement{std::move(geometry), std::move(block), std::move(built), {}};
+    Placement placement{std::move(geometry), std::move(block), std::move(built), {}, {}, {}};
     for (const InstanceRecord& record : records) {
         placement.instances.records.push_back(make_instance_record(transform_of(record), options_of(record)));
         placement.instances.records.back().geometry = placement.block.address();
@@ -98,7 +108,44 @@ void AbstractAccel::replace(AccelHandle handle, Geometry&& geometry) {
     warn_of_inactive_triangles(geometry);
     if (placement.built) erased_.push_back(std::move(placement.built));
     placement.geometry = std::move(geometry);
+    placement.vertices = {};
     mark(Dirty::structure);
+}
+
+AbstractAccel::Placement& AbstractAccel::checked_for_vertices(AccelHandle handle, std::size_t count) {
+    Placement& placement = live(handle, "update_vertices");
+    const Geometry& geometry = placement.geometry;
+    if (geometry.kind == GEOMETRY_BOXES)
+        fail(name_, ": update_vertices: handle ", handle.id, " holds boxes, '", geometry.name, "', not triangles");
+    if (const std::size_t n = geometry.positions.size(); count != n)
+        fail(name_, ": update_vertices: mesh '", geometry.name, "': ", count, " positions for its ", n,
+             " vertices; update() changes their number");
+    return placement;
+}
+
+void AbstractAccel::update_vertices(AccelHandle handle, std::span<const vec3> positions) {
+    Placement& placement = checked_for_vertices(handle, positions.size());
+    Geometry& geometry = placement.geometry;
+    const std::size_t inactive = count_non_finite_triangles({geometry.name, positions, geometry.triangles});
+    std::copy(positions.begin(), positions.end(), geometry.positions.begin());
+    geometry.non_finite_triangles = inactive;
+    warn_of_inactive_triangles(geometry);
+    if (geometry.triangles.empty()) return;
+    placement.vertices.incoming = {};
+    placement.vertices.device_wrote = false;
+    placement.vertices.edited = placement.built || placement.vertices.on_device();
+    mark(Dirty::moves);
+}
+
+void AbstractAccel::update_vertices(AccelHandle handle, Floats positions, std::size_t count) {
+    Placement& placement = checked_for_vertices(handle, count);
+    if (!works_on_device()) fail(name_, ": update_vertices: vertices in device memory are unsupported");
+    if (!positions.address || positions.address % 4)
+        fail(name_, ": update_vertices: device address ", positions.address, " must be a multiple of 4 and not 0");
+    if (placement.geometry.triangles.empty()) return;
+    placement.vertices.incoming = positions;
+    placement.vertices.edited = true;
+    mark(Dirty::moves);
 }
 
 uint AbstractAccel::Placement::features() const {
@@ -155,7 +202,7 @@ void AbstractAccel::update_transforms(AccelHandle handle, std::span<const Transf
     for (std::size_t i = 0; i < transforms.size(); ++i)
         records.push_back(checked_record(placement, i, transforms[i], options_of(placement.instances.records[i])));
     placement.instances.edit_all(std::move(records));
-    mark(Dirty::transforms);
+    mark(Dirty::moves);
 }
 
 void AbstractAccel::update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count) {
@@ -164,7 +211,7 @@ void AbstractAccel::update_transforms(AccelHandle handle, Ref<Transform> transfo
     if (!transforms.address || transforms.address % 4)
         fail(name_, ": update_transforms: device address ", transforms.address, " must be a multiple of 4 and not 0");
     placement.instances.replace_transforms(transforms);
-    mark(Dirty::transforms);
+    mark(Dirty::moves);
 }
 
 void AbstractAccel::check_count(AccelHandle handle, const Placement& placement, std::size_t count) const {
@@ -183,7 +230,7 @@ void AbstractAccel::update_transform_at(AccelHandle handle, std::size_t index, c
     check_index(handle, placement, index, "update_transform_at");
     const InstanceOptions options = options_of(placement.instances.records[index]);
     placement.instances.edit(index, checked_record(placement, index, transform, options));
-    mark(Dirty::transforms);
+    mark(Dirty::moves);
 }
 
 InstanceRange AbstractAccel::instance_buffer(AccelHandle handle) const {
@@ -200,7 +247,7 @@ void AbstractAccel::mark_transforms_dirty(AccelHandle handle) {
     if (!placement.instances.first)
         fail(name_, ": mark_transforms_dirty: handle ", handle.id, " is not on the device yet; call sync() first");
     placement.instances.device_wrote = true;
-    mark(Dirty::transforms);
+    mark(Dirty::moves);
 }
 
 std::size_t AbstractAccel::n_instances() const {
@@ -244,7 +291,15 @@ const AbstractAccel::BuiltGeometry& AbstractAccel::built_geometry(AccelHandle ha
 }
 
 const Buffer& AbstractAccel::geometry_block(AccelHandle handle) const { return live(handle, "geometry block").block; }
-const Geometry& AbstractAccel::geometry(AccelHandle handle) const { return live(handle, "geometry").geometry; }
+
+Geometry AbstractAccel::geometry(AccelHandle handle) const {
+    const Placement& placement = live(handle, "geometry");
+    Geometry geometry = placement.geometry;
+    if (!placement.vertices.device_wrote) return geometry;
+    geometry.positions = download<vec3>(context_, placement.vertices.positions, geometry.positions.size());
+    geometry.non_finite_triangles = count_non_finite_triangles({geometry.name, geometry.positions, geometry.triangles});
+    return geometry;
+}
 
 const AbstractAccel::BuiltScene& AbstractAccel::built_scene() const {
     if (!scene_) fail(name_, ": the scene is not built yet; call sync() first");
@@ -255,13 +310,6 @@ std::vector<Capability> AbstractAccel::capabilities() const {
     std::vector<Capability> all;
     for (std::size_t i = 0; i < feature_count; ++i) all.push_back(capability(static_cast<Feature>(i)));
     return all;
-}
-
-std::uint64_t AbstractAccel::structure_bytes() const {
-    std::uint64_t bytes = scene_ ? scene_->bytes : 0;
-    for (const auto& [id, placement] : placements_)
-        if (placement.built) bytes += placement.built->bytes;
-    return bytes;
 }
 
 }  // namespace twinray

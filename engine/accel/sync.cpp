@@ -1,11 +1,31 @@
 // SPDX-License-Identifier: MIT
 // The one place that builds: stage records everything, commit takes it over once it is certain to run.
+#include <algorithm>
 #include <utility>
 
 #include "engine/accel/abstract_accel.h"
 #include "engine/core/error.h"
 
 namespace twinray {
+
+// Geometries of which the same is wanted.
+struct AbstractAccel::Work {
+    std::vector<Placement*> placements;
+    std::vector<GeometryInput> inputs;
+
+    void add(Placement& placement, const GeometryInput& input) {
+        placements.push_back(&placement);
+        inputs.push_back(input);
+    }
+};
+
+void AbstractAccel::Staged::add(const Work& work, std::vector<std::unique_ptr<BuiltGeometry>>&& done) {
+    for (std::size_t i = 0; i < done.size(); ++i) {
+        if (!done[i]) continue;  // what it had was adapted
+        building.push_back(work.placements[i]);
+        built.push_back(std::move(done[i]));
+    }
+}
 
 SyncPoint AbstractAccel::sync() {
     if (dirty_ == Dirty::no) return synced_;
@@ -34,29 +54,58 @@ AbstractAccel::Staged AbstractAccel::stage(Commands& commands) {
     return staged;
 }
 
+void AbstractAccel::stage_vertices(Commands& commands, Staged& staged) {
+    std::vector<VertexArrays::Item> moved;
+    for (auto& [id, placement] : placements_)
+        if (placement.vertices.edited) moved.push_back({&placement.geometry, &placement.vertices});
+    staged.vertices = vertices_.stage(commands, std::move(moved));
+}
+
 void AbstractAccel::stage_geometries(Commands& commands, Staged& staged) {
-    std::vector<GeometryInput> inputs;
+    stage_vertices(commands, staged);
+    Work builds, refits, compactions;
     for (auto& [id, placement] : placements_) {
-        if (placement.built) continue;
-        staged.building.push_back(&placement);
-        inputs.push_back({&placement.geometry, &placement.block});
+        GeometryInput input{&placement.geometry, &placement.block, {}, placement.built.get(), {}};
+        const bool is_refit = placement.vertices.edited && placement.built && !has_degraded(placement.vertices.costs);
+        if (placement.vertices.edited) {
+            input.mesh = staged.vertices.mesh(staged.is_rebuilt.size());
+            input.cost = staged.vertices.cost_target(staged.is_rebuilt.size());
+            staged.is_rebuilt.push_back(!is_refit);
+        }
+        if (is_refit)
+            refits.add(placement, input);
+        else if (!placement.built || placement.vertices.edited)
+            builds.add(placement, input);
+        else if (is_compactable(placement))
+            compactions.add(placement, input);
     }
-    staged.built = build_geometries(commands, inputs);
+    staged.add(builds, build_geometries(commands, builds.inputs));
+    staged.add(refits, refit_geometries(commands, refits.inputs));
+    staged.add(compactions, compact_geometries(commands, compactions.inputs));
 }
 
 void AbstractAccel::stage_scene(Commands& commands, Staged& staged) {
-    staged.has_moved = has_moved_ || (scene_ && dirty_ == Dirty::transforms);
+    staged.has_moved = has_moved_ || (scene_ && dirty_ == Dirty::moves);
     const SceneInput input{staged.instances.records, static_cast<uint>(staged.instances.count), bound_.result(),
-                           staged.has_moved};
-    // The first move rebuilds: nothing is paid for refits before.
-    if (scene_ && has_moved_ && dirty_ == Dirty::transforms)
-        refit_scene(commands, input, *scene_);
-    else
+                           staged.has_moved, scene_costs_.target()};
+    // The first move rebuilds: nothing is paid for refits before. So does a geometry that was built anew: its instances
+    // may have been inactive before, which a refit cannot change.
+    staged.is_scene_built =
+        !scene_ || !has_moved_ || dirty_ != Dirty::moves || !staged.built.empty() || has_degraded(scene_costs_);
+    if (staged.is_scene_built)
         staged.scene = build_scene(commands, input, scene_.get());
+    else
+        refit_scene(commands, input, *scene_);
 }
 
 void AbstractAccel::commit(Staged&& staged, SyncPoint done) {
-    for (std::size_t i = 0; i < staged.building.size(); ++i) staged.building[i]->built = std::move(staged.built[i]);
+    for (std::size_t i = 0; i < staged.building.size(); ++i) {
+        staged.building[i]->built = std::move(staged.built[i]);
+        staged.building[i]->built_at = done;
+    }
+    const std::vector<VertexSlice*> moved = VertexArrays::commit(std::move(staged.vertices));
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i]->costs.commit(staged.is_rebuilt[i], done);
+    scene_costs_.commit(staged.is_scene_built, done);
     has_moved_ = staged.has_moved;
     revision_ += dirty_ == Dirty::structure;
     if (dirty_ == Dirty::structure) features_ = features_of_placements();

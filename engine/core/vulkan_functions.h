@@ -46,6 +46,7 @@
     F(vkDestroyQueryPool)           \
     F(vkGetQueryPoolResults)        \
     F(vkCmdResetQueryPool)          \
+    F(vkCmdCopyQueryPoolResults)    \
     F(vkCmdWriteTimestamp)          \
     F(vkCreateShaderModule)         \
     F(vkDestroyShaderModule)        \
@@ -65,14 +66,16 @@
     F(vkGetBufferDeviceAddress)
 
 // Present only with VK_KHR_acceleration_structure and VK_KHR_ray_tracing_pipeline.
-#define TWINRAY_RAY_TRACING_FUNCTIONS(F)          \
-    F(vkCreateAccelerationStructureKHR)           \
-    F(vkDestroyAccelerationStructureKHR)          \
-    F(vkGetAccelerationStructureBuildSizesKHR)    \
-    F(vkGetAccelerationStructureDeviceAddressKHR) \
-    F(vkCmdBuildAccelerationStructuresKHR)        \
-    F(vkCreateRayTracingPipelinesKHR)             \
-    F(vkGetRayTracingShaderGroupHandlesKHR)       \
+#define TWINRAY_RAY_TRACING_FUNCTIONS(F)             \
+    F(vkCreateAccelerationStructureKHR)              \
+    F(vkDestroyAccelerationStructureKHR)             \
+    F(vkGetAccelerationStructureBuildSizesKHR)       \
+    F(vkGetAccelerationStructureDeviceAddressKHR)    \
+    F(vkCmdBuildAccelerationStructuresKHR)           \
+    F(vkCmdWriteAccelerationStructuresPropertiesKHR) \
+    F(vkCmdCopyAccelerationStructureKHR)             \
+    F(vkCreateRayTracingPipelinesKHR)                \
+    F(vkGetRayTracingShaderGroupHandlesKHR)          \
     F(vkCmdTraceRaysKHR)
 
 namespace twinray {

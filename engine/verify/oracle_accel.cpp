@@ -79,6 +79,7 @@ Capability OracleAccel::capability(Feature feature) const {
         case Feature::filters: return {feature, Support::unsupported, "the host runs no GPU code"};
         case Feature::kernel_queries:
         case Feature::save_and_load: return {feature, Support::unsupported, "nothing is built on the device"};
+        case Feature::refit_vertices: return {feature, Support::emulated, "from the host, by building anew"};
         case Feature::level_fast:
         case Feature::level_watertight:
         case Feature::level_refined:
@@ -123,6 +124,16 @@ std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> OracleAccel::build_ge
         built.push_back(std::move(made));
     }
     return built;
+}
+
+// The host's vertices are the latest: those in device memory are refused.
+std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> OracleAccel::refit_geometries(
+    Commands& commands, std::span<const GeometryInput> inputs) {
+    return build_geometries(commands, inputs);
+}
+
+BuildBytes OracleAccel::scene_bytes(std::size_t count, std::size_t) const {
+    return {std::max<std::size_t>(count, 1) * sizeof(InstanceRecord), 0};
 }
 
 std::unique_ptr<AbstractAccel::BuiltScene> OracleAccel::build_scene(Commands& commands, const SceneInput& input,

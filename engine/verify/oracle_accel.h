@@ -30,6 +30,11 @@ class OracleAccel final : public AbstractAccel {
     class OracleProgram;
     std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
                                                                  std::span<const GeometryInput> inputs) override;
+    std::vector<std::unique_ptr<BuiltGeometry>> refit_geometries(Commands& commands,
+                                                                 std::span<const GeometryInput> inputs) override;
+    BuildBytes geometry_bytes(std::span<const GeometrySize>) const override { return {}; }
+    BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
+    bool works_on_device() const override { return false; }
     std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
                                             const BuiltScene* current) override;
     void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;

@@ -1,23 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A box around all usable instances, and how many are not: a tree in workgroup memory, then atomics; the last group
-// writes the result.
+// A box around all usable instances, and how many are not.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/world_bound.h"
+#include "shaders/engine/group_box.glsl"
 layout(local_size_x = WORLD_BOUND_GROUP) in;
 layout(push_constant, scalar) uniform Push { WorldBoundArgs args; };
-
-shared vec3 group_lo[WORLD_BOUND_GROUP];
-shared vec3 group_hi[WORLD_BOUND_GROUP];
-
-GeometryBox no_box()
-{
-    GeometryBox box;
-    box.lo = vec3(uintBitsToFloat(0x7f800000u));
-    box.hi = vec3(uintBitsToFloat(0xff800000u));
-    return box;
-}
 
 GeometryBox box_of(InstanceRecord record)
 {
@@ -33,44 +21,17 @@ GeometryBox box_of(InstanceRecord record)
     return box_in_world(box, to_world);
 }
 
-void add_group(GeometryBox box)
-{
-    uint thread = gl_LocalInvocationIndex;
-    group_lo[thread] = box.lo;
-    group_hi[thread] = box.hi;
-    barrier();
-    for (uint stride = WORLD_BOUND_GROUP / 2u; stride > 0u; stride /= 2u)
-    {
-        if (thread < stride)
-        {
-            group_lo[thread] = min(group_lo[thread], group_lo[thread + stride]);
-            group_hi[thread] = max(group_hi[thread], group_hi[thread + stride]);
-        }
-        barrier();
-    }
-    if (thread >= 3u) return;
-    atomicMin(AT(args.bits, 0).lo[thread], ordered_bits(group_lo[0][thread]));
-    atomicMax(AT(args.bits, 0).hi[thread], ordered_bits(group_hi[0][thread]));
-}
-
 void main()
 {
     if (group_index() >= args.group_count) return;
     uint index = global_index();
     GeometryBox box = no_box();
     if (index < args.count) box = box_of(AT(args.records, index));
-    add_group(box);
-    memoryBarrierBuffer();
-    barrier();
-    if (gl_LocalInvocationIndex != 0u) return;
-    if (atomicAdd(AT(args.bits, 0).groups_done, 1u) + 1u != args.group_count) return;
-    memoryBarrierBuffer();
+    if (!add_box(args.bits, args.group_count, box)) return;
+    GeometryBox whole = whole_box(args.bits);
     WorldBound bound;
-    for (uint axis = 0u; axis < 3u; axis++)
-    {
-        bound.lo[axis] = from_ordered_bits(atomicAdd(AT(args.bits, 0).lo[axis], 0u));
-        bound.hi[axis] = from_ordered_bits(atomicAdd(AT(args.bits, 0).hi[axis], 0u));
-    }
+    bound.lo = whole.lo;
+    bound.hi = whole.hi;
     bound.unusable_count = atomicAdd(AT(args.bits, 0).unusable_count, 0u);
     bound.reserved = 0u;
     AT(args.result, 0) = bound;

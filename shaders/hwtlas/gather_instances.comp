@@ -3,7 +3,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/world_bound.h"
+#include "shaders/shared/surface_area.h"
 #include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_build.h"
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { HwGatherArgs args; };
 
@@ -18,6 +20,17 @@ void main()
     HwGeometry geometry = AT(REF(HwGeometry)(record.geometry), 0);
     Rows to_world = to_world_of(record);
     bool usable = is_usable(to_world, inverse_of(to_world));
+    AreaItem area = no_area();
+    if (usable && geometry.lo.x <= geometry.hi.x)
+    {
+        GeometryBox box;
+        box.lo = geometry.lo;
+        box.hi = geometry.hi;
+        box = box_in_world(box, to_world);
+        area.lo = box.lo;
+        area.hi = box.hi;
+    }
+    AT(args.areas, place) = area;
     record.geometry = usable ? geometry.blas : 0ul;
     record.sbt_offset_flags |= geometry.kind; // the hit group of a pipeline
     AT(args.driver_records, place) = record;

@@ -126,6 +126,15 @@ struct RefitArgs
     uint reserved;
 };
 
+struct RefitTrianglesArgs
+{
+    REF(BuildTree) trees;
+    REF(BuildBlock) blocks;
+    REF(LeafBox) boxes; // by place in the tree's order
+    uint block_count;
+    uint reserved;
+};
+
 struct EncodeTrianglesArgs
 {
     REF(BuildTree) trees;
@@ -152,11 +161,6 @@ FUNC vec3 center_of(LeafBox box)
     PRECISE vec3 half_hi = box.hi * 0.5f;
     PRECISE vec3 center = half_lo + half_hi;
     return center;
-}
-
-FUNC vec3 load_position(Floats positions, uint vertex)
-{
-    return vec3(AT(positions, vertex * 3u), AT(positions, vertex * 3u + 1u), AT(positions, vertex * 3u + 2u));
 }
 
 FUNC bool has_boxes(BuildTree tree) { return uint64_t(tree.indices) == 0ul; }
@@ -197,6 +201,16 @@ FUNC LeafBox box_of_primitive(BuildTree tree, uint primitive)
     box.lo = fetched.v0;
     box.hi = fetched.v1;
     return box;
+}
+
+// A triangle as traversal wants it.
+FUNC BvhTriangle without_inactive_corners(BvhTriangle t)
+{
+    if (is_active_triangle(t.v0, t.v1, t.v2)) return t;
+    t.v0 = vec3(0.0f);
+    t.v1 = vec3(0.0f);
+    t.v2 = vec3(0.0f);
+    return t;
 }
 
 // A box around object_to_world applied to the box (lo, hi), widened by the rounding of this arithmetic and by how far

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the hardware accelerator leaves on the device and what the kernels that build from it take. Needs ray.h and world_bound.h before it.
+// What the hardware accelerator leaves on the device. Needs ray.h and world_bound.h before it.
 #ifndef TWINRAY_SHARED_HW_SCENE_H
 #define TWINRAY_SHARED_HW_SCENE_H
 
@@ -38,17 +38,6 @@ struct HwCodesArgs
     REF(WorldBound) bound;
     Uints keys;
     Uints order;
-    uint count;
-    uint reserved;
-};
-
-// What the driver builds from: the records in their build order, each with the address of its bottom-level structure.
-struct HwGatherArgs
-{
-    REF(InstanceRecord) records;
-    Uints order;                // null: the order that `instances` has already
-    REF(InstanceRecord) driver_records;
-    REF(HwInstance) instances;  // null: the records keep their order
     uint count;
     uint reserved;
 };

@@ -83,4 +83,10 @@ FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c)
              is_flat(vec2(a.y, a.z), vec2(b.y, b.z), vec2(c.y, c.z)) &&
              is_flat(vec2(a.z, a.x), vec2(b.z, b.x), vec2(c.z, c.x)));
 }
+
+// Of 3 tightly packed floats a vertex.
+FUNC vec3 load_position(Floats positions, uint vertex)
+{
+    return vec3(AT(positions, vertex * 3u), AT(positions, vertex * 3u + 1u), AT(positions, vertex * 3u + 2u));
+}
 #endif

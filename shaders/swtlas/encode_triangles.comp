@@ -14,12 +14,7 @@ void main()
     if (gl_LocalInvocationIndex >= block.count) return;
     uint position = block.first + gl_LocalInvocationIndex;
     BuildTree tree = AT(args.trees, block.tree);
-    BvhTriangle triangle = fetch_primitive(tree, AT(args.order, position) - tree.first);
-    if (!has_boxes(tree) && !is_active_triangle(triangle.v0, triangle.v1, triangle.v2))
-    {
-        triangle.v0 = vec3(0.0f);
-        triangle.v1 = vec3(0.0f);
-        triangle.v2 = vec3(0.0f);
-    }
-    AT(tree.triangles, position - tree.first) = triangle;
+    BvhTriangle fetched = fetch_primitive(tree, AT(args.order, position) - tree.first);
+    if (!has_boxes(tree)) fetched = without_inactive_corners(fetched);
+    AT(tree.triangles, position - tree.first) = fetched;
 }

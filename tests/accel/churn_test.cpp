@@ -46,6 +46,8 @@ class Churn : public test::AccelTest {
     void move_one();
     void move_by_device();
     void move();
+    std::vector<vec3> random_positions(const Mesh& mesh);
+    void move_vertices();
     void edit();
     void aim_at_triangles(const Scene& scene, std::vector<Ray>& rays);
     void expect_exact_counts();
@@ -58,6 +60,7 @@ class Churn : public test::AccelTest {
     std::mt19937 random_{20'261'121};
     std::uniform_real_distribution<float> unit_{-1, 1};
     std::vector<Placed> placed_;
+    std::size_t vertex_edits_ = 0;
 };
 TWINRAY_OVER_EVERY_ACCEL(Churn);
 
@@ -96,10 +99,33 @@ void Churn::move_by_device() {
     accel().update_transforms(placed.handle, placed.sources.back().ref<Transform>(), placed.transforms.size());
 }
 
+// Most of the time a small change; now and then a corner that is not finite.
+std::vector<vec3> Churn::random_positions(const Mesh& mesh) {
+    std::vector<vec3> positions = mesh.positions;
+    const float size = random_() % 4 == 0 ? 1.0f : 0.05f;
+    for (vec3& position : positions) {
+        position = is_finite(position) ? position : vec3(0);
+        position += size * vec3(unit_(random_), unit_(random_), unit_(random_));
+    }
+    if (!positions.empty() && random_() % 8 == 0) positions[random_() % positions.size()].y = NAN;
+    return positions;
+}
+
+void Churn::move_vertices() {
+    Placed& placed = any_placed();
+    placed.mesh.positions = random_positions(placed.mesh);
+    ++vertex_edits_;
+    if (placed.mesh.positions.empty() || random_() % 2 == 0)
+        return accel().update_vertices(placed.handle, placed.mesh.positions);
+    placed.sources.push_back(device_copy(placed.mesh.positions));
+    accel().update_vertices(placed.handle, placed.sources.back().ref<float>(), placed.mesh.positions.size());
+}
+
 void Churn::move() {
-    const auto kind = random_() % 3;
+    const auto kind = random_() % 5;
     if (kind == 0) return move_by_host();
     if (kind == 1) return move_one();
+    if (kind > 2) return move_vertices();
     move_by_device();
 }
 
@@ -170,19 +196,62 @@ TEST_P(Churn, TenThousandEditsInAThousandSyncsAgreeWithTheReferee) {
     accel().sync();
     accel().sync();
     EXPECT_EQ(memory(), before) << "bytes in live allocations";
+    EXPECT_GT(vertex_edits_, 2000u);
+}
+
+// Against what the allocator has handed out, which rounds each buffer up.
+TEST_P(Churn, MemoryIsToldBeforeAndAfterItIsTaken) {
+    accel().sync();
+    const std::uint64_t empty = memory() - accel().memory_usage().total();
+    std::vector<GeometrySize> sizes;
+    std::size_t buffers = 8, instances = 0;
+    for (const uint count : {1u, 100u, 3000u}) {
+        placed_.push_back({{}, make_soup(count, count), random_transforms(count)});
+        placed_.back().handle = accel().push(placed_.back().mesh, placed_.back().transforms);
+        sizes.push_back({placed_.back().mesh.positions.size(), count});
+        instances += count;
+        buffers += 4;
+    }
+    const BuildBytes needed = accel().memory_requirements();
+    const std::unique_ptr<AbstractAccel> fresh = make_accel();
+    for (const Placed& placed : placed_) fresh->push(placed.mesh, placed.transforms);
+    EXPECT_EQ(accel().memory_requirements(sizes, instances).structures, fresh->memory_requirements().structures);
+    accel().sync();
+    EXPECT_EQ(accel().memory_usage().structures(), needed.structures);
+    EXPECT_GT(needed.scratch, instances * sizeof(uint));
+    EXPECT_EQ(accel().memory_requirements().structures, 0u) << "everything is built";
+    const auto expect_told = [&](const char* when) {
+        const std::uint64_t told = empty + accel().memory_usage().total(), held = memory();
+        EXPECT_GE(held + 64, told) << when;
+        EXPECT_LE(held, told + 256 * buffers) << when;
+    };
+    expect_told("built");
+    EXPECT_EQ(accel().memory_usage().vertices, 0u);
+    accel().update_vertices(placed_[2].handle, placed_[2].mesh.positions);
+    accel().sync();
+    EXPECT_GE(accel().memory_usage().vertices, 3000u * 4 * sizeof(vec3));
+    expect_told("moved");
+    const std::uint64_t large = accel().memory_usage().scene;
+    accel().erase(placed_[2].handle);
+    accel().sync();
+    EXPECT_LT(accel().memory_usage().scene, large / 10) << "the top level shrinks";
+    expect_told("erased");
 }
 
 TEST_P(Churn, FiveHundredMovesKeepEverythingInPlace) {
     for (int i = 0; i < 8; ++i) push();
     accel().sync();
     move_by_host();
+    for (Placed& placed : placed_) accel().update_vertices(placed.handle, placed.mesh.positions);
     closest(test::down(0, 0));
     const AccelView view = accel().view();
     const std::uint64_t before = memory();
     for (int round = 0; round < 500; ++round) {
         move_by_host();
         move_one();
+        move_vertices();
         accel().sync();
+        for (Placed& placed : placed_) placed.sources.clear();
         ASSERT_EQ(accel().view().scene, view.scene);
         ASSERT_EQ(accel().revision(), view.revision);
         if (round % 25 != 0) continue;

@@ -206,6 +206,42 @@ TEST_P(Faults, TheSyncOfAMove) {
     check_end(moved);
 }
 
+// The first time it builds what can be refitted, from then on it refits in place.
+TEST_P(Faults, TheSyncOfMovedVertices) {
+    World deformed = world();
+    deformed.push_base();
+    for (const Memory where : {Memory::upload, Memory::device})
+        for (const bool is_first : {true, false}) {
+            const auto next = [&]() -> World& {
+                if (is_first) deformed.renew_tower();
+                deformed.sync();
+                deformed.deform(where);
+                return deformed;
+            };
+            fail_every_call(next, [](World& w) { w.sync(); });
+        }
+    check_end(deformed);
+}
+
+// On a driver that asks for more memory than it needs.
+TEST_P(Faults, TheSyncThatCompacts) {
+    faults().set_structure_slack(GetParam() == Kind::software ? 0 : 4097);
+    World compacted = world();
+    compacted.push_base();
+    bool was_compacted = false;
+    const auto next = [&]() -> World& {
+        compacted.renew_tower();
+        compacted.sync();
+        compacted.context().wait_for_gpu();
+        was_compacted = compacted.accel().compact();
+        compacted.move();
+        return compacted;
+    };
+    fail_every_call(next, [](World& w) { w.sync(); });
+    EXPECT_EQ(was_compacted, GetParam() != Kind::software);
+    check_end(compacted);
+}
+
 TEST_P(Faults, Pushing) {
     World pushed = world();
     pushed.push_base();

@@ -39,6 +39,7 @@ World::World(test::FaultInjector& faults, test::Kind kind, const ContextDesc& de
 
 void World::destroy() {
     accel_.reset();
+    vertices_ = {};
     context_.reset();
 }
 
@@ -58,19 +59,38 @@ void World::push_base() {
 void World::edit() {
     move();
     accel().erase(guest_);
-    guest_height_ = tower_height_;
+    guest_height_ = tower_height();
     guest_ = accel().push(make_box(vec3(6, 0, 0), vec3(7, 1, guest_height_)));
 }
 
 void World::move() {
-    tower_height_ = 1 + std::fmod(tower_height_, 5.0f);
-    accel().update_transform(tower_, Transform::translation({4, 0, tower_height_ - 1}));
+    tower_lift_ = std::fmod(tower_lift_ + 1, 5.0f);
+    accel().update_transform(tower_, Transform::translation({4, 0, tower_lift_}));
+}
+
+void World::renew_tower() {
+    tower_top_ = 1;
+    accel().update(tower_, make_box(vec3(0), vec3(1)));
+}
+
+void World::deform(Memory where) {
+    tower_top_ = 1 + std::fmod(tower_top_, 4.0f);
+    const std::vector<vec3> positions = make_box(vec3(0), vec3(1, 1, tower_top_)).positions;
+    if (where == Memory::upload) return accel().update_vertices(tower_, positions);
+    vertices_ = Buffer(context(), {.name = "vertices", .bytes = std::span(positions).size_bytes()});
+    Commands commands(context(), "vertices");
+    {
+        const auto pass = commands.pass("vertices");
+        commands.upload(vertices_, std::span(positions));
+    }
+    commands.submit();
+    accel().update_vertices(tower_, vertices_.ref<float>(), positions.size());
 }
 
 void World::push_aside() { accel().push(make_box(vec3(20, 0, 0), vec3(21, 1, 1))); }
 
 std::vector<float> World::expected() const {
-    return {10, 10, 10 - tower_height_, guest_height_ > 0 ? 10 - guest_height_ : -1, -1};
+    return {10, 10, 10 - tower_height(), guest_height_ > 0 ? 10 - guest_height_ : -1, -1};
 }
 
 void World::sync() {
@@ -108,7 +128,7 @@ World::State World::state() {
     state.n_instances = accel().n_instances();
     state.n_geometries = accel().n_geometries();
     state.revision = accel().revision();
-    state.structure_bytes = accel().structure_bytes();
+    state.structure_bytes = accel().memory_usage().structures();
     state.has_floor = accel().is_valid(floor_);
     state.has_tower = accel().is_valid(tower_);
     state.has_guest = accel().is_valid(guest_);

@@ -31,7 +31,9 @@ class World {
     void push_base();
     void edit();
     void move();
-    void push_aside();  // where no ray comes
+    void renew_tower();         // another mesh, whose vertices have not moved
+    void deform(Memory where);  // the tower's vertices, from the host (upload) or from the device
+    void push_aside();          // where no ray comes
     void sync();
     std::uint64_t synced_revision() const { return view_.revision; }
     // Fails the test unless the hits are those of the scene as edited, or as last synced.
@@ -53,13 +55,15 @@ class World {
 
   private:
     std::vector<float> expected() const;
+    float tower_height() const { return tower_lift_ + tower_top_; }
 
     test::FaultInjector& faults_;
     std::vector<std::string> log_;
     std::unique_ptr<Context> context_;
     std::unique_ptr<AbstractAccel> accel_;
     AccelHandle floor_, tower_, guest_;
-    float tower_height_ = 1, guest_height_ = 0;
+    float tower_lift_ = 0, tower_top_ = 1, guest_height_ = 0;
+    Buffer vertices_;
     AccelView view_;  // of the last sync, with the hits of then
     std::vector<float> view_expected_;
 };

@@ -47,6 +47,7 @@ TWINRAY_OVER_EVERY_ACCEL(Sync);
 
 TEST_P(Sync, NeverWaitsWhileTheQueueIsBusy) {
     const AccelHandle mover = accel().push(square(0), std::vector<Transform>(100));
+    const AccelHandle shaken = accel().push(make_icosphere(3), Transform::translation({20, 0, 0}));
     accel().sync();
     accel().update_transforms(mover, std::vector<Transform>(100));
     context().wait(accel().sync());
@@ -60,6 +61,7 @@ TEST_P(Sync, NeverWaitsWhileTheQueueIsBusy) {
         if (i % 20 == 15) accel().erase(pushed.front());
         accel().update_transform_at(mover, static_cast<std::size_t>(i),
                                     Transform::translation({3, 0, static_cast<float>(i)}));
+        if (i % 4 == 0) accel().update_vertices(shaken, make_icosphere(3).positions);
         const auto start = Clock::now();
         accel().sync();
         times.push_back(microseconds_since(start));
@@ -69,7 +71,9 @@ TEST_P(Sync, NeverWaitsWhileTheQueueIsBusy) {
     std::printf("100 syncs behind a busy queue: median %.0f, 95 %% below %.0f, longest %.0f microseconds\n", times[50],
                 times[95], times[99]);
     EXPECT_LT(times[50], 50'000);
+    EXPECT_LT(times[99], 1'000'000) << "one of them waited";
     EXPECT_EQ(accel().world_bound_if_ready(), std::nullopt);
+    EXPECT_EQ(accel().sah_if_ready(), std::nullopt);
     EXPECT_EQ(closest(down(3.5f, 0.25f)).hit, 1u);
     EXPECT_EQ(accel().world_bound().hi.z, 99.0f);
     EXPECT_TRUE(context().is_reached(busy));
@@ -87,6 +91,40 @@ TEST_P(Sync, ACleanOneIsFree) {
     EXPECT_LT(each, 1);
     EXPECT_EQ(allocated_bytes(context().allocator()), bytes);
     EXPECT_EQ(context().last_submission().value, done.value);
+}
+
+// What is in use while the GPU has not built yet; then what the rays hit.
+TEST_P(Sync, TheScratchBudgetBoundsWhatABuildTakes) {
+    std::vector<Mesh> meshes;
+    for (uint i = 0; i < 60; ++i) meshes.push_back(make_soup(1000 + i, i));
+    std::uint64_t in_flight[3][2];
+    std::vector<Hit> hits[3];
+    constexpr std::uint64_t budgets[] = {0, 1 << 20, UINT64_MAX};
+    EXPECT_EQ(accel().scratch_budget(), std::uint64_t{64 << 20});
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::unique_ptr<AbstractAccel> built = make_accel();
+        built->set_scratch_budget(budgets[i]);
+        EXPECT_EQ(built->scratch_budget(), budgets[i]);
+        std::vector<AccelHandle> handles;
+        for (const Mesh& mesh : meshes) handles.push_back(built->push(mesh));
+        for (const std::size_t step : {0u, 1u}) {
+            context().wait_for_gpu();
+            const SyncPoint busy = occupy_queue();
+            built->sync();
+            in_flight[i][step] = allocated_bytes(context().allocator());
+            EXPECT_FALSE(context().is_reached(busy)) << "the queue was not busy for long enough to show anything";
+            for (std::size_t k = 0; k < meshes.size(); ++k) built->update_vertices(handles[k], meshes[k].positions);
+        }
+        std::vector<Ray> rays;
+        for (int k = 0; k < 500; ++k)
+            rays.push_back(down(static_cast<float>(k % 25) / 25, static_cast<float>(k) / 500));
+        hits[i] = built->closest_hits(rays);
+        EXPECT_TRUE(std::memcmp(hits[i].data(), hits[0].data(), hits[0].size() * sizeof(Hit)) == 0) << budgets[i];
+    }
+    for (const std::size_t step : {0u, 1u}) {
+        EXPECT_LE(in_flight[1][step], in_flight[0][step] + budgets[1]);
+        EXPECT_TRUE(!is_ours() || in_flight[2][step] > in_flight[1][step]);
+    }
 }
 
 TEST_P(Sync, BuildsAndTracesInTheCallersCommandBufferOnTheCallersTimeline) {

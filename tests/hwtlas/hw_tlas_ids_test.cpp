@@ -136,7 +136,7 @@ TEST_F(HwTlasOrder, ChangesNoBitOfTheHitsAndCostsNothingWhenOff) {
     const std::vector<Hit> expected = kept.closest_hits(rays), found = sorted.closest_hits(rays);
     for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_TRUE(same_bytes(found[i], expected[i])) << "ray " << i;
     // 4 bytes per triangle of each mesh and 16 per instance are the two tables; nothing else may differ.
-    EXPECT_EQ(sorted.structure_bytes() - kept.structure_bytes(), 2 * 1000 * 4 + 16 * 16u);
+    EXPECT_EQ(sorted.memory_usage().structures() - kept.memory_usage().structures(), 2 * 1000 * 4 + 16 * 16u);
 }
 
 }  // namespace

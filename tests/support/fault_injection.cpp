@@ -121,15 +121,43 @@ TWINRAY_CREATING(TWINRAY_TAG)
 TWINRAY_DESTROYING(TWINRAY_TAG)
 #undef TWINRAY_TAG
 
+PFN_vkGetAccelerationStructureBuildSizesKHR real_build_sizes = nullptr;
+PFN_vkCreateAccelerationStructureKHR wrapped_create_structure = nullptr;
+
+// More than the driver wants, of which the driver is not told: it finds that a compacted copy needs less.
+void VKAPI_PTR generous_build_sizes(VkDevice device, VkAccelerationStructureBuildTypeKHR type,
+                                    const VkAccelerationStructureBuildGeometryInfoKHR* info,
+                                    const std::uint32_t* counts, VkAccelerationStructureBuildSizesInfoKHR* sizes) {
+    real_build_sizes(device, type, info, counts, sizes);
+    sizes->accelerationStructureSize = active->with_slack(sizes->accelerationStructureSize);
+}
+
+VkResult VKAPI_PTR create_structure_without_slack(VkDevice device, const VkAccelerationStructureCreateInfoKHR* info,
+                                                  const VkAllocationCallbacks* callbacks,
+                                                  VkAccelerationStructureKHR* structure) {
+    VkAccelerationStructureCreateInfoKHR real = *info;
+    real.size = active->without_slack(info->size);
+    return wrapped_create_structure(device, &real, callbacks, structure);
+}
+
 // The wrapper of a function, or the function itself where there is none.
 PFN_vkVoidFunction around(std::string_view name, PFN_vkVoidFunction real) {
     if (!real) return nullptr;
+    if (name == "vkCreateAccelerationStructureKHR") {
+        wrapped_create_structure = reinterpret_cast<PFN_vkCreateAccelerationStructureKHR>(
+            wrapped<Tag_vkCreateAccelerationStructureKHR, PFN_vkCreateAccelerationStructureKHR>(real));
+        return reinterpret_cast<PFN_vkVoidFunction>(&create_structure_without_slack);
+    }
 #define TWINRAY_WRAP(function, ...) \
     if (name == #function) return wrapped<Tag_##function, PFN_##function>(real);
     TWINRAY_FALLIBLE(TWINRAY_WRAP)
     TWINRAY_CREATING(TWINRAY_WRAP)
     TWINRAY_DESTROYING(TWINRAY_WRAP)
 #undef TWINRAY_WRAP
+    if (name == "vkGetAccelerationStructureBuildSizesKHR") {
+        real_build_sizes = reinterpret_cast<PFN_vkGetAccelerationStructureBuildSizesKHR>(real);
+        return reinterpret_cast<PFN_vkVoidFunction>(&generous_build_sizes);
+    }
     return real;
 }
 
@@ -183,6 +211,15 @@ VkResult FaultInjector::enter(const Function& function) {
     failed_ = function.name;
     if (fault_.result == VK_ERROR_DEVICE_LOST) wait_for_devices();
     return fault_.result == VK_ERROR_UNKNOWN ? function.error : fault_.result;
+}
+
+std::uint64_t FaultInjector::with_slack(std::uint64_t bytes) {
+    if (structure_slack_) generous_.insert(bytes + structure_slack_);
+    return bytes + structure_slack_;
+}
+
+std::uint64_t FaultInjector::without_slack(std::uint64_t bytes) const {
+    return generous_.contains(bytes) ? bytes - structure_slack_ : bytes;
 }
 
 void FaultInjector::wait_for_devices() const {

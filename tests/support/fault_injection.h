@@ -44,6 +44,10 @@ class FaultInjector {
     std::uint64_t injected() const { return injected_; }   // that failed, since inject()
     const std::string& failed() const { return failed_; }  // the function that failed last, since inject()
 
+    // A driver that asks for so many bytes more for each acceleration structure than it uses, as drivers do whose
+    // structures can be compacted. Once, before the first structure; odd, so that no size is told both ways.
+    void set_structure_slack(std::uint64_t bytes) { structure_slack_ = bytes; }
+
     // How many objects are alive, by type ("VkBuffer"); types of which none is are left out. Command buffers go with
     // their pool and are not counted.
     Counts live() const;
@@ -60,6 +64,8 @@ class FaultInjector {
         bool may_lose_device;
     };
     VkResult enter(const Function& function);
+    std::uint64_t with_slack(std::uint64_t bytes);
+    std::uint64_t without_slack(std::uint64_t bytes) const;
     void created(const char* type, void* handle);
     void destroyed(const char* type, void* handle);
 
@@ -70,6 +76,8 @@ class FaultInjector {
     bool armed_ = false;
     Fault fault_;
     std::string function_;
+    std::uint64_t structure_slack_ = 0;
+    std::set<std::uint64_t> generous_;  // sizes told with slack
     std::uint64_t calls_ = 0, injected_ = 0;
     std::string failed_;
     std::set<std::pair<std::string, void*>> live_;

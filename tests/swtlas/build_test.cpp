@@ -77,6 +77,22 @@ TEST_F(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
     for (std::size_t i = 0; i < handles.size(); ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i]);
 }
 
+TEST_F(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
+    std::vector<Mesh> meshes;
+    for (const uint n : {700u, 0u, 1u, 2048u, 3000u, 5u, 257u}) meshes.push_back(make_soup(n, n));
+    for (const std::uint64_t budget : {std::uint64_t{0}, std::uint64_t{200'000}, UINT64_MAX}) {
+        SwTlas accel(context());
+        accel.set_scratch_budget(budget);
+        std::vector<AccelHandle> handles;
+        for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
+        accel.sync();
+        for (std::size_t i = 0; i < meshes.size(); ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i]);
+        for (std::size_t i = 0; i < meshes.size(); ++i) accel.update_vertices(handles[i], meshes[i].positions);
+        accel.sync();
+        for (std::size_t i = 0; i < meshes.size(); ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i]);
+    }
+}
+
 TEST_F(SwBuild, LargeMeshesAreSound) {
     for (const uint n : {100'000u, 1'000'000u}) {
         SwTlas accel(context());
@@ -195,6 +211,62 @@ TEST_F(SwBuild, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
         for (std::size_t i = 0; i < before.nodes.size(); ++i) {
             EXPECT_EQ(after.nodes[i].child0, before.nodes[i].child0);
             EXPECT_EQ(after.nodes[i].child1, before.nodes[i].child1);
+        }
+    }
+}
+
+TEST_F(SwBuild, ARefittedGeometryIsSoundAndKeepsItsTopology) {
+    SwTlas accel(context());
+    std::vector<Mesh> meshes;
+    std::vector<AccelHandle> handles;
+    std::vector<SwTlas::Tree> before;
+    for (const uint n : {1u, 2u, 3u, 255u, 256u, 257u, 1000u}) {
+        meshes.push_back(make_soup(n, n));
+        handles.push_back(accel.push(meshes.back()));
+    }
+    accel.sync();
+    for (const AccelHandle handle : handles) before.push_back(accel.download_geometry(handle));
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        meshes[i].positions = make_soup(static_cast<uint>(meshes[i].triangles.size()), 77).positions;
+        if (i > 3) meshes[i].positions[100].y = NAN;
+        accel.update_vertices(handles[i], meshes[i].positions);
+    }
+    accel.sync();
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const SwTlas::Tree after = accel.download_geometry(handles[i]);
+        expect_sound(after, meshes[i]);
+        std::vector<uint> order;
+        for (const BvhTriangle& triangle : before[i].triangles) order.push_back(triangle.primitive_index);
+        EXPECT_TRUE(
+            same_bytes(after.triangles, reference::encode_triangles(meshes[i].positions, meshes[i].triangles, order)));
+        EXPECT_EQ(after.bvh.nodes.address, before[i].bvh.nodes.address);
+        for (std::size_t node = 0; node < after.nodes.size(); ++node) {
+            EXPECT_EQ(after.nodes[node].child0, before[i].nodes[node].child0);
+            EXPECT_EQ(after.nodes[node].child1, before[i].nodes[node].child1);
+        }
+    }
+}
+
+TEST_F(SwBuild, TheCostOnTheDeviceIsThatOfTheChecker) {
+    for (const uint n : {1u, 2u, 3u, 256u, 257u, 258u, 1000u, 70'000u}) {
+        SwTlas accel(context());
+        Mesh mesh = make_soup(n, 5, 0.1f);
+        const std::vector<Transform> transforms = scattered(std::min(n, 1000u), n);
+        const AccelHandle handle = accel.push(mesh, transforms);
+        accel.sync();
+        EXPECT_EQ(accel.sah(handle), std::nullopt) << "not measured before its vertices move";
+        const SwTlas::Tree top = accel.download_scene();
+        const double expected = check_tree(top.bvh, top.nodes, instance_boxes(mesh, transforms)).sah;
+        EXPECT_NEAR(*accel.sah(), expected, 1e-5 * expected) << n;
+        for (const uint seed : {6u, 7u}) {
+            mesh.positions = make_soup(n, seed, 0.1f).positions;
+            if (n > 3) mesh.positions[5].x = INFINITY;
+            accel.update_vertices(handle, mesh.positions);
+            accel.sync();
+            const SwTlas::Tree tree = accel.download_geometry(handle);
+            const double cost = check_tree(tree.bvh, tree.nodes, boxes_of(tree.triangles, mesh)).sah;
+            EXPECT_NEAR(*accel.sah(handle), cost, 1e-5 * cost) << n;
+            EXPECT_EQ(accel.sah_if_ready(handle), accel.sah(handle));
         }
     }
 }

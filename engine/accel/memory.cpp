@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "engine/accel/memory.h"
+
+#include "engine/accel/abstract_accel.h"
+
+namespace twinray {
+
+MemoryUsage AbstractAccel::memory_usage() const {
+    MemoryUsage usage;
+    if (scene_) usage.scene = scene_->bytes;
+    if (scene_) usage.scratch = scene_->scratch_bytes;
+    usage.instances = instances_.buffer().bytes();
+    for (const auto& [id, placement] : placements_) {
+        usage.blocks += placement.block.bytes();
+        usage.vertices += placement.vertices.bytes();
+        if (placement.built) usage.geometries += placement.built->bytes;
+    }
+    return usage;
+}
+
+BuildBytes AbstractAccel::memory_requirements() const {
+    std::vector<GeometrySize> sizes;
+    for (const auto& [id, placement] : placements_)
+        if (!placement.built)
+            sizes.push_back({placement.geometry.positions.size(), placement.geometry.primitive_count()});
+    BuildBytes bytes = geometry_bytes(sizes);
+    if (dirty_ == Dirty::no) return bytes;
+    const std::size_t count = n_instances(), room = scene_ ? scene_->capacity : 0;
+    const std::size_t capacity = capacity_for(count, room);
+    const BuildBytes scene = scene_bytes(count, capacity);
+    if (capacity != room || !scene_) bytes.structures += scene.structures;
+    bytes.scratch += scene.scratch;
+    return bytes;
+}
+
+BuildBytes AbstractAccel::memory_requirements(std::span<const GeometrySize> geometries,
+                                              std::size_t instance_count) const {
+    const BuildBytes bottom = geometry_bytes(geometries);
+    const BuildBytes top = scene_bytes(instance_count, capacity_for(instance_count, 0));
+    return {bottom.structures + top.structures, bottom.scratch + top.scratch};
+}
+
+}  // namespace twinray

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "hwtlas/moving_blas.h"
+
+#include <cmath>
+#include <utility>
+
+#include "engine/accel/batches.h"
+#include "hwtlas_gather_triangles.spv.h"
+#include "hwtlas_triangle_bound.spv.h"
+#include "hwtlas_triangle_codes.spv.h"
+
+namespace twinray {
+namespace {
+
+constexpr std::uint32_t morton_bits = 30;
+
+KernelDesc kernel(const char* name, std::span<const std::uint32_t> spirv) {
+    return {.name = name, .spirv = spirv, .group_size = WORLD_BOUND_GROUP};
+}
+
+// Three corners of its own for each triangle.
+StructureBuild build_of(const std::string& name, std::uint64_t corners, uint triangle_count) {
+    StructureBuild build = triangle_build(name, corners, 3 * triangle_count, triangle_count);
+    build.geometry.geometry.triangles.indexType = VK_INDEX_TYPE_NONE_KHR;
+    build.flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR;
+    return build;
+}
+
+constexpr std::uint64_t aligned(std::uint64_t bytes) { return (bytes + 15) / 16 * 16; }
+
+struct SortScratch {
+    std::uint64_t address;
+    uint count;
+
+    std::uint64_t part_bytes() const { return aligned(std::uint64_t{count} * sizeof(uint)); }
+    std::uint64_t bytes() const { return 4 * part_bytes() + aligned(RadixSort::counter_bytes(count)); }
+    Uints part(std::uint64_t i) const { return {address + i * part_bytes()}; }
+};
+
+std::uint64_t corner_bytes(uint triangle_count) { return aligned(std::uint64_t{triangle_count} * 3 * sizeof(vec3)); }
+
+AreaWork area_of(const MovingMesh& mesh, BuildMode mode) {
+    return {mesh.triangle_count, {mesh.block->address()}, mesh.cost, mode == BuildMode::build};
+}
+
+StructureWork work_of(const MovingMesh& mesh, BuildMode mode, Floats corners) {
+    return {build_of("", corners.address, mesh.triangle_count), mode, &mesh.blas->structure};
+}
+
+}  // namespace
+
+struct MovingBlasBuilder::Batch {
+    std::vector<HwTrianglesArgs> args;
+    std::vector<SortScratch> sorts;
+    std::vector<AreaWork> areas;
+    std::vector<StructureWork> work;
+    std::uint64_t build_scratch = 0;
+
+    void dispatch(Commands& commands, const Kernel<HwTrianglesArgs>& kernel) const {
+        const auto pass = commands.pass(kernel.name());
+        for (const HwTrianglesArgs& mesh : args) kernel.dispatch_groups(commands, mesh, mesh.group_count);
+    }
+};
+
+MovingBlasBuilder::MovingBlasBuilder(Context& context, bool reorder)
+    : context_(context),
+      reorder_(reorder),
+      sort_(context),
+      areas_(context),
+      bound_(context, kernel("hwtlas_triangle_bound", hwtlas_triangle_bound_spirv)),
+      codes_(context, kernel("hwtlas_triangle_codes", hwtlas_triangle_codes_spirv)),
+      gather_(context, kernel("hwtlas_gather_triangles", hwtlas_gather_triangles_spirv)) {}
+
+Blas MovingBlasBuilder::make(const std::string& name, uint triangle_count) const {
+    Blas blas;
+    blas.can_update = true;
+    const StructureBuild build = build_of(name, 0, triangle_count);
+    blas.structure =
+        AccelerationStructure(context_, build.name, build.type, sizes_of(context_, build).accelerationStructureSize);
+    if (reorder_)
+        blas.original = std::make_shared<const Buffer>(
+            context_, BufferDesc{.name = "blas order " + name, .bytes = std::uint64_t{triangle_count} * sizeof(uint)});
+    return blas;
+}
+
+// In front of it all, with the alignment that the driver wants: its own.
+std::uint64_t MovingBlasBuilder::scratch_bytes(const MovingMesh& mesh, BuildMode mode) const {
+    const uint n = mesh.triangle_count;
+    return scratch_bytes_of(context_, work_of(mesh, mode, {})) + corner_bytes(n) + sizeof(WorldBoundBits) +
+           aligned(area_of(mesh, mode).bytes()) +
+           (reorder_ && mode == BuildMode::build ? SortScratch{0, n}.bytes() : 0);
+}
+
+MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<const MovingMesh> meshes,
+                                                  BuildMode mode, const Buffer& scratch) const {
+    Batch batch;
+    batch.build_scratch = scratch.address();
+    std::uint64_t next = scratch.address();
+    const auto take = [&](std::uint64_t bytes) { return std::exchange(next, next + bytes); };
+    for (const MovingMesh& mesh : meshes) take(scratch_bytes_of(context_, work_of(mesh, mode, {})));
+    const std::uint64_t bits = take(meshes.size() * sizeof(WorldBoundBits));
+    for (const MovingMesh& mesh : meshes) {
+        const uint n = mesh.triangle_count;
+        batch.areas.push_back(area_of(mesh, mode));
+        SurfaceArea::place(take(aligned(batch.areas.back().bytes())), std::span(&batch.areas.back(), 1));
+        if (reorder_ && mode == BuildMode::build) batch.sorts.push_back({take(SortScratch{0, n}.bytes()), n});
+        const Floats corners{take(corner_bytes(n))};
+        batch.work.push_back(work_of(mesh, mode, corners));
+        batch.args.push_back({mesh.mesh.positions,
+                              mesh.mesh.indices,
+                              mesh.block->ref<HwGeometry>(),
+                              {bits + batch.args.size() * sizeof(WorldBoundBits)},
+                              {},
+                              {},
+                              mesh.blas->table(),
+                              corners,
+                              batch.areas.back().items,
+                              n,
+                              (n + WORLD_BOUND_GROUP - 1) / WORLD_BOUND_GROUP});
+    }
+    const WorldBoundBits none{uvec3(ordered_bits(INFINITY)), uvec3(ordered_bits(-INFINITY)), 0, 0};
+    const auto pass = commands.pass("hwtlas blas bounds");
+    commands.upload(scratch, std::span<const WorldBoundBits>(std::vector(meshes.size(), none)),
+                    bits - scratch.address());
+    return batch;
+}
+
+void MovingBlasBuilder::record_order(Commands& commands, Batch& batch) const {
+    for (std::size_t i = 0; i < batch.sorts.size(); ++i) {
+        const SortScratch& sort = batch.sorts[i];
+        HwTrianglesArgs& args = batch.args[i];
+        args.keys = sort.part(0);
+        args.order = sort.part(1);
+        codes_.dispatch(commands, args, args.count);
+        const RadixSort::Pairs sorted =
+            sort_.record(commands, {sort.part(0), sort.part(1)}, {sort.part(2), sort.part(3)}, sort.part(4), args.count,
+                         morton_bits);
+        args.order = sorted.values;
+    }
+}
+
+void MovingBlasBuilder::record_batch(Commands& commands, Batch& batch) const {
+    batch.dispatch(commands, bound_);
+    record_order(commands, batch);
+    batch.dispatch(commands, gather_);
+    areas_.record(commands, std::move(batch.areas));
+    const bool is_update = batch.work.front().mode == BuildMode::update;
+    record_builds(commands, is_update ? "hwtlas_update_blases" : "hwtlas_build_blases", batch.work,
+                  batch.build_scratch);
+}
+
+void MovingBlasBuilder::record(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode,
+                               std::uint64_t scratch_budget) const {
+    if (meshes.empty()) return;
+    if (mode == BuildMode::build) {
+        const auto pass = commands.pass("hwtlas geometry blocks");
+        for (const MovingMesh& mesh : meshes) commands.write(*mesh.block, mesh.blas->block());
+    }
+    std::vector<std::uint64_t> bytes;
+    for (const MovingMesh& mesh : meshes) bytes.push_back(scratch_bytes(mesh, mode));
+    const Batches batches = cut_into_batches(bytes, scratch_budget);
+    Buffer scratch = make_build_scratch(context_, "moving blas scratch", batches.scratch_bytes);
+    for (const Batches::Run& run : batches.runs) {
+        Batch batch = begin(commands, meshes.subspan(run.first, run.count), mode, scratch);
+        record_batch(commands, batch);
+    }
+    commands.keep(std::move(scratch));
+}
+
+}  // namespace twinray

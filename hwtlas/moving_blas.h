@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "engine/accel/vertices.h"
+#include "engine/core/radix_sort.h"
+#include "hwtlas/blas.h"
+
+namespace twinray {
+
+// A mesh whose vertices move, all on the device, with triangles.
+struct MovingMesh {
+    DeviceMesh mesh;
+    uint triangle_count;
+    const Buffer* block;  // HwGeometry; gets the mesh's box, and by a build the addresses of `blas`
+    const Blas* blas;     // can_update
+    CostTarget cost;
+};
+
+// Builds bottom levels from vertices in device memory, and updates them. Kernels prepare what blas_input() prepares on
+// the host: the box, the order for drivers that build in input order, and triangles without non-finite corners.
+class MovingBlasBuilder {
+  public:
+    MovingBlasBuilder(Context& context, bool reorder);
+
+    // With room for a mesh of so many triangles, not built yet.
+    Blas make(const std::string& name, uint triangle_count) const;
+    // In batches whose scratch fits into `scratch_budget`. update: every mesh was built before.
+    void record(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode,
+                std::uint64_t scratch_budget) const;
+
+  private:
+    struct Batch;
+    std::uint64_t scratch_bytes(const MovingMesh& mesh, BuildMode mode) const;
+    Batch begin(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode, const Buffer& scratch) const;
+    void record_batch(Commands& commands, Batch& batch) const;
+    void record_order(Commands& commands, Batch& batch) const;
+
+    Context& context_;
+    bool reorder_;
+    RadixSort sort_;
+    SurfaceArea areas_;
+    Kernel<HwTrianglesArgs> bound_, codes_, gather_;
+};
+
+}  // namespace twinray

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// The driver's triangles in their build order. One that is not active is collapsed to a point inside the box of the
+// others: see hwtlas/blas_input.h.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/world_bound.h"
+#include "shaders/shared/surface_area.h"
+#include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_build.h"
+#include "shaders/hwtlas/mesh_triangle.glsl"
+layout(local_size_x = 256) in;
+layout(push_constant, scalar) uniform Push { HwTrianglesArgs args; };
+
+void store(uint corner, vec3 position)
+{
+    AT(args.corners, corner * 3u) = position.x;
+    AT(args.corners, corner * 3u + 1u) = position.y;
+    AT(args.corners, corner * 3u + 2u) = position.z;
+}
+
+void main()
+{
+    uint place = global_index();
+    if (place >= args.count) return;
+    bool has_table = uint64_t(args.table) != 0ul;
+    bool has_order = uint64_t(args.order) != 0ul;
+    uint index = has_order ? AT(args.order, place) : (has_table ? AT(args.table, place) : place);
+    if (has_order) AT(args.table, place) = index;
+    MeshTriangle triangle = load_triangle(args, index);
+    AreaItem area = no_area();
+    if (triangle.is_active)
+    {
+        GeometryBox box = box_of(triangle);
+        area.lo = box.lo;
+        area.hi = box.hi;
+    }
+    else
+    {
+        HwGeometry geometry = AT(args.geometry, 0);
+        vec3 anchor = geometry.lo.x <= geometry.hi.x ? geometry.lo : vec3(0.0f);
+        triangle.v0 = anchor;
+        triangle.v1 = anchor;
+        triangle.v2 = anchor;
+    }
+    AT(args.areas, place) = area;
+    store(3u * place, triangle.v0);
+    store(3u * place + 1u, triangle.v1);
+    store(3u * place + 2u, triangle.v2);
+}

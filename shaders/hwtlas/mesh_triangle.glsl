@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#ifndef TWINRAY_HWTLAS_MESH_TRIANGLE_GLSL
+#define TWINRAY_HWTLAS_MESH_TRIANGLE_GLSL
+
+struct MeshTriangle
+{
+    vec3 v0;
+    vec3 v1;
+    vec3 v2;
+    bool is_active;
+};
+
+MeshTriangle load_triangle(HwTrianglesArgs mesh, uint triangle)
+{
+    MeshTriangle t;
+    t.v0 = load_position(mesh.positions, AT(mesh.indices, triangle * 3u));
+    t.v1 = load_position(mesh.positions, AT(mesh.indices, triangle * 3u + 1u));
+    t.v2 = load_position(mesh.positions, AT(mesh.indices, triangle * 3u + 2u));
+    t.is_active = is_active_triangle(t.v0, t.v1, t.v2);
+    return t;
+}
+
+GeometryBox box_of(MeshTriangle t)
+{
+    GeometryBox box;
+    box.lo = min(t.v0, min(t.v1, t.v2));
+    box.hi = max(t.v0, max(t.v1, t.v2));
+    return box;
+}
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The box of a mesh: around its active triangles.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/world_bound.h"
+#include "shaders/shared/surface_area.h"
+#include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_build.h"
+#include "shaders/hwtlas/mesh_triangle.glsl"
+#include "shaders/engine/group_box.glsl"
+layout(local_size_x = WORLD_BOUND_GROUP) in;
+layout(push_constant, scalar) uniform Push { HwTrianglesArgs args; };
+
+void main()
+{
+    if (group_index() >= args.group_count) return;
+    GeometryBox box = no_box();
+    if (global_index() < args.count)
+    {
+        MeshTriangle triangle = load_triangle(args, global_index());
+        if (triangle.is_active) box = box_of(triangle);
+    }
+    if (!add_box(args.bits, args.group_count, box)) return;
+    GeometryBox whole = whole_box(args.bits);
+    AT(args.geometry, 0).lo = whole.lo;
+    AT(args.geometry, 0).hi = whole.hi;
+}

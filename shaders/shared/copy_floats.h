@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#ifndef TWINRAY_SHARED_COPY_FLOATS_H
+#define TWINRAY_SHARED_COPY_FLOATS_H
+
+struct CopyFloatsArgs
+{
+    Floats from;
+    Floats to;
+    uint count;
+    uint reserved;
+};
+#endif

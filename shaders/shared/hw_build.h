@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// What the kernels take that prepare the driver's input. Needs hw_scene.h and surface_area.h before it.
+#ifndef TWINRAY_SHARED_HW_BUILD_H
+#define TWINRAY_SHARED_HW_BUILD_H
+#include "shaders/shared/triangle.h"
+
+// What the driver builds from: the records in their build order, each with the address of its bottom-level structure.
+struct HwGatherArgs
+{
+    REF(InstanceRecord) records;
+    Uints order;                // null: the order that `instances` has already
+    REF(InstanceRecord) driver_records;
+    REF(HwInstance) instances;  // null: the records keep their order
+    REF(AreaItem) areas;        // the boxes in the world, in build order
+    uint count;
+    uint reserved;
+};
+
+// A mesh whose vertices move: three corners a triangle, in the order in which they are built.
+struct HwTrianglesArgs
+{
+    Floats positions;
+    Uints indices;
+    REF(HwGeometry) geometry; // its box: written by triangle_bound, read by the others
+    REF(WorldBoundBits) bits;
+    Uints keys;               // Morton codes, written by triangle_codes
+    Uints order;              // place -> triangle of the mesh; null: the order that `table` has already
+    Uints table;              // the same, kept for the trace kernels; null: the mesh's order
+    Floats corners;           // 9 a triangle, by place
+    REF(AreaItem) areas;      // their boxes
+    uint count;
+    uint group_count;
+};
+#endif
