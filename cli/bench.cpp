@@ -20,6 +20,7 @@ struct BenchOptions {
     std::filesystem::path scene;
     uint width = 1024;
     std::size_t rounds = 5;
+    std::size_t moves = 0;
 };
 
 struct Candidate {
@@ -179,7 +180,10 @@ void run(const BenchOptions& options) {
 void add_bench(CLI::App& app, int&) {
     CLI::App* command = app.add_subcommand("bench", "build and trace rates of both accelerators, with their errors");
     const auto options = std::make_shared<BenchOptions>();
-    command->add_option("--scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
+    auto* what = command->add_option_group("what")->require_option(1);
+    what->add_option("--scene", options->scene, ".gltf, .glb, .obj, .ply or .stl");
+    what->add_option("--moves", options->moves, "refit of so many instances that move, against a rebuild")
+        ->check(CLI::Range(1, 1 << 22));
     command->add_option("--width", options->width, "pixels a side of the square of primary rays, a multiple of 8")
         ->check(CLI::Range(8, 4096))
         ->check([](const std::string& width) {
@@ -188,7 +192,12 @@ void add_bench(CLI::App& app, int&) {
         ->capture_default_str();
     command->add_option("--rounds", options->rounds)->check(CLI::Range(1, 1000))->capture_default_str();
     add_common_options(*command, options->common);
-    command->callback([options] { run(*options); });
+    command->callback([options] {
+        if (options->moves)
+            bench_moves(options->common, options->moves, options->rounds);
+        else
+            run(*options);
+    });
 }
 
 }  // namespace twinray::cli

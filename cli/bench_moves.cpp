@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// `twinray bench --moves N`: N instances that a kernel moves, refitted and rebuilt.
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+
+#include "cli/common.h"
+#include "engine/scene/shapes.h"
+#include "hwtlas/hw_tlas.h"
+#include "swtlas/sw_tlas.h"
+
+namespace twinray::cli {
+namespace {
+
+// In a cube, `phase` along their ways.
+std::vector<Transform> placed(std::size_t count, float phase) {
+    const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(count))));
+    std::vector<Transform> transforms;
+    for (std::size_t i = 0; i < count; ++i) {
+        const vec3 cell(i % side, i / side % side, i / side / side);
+        const float turn = phase + 0.37f * static_cast<float>(i % 17);
+        transforms.push_back(Transform::translation(3.0f * cell + vec3(std::sin(turn), std::cos(turn), 0)));
+    }
+    return transforms;
+}
+
+Buffer upload(Context& context, const std::vector<Transform>& transforms) {
+    Buffer buffer(context, {.name = "moves", .bytes = transforms.size() * sizeof(Transform)});
+    Commands commands(context, "moves");
+    {
+        const auto pass = commands.pass("moves");
+        commands.upload(buffer, std::span(transforms));
+    }
+    commands.submit();
+    return buffer;
+}
+
+double sync_ms(AbstractAccel& accel) {
+    accel.sync();
+    double sum = 0;
+    for (const PassTiming& pass : accel.build_timings()) sum += pass.ms;
+    return sum;
+}
+
+double median(std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    return values[values.size() / 2];
+}
+
+void measure(AbstractAccel& accel, const CommonOptions& options, std::size_t count, std::size_t rounds) {
+    const AccelHandle handle = accel.push(make_icosphere(1), placed(count, 0));
+    accel.push(make_icosphere(1));
+    accel.sync();
+    accel.set_rebuild_ratio(INFINITY);  // each is asked for by itself
+    std::vector<double> refits, rebuilds;
+    for (std::size_t round = 0; round < rounds + 2; ++round) {
+        const Buffer moves = upload(accel.context(), placed(count, 0.1f * static_cast<float>(round)));
+        accel.update_transforms(handle, moves.ref<Transform>(), count);
+        const double refit = sync_ms(accel);
+        accel.update_transforms(handle, moves.ref<Transform>(), count);
+        accel.push(Mesh{});  // a change of structure
+        const double rebuild = sync_ms(accel);
+        if (round < 2) continue;  // the first move rebuilds
+        refits.push_back(refit);
+        rebuilds.push_back(rebuild);
+    }
+    const double refit_ms = median(refits), rebuild_ms = median(rebuilds);
+    std::cout << "  " << std::left << std::setw(8) << accel.name() << std::right << std::fixed << std::setprecision(2)
+              << " refit " << std::setw(8) << refit_ms << " ms, rebuild " << std::setw(8) << rebuild_ms << " ms, "
+              << refit_ms / rebuild_ms << " of it\n";
+    append_json(options.json, {{"schema", "twinray-bench/1"},
+                               {"device", describe(accel.context())},
+                               {"rays", "none"},
+                               {"backend", accel.is_software() ? "sw" : "hw"},
+                               {"instances", count},
+                               {"rounds", rounds},
+                               {"refit_ms", refit_ms},
+                               {"rebuild_ms", rebuild_ms}});
+}
+
+}  // namespace
+
+void bench_moves(const CommonOptions& options, std::size_t count, std::size_t rounds) {
+    const std::unique_ptr<Context> context = make_context(options);
+    std::cout << "bench: " << count << " instances moved from device memory, GPU times, median of " << rounds
+              << " rounds, on " << context->facts().name << '\n';
+    SwTlas software(*context);
+    measure(software, options, count, rounds);
+    if (!missing_for_hardware(context->facts()).empty()) return;
+    HwTlas hardware(*context);
+    measure(hardware, options, count, rounds);
+}
+
+}  // namespace twinray::cli
