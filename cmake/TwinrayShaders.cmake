@@ -1,8 +1,9 @@
 # Compiles GLSL for twinray, in its own build and in that of a host that found it. Each function gives <target> headers,
 # to be included by name:
 #
-#   twinray_add_kernel(<target> <name> <file>)         a compute kernel that includes twinray/query.glsl, once for each
-#                                                      accelerator: "<name>_sw.spv.h" with <name>_sw_spirv[], and
+#   twinray_add_kernel(<target> <name> <file> [REFINED])   a compute kernel that includes twinray/query.glsl, once for each
+#                                                      accelerator, REFINED with the levels that need
+#                                                      float64: "<name>_sw.spv.h" with <name>_sw_spirv[], and
 #                                                      "<name>_hw.spv.h" with <name>_hw_spirv[]
 #   twinray_add_trace_program(<target> <name> <file>)  intersect_primitive and accept_hit, compiled into each way of
 #                                                      tracing: "<name>.trace_program.h" with the TraceProgramCode <name>
@@ -45,8 +46,12 @@ endfunction()
 
 function(twinray_add_kernel target name file)
     get_filename_component(input ${file} ABSOLUTE)
-    twinray_compile_shader(${target} ${name}_sw ${input} -DTWINRAY_SW)
-    twinray_compile_shader(${target} ${name}_hw ${input} -DTWINRAY_HW)
+    set(flags "")
+    if("REFINED" IN_LIST ARGN)
+        set(flags -DTWINRAY_REFINED)
+    endif()
+    twinray_compile_shader(${target} ${name}_sw ${input} -DTWINRAY_SW ${flags})
+    twinray_compile_shader(${target} ${name}_hw ${input} -DTWINRAY_HW ${flags})
 endfunction()
 
 function(twinray_add_trace_program target name file)
@@ -58,6 +63,10 @@ function(twinray_add_trace_program target name file)
     set(flags -DTWINRAY_PROGRAM -I${folder} -I${beside})
     twinray_compile_shader(${target} ${name}_sw ${root}/shaders/engine/trace.comp ${flags} -DTWINRAY_SW)
     twinray_compile_shader(${target} ${name}_hw ${root}/shaders/engine/trace.comp ${flags} -DTWINRAY_HW)
+    twinray_compile_shader(${target} ${name}_sw_refined ${root}/shaders/engine/trace.comp ${flags} -DTWINRAY_SW
+        -DTWINRAY_REFINED)
+    twinray_compile_shader(${target} ${name}_hw_refined ${root}/shaders/engine/trace.comp ${flags} -DTWINRAY_HW
+        -DTWINRAY_REFINED)
     twinray_compile_shader(${target} ${name}_rahit ${root}/shaders/hwtlas/trace.rahit ${flags})
     twinray_compile_shader(${target} ${name}_rint ${root}/shaders/hwtlas/trace.rint ${flags})
     file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/spirv/${name}.trace_program.h @ONLY CONTENT [[
@@ -65,12 +74,15 @@ function(twinray_add_trace_program target name file)
 #include <cstdint>
 
 #include "@name@_hw.spv.h"
+#include "@name@_hw_refined.spv.h"
 #include "@name@_rahit.spv.h"
 #include "@name@_rint.spv.h"
 #include "@name@_sw.spv.h"
+#include "@name@_sw_refined.spv.h"
 #include "engine/accel/trace_program.h"
 
-inline const twinray::TraceProgramCode @name@{"@name@", @name@_sw_spirv, @name@_hw_spirv, @name@_rahit_spirv,
-                                              @name@_rint_spirv};
+inline const twinray::TraceProgramCode @name@{"@name@",         @name@_sw_spirv,    @name@_sw_refined_spirv,
+                                              @name@_hw_spirv, @name@_hw_refined_spirv,
+                                              @name@_rahit_spirv, @name@_rint_spirv};
 ]])
 endfunction()

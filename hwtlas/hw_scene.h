@@ -12,6 +12,6 @@ using std::uint64_t;
 #include "shaders/shared/hw_build.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(HwGeometry) == 48 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 16 &&
+static_assert(sizeof(HwGeometry) == 48 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 24 &&
               sizeof(HwTrianglesArgs) == 80 && sizeof(HwGatherArgs) == 48);
 }  // namespace twinray

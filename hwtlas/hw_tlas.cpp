@@ -7,6 +7,7 @@
 #include "engine/core/error.h"
 #include "hwtlas/moving_blas.h"
 #include "hwtlas_trace_query.spv.h"
+#include "hwtlas_trace_query_refined.spv.h"
 #include "hwtlas/pipeline_program.h"
 
 namespace twinray {
@@ -39,8 +40,8 @@ struct HwTlas::HwTopLevel : BuiltScene {
     Tlas tlas;
 };
 
-HwTlas::HwTlas(Context& context, BuildOrder order)
-    : AbstractAccel(checked(context), "HwTlas"),
+HwTlas::HwTlas(Context& context, BuildOrder order, const AccelOptions& options)
+    : AbstractAccel(checked(context), "HwTlas", options),
       reorder_(order == BuildOrder::morton ||
                (order == BuildOrder::automatic && context.facts().builds_in_input_order)),
       moving_(std::make_unique<MovingBlasBuilder>(context, reorder_)),
@@ -57,7 +58,9 @@ Capability HwTlas::capability_on(const DeviceFacts& device, Feature feature) {
         case Feature::level_fast:
         case Feature::level_watertight: return {feature, Support::native, "the driver's own test; verify measures it"};
         case Feature::level_refined:
-        case Feature::level_certified: return {feature, Support::unsupported, "the driver's test is all there is"};
+            if (device.shader_float64) return {feature, Support::native, "the driver finds, float64 refines"};
+            return {feature, Support::unsupported, "the device has no float64"};
+        case Feature::level_certified: return {feature, Support::unsupported, "the driver orders the hits"};
         case Feature::save_and_load:
             return {feature, Support::unsupported, "the driver's structures stay on its device"};
         default: return {feature, Support::native, ""};
@@ -68,7 +71,8 @@ std::unique_ptr<TraceProgram> HwTlas::create_program(const TraceProgramCode* cod
     if (!context().facts().ray_query) return std::make_unique<PipelineProgram>(context(), id(), features, code);
     return std::make_unique<KernelProgram>(
         context(), id(), features, code ? code->name : "hwtlas_trace",
-        code ? code->ray_query : std::span<const std::uint32_t>(hwtlas_trace_query_spirv));
+        code ? code->ray_query : std::span<const std::uint32_t>(hwtlas_trace_query_spirv),
+        code ? code->ray_query_refined : std::span<const std::uint32_t>(hwtlas_trace_query_refined_spirv));
 }
 
 const char* HwTlas::trace_path() const { return context().facts().ray_query ? "ray query" : "ray tracing pipeline"; }
@@ -163,7 +167,7 @@ std::unique_ptr<AbstractAccel::BuiltScene> HwTlas::build_scene(Commands& command
     std::unique_ptr<HwTopLevel> made;
     const std::size_t capacity = capacity_for(input.count, level ? level->tlas.capacity : 0);
     if (!level || capacity != level->tlas.capacity) {
-        made = std::make_unique<HwTopLevel>(tlas_builder_.make(commands, capacity));
+        made = std::make_unique<HwTopLevel>(tlas_builder_.make(commands, capacity, input.refinement));
         level = made.get();
     }
     tlas_builder_.record_build(commands, level->tlas, {input.records, input.count, input.bound, input.cost},

@@ -21,7 +21,7 @@ enum class BuildOrder : std::uint8_t {
 class HwTlas : public AbstractAccel {
   public:
     // Throws Error naming the device and what it lacks.
-    explicit HwTlas(Context& context, BuildOrder order = BuildOrder::automatic);
+    explicit HwTlas(Context& context, BuildOrder order = BuildOrder::automatic, const AccelOptions& options = {});
     ~HwTlas() override;
 
     // What the hardware accelerator can do on a device that it runs on.

@@ -7,7 +7,7 @@
 
 namespace twinray {
 
-// One pipeline for each query.
+// One pipeline for each query, and one each that refines.
 class PipelineProgram final : public TraceProgram {
   public:
     // code: null for scenes that need no program.
@@ -16,11 +16,12 @@ class PipelineProgram final : public TraceProgram {
     void record(Commands& commands, const TraceArgs& args, Query query, Level level) const override;
 
   private:
-    const RayTracingPipeline& pipeline(Query query) const;
+    const RayTracingPipeline& pipeline(Query query, Level level) const;
 
     Context& context_;
     std::span<const std::uint32_t> any_hit_, intersection_;
-    mutable std::array<std::unique_ptr<RayTracingPipeline>, 2> pipelines_;  // by query
+    // By query, and whether it refines.
+    mutable std::array<std::array<std::unique_ptr<RayTracingPipeline>, 2>, 2> pipelines_;
 };
 
 }  // namespace twinray

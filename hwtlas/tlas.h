@@ -4,6 +4,7 @@
 #include "engine/accel/memory.h"
 #include "engine/core/kernel.h"
 #include "engine/core/radix_sort.h"
+#include "engine/accel/refinement.h"
 #include "hwtlas/acceleration_structure.h"
 #include "hwtlas/hw_scene.h"
 
@@ -36,7 +37,7 @@ class TlasBuilder {
     TlasBuilder(Context& context, bool reorder);
 
     BuildBytes bytes(std::size_t count, std::size_t capacity) const;
-    Tlas make(Commands& commands, std::size_t capacity) const;
+    Tlas make(Commands& commands, std::size_t capacity, Ref<RefineScene> refinement) const;
     // can_update: record_update() may follow.
     void record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const;
     // The instances only moved since the last build.

@@ -153,7 +153,8 @@ void Scene::build() {
     header_ = {
         {top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), top_.root, static_cast<uint>(boxes.size())},
         Ref<SwInstance>::to(instances_.data()),
-        instances_.size()};
+        instances_.size(),
+        0};
 }
 
 Hit Scene::trace(const Ray& ray, uint query, uint mask) const {

@@ -16,5 +16,5 @@ namespace twinray {
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 80);
-static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 56 && sizeof(SwScene) == 56);
+static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 56 && sizeof(SwScene) == 64);
 }  // namespace twinray

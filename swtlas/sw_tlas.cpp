@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "swtlas/built.h"
 #include "swtlas_trace.spv.h"
+#include "swtlas_trace_refined.spv.h"
 
 namespace twinray {
 namespace {
@@ -40,12 +41,15 @@ struct SwTlas::SwBuiltScene : BuiltScene {
     Ref<SwInstance> instances() const { return {address + layout_scene(static_cast<uint>(capacity)).instances}; }
 };
 
-SwTlas::SwTlas(Context& context) : AbstractAccel(context, "SwTlas"), builder_(context) {}
+SwTlas::SwTlas(Context& context, const AccelOptions& options)
+    : AbstractAccel(context, "SwTlas", options), builder_(context) {}
 
-Capability SwTlas::capability_on(const DeviceFacts&, Feature feature) {
+Capability SwTlas::capability_on(const DeviceFacts& device, Feature feature) {
     switch (feature) {
         case Feature::level_refined:
-        case Feature::level_certified: return {feature, Support::unsupported, "the software traversal is watertight"};
+            if (device.shader_float64) return {feature, Support::native, ""};
+            return {feature, Support::unsupported, "the device has no float64"};
+        case Feature::level_certified: return {feature, Support::unsupported, "the order of hits is that of float32"};
         case Feature::compaction: return {feature, Support::native, "its arrays have their exact size when built"};
         default: return {feature, Support::native, ""};
     }
@@ -167,7 +171,7 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
         scene = made.get();
     }
     const SwScene header{empty_bvh(scene->address + layout_scene(static_cast<uint>(scene->capacity)).nodes),
-                         scene->instances(), input.count};
+                         scene->instances(), input.count, input.refinement.address};
     {
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
@@ -206,8 +210,10 @@ void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const Buil
 }
 
 std::unique_ptr<TraceProgram> SwTlas::create_program(const TraceProgramCode* code, uint features) const {
-    return std::make_unique<KernelProgram>(context(), id(), features, code ? code->name : "swtlas_trace",
-                                           code ? code->software : std::span<const std::uint32_t>(swtlas_trace_spirv));
+    return std::make_unique<KernelProgram>(
+        context(), id(), features, code ? code->name : "swtlas_trace",
+        code ? code->software : std::span<const std::uint32_t>(swtlas_trace_spirv),
+        code ? code->software_refined : std::span<const std::uint32_t>(swtlas_trace_refined_spirv));
 }
 
 SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {

@@ -14,7 +14,7 @@ struct SavedGeometry;
 // The software accelerator: a two-level BVH built and traversed by compute shaders. Needs no ray tracing extension.
 class SwTlas final : public AbstractAccel {
   public:
-    explicit SwTlas(Context& context);
+    explicit SwTlas(Context& context, const AccelOptions& options = {});
 
     // What the software accelerator can do on a device that it runs on.
     static Capability capability_on(const DeviceFacts& device, Feature feature);

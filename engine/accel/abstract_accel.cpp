@@ -25,14 +25,20 @@ InstanceState state_of(const InstanceRecord& record) { return {transform_of(reco
 
 }  // namespace
 
-AbstractAccel::AbstractAccel(Context& context, std::string name)
+AbstractAccel::AbstractAccel(Context& context, std::string name, const AccelOptions& options)
     : context_(context),
       name_(std::move(name)),
       id_(next_accel_id()),
+      options_(options),
       vertices_(context),
       instances_(context),
       bound_(context),
-      scene_costs_(context) {}
+      scene_costs_(context) {
+    if (options.level < Level::refined) return;
+    if (!context.facts().shader_float64)
+        fail(name_, ": level refined needs float64, which device '", context.facts().name, "' has not enabled");
+    refinement_ = std::make_unique<Refinement>(context);
+}
 
 AbstractAccel::~AbstractAccel() = default;
 

@@ -12,6 +12,7 @@
 #include "engine/accel/geometry.h"
 #include "engine/accel/instance_array.h"
 #include "engine/accel/memory.h"
+#include "engine/accel/refinement.h"
 #include "engine/accel/trace_desc.h"
 #include "engine/accel/trace_program.h"
 #include "engine/accel/vertices.h"
@@ -178,11 +179,13 @@ class AbstractAccel {
     // The same for an accelerator of nothing but such meshes and so many instances, before any is pushed.
     BuildBytes memory_requirements(std::span<const GeometrySize> geometries, std::size_t instance_count) const;
 
+    const AccelOptions& options() const { return options_; }
     Context& context() const { return context_; }
     const std::string& name() const { return name_; }
 
   protected:
-    AbstractAccel(Context& context, std::string name);
+    // Throws Error naming the level that the device cannot do.
+    AbstractAccel(Context& context, std::string name, const AccelOptions& options = {});
 
     // A geometry as the implementation built it.
     struct BuiltGeometry {
@@ -216,10 +219,11 @@ class AbstractAccel {
         Ref<InstanceRecord> records;
         uint count = 0;
         Ref<WorldBound> bound;
-        bool will_move = false;  // refits may follow
-        CostTarget cost;         // as in GeometryInput
+        bool will_move = false;            // refits may follow
+        CostTarget cost;                   // as in GeometryInput
+        Ref<RefineScene> refinement = {};  // for its header; null below Level::refined
     };
-    static constexpr std::uint64_t geometry_block_bytes = 64;
+    static constexpr std::uint64_t geometry_block_bytes = Refinement::block_bytes;
     static constexpr double default_rebuild_ratio = 1.5;
 
     // One entry per input; null where the memory of `current` suffices.
@@ -276,7 +280,8 @@ class AbstractAccel {
     // What a sync recorded, to be committed once it is certain to run.
     struct Staged {
         VertexArrays::Staged vertices;
-        std::vector<bool> is_rebuilt;  // by item of `vertices`
+        std::vector<bool> is_rebuilt;  // by moved item of `vertices`, which come first
+        std::optional<Buffer> refinement;
         std::vector<Placement*> building;
         std::vector<std::unique_ptr<BuiltGeometry>> built;  // by `building`
         std::vector<InstanceSlice*> slices;
@@ -303,6 +308,7 @@ class AbstractAccel {
     void check_index(AccelHandle handle, const Placement& placement, std::size_t index, const char* action) const;
     Staged stage(Commands& commands);
     void stage_vertices(Commands& commands, Staged& staged);
+    std::vector<Placement*> placements_for_refinement();
     void stage_geometries(Commands& commands, Staged& staged);
     void stage_scene(Commands& commands, Staged& staged);
     void commit(Staged&& staged, SyncPoint done);
@@ -318,8 +324,10 @@ class AbstractAccel {
     Context& context_;
     std::string name_;
     std::uint64_t id_;
+    AccelOptions options_;
     VertexArrays vertices_;
     InstanceArray instances_;
+    std::unique_ptr<Refinement> refinement_;  // null below Level::refined
     WorldBoundKernel bound_;
     CostLog scene_costs_;
     double rebuild_ratio_ = default_rebuild_ratio;

@@ -9,7 +9,7 @@ MemoryUsage AbstractAccel::memory_usage() const {
     MemoryUsage usage;
     if (scene_) usage.scene = scene_->bytes;
     if (scene_) usage.scratch = scene_->scratch_bytes;
-    usage.instances = instances_.buffer().bytes();
+    usage.instances = instances_.buffer().bytes() + (refinement_ ? refinement_->bytes() : 0);
     for (const auto& [id, placement] : placements_) {
         usage.blocks += placement.block.bytes();
         usage.vertices += placement.vertices.bytes();

@@ -55,10 +55,29 @@ AbstractAccel::Staged AbstractAccel::stage(Commands& commands) {
 }
 
 void AbstractAccel::stage_vertices(Commands& commands, Staged& staged) {
-    std::vector<VertexArrays::Item> moved;
+    std::vector<VertexArrays::Item> items;
     for (auto& [id, placement] : placements_)
-        if (placement.vertices.edited) moved.push_back({&placement.geometry, &placement.vertices});
-    staged.vertices = vertices_.stage(commands, std::move(moved));
+        if (placement.vertices.edited) items.push_back({&placement.geometry, &placement.vertices});
+    const auto refined = placements_for_refinement();
+    for (Placement* placement : refined)
+        if (!placement->vertices.edited && placement->geometry.kind == GEOMETRY_TRIANGLES)
+            items.push_back({&placement->geometry, &placement->vertices});
+    staged.vertices = vertices_.stage(commands, std::move(items));
+    if (refined.empty()) return;
+    const auto pass = commands.pass("refined meshes");
+    for (const Placement* placement : refined) {
+        const DeviceMesh mesh = staged.vertices.mesh_of(placement->vertices);
+        commands.write(placement->block, RefineMesh{mesh.positions, mesh.indices}, REFINE_MESH_OFFSET);
+    }
+}
+
+// Those whose meshes refining lacks on the device.
+std::vector<AbstractAccel::Placement*> AbstractAccel::placements_for_refinement() {
+    std::vector<Placement*> lacking;
+    if (!refinement_) return lacking;
+    for (auto& [id, placement] : placements_)
+        if (!placement.vertices.on_device()) lacking.push_back(&placement);
+    return lacking;
 }
 
 void AbstractAccel::stage_geometries(Commands& commands, Staged& staged) {
@@ -86,8 +105,10 @@ void AbstractAccel::stage_geometries(Commands& commands, Staged& staged) {
 
 void AbstractAccel::stage_scene(Commands& commands, Staged& staged) {
     staged.has_moved = has_moved_ || (scene_ && dirty_ == Dirty::moves);
-    const SceneInput input{staged.instances.records, static_cast<uint>(staged.instances.count), bound_.result(),
-                           staged.has_moved, scene_costs_.target()};
+    const SceneInput input{staged.instances.records, static_cast<uint>(staged.instances.count),
+                           bound_.result(),          staged.has_moved,
+                           scene_costs_.target(),    refinement_ ? refinement_->scene() : Ref<RefineScene>{}};
+    if (refinement_) staged.refinement = refinement_->stage(commands, input.records, input.count, input.bound);
     // The first move rebuilds: nothing is paid for refits before. So does a geometry that was built anew: its instances
     // may have been inactive before, which a refit cannot change.
     staged.is_scene_built =
@@ -104,7 +125,8 @@ void AbstractAccel::commit(Staged&& staged, SyncPoint done) {
         staged.building[i]->built_at = done;
     }
     const std::vector<VertexSlice*> moved = VertexArrays::commit(std::move(staged.vertices));
-    for (std::size_t i = 0; i < moved.size(); ++i) moved[i]->costs.commit(staged.is_rebuilt[i], done);
+    for (std::size_t i = 0; i < staged.is_rebuilt.size(); ++i) moved[i]->costs.commit(staged.is_rebuilt[i], done);
+    if (refinement_) refinement_->commit(std::move(staged.refinement));
     scene_costs_.commit(staged.is_scene_built, done);
     has_moved_ = staged.has_moved;
     revision_ += dirty_ == Dirty::structure;

@@ -34,6 +34,9 @@ void AbstractAccel::check_desc(const AccelView& view, const TraceDesc& desc) con
     if (desc.count > UINT32_MAX) fail(name_, ": trace: ", desc.count, " rays; at most ", UINT32_MAX, " in one call");
     if (const Capability level = capability(feature_of(desc.level)); level.support == Support::unsupported)
         fail(name_, ": trace: ", name_of(level.feature), " is unsupported: ", level.note);
+    if (desc.level >= Level::refined && desc.level > options_.level)
+        fail(name_, ": trace: ", name_of(feature_of(desc.level)), " is more than the accelerator was made for, ",
+             name_of(feature_of(options_.level)), "; see AccelOptions");
 }
 
 // Boxes that nothing can meet, and hits that nobody judges, are no answer.

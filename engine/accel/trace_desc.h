@@ -19,6 +19,12 @@ enum class Level : std::uint8_t {
     certified,   // and the order of hits within error bounds
 };
 
+struct AccelOptions {
+    // The highest level that traces ask for. From refined on, the accelerator keeps all meshes and transforms on the
+    // device; it needs float64 there.
+    Level level = Level::watertight;
+};
+
 // Which triangles are not hit: those seen from the back, or from the front. The front is the side that
 // (v1 - v0) x (v2 - v0) points to, in object space: there the corners appear counter-clockwise.
 enum class Cull : std::uint8_t { none, back, front };

@@ -6,8 +6,8 @@
 namespace twinray {
 
 KernelProgram::KernelProgram(Context& context, std::uint64_t accel, uint features, std::string name,
-                             std::span<const std::uint32_t> spirv)
-    : TraceProgram(accel, features, std::move(name)), context_(context), spirv_(spirv) {}
+                             std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> refined)
+    : TraceProgram(accel, features, std::move(name)), context_(context), spirv_(spirv), refined_(refined) {}
 
 void KernelProgram::record(Commands& commands, const TraceArgs& args, Query query, Level level) const {
     kernel(query, level).dispatch(commands, args, args.count);
@@ -19,7 +19,7 @@ const Kernel<TraceArgs>& KernelProgram::kernel(Query query, Level level) const {
     if (!kernel)
         kernel = std::make_unique<Kernel<TraceArgs>>(
             context_, KernelDesc{.name = name() + (query == Query::any ? " any" : " closest"),
-                                 .spirv = spirv_,
+                                 .spirv = level < Level::refined ? spirv_ : refined_,
                                  .constants = {{QUERY_CONSTANT, query == Query::any ? QUERY_ANY : QUERY_CLOSEST},
                                                {FEATURES_CONSTANT, features()},
                                                {LEVEL_CONSTANT, static_cast<uint>(level)}}});

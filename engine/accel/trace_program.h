@@ -16,8 +16,8 @@ namespace twinray {
 // shaders/shared/program.h): the file compiled into each way of tracing.
 struct TraceProgramCode {
     std::string name;
-    std::span<const std::uint32_t> software;
-    std::span<const std::uint32_t> ray_query;
+    std::span<const std::uint32_t> software, software_refined;
+    std::span<const std::uint32_t> ray_query, ray_query_refined;
     // Of the ray tracing pipeline; empty: none.
     std::span<const std::uint32_t> any_hit;
     std::span<const std::uint32_t> intersection;
@@ -53,7 +53,7 @@ class TraceProgram {
 class KernelProgram final : public TraceProgram {
   public:
     KernelProgram(Context& context, std::uint64_t accel, uint features, std::string name,
-                  std::span<const std::uint32_t> spirv);
+                  std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> refined);
     void prepare(Query query, Level level) const override { kernel(query, level); }
     void record(Commands& commands, const TraceArgs& args, Query query, Level level) const override;
 
@@ -61,7 +61,7 @@ class KernelProgram final : public TraceProgram {
     const Kernel<TraceArgs>& kernel(Query query, Level level) const;
 
     Context& context_;
-    std::span<const std::uint32_t> spirv_;
+    std::span<const std::uint32_t> spirv_, refined_;                                    // up to watertight, and above
     mutable std::array<std::array<std::unique_ptr<Kernel<TraceArgs>>, 4>, 2> kernels_;  // by query and level
 };
 

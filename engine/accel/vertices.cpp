@@ -42,6 +42,12 @@ VertexArrays::Staged VertexArrays::stage(Commands& commands, std::vector<Item> i
     return staged;
 }
 
+DeviceMesh VertexArrays::Staged::mesh_of(const VertexSlice& slice) const {
+    for (std::size_t i = 0; i < items.size(); ++i)
+        if (items[i].slice == &slice) return mesh(i);
+    return slice.mesh();
+}
+
 std::vector<VertexSlice*> VertexArrays::commit(Staged&& staged) {
     std::vector<VertexSlice*> slices;
     for (std::size_t i = 0; i < staged.items.size(); ++i) {

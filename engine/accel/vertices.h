@@ -40,13 +40,15 @@ class VertexArrays {
 
     struct Item {
         const Geometry* geometry;  // has triangles
-        VertexSlice* slice;        // edited
+        VertexSlice* slice;        // edited, or not on the device yet
     };
     // What stage() recorded, to be committed once it is certain to run.
     struct Staged {
         std::vector<Item> items;
         std::vector<VertexSlice> made;  // by item: buffers for a slice that had none
         DeviceMesh mesh(std::size_t item) const { return slice(item).mesh(); }
+        // Null for a slice that is neither staged nor on the device.
+        DeviceMesh mesh_of(const VertexSlice& slice) const;
         CostTarget cost_target(std::size_t item) const { return slice(item).costs.target(); }
 
       private:

@@ -15,6 +15,7 @@ using uint = std::uint32_t;
 using glm::abs;
 using glm::cross;
 using glm::dot;
+using glm::dvec3;
 using glm::floor;
 using glm::ivec3;
 using glm::max;

@@ -75,6 +75,7 @@ struct SwScene
     Bvh bvh;
     REF(SwInstance) instances;
     uint64_t instance_count;
+    uint64_t refinement; // address of a RefineScene, or 0
 };
 BUFFER_OF(SwScene, 8);
 #endif

@@ -28,6 +28,7 @@ struct HwScene
 {
     uint64_t tlas;              // device address of the top-level acceleration structure
     REF(HwInstance) instances;  // by InstanceId; null without FEATURE_REMAP
+    uint64_t refinement;        // address of a RefineScene, or 0
 };
 BUFFER_OF(HwScene, 8);
 

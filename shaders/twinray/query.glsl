@@ -7,6 +7,8 @@
 //     if (closest_hit(accel, ray, hit)) ...
 //     if (any_hit(accel, ray)) ...
 //
+// Levels from refined on need TWINRAY_REFINED defined (twinray_add_kernel(... REFINED)) and a device with float64.
+//
 // Specialise FEATURES_CONSTANT with AccelView::features to leave out what the scene does not need, and LEVEL_CONSTANT
 // with the level. With TWINRAY_PROGRAM defined, the kernel defines intersect_primitive and accept_hit itself (see
 // shaders/shared/program.h), before or after this include.
@@ -20,12 +22,29 @@ layout(constant_id = LEVEL_CONSTANT) const uint TRACE_LEVEL = LEVEL_WATERTIGHT;
 
 #if defined(TWINRAY_SW)
 #include "shaders/shared/traverse.h"
-Hit trace(uint64_t accel, Ray ray, TraceOptions options) { return traverse(AT(REF(SwScene)(accel), 0), ray, options); }
+Hit trace_float32(uint64_t accel, Ray ray, TraceOptions options) { return traverse(AT(REF(SwScene)(accel), 0), ray, options); }
+uint64_t refinement_of(uint64_t accel) { return AT(REF(SwScene)(accel), 0).refinement; }
 #elif defined(TWINRAY_HW)
 #extension GL_EXT_ray_query : require
 #include "shaders/hwtlas/ray_query.glsl"
 #else
 #error "twinray/query.glsl: define TWINRAY_SW or TWINRAY_HW"
+#endif
+
+#ifdef TWINRAY_REFINED
+#include "shaders/shared/refine.h"
+Hit trace(uint64_t accel, Ray ray, TraceOptions options)
+{
+    if (options.level < LEVEL_REFINED) return trace_float32(accel, ray, options);
+    RefineScene scene = AT(REF(RefineScene)(refinement_of(accel)), 0);
+    WorldBound bound = AT(scene.bound, 0);
+    double advance = 0.0;
+    Hit hit = trace_float32(accel, advanced(ray, bound.lo, bound.hi, advance), options);
+    if (hit.hit == 0u) return hit;
+    return refined(hit, ray, advance, AT(scene.instances, hit.instance_index));
+}
+#else
+Hit trace(uint64_t accel, Ray ray, TraceOptions options) { return trace_float32(accel, ray, options); }
 #endif
 
 TraceOptions trace_options(uint mask, uint flags, uint query)

@@ -40,10 +40,12 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
 
     // Not the driver: held to every rule to the letter.
     bool is_ours() const { return GetParam() == Kind::software || GetParam() == Kind::oracle; }
-    std::unique_ptr<AbstractAccel> make_accel() {
+    virtual AccelOptions accel_options() const { return {}; }
+    std::unique_ptr<AbstractAccel> make_accel() { return make_accel(accel_options()); }
+    std::unique_ptr<AbstractAccel> make_accel(const AccelOptions& options) {
         if (GetParam() == Kind::oracle) return std::make_unique<OracleAccel>(context());
-        if (is_ours()) return std::make_unique<SwTlas>(context());
-        return std::make_unique<HwTlas>(context());
+        if (is_ours()) return std::make_unique<SwTlas>(context(), options);
+        return std::make_unique<HwTlas>(context(), BuildOrder::automatic, options);
     }
     AbstractAccel& accel() { return *accel_; }
     void drop_accel() { accel_.reset(); }

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// What Level::refined needs on the device: all meshes and transforms as they were given.
+#pragma once
+
+#include <optional>
+
+#include "engine/accel/world_bound.h"
+#include "engine/core/kernel.h"
+
+namespace twinray {
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/trace.h"
+#include "shaders/shared/refine_gather.h"
+#include "engine/core/bridge_end.h"
+
+static_assert(sizeof(RefineInstance) == 64 && sizeof(RefineScene) == 16);
+
+class Refinement {
+  public:
+    explicit Refinement(Context& context);
+
+    // What a geometry's block has to have: the accelerator's part, then a RefineMesh.
+    static constexpr std::uint64_t block_bytes = REFINE_MESH_OFFSET + sizeof(RefineMesh);
+
+    // Records what takes over these instances, whose blocks have their RefineMesh. Returns memory to be committed once
+    // it is certain to run, if it needed more or far less.
+    std::optional<Buffer> stage(Commands& commands, Ref<InstanceRecord> records, std::size_t count,
+                                Ref<WorldBound> bound) const;
+    void commit(std::optional<Buffer>&& instances);
+
+    Ref<RefineScene> scene() const { return scene_.ref<RefineScene>(); }
+    std::uint64_t bytes() const { return scene_.bytes() + instances_.bytes(); }
+
+  private:
+    Context& context_;
+    Kernel<RefineGatherArgs> gather_;
+    Buffer scene_, instances_;
+};
+
+}  // namespace twinray

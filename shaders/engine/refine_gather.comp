@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// What refining needs of each instance.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/refine_gather.h"
+layout(local_size_x = 256) in;
+layout(push_constant, scalar) uniform Push { RefineGatherArgs args; };
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.count) return;
+    InstanceRecord record = AT(args.records, i);
+    RefineMesh mesh = AT(REF(RefineMesh)(record.geometry + REFINE_MESH_OFFSET), 0);
+    RefineInstance instance;
+    instance.object_to_world = record.object_to_world;
+    instance.positions = mesh.positions;
+    instance.indices = mesh.indices;
+    AT(args.instances, i) = instance;
+}

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// Level refined: what float32 loses about a hit, by float64 spent once a ray instead of once a triangle.
+//  - A ray from far away is traced from near the scene: its origin moves along it, computed in float64. Rounding then is
+//    relative to the scene's size, not to the distance.
+//  - The hit that counts is computed again in float64 from what the user gave: the ray, the corners, the transform.
+#ifndef TWINRAY_SHARED_REFINE_H
+#define TWINRAY_SHARED_REFINE_H
+#include "shaders/shared/exact.h"
+#include "shaders/shared/trace.h"
+#include "shaders/shared/world_bound.h"
+
+// An instance as it was given.
+struct RefineInstance
+{
+    vec4 object_to_world[3];
+    Floats positions; // of the mesh, 3 floats a vertex
+    Uints indices;    // 3 a triangle, in the user's numbering; null: boxes
+};
+BUFFER_OF(RefineInstance, 16);
+
+struct RefineScene
+{
+    REF(WorldBound) bound;
+    REF(RefineInstance) instances; // in the order of Hit::instance_index
+};
+BUFFER_OF(RefineScene, 8);
+
+// Where the line o + t d enters the slab between lo and hi; d is not 0.
+FUNC double slab_entry(float o, float d, float lo, float hi)
+{
+    double near = d > 0.0f ? double(lo) : double(hi);
+    PRECISE double way = near - double(o);
+    PRECISE double t = way / double(d);
+    return t;
+}
+
+// The same ray from nearer to the box, if it comes from farther away than the box is large: t of the result plus
+// `advance` is t of `ray`. It stops about one size short of the box, so nothing is jumped over.
+FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance)
+{
+    advance = double(0.0f);
+    if (!(lo.x <= hi.x) || !is_traceable(ray)) return ray;
+    double entry = double(0.0f);
+    if (ray.direction.x != 0.0f) entry = max(entry, slab_entry(ray.origin.x, ray.direction.x, lo.x, hi.x));
+    if (ray.direction.y != 0.0f) entry = max(entry, slab_entry(ray.origin.y, ray.direction.y, lo.y, hi.y));
+    if (ray.direction.z != 0.0f) entry = max(entry, slab_entry(ray.origin.z, ray.direction.z, lo.z, hi.z));
+    PRECISE double box_size = double(max(largest_entry(lo), largest_entry(hi))) / double(largest_entry(ray.direction));
+    PRECISE double way = entry - box_size;
+    if (!(way > box_size)) return ray;
+    Ray near = ray;
+    PRECISE double x = double(ray.origin.x) + way * double(ray.direction.x);
+    PRECISE double y = double(ray.origin.y) + way * double(ray.direction.y);
+    PRECISE double z = double(ray.origin.z) + way * double(ray.direction.z);
+    near.origin = vec3(float(x), float(y), float(z));
+    PRECISE double t_min = double(ray.t_min) - way;
+    PRECISE double t_max = double(ray.t_max) - way;
+    near.t_min = max(float(t_min), 0.0f);
+    near.t_max = float(t_max);
+    advance = way;
+    return near;
+}
+
+FUNC double product_sum(dvec3 a, dvec3 b)
+{
+    PRECISE double x = a.x * b.x;
+    PRECISE double y = a.y * b.y;
+    PRECISE double z = a.z * b.z;
+    PRECISE double sum = x + y;
+    sum = sum + z;
+    return sum;
+}
+
+FUNC dvec3 cross_product(dvec3 a, dvec3 b)
+{
+    PRECISE double x = a.y * b.z - a.z * b.y;
+    PRECISE double y = a.z * b.x - a.x * b.z;
+    PRECISE double z = a.x * b.y - a.y * b.x;
+    return dvec3(x, y, z);
+}
+
+// A corner in world space, seen from the origin.
+FUNC dvec3 corner_from(dvec3 origin, RefineInstance instance, uint corner)
+{
+    uint at = 3u * AT(instance.indices, corner);
+    dvec3 v = dvec3(double(AT(instance.positions, at)), double(AT(instance.positions, at + 1u)),
+                    double(AT(instance.positions, at + 2u)));
+    vec4 r0 = instance.object_to_world[0];
+    vec4 r1 = instance.object_to_world[1];
+    vec4 r2 = instance.object_to_world[2];
+    PRECISE double x = product_sum(dvec3(double(r0.x), double(r0.y), double(r0.z)), v) + (double(r0.w) - origin.x);
+    PRECISE double y = product_sum(dvec3(double(r1.x), double(r1.y), double(r1.z)), v) + (double(r1.w) - origin.y);
+    PRECISE double z = product_sum(dvec3(double(r2.x), double(r2.y), double(r2.z)), v) + (double(r2.w) - origin.z);
+    return dvec3(x, y, z);
+}
+
+// t in float32, within the interval that the hit was accepted in.
+FUNC float rounded_within(double t, Ray ray)
+{
+    float rounded = float(t);
+    float t_min = max(ray.t_min, 0.0f);
+    if (!(rounded > t_min)) rounded = uintBitsToFloat(floatBitsToUint(t_min) + 1u);
+    if (!(rounded < ray.t_max)) rounded = uintBitsToFloat(floatBitsToUint(ray.t_max) - 1u);
+    return rounded;
+}
+
+// A hit of advanced(ray) as one of `ray`: t, u and v are what float64 gives, rounded once.
+FUNC Hit refined(Hit hit, Ray ray, double advance, RefineInstance instance)
+{
+    PRECISE double moved = double(hit.t) + advance;
+    hit.t = rounded_within(moved, ray);
+    if (uint64_t(instance.indices) == 0ul) return hit;
+    dvec3 origin = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
+    dvec3 direction = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
+    dvec3 a = corner_from(origin, instance, 3u * hit.primitive_index);
+    dvec3 b = corner_from(origin, instance, 3u * hit.primitive_index + 1u);
+    dvec3 c = corner_from(origin, instance, 3u * hit.primitive_index + 2u);
+    dvec3 e1 = b - a;
+    dvec3 e2 = c - a;
+    dvec3 normal = cross_product(e1, e2);
+    double det = product_sum(normal, direction);
+    if (det == double(0.0f)) return hit; // the plane contains the ray: float32 has the last word
+    PRECISE double t = product_sum(normal, a) / det;
+    // The point from a, and its weights in the plane: w = u e1 + v e2, so (w x e2) = u n and (e1 x w) = v n.
+    PRECISE double wx = direction.x * t - a.x;
+    PRECISE double wy = direction.y * t - a.y;
+    PRECISE double wz = direction.z * t - a.z;
+    dvec3 w = dvec3(wx, wy, wz);
+    double square = product_sum(normal, normal);
+    PRECISE double u = product_sum(cross_product(w, e2), normal) / square;
+    PRECISE double v = product_sum(cross_product(e1, w), normal) / square;
+    hit.t = rounded_within(t, ray);
+    hit.u = float(u);
+    hit.v = float(v);
+    return hit;
+}
+#endif
