@@ -8,6 +8,7 @@
 
 #include "cli/common.h"
 #include "engine/accel/scene_push.h"
+#include "engine/core/error.h"
 #include "engine/verify/classify.h"
 #include "hwtlas/hw_tlas.h"
 #include "swtlas/sw_tlas.h"
@@ -21,10 +22,16 @@ struct BenchOptions {
     uint width = 1024;
     std::size_t rounds = 5;
     std::size_t moves = 0;
+    std::vector<Level> levels = {Level::watertight};
 };
+
+// By Level.
+constexpr const char* level_names[] = {"fast", "watertight", "refined", "certified"};
+const char* name_of(Level level) { return level_names[static_cast<std::size_t>(level)]; }
 
 struct Candidate {
     std::string name, backend, path;
+    Level level;
     std::function<std::unique_ptr<AbstractAccel>()> make;
     std::unique_ptr<AbstractAccel> accel = {};
     std::vector<double> build_ms = {}, trace_ms = {};
@@ -60,16 +67,20 @@ double total_ms(const std::vector<PassTiming>& timings) {
     return sum;
 }
 
-std::vector<Candidate> make_candidates(Context& context) {
+// The first is what all are compared with.
+std::vector<Candidate> make_candidates(Context& context, std::span<const Level> levels) {
     std::vector<Candidate> candidates;
-    candidates.push_back({"sw", "sw", "compute", [&] { return std::make_unique<SwTlas>(context); }});
+    for (const Level level : levels)
+        candidates.push_back({text("sw ", name_of(level)), "sw", "compute", level,
+                              [&, level] { return std::make_unique<SwTlas>(context, AccelOptions{level}); }});
     if (!missing_for_hardware(context.facts()).empty()) return candidates;
-    const auto add = [&](const char* name, BuildOrder order) {
-        candidates.push_back({name, "hw", HwTlas(context, order).trace_path(),
-                              [&context, order] { return std::make_unique<HwTlas>(context, order); }});
+    const auto add = [&](const std::string& name, BuildOrder order, Level level) {
+        candidates.push_back({name, "hw", HwTlas(context, order).trace_path(), level, [&context, order, level] {
+                                  return std::make_unique<HwTlas>(context, order, AccelOptions{level});
+                              }});
     };
-    add("hw", BuildOrder::automatic);
-    if (context.facts().builds_in_input_order) add("hw input order", BuildOrder::input);
+    for (const Level level : levels) add(text("hw ", name_of(level)), BuildOrder::automatic, level);
+    if (context.facts().builds_in_input_order) add("hw input order", BuildOrder::input, levels.front());
     return candidates;
 }
 
@@ -83,8 +94,9 @@ double build_once(Candidate& candidate, const Scene& scene) {
 
 double trace_once(const Candidate& candidate, const Buffer& rays, const Buffer& hits, std::uint64_t count) {
     Commands commands(candidate.accel->context(), "bench");
-    candidate.accel->trace(commands, candidate.accel->view(),
-                           {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = count});
+    candidate.accel->trace(
+        commands, candidate.accel->view(),
+        {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = count, .level = candidate.level});
     commands.submit();
     return total_ms(commands.timings());
 }
@@ -136,7 +148,7 @@ void report(const BenchOptions& options, const Context& context, const std::vect
                                           {"order", candidate.name == "hw input order" ? "input" : "sorted"},
                                           {"layout", candidate.backend == "sw" ? "bvh2" : "driver"},
                                           {"builder", candidate.backend == "sw" ? "lbvh" : "driver"},
-                                          {"level", "watertight"},
+                                          {"level", name_of(candidate.level)},
                                           {"mrays_per_s", mrays},
                                           {"build_ms", build_ms},
                                           {"bytes_per_triangle", bytes},
@@ -149,7 +161,7 @@ void run(const BenchOptions& options) {
     const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
     const std::unique_ptr<Context> context = make_context(options.common);
     const std::vector<Ray> rays = primary_rays(bounds_of(scene), options.width);
-    std::vector<Candidate> candidates = make_candidates(*context);
+    std::vector<Candidate> candidates = make_candidates(*context, options.levels);
     const Buffer ray_buffer(*context, {.name = "bench rays", .bytes = rays.size() * sizeof(Ray)});
     const Buffer hit_buffer(*context, {.name = "bench hits", .bytes = rays.size() * sizeof(Hit)});
     Commands upload(*context, "bench input");
@@ -190,6 +202,11 @@ void add_bench(CLI::App& app, int&) {
             return std::stoul(width) % 8 == 0 ? std::string() : width + " is not a multiple of 8";
         })
         ->capture_default_str();
+    const std::map<std::string, Level> levels = {
+        {"fast", Level::fast}, {"watertight", Level::watertight}, {"refined", Level::refined}};
+    command->add_option("--levels", options->levels, "fast, watertight, refined; separated by commas")
+        ->delimiter(',')
+        ->transform(CLI::CheckedTransformer(levels));
     command->add_option("--rounds", options->rounds)->check(CLI::Range(1, 1000))->capture_default_str();
     add_common_options(*command, options->common);
     command->callback([options] {
