@@ -47,7 +47,7 @@ TEST_F(AdoptedDeviceTest, BothAcceleratorsTraceOnIt) {
     expect_both_trace(host_.device);
     EXPECT_EQ(host_.locked, 0) << "each lock of the queue is undone";
     EXPECT_GT(host_.submissions, 0);
-    EXPECT_FALSE(host_.device.enabled.shader_float64) << "nobody enabled it";
+    EXPECT_TRUE(host_.device.enabled.shader_int64) << "as the host enabled it";
 }
 
 // The layer complains of a queue that two threads use at once.
