@@ -2,6 +2,7 @@
 #include "swtlas/saved.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <utility>
@@ -118,7 +119,12 @@ Geometry read_mesh(Reader& reader, const SavedEntry& entry) {
     if (!has_boxes && entry.kind != GEOMETRY_TRIANGLES) fail("unknown kind of geometry ", entry.kind);
     if (has_boxes ? !positions.empty() || !triangles.empty() : !boxes.empty())
         fail(triangles.size(), " triangles of ", positions.size(), " positions and ", boxes.size(), " boxes");
-    return has_boxes ? Geometry(BoxesView{name, boxes}) : Geometry(MeshView(name, positions, triangles));
+    if (has_boxes) return Geometry(BoxesView{name, boxes});
+    if (int exponent = 0; std::frexp(entry.scale, &exponent) != 0.5f || std::abs(exponent) > 101)
+        fail("scale ", entry.scale, " is no power of two between 2^-100 and 2^100");
+    Geometry geometry(MeshView(name, positions, triangles), 1);
+    geometry.scale = entry.scale;
+    return geometry;
 }
 
 SavedGeometry read_geometry(Reader& reader, const SavedEntry& entry) {
@@ -174,7 +180,7 @@ EncodedSave encode_save(std::span<const SavedGeometry> geometries) {
         }
         entries.push_back({mesh.name.size(), mesh.positions.size(), mesh.triangles.size(), mesh.boxes.size(),
                            geometry.nodes.size(), geometry.leaves.size(), geometry.records.size(), geometry.bvh.lo,
-                           geometry.bvh.hi, geometry.bvh.root, mesh.kind, 0, checksum});
+                           geometry.bvh.hi, geometry.bvh.root, mesh.kind, mesh.scale, checksum});
     }
     header.entries_checksum = crc32_of(bytes_of(entries));
     header.checksum = checksum_of(header);

@@ -18,7 +18,7 @@
 
 namespace twinray {
 
-constexpr uint saved_version = 1;
+constexpr uint saved_version = 2;
 
 struct SavedHeader {
     char magic[8];
@@ -37,8 +37,8 @@ struct SavedEntry {
     std::uint64_t name_bytes, positions, triangles, boxes, nodes, leaves, instances;  // how many
     vec3 lo, hi;                                                                      // of Bvh
     uint root;
-    uint kind;      // GEOMETRY_*
-    uint reserved;  // 0
+    uint kind;    // GEOMETRY_*
+    float scale;  // of Geometry
     uint checksum;  // of the geometry's arrays
 };
 static_assert(sizeof(SavedHeader) == 64 && sizeof(SavedEntry) == 96);

@@ -114,6 +114,7 @@ void AbstractAccel::replace(AccelHandle handle, Geometry&& geometry) {
     warn_of_inactive_triangles(geometry);
     if (placement.built) erased_.push_back(std::move(placement.built));
     placement.geometry = std::move(geometry);
+    placement.has_source = false;
     placement.vertices = {};
     mark(Dirty::structure);
 }
@@ -133,7 +134,7 @@ void AbstractAccel::update_vertices(AccelHandle handle, std::span<const vec3> po
     Placement& placement = checked_for_vertices(handle, positions.size());
     Geometry& geometry = placement.geometry;
     const std::size_t inactive = count_non_finite_triangles({geometry.name, positions, geometry.triangles});
-    std::copy(positions.begin(), positions.end(), geometry.positions.begin());
+    geometry.move_to(positions);
     geometry.non_finite_triangles = inactive;
     warn_of_inactive_triangles(geometry);
     if (geometry.triangles.empty()) return;

@@ -223,7 +223,7 @@ class AbstractAccel {
         CostTarget cost;                   // as in GeometryInput
         Ref<RefineScene> refinement = {};  // for its header; null below Level::refined
     };
-    static constexpr std::uint64_t geometry_block_bytes = Refinement::block_bytes;
+    static constexpr std::uint64_t geometry_block_bytes = GEOMETRY_SOURCE_OFFSET + sizeof(GeometrySource);
     static constexpr double default_rebuild_ratio = 1.5;
 
     // One entry per input; null where the memory of `current` suffices.
@@ -273,6 +273,7 @@ class AbstractAccel {
         SyncPoint built_at;
         VertexSlice vertices;
         InstanceSlice instances;
+        bool has_source = false;  // the block's GeometrySource is that of `geometry`
 
         uint features() const;
     };
@@ -280,7 +281,8 @@ class AbstractAccel {
     // What a sync recorded, to be committed once it is certain to run.
     struct Staged {
         VertexArrays::Staged vertices;
-        std::vector<bool> is_rebuilt;  // by moved item of `vertices`, which come first
+        std::vector<Placement*> sources;  // whose GeometrySource was written
+        std::vector<bool> is_rebuilt;     // by moved item of `vertices`, which come first
         std::optional<Buffer> refinement;
         std::vector<Placement*> building;
         std::vector<std::unique_ptr<BuiltGeometry>> built;  // by `building`
@@ -308,7 +310,8 @@ class AbstractAccel {
     void check_index(AccelHandle handle, const Placement& placement, std::size_t index, const char* action) const;
     Staged stage(Commands& commands);
     void stage_vertices(Commands& commands, Staged& staged);
-    std::vector<Placement*> placements_for_refinement();
+    void stage_sources(Commands& commands, Staged& staged);
+    bool lacks_refinement(const Placement& placement) const;
     void stage_geometries(Commands& commands, Staged& staged);
     void stage_scene(Commands& commands, Staged& staged);
     void commit(Staged&& staged, SyncPoint done);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "engine/accel/geometry.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -30,11 +33,34 @@ std::span<const Bounds> checked(const BoxesView& view) {
 
 }  // namespace
 
-Geometry::Geometry(const MeshView& mesh)
+Geometry::Geometry(const MeshView& mesh, float unit)
     : name(mesh.name),
-      positions(mesh.positions.begin(), mesh.positions.end()),
+      scale(unit),
+      positions(mesh.positions.size()),
       triangles(checked(mesh).begin(), mesh.triangles.end()),
-      non_finite_triangles(count_non_finite_triangles(mesh)) {}
+      non_finite_triangles(count_non_finite_triangles(mesh)) {
+    move_to(mesh.positions);
+}
+
+void Geometry::move_to(std::span<const vec3> others) {
+    const float factor = 1 / scale;
+    std::transform(others.begin(), others.end(), positions.begin(), [&](vec3 p) { return p * factor; });
+}
+
+std::vector<vec3> Geometry::given_positions() const {
+    std::vector<vec3> given = positions;
+    for (vec3& p : given) p *= scale;
+    return given;
+}
+
+float Geometry::scale_of(std::span<const vec3> positions) {
+    float largest = 0;
+    for (const vec3& p : positions)
+        if (is_finite(p)) largest = std::max(largest, largest_entry(p));
+    if (largest == 0) return 1;
+    // So that neither it nor its reciprocal leaves the range of normal floats.
+    return std::ldexp(1.0f, std::clamp(std::ilogb(largest), -100, 100));
+}
 
 Geometry::Geometry(const BoxesView& view)
     : name(view.name), kind(GEOMETRY_BOXES), boxes(checked(view).begin(), view.boxes.end()) {}

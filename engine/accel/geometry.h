@@ -20,15 +20,24 @@ struct BoxesView {
 struct Geometry {
     std::string name;
     uint kind = GEOMETRY_TRIANGLES;
+    float scale = 1;              // what `positions` are in units of: a power of two
     std::vector<vec3> positions;  // these three of GEOMETRY_TRIANGLES
     std::vector<uvec3> triangles;
     std::size_t non_finite_triangles = 0;  // inactive: never hit, still counted
     std::vector<Bounds> boxes;             // of GEOMETRY_BOXES
 
     // Throws Error naming the mesh and the limit: an index out of range, more than max_primitives.
-    explicit Geometry(const MeshView& mesh);
+    explicit Geometry(const MeshView& mesh) : Geometry(mesh, scale_of(mesh.positions)) {}
+    Geometry(const MeshView& mesh, float scale);
     // Throws Error naming the box: one that is empty or not finite, or more than max_primitives.
     explicit Geometry(const BoxesView& boxes);
+
+    // Other positions, as many, in the user's units.
+    void move_to(std::span<const vec3> others);
+    // As the user gave them.
+    std::vector<vec3> given_positions() const;
+    // The power of two just below the largest finite coordinate, so that coordinates in units of it are near 1.
+    static float scale_of(std::span<const vec3> positions);
 
     std::size_t primitive_count() const { return kind == GEOMETRY_BOXES ? boxes.size() : triangles.size(); }
 

@@ -10,7 +10,7 @@
 namespace twinray {
 #include "engine/core/bridge_begin.h"
 #include "shaders/shared/trace.h"
-#include "shaders/shared/refine_gather.h"
+#include "shaders/shared/refine.h"
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(RefineInstance) == 64 && sizeof(RefineScene) == 16);
@@ -19,11 +19,8 @@ class Refinement {
   public:
     explicit Refinement(Context& context);
 
-    // What a geometry's block has to have: the accelerator's part, then a RefineMesh.
-    static constexpr std::uint64_t block_bytes = REFINE_MESH_OFFSET + sizeof(RefineMesh);
-
-    // Records what takes over these instances, whose blocks have their RefineMesh. Returns memory to be committed once
-    // it is certain to run, if it needed more or far less.
+    // Records what takes over these instances, whose blocks have their GeometrySource. Returns memory to be committed
+    // once it is certain to run, if it needed more or far less.
     std::optional<Buffer> stage(Commands& commands, Ref<InstanceRecord> records, std::size_t count,
                                 Ref<WorldBound> bound) const;
     void commit(std::optional<Buffer>&& instances);

@@ -58,26 +58,28 @@ void AbstractAccel::stage_vertices(Commands& commands, Staged& staged) {
     std::vector<VertexArrays::Item> items;
     for (auto& [id, placement] : placements_)
         if (placement.vertices.edited) items.push_back({&placement.geometry, &placement.vertices});
-    const auto refined = placements_for_refinement();
-    for (Placement* placement : refined)
-        if (!placement->vertices.edited && placement->geometry.kind == GEOMETRY_TRIANGLES)
-            items.push_back({&placement->geometry, &placement->vertices});
+    for (auto& [id, placement] : placements_)
+        if (lacks_refinement(placement)) items.push_back({&placement.geometry, &placement.vertices});
     staged.vertices = vertices_.stage(commands, std::move(items));
-    if (refined.empty()) return;
-    const auto pass = commands.pass("refined meshes");
-    for (const Placement* placement : refined) {
-        const DeviceMesh mesh = staged.vertices.mesh_of(placement->vertices);
-        commands.write(placement->block, RefineMesh{mesh.positions, mesh.indices}, REFINE_MESH_OFFSET);
-    }
+    stage_sources(commands, staged);
 }
 
-// Those whose meshes refining lacks on the device.
-std::vector<AbstractAccel::Placement*> AbstractAccel::placements_for_refinement() {
-    std::vector<Placement*> lacking;
-    if (!refinement_) return lacking;
+// Whether refining lacks its mesh on the device, which no edit brings there.
+bool AbstractAccel::lacks_refinement(const Placement& placement) const {
+    return refinement_ && !placement.vertices.edited && !placement.vertices.on_device() &&
+           placement.geometry.kind == GEOMETRY_TRIANGLES;
+}
+
+void AbstractAccel::stage_sources(Commands& commands, Staged& staged) {
     for (auto& [id, placement] : placements_)
-        if (!placement.vertices.on_device()) lacking.push_back(&placement);
-    return lacking;
+        if (!placement.has_source) staged.sources.push_back(&placement);
+    if (staged.sources.empty()) return;
+    const auto pass = commands.pass("geometry sources");
+    for (const Placement* placement : staged.sources) {
+        const DeviceMesh mesh = refinement_ ? staged.vertices.mesh_of(placement->vertices) : DeviceMesh{};
+        commands.write(placement->block, GeometrySource{mesh.positions, mesh.indices, placement->geometry.scale, 0},
+                       GEOMETRY_SOURCE_OFFSET);
+    }
 }
 
 void AbstractAccel::stage_geometries(Commands& commands, Staged& staged) {
@@ -126,6 +128,7 @@ void AbstractAccel::commit(Staged&& staged, SyncPoint done) {
     }
     const std::vector<VertexSlice*> moved = VertexArrays::commit(std::move(staged.vertices));
     for (std::size_t i = 0; i < staged.is_rebuilt.size(); ++i) moved[i]->costs.commit(staged.is_rebuilt[i], done);
+    for (Placement* placement : staged.sources) placement->has_source = true;
     if (refinement_) refinement_->commit(std::move(staged.refinement));
     scene_costs_.commit(staged.is_scene_built, done);
     has_moved_ = staged.has_moved;

@@ -34,7 +34,8 @@ VertexArrays::Staged VertexArrays::stage(Commands& commands, std::vector<Item> i
         if (!slice->on_device()) commands.upload(staged.made[i].indices, std::span(geometry->triangles));
         const auto count = static_cast<uint>(3 * geometry->positions.size());
         if (slice->incoming.address)
-            copy_floats_.dispatch(commands, {slice->incoming, staged.mesh(i).positions, count, 0}, count);
+            copy_floats_.dispatch(commands, {slice->incoming, staged.mesh(i).positions, count, 1 / geometry->scale},
+                                  count);
         else
             commands.upload(slice->on_device() ? slice->positions : staged.made[i].positions,
                             std::span(geometry->positions));

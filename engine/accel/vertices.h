@@ -26,7 +26,8 @@ struct VertexSlice {
     CostLog costs;              // of the geometry's tree
     bool edited = false;        // moved since the last sync, by the host, or by `incoming`
     bool device_wrote = false;  // positions that Geometry::positions lacks
-    Floats incoming;            // device memory that the next sync copies the positions from; 0 = Geometry::positions
+    Floats incoming;            // device memory in the user's units that the next sync copies the positions from; 0 =
+                                // Geometry::positions
 
     bool on_device() const { return indices.bytes() != 0; }
     std::uint64_t bytes() const { return positions.bytes() + indices.bytes() + costs.bytes(); }

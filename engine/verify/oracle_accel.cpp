@@ -15,10 +15,11 @@ namespace twinray {
 namespace {
 
 // Exact: the corners are float32.
+// In units of its scale.
 GeometryBox box_of(const Geometry& geometry, const Geometry64& triangles) {
     Bounds box{vec3(triangles.bounds().corners[0]), vec3(triangles.bounds().corners[1])};
     for (const Bounds& each : geometry.boxes) box.include(each);
-    return {box.lo, box.hi};
+    return {box.lo / geometry.scale, box.hi / geometry.scale};
 }
 
 Hit hit_of(const OracleHit& found, const Ray& ray) {
@@ -118,7 +119,7 @@ std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> OracleAccel::build_ge
     for (const GeometryInput& input : inputs) {
         auto made = std::make_unique<OracleGeometry>();
         made->geometry = std::make_shared<const Geometry64>(
-            MeshView(input.geometry->name, input.geometry->positions, input.geometry->triangles));
+            MeshView(input.geometry->name, input.geometry->given_positions(), input.geometry->triangles));
         commands.write(*input.block, box_of(*input.geometry, *made->geometry));
         geometries_[input.block->address()] = made->geometry;
         built.push_back(std::move(made));

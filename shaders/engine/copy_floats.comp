@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Floats from the caller's device memory, of which only the address is known.
+// Floats, times a factor, from the caller's device memory, of which only the address is known.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -10,5 +10,5 @@ layout(push_constant, scalar) uniform Push { CopyFloatsArgs args; };
 void main()
 {
     uint index = global_index();
-    if (index < args.count) AT(args.to, index) = AT(args.from, index);
+    if (index < args.count) AT(args.to, index) = AT(args.from, index) * args.factor;
 }

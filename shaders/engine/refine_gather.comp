@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/refine_gather.h"
+#include "shaders/shared/refine.h"
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { RefineGatherArgs args; };
 
@@ -11,8 +11,8 @@ void main()
 {
     uint i = global_index();
     if (i >= args.count) return;
-    InstanceRecord record = AT(args.records, i);
-    RefineMesh mesh = AT(REF(RefineMesh)(record.geometry + REFINE_MESH_OFFSET), 0);
+    InstanceRecord record = in_built_units(AT(args.records, i));
+    GeometrySource mesh = AT(REF(GeometrySource)(record.geometry + uint64_t(GEOMETRY_SOURCE_OFFSET)), 0);
     RefineInstance instance;
     instance.object_to_world = record.object_to_world;
     instance.positions = mesh.positions;

@@ -26,7 +26,7 @@ void main()
     if (group_index() >= args.group_count) return;
     uint index = global_index();
     GeometryBox box = no_box();
-    if (index < args.count) box = box_of(AT(args.records, index));
+    if (index < args.count) box = box_of(in_built_units(AT(args.records, index)));
     if (!add_box(args.bits, args.group_count, box)) return;
     GeometryBox whole = whole_box(args.bits);
     WorldBound bound;

@@ -16,7 +16,7 @@ void main()
     bool has_table = uint64_t(args.instances) != 0ul;
     bool has_order = uint64_t(args.order) != 0ul;
     uint index = has_order ? AT(args.order, place) : (has_table ? AT(args.instances, place).instance_index : place);
-    InstanceRecord record = AT(args.records, index);
+    InstanceRecord record = in_built_units(AT(args.records, index));
     HwGeometry geometry = AT(REF(HwGeometry)(record.geometry), 0);
     Rows to_world = to_world_of(record);
     bool usable = is_usable(to_world, inverse_of(to_world));

@@ -7,6 +7,6 @@ struct CopyFloatsArgs
     Floats from;
     Floats to;
     uint count;
-    uint reserved;
+    float factor;
 };
 #endif

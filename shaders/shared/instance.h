@@ -22,6 +22,19 @@ struct GeometryBox
 };
 BUFFER_OF(GeometryBox, 8);
 
+// What follows in the block of every geometry, at GEOMETRY_SOURCE_OFFSET, whichever accelerator it belongs to. Meshes are built
+// in units of `scale`, a power of two near their size, so that neither tiny nor huge ones leave the range of float32; the
+// unit is put back into the map to world space.
+struct GeometrySource
+{
+    Floats positions; // of the mesh, in units of scale; null unless level refined needs them
+    Uints indices;
+    float scale;
+    uint reserved;
+};
+BUFFER_OF(GeometrySource, 8);
+const uint GEOMETRY_SOURCE_OFFSET = 64u;
+
 // Flags of an instance, with the values of VkGeometryInstanceFlagBitsKHR. The front of a triangle is the side
 // that (v1 - v0) x (v2 - v0) points to, in object space; TURNED exchanges front and back.
 const uint INSTANCE_NO_CULLING = 1u;
@@ -43,6 +56,19 @@ FUNC Rows to_world_of(InstanceRecord instance)
     rows.r1 = instance.object_to_world[1];
     rows.r2 = instance.object_to_world[2];
     return rows;
+}
+
+// The instance of what was built, not of what was given.
+FUNC InstanceRecord in_built_units(InstanceRecord instance)
+{
+    if (instance.geometry == 0ul) return instance;
+    float scale = AT(REF(GeometrySource)(instance.geometry + uint64_t(GEOMETRY_SOURCE_OFFSET)), 0).scale;
+    for (uint row = 0u; row < 3u; row = row + 1u)
+    {
+        vec4 r = instance.object_to_world[row];
+        instance.object_to_world[row] = vec4(r.x * scale, r.y * scale, r.z * scale, r.w);
+    }
+    return instance;
 }
 
 // Whether a map has no entry that is infinite or NaN. An instance whose transform or its inverse has one is inactive:

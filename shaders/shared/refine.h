@@ -9,7 +9,7 @@
 #include "shaders/shared/trace.h"
 #include "shaders/shared/world_bound.h"
 
-// An instance as it was given.
+// An instance of what was built: positions in units of a power of two, which the map contains.
 struct RefineInstance
 {
     vec4 object_to_world[3];
@@ -24,6 +24,14 @@ struct RefineScene
     REF(RefineInstance) instances; // in the order of Hit::instance_index
 };
 BUFFER_OF(RefineScene, 8);
+
+struct RefineGatherArgs
+{
+    REF(InstanceRecord) records;
+    REF(RefineInstance) instances;
+    uint count;
+    uint reserved;
+};
 
 // Where the line o + t d enters the slab between lo and hi; d is not 0.
 FUNC double slab_entry(float o, float d, float lo, float hi)

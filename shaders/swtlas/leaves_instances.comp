@@ -10,7 +10,7 @@ layout(push_constant, scalar) uniform Push { InstanceLeavesArgs args; };
 
 LeafBox place_instance(uint index)
 {
-    InstanceRecord record = AT(args.records, index);
+    InstanceRecord record = in_built_units(AT(args.records, index));
     Rows to_world = to_world_of(record);
     Rows to_object = inverse_of(to_world);
     SwInstance instance;

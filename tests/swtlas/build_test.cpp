@@ -19,27 +19,33 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
+// As it is built: in units of a power of two, that of the mesh which was pushed.
+std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed = nullptr) {
+    return Geometry(mesh, Geometry::scale_of((pushed ? pushed : &mesh)->positions)).positions;
+}
+
 // Boxes by the leaf index that node references use: sorted order.
-std::vector<LeafBox> boxes_of(const std::vector<BvhTriangle>& triangles, const Mesh& mesh) {
+std::vector<LeafBox> boxes_of(const std::vector<BvhTriangle>& triangles, const Mesh& mesh,
+                              const Mesh* pushed = nullptr) {
     std::vector<LeafBox> boxes;
-    const std::vector<LeafBox> by_primitive = reference::leaves_triangles(mesh.positions, mesh.triangles);
+    const std::vector<LeafBox> by_primitive = reference::leaves_triangles(built(mesh, pushed), mesh.triangles);
     for (const BvhTriangle& triangle : triangles) boxes.push_back(by_primitive.at(triangle.primitive_index));
     return boxes;
 }
 
-void expect_sound(const SwTlas::Tree& tree, const Mesh& mesh) {
-    const TreeCheck check = check_tree(tree.bvh, tree.nodes, boxes_of(tree.triangles, mesh));
+void expect_sound(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr) {
+    const TreeCheck check = check_tree(tree.bvh, tree.nodes, boxes_of(tree.triangles, mesh, pushed));
     for (const std::string& violation : check.violations) ADD_FAILURE() << mesh.name << ": " << violation;
 }
 
 void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh) {
-    const std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);
+    const std::vector<LeafBox> boxes = reference::leaves_triangles(built(mesh), mesh.triangles);
     const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
     const reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, true);
     EXPECT_EQ(tree.bvh.root, twin.root) << mesh.name;
     EXPECT_TRUE(same_bytes(tree.nodes, twin.nodes)) << mesh.name;
-    EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(mesh.positions, mesh.triangles, order)))
+    EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(built(mesh), mesh.triangles, order)))
         << mesh.name;
 }
 
@@ -224,6 +230,7 @@ TEST_F(SwBuild, ARefittedGeometryIsSoundAndKeepsItsTopology) {
         meshes.push_back(make_soup(n, n));
         handles.push_back(accel.push(meshes.back()));
     }
+    const std::vector<Mesh> pushed = meshes;
     accel.sync();
     for (const AccelHandle handle : handles) before.push_back(accel.download_geometry(handle));
     for (std::size_t i = 0; i < meshes.size(); ++i) {
@@ -234,11 +241,11 @@ TEST_F(SwBuild, ARefittedGeometryIsSoundAndKeepsItsTopology) {
     accel.sync();
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         const SwTlas::Tree after = accel.download_geometry(handles[i]);
-        expect_sound(after, meshes[i]);
+        expect_sound(after, meshes[i], &pushed[i]);
         std::vector<uint> order;
         for (const BvhTriangle& triangle : before[i].triangles) order.push_back(triangle.primitive_index);
-        EXPECT_TRUE(
-            same_bytes(after.triangles, reference::encode_triangles(meshes[i].positions, meshes[i].triangles, order)));
+        EXPECT_TRUE(same_bytes(after.triangles,
+                               reference::encode_triangles(built(meshes[i], &pushed[i]), meshes[i].triangles, order)));
         EXPECT_EQ(after.bvh.nodes.address, before[i].bvh.nodes.address);
         for (std::size_t node = 0; node < after.nodes.size(); ++node) {
             EXPECT_EQ(after.nodes[node].child0, before[i].nodes[node].child0);
