@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// `twinray report`: error against run time over the suite of stiff and extreme cases.
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+
+#include "cli/common.h"
+#include "cli/suite/devices.h"
+#include "engine/core/error.h"
+#include "twinray_version.h"
+
+namespace twinray::cli {
+namespace {
+
+struct ReportOptions {
+    CommonOptions common;
+    std::filesystem::path folder = "twinray_report";
+    std::string suite = "quick";
+    std::vector<std::string> only, accels, levels;
+};
+
+constexpr double quick_seconds = 80;  // no case is begun after; the rest is recorded as not run
+
+// Those of `all` that are named; all if none is.
+template <class T, std::size_t N>
+std::vector<T> chosen(const std::array<T, N>& all, const std::vector<std::string>& names) {
+    std::vector<T> result;
+    for (const T one : all)
+        if (names.empty() || std::find(names.begin(), names.end(), suite::name(one)) != names.end())
+            result.push_back(one);
+    return result;
+}
+
+suite::Settings settings_of(const ReportOptions& options) {
+    return {.is_full = options.suite == "full",
+            .backends = chosen(suite::all_backends, options.accels),
+            .levels = chosen(suite::all_levels, options.levels),
+            .only = options.only,
+            .seed = options.common.seed,
+            .seconds = options.suite == "full" ? 0 : quick_seconds};
+}
+
+Recorder::Run run_of(const Context& context) {
+    return {utc_now(), twinray_version, {context.facts().name, context.facts().driver, api_version(context)}};
+}
+
+std::string verdict(const Record& record) {
+    if (!record.was_run) return "not run";
+    if (!record.pass) return "measured";
+    return *record.pass ? "pass" : "FAULT of " + record.fault_of;
+}
+
+// What did not pass, then the sums.
+void print_summary(std::span<const Record> records) {
+    std::map<std::string, std::size_t> sums;
+    for (const Record& record : records) {
+        ++sums[verdict(record)];
+        if (!record.pass.value_or(true))
+            std::cout << "  " << std::left << std::setw(5) << record.case_id << std::setw(12) << record.backend
+                      << std::setw(11) << record.level << verdict(record) << ": " << record.faults << " of " << record.n
+                      << (record.reason.empty() ? "" : "; ") << record.reason << (record.example.empty() ? "" : "; ")
+                      << record.example << '\n';
+    }
+    std::cout << "  ";
+    const char* separator = "";
+    for (const auto& [kind, count] : sums) {
+        std::cout << separator << kind << ' ' << count;
+        separator = ", ";
+    }
+    std::cout << '\n';
+}
+
+std::size_t faults_of_ours(std::span<const Record> records) {
+    return static_cast<std::size_t>(
+        std::count_if(records.begin(), records.end(), [](const Record& r) { return r.fault_of == "twinray"; }));
+}
+
+// Exit status: 1 where there is a fault of ours.
+int run(const ReportOptions& options) {
+    const std::vector<suite::SuiteCase> cases = suite::catalogue();
+    std::filesystem::create_directories(options.folder);
+    suite::Devices devices(context_desc(options.common));
+    const Context& context = devices.context(suite::Backend::software);
+    Recorder recorder(run_of(context), options.folder / "report.jsonl");
+    std::cout << "report, suite " << options.suite << ", on " << context.facts().name << '\n';
+    suite::run(cases, settings_of(options), devices, recorder, options.common.quiet);
+
+    write_csv(options.folder / "report.csv", recorder.records());
+    for (const Record& record : recorder.records())
+        append_json(options.common.json, nlohmann::json::parse(to_json(record)));
+    print_summary(recorder.records());
+    return faults_of_ours(recorder.records()) > 0 ? 1 : 0;
+}
+
+template <class T, std::size_t N>
+std::vector<std::string> names_of(const std::array<T, N>& all) {
+    std::vector<std::string> names;
+    for (const T one : all) names.emplace_back(suite::name(one));
+    return names;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, int& exit_code) {
+    CLI::App* command =
+        app.add_subcommand("report", "error against run time over stiff and extreme cases; exit 1 on a fault of ours");
+    const auto options = std::make_shared<ReportOptions>();
+    command->add_option("--suite", options->suite, "quick (under 90 s on a CPU driver) or full")
+        ->check(CLI::IsMember({"quick", "full"}))
+        ->capture_default_str();
+    command->add_option("-o,--output", options->folder, "folder of report.jsonl, report.csv and report.html")
+        ->capture_default_str();
+    command->add_option("--only", options->only, "case ids with * and ?, as N07,B*")->delimiter(',');
+    command->add_option("--accel", options->accels)
+        ->delimiter(',')
+        ->check(CLI::IsMember(names_of(suite::all_backends)));
+    command->add_option("--levels", options->levels)->delimiter(',')->check(CLI::IsMember(names_of(suite::all_levels)));
+    add_common_options(*command, options->common);
+    command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace twinray::cli

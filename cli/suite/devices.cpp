@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "cli/suite/devices.h"
+
+#include "engine/core/error.h"
+#include "hwtlas/hw_tlas.h"
+#include "swtlas/sw_tlas.h"
+
+namespace twinray::suite {
+
+Devices::Devices(ContextDesc desc) : desc_(std::move(desc)), context_(std::make_unique<Context>(desc_)) {}
+
+Devices::~Devices() = default;
+
+Context& Devices::context(Backend backend) {
+    if (backend != Backend::pipeline) return *context_;
+    if (!pipeline_context_) {
+        ContextDesc desc = desc_;
+        desc.use_ray_query = false;
+        pipeline_context_ = std::make_unique<Context>(desc);
+    }
+    return *pipeline_context_;
+}
+
+std::string Devices::why_not(const Subject& subject) {
+    const DeviceFacts& facts = context_->facts();
+    if (subject.backend == Backend::ray_query && !facts.ray_query) return "the device has no ray queries";
+    if (subject.backend == Backend::pipeline && !facts.ray_tracing_pipeline)
+        return "the device has no ray tracing pipelines";
+    const Feature level = feature_of(subject.level);
+    const DeviceFacts& seen = context(subject.backend).facts();
+    const Capability able =
+        is_ours(subject.backend) ? SwTlas::capability_on(seen, level) : HwTlas::capability_on(seen, level);
+    return able.support == Support::unsupported ? text(name_of(level), " is unsupported: ", able.note) : "";
+}
+
+std::unique_ptr<AbstractAccel> Devices::make_accel(Backend backend) {
+    if (is_ours(backend)) return std::make_unique<SwTlas>(context(backend));
+    return std::make_unique<HwTlas>(context(backend));
+}
+
+AbstractAccel& Devices::empty_accel(Backend backend) {
+    std::unique_ptr<AbstractAccel>& accel = accels_.at(static_cast<std::size_t>(backend));
+    if (!accel) accel = make_accel(backend);
+    for (const AccelHandle handle : accel->handles()) accel->erase(handle);
+    return *accel;
+}
+
+void Devices::drop_accels() {
+    for (std::unique_ptr<AbstractAccel>& accel : accels_) accel.reset();
+}
+
+}  // namespace twinray::suite
