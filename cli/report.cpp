@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // `twinray report`: error against run time over the suite of stiff and extreme cases.
 #include <algorithm>
+#include <fstream>
 #include <iomanip>
 #include <iostream>
 
 #include "cli/common.h"
+#include "cli/report/figures.h"
+#include "cli/report/page.h"
 #include "cli/suite/devices.h"
 #include "engine/core/error.h"
 #include "twinray_version.h"
@@ -17,6 +20,7 @@ struct ReportOptions {
     std::filesystem::path folder = "twinray_report";
     std::string suite = "quick";
     std::vector<std::string> only, accels, levels;
+    std::filesystem::path baseline;
 };
 
 constexpr double quick_seconds = 80;  // no case is begun after; the rest is recorded as not run
@@ -44,22 +48,16 @@ Recorder::Run run_of(const Context& context) {
     return {utc_now(), twinray_version, {context.facts().name, context.facts().driver, api_version(context)}};
 }
 
-std::string verdict(const Record& record) {
-    if (!record.was_run) return "not run";
-    if (!record.pass) return "measured";
-    return *record.pass ? "pass" : "FAULT of " + record.fault_of;
-}
-
 // What did not pass, then the sums.
 void print_summary(std::span<const Record> records) {
     std::map<std::string, std::size_t> sums;
     for (const Record& record : records) {
-        ++sums[verdict(record)];
+        ++sums[report::verdict(record)];
         if (!record.pass.value_or(true))
             std::cout << "  " << std::left << std::setw(5) << record.case_id << std::setw(12) << record.backend
-                      << std::setw(11) << record.level << verdict(record) << ": " << record.faults << " of " << record.n
-                      << (record.reason.empty() ? "" : "; ") << record.reason << (record.example.empty() ? "" : "; ")
-                      << record.example << '\n';
+                      << std::setw(11) << record.level << report::verdict(record) << ": " << record.faults << " of "
+                      << record.n << (record.reason.empty() ? "" : "; ") << record.reason
+                      << (record.example.empty() ? "" : "; ") << record.example << '\n';
     }
     std::cout << "  ";
     const char* separator = "";
@@ -75,9 +73,24 @@ std::size_t faults_of_ours(std::span<const Record> records) {
         std::count_if(records.begin(), records.end(), [](const Record& r) { return r.fault_of == "twinray"; }));
 }
 
+void write_page(const ReportOptions& options, std::span<const suite::SuiteCase> cases, std::span<const Record> records,
+                std::span<const report::Change> changes) {
+    const std::filesystem::path file = options.folder / "report.html";
+    std::ofstream out(file);
+    out << report::page({options.suite, cases, records, options.baseline.string(), changes});
+    if (!out.flush()) fail("page '", file.string(), "' cannot be written");
+}
+
+void print_changes(std::span<const report::Change> changes) {
+    for (const report::Change& change : changes) std::cout << "  worse: " << change.what << ": " << change.how << '\n';
+}
+
 // Exit status: 1 where there is a fault of ours.
 int run(const ReportOptions& options) {
     const std::vector<suite::SuiteCase> cases = suite::catalogue();
+    // Read before anything is written: it may be the report that this one replaces.
+    const std::vector<Record> baseline =
+        options.baseline.empty() ? std::vector<Record>() : read_json_lines(options.baseline);
     std::filesystem::create_directories(options.folder);
     suite::Devices devices(context_desc(options.common));
     const Context& context = devices.context(suite::Backend::software);
@@ -88,7 +101,12 @@ int run(const ReportOptions& options) {
     write_csv(options.folder / "report.csv", recorder.records());
     for (const Record& record : recorder.records())
         append_json(options.common.json, nlohmann::json::parse(to_json(record)));
+    const std::vector<report::Change> changes = report::worse_than(baseline, recorder.records());
+    write_page(options, cases, recorder.records(), changes);
     print_summary(recorder.records());
+    print_changes(changes);
+    std::cout << "  " << (options.folder / "report.html").string() << "; "
+              << report::draw_figures(options.folder, report::plots_of(recorder.records())) << '\n';
     return faults_of_ours(recorder.records()) > 0 ? 1 : 0;
 }
 
@@ -115,6 +133,7 @@ void add_report(CLI::App& app, int& exit_code) {
         ->delimiter(',')
         ->check(CLI::IsMember(names_of(suite::all_backends)));
     command->add_option("--levels", options->levels)->delimiter(',')->check(CLI::IsMember(names_of(suite::all_levels)));
+    command->add_option("--baseline", options->baseline, "report.jsonl of an earlier run: says what is worse");
     add_common_options(*command, options->common);
     command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -28,7 +28,10 @@ double number_of(const Json& json) {
 
 Json json_of(const Value& value) {
     if (const auto* flag = std::get_if<bool>(&value.is)) return *flag;
-    if (const auto* figure = std::get_if<double>(&value.is)) return number(*figure);
+    if (const auto* figure = std::get_if<double>(&value.is)) {
+        if (std::abs(*figure) < 0x1p53 && *figure == std::trunc(*figure)) return static_cast<std::int64_t>(*figure);
+        return number(*figure);
+    }
     return std::get<std::string>(value.is);
 }
 
