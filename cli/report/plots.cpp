@@ -140,7 +140,7 @@ std::vector<Plot> plots_of(std::span<const Record> records) {
     std::vector<Plot> plots;
     for (const char letter : section_order) {
         const std::string id(1, letter), title = id + ": " + std::string(suite::section_of(id));
-        add_plot(plots, fault_plot(id, title, sections[letter], false));
+        add_plot(plots, fault_plot(id, title, sections[letter]));
         add_plot(plots, t_plot(id, title, sections[letter], false));
     }
     for (const std::string& id : case_order)

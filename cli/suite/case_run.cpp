@@ -87,6 +87,15 @@ void CaseRun::measure(const World& world, std::span<const Ray> rays, const Measu
     }
 }
 
+void CaseRun::add_judged(const Subject& subject, const Judgement& judgement, const Measurement& measurement) {
+    Record result = record(subject);
+    result.params = measurement.params;
+    result.reference = "f64";
+    set_judgement(result, judgement);
+    decide(result, subject, measurement);
+    add(result);
+}
+
 void CaseRun::expect(const Subject& subject, const Outcome& outcome) {
     Record result = record(subject);
     result.params = outcome.params;

@@ -35,6 +35,9 @@ class CaseRun {
     // SW_LEAK, SW_FALSE, T_ERR and 0 hits of invalid rays; a fault of hardware is the driver's.
     void measure(const World& world, std::span<const Ray> rays, const Measurement& measurement = {});
 
+    // The same for answers that a case has traced and judged itself, as the sum of many small scenes.
+    void add_judged(const Subject& subject, const Judgement& judgement, const Measurement& measurement = {});
+
     // For what no referee judges: `faults` of `n` things were not as specified. `what` says which, and is recorded if
     // there are any. fault_of: see Record; "" = by the backend.
     struct Outcome {

@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "cli/suite/devices.h"
 
+#include <iostream>
+
 #include "engine/core/error.h"
 #include "hwtlas/hw_tlas.h"
 #include "swtlas/sw_tlas.h"
 
 namespace twinray::suite {
 
-Devices::Devices(ContextDesc desc) : desc_(std::move(desc)), context_(std::make_unique<Context>(desc_)) {}
+Devices::Devices(ContextDesc desc) : desc_(std::move(desc)) {
+    desc_.log = [this, log = desc_.log, also = desc_.validation](std::string_view message) {
+        warnings_.emplace_back(message);
+        if (also) log ? log(message) : static_cast<void>(std::cerr << "twinray: " << message << '\n');
+    };
+    context_ = std::make_unique<Context>(desc_);
+}
 
 Devices::~Devices() = default;
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/suite/suite.h"
 #include "engine/accel/abstract_accel.h"
@@ -14,6 +16,7 @@ namespace twinray::suite {
 // by pipeline has a context of its own, in which ray queries are left disabled.
 class Devices {
   public:
+    // Warnings go to take_warnings() in place of desc.log, unless desc.validation is set: then to both.
     explicit Devices(ContextDesc desc);
     ~Devices();
     Devices(const Devices&) = delete;
@@ -26,10 +29,13 @@ class Devices {
     AbstractAccel& empty_accel(Backend backend);
     // One of a case's own.
     std::unique_ptr<AbstractAccel> make_accel(Backend backend);
+    // What the library has warned of since the last call; cases provoke warnings, so they are not printed.
+    std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
     // After a failure: the next case gets new ones.
     void drop_accels();
 
   private:
+    std::vector<std::string> warnings_;
     ContextDesc desc_;
     std::unique_ptr<Context> context_, pipeline_context_;
     std::array<std::unique_ptr<AbstractAccel>, all_backends.size()> accels_;
