@@ -68,11 +68,6 @@ void print_summary(std::span<const Record> records) {
     std::cout << '\n';
 }
 
-std::size_t faults_of_ours(std::span<const Record> records) {
-    return static_cast<std::size_t>(
-        std::count_if(records.begin(), records.end(), [](const Record& r) { return r.fault_of == "twinray"; }));
-}
-
 void write_page(const ReportOptions& options, std::span<const suite::SuiteCase> cases, std::span<const Record> records,
                 std::span<const report::Change> changes) {
     const std::filesystem::path file = options.folder / "report.html";
@@ -85,9 +80,16 @@ void print_changes(std::span<const report::Change> changes) {
     for (const report::Change& change : changes) std::cout << "  worse: " << change.what << ": " << change.how << '\n';
 }
 
+void check_only(const std::vector<std::string>& patterns, std::span<const suite::SuiteCase> cases) {
+    for (const std::string& pattern : patterns)
+        if (std::none_of(cases.begin(), cases.end(), [&](const auto& row) { return suite::matches(row.id, pattern); }))
+            fail("report: --only ", pattern, " fits no case; they are W01 to F09");
+}
+
 // Exit status: 1 where there is a fault of ours.
 int run(const ReportOptions& options) {
     const std::vector<suite::SuiteCase> cases = suite::catalogue();
+    check_only(options.only, cases);
     // Read before anything is written: it may be the report that this one replaces.
     const std::vector<Record> baseline =
         options.baseline.empty() ? std::vector<Record>() : read_json_lines(options.baseline);
@@ -107,7 +109,7 @@ int run(const ReportOptions& options) {
     print_changes(changes);
     std::cout << "  " << (options.folder / "report.html").string() << "; "
               << report::draw_figures(options.folder, report::plots_of(recorder.records())) << '\n';
-    return faults_of_ours(recorder.records()) > 0 ? 1 : 0;
+    return report::faults_of_ours(recorder.records()) > 0 ? 1 : 0;
 }
 
 template <class T, std::size_t N>

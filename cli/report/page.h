@@ -18,6 +18,9 @@ struct PageInput {
 // "pass", "fault of twinray", "fault of driver", "measured" or "not run".
 std::string verdict(const Record& record);
 
+// Records that show a fault of ours: where there is one the command exits with 1.
+std::size_t faults_of_ours(std::span<const Record> records);
+
 // How many ns a ray of a level costs over watertight on the same accelerator, worlds and rays: the median and range of
 // the ratios over all that both ran.
 struct LevelPrice {

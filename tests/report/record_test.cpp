@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -20,7 +21,8 @@ Record full_record() {
     Record record;
     record.run = "2026-01-02T03:04:05Z";
     record.git = "0.1.0 abc";
-    record.device = {"llvm \"pipe\"", "Mesa, 25", "1.4.305", {{"fma_fused", false}, {"div_ulp", 0.5}, {"denorm", "kept"}}};
+    record.device = {
+        "llvm \"pipe\"", "Mesa, 25", "1.4.305", {{"fma_fused", false}, {"div_ulp", 0.5}, {"denorm", "kept"}}};
     record.case_id = "W04";
     record.params = {{"aim", "vertex, \"edge\"\nline"}, {"cells", 4608}, {"closed", true}};
     record.backend = "sw";
@@ -106,8 +108,8 @@ std::vector<std::vector<std::string>> csv_rows(const std::string& text) {
 
 class RecorderTest : public ::testing::Test {
   protected:
-    TempDir folder_;
-    std::filesystem::path file_ = folder_.path() / "report.jsonl";
+    test::TempDir folder_;
+    std::filesystem::path file_ = folder_ / "report.jsonl";
 };
 
 TEST_F(RecorderTest, FillsInTheRunAndWritesEachRecordAtOnce) {
@@ -132,8 +134,8 @@ TEST_F(RecorderTest, ReadingNamesTheLine) {
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find("line 2"), std::string::npos) << error.what();
     }
-    EXPECT_THROW(read_json_lines(folder_.path() / "none.jsonl"), Error);
-    EXPECT_THROW(Recorder({"", "", {}}, folder_.path() / "none" / "report.jsonl"), Error);
+    EXPECT_THROW(read_json_lines(folder_ / "none.jsonl"), Error);
+    EXPECT_THROW(Recorder({"", "", {}}, folder_ / "none" / "report.jsonl"), Error);
 }
 
 // Each cell is what the JSON line says, under one header for all.
@@ -160,9 +162,7 @@ TEST_F(RecorderTest, TableHoldsWhatTheLinesHold) {
             EXPECT_EQ(rows[i + 1][column], cell) << rows[0][column];
         }
     }
-    const auto has = [&](const char* name) {
-        return std::count(rows[0].begin(), rows[0].end(), name) == 1;
-    };
+    const auto has = [&](const char* name) { return std::count(rows[0].begin(), rows[0].end(), name) == 1; };
     EXPECT_TRUE(has("counts.SW_LEAK") && has("counts.HW_LEAK") && has("device.probe.div_ulp") && has("time.build_ms"));
 }
 
