@@ -67,8 +67,7 @@ void write_summary(std::ostream& out, const PageInput& input) {
     const std::size_t ours = faults_of_ours(input.records);
     const bool is_sound = ours == 0;
     out << "<h2 id=\"summary\">Summary</h2>\n<p class=\"big " << (is_sound ? "pass" : "twinray") << "\">"
-        << (is_sound ? "No fault of ours"
-                     : std::to_string(ours) + " measurements show faults of ours")
+        << (is_sound ? "No fault of ours" : std::to_string(ours) + " measurements show faults of ours")
         << "</p>\n<p>SwTlas at watertight and above: " << faults << " faults in " << rays
         << " judged items; true rate below " << number(upper_bound_95(faults, rays)) << " (95 %).</p>\n<p>";
     const char* separator = "";
@@ -211,12 +210,12 @@ std::vector<LevelPrice> level_prices(std::span<const Record> records) {
         return record.backend + '|' + record.case_id + '|' + params_of(record);
     };
     for (const Record& record : records)
-        if (record.time && record.level == "watertight") watertight[key(record)] = &record;
+        if (record.time && record.level == "watertight" && is_users_kernel(record)) watertight[key(record)] = &record;
     std::vector<LevelPrice> prices;
     std::vector<std::vector<double>> ratios;
     for (const Record& record : records) {
         const auto base = watertight.find(key(record));
-        if (!record.time || base == watertight.end()) continue;
+        if (!record.time || base == watertight.end() || !is_users_kernel(record)) continue;
         const auto same = [&](const LevelPrice& p) { return p.backend == record.backend && p.level == record.level; };
         auto price = std::find_if(prices.begin(), prices.end(), same);
         if (price == prices.end()) {

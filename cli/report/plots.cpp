@@ -20,6 +20,12 @@ std::string label_of(const Record& record) {
     return label;
 }
 
+// A kernel of its own is a curve of its own; that fast is a control in some case makes no other kernel of it.
+std::string curve_of(const Record& record) {
+    const std::string subject = record.backend + ' ' + record.level;
+    return is_users_kernel(record) ? subject : subject + ", " + record.variant;
+}
+
 PlotPoint timed_point(const Record& record) {
     PlotPoint point;
     point.label = label_of(record);
@@ -67,7 +73,7 @@ std::vector<PlotCurve> curves_of(std::span<const Record* const> records, const P
         if (!record->was_run) continue;
         const std::optional<PlotPoint> point = point_of(*record);
         if (!point || !is_drawable(*point)) continue;
-        const std::string name = record->backend + ' ' + record->level;
+        const std::string name = curve_of(*record);
         auto curve = std::find_if(curves.begin(), curves.end(), [&](const PlotCurve& c) { return c.name == name; });
         if (curve == curves.end()) curve = curves.insert(curves.end(), PlotCurve{name, 0, {}, {}});
         curve->points.push_back(*point);
@@ -122,6 +128,8 @@ void set_styles(std::vector<Plot>& plots) {
 }
 
 }  // namespace
+
+bool is_users_kernel(const Record& record) { return record.variant.empty() || record.level == "fast"; }
 
 std::vector<Plot> plots_of(std::span<const Record> records) {
     std::map<char, std::vector<const Record*>> sections;

@@ -36,6 +36,9 @@ struct Plot {
     std::vector<PlotCurve> curves;
 };
 
+// Whether users get the kernel: not compiled otherwise as a negative control.
+bool is_users_kernel(const Record& record);
+
 // For each section of the catalogue, over all its cases: the rate of faults, and the 99th percentile of the error of t,
 // against time; then the same error for each case with three settings or more on one subject. A rate of 0 stands at its
 // 95 % bound, 3 / n. Plots without a point are left out.

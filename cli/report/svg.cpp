@@ -165,8 +165,8 @@ void Drawing::draw_legend() {
         text(right + 33, y, curve.name, "font-weight=\"600\"");
         std::ostringstream slope;
         if (curve.fit) {
-            slope << std::fixed << std::setprecision(2) << "slope " << curve.fit->slope << " [" << curve.fit->slope_95.low << ", "
-                  << curve.fit->slope_95.high << "]";
+            slope << std::fixed << std::setprecision(2) << "slope " << curve.fit->slope << " ["
+                  << curve.fit->slope_95.low << ", " << curve.fit->slope_95.high << "]";
         } else {
             slope << curve.points.size() << (curve.points.size() == 1 ? " point" : " points");
         }

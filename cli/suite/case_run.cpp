@@ -12,12 +12,19 @@ constexpr std::size_t quick_reps = 3, full_reps = 15;
 
 // Sets pass and whose fault it is where it is false.
 void decide(Record& record, const Subject& subject, const Measurement& measurement) {
+    if (const auto& control = measurement.control) {
+        record.variant = control->code.name;
+        if (!control->must_show) return;
+        record.pass = record.faults > 0;
+        record.fault_of = *record.pass ? "" : "twinray";
+        return;
+    }
     if (is_ours(subject.backend) && subject.level == Level::fast) {
         if (!measurement.fast_is_control) {
             record.criterion = "none: fast promises nothing at edges";
             return;
         }
-        record.variant = "control";
+        record.variant = "control: fast";
         record.criterion = "control: fast must show faults, which proves that the case sees them";
         record.pass = record.faults > 0;
         record.fault_of = *record.pass ? "" : "twinray";
@@ -69,11 +76,20 @@ std::vector<Subject> CaseRun::one_subject_each() {
     return chosen;
 }
 
+std::vector<Subject> CaseRun::control_subject() {
+    const Subject software{Backend::software, Level::watertight};
+    const auto& wanted = settings_.backends;
+    if (std::find(wanted.begin(), wanted.end(), Backend::software) == wanted.end()) return {};
+    return {software};
+}
+
 void CaseRun::measure(const World& world, std::span<const Ray> rays, const Measurement& measurement) {
-    const std::vector<Subject> able = subjects();
+    const std::vector<Subject> able = measurement.control ? control_subject() : subjects();
     if (able.empty() || rays.empty()) return;
     const std::size_t reps = measurement.reps ? measurement.reps : amount(quick_reps, full_reps);
-    const std::vector<Traced> traces = trace(devices_, able, world, {.rays = rays, .reps = reps});
+    const std::vector<Traced> traces =
+        trace(devices_, able, world,
+              {.rays = rays, .reps = reps, .control = measurement.control ? &*measurement.control : nullptr});
     const std::vector<OracleHit> references = references_of(world.oracle, rays);
     for (const Traced& traced : traces) {
         Record result = record(traced.subject);

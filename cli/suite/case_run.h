@@ -13,6 +13,8 @@ struct Measurement {
     // Elsewhere fast promises nothing at edges and is only measured.
     bool fast_is_control = false;
     std::size_t reps = 0;  // timed repetitions; 0: as many as the suite takes
+    // Instead of all subjects, SwTlas's kernel compiled as this says, at watertight.
+    std::optional<Control> control = {};
 };
 
 // A case while it runs: what it may use, and where its results go.
@@ -58,6 +60,7 @@ class CaseRun {
 
   private:
     Record blank() const;
+    std::vector<Subject> control_subject();  // SwTlas at watertight if it was asked for
 
     const SuiteCase& row_;
     const Settings& settings_;

@@ -25,16 +25,19 @@ double total_ms(const std::vector<PassTiming>& timings) {
 struct Stage {
     AbstractAccel& accel;
     Buffer rays;
+    std::unique_ptr<TraceProgram> control = {};
     double build_ms = 0;
     double upload_ms = 0;
 };
 
-Stage make_stage(Devices& devices, Backend backend, const World& world, std::span<const Ray> rays) {
+Stage make_stage(Devices& devices, Backend backend, const World& world, const Tracing& tracing) {
+    const std::span<const Ray> rays = tracing.rays;
     AbstractAccel& accel = devices.empty_accel(backend);
     world.place(accel);
     accel.sync();
     Context& context = accel.context();
     Stage stage{accel, Buffer(context, {.name = "suite rays", .bytes = rays.size_bytes()})};
+    if (tracing.control) stage.control = accel.make_program(tracing.control->code);
     stage.build_ms = total_ms(accel.build_timings());
     Commands commands(context, "suite rays");
     {
@@ -62,7 +65,8 @@ Timing trace_once(const Stage& stage, const Subject& subject, const Tracing& tra
                        .hits = hits.ref<Hit>(),
                        .count = tracing.rays.size(),
                        .query = tracing.query,
-                       .level = subject.level});
+                       .level = subject.level,
+                       .program = stage.control.get()});
     commands.submit();
     const std::vector<PassTiming> timings = commands.timings();
     stage.accel.context().wait_for_gpu();
@@ -101,7 +105,7 @@ std::vector<Traced> trace(Devices& devices, std::span<const Subject> subjects, c
     for (const Subject& subject : subjects) {
         auto stage = stages.find(subject.backend);
         if (stage == stages.end())
-            stage = stages.emplace(subject.backend, make_stage(devices, subject.backend, world, tracing.rays)).first;
+            stage = stages.emplace(subject.backend, make_stage(devices, subject.backend, world, tracing)).first;
         hits.emplace_back(stage->second.accel.context(),
                           BufferDesc{.name = "suite hits", .bytes = tracing.rays.size() * sizeof(Hit)});
         all.push_back(trace_first(stage->second, subject, tracing, hits.back()));

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "cli/suite/controls.h"
 #include "cli/suite/devices.h"
 #include "engine/verify/oracle.h"
 
@@ -21,6 +22,7 @@ struct Tracing {
     std::span<const Ray> rays;
     std::size_t reps = 1;  // timed, after one that is not
     Query query = Query::closest;
+    const Control* control = nullptr;  // in place of the kernel that users get; for SwTlas at watertight
 };
 
 struct Traced {

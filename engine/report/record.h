@@ -73,7 +73,7 @@ struct Record {
     Values params = {};
     std::string backend = {};    // "sw", "hw", "hw-pipeline", "cpu"; "" where the case has none
     std::string level = {};      // "watertight", ...; "" where there is none
-    std::string variant = {};    // of the kernel; "" is what users get, "no-padding" a negative control
+    std::string variant = {};    // of the kernel; "" is what users get, "control: ..." a negative one
     std::string reference = {};  // "f64", "exact", "analytic", "invariance", "specification"
 
     std::uint64_t n = 0;  // items judged

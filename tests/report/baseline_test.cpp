@@ -72,7 +72,7 @@ TEST(Baseline, VerdictsAndCasesThatRanNoLonger) {
 
 TEST(Baseline, FaultsOfAControlAreWanted) {
     Record before = measured(100, {98, 102});
-    before.variant = "control";
+    before.variant = "control: fast";
     Record now = before;
     now.counts["SW_LEAK"] = 5;
     EXPECT_TRUE(changes(before, now).empty());
