@@ -1,9 +1,7 @@
-#!/ usr / bin / env python3
-#SPDX - License - Identifier : MIT
-""
-    "Draws the plots of a twinray report with matplotlib. Usage: draw_plots.py FOLDER; reads FOLDER/plots.json, writes
-    FOLDER /
-    plots/*.svg and *.png and prints how many. Exits with 3 where matplotlib is missing (Debian: python3-matplotlib)."""
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Draws the plots of a twinray report with matplotlib. Usage: draw_plots.py FOLDER; reads FOLDER/plots.json, writes
+FOLDER/plots/*.svg and *.png and prints how many. Exits with 3 where matplotlib is missing (Debian: python3-matplotlib)."""
 import json
 import pathlib
 import sys
