@@ -152,7 +152,7 @@ void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vecto
     for (const Record* record : records) write_row(out, *record);
     out << "</table>\n";
     for (const Plot& plot : plots)
-        if (plot.id == row.id + "-t") out << svg(plot);
+        if (plot.id == row.id + "-t" || plot.id == row.id + "-faults") out << svg(plot);
 }
 
 void write_cases(std::ostream& out, const PageInput& input, std::span<const Plot> plots) {

@@ -3,6 +3,7 @@
 #include "cli/report/plots.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -102,18 +103,22 @@ Plot t_plot(const std::string& id, const std::string& title, std::span<const Rec
             "ns per ray", floor_of(records),      curves_of(records, t_error, with_fit)};
 }
 
-Plot fault_plot(const std::string& id, const std::string& title, std::span<const Record* const> records) {
+Plot fault_plot(const std::string& id, const std::string& title, std::span<const Record* const> records,
+                bool with_fit) {
     return {id + "-faults",
             title + ": faults",
             "faults per ray (0 of n: at the 95 % bound 3 / n)",
             "ns per ray",
             {},
-            curves_of(records, fault_rate, false)};
+            curves_of(records, fault_rate, with_fit)};
 }
 
+// Has a curve with three settings or more that shows an error at all.
 bool is_swept(const Plot& plot) {
-    return std::any_of(plot.curves.begin(), plot.curves.end(),
-                       [](const PlotCurve& curve) { return curve.points.size() >= 3; });
+    const auto shows_error = [](const PlotPoint& point) { return !point.is_zero; };
+    return std::any_of(plot.curves.begin(), plot.curves.end(), [&](const PlotCurve& curve) {
+        return curve.points.size() >= 3 && std::any_of(curve.points.begin(), curve.points.end(), shows_error);
+    });
 }
 
 // The n-th name that appears has style n.
@@ -148,11 +153,12 @@ std::vector<Plot> plots_of(std::span<const Record> records) {
     std::vector<Plot> plots;
     for (const char letter : section_order) {
         const std::string id(1, letter), title = id + ": " + std::string(suite::section_of(id));
-        add_plot(plots, fault_plot(id, title, sections[letter]));
+        add_plot(plots, fault_plot(id, title, sections[letter], false));
         add_plot(plots, t_plot(id, title, sections[letter], false));
     }
     for (const std::string& id : case_order)
-        if (Plot plot = t_plot(id, id, cases[id], true); is_swept(plot)) plots.push_back(std::move(plot));
+        for (Plot& plot : std::array{fault_plot(id, id, cases[id], true), t_plot(id, id, cases[id], true)})
+            if (is_swept(plot)) plots.push_back(std::move(plot));
     set_styles(plots);
     return plots;
 }

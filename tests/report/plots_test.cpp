@@ -40,7 +40,7 @@ std::vector<Record> sweep() {
 
 TEST(Plots, ASweepHasItsSlopeAndASectionHasNone) {
     const std::vector<Plot> plots = plots_of(sweep());
-    ASSERT_EQ(plots.size(), 3u);
+    ASSERT_EQ(plots.size(), 4u);
     const Plot* swept = find(plots, "S04-t");
     ASSERT_TRUE(swept && swept->curves.size() == 2);
     ASSERT_TRUE(swept->curves[0].fit);
@@ -62,6 +62,20 @@ TEST(Plots, ZeroStandsAtItsBound) {
     EXPECT_FALSE(points[2].is_zero);
     EXPECT_EQ(points[2].error, 0.004);
     EXPECT_EQ(points[2].error_95, rate_interval_95(4, 1000));
+}
+
+TEST(Plots, ZerosAreNoPointsOfASlope) {
+    std::vector<Record> records = {point("S04", "watertight", 1, 1e5, 0)};  // would tilt the line
+    for (const std::uint64_t faults : {10u, 100u, 1000u})
+        records.push_back(
+            point("S04", "watertight", 1, 1e4 / static_cast<double>(faults), static_cast<int>(faults), faults));
+    const std::vector<Plot> plots = plots_of(records);
+    const Plot* swept = find(plots, "S04-faults");
+    ASSERT_TRUE(swept && swept->curves[0].fit);
+    EXPECT_NEAR(swept->curves[0].fit->slope, -1, 1e-12);
+    EXPECT_EQ(swept->curves[0].fit->points, 3u);
+    for (Record& record : records) record.faults = 0;
+    EXPECT_FALSE(find(plots_of(records), "S04-faults")) << "a plot of zeros alone";
 }
 
 TEST(Plots, WhatWasNotRunOrTimedIsNotDrawn) {
