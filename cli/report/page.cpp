@@ -35,6 +35,11 @@ std::string params_of(const Record& record) {
     return result;
 }
 
+std::string shown(const Value& value) {
+    const auto* figure = std::get_if<double>(&value.is);
+    return figure ? number(*figure, 4) : value.text();
+}
+
 std::string verdict_class(const Record& record) {
     if (!record.was_run) return "notrun";
     if (!record.pass) return "measured";
@@ -127,6 +132,7 @@ void write_row(std::ostream& out, const Record& record) {
     std::string counts;
     for (const auto& [kind, count] : record.counts)
         counts += (counts.empty() ? "" : ", ") + kind + ' ' + std::to_string(count);
+    for (const auto& [name, value] : record.results) counts += (counts.empty() ? "" : ", ") + name + ' ' + shown(value);
     out << "<tr><td>" << escaped(params_of(record)) << "</td><td>" << escaped(record.backend) << "</td><td>"
         << escaped(record.level) << "</td><td class=\"n\">" << record.n << "</td><td>" << escaped(counts)
         << "</td><td class=\"n\">" << record.faults << "</td><td class=\"n\">"
@@ -134,7 +140,10 @@ void write_row(std::ostream& out, const Record& record) {
     if (const auto& error = record.error)
         out << number(error->median) << " / " << number(error->p99) << " / " << number(error->max);
     out << "</td><td class=\"n\">";
-    if (const auto& time = record.time) out << number(time->median, 4) << " &#177; " << number(time->mad, 2);
+    if (const auto& time = record.time) {
+        out << number(time->median, 4) << " &#177; " << number(time->mad, 2);
+        if (time->metric != "ns_per_ray") out << ' ' << escaped(time->metric);
+    }
     out << "</td><td class=\"verdict " << verdict_class(record) << "\">" << escaped(verdict(record))
         << (record.variant.empty() ? "" : " (" + escaped(record.variant) + ")") << "</td></tr>\n";
     if (!record.reason.empty() || !record.example.empty())
@@ -146,7 +155,8 @@ void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vecto
                 std::span<const Plot> plots) {
     out << "<h3 id=\"" << row.id << "\">" << row.id << ": " << escaped(row.title) << "</h3>\n<p>Measures "
         << escaped(row.measures) << ". Passes with: " << escaped(row.criterion) << ".</p>\n"
-        << "<table><tr><th>setting</th><th>accelerator</th><th>level</th><th class=\"n\">n</th><th>classes</th>"
+        << "<table><tr><th>setting</th><th>accelerator</th><th>level</th><th class=\"n\">n</th><th>classes, "
+           "results</th>"
            "<th class=\"n\">faults</th><th class=\"n\">95 % bound</th><th class=\"n\">t, ulp: median / p99 / max</th>"
            "<th class=\"n\">ns per ray</th><th>verdict</th></tr>\n";
     for (const Record* record : records) write_row(out, *record);

@@ -35,8 +35,10 @@ PlotPoint timed_point(const Record& record) {
     return point;
 }
 
+bool is_of_rays(const Record& record) { return record.time && record.time->metric.starts_with("ns_per_ray"); }
+
 std::optional<PlotPoint> fault_rate(const Record& record) {
-    if (!record.time || !record.bound95 || record.n == 0) return std::nullopt;
+    if (!is_of_rays(record) || !record.bound95 || record.n == 0) return std::nullopt;
     PlotPoint point = timed_point(record);
     point.is_zero = record.faults == 0;
     point.error = point.is_zero ? *record.bound95 : static_cast<double>(record.faults) / static_cast<double>(record.n);
@@ -45,7 +47,7 @@ std::optional<PlotPoint> fault_rate(const Record& record) {
 }
 
 std::optional<PlotPoint> t_error(const Record& record) {
-    if (!record.time || !record.error || !(record.error->p99 > 0)) return std::nullopt;
+    if (!is_of_rays(record) || !record.error || !(record.error->p99 > 0)) return std::nullopt;
     PlotPoint point = timed_point(record);
     point.error = record.error->p99;
     point.error_95 = record.error->p99_95;

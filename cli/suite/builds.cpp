@@ -45,8 +45,8 @@ void expect_sound_tree(CaseRun& run, const Mesh& mesh, Values params) {
         const TreeCheck tree = check(accel.download_geometry(handle), mesh);
         const bool is_deep = tree.depth > depth_limit(mesh.triangles.size());
         params.insert_or_assign("measured", "tree");
-        params.insert_or_assign("depth", tree.depth);
         run.expect(subject, {.params = params,
+                             .results = {{"depth", tree.depth}, {"sah", tree.sah}},
                              .n = mesh.triangles.size(),
                              .faults = tree.violations.size() + (is_deep ? 1u : 0u),
                              .what = tree.violations.empty() ? text("depth ", tree.depth) : tree.violations.front()});

@@ -7,7 +7,7 @@
 
 namespace twinray::suite {
 
-// Records for SwTlas whether the tree of the mesh is sound and within its depth; the depth joins the parameters.
+// Records for SwTlas whether the tree of the mesh is sound and within its depth.
 void expect_sound_tree(CaseRun& run, const Mesh& mesh, Values params);
 
 void refit_many_times(CaseRun& run);

@@ -32,14 +32,19 @@ bool is_same(const Hit& a, const Hit& b, bool exactly) {
 }
 
 struct Refitted {
-    std::vector<Hit> refit, rebuilt;
-    double sah_ratio = 0;  // of the refitted tree to that of a new one
+    std::vector<Hit> refit = {}, rebuilt = {};
+    std::optional<double> sah_ratio = {};  // of the refitted tree to that of a new one
+    std::vector<double> refit_ms = {};
+    double build_ms = 0;
 };
 
 void expect_same(CaseRun& run, const Subject& subject, const Refitted& refitted, const char* moved) {
-    CaseRun::Outcome outcome{.params = {{"moved", moved}, {"sah_ratio", std::round(refitted.sah_ratio * 100) / 100}},
-                             .n = refitted.refit.size(),
-                             .reference = "invariance"};
+    CaseRun::Outcome outcome{.params = {{"moved", moved}}, .n = refitted.refit.size(), .reference = "invariance"};
+    if (refitted.sah_ratio) outcome.results.emplace("sah_ratio", *refitted.sah_ratio);
+    if (!refitted.refit_ms.empty()) {
+        outcome.time = time_figures("ms_per_refit", refitted.refit_ms);
+        outcome.time->phases_ms["build"] = refitted.build_ms;
+    }
     for (std::size_t i = 0; i < refitted.refit.size(); ++i)
         if (!is_same(refitted.refit[i], refitted.rebuilt[i], is_ours(subject.backend)) && outcome.faults++ == 0)
             outcome.what = text("ray ", i, " hits at t = ", refitted.refit[i].t, " after refits, at ",
@@ -47,8 +52,9 @@ void expect_same(CaseRun& run, const Subject& subject, const Refitted& refitted,
     run.expect(subject, outcome);
 }
 
-double ratio(std::optional<double> refitted, std::optional<double> rebuilt) {
-    return refitted && rebuilt && *rebuilt > 0 ? *refitted / *rebuilt : 0;
+std::optional<double> ratio(std::optional<double> refitted, std::optional<double> rebuilt) {
+    if (!refitted || !rebuilt || !(*rebuilt > 0)) return std::nullopt;
+    return *refitted / *rebuilt;
 }
 
 Refitted refit_vertices(CaseRun& run, const Subject& subject, std::size_t steps, std::span<const Ray> rays) {
@@ -58,16 +64,19 @@ Refitted refit_vertices(CaseRun& run, const Subject& subject, std::size_t steps,
     accel.set_rebuild_ratio(INFINITY);
     const AccelHandle handle = accel.push(mesh);
     accel.sync();
+    Refitted result;
     for (std::size_t i = 0; i < steps; ++i) {
         for (vec3& position : mesh.positions) position += walk.step(0.01f);
         accel.update_vertices(handle, mesh.positions);
         accel.sync();
+        result.refit_ms.push_back(total_ms(accel.build_timings()));
     }
-    Refitted result{accel.closest_hits(rays, {.level = subject.level}), {}};
+    result.refit = accel.closest_hits(rays, {.level = subject.level});
     const std::optional<double> refitted = accel.sah(handle);
     const std::unique_ptr<AbstractAccel> fresh = run.devices().make_accel(subject.backend);
     const AccelHandle again = fresh->push(mesh);
     result.rebuilt = fresh->closest_hits(rays, {.level = subject.level});
+    result.build_ms = total_ms(fresh->build_timings());
     fresh->update_vertices(again, mesh.positions);  // in place: its SAH is then measured
     fresh->sync();
     result.sah_ratio = ratio(refitted, fresh->sah(again));
@@ -88,15 +97,18 @@ Refitted refit_instances(CaseRun& run, const Subject& subject, std::size_t steps
     accel.set_rebuild_ratio(INFINITY);
     const AccelHandle handle = accel.push(mesh, transforms());
     accel.sync();
+    Refitted result;
     for (std::size_t i = 0; i < steps; ++i) {
         for (vec3& place : places) place += walk.step(0.05f);
         accel.update_transforms(handle, transforms());
         accel.sync();
+        result.refit_ms.push_back(total_ms(accel.build_timings()));
     }
-    Refitted result{accel.closest_hits(rays, {.level = subject.level}), {}};
+    result.refit = accel.closest_hits(rays, {.level = subject.level});
     const std::unique_ptr<AbstractAccel> fresh = run.devices().make_accel(subject.backend);
     fresh->push(mesh, transforms());
     result.rebuilt = fresh->closest_hits(rays, {.level = subject.level});
+    result.build_ms = total_ms(fresh->build_timings());
     result.sah_ratio = ratio(accel.sah(), fresh->sah());
     return result;
 }
@@ -121,7 +133,7 @@ void refit_collapse(CaseRun& run) {
         AbstractAccel& accel = run.devices().empty_accel(subject.backend);
         accel.set_rebuild_ratio(INFINITY);
         const AccelHandle handle = accel.push(mesh);
-        Refitted result{{}, accel.closest_hits(rays, {.level = subject.level})};
+        Refitted result{.rebuilt = accel.closest_hits(rays, {.level = subject.level})};
         accel.update_vertices(handle, one_point);
         CaseRun::Outcome collapsed{.params = {{"moved", "to a point"}}, .n = rays.size(), .what = "a point was hit"};
         for (const Hit& hit : accel.closest_hits(rays, {.level = subject.level})) collapsed.faults += hit.hit != 0;

@@ -115,10 +115,12 @@ void CaseRun::add_judged(const Subject& subject, const Judgement& judgement, con
 void CaseRun::expect(const Subject& subject, const Outcome& outcome) {
     Record result = record(subject);
     result.params = outcome.params;
+    result.results = outcome.results;
     result.reference = outcome.reference;
     result.n = outcome.n;
     result.faults = outcome.faults;
     result.bound95 = upper_bound_95(outcome.faults, outcome.n);
+    result.time = outcome.time;
     result.pass = outcome.faults == 0;
     if (!*result.pass) {
         result.reason = outcome.what;

@@ -44,11 +44,13 @@ class CaseRun {
     // there are any. fault_of: see Record; "" = by the backend.
     struct Outcome {
         Values params = {};
+        Values results = {};
         std::uint64_t n = 1;
         std::uint64_t faults = 0;
         std::string what = {};
         std::string reference = "specification";
         std::string fault_of = {};
+        std::optional<TimeFigures> time = {};
     };
     void expect(const Subject& subject, const Outcome& outcome);
 

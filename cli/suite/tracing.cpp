@@ -15,12 +15,6 @@ double ms_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-double total_ms(const std::vector<PassTiming>& timings) {
-    double sum = 0;
-    for (const PassTiming& timing : timings) sum += timing.ms;
-    return sum;
-}
-
 // The accelerator of a backend with the world in it, and the rays in its context's memory.
 struct Stage {
     AbstractAccel& accel;
@@ -120,16 +114,23 @@ std::vector<Traced> trace(Devices& devices, std::span<const Subject> subjects, c
     return all;
 }
 
+double total_ms(const std::vector<PassTiming>& timings) {
+    double sum = 0;
+    for (const PassTiming& timing : timings) sum += timing.ms;
+    return sum;
+}
+
+TimeFigures time_figures(const std::string& metric, std::vector<double> samples) {
+    std::sort(samples.begin(), samples.end());
+    return {
+        metric,          quantile(samples, 0.5), quantile_interval_95(samples, 0.5), median_absolute_deviation(samples),
+        samples.front(), samples.size()};
+}
+
 TimeFigures time_figures(const Traced& traced) {
-    std::vector<double> sorted = traced.ns_per_ray;
-    std::sort(sorted.begin(), sorted.end());
-    return {traced.has_timestamps ? "ns_per_ray" : "ns_per_ray_wall",
-            quantile(sorted, 0.5),
-            quantile_interval_95(sorted, 0.5),
-            median_absolute_deviation(sorted),
-            sorted.front(),
-            sorted.size(),
-            traced.phases_ms};
+    TimeFigures figures = time_figures(traced.has_timestamps ? "ns_per_ray" : "ns_per_ray_wall", traced.ns_per_ray);
+    figures.phases_ms = traced.phases_ms;
+    return figures;
 }
 
 }  // namespace twinray::suite

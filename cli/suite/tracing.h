@@ -39,5 +39,9 @@ std::vector<Traced> trace(Devices& devices, std::span<const Subject> subjects, c
                           const Tracing& tracing);
 
 TimeFigures time_figures(const Traced& traced);
+// Of any repetitions, at least one.
+TimeFigures time_figures(const std::string& metric, std::vector<double> samples);
+// GPU time of all passes.
+double total_ms(const std::vector<PassTiming>& timings);
 
 }  // namespace twinray::suite

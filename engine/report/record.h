@@ -69,8 +69,8 @@ struct Record {
     std::string git;  // version of twinray
     RecordedDevice device;
 
-    std::string case_id;  // as in docs/report.md: "W04"
-    Values params = {};
+    std::string case_id;         // as in docs/report.md: "W04"
+    Values params = {};          // settings: with case, backend, level and variant they name the measurement
     std::string backend = {};    // "sw", "hw", "hw-pipeline", "cpu"; "" where the case has none
     std::string level = {};      // "watertight", ...; "" where there is none
     std::string variant = {};    // of the kernel; "" is what users get, "control: ..." a negative one
@@ -79,6 +79,7 @@ struct Record {
     std::uint64_t n = 0;  // items judged
     std::uint64_t seed = 0;
     std::map<std::string, std::uint64_t> counts = {};  // by class
+    Values results = {};                               // what else was measured: "sah_ratio", "depth"
     std::optional<ErrorFigures> error = {};
     std::uint64_t faults = 0;            // of n
     std::optional<double> bound95 = {};  // upper_bound_95(faults, n)

@@ -114,6 +114,7 @@ Record parsed(const Json& json) {
     record.n = json.at("n");
     record.seed = json.at("seed");
     record.counts = json.at("counts").get<std::map<std::string, std::uint64_t>>();
+    record.results = values_of(json.at("results"));
     record.error = optional_of<ErrorFigures>(json.at("error"), error_of);
     record.faults = json.at("faults");
     record.bound95 = optional_of<double>(json.at("bound95"), number_of);
@@ -153,6 +154,7 @@ std::string to_json(const Record& record) {
         {"n", record.n},
         {"seed", record.seed},
         {"counts", Json(record.counts)},
+        {"results", json_of(record.results)},
         {"error", nullable(record.error, [](const ErrorFigures& error) { return json_of(error); })},
         {"faults", record.faults},
         {"bound95", nullable(record.bound95, number)},

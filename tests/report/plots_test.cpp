@@ -83,6 +83,9 @@ TEST(Plots, WhatWasNotRunOrTimedIsNotDrawn) {
     for (Record& record : records) record.time.reset();
     EXPECT_TRUE(plots_of(records).empty());
     EXPECT_TRUE(plots_of({}).empty());
+    std::vector<Record> refits = sweep();
+    for (Record& record : refits) record.time->metric = "ms_per_refit";
+    EXPECT_TRUE(plots_of(refits).empty()) << "another unit";
 }
 
 TEST(Plots, RangesAreDecadesAroundThePoints) {

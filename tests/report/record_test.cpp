@@ -32,6 +32,7 @@ Record full_record() {
     record.n = 262144;
     record.seed = 18446744073709551615u;
     record.counts = {{"AGREE", 262143}, {"SW_LEAK", 1}};
+    record.results = {{"sah_ratio", 1.25}};
     record.error = ErrorFigures{"t_ulp", 0.25, 3.1, {2.9, 3.3}, 1e300, 0.5};
     record.faults = 1;
     record.bound95 = 1.8e-5;
