@@ -10,6 +10,7 @@
 #include "cli/report/page.h"
 #include "cli/suite/devices.h"
 #include "engine/core/error.h"
+#include "engine/verify/float_probe.h"
 #include "twinray_version.h"
 
 namespace twinray::cli {
@@ -44,8 +45,30 @@ suite::Settings settings_of(const ReportOptions& options) {
             .seconds = options.suite == "full" ? 0 : quick_seconds};
 }
 
-Recorder::Run run_of(const Context& context) {
-    return {utc_now(), twinray_version, {context.facts().name, context.facts().driver, api_version(context)}};
+Values probe_of(Context& context) {
+    const FloatFacts& facts = probe_floats(context);
+    const std::vector<std::string> faults = robust_faults(facts);
+    return {{"product_ulp", facts.product_ulp},
+            {"sum_ulp", facts.sum_ulp},
+            {"quotient_ulp", facts.quotient_ulp},
+            {"square_root_ulp", facts.square_root_ulp},
+            {"inverse_square_root_ulp", facts.inverse_square_root_ulp},
+            {"contracts_precise", facts.contracts_precise},
+            {"contracts_plain", facts.contracts_plain},
+            {"fuses_fma", facts.fuses_fma},
+            {"error_free_products", facts.error_free_products},
+            {"keeps_denormals", facts.keeps_denormals},
+            {"compares_nan", facts.compares_nan},
+            {"min_max_drop_nan", facts.min_max_drop_nan},
+            {"has_float64", facts.has_float64},
+            {"has_exact_float64", facts.has_exact_float64},
+            {"watertightness", faults.empty() ? "can be claimed" : "cannot be claimed: " + joined(faults)}};
+}
+
+Recorder::Run run_of(Context& context) {
+    return {utc_now(),
+            twinray_version,
+            {context.facts().name, context.facts().driver, api_version(context), probe_of(context)}};
 }
 
 // What did not pass, then the sums.
@@ -95,7 +118,7 @@ int run(const ReportOptions& options) {
         options.baseline.empty() ? std::vector<Record>() : read_json_lines(options.baseline);
     std::filesystem::create_directories(options.folder);
     suite::Devices devices(context_desc(options.common));
-    const Context& context = devices.context(suite::Backend::software);
+    Context& context = devices.context(suite::Backend::software);
     Recorder recorder(run_of(context), options.folder / "report.jsonl");
     std::cout << "report, suite " << options.suite << ", on " << context.facts().name << '\n';
     suite::run(cases, settings_of(options), devices, recorder, options.common.quiet);

@@ -12,6 +12,7 @@ namespace twinray::report {
 namespace {
 
 constexpr double tolerated = 1.05;
+constexpr std::size_t fewest_for_drift = 8;
 
 std::string name_of(const Record& record) {
     std::string name = record.case_id;
@@ -31,9 +32,24 @@ double rate(std::uint64_t count, std::uint64_t n) {
     return n ? static_cast<double>(count) / static_cast<double>(n) : 0.0;
 }
 
+bool are_comparable(const Record& before, const Record& now) {
+    return before.time && now.time && before.time->metric == now.time->metric && before.time->median > 0 &&
+           before.device.name == now.device.name && before.device.driver == now.device.driver;
+}
+
+using Pair = std::pair<const Record*, const Record*>;  // before and now
+
+// What all times have in common.
+double drift_of(const std::vector<Pair>& pairs) {
+    std::vector<double> ratios;
+    for (const auto& [before, now] : pairs)
+        if (are_comparable(*before, *now)) ratios.push_back(now->time->median / before->time->median);
+    return ratios.size() < fewest_for_drift ? 1 : median(std::move(ratios));
+}
+
 class Comparison {
   public:
-    Comparison(const Record& before, const Record& now) : before_(before), now_(now) {}
+    Comparison(const Record& before, const Record& now, double drift) : before_(before), now_(now), drift_(drift) {}
 
     std::vector<Change> changes() {
         if (!now_.was_run) {
@@ -65,11 +81,9 @@ class Comparison {
     }
 
     void compare_times() {
-        const bool is_same_device =
-            before_.device.name == now_.device.name && before_.device.driver == now_.device.driver;
-        if (!before_.time || !now_.time || !is_same_device || before_.time->metric != now_.time->metric) return;
+        if (!are_comparable(before_, now_)) return;
         const double ratio = now_.time->median / before_.time->median;
-        if (!(ratio > tolerated) || now_.time->median_95.low <= before_.time->median_95.high) return;
+        if (!(ratio > tolerated * drift_) || now_.time->median_95.low <= before_.time->median_95.high * drift_) return;
         std::ostringstream how;
         how << std::setprecision(4) << now_.time->metric << ' ' << before_.time->median << " -> " << now_.time->median
             << " (+" << std::setprecision(3) << (ratio - 1) * 100 << " %), outside the spread";
@@ -78,6 +92,7 @@ class Comparison {
 
     const Record& before_;
     const Record& now_;
+    double drift_;
     std::vector<Change> changes_;
 };
 
@@ -86,10 +101,20 @@ class Comparison {
 std::vector<Change> worse_than(std::span<const Record> baseline, std::span<const Record> now) {
     std::map<std::string, const Record*> known;
     for (const Record& record : baseline) known[name_of(record)] = &record;
-    std::vector<Change> changes;
+    std::vector<Pair> pairs;
     for (const Record& record : now)
         if (const auto found = known.find(name_of(record)); found != known.end())
-            for (Change& change : Comparison(*found->second, record).changes()) changes.push_back(std::move(change));
+            pairs.emplace_back(found->second, &record);
+    const double drift = drift_of(pairs);
+    std::vector<Change> changes;
+    if (drift > tolerated) {
+        std::ostringstream how;
+        how << "the median of their ratios is " << std::setprecision(3) << drift
+            << ": a busier machine, or a slower build; single times are compared beside that";
+        changes.push_back({"all times together", how.str(), true});
+    }
+    for (const auto& [before, after] : pairs)
+        for (Change& change : Comparison(*before, *after, drift).changes()) changes.push_back(std::move(change));
     return changes;
 }
 

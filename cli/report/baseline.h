@@ -19,7 +19,9 @@ struct Change {
 };
 
 // Compares records of the same case, parameters, backend, level and variant.
-//   slower: the median time is more than 5 % larger, and the 95 % intervals of the medians do not overlap;
+//   slower: the median time is more than 5 % larger, and the 95 % intervals of the medians do not overlap, both after
+//   what all times have in common (the median of the ratios, from 8 measurements on) is taken out: a machine that is
+//   busier or a build that is slower altogether is one change of its own;
 //   worse: the rate of any class but AGREE and TIE is larger, or of faults, or it passed and does not, or it was run
 //   and is not. Of negative controls, whose faults are wanted, only the verdict counts.
 // Times are compared where both ran on the same device and driver.

@@ -39,7 +39,7 @@ TreeCheck check(const SwTlas::Tree& tree, const Mesh& mesh) {
 void expect_sound_tree(CaseRun& run, const Mesh& mesh, Values params) {
     for (const Subject& subject : run.one_subject_each()) {
         if (!is_ours(subject.backend)) continue;  // the driver shows no tree
-        auto& accel = dynamic_cast<SwTlas&>(run.devices().empty_accel(subject.backend));
+        auto& accel = dynamic_cast<SwTlas&>(run.devices().empty_accel(subject));
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
         const TreeCheck tree = check(accel.download_geometry(handle), mesh);
@@ -167,7 +167,7 @@ void repeated_builds(CaseRun& run) {
                                  .what = "a build differs from the first",
                                  .reference = "invariance"};
         for (std::size_t i = 0; i < builds; ++i) {
-            AbstractAccel& accel = run.devices().empty_accel(subject.backend);
+            AbstractAccel& accel = run.devices().empty_accel(subject);
             const AccelHandle handle = accel.push(mesh);
             const std::vector<Hit> now = accel.closest_hits(rays, {.level = subject.level});
             const auto* software = dynamic_cast<SwTlas*>(&accel);

@@ -60,7 +60,7 @@ std::optional<double> ratio(std::optional<double> refitted, std::optional<double
 Refitted refit_vertices(CaseRun& run, const Subject& subject, std::size_t steps, std::span<const Ray> rays) {
     Mesh mesh = make_icosphere(3);
     RandomWalk walk(run.seed());
-    AbstractAccel& accel = run.devices().empty_accel(subject.backend);
+    AbstractAccel& accel = run.devices().empty_accel(subject);
     accel.set_rebuild_ratio(INFINITY);
     const AccelHandle handle = accel.push(mesh);
     accel.sync();
@@ -73,7 +73,7 @@ Refitted refit_vertices(CaseRun& run, const Subject& subject, std::size_t steps,
     }
     result.refit = accel.closest_hits(rays, {.level = subject.level});
     const std::optional<double> refitted = accel.sah(handle);
-    const std::unique_ptr<AbstractAccel> fresh = run.devices().make_accel(subject.backend);
+    const std::unique_ptr<AbstractAccel> fresh = run.devices().make_accel(subject);
     const AccelHandle again = fresh->push(mesh);
     result.rebuilt = fresh->closest_hits(rays, {.level = subject.level});
     result.build_ms = total_ms(fresh->build_timings());
@@ -93,7 +93,7 @@ Refitted refit_instances(CaseRun& run, const Subject& subject, std::size_t steps
         for (const vec3& place : places) all.push_back(Transform::translation(place));
         return all;
     };
-    AbstractAccel& accel = run.devices().empty_accel(subject.backend);
+    AbstractAccel& accel = run.devices().empty_accel(subject);
     accel.set_rebuild_ratio(INFINITY);
     const AccelHandle handle = accel.push(mesh, transforms());
     accel.sync();
@@ -105,7 +105,7 @@ Refitted refit_instances(CaseRun& run, const Subject& subject, std::size_t steps
         result.refit_ms.push_back(total_ms(accel.build_timings()));
     }
     result.refit = accel.closest_hits(rays, {.level = subject.level});
-    const std::unique_ptr<AbstractAccel> fresh = run.devices().make_accel(subject.backend);
+    const std::unique_ptr<AbstractAccel> fresh = run.devices().make_accel(subject);
     fresh->push(mesh, transforms());
     result.rebuilt = fresh->closest_hits(rays, {.level = subject.level});
     result.build_ms = total_ms(fresh->build_timings());
@@ -130,7 +130,7 @@ void refit_collapse(CaseRun& run) {
     const std::vector<vec3> one_point(mesh.positions.size(), vec3(0.25f));
     const std::vector<Ray> rays = vertex_aimed_rays(world_of(mesh).oracle, run.amount(2'048, 100'000), run.seed());
     for (const Subject& subject : run.one_subject_each()) {
-        AbstractAccel& accel = run.devices().empty_accel(subject.backend);
+        AbstractAccel& accel = run.devices().empty_accel(subject);
         accel.set_rebuild_ratio(INFINITY);
         const AccelHandle handle = accel.push(mesh);
         Refitted result{.rebuilt = accel.closest_hits(rays, {.level = subject.level})};

@@ -6,12 +6,10 @@
 namespace twinray::suite {
 
 Control without_precise() {
-    return {{.name = "control: without precise",
-             .software = control_without_precise_spirv,
-             .ray_query = {},
-             .any_hit = {},
-             .intersection = {}},
-            false};
+    Control control{{}, false};
+    control.code.name = "control: without precise";
+    control.code.software = control_without_precise_spirv;
+    return control;
 }
 
 }  // namespace twinray::suite

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/suite/devices.h"
 
+#include <algorithm>
 #include <iostream>
 
 #include "engine/core/error.h"
@@ -41,20 +42,22 @@ std::string Devices::why_not(const Subject& subject) {
     return able.support == Support::unsupported ? text(name_of(level), " is unsupported: ", able.note) : "";
 }
 
-std::unique_ptr<AbstractAccel> Devices::make_accel(Backend backend) {
-    if (is_ours(backend)) return std::make_unique<SwTlas>(context(backend));
-    return std::make_unique<HwTlas>(context(backend));
+Level Devices::level_to_make(const Subject& subject) { return std::max(subject.level, Level::watertight); }
+
+std::unique_ptr<AbstractAccel> Devices::make_accel(const Subject& subject) {
+    const AccelOptions options{level_to_make(subject)};
+    Context& where = context(subject.backend);
+    if (is_ours(subject.backend)) return std::make_unique<SwTlas>(where, options);
+    return std::make_unique<HwTlas>(where, BuildOrder::automatic, options);
 }
 
-AbstractAccel& Devices::empty_accel(Backend backend) {
-    std::unique_ptr<AbstractAccel>& accel = accels_.at(static_cast<std::size_t>(backend));
-    if (!accel) accel = make_accel(backend);
+AbstractAccel& Devices::empty_accel(const Subject& subject) {
+    std::unique_ptr<AbstractAccel>& accel = accels_[{subject.backend, level_to_make(subject)}];
+    if (!accel) accel = make_accel(subject);
     for (const AccelHandle handle : accel->handles()) accel->erase(handle);
     return *accel;
 }
 
-void Devices::drop_accels() {
-    for (std::unique_ptr<AbstractAccel>& accel : accels_) accel.reset();
-}
+void Devices::drop_accels() { accels_.clear(); }
 
 }  // namespace twinray::suite

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "cli/suite/inputs.h"
 #include "engine/scene/shapes.h"
@@ -33,14 +34,14 @@ void spoiled_vertex(CaseRun& run, int axis, float value, const char* setting) {
     const std::string sentence = text(count_non_finite_triangles(grid), " of ", grid.triangles.size(), " triangles");
     const auto counts = [&](const std::string& warning) { return warning.find(sentence) != std::string::npos; };
     // Each accelerator warns when the mesh is pushed.
+    std::set<std::pair<Backend, Level>> accels;
+    for (const Subject& subject : run.subjects()) accels.emplace(subject.backend, Devices::level_to_make(subject));
     const auto warned = static_cast<std::size_t>(std::count_if(warnings.begin(), warnings.end(), counts));
-    const std::vector<Subject> subjects = run.one_subject_each();
-    for (std::size_t i = 0; i < subjects.size(); ++i)
-        run.expect(subjects[i],
-                   {.params = {{"vertex", setting}, {"measured", "warning"}},
-                    .faults = warned == subjects.size() ? 0u : 1u,
-                    .what = text(warned, " warnings say '", sentence, "', ", subjects.size(), " were expected"),
-                    .fault_of = "twinray"});
+    for (const Subject& subject : run.one_subject_each())
+        run.expect(subject, {.params = {{"vertex", setting}, {"measured", "warning"}},
+                             .faults = warned == accels.size() ? 0u : 1u,
+                             .what = text(warned, " warnings say '", sentence, "', ", accels.size(), " were expected"),
+                             .fault_of = "twinray"});
 }
 
 // What is to be refused, and a part of the error's text.
@@ -122,12 +123,12 @@ void expect_refused(CaseRun& run, const std::vector<WrongUse>& uses) {
     for (const Subject& subject : run.one_subject_each()) {
         CaseRun::Outcome outcome{.n = uses.size(), .fault_of = "twinray"};
         for (const WrongUse& wrong : uses) {
-            const std::string error = refusal(run.devices().empty_accel(subject.backend), wrong.use);
+            const std::string error = refusal(run.devices().empty_accel(subject), wrong.use);
             if (error.find(wrong.named) == std::string::npos && outcome.faults++ == 0)
                 outcome.what = text(wrong.what, ": ", error.empty() ? "not refused" : error);
         }
         // Refused use leaves nothing behind: the next scene is right.
-        AbstractAccel& accel = run.devices().empty_accel(subject.backend);
+        AbstractAccel& accel = run.devices().empty_accel(subject);
         accel.push(make_box(vec3(0), vec3(1)));
         const Ray down{vec3(0.3f, 0.4f, 5), 0, vec3(0, 0, -1), inf};
         const Hit hit = accel.closest_hits(std::span(&down, 1)).front();
@@ -209,7 +210,7 @@ void masks_and_culling(CaseRun& run) {
     const MeshView view = square;
     const Oracle oracle(std::span(&view, 1), instances);
     for (const Subject& subject : run.subjects()) {
-        AbstractAccel& accel = run.devices().empty_accel(subject.backend);
+        AbstractAccel& accel = run.devices().empty_accel(subject);
         accel.push(square, transforms, options);
         CaseRun::Outcome outcome{.n = 0, .reference = "f64"};
         for (const Cull cull : {Cull::none, Cull::back, Cull::front})

@@ -95,7 +95,7 @@ void mirrored(CaseRun& run) {
     const World world = world_of(scene);
     const std::vector<Ray> rays = random_rays(bounds_of(scene), run.amount(2'048, 200'000), run.seed());
     for (const Subject& subject : run.subjects()) {
-        AbstractAccel& accel = run.devices().empty_accel(subject.backend);
+        AbstractAccel& accel = run.devices().empty_accel(subject);
         world.place(accel);
         for (const Cull cull : {Cull::none, Cull::back, Cull::front}) {
             const std::vector<Hit> hits = accel.closest_hits(rays, {.cull = cull, .level = subject.level});
@@ -143,7 +143,7 @@ void refused_transforms(CaseRun& run) {
         for (const auto& [what, transform] : bad) {
             std::string error;
             try {
-                run.devices().empty_accel(subject.backend).push(make_box(vec3(0), vec3(1)), transform);
+                run.devices().empty_accel(subject).push(make_box(vec3(0), vec3(1)), transform);
             } catch (const Error& refusal) {
                 error = refusal.what();
             }
@@ -214,7 +214,7 @@ void powers_of_two(CaseRun& run) {
     for (const Subject& subject : run.subjects()) {
         const auto hits_at = [&](int exponent) {
             const float scale = std::ldexp(1.0f, exponent);
-            AbstractAccel& accel = run.devices().empty_accel(subject.backend);
+            AbstractAccel& accel = run.devices().empty_accel(subject);
             accel.push(sphere, Transform::scaling(vec3(scale)));
             std::vector<Ray> scaled = rays;
             for (Ray& ray : scaled) ray.origin *= scale;

@@ -24,9 +24,9 @@ struct Stage {
     double upload_ms = 0;
 };
 
-Stage make_stage(Devices& devices, Backend backend, const World& world, const Tracing& tracing) {
+Stage make_stage(Devices& devices, const Subject& subject, const World& world, const Tracing& tracing) {
     const std::span<const Ray> rays = tracing.rays;
-    AbstractAccel& accel = devices.empty_accel(backend);
+    AbstractAccel& accel = devices.empty_accel(subject);
     world.place(accel);
     accel.sync();
     Context& context = accel.context();
@@ -93,20 +93,21 @@ World world_of(const Mesh& mesh, const Transform& transform) {
 
 std::vector<Traced> trace(Devices& devices, std::span<const Subject> subjects, const World& world,
                           const Tracing& tracing) {
-    std::map<Backend, Stage> stages;
+    std::map<std::pair<Backend, Level>, Stage> stages;
+    const auto key = [](const Subject& subject) { return std::pair(subject.backend, Devices::level_to_make(subject)); };
     std::vector<Buffer> hits;
     std::vector<Traced> all;
     for (const Subject& subject : subjects) {
-        auto stage = stages.find(subject.backend);
+        auto stage = stages.find(key(subject));
         if (stage == stages.end())
-            stage = stages.emplace(subject.backend, make_stage(devices, subject.backend, world, tracing)).first;
+            stage = stages.emplace(key(subject), make_stage(devices, subject, world, tracing)).first;
         hits.emplace_back(stage->second.accel.context(),
                           BufferDesc{.name = "suite hits", .bytes = tracing.rays.size() * sizeof(Hit)});
         all.push_back(trace_first(stage->second, subject, tracing, hits.back()));
     }
     for (std::size_t rep = 0; rep < tracing.reps; ++rep)
         for (std::size_t i = 0; i < subjects.size(); ++i) {
-            const Timing timing = trace_once(stages.at(subjects[i].backend), subjects[i], tracing, hits[i]);
+            const Timing timing = trace_once(stages.at(key(subjects[i])), subjects[i], tracing, hits[i]);
             all[i].has_timestamps = timing.has_timestamps;
             all[i].ns_per_ray.push_back((timing.has_timestamps ? timing.gpu_ms : timing.wall_ms) * 1e6 /
                                         static_cast<double>(tracing.rays.size()));

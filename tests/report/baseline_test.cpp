@@ -43,6 +43,21 @@ TEST(Baseline, SlowerByMoreThan5PercentAndOutsideTheSpread) {
     EXPECT_TRUE(changes(before, elsewhere).empty()) << "another driver";
 }
 
+TEST(Baseline, WhatAllTimesHaveInCommonIsOneChange) {
+    std::vector<Record> before, now;
+    for (int i = 0; i < 9; ++i) {
+        before.push_back(measured(100, {98, 102}));
+        now.push_back(measured(120, {118, 122}));
+        for (Record* record : {&before.back(), &now.back()}) record->params = {{"setting", i}};
+    }
+    now[4].time = TimeFigures{"ns_per_ray", 150, {148, 152}, 1, 147, 15};
+    const std::vector<Change> changes = worse_than(before, now);
+    ASSERT_EQ(changes.size(), 2u);
+    EXPECT_EQ(changes[0].what, "all times together");
+    EXPECT_NE(changes[0].how.find("ratios is 1.2:"), std::string::npos) << changes[0].how;
+    EXPECT_EQ(changes[1].what, "W04 sw watertight {setting 4}");
+}
+
 TEST(Baseline, MoreOfAnyClassButAgreeAndTie) {
     const Record before = measured(100, {98, 102});
     Record now = before;
