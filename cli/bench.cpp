@@ -9,6 +9,7 @@
 #include "cli/common.h"
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
+#include "engine/report/statistics.h"
 #include "engine/verify/classify.h"
 #include "hwtlas/hw_tlas.h"
 #include "swtlas/sw_tlas.h"
@@ -37,11 +38,6 @@ struct Candidate {
     std::vector<double> build_ms = {}, trace_ms = {};
     std::vector<Hit> hits = {};
 };
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
 
 // Pinhole rays over the scene from a corner above, in tiles of 8 x 8 pixels as a renderer would.
 std::vector<Ray> primary_rays(const Bounds& bounds, uint width) {

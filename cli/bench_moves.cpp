@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "cli/common.h"
+#include "engine/report/statistics.h"
 #include "engine/scene/shapes.h"
 #include "hwtlas/hw_tlas.h"
 #include "swtlas/sw_tlas.h"
@@ -41,11 +42,6 @@ double sync_ms(AbstractAccel& accel) {
     double sum = 0;
     for (const PassTiming& pass : accel.build_timings()) sum += pass.ms;
     return sum;
-}
-
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return values[values.size() / 2];
 }
 
 void measure(AbstractAccel& accel, const CommonOptions& options, std::size_t count, std::size_t rounds) {

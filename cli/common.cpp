@@ -25,11 +25,15 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_flag("--validation", options.validation, "run under the Vulkan validation layer");
 }
 
-std::unique_ptr<Context> make_context(const CommonOptions& options) {
+ContextDesc context_desc(const CommonOptions& options) {
     ContextDesc desc{.device = options.device, .validation = options.validation};
     if (options.quiet && !options.validation) desc.log = [](std::string_view) {};
     if (const char* disabled = std::getenv("TWINRAY_DISABLE")) disable_features(desc, disabled);
-    return std::make_unique<Context>(desc);
+    return desc;
+}
+
+std::unique_ptr<Context> make_context(const CommonOptions& options) {
+    return std::make_unique<Context>(context_desc(options));
 }
 
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const std::string& kind) {
@@ -77,11 +81,13 @@ void append_json(const std::filesystem::path& file, const nlohmann::json& record
     if (!out.flush()) fail("JSON file '", file.string(), "' cannot be written");
 }
 
-nlohmann::json describe(const Context& context) {
+std::string api_version(const Context& context) {
     const std::uint32_t api = context.facts().api_version;
-    return {{"name", context.facts().name},
-            {"driver", context.facts().driver},
-            {"api", text(VK_API_VERSION_MAJOR(api), ".", VK_API_VERSION_MINOR(api), ".", VK_API_VERSION_PATCH(api))}};
+    return text(VK_API_VERSION_MAJOR(api), ".", VK_API_VERSION_MINOR(api), ".", VK_API_VERSION_PATCH(api));
+}
+
+nlohmann::json describe(const Context& context) {
+    return {{"name", context.facts().name}, {"driver", context.facts().driver}, {"api", api_version(context)}};
 }
 
 }  // namespace twinray::cli

@@ -26,6 +26,7 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 
 // A context for these options; TWINRAY_DISABLE (a comma-separated list of ray_query, ray_tracing_pipeline) leaves
 // features of the device unused.
+ContextDesc context_desc(const CommonOptions& options);
 std::unique_ptr<Context> make_context(const CommonOptions& options);
 
 // kind: "sw" or "hw".
@@ -39,6 +40,9 @@ std::vector<Ray> read_rays(const std::filesystem::path& file);
 void check_writable(const std::filesystem::path& file);  // its folder exists: before the work, not after it
 void write_hits(const std::filesystem::path& file, const std::vector<Hit>& hits);
 
+// "1.4.305".
+std::string api_version(const Context& context);
+
 // Appends one line; does nothing for an empty path.
 void append_json(const std::filesystem::path& file, const nlohmann::json& record);
 nlohmann::json describe(const Context& context);
@@ -49,5 +53,6 @@ void add_trace(CLI::App& app, int& exit_code);
 void add_verify(CLI::App& app, int& exit_code);
 void bench_moves(const CommonOptions& options, std::size_t count, std::size_t rounds);
 void add_bench(CLI::App& app, int& exit_code);
+void add_report(CLI::App& app, int& exit_code);
 
 }  // namespace twinray::cli

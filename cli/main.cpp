@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
     twinray::cli::add_trace(app, exit_code);
     twinray::cli::add_verify(app, exit_code);
     twinray::cli::add_bench(app, exit_code);
+    twinray::cli::add_report(app, exit_code);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -44,9 +44,4 @@ struct Classes {
     std::uint64_t faults_of_hardware() const;  // hw_leak, hw_false, hw_t_err, hw_range
 };
 
-// One-sided 95 % upper confidence bound of a probability after `count` events in `trials` (Clopper and Pearson
-// 1934): the p for which `count` or fewer events have a chance of 5 %. About 3 / trials for no event; 1 when
-// count >= trials.
-double upper_bound_95(std::uint64_t count, std::uint64_t trials);
-
 }  // namespace twinray

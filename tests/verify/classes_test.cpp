@@ -46,37 +46,5 @@ TEST(Classes, CountsAddUp) {
     EXPECT_EQ(a.faults_of_ours(), 3u);
 }
 
-// Reference values: bisection on the binomial tail summed term by term in Python's math module.
-TEST(UpperBound95, IsClopperPearsons) {
-    EXPECT_NEAR(upper_bound_95(0, 1000), 0.0029912495451, 1e-12);
-    EXPECT_NEAR(upper_bound_95(1, 100), 0.0465598114535, 1e-10);
-    EXPECT_NEAR(upper_bound_95(5, 100), 0.102253377643, 1e-10);
-    EXPECT_NEAR(upper_bound_95(3, 1000000), 7.75363810049e-06, 1e-13);
-    EXPECT_NEAR(upper_bound_95(1000, 1000000), 0.00105357487745, 1e-11);
-    EXPECT_NEAR(upper_bound_95(99, 100), 0.999487198584, 1e-10);
-    EXPECT_NEAR(upper_bound_95(50, 60), 0.906693067295, 1e-10);
-}
-
-TEST(UpperBound95, OfNoEventIsTheRuleOfThree) {
-    for (const std::uint64_t n : {1000u, 1000000u, 1000000000u})
-        EXPECT_NEAR(upper_bound_95(0, n) * static_cast<double>(n), 3, 0.01);
-}
-
-TEST(UpperBound95, IsOneWhereNothingIsKnown) {
-    EXPECT_EQ(upper_bound_95(0, 0), 1);
-    EXPECT_EQ(upper_bound_95(5, 5), 1);
-    EXPECT_EQ(upper_bound_95(6, 5), 1);
-}
-
-TEST(UpperBound95, GrowsWithTheCount) {
-    double before = 0;
-    for (std::uint64_t count = 0; count < 100000; count += 997) {
-        const double bound = upper_bound_95(count, 100000);
-        EXPECT_GT(bound, before);
-        EXPECT_GT(bound, static_cast<double>(count) / 100000);
-        before = bound;
-    }
-}
-
 }  // namespace
 }  // namespace twinray

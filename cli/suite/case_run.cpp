@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "cli/suite/case_run.h"
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+
+namespace twinray::suite {
+namespace {
+
+constexpr std::size_t quick_reps = 3, full_reps = 15;
+
+// Sets pass and whose fault it is where it is false.
+void decide(Record& record, const Subject& subject, const Measurement& measurement) {
+    if (const auto& control = measurement.control) {
+        record.variant = control->code.name;
+        if (!control->must_show) return;
+        record.pass = record.faults > 0;
+        record.fault_of = *record.pass ? "" : "twinray";
+        return;
+    }
+    if (is_ours(subject.backend) && subject.level == Level::fast) {
+        if (!measurement.fast_is_control) {
+            record.criterion = "none: fast promises nothing at edges";
+            return;
+        }
+        record.variant = "control: fast";
+        record.criterion = "control: fast must show faults, which proves that the case sees them";
+        record.pass = record.faults > 0;
+        record.fault_of = *record.pass ? "" : "twinray";
+        return;
+    }
+    record.pass = record.faults == 0;
+    if (!*record.pass) record.fault_of = is_ours(subject.backend) ? "twinray" : "driver";
+}
+
+}  // namespace
+
+Record CaseRun::blank() const {
+    Record record;
+    record.case_id = row_.id;
+    record.criterion = row_.criterion;
+    record.seed = settings_.seed;
+    return record;
+}
+
+Record CaseRun::record(const Subject& subject) const {
+    Record record = blank();
+    record.backend = name(subject.backend);
+    record.level = name(subject.level);
+    return record;
+}
+
+std::vector<Subject> CaseRun::subjects() {
+    std::vector<Subject> able;
+    for (const Backend backend : settings_.backends)
+        for (const Level level : settings_.levels) {
+            const Subject subject{backend, level};
+            if (!is_ours(backend) && level == Level::fast) continue;
+            const std::string reason = devices_.why_not(subject);
+            if (reason.empty()) {
+                able.push_back(subject);
+            } else if (!has_told_) {
+                add_not_run(reason, &subject);
+            }
+        }
+    has_told_ = true;
+    return able;
+}
+
+std::vector<Subject> CaseRun::one_subject_each() {
+    std::vector<Subject> chosen;
+    for (const Subject& subject : subjects())
+        if (subject.level != Level::fast && (chosen.empty() || chosen.back().backend != subject.backend))
+            chosen.push_back(subject);
+    return chosen;
+}
+
+std::vector<Subject> CaseRun::control_subject() {
+    const Subject software{Backend::software, Level::watertight};
+    const auto& wanted = settings_.backends;
+    if (std::find(wanted.begin(), wanted.end(), Backend::software) == wanted.end()) return {};
+    return {software};
+}
+
+void CaseRun::measure(const World& world, std::span<const Ray> rays, const Measurement& measurement) {
+    const std::vector<Subject> able = measurement.control ? control_subject() : subjects();
+    if (able.empty() || rays.empty()) return;
+    const std::size_t reps = measurement.reps ? measurement.reps : amount(quick_reps, full_reps);
+    const std::vector<Traced> traces =
+        trace(devices_, able, world,
+              {.rays = rays, .reps = reps, .control = measurement.control ? &*measurement.control : nullptr});
+    const std::vector<OracleHit> references = references_of(world.oracle, rays);
+    for (const Traced& traced : traces) {
+        Record result = record(traced.subject);
+        result.params = measurement.params;
+        result.reference = "f64";
+        set_judgement(result, judge(world.oracle, rays, traced.hits, traced.subject.backend));
+        result.error = t_error(references, traced.hits);
+        result.time = time_figures(traced);
+        decide(result, traced.subject, measurement);
+        add(result);
+    }
+}
+
+void CaseRun::add_judged(const Subject& subject, const Judgement& judgement, const Measurement& measurement) {
+    Record result = record(subject);
+    result.params = measurement.params;
+    result.reference = "f64";
+    set_judgement(result, judgement);
+    decide(result, subject, measurement);
+    add(result);
+}
+
+void CaseRun::expect(const Subject& subject, const Outcome& outcome) {
+    Record result = record(subject);
+    result.params = outcome.params;
+    result.results = outcome.results;
+    result.reference = outcome.reference;
+    result.n = outcome.n;
+    result.faults = outcome.faults;
+    result.bound95 = upper_bound_95(outcome.faults, outcome.n);
+    result.time = outcome.time;
+    result.pass = outcome.faults == 0;
+    if (!*result.pass) {
+        result.reason = outcome.what;
+        result.fault_of = !outcome.fault_of.empty()  ? outcome.fault_of
+                          : is_ours(subject.backend) ? "twinray"
+                                                     : "driver";
+    }
+    add(result);
+}
+
+void CaseRun::add_not_run(const std::string& reason, const Subject* subject) {
+    Record result = subject ? record(*subject) : blank();
+    result.was_run = false;
+    result.reason = reason;
+    add(result);
+}
+
+void CaseRun::add_failure(const std::string& what) {
+    Record result = blank();
+    result.pass = false;
+    result.fault_of = "twinray";
+    result.reason = what;
+    add(result);
+}
+
+}  // namespace twinray::suite

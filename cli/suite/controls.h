@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// Negative controls: kernels that leave out something that a promise rests on. A case that counts 0 faults says little
+// until it has shown faults of these.
+#pragma once
+
+#include "engine/accel/trace_program.h"
+
+namespace twinray::suite {
+
+// SwTlas's own trace kernel, compiled otherwise.
+struct Control {
+    TraceProgramCode code;  // its name becomes Record::variant
+    // False: whether it shows faults is up to the driver, so that it is only measured.
+    bool must_show = true;
+};
+
+// To add one: a macro in shaders/shared that leaves the thing out, and a twinray_compile_shader() of
+// shaders/engine/trace.comp with it in this folder's CMakeLists.txt.
+
+// Without `precise`: no operation is NoContraction. Leaks where the driver contracts or reassociates.
+Control without_precise();
+
+}  // namespace twinray::suite

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/suite/suite.h"
+#include "engine/accel/abstract_accel.h"
+
+namespace twinray::suite {
+
+// The accelerators that cases run on, one for each backend, made when first needed: kernels are compiled once. Those
+// for levels above watertight are others: they keep more than a user of watertight would have. HwTlas by pipeline has a
+// context of its own, in which ray queries are left disabled.
+class Devices {
+  public:
+    // Warnings go to take_warnings() in place of desc.log, unless desc.validation is set: then to both.
+    explicit Devices(ContextDesc desc);
+    ~Devices();
+    Devices(const Devices&) = delete;
+    Devices& operator=(const Devices&) = delete;
+
+    Context& context(Backend backend);
+    // Why it cannot answer here; "" if it can.
+    std::string why_not(const Subject& subject);
+    // Empty: whatever an earlier case left is erased.
+    AbstractAccel& empty_accel(const Subject& subject);
+    // The level of the accelerator that a subject's traces run on: subjects that share it share the accelerator.
+    static Level level_to_make(const Subject& subject);
+    // One of a case's own.
+    std::unique_ptr<AbstractAccel> make_accel(const Subject& subject);
+    // What the library has warned of since the last call; cases provoke warnings, so they are not printed.
+    std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
+    // After a failure: the next case gets new ones.
+    void drop_accels();
+
+  private:
+    std::vector<std::string> warnings_;
+    ContextDesc desc_;
+    std::unique_ptr<Context> context_, pipeline_context_;
+    std::map<std::pair<Backend, Level>, std::unique_ptr<AbstractAccel>> accels_;
+};
+
+}  // namespace twinray::suite

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "cli/suite/judging.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "engine/verify/parallel.h"
+
+namespace twinray::suite {
+namespace {
+
+double ulp_of(double value) {
+    const auto rounded = static_cast<float>(std::abs(value));
+    if (!std::isfinite(rounded)) return std::numeric_limits<double>::infinity();
+    return static_cast<double>(std::nextafter(rounded, std::numeric_limits<float>::infinity())) - double{rounded};
+}
+
+bool is_fault(Class kind) {
+    return is_fault_of_ours(kind) || kind == Class::hw_leak || kind == Class::hw_false || kind == Class::hw_t_err ||
+           kind == Class::hw_range || kind == Class::invalid_input;
+}
+
+}  // namespace
+
+std::vector<OracleHit> references_of(const Oracle& oracle, std::span<const Ray> rays) {
+    std::vector<OracleHit> references(rays.size());
+    parallel_for(rays.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) references[i] = oracle.closest_hit(rays[i]);
+    });
+    return references;
+}
+
+std::optional<ErrorFigures> t_error(std::span<const OracleHit> references, std::span<const Hit> hits) {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        const OracleHit& reference = references[i];
+        const bool is_same = hits[i].hit && reference.hit && hits[i].instance_index == reference.instance &&
+                             hits[i].primitive_index == reference.primitive;
+        if (is_same) errors.push_back(std::abs(double{hits[i].t} - reference.t) / ulp_of(reference.t));
+    }
+    if (errors.empty()) return std::nullopt;
+    std::sort(errors.begin(), errors.end());
+    return ErrorFigures{
+        "t_ulp", quantile(errors, 0.5), quantile(errors, 0.99), quantile_interval_95(errors, 0.99), errors.back(), 0.5};
+}
+
+Judgement judge(const Oracle& oracle, std::span<const Ray> rays, std::span<const Hit> hits, Backend backend) {
+    const std::vector<Verdict> verdicts =
+        is_ours(backend) ? classify_all(oracle, rays, hits, {}) : classify_all(oracle, rays, {}, hits);
+    Judgement judgement;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Class kind = is_ours(backend) ? *verdicts[i].software : *verdicts[i].hardware;
+        judgement.classes.add(kind);
+        if (!is_fault(kind)) continue;
+        if (judgement.faults++ == 0) judgement.example = std::string(name(kind)) + ' ' + hexadecimal(rays[i]);
+    }
+    return judgement;
+}
+
+void set_judgement(Record& record, const Judgement& judgement) {
+    record.n = judgement.classes.total();
+    record.faults = judgement.faults;
+    record.bound95 = upper_bound_95(record.faults, record.n);
+    record.example = judgement.example;
+    for (std::size_t kind = 0; kind < class_count; ++kind)
+        if (const std::uint64_t count = judgement.classes.counts[kind])
+            record.counts[std::string(name(static_cast<Class>(kind)))] = count;
+}
+
+std::string hexadecimal(const Ray& ray) {
+    std::ostringstream out;
+    out << std::hexfloat;
+    for (const float value : {ray.origin.x, ray.origin.y, ray.origin.z, ray.t_min, ray.direction.x, ray.direction.y,
+                              ray.direction.z, ray.t_max})
+        out << (out.tellp() > 0 ? " " : "") << value;
+    return out.str();
+}
+
+}  // namespace twinray::suite

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// The suite of stiff and extreme cases: what there is to run, on what, and how much of it.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/accel/trace_desc.h"
+#include "engine/report/recorder.h"
+
+namespace twinray::suite {
+
+// Who answers: SwTlas, HwTlas by ray query, HwTlas by ray tracing pipeline.
+enum class Backend : std::uint8_t { software, ray_query, pipeline };
+inline constexpr std::array all_backends = {Backend::software, Backend::ray_query, Backend::pipeline};
+inline constexpr std::array all_levels = {Level::fast, Level::watertight, Level::refined, Level::certified};
+
+std::string_view name(Backend backend);  // "sw", "hw", "hw-pipeline"
+std::string_view name(Level level);      // "fast", ...
+constexpr bool is_ours(Backend backend) { return backend == Backend::software; }
+
+// An accelerator at a level: a curve of the plots.
+struct Subject {
+    Backend backend = Backend::software;
+    Level level = Level::watertight;
+
+    bool operator==(const Subject&) const = default;
+};
+
+struct Settings {
+    bool is_full = false;
+    std::vector<Backend> backends = {all_backends.begin(), all_backends.end()};
+    std::vector<Level> levels = {all_levels.begin(), all_levels.end()};
+    std::vector<std::string> only = {};  // patterns of case ids with * and ?; empty: all
+    std::uint64_t seed = 1;
+    double seconds = 0;  // no case is begun after these; 0: no limit
+};
+
+class CaseRun;
+
+// A row of the catalogue.
+struct SuiteCase {
+    std::string id;         // "W04"
+    std::string title;      // how it is made
+    std::string measures;   // what is counted
+    std::string criterion;  // when it passes
+    std::function<void(CaseRun&)> run = nullptr;
+    std::string not_run = {};  // why there is no `run`
+};
+
+// The catalogue, a function and a file for each section.
+std::vector<SuiteCase> edge_cases();        // W: edges, vertices, watertightness
+std::vector<SuiteCase> scale_cases();       // S: scale and position
+std::vector<SuiteCase> shape_cases();       // T: triangle shape
+std::vector<SuiteCase> input_cases();       // N: invalid and special input
+std::vector<SuiteCase> instance_cases();    // I: instances
+std::vector<SuiteCase> build_cases();       // B: structure, build and refit
+std::vector<SuiteCase> arithmetic_cases();  // F: self-intersection, arithmetic
+std::vector<SuiteCase> catalogue();         // all of them
+// The section of a case id, by its letter: "edges, vertices, watertightness".
+std::string_view section_of(std::string_view id);
+
+// Whether `text` fits a pattern with * (any characters) and ? (one).
+bool matches(std::string_view text, std::string_view pattern);
+
+class Devices;
+// Runs the cases that settings.only names, in the order of the catalogue; one that throws is recorded as our fault, and
+// the rest goes on. Throws DeviceLost, after recording it.
+void run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder, bool quiet);
+
+}  // namespace twinray::suite

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// What reports say about measurements: pure functions of the samples.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace twinray {
+
+struct Interval {
+    double low = 0;
+    double high = 0;
+
+    bool operator==(const Interval&) const = default;
+};
+
+// NaN for no value; the mean of the middle two for an even number.
+double median(std::vector<double> values);
+// Median of |value - median(values)|: a spread that outliers do not move.
+double median_absolute_deviation(std::span<const double> values);
+
+// `sorted`: ascending. p in [0, 1], linear between neighbours; NaN for no value.
+double quantile(std::span<const double> sorted, double p);
+// A 95 % confidence interval of the population's p-quantile between two of the samples, without assumptions on the
+// distribution: the ranks are quantiles of the binomial distribution. Where the samples are too few (under 6 for the
+// median, under 368 for p = 0.99) it ends at the smallest or largest and covers less. `sorted` must not be empty.
+Interval quantile_interval_95(std::span<const double> sorted, double p);
+
+// One-sided 95 % upper confidence bound of a probability after `count` events in `trials` (Clopper and Pearson
+// 1934): the p for which `count` or fewer events have a chance of 5 %. About 3 / trials for no event; 1 when
+// count >= trials.
+double upper_bound_95(std::uint64_t count, std::uint64_t trials);
+// The two-sided 95 % interval; [0, 1] for no trial.
+Interval rate_interval_95(std::uint64_t count, std::uint64_t trials);
+
+// y = scale * x^slope, by least squares of log y over log x, with the 95 % interval of the slope that Student's
+// distribution gives for scatter about the line.
+struct PowerLaw {
+    double slope = 0;
+    double scale = 0;
+    Interval slope_95;
+    std::size_t points = 0;  // those used
+};
+// Points that are not positive and finite are left out; nothing with fewer than 3, or where all x are equal. x and y
+// are equally long.
+std::optional<PowerLaw> fit_power_law(std::span<const double> x, std::span<const double> y);
+
+}  // namespace twinray

@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Runs `twinray report` as a user does. Usage: report_command_test.py TWINRAY"""
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree
+
+twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+
+
+def report(*arguments, status=0):
+    run = subprocess.run([twinray, "report", "--quiet", "--validation", *arguments], capture_output=True, text=True)
+    assert run.returncode == status, f"{arguments}: status {run.returncode}\n{run.stdout}{run.stderr}"
+    assert "VUID" not in run.stderr and "SYNC-HAZARD" not in run.stderr, run.stderr
+    return run.stdout
+
+
+def lines(file):
+    return [json.loads(line) for line in (here / file).read_text().splitlines()]
+
+
+first = here / "first"
+said = report("--only", "N07,B10,W15", "-o", str(first), "--json", str(here / "all.jsonl"))
+records = lines("first/report.jsonl")
+assert records and lines("all.jsonl") == records
+assert {r["case"] for r in records} == {"N07", "B10", "W15"}
+assert all(r["schema"] == "twinray-report/1" and r["device"]["driver"] and r["git"] for r in records)
+judged = [r for r in records if r["case"] == "N07" and r["status"] == "run" and r["backend"] == "sw"]
+assert judged and all(r["pass"] and r["n"] == 144 and r["faults"] == 0 for r in judged), judged
+assert all(r["reason"] for r in records if r["status"] == "not run")
+
+with open(first / "report.csv", newline="", encoding="utf-8") as file:
+    rows = list(csv.DictReader(file))
+assert [row["case"] for row in rows] == [r["case"] for r in records]
+assert [row["n"] for row in rows] == [str(r["n"]) for r in records]
+
+page = xml.etree.ElementTree.parse(first / "report.html").getroot()
+text = "".join(page.itertext())
+assert "No fault of ours" in text and "N07" in text and "B10" in text
+assert (first / "plots.json").exists()
+drawn = sorted(file.stem for file in (first / "plots").glob("*.png"))
+if "is missing (Debian: apt-get install python3-matplotlib" in said:
+    assert not drawn
+else:
+    assert drawn == sorted(plot["id"] for plot in json.loads((first / "plots.json").read_text())), said
+
+# Beside a baseline of which a count was better, and in which a case passed.
+better = [dict(r, faults=0, counts={}) for r in records]
+(here / "old.jsonl").write_text("".join(json.dumps(r) + "\n" for r in better))
+report("--only", "N07", "--accel", "sw", "--levels", "watertight", "-o", str(here / "second"), "--baseline",
+       str(here / "old.jsonl"))
+again = lines("second/report.jsonl")
+assert {(r["backend"], r["level"]) for r in again} == {("sw", "watertight")}
+assert [r["counts"] for r in again] == [r["counts"] for r in records
+                                        if (r["case"], r["backend"], r["level"]) == ("N07", "sw", "watertight")]
+
+report("--only", "N07", "-o", str(here / "third"), "--baseline", str(here / "none.jsonl"), status=1)
+assert not (here / "third").exists(), "a report was begun although its baseline cannot be read"
+report("--accel", "gpu", status=2)
+report("--only", "Q99", "-o", str(here / "fourth"), status=1)
+print("report: the command works")

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "engine/report/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace twinray {
+namespace {
+
+TEST(Median, IsTheMiddle) {
+    EXPECT_EQ(median({3, 1, 2}), 2);
+    EXPECT_EQ(median({4, 1, 3, 2}), 2.5);
+    EXPECT_EQ(median({7}), 7);
+    EXPECT_TRUE(std::isnan(median({})));
+}
+
+TEST(Median, AbsoluteDeviationIgnoresAnOutlier) {
+    const std::vector<double> values = {1, 2, 3, 4, 1000};
+    EXPECT_EQ(median_absolute_deviation(values), 1);
+}
+
+TEST(Quantile, IsLinearBetweenSamples) {
+    const std::vector<double> sorted = {0, 10, 20, 30, 40};
+    EXPECT_EQ(quantile(sorted, 0), 0);
+    EXPECT_EQ(quantile(sorted, 1), 40);
+    EXPECT_EQ(quantile(sorted, 0.5), 20);
+    EXPECT_EQ(quantile(sorted, 0.125), 5);
+}
+
+// The ranks of Conover, "Practical Nonparametric Statistics", 3.2: for the median of 10 samples 2 and 9, of 6 the
+// smallest and the largest.
+TEST(Quantile, IntervalHasTheRanksOfTheBinomialDistribution) {
+    std::vector<double> sorted;
+    for (int i = 1; i <= 10; ++i) sorted.push_back(i);
+    EXPECT_EQ(quantile_interval_95(sorted, 0.5), (Interval{2, 9}));
+    sorted.resize(6);
+    EXPECT_EQ(quantile_interval_95(sorted, 0.5), (Interval{1, 6}));
+    sorted.resize(1);
+    EXPECT_EQ(quantile_interval_95(sorted, 0.5), (Interval{1, 1}));
+    EXPECT_EQ(quantile_interval_95(sorted, 0.99), (Interval{1, 1}));
+}
+
+TEST(Quantile, IntervalCoversTheTruthInAtLeast95OfAHundredTrials) {
+    std::mt19937 random(7);
+    int covered = 0;
+    constexpr int trials = 4000;
+    for (int trial = 0; trial < trials; ++trial) {
+        std::vector<double> sorted;
+        for (int i = 0; i < 100; ++i) sorted.push_back(static_cast<double>(random()) / 4294967296.0);
+        std::sort(sorted.begin(), sorted.end());
+        const Interval interval = quantile_interval_95(sorted, 0.8);
+        if (interval.low <= 0.8 && 0.8 <= interval.high) ++covered;
+    }
+    EXPECT_GE(covered, trials * 0.94);
+    EXPECT_LE(covered, trials * 0.985);
+}
+
+// Reference values: scipy's binomtest(k, n).proportion_ci() by bisection on the exact binomial tails.
+TEST(RateInterval95, IsClopperPearsons) {
+    EXPECT_NEAR(rate_interval_95(5, 100).low, 0.0164319, 1e-6);
+    EXPECT_NEAR(rate_interval_95(5, 100).high, 0.1128349, 1e-6);
+    EXPECT_EQ(rate_interval_95(0, 100).low, 0);
+    EXPECT_NEAR(rate_interval_95(0, 100).high, 0.0362167, 1e-6);
+    EXPECT_EQ(rate_interval_95(100, 100).high, 1);
+    EXPECT_EQ(rate_interval_95(0, 0), (Interval{0, 1}));
+}
+
+TEST(PowerLaw, OfExactPointsHasNoUncertainty) {
+    std::vector<double> x, y;
+    for (const double value : {1.0, 2.0, 8.0, 64.0}) {
+        x.push_back(value);
+        y.push_back(3 * std::pow(value, -0.5));
+    }
+    const std::optional<PowerLaw> fit = fit_power_law(x, y);
+    ASSERT_TRUE(fit);
+    EXPECT_NEAR(fit->slope, -0.5, 1e-12);
+    EXPECT_NEAR(fit->scale, 3, 1e-12);
+    EXPECT_NEAR(fit->slope_95.low, -0.5, 1e-9);
+    EXPECT_NEAR(fit->slope_95.high, -0.5, 1e-9);
+    EXPECT_EQ(fit->points, 4u);
+}
+
+// log10 x = 0, 1, 2, 3 and log10 y = 0, 1.1, 1.9, 3.2: slope 1.04, residual 0.042, t(2) = 4.302653.
+TEST(PowerLaw, IntervalIsStudents) {
+    const std::vector<double> x = {1, 10, 100, 1000};
+    const std::vector<double> y = {1, std::pow(10, 1.1), std::pow(10, 1.9), std::pow(10, 3.2)};
+    const std::optional<PowerLaw> fit = fit_power_law(x, y);
+    ASSERT_TRUE(fit);
+    EXPECT_NEAR(fit->slope, 1.04, 1e-12);
+    EXPECT_NEAR(fit->slope_95.high - fit->slope, 4.302653 * std::sqrt(0.042 / 2 / 5), 1e-5);
+}
+
+TEST(PowerLaw, NeedsThreeDifferentPositivePoints) {
+    const std::vector<double> two = {1, 2};
+    EXPECT_FALSE(fit_power_law(two, two));
+    const std::vector<double> x = {1, 0, 2, INFINITY}, y = {1, 1, 2, 3};
+    EXPECT_FALSE(fit_power_law(x, y));
+    const std::vector<double> same = {2, 2, 2}, different = {1, 2, 3};
+    EXPECT_FALSE(fit_power_law(same, different));
+}
+
+// Reference values: bisection on the binomial tail summed term by term in Python's math module.
+TEST(UpperBound95, IsClopperPearsons) {
+    EXPECT_NEAR(upper_bound_95(0, 1000), 0.0029912495451, 1e-12);
+    EXPECT_NEAR(upper_bound_95(1, 100), 0.0465598114535, 1e-10);
+    EXPECT_NEAR(upper_bound_95(5, 100), 0.102253377643, 1e-10);
+    EXPECT_NEAR(upper_bound_95(3, 1000000), 7.75363810049e-06, 1e-13);
+    EXPECT_NEAR(upper_bound_95(1000, 1000000), 0.00105357487745, 1e-11);
+    EXPECT_NEAR(upper_bound_95(99, 100), 0.999487198584, 1e-10);
+    EXPECT_NEAR(upper_bound_95(50, 60), 0.906693067295, 1e-10);
+}
+
+TEST(UpperBound95, OfNoEventIsTheRuleOfThree) {
+    for (const std::uint64_t n : {1000u, 1000000u, 1000000000u})
+        EXPECT_NEAR(upper_bound_95(0, n) * static_cast<double>(n), 3, 0.01);
+}
+
+TEST(UpperBound95, IsOneWhereNothingIsKnown) {
+    EXPECT_EQ(upper_bound_95(0, 0), 1);
+    EXPECT_EQ(upper_bound_95(5, 5), 1);
+    EXPECT_EQ(upper_bound_95(6, 5), 1);
+}
+
+TEST(UpperBound95, GrowsWithTheCount) {
+    double before = 0;
+    for (std::uint64_t count = 0; count < 100000; count += 997) {
+        const double bound = upper_bound_95(count, 100000);
+        EXPECT_GT(bound, before);
+        EXPECT_GT(bound, static_cast<double>(count) / 100000);
+        before = bound;
+    }
+}
+
+}  // namespace
+}  // namespace twinray
