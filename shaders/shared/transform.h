@@ -49,37 +49,60 @@ FUNC vec3 cross_precise(vec3 a, vec3 b)
     return result;
 }
 
+// p - q in doubled precision for the products p = a b and q = c d: the difference, and what is missing from it.
+FUNC float doubled_difference(float a, float b, float c, float d, INOUT(float) missing)
+{
+    PRECISE float p = a * b;
+    PRECISE float q = c * d;
+    PRECISE float difference = p - q;
+    PRECISE float low = product_error(a, b, p) - product_error(c, d, q);
+    low = low + sum_error(p, -q, difference);
+    missing = low;
+    return difference;
+}
+
+// a x b in doubled precision.
+FUNC vec3 doubled_cross(vec3 a, vec3 b, INOUT(vec3) missing)
+{
+    float x_low = 0.0f;
+    float y_low = 0.0f;
+    float z_low = 0.0f;
+    float x = doubled_difference(a.y, b.z, a.z, b.y, x_low);
+    float y = doubled_difference(a.z, b.x, a.x, b.z, y_low);
+    float z = doubled_difference(a.x, b.y, a.y, b.x, z_low);
+    missing = vec3(x_low, y_low, z_low);
+    return vec3(x, y, z);
+}
+
 FUNC float largest_entry(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
 
-// The inverse of an invertible map. The linear part is the adjugate refined by one Newton step whose residual is
-// evaluated in doubled precision, so that its error is about one rounding for all but nearly singular maps
-// (Higham, "Accuracy and Stability of Numerical Algorithms", 2nd ed., 14.1).
+// The inverse of an invertible map: cofactors over the determinant, both in doubled precision, so that each entry of the
+// linear part is right to a few roundings of itself for condition numbers up to about 10^7. Rows are scaled by powers
+// of two before, which is exact, so that products neither overflow nor vanish.
 FUNC Rows inverse_of(Rows m)
 {
-    float scale = power_of_two_below(max(largest_entry(vec3(m.r0.x, m.r0.y, m.r0.z)),
-                                         max(largest_entry(vec3(m.r1.x, m.r1.y, m.r1.z)),
-                                             largest_entry(vec3(m.r2.x, m.r2.y, m.r2.z)))));
-    vec3 a0 = vec3(m.r0.x, m.r0.y, m.r0.z) / scale;
-    vec3 a1 = vec3(m.r1.x, m.r1.y, m.r1.z) / scale;
-    vec3 a2 = vec3(m.r2.x, m.r2.y, m.r2.z) / scale;
-    // Columns of the inverse.
-    vec3 c0 = cross_precise(a1, a2);
-    vec3 c1 = cross_precise(a2, a0);
-    vec3 c2 = cross_precise(a0, a1);
-    PRECISE float det = accurate_dot(a0, c0, 0.0f);
-    c0 = c0 / det;
-    c1 = c1 / det;
-    c2 = c2 / det;
-    // Newton: X += X (I - A X), column by column of the residual.
-    vec3 residual0 = vec3(-accurate_dot(a0, c0, -1.0f), -accurate_dot(a1, c0, 0.0f), -accurate_dot(a2, c0, 0.0f));
-    vec3 residual1 = vec3(-accurate_dot(a0, c1, 0.0f), -accurate_dot(a1, c1, -1.0f), -accurate_dot(a2, c1, 0.0f));
-    vec3 residual2 = vec3(-accurate_dot(a0, c2, 0.0f), -accurate_dot(a1, c2, 0.0f), -accurate_dot(a2, c2, -1.0f));
-    PRECISE vec3 x0 = c0 + (c0 * residual0.x + c1 * residual0.y + c2 * residual0.z);
-    PRECISE vec3 x1 = c1 + (c0 * residual1.x + c1 * residual1.y + c2 * residual1.z);
-    PRECISE vec3 x2 = c2 + (c0 * residual2.x + c1 * residual2.y + c2 * residual2.z);
-    x0 = x0 / scale;
-    x1 = x1 / scale;
-    x2 = x2 / scale;
+    vec3 a0 = vec3(m.r0.x, m.r0.y, m.r0.z);
+    vec3 a1 = vec3(m.r1.x, m.r1.y, m.r1.z);
+    vec3 a2 = vec3(m.r2.x, m.r2.y, m.r2.z);
+    float s0 = power_of_two_below(largest_entry(a0));
+    float s1 = power_of_two_below(largest_entry(a1));
+    float s2 = power_of_two_below(largest_entry(a2));
+    a0 = a0 / s0;
+    a1 = a1 / s1;
+    a2 = a2 / s2;
+    // Columns of the adjugate.
+    vec3 low0 = vec3(0.0f);
+    vec3 low1 = vec3(0.0f);
+    vec3 low2 = vec3(0.0f);
+    vec3 c0 = doubled_cross(a1, a2, low0);
+    vec3 c1 = doubled_cross(a2, a0, low1);
+    vec3 c2 = doubled_cross(a0, a1, low2);
+    float missing = 0.0f;
+    PRECISE float det = doubled_dot(a0, c0, 0.0f, missing);
+    det = det + (missing + accurate_dot(a0, low0, 0.0f));
+    PRECISE vec3 x0 = (c0 + low0) / det / s0;
+    PRECISE vec3 x1 = (c1 + low1) / det / s1;
+    PRECISE vec3 x2 = (c2 + low2) / det / s2;
     vec3 offset = vec3(m.r0.w, m.r1.w, m.r2.w);
     Rows w;
     w.r0 = vec4(x0.x, x1.x, x2.x, -accurate_dot(vec3(x0.x, x1.x, x2.x), offset, 0.0f));

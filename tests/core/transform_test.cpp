@@ -61,5 +61,32 @@ TEST(Transform, TheShadersInverseIsAccurateToARoundingForWellConditionedMaps) {
     }
 }
 
+// Scales of 1 : 1e6 between two rotations: each entry is right to a few of its own roundings.
+TEST(Transform, TheFloat32InverseHoldsForIllConditionedMaps) {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> angle(-3, 3);
+    const auto turned = [&](int axis) {
+        const float a = angle(random);
+        Transform t;
+        const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+        t.rows[static_cast<std::size_t>(i)][i] = t.rows[static_cast<std::size_t>(j)][j] = std::cos(a);
+        t.rows[static_cast<std::size_t>(i)][j] = -std::sin(a);
+        t.rows[static_cast<std::size_t>(j)][i] = std::sin(a);
+        return t;
+    };
+    for (const float scale : {1.0f, 1e-2f, 1e-4f, 1e-6f})
+        for (int i = 0; i < 200; ++i) {
+            const Transform m = turned(0) * turned(1) * Transform::scaling({1, scale, 1}) * turned(2) * turned(0);
+            const Transform exact = inverse(m, "test");
+            const Rows rows = inverse_of({m.rows[0], m.rows[1], m.rows[2]});
+            const vec4 found[] = {rows.r0, rows.r1, rows.r2};
+            for (std::size_t row = 0; row < 3; ++row)
+                for (int column = 0; column < 3; ++column)
+                    ASSERT_NEAR(found[row][column], exact.rows[row][column],
+                                std::abs(exact.rows[row][column]) * 4 * std::ldexp(1.0, -24))
+                        << "scale " << scale;
+        }
+}
+
 }  // namespace
 }  // namespace twinray
