@@ -27,10 +27,8 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        if (!is_ours() && !missing_for_hardware(context().facts()).empty()) {
-            if (is_required("ray_tracing")) FAIL() << "TWINRAY_REQUIRE names ray_tracing";
-            GTEST_SKIP() << context().facts().name << " has no such ray tracing";
-        }
+        if (!is_ours() && !missing_for_hardware(context().facts()).empty())
+            TWINRAY_LACKS("ray_tracing", context().facts().name + " has no such ray tracing");
         accel_ = make_accel();
     }
     void TearDown() override {

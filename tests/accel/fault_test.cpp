@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Every call into Vulkan that can fail, failed once, for every accelerator: an Error comes out, nothing is left
 // half-changed, nothing leaks, and the same work succeeds afterwards. The validation layer is on and below the faults:
-// it sees a failed call as one never made, so whatever it says is ours.
+// it sees a failed call as one never made, so whatever it says is ours. One file: all scenarios share the fixture.
 #include <cstdio>
 
 #include "engine/core/error.h"
@@ -41,7 +41,7 @@ class Faults : public ::testing::TestWithParam<Kind> {
     void SetUp() override {
         const std::unique_ptr<Context> context = test::make_context(desc());
         if (!context || GetParam() == Kind::software || missing_for_hardware(context->facts()).empty()) return;
-        GTEST_SKIP() << context->facts().name << " has no such ray tracing";
+        TWINRAY_LACKS("ray_tracing", context->facts().name + " has no such ray tracing");
     }
     static void TearDownTestSuite() {
         for (const auto& [accelerator, points] : points_)

@@ -38,7 +38,7 @@ TEST(Transform, InverseRefusesSingularAndNonFiniteOnes) {
     EXPECT_THROW(inverse(Transform::translation({INFINITY, 0, 0}), "x"), Error);
 }
 
-// The GPU's float32 inverse must be as good as float64 rounded, but for the conditioning of a Newton step.
+// The GPU's float32 inverse must be as good as float64 rounded, but for a few roundings.
 TEST(Transform, TheShadersInverseIsAccurateToARoundingForWellConditionedMaps) {
     std::mt19937 random(4);
     for (int i = 0; i < 2000; ++i) {

@@ -23,7 +23,7 @@ class Compaction : public test::VulkanTest {
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFailure()) return;
-        if (!missing_for_hardware(context().facts()).empty()) GTEST_SKIP() << context().facts().name;
+        if (!missing_for_hardware(context().facts()).empty()) TWINRAY_LACKS("ray_tracing", context().facts().name);
         driver_.set_structure_slack(slack);
         accel_ = std::make_unique<HwTlas>(context());
     }

@@ -27,10 +27,8 @@ class HwTlasTest : public VulkanTest, public ::testing::WithParamInterface<Way> 
         if (HasFailure()) FAIL() << "no device";
         const DeviceFacts& facts = context().facts();
         const bool has_way = GetParam().use_ray_query ? facts.ray_query : facts.ray_tracing_pipeline;
-        if (!has_way || !missing_for_hardware(facts).empty()) {
-            if (is_required("ray_tracing")) FAIL() << "TWINRAY_REQUIRE names ray_tracing";
-            GTEST_SKIP() << facts.name << " has no such ray tracing";
-        }
+        if (!has_way || !missing_for_hardware(facts).empty())
+            TWINRAY_LACKS("ray_tracing", facts.name + " has no such ray tracing");
         accel_ = std::make_unique<HwTlas>(context(), GetParam().order);
     }
     void TearDown() override {

@@ -33,7 +33,7 @@ class EmbedRenderer : public ::testing::Test {
   protected:
     void SetUp() override {
         const std::unique_ptr<Context> context = test::make_context();
-        if (!context) GTEST_SKIP() << "no usable device";
+        if (!context) TWINRAY_LACKS("vulkan", "no usable device");
         has_pipeline_ = context->facts().ray_tracing_pipeline;
         has_hardware_ = missing_for_hardware(context->facts()).empty();
     }
@@ -71,7 +71,7 @@ uint differing(const FrameResult& a, const FrameResult& b) {
 
 // Rays on which the accelerators may disagree graze an edge: each changes one pixel.
 TEST_F(EmbedRenderer, BothAcceleratorsShowTheSame) {
-    if (!has_hardware_) GTEST_SKIP() << "no ray tracing extensions";
+    if (!has_hardware_) TWINRAY_LACKS("ray_tracing", "no ray tracing extensions");
     const std::vector<FrameResult> software = render(small("sw"), {0, 0.1f, 0.2f});
     const std::vector<FrameResult> hardware = render(small("hw"), {0, 0.1f, 0.2f});
     for (std::size_t i = 0; i < software.size(); ++i) {
@@ -83,7 +83,7 @@ TEST_F(EmbedRenderer, BothAcceleratorsShowTheSame) {
 
 // On devices without ray queries the traces run in another stage of the GPU.
 TEST_F(EmbedRenderer, ARayTracingPipelineShowsTheSame) {
-    if (!has_pipeline_) GTEST_SKIP() << "no ray tracing pipelines";
+    if (!has_pipeline_) TWINRAY_LACKS("ray_tracing", "no ray tracing pipelines");
     const std::vector<FrameResult> software = render(small("sw"), {0, 0.1f});
     const std::vector<FrameResult> pipeline = render(small("hw"), {0, 0.1f}, false);
     for (std::size_t i = 0; i < software.size(); ++i) EXPECT_LE(differing(software[i], pipeline[i]), 10u);
@@ -93,7 +93,8 @@ class EmbedRendererBy : public EmbedRenderer, public ::testing::WithParamInterfa
   protected:
     void SetUp() override {
         EmbedRenderer::SetUp();
-        if (!IsSkipped() && std::string(GetParam()) == "hw" && !has_hardware_) GTEST_SKIP() << "no extensions";
+        if (!IsSkipped() && std::string(GetParam()) == "hw" && !has_hardware_)
+            TWINRAY_LACKS("ray_tracing", "no ray tracing extensions");
     }
 };
 INSTANTIATE_TEST_SUITE_P(EveryAccel, EmbedRendererBy, ::testing::Values("sw", "hw"),

@@ -13,6 +13,16 @@ namespace twinray::test {
 // Whether tests must fail rather than skip without this: TWINRAY_REQUIRE is a list of `vulkan` and `ray_tracing`.
 bool is_required(const char* what);
 
+// Leaves a test that needs what this device lacks; under TWINRAY_REQUIRE with that name it fails.
+#define TWINRAY_LACKS(what, reason)                                           \
+    do {                                                                      \
+        if (::twinray::test::is_required(what)) {                             \
+            FAIL() << "TWINRAY_REQUIRE names " << (what) << ": " << (reason); \
+        } else {                                                              \
+            GTEST_SKIP() << (reason);                                         \
+        }                                                                     \
+    } while (false)
+
 // A validated context of its own, or null when this machine has no usable device: then the test has been skipped, or
 // failed when TWINRAY_REQUIRE names vulkan. Callers return at once on null.
 std::unique_ptr<Context> make_context(ContextDesc desc = {});

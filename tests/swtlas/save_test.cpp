@@ -260,6 +260,9 @@ TEST_F(SwSave, LoadingIsMeasuredAgainstBuilding) {
         const SwTlas::Loaded loaded = SwTlas::load(context(), folder_ / "large.swtlas");
         context().wait(loaded.accel->sync());
         const double load = ms_since(start) - compile;
+        const std::vector<Ray> rays = random_rays(bounds_of(mesh), 1000, n);
+        const std::vector<Hit> expected = accel.closest_hits(rays), found = loaded.accel->closest_hits(rays);
+        EXPECT_EQ(std::memcmp(found.data(), expected.data(), expected.size() * sizeof(Hit)), 0);
         std::printf("%u triangles, %.1f MB: built in %.0f ms, saved in %.0f ms, loaded in %.0f ms, %.2f of building\n",
                     n, static_cast<double>(std::filesystem::file_size(folder_ / "large.swtlas")) / 1e6, build, save,
                     load, load / build);
