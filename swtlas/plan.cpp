@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "engine/accel/geometry.h"
 #include "engine/core/error.h"
 #include "engine/core/radix_sort.h"
 
@@ -43,6 +44,11 @@ BuildScratch layout_scratch(const BuildPlan& plan) {
 }
 
 }  // namespace
+
+float software_unit(std::span<const vec3> positions) {
+    const float unit = Geometry::near_unit(positions);
+    return unit >= 0x1p-20f && unit < 0x1p60f ? 1 : unit;
+}
 
 // Alone it needs no tree_of; all other parts are as long or, rounded up one by one, longer.
 std::uint64_t scratch_share(uint leaf_count) {

@@ -6,6 +6,7 @@
 
 #include "engine/accel/abstract_accel.h"
 #include "swtlas/build.h"
+#include "swtlas/plan.h"
 
 namespace twinray {
 
@@ -62,6 +63,7 @@ class SwTlas final : public AbstractAccel {
     std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
                                             const BuiltScene* current) override;
     void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
+    float unit_of(std::span<const vec3> positions) const override { return software_unit(positions); }
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
 
     Builder builder_;

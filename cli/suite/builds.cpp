@@ -29,7 +29,7 @@ void add_triangle(Mesh& mesh, vec3 a, vec3 b, vec3 c) {
 
 TreeCheck check(const SwTlas::Tree& tree, const Mesh& mesh) {
     std::vector<LeafBox> boxes;
-    const std::vector<LeafBox> by_primitive = reference::leaves_triangles(Geometry(mesh).positions, mesh.triangles);
+    const std::vector<LeafBox> by_primitive = reference::leaves_triangles(Geometry(mesh, software_unit(mesh.positions)).positions, mesh.triangles);
     for (const BvhTriangle& triangle : tree.triangles) boxes.push_back(by_primitive.at(triangle.primitive_index));
     return check_tree(tree.bvh, tree.nodes, boxes);
 }

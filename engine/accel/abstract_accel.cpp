@@ -43,11 +43,11 @@ AbstractAccel::AbstractAccel(Context& context, std::string name, const AccelOpti
 AbstractAccel::~AbstractAccel() = default;
 
 AccelHandle AbstractAccel::push(const MeshView& mesh, const Transform& transform, const InstanceOptions& options) {
-    return place(Geometry(mesh), std::span(&transform, 1), std::span(&options, 1));
+    return place(Geometry(mesh, unit_of(mesh.positions)), std::span(&transform, 1), std::span(&options, 1));
 }
 AccelHandle AbstractAccel::push(const MeshView& mesh, std::span<const Transform> transforms,
                                 std::span<const InstanceOptions> options) {
-    return place(Geometry(mesh), transforms, options);
+    return place(Geometry(mesh, unit_of(mesh.positions)), transforms, options);
 }
 AccelHandle AbstractAccel::push(const BoxesView& boxes, const Transform& transform, const InstanceOptions& options) {
     return place(Geometry(boxes), std::span(&transform, 1), std::span(&options, 1));
@@ -102,7 +102,7 @@ bool AbstractAccel::erase(AccelHandle handle) {
 
 void AbstractAccel::update(AccelHandle handle, const MeshView& mesh) {
     live(handle, "update");
-    replace(handle, Geometry(mesh));
+    replace(handle, Geometry(mesh, unit_of(mesh.positions)));
 }
 void AbstractAccel::update(AccelHandle handle, const BoxesView& boxes) {
     live(handle, "update");

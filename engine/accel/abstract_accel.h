@@ -254,6 +254,8 @@ class AbstractAccel {
                            std::span<const InstanceRecord> records);
     const BuiltScene& built_scene() const;
 
+    // What meshes with these positions are built in units of: a power of two.
+    virtual float unit_of(std::span<const vec3> positions) const { return Geometry::near_unit(positions); }
     // FEATURE_* of whatever the scene holds.
     virtual uint own_features() const { return 0; }
     // With `code`, or with the accelerator's own code where the scene needs no program.

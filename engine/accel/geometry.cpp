@@ -53,7 +53,7 @@ std::vector<vec3> Geometry::given_positions() const {
     return given;
 }
 
-float Geometry::scale_of(std::span<const vec3> positions) {
+float Geometry::near_unit(std::span<const vec3> positions) {
     float largest = 0;
     for (const vec3& p : positions)
         if (is_finite(p)) largest = std::max(largest, largest_entry(p));

@@ -27,8 +27,8 @@ struct Geometry {
     std::vector<Bounds> boxes;             // of GEOMETRY_BOXES
 
     // Throws Error naming the mesh and the limit: an index out of range, more than max_primitives.
-    explicit Geometry(const MeshView& mesh) : Geometry(mesh, scale_of(mesh.positions)) {}
-    Geometry(const MeshView& mesh, float scale);
+    explicit Geometry(const MeshView& mesh) : Geometry(mesh, near_unit(mesh.positions)) {}
+    Geometry(const MeshView& mesh, float unit);
     // Throws Error naming the box: one that is empty or not finite, or more than max_primitives.
     explicit Geometry(const BoxesView& boxes);
 
@@ -37,7 +37,7 @@ struct Geometry {
     // As the user gave them.
     std::vector<vec3> given_positions() const;
     // The power of two just below the largest finite coordinate, so that coordinates in units of it are near 1.
-    static float scale_of(std::span<const vec3> positions);
+    static float near_unit(std::span<const vec3> positions);
 
     std::size_t primitive_count() const { return kind == GEOMETRY_BOXES ? boxes.size() : triangles.size(); }
 

@@ -21,7 +21,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 
 // As it is built: in units of a power of two, that of the mesh which was pushed.
 std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed = nullptr) {
-    return Geometry(mesh, Geometry::scale_of((pushed ? pushed : &mesh)->positions)).positions;
+    return Geometry(mesh, software_unit((pushed ? pushed : &mesh)->positions)).positions;
 }
 
 // Boxes by the leaf index that node references use: sorted order.
