@@ -39,24 +39,6 @@ struct Candidate {
     std::vector<Hit> hits = {};
 };
 
-// Pinhole rays over the scene from a corner above, in tiles of 8 x 8 pixels as a renderer would.
-std::vector<Ray> primary_rays(const Bounds& bounds, uint width) {
-    const vec3 target = bounds.center();
-    const vec3 eye = target + normalize(vec3(0.6f, 0.4f, 1.0f)) * (1.2f * length(bounds.size()));
-    const vec3 forward = normalize(target - eye);
-    const vec3 right = normalize(cross(forward, vec3(0, 1, 0)));
-    const vec3 up = cross(right, forward);
-    const float half = 0.45f;  // tangent of half the field of view
-    std::vector<Ray> rays;
-    for (uint tile = 0; tile < width / 8 * (width / 8); ++tile)
-        for (uint pixel = 0; pixel < 64; ++pixel) {
-            const uint x = tile % (width / 8) * 8 + pixel % 8, y = tile / (width / 8) * 8 + pixel / 8;
-            const vec2 p = (vec2(x, y) + 0.5f) / static_cast<float>(width) * 2.0f - 1.0f;
-            rays.push_back({eye, 0, normalize(forward + (right * p.x - up * p.y) * half), INFINITY});
-        }
-    return rays;
-}
-
 double total_ms(const std::vector<PassTiming>& timings) {
     double sum = 0;
     for (const PassTiming& timing : timings) sum += timing.ms;
@@ -75,7 +57,9 @@ std::vector<Candidate> make_candidates(Context& context, std::span<const Level> 
                                   return std::make_unique<HwTlas>(context, order, AccelOptions{level});
                               }});
     };
-    for (const Level level : levels) add(text("hw ", name_of(level)), BuildOrder::automatic, level);
+    for (const Level level : levels)
+        if (HwTlas::capability_on(context.facts(), feature_of(level)).support != Support::unsupported)
+            add(text("hw ", name_of(level)), BuildOrder::automatic, level);
     if (context.facts().builds_in_input_order) add("hw input order", BuildOrder::input, levels.front());
     return candidates;
 }
@@ -198,9 +182,11 @@ void add_bench(CLI::App& app, int&) {
             return std::stoul(width) % 8 == 0 ? std::string() : width + " is not a multiple of 8";
         })
         ->capture_default_str();
-    const std::map<std::string, Level> levels = {
-        {"fast", Level::fast}, {"watertight", Level::watertight}, {"refined", Level::refined}};
-    command->add_option("--levels", options->levels, "fast, watertight, refined; separated by commas")
+    const std::map<std::string, Level> levels = {{"fast", Level::fast},
+                                                 {"watertight", Level::watertight},
+                                                 {"refined", Level::refined},
+                                                 {"certified", Level::certified}};
+    command->add_option("--levels", options->levels, "fast, watertight, refined, certified; separated by commas")
         ->delimiter(',')
         ->transform(CLI::CheckedTransformer(levels));
     command->add_option("--rounds", options->rounds)->check(CLI::Range(1, 1000))->capture_default_str();

@@ -21,6 +21,7 @@ struct ReportOptions {
     std::filesystem::path folder = "twinray_report";
     std::string suite = "quick";
     std::vector<std::string> only, accels, levels;
+    std::vector<std::filesystem::path> scenes;
     std::filesystem::path baseline;
 };
 
@@ -106,12 +107,13 @@ void print_changes(std::span<const report::Change> changes) {
 void check_only(const std::vector<std::string>& patterns, std::span<const suite::SuiteCase> cases) {
     for (const std::string& pattern : patterns)
         if (std::none_of(cases.begin(), cases.end(), [&](const auto& row) { return suite::matches(row.id, pattern); }))
-            fail("report: --only ", pattern, " fits no case; they are W01 to F09");
+            fail("report: --only ", pattern, " fits no case; see the catalogue in the report");
 }
 
 // Exit status: 1 where there is a fault of ours.
 int run(const ReportOptions& options) {
-    const std::vector<suite::SuiteCase> cases = suite::catalogue();
+    std::vector<suite::SuiteCase> cases = suite::catalogue();
+    for (suite::SuiteCase& of_scene : suite::scene_cases(options.scenes)) cases.push_back(std::move(of_scene));
     check_only(options.only, cases);
     // Read before anything is written: it may be the report that this one replaces.
     const std::vector<Record> baseline =
@@ -154,6 +156,10 @@ void add_report(CLI::App& app, int& exit_code) {
     command->add_option("-o,--output", options->folder, "folder of report.jsonl, report.csv and report.html")
         ->capture_default_str();
     command->add_option("--only", options->only, "case ids with * and ?, as N07,B*")->delimiter(',');
+    command
+        ->add_option("--scenes", options->scenes, "scenes of yours, on which each level is measured as case L11, ...")
+        ->delimiter(',')
+        ->check(CLI::ExistingFile);
     command->add_option("--accel", options->accels)
         ->delimiter(',')
         ->check(CLI::IsMember(names_of(suite::all_backends)));

@@ -45,7 +45,10 @@ HwTlas::HwTlas(Context& context, BuildOrder order, const AccelOptions& options)
       reorder_(order == BuildOrder::morton ||
                (order == BuildOrder::automatic && context.facts().builds_in_input_order)),
       moving_(std::make_unique<MovingBlasBuilder>(context, reorder_)),
-      tlas_builder_(context, reorder_) {}
+      tlas_builder_(context, reorder_) {
+    if (const Capability level = capability(feature_of(options.level)); level.support == Support::unsupported)
+        fail(this->name(), ": ", name_of(level.feature), " is unsupported: ", level.note);
+}
 
 HwTlas::~HwTlas() = default;
 

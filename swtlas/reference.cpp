@@ -158,7 +158,11 @@ void Scene::build() {
 }
 
 Hit Scene::trace(const Ray& ray, uint query, uint mask) const {
-    return traverse(header_, ray, {mask, 0, query, LEVEL_WATERTIGHT, 0, 0});
+    TraceOptions options{};
+    options.mask = mask;
+    options.query = query;
+    options.level = LEVEL_WATERTIGHT;
+    return traverse(header_, ray, options);
 }
 
 }  // namespace twinray::reference

@@ -37,8 +37,8 @@ struct SavedEntry {
     std::uint64_t name_bytes, positions, triangles, boxes, nodes, leaves, instances;  // how many
     vec3 lo, hi;                                                                      // of Bvh
     uint root;
-    uint kind;    // GEOMETRY_*
-    float scale;  // of Geometry
+    uint kind;      // GEOMETRY_*
+    float scale;    // of Geometry
     uint checksum;  // of the geometry's arrays
 };
 static_assert(sizeof(SavedHeader) == 64 && sizeof(SavedEntry) == 96);

@@ -47,9 +47,9 @@ SwTlas::SwTlas(Context& context, const AccelOptions& options)
 Capability SwTlas::capability_on(const DeviceFacts& device, Feature feature) {
     switch (feature) {
         case Feature::level_refined:
+        case Feature::level_certified:
             if (device.shader_float64) return {feature, Support::native, ""};
             return {feature, Support::unsupported, "the device has no float64"};
-        case Feature::level_certified: return {feature, Support::unsupported, "the order of hits is that of float32"};
         case Feature::compaction: return {feature, Support::native, "its arrays have their exact size when built"};
         default: return {feature, Support::native, ""};
     }

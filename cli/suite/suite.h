@@ -2,7 +2,9 @@
 // The suite of stiff and extreme cases: what there is to run, on what, and how much of it.
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,7 +60,10 @@ std::vector<SuiteCase> input_cases();       // N: invalid and special input
 std::vector<SuiteCase> instance_cases();    // I: instances
 std::vector<SuiteCase> build_cases();       // B: structure, build and refit
 std::vector<SuiteCase> arithmetic_cases();  // F: self-intersection, arithmetic
+std::vector<SuiteCase> price_cases();       // L: what levels cost
 std::vector<SuiteCase> catalogue();         // all of them
+// The same as L for scenes of the user's, from L11 on.
+std::vector<SuiteCase> scene_cases(std::span<const std::filesystem::path> files);
 // The section of a case id, by its letter: "edges, vertices, watertightness".
 std::string_view section_of(std::string_view id);
 

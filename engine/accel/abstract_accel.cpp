@@ -36,7 +36,8 @@ AbstractAccel::AbstractAccel(Context& context, std::string name, const AccelOpti
       scene_costs_(context) {
     if (options.level < Level::refined) return;
     if (!context.facts().shader_float64)
-        fail(name_, ": level refined needs float64, which device '", context.facts().name, "' has not enabled");
+        fail(name_, ": ", name_of(feature_of(options.level)), " needs float64, which device '", context.facts().name,
+             "' has not enabled");
     refinement_ = std::make_unique<Refinement>(context);
 }
 

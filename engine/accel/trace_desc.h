@@ -15,8 +15,8 @@ enum class Query : std::uint8_t { closest, any };
 enum class Level : std::uint8_t {
     fast,        // Moeller-Trumbore: may lose rays at edges
     watertight,  // exact edge signs: no leaks, a single hit at an edge
-    refined,     // and float64 for the hit that counts
-    certified,   // and the order of hits within error bounds
+    refined,     // and float64 for t, u, v of the hit that counts
+    certified,   // float64 decides what is hit and in which order; software only
 };
 
 struct AccelOptions {

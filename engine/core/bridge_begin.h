@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // No include guard on purpose: opens the vocabulary of shaders/shared/*.h for C++. Pair with bridge_end.h.
 #define FUNC inline
+#define TWINRAY_REFINED
 #define INOUT(T) T&
 #define PRECISE
 #define REF(T) Ref<T>

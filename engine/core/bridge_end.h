@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Closes what bridge_begin.h opened.
 #undef FUNC
+#undef TWINRAY_REFINED
 #undef INOUT
 #undef PRECISE
 #undef REF

@@ -127,4 +127,21 @@ std::vector<Ray> edge_aimed_rays(const Oracle& scene, std::size_t count, std::ui
     });
 }
 
+std::vector<Ray> primary_rays(const Bounds& bounds, uint width) {
+    const vec3 target = bounds.center();
+    const vec3 eye = target + normalize(vec3(0.6f, 0.4f, 1.0f)) * (1.2f * length(bounds.size()));
+    const vec3 forward = normalize(target - eye);
+    const vec3 right = normalize(cross(forward, vec3(0, 1, 0)));
+    const vec3 up = cross(right, forward);
+    const float half = 0.45f;  // tangent of half the field of view
+    std::vector<Ray> rays;
+    for (uint tile = 0; tile < width / 8 * (width / 8); ++tile)
+        for (uint pixel = 0; pixel < 64; ++pixel) {
+            const uint x = tile % (width / 8) * 8 + pixel % 8, y = tile / (width / 8) * 8 + pixel / 8;
+            const vec2 p = (vec2(x, y) + 0.5f) / static_cast<float>(width) * 2.0f - 1.0f;
+            rays.push_back({eye, 0, normalize(forward + (right * p.x - up * p.y) * half), INFINITY});
+        }
+    return rays;
+}
+
 }  // namespace twinray

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays for verification: spread over a scene, or aimed where intersection tests break.
+// Rays for verification and measurement: a camera's, spread over a scene, or aimed where intersection tests break.
 #pragma once
 
 #include <cstdint>
@@ -26,5 +26,9 @@ std::vector<Ray> vertex_aimed_rays(const Oracle& scene, std::size_t count, std::
 
 // The same, aimed at a point (1-w) a + w b of an edge, w uniform in [0, 1).
 std::vector<Ray> edge_aimed_rays(const Oracle& scene, std::size_t count, std::uint64_t seed);
+
+// Pinhole rays over the scene from a corner above, in tiles of 8 x 8 pixels as a renderer would; `width` pixels a side,
+// a multiple of 8.
+std::vector<Ray> primary_rays(const Bounds& bounds, uint width);
 
 }  // namespace twinray

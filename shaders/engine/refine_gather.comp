@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/refine.h"
+#include "shaders/shared/residual.h"
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { RefineGatherArgs args; };
 
@@ -17,5 +17,7 @@ void main()
     instance.object_to_world = record.object_to_world;
     instance.positions = mesh.positions;
     instance.indices = mesh.indices;
-    AT(args.instances, i) = instance;
+    GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);
+    instance.extent = box.lo.x <= box.hi.x ? max(largest_entry(box.lo), largest_entry(box.hi)) : 0.0f;
+    AT(args.instances, i) = with_residual(instance, to_world_of(record));
 }

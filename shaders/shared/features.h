@@ -12,8 +12,8 @@ const uint FEATURES_ALL = 7u;
 // How a ray is tested against triangles.
 const uint LEVEL_FAST = 0u;       // Moeller-Trumbore: may lose rays at edges
 const uint LEVEL_WATERTIGHT = 1u; // exact edge signs: no leaks, a single hit at an edge
-const uint LEVEL_REFINED = 2u;
-const uint LEVEL_CERTIFIED = 3u;
+const uint LEVEL_REFINED = 2u;    // and float64 for t, u, v of the hit
+const uint LEVEL_CERTIFIED = 3u;  // float64 decides what is hit, and first
 
 // Ids of the specialisation constants.
 const uint QUERY_CONSTANT = 0u;      // QUERY_* of a batch kernel

@@ -30,6 +30,12 @@ FUNC float reciprocal(float d)
     return d == 0.0f ? uintBitsToFloat(0x7f800000u | (floatBitsToUint(d) & 0x80000000u)) : 1.0f / d;
 }
 
+FUNC uint dominant_axis(vec3 direction)
+{
+    vec3 size = abs(direction);
+    return size.x >= size.y ? (size.x >= size.z ? 0u : 2u) : (size.y >= size.z ? 1u : 2u);
+}
+
 FUNC vec3 dominant_last(vec3 v, uint axis)
 {
     return axis == 0u ? vec3(v.y, v.z, v.x) : (axis == 1u ? vec3(v.z, v.x, v.y) : v);
@@ -48,8 +54,7 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
     vec3 shift = vec3(inverse.x < 0.0f ? -pad : pad, inverse.y < 0.0f ? -pad : pad, inverse.z < 0.0f ? -pad : pad);
     space.near_origin = origin + shift;
     space.far_origin = origin - shift;
-    vec3 size = abs(direction);
-    space.axis = size.x >= size.y ? (size.x >= size.z ? 0u : 2u) : (size.y >= size.z ? 1u : 2u);
+    space.axis = dominant_axis(direction);
     vec3 d = dominant_last(direction, space.axis);
     space.shear_x = d.x / d.z;
     space.shear_y = d.y / d.z;
@@ -127,6 +132,7 @@ FUNC float exact_edge_function(vec3 a, vec3 b, INOUT(int) side)
 struct TriangleHit
 {
     float t;
+    float t_low; // what t was rounded by, at LEVEL_CERTIFIED; else 0
     float u;
     float v;
     bool along; // the normal (v1 - v0) x (v2 - v0) points along the ray, not against it
@@ -149,6 +155,7 @@ FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float area_a, float area_b, fl
     PRECISE float t = z * shear_z;
     TriangleHit hit;
     hit.t = t;
+    hit.t_low = 0.0f;
     hit.u = weight_b;
     hit.v = weight_c;
     hit.along = (det > 0.0f) == (shear_z > 0.0f);
@@ -192,6 +199,7 @@ FUNC bool intersect_triangle_fast(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INO
     hit.u = dot(s, p) / det;
     hit.v = dot(space.direction, q) / det;
     hit.t = dot(e2, q) / det;
+    hit.t_low = 0.0f;
     hit.along = det < 0.0f;
     return hit.u >= 0.0f && hit.v >= 0.0f && hit.u + hit.v <= 1.0f;
 }

@@ -6,32 +6,8 @@
 #ifndef TWINRAY_SHARED_REFINE_H
 #define TWINRAY_SHARED_REFINE_H
 #include "shaders/shared/exact.h"
+#include "shaders/shared/refine_scene.h"
 #include "shaders/shared/trace.h"
-#include "shaders/shared/world_bound.h"
-
-// An instance of what was built: positions in units of a power of two, which the map contains.
-struct RefineInstance
-{
-    vec4 object_to_world[3];
-    Floats positions; // of the mesh, 3 floats a vertex
-    Uints indices;    // 3 a triangle, in the user's numbering; null: boxes
-};
-BUFFER_OF(RefineInstance, 16);
-
-struct RefineScene
-{
-    REF(WorldBound) bound;
-    REF(RefineInstance) instances; // in the order of Hit::instance_index
-};
-BUFFER_OF(RefineScene, 8);
-
-struct RefineGatherArgs
-{
-    REF(InstanceRecord) records;
-    REF(RefineInstance) instances;
-    uint count;
-    uint reserved;
-};
 
 // Where the line o + t d enters the slab between lo and hi; d is not 0.
 FUNC double slab_entry(float o, float d, float lo, float hi)

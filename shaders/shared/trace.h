@@ -5,6 +5,9 @@
 #include "shaders/shared/features.h"
 #include "shaders/shared/program.h"
 #include "shaders/shared/ray.h"
+#ifdef TWINRAY_REFINED
+#include "shaders/shared/refine_scene.h"
+#endif
 
 struct TraceOptions
 {
@@ -15,6 +18,12 @@ struct TraceOptions
     uint level;    // LEVEL_*
     uint features; // FEATURE_*
     uint64_t user_data;
+#ifdef TWINRAY_REFINED
+    // From LEVEL_REFINED on: the ray as it was given, of which the traced one begins `advance` ahead.
+    Ray given;
+    double advance;
+    REF(RefineInstance) instances;
+#endif
 };
 
 struct TraceArgs

@@ -6,6 +6,9 @@
 #include "shaders/shared/intersect.h"
 #include "shaders/shared/trace.h"
 #include "shaders/shared/transform.h"
+#ifdef TWINRAY_REFINED
+#include "shaders/shared/certified.h"
+#endif
 
 // Inner nodes on a path split on ever lower bits of (30-bit Morton code, 24-bit position), so a path has at most 54,
 // and each leaves at most one entry on the stack: 54 for each level, the mark between them and the bottom.
@@ -63,6 +66,7 @@ struct InInstance
     uint culled; // side of its triangles that is not hit
     bool has_boxes;
     bool is_filtered;
+    float error; // at LEVEL_CERTIFIED: see certified_error; else 0
 };
 
 FUNC InInstance enter_instance(SwInstance instance, uint index, TraceOptions options)
@@ -72,6 +76,7 @@ FUNC InInstance enter_instance(SwInstance instance, uint index, TraceOptions opt
     inside.custom_index = instance.custom_index_mask & 0xffffffu;
     inside.culled = culled_side(options.flags, instance.flags);
     inside.has_boxes = (options.features & FEATURE_BOXES) != 0u && instance.kind == GEOMETRY_BOXES;
+    inside.error = 0.0f;
     inside.is_filtered = (options.features & FEATURE_FILTERS) != 0u && (instance.flags & INSTANCE_FILTERED) != 0u;
     return inside;
 }
@@ -98,6 +103,7 @@ FUNC bool intersect_box(BvhTriangle box, InInstance inside, RaySpace space, floa
     ray_local.t_max = t_best;
     vec2 uv = vec2(0.0f);
     hit.t = 0.0f;
+    hit.t_low = 0.0f;
     hit.along = false;
     bool is_met = intersect_primitive(candidate_of(inside, box.primitive_index, options), ray_local, hit.t, uv);
     hit.u = uv.x;
@@ -111,18 +117,25 @@ FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, fl
 {
     if (inside.has_boxes) return intersect_box(leaf, inside, space, t_min, t_best, options, hit);
     bool is_met = false;
+#ifdef TWINRAY_REFINED
+    if (options.level == LEVEL_CERTIFIED)
+        is_met = intersect_certified(leaf, space, inside.error, AT(options.instances, inside.index), options, hit);
+    else
+#endif
     if (options.level == LEVEL_FAST) is_met = intersect_triangle_fast(leaf.v0, leaf.v1, leaf.v2, space, hit);
     else is_met = intersect_triangle(leaf.v0, leaf.v1, leaf.v2, space, hit);
     return is_met && (inside.culled == 0u || inside.culled != (hit.along ? CULL_BACK : CULL_FRONT));
 }
 
-// The order of hits: by t, then by (instance, primitive).
-FUNC bool comes_before(float t, uint instance_index, uint primitive_index, float t_best, Hit best)
+// The order of hits: by t, then by (instance, primitive). `low`: see TriangleHit::t_low; of a limit 0.
+FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_index, float t_best, float t_best_low, Hit best)
 {
     bool is_lower = best.hit != 0u && (instance_index < best.instance_index ||
                     (instance_index == best.instance_index && primitive_index < best.primitive_index));
-    return t < t_best || (t == t_best && is_lower);
+    return hit.t < t_best ||
+           (hit.t == t_best && (hit.t_low < t_best_low || (hit.t_low == t_best_low && is_lower)));
 }
+FUNC bool comes_after(TriangleHit hit, float t_min) { return hit.t > t_min || (hit.t == t_min && hit.t_low > 0.0f); }
 
 // Traces a ray. The closest hit is the first by comes_before, whatever the order of traversal; with QUERY_ANY it is the
 // first one found.
@@ -132,6 +145,7 @@ FUNC Hit traverse(SwScene scene, Ray ray, TraceOptions options)
     if (!is_traceable(ray)) return best;
     float t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;
     float t_best = ray.t_max;
+    float t_best_low = 0.0f;
     RaySpace space = make_ray_space(ray.origin, ray.direction, world_pad(ray.origin));
     REF(BvhNode) nodes = scene.bvh.nodes;
     REF(BvhTriangle) triangles = REF(BvhTriangle)(0ul);
@@ -165,12 +179,13 @@ FUNC Hit traverse(SwScene scene, Ray ray, TraceOptions options)
         {
             BvhTriangle leaf = load_triangle(triangles, cursor & ~LEAF_BIT);
             TriangleHit hit;
-            if (intersect_leaf(leaf, inside, space, t_min, t_best, options, hit) && hit.t > t_min &&
-                comes_before(hit.t, inside.index, leaf.primitive_index, t_best, best) &&
+            if (intersect_leaf(leaf, inside, space, t_min, t_best, options, hit) && comes_after(hit, t_min) &&
+                comes_before(hit, inside.index, leaf.primitive_index, t_best, t_best_low, best) &&
                 (!inside.is_filtered ||
                  accept_hit(candidate_of(inside, leaf.primitive_index, options), hit.t, vec2(hit.u, hit.v))))
             {
                 t_best = hit.t;
+                t_best_low = hit.t_low;
                 best.hit = 1u;
                 best.t = hit.t;
                 best.u = hit.u;
@@ -192,10 +207,16 @@ FUNC Hit traverse(SwScene scene, Ray ray, TraceOptions options)
                 to_object.r0 = instance.world_to_object[0];
                 to_object.r1 = instance.world_to_object[1];
                 to_object.r2 = instance.world_to_object[2];
-                space = make_ray_space(transform_point(to_object, ray.origin), transform_vector(to_object, ray.direction), 0.0f);
+                vec3 origin = transform_point(to_object, ray.origin);
+                vec3 direction = transform_vector(to_object, ray.direction);
+                inside = enter_instance(instance, index, options);
+#ifdef TWINRAY_REFINED
+                if (options.level == LEVEL_CERTIFIED)
+                    inside.error = certified_error(AT(options.instances, index), to_object, ray, origin, direction);
+#endif
+                space = make_ray_space(origin, direction, inside.error);
                 nodes = instance.nodes;
                 triangles = instance.triangles;
-                inside = enter_instance(instance, index, options);
                 stack[height] = END_OF_INSTANCE;
                 height = height + 1u;
                 in_instance = true;

@@ -39,7 +39,11 @@ Hit trace(uint64_t accel, Ray ray, TraceOptions options)
     RefineScene scene = AT(REF(RefineScene)(refinement_of(accel)), 0);
     WorldBound bound = AT(scene.bound, 0);
     double advance = 0.0;
-    Hit hit = trace_float32(accel, advanced(ray, bound.lo, bound.hi, advance), options);
+    Ray near = advanced(ray, bound.lo, bound.hi, advance);
+    options.given = ray;
+    options.advance = advance;
+    options.instances = scene.instances;
+    Hit hit = trace_float32(accel, near, options);
     if (hit.hit == 0u) return hit;
     return refined(hit, ray, advance, AT(scene.instances, hit.instance_index));
 }

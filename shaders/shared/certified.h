@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// Level certified: which triangle a ray meets, and in which order, is what float64 says of the ray, the corners and the
+// transform as they were given. float32 only leaves out what it can prove to be no hit, within the bounds of its errors:
+//  - Boxes are padded by what transforming the ray may move it, so that no box of a hit is passed by.
+//  - A triangle is refused where two edges see the ray on opposite sides by more than their error bounds (a floating-point
+//    filter: Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997).
+// All else is decided in float64: the watertight test of intersect.h, in world space, with the same rule for ties. Hits
+// keep 48 bits of t, so their order is right where the exact t differ by more than about 2^-46 of what they are made of.
+#ifndef TWINRAY_SHARED_CERTIFIED_H
+#define TWINRAY_SHARED_CERTIFIED_H
+#include "shaders/shared/bvh.h"
+#include "shaders/shared/intersect.h"
+#include "shaders/shared/refine.h"
+
+FUNC float magnitude_vector(vec4 row, vec3 v) { return dot(abs(vec3(row.x, row.y, row.z)), abs(v)); }
+FUNC float largest_magnitude(Rows m, vec3 v)
+{
+    return max(magnitude_vector(m.r0, v), max(magnitude_vector(m.r1, v), magnitude_vector(m.r2, v)));
+}
+FUNC float largest_offset(Rows m) { return max(abs(m.r0.w), max(abs(m.r1.w), abs(m.r2.w))); }
+
+// How far the ray that float32 has moved to object space may run from the exact one, in any coordinate anywhere in the
+// geometry, and a corner of it be sheared to the wrong place. With W the inverse, R = W M - 1 its residual, the exact
+// origin and direction differ by R applied to them, and by at most 5 roundings (2^-24) of |W| |o| + |w| and |W| |d|; a
+// point of the geometry is at most (|o'| + extent) / |d'| away. The shear along the longest axis doubles what is off, and
+// rounds at most 12 times; another factor of 2 is slack for the roundings in this bound.
+FUNC float certified_error(RefineInstance instance, Rows to_object, Ray ray, vec3 origin, vec3 direction)
+{
+    const float ROUNDINGS = 4.76837158203125e-07f; // 8 of 2^-24
+    const float UNKNOWN = 1e37f;                   // larger than any mesh in built units: nothing is refused
+    float reach = largest_entry(origin) + instance.extent;
+    float moved = instance.residual * largest_entry(origin) + instance.offset_residual +
+                  ROUNDINGS * (largest_magnitude(to_object, ray.origin) + largest_offset(to_object));
+    float turned = instance.residual +
+                   ROUNDINGS * (largest_magnitude(to_object, ray.direction) / largest_entry(direction));
+    float error = 4.0f * (moved + reach * turned + reach * ROUNDINGS);
+    return instance.residual < 0.25f && error < UNKNOWN ? error : UNKNOWN;
+}
+
+// 1 or -1 where the edge function of two sheared corners, each off by at most `error` in x and y, has that sign for
+// certain, else 0.
+FUNC int certain_side(vec3 a, vec3 b, float error)
+{
+    const float ROUNDINGS = 2.384185791015625e-07f; // 4 of 2^-24
+    const float UNDERFLOW = 7.888609052210118e-31f; // 2^-100: below, products may have been flushed
+    PRECISE float p = a.x * b.y;
+    PRECISE float q = a.y * b.x;
+    PRECISE float area = p - q;
+    float size = abs(a.x) + abs(a.y) + abs(b.x) + abs(b.y);
+    float bound = error * (size + 2.0f * error) + ROUNDINGS * (abs(p) + abs(q)) + UNDERFLOW;
+    return area > bound ? 1 : (area < -bound ? -1 : 0);
+}
+
+// The rounding error of a product in float64, as product_error in exact.h.
+FUNC double product_error_double(double a, double b, double p)
+{
+    const double SPLITTER = double(134217729u); // 2^27 + 1
+    PRECISE double a_scaled = SPLITTER * a;
+    PRECISE double a_rest = a_scaled - a;
+    PRECISE double a_high = a_scaled - a_rest;
+    PRECISE double a_low = a - a_high;
+    PRECISE double b_scaled = SPLITTER * b;
+    PRECISE double b_rest = b_scaled - b;
+    PRECISE double b_high = b_scaled - b_rest;
+    PRECISE double b_low = b - b_high;
+    PRECISE double high_high = a_high * b_high;
+    PRECISE double high_low = a_high * b_low;
+    PRECISE double low_high = a_low * b_high;
+    PRECISE double low_low = a_low * b_low;
+    PRECISE double error = high_high - p;
+    error = error + high_low;
+    error = error + low_high;
+    error = error + low_low;
+    return error;
+}
+
+// exact_edge_function of intersect.h in float64.
+FUNC double exact_edge_function_double(dvec3 a, dvec3 b, INOUT(int) side)
+{
+    PRECISE double p = a.x * b.y;
+    PRECISE double q = a.y * b.x;
+    PRECISE double area = p - q;
+    if (p == q) area = product_error_double(a.x, b.y, p) - product_error_double(a.y, b.x, q);
+    if (p != q) side = p > q ? 1 : -1;
+    else if (area != double(0.0f)) side = area > double(0.0f) ? 1 : -1;
+    else if (a.y != b.y) side = a.y > b.y ? 1 : -1;
+    else side = b.x > a.x ? 1 : (b.x < a.x ? -1 : 0);
+    return area;
+}
+
+FUNC dvec3 dominant_last_double(dvec3 v, uint axis)
+{
+    return axis == 0u ? dvec3(v.y, v.z, v.x) : (axis == 1u ? dvec3(v.z, v.x, v.y) : v);
+}
+
+// A corner, relative to the ray's origin, seen along the direction d, whose dominant axis is the last.
+FUNC dvec3 sheared_double(dvec3 corner, dvec3 d, uint axis)
+{
+    dvec3 p = dominant_last_double(corner, axis);
+    PRECISE double x = p.x - d.x / d.z * p.z;
+    PRECISE double y = p.y - d.y / d.z * p.z;
+    return dvec3(x, y, p.z);
+}
+
+// By Veltkamp's splitting. Not double(float(x)), which compilers may take for x: conversions cannot be `precise`.
+FUNC double rounded_to_24_bits(double x)
+{
+    PRECISE double scaled = double(536870913u) * x; // 2^29 + 1
+    PRECISE double rest = scaled - x;
+    PRECISE double high = scaled - rest;
+    return high;
+}
+
+// Whether the ray's line meets the triangle in world space, and where: t of the traced ray, which begins `advance`
+// behind the given one, as t + t_low.
+FUNC bool intersect_in_world(RefineInstance instance, uint primitive_index, TraceOptions options, INOUT(TriangleHit) hit)
+{
+    vec3 o = options.given.origin;
+    vec3 w = options.given.direction;
+    dvec3 origin = dvec3(double(o.x), double(o.y), double(o.z));
+    uint axis = dominant_axis(w);
+    dvec3 d = dominant_last_double(dvec3(double(w.x), double(w.y), double(w.z)), axis);
+    dvec3 a = sheared_double(corner_from(origin, instance, 3u * primitive_index), d, axis);
+    dvec3 b = sheared_double(corner_from(origin, instance, 3u * primitive_index + 1u), d, axis);
+    dvec3 c = sheared_double(corner_from(origin, instance, 3u * primitive_index + 2u), d, axis);
+    int side_a = 0;
+    int side_b = 0;
+    int side_c = 0;
+    double area_a = exact_edge_function_double(b, c, side_a);
+    double area_b = exact_edge_function_double(c, a, side_b);
+    double area_c = exact_edge_function_double(a, b, side_c);
+    if (side_a == 0 || side_a != side_b || side_b != side_c) return false;
+    PRECISE double det = area_a + area_b + area_c;
+    PRECISE double z = area_a / det * a.z + area_b / det * b.z + area_c / det * c.z;
+    PRECISE double t = z / d.z - options.advance;
+    double high = rounded_to_24_bits(t);
+    PRECISE double low = t - high;
+    hit.t = float(high);
+    hit.t_low = float(low);
+    hit.u = float(area_b / det);
+    hit.v = float(area_c / det);
+    bool along_in_world = (det > double(0.0f)) == (d.z > double(0.0f));
+    hit.along = along_in_world != (instance.is_mirrored != 0u);
+    return true;
+}
+
+// The same for a triangle in object space that float32 may refuse. `error`: see certified_error.
+FUNC bool intersect_certified(BvhTriangle triangle, RaySpace space, float error, RefineInstance instance,
+                              TraceOptions options, INOUT(TriangleHit) hit)
+{
+    vec3 a = sheared(triangle.v0, space);
+    vec3 b = sheared(triangle.v1, space);
+    vec3 c = sheared(triangle.v2, space);
+    int side_a = certain_side(b, c, error);
+    int side_b = certain_side(c, a, error);
+    int side_c = certain_side(a, b, error);
+    if (side_a * side_b < 0 || side_b * side_c < 0 || side_c * side_a < 0) return false;
+    return intersect_in_world(instance, triangle.primitive_index, options, hit);
+}
+#endif

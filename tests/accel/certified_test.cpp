@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// Level::certified: which triangle is hit, and in which order, is decided by float64.
+#include <random>
+
+#include "engine/verify/aimed_rays.h"
+#include "engine/verify/oracle.h"
+#include "tests/accel/accel_fixture.h"
+
+namespace twinray {
+namespace {
+
+using test::error_of;
+using test::square;
+
+class Certified : public test::VulkanTest {
+  protected:
+    // Rays for which SwTlas names another hit than the referee.
+    std::size_t wrong(const Scene& scene, std::span<const Ray> rays, Level level, const TraceDesc& desc = {}) {
+        SwTlas accel(context(), {.level = level});
+        for (const Instance& instance : scene.instances) accel.push(scene.meshes[instance.mesh], instance.transform);
+        const Oracle oracle = Oracle::of(scene);
+        TraceDesc at_level = desc;
+        at_level.level = level;
+        const std::vector<Hit> hits = accel.closest_hits(rays, at_level), any = accel.any_hits(rays, at_level);
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const OracleHit exact = oracle.closest_hit(rays[i], {.flags = flags_of(desc.cull)});
+            const bool is_right = exact.hit == (hits[i].hit == 1) && exact.primitive == hits[i].primitive_index &&
+                                  exact.instance == hits[i].instance_index && any[i].hit == hits[i].hit;
+            if (!is_right) ++count;
+        }
+        return count;
+    }
+};
+
+Mesh wavy(uint cells, float height, float phase) {
+    Mesh mesh = make_grid(cells, cells);
+    for (vec3& p : mesh.positions) p.y += height * std::sin(7 * p.x + 5 * p.z + phase);
+    return mesh;
+}
+
+Scene scene_of(std::vector<Mesh> meshes, const Transform& transform = {}) {
+    Scene scene;
+    scene.meshes = std::move(meshes);
+    for (uint i = 0; i < scene.meshes.size(); ++i) scene.instances.push_back({"", i, transform});
+    return scene;
+}
+
+std::vector<Ray> rays_down(float distance, std::size_t count) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> on(-0.45f, 0.45f), aside(-0.2f, 0.2f);
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < count; ++i) {
+        const vec3 target(on(random), 0, on(random));
+        const vec3 from = target + distance * vec3(aside(random), 1, aside(random));
+        rays.push_back({from, 0, normalize(target - from), INFINITY});
+    }
+    return rays;
+}
+
+TEST_F(Certified, SurfacesThatFightForFloat32AreOrderedRight) {
+    const Scene scene = scene_of({wavy(16, 1e-7f, 0), wavy(23, 1e-7f, 2)});
+    for (const float distance : {1.0f, 1e3f, 1e6f}) {
+        const std::vector<Ray> rays = rays_down(distance, 8'000);
+        EXPECT_EQ(wrong(scene, rays, Level::certified), 0u) << "from " << distance;
+        EXPECT_GT(wrong(scene, rays, Level::refined), 100u) << "float32 does not tell, from " << distance;
+    }
+}
+
+TEST_F(Certified, NearlySingularTransformsAreHitAsTheyWereGiven) {
+    const Transform turn{{vec4(0.8f, 0.6f, 0, 3), vec4(-0.36f, 0.48f, 0.8f, 1), vec4(0.48f, -0.64f, 0.6f, 0)}};
+    for (const float flat : {1e-3f, 1e-6f, 1e-9f}) {
+        const Scene scene = scene_of({make_icosphere(3)}, turn * Transform::scaling({1, flat, 1}) * turn);
+        const std::vector<Ray> rays = edge_aimed_rays(Oracle::of(scene), 2'000, 1);
+        Scene flipped = scene;
+        flipped.instances.front().transform = flipped.instances.front().transform * Transform::scaling({1, 1, -1});
+        EXPECT_EQ(wrong(scene, random_rays(bounds_of(scene), 2'000, 1), Level::certified), 0u) << flat;
+        EXPECT_EQ(wrong(flipped, random_rays(bounds_of(scene), 2'000, 2), Level::certified, {.cull = Cull::back}), 0u)
+            << flat;
+    }
+}
+
+TEST_F(Certified, NothingLeaksAtEdgesAndVertices) {
+    const Mesh sphere = make_icosphere(4);
+    SwTlas accel(context(), {.level = Level::certified});
+    const AccelHandle handle = accel.push(sphere);
+    for (const Transform& transform :
+         {Transform{}, Transform::translation({1e4f, 0, 0}) * Transform::scaling({3, 0.1f, 1})}) {
+        accel.update_transform(handle, transform);
+        Scene scene = scene_of({sphere}, transform);
+        const Oracle placed = Oracle::of(scene);
+        for (std::vector<Ray> rays : {vertex_aimed_rays(placed, 20'000, 3), edge_aimed_rays(placed, 20'000, 4)}) {
+            const vec3 center(transform.rows[0].w, transform.rows[1].w, transform.rows[2].w);
+            for (Ray& ray : rays) ray = {center, 0, ray.origin + ray.direction - center, INFINITY};
+            std::size_t misses = 0;
+            for (const Hit& hit : accel.closest_hits(rays, {.level = Level::certified})) misses += 1 - hit.hit;
+            EXPECT_EQ(misses, 0u);
+        }
+    }
+}
+
+TEST_F(Certified, EqualTrianglesAreDecidedByTheirIds) {
+    SwTlas accel(context(), {.level = Level::certified});
+    for (int i = 0; i < 3; ++i) accel.push(square(0));
+    const std::vector<Ray> rays(64, test::down(0.3f, 0.6f));
+    for (const Hit& hit : accel.closest_hits(rays, {.level = Level::certified})) EXPECT_EQ(hit.instance_index, 0u);
+}
+
+TEST_F(Certified, TheIntervalHoldsExactly) {
+    SwTlas accel(context(), {.level = Level::certified});
+    accel.push(square(0));
+    const float third = 1.0f / 3;
+    Ray ray{vec3(0.25f, 0.5f, third), 0, vec3(0, 0, -0.1f), INFINITY};  // t = 3.33333332..., no float
+    const double exact = double{third} / double{0.1f};
+    const auto is_hit = [&] { return accel.closest_hits({&ray, 1}, {.level = Level::certified}).front().hit == 1; };
+    const auto rounded = static_cast<float>(exact);
+    const float below = rounded < exact ? rounded : std::nextafter(rounded, 0.0f);
+    const float above = std::nextafter(below, INFINITY);
+    ray.t_max = below;
+    EXPECT_FALSE(is_hit());
+    ray.t_max = above;
+    EXPECT_TRUE(is_hit());
+    ray = {ray.origin, below, ray.direction, INFINITY};
+    EXPECT_TRUE(is_hit());
+    ray.t_min = above;
+    EXPECT_FALSE(is_hit());
+}
+
+TEST_F(Certified, IsRefusedWhereTheDriverOrdersTheHits) {
+    if (!missing_for_hardware(context().facts()).empty()) TWINRAY_LACKS("ray_tracing", "no hardware ray tracing");
+    EXPECT_NE(error_of([&] {
+                  HwTlas(context(), BuildOrder::automatic, {.level = Level::certified});
+              }).find("the driver orders"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace twinray
