@@ -13,7 +13,7 @@ namespace twinray {
 #include "shaders/shared/refine.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(RefineInstance) == 80 && sizeof(RefineScene) == 16);
+static_assert(sizeof(RefineInstance) == 176 && sizeof(RefineScene) == 16);
 
 class Refinement {
   public:

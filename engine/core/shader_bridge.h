@@ -16,6 +16,7 @@ using glm::abs;
 using glm::cross;
 using glm::dot;
 using glm::dvec3;
+using glm::dvec4;
 using glm::floor;
 using glm::ivec3;
 using glm::max;

@@ -12,29 +12,43 @@
 #include "shaders/shared/intersect.h"
 #include "shaders/shared/refine.h"
 
-FUNC float magnitude_vector(vec4 row, vec3 v) { return dot(abs(vec3(row.x, row.y, row.z)), abs(v)); }
-FUNC float largest_magnitude(Rows m, vec3 v)
+// The traced ray in object space.
+struct CertifiedRay
 {
-    return max(magnitude_vector(m.r0, v), max(magnitude_vector(m.r1, v), magnitude_vector(m.r2, v)));
-}
-FUNC float largest_offset(Rows m) { return max(abs(m.r0.w), max(abs(m.r1.w), abs(m.r2.w))); }
+    vec3 origin;
+    vec3 direction;
+    // How far it may run from the exact one, in any coordinate anywhere in the geometry, and a corner of it be sheared to
+    // the wrong place.
+    float error;
+};
 
-// How far the ray that float32 has moved to object space may run from the exact one, in any coordinate anywhere in the
-// geometry, and a corner of it be sheared to the wrong place. With W the inverse, R = W M - 1 its residual, the exact
-// origin and direction differ by R applied to them, and by at most 5 roundings (2^-24) of |W| |o| + |w| and |W| |d|; a
-// point of the geometry is at most (|o'| + extent) / |d'| away. The shear along the longest axis doubles what is off, and
-// rounds at most 12 times; another factor of 2 is slack for the roundings in this bound.
-FUNC float certified_error(RefineInstance instance, Rows to_object, Ray ray, vec3 origin, vec3 direction)
+// Float64 maps the ray, so that what is left is rounding: with W the inverse and r its residual, the exact origin o' and
+// direction d' differ by r o' and r d', by less than 2^-48 (|W| |o| + |w|) and 2^-48 |W| |d|, and by a rounding to float32
+// (2^-24). A point of the geometry is at most (|o'| + extent) / |d'| away. The shear along the longest axis doubles what is
+// off, and rounds at most 12 times; another factor of 2 is slack for the roundings in this bound.
+FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray)
 {
-    const float ROUNDINGS = 4.76837158203125e-07f; // 8 of 2^-24
-    const float UNKNOWN = 1e37f;                   // larger than any mesh in built units: nothing is refused
-    float reach = largest_entry(origin) + instance.extent;
-    float moved = instance.residual * largest_entry(origin) + instance.offset_residual +
-                  ROUNDINGS * (largest_magnitude(to_object, ray.origin) + largest_offset(to_object));
-    float turned = instance.residual +
-                   ROUNDINGS * (largest_magnitude(to_object, ray.direction) / largest_entry(direction));
-    float error = 4.0f * (moved + reach * turned + reach * ROUNDINGS);
-    return instance.residual < 0.25f && error < UNKNOWN ? error : UNKNOWN;
+    const float HALF_ULP = 5.9604644775390625e-08f; // 2^-24
+    const float UNKNOWN = 1e37f;                    // larger than any mesh in built units: nothing is refused
+    const double MAPPING = double(3.5527136788005009e-15f); // 2^-48
+    RowsDouble to_object = instance.world_to_object;
+    RowsDouble magnitude = absolute(to_object);
+    dvec3 o = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
+    dvec3 d = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
+    dvec3 origin = transform_vector_double(to_object, o) + offset_double(to_object);
+    dvec3 direction = transform_vector_double(to_object, d);
+    dvec3 origin_error = MAPPING * (transform_vector_double(magnitude, abs(o)) + offset_double(magnitude));
+    dvec3 direction_error = MAPPING * transform_vector_double(magnitude, abs(d));
+    CertifiedRay mapped;
+    mapped.origin = vec3(float(origin.x), float(origin.y), float(origin.z));
+    mapped.direction = vec3(float(direction.x), float(direction.y), float(direction.z));
+    float reach = largest_entry(mapped.origin) + instance.extent;
+    float moved = (instance.residual + HALF_ULP) * largest_entry(mapped.origin) + largest_entry_double(origin_error);
+    float turned = instance.residual + HALF_ULP +
+                   largest_entry_double(direction_error) / largest_entry(mapped.direction);
+    float error = 4.0f * (moved + reach * turned + reach * (6.0f * HALF_ULP));
+    mapped.error = error < UNKNOWN ? error : UNKNOWN;
+    return mapped;
 }
 
 // 1 or -1 where the edge function of two sheared corners, each off by at most `error` in x and y, has that sign for
@@ -49,29 +63,6 @@ FUNC int certain_side(vec3 a, vec3 b, float error)
     float size = abs(a.x) + abs(a.y) + abs(b.x) + abs(b.y);
     float bound = error * (size + 2.0f * error) + ROUNDINGS * (abs(p) + abs(q)) + UNDERFLOW;
     return area > bound ? 1 : (area < -bound ? -1 : 0);
-}
-
-// The rounding error of a product in float64, as product_error in exact.h.
-FUNC double product_error_double(double a, double b, double p)
-{
-    const double SPLITTER = double(134217729u); // 2^27 + 1
-    PRECISE double a_scaled = SPLITTER * a;
-    PRECISE double a_rest = a_scaled - a;
-    PRECISE double a_high = a_scaled - a_rest;
-    PRECISE double a_low = a - a_high;
-    PRECISE double b_scaled = SPLITTER * b;
-    PRECISE double b_rest = b_scaled - b;
-    PRECISE double b_high = b_scaled - b_rest;
-    PRECISE double b_low = b - b_high;
-    PRECISE double high_high = a_high * b_high;
-    PRECISE double high_low = a_high * b_low;
-    PRECISE double low_high = a_low * b_high;
-    PRECISE double low_low = a_low * b_low;
-    PRECISE double error = high_high - p;
-    error = error + high_low;
-    error = error + low_high;
-    error = error + low_low;
-    return error;
 }
 
 // exact_edge_function of intersect.h in float64.
@@ -100,15 +91,6 @@ FUNC dvec3 sheared_double(dvec3 corner, dvec3 d, uint axis)
     PRECISE double x = p.x - d.x / d.z * p.z;
     PRECISE double y = p.y - d.y / d.z * p.z;
     return dvec3(x, y, p.z);
-}
-
-// By Veltkamp's splitting. Not double(float(x)), which compilers may take for x: conversions cannot be `precise`.
-FUNC double rounded_to_24_bits(double x)
-{
-    PRECISE double scaled = double(536870913u) * x; // 2^29 + 1
-    PRECISE double rest = scaled - x;
-    PRECISE double high = scaled - rest;
-    return high;
 }
 
 // Whether the ray's line meets the triangle in world space, and where: t of the traced ray, which begins `advance`
@@ -144,7 +126,7 @@ FUNC bool intersect_in_world(RefineInstance instance, uint primitive_index, Trac
     return true;
 }
 
-// The same for a triangle in object space that float32 may refuse. `error`: see certified_error.
+// The same for a triangle in object space that float32 may refuse. `error`: see CertifiedRay.
 FUNC bool intersect_certified(BvhTriangle triangle, RaySpace space, float error, RefineInstance instance,
                               TraceOptions options, INOUT(TriangleHit) hit)
 {

@@ -5,7 +5,7 @@
 //  - The hit that counts is computed again in float64 from what the user gave: the ray, the corners, the transform.
 #ifndef TWINRAY_SHARED_REFINE_H
 #define TWINRAY_SHARED_REFINE_H
-#include "shaders/shared/exact.h"
+#include "shaders/shared/exact_double.h"
 #include "shaders/shared/refine_scene.h"
 #include "shaders/shared/trace.h"
 
@@ -18,19 +18,23 @@ FUNC double slab_entry(float o, float d, float lo, float hi)
     return t;
 }
 
-// The same ray from nearer to the box, if it comes from farther away than the box is large: t of the result plus
-// `advance` is t of `ray`. It stops about one size short of the box, so nothing is jumped over.
+// The same ray from nearer to the box, if it comes from more than five times as far as the box's largest coordinate: t of the
+// result plus `advance` is t of `ray`. It stops about that coordinate short of the box, so nothing is jumped over. Nearer
+// rays pay for one comparison.
 FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance)
 {
+    const float FAR = 4.0f;
     advance = double(0.0f);
-    if (!(lo.x <= hi.x) || !is_traceable(ray)) return ray;
+    float size = max(largest_entry(lo), largest_entry(hi));
+    // A ray that meets the box after FAR + 1 sizes began at least FAR sizes from 0.
+    if (!(lo.x <= hi.x) || !(largest_entry(ray.origin) > FAR * size) || !is_traceable(ray)) return ray;
     double entry = double(0.0f);
     if (ray.direction.x != 0.0f) entry = max(entry, slab_entry(ray.origin.x, ray.direction.x, lo.x, hi.x));
     if (ray.direction.y != 0.0f) entry = max(entry, slab_entry(ray.origin.y, ray.direction.y, lo.y, hi.y));
     if (ray.direction.z != 0.0f) entry = max(entry, slab_entry(ray.origin.z, ray.direction.z, lo.z, hi.z));
-    PRECISE double box_size = double(max(largest_entry(lo), largest_entry(hi))) / double(largest_entry(ray.direction));
-    PRECISE double way = entry - box_size;
-    if (!(way > box_size)) return ray;
+    PRECISE double box_way = double(size) / double(largest_entry(ray.direction));
+    PRECISE double way = entry - box_way;
+    if (!(way > double(FAR) * box_way)) return ray;
     Ray near = ray;
     PRECISE double x = double(ray.origin.x) + way * double(ray.direction.x);
     PRECISE double y = double(ray.origin.y) + way * double(ray.direction.y);
@@ -42,24 +46,6 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance)
     near.t_max = float(t_max);
     advance = way;
     return near;
-}
-
-FUNC double product_sum(dvec3 a, dvec3 b)
-{
-    PRECISE double x = a.x * b.x;
-    PRECISE double y = a.y * b.y;
-    PRECISE double z = a.z * b.z;
-    PRECISE double sum = x + y;
-    sum = sum + z;
-    return sum;
-}
-
-FUNC dvec3 cross_product(dvec3 a, dvec3 b)
-{
-    PRECISE double x = a.y * b.z - a.z * b.y;
-    PRECISE double y = a.z * b.x - a.x * b.z;
-    PRECISE double z = a.x * b.y - a.y * b.x;
-    return dvec3(x, y, z);
 }
 
 // A corner in world space, seen from the origin.

@@ -66,7 +66,7 @@ struct InInstance
     uint culled; // side of its triangles that is not hit
     bool has_boxes;
     bool is_filtered;
-    float error; // at LEVEL_CERTIFIED: see certified_error; else 0
+    float error; // at LEVEL_CERTIFIED: see CertifiedRay; else 0
 };
 
 FUNC InInstance enter_instance(SwInstance instance, uint index, TraceOptions options)
@@ -79,6 +79,24 @@ FUNC InInstance enter_instance(SwInstance instance, uint index, TraceOptions opt
     inside.error = 0.0f;
     inside.is_filtered = (options.features & FEATURE_FILTERS) != 0u && (instance.flags & INSTANCE_FILTERED) != 0u;
     return inside;
+}
+
+// The ray in the space of the instance's geometry.
+FUNC RaySpace space_in(SwInstance instance, INOUT(InInstance) inside, Ray ray, TraceOptions options)
+{
+#ifdef TWINRAY_REFINED
+    if (options.level == LEVEL_CERTIFIED)
+    {
+        CertifiedRay mapped = certified_ray(AT(options.instances, inside.index), ray);
+        inside.error = mapped.error;
+        return make_ray_space(mapped.origin, mapped.direction, mapped.error);
+    }
+#endif
+    Rows to_object;
+    to_object.r0 = instance.world_to_object[0];
+    to_object.r1 = instance.world_to_object[1];
+    to_object.r2 = instance.world_to_object[2];
+    return make_ray_space(transform_point(to_object, ray.origin), transform_vector(to_object, ray.direction), 0.0f);
 }
 
 FUNC Candidate candidate_of(InInstance inside, uint primitive_index, TraceOptions options)
@@ -203,18 +221,8 @@ FUNC Hit traverse(SwScene scene, Ray ray, TraceOptions options)
             bool visible = (instance.custom_index_mask >> 24u & options.mask) != 0u && instance.root != NOTHING;
             if (visible)
             {
-                Rows to_object;
-                to_object.r0 = instance.world_to_object[0];
-                to_object.r1 = instance.world_to_object[1];
-                to_object.r2 = instance.world_to_object[2];
-                vec3 origin = transform_point(to_object, ray.origin);
-                vec3 direction = transform_vector(to_object, ray.direction);
                 inside = enter_instance(instance, index, options);
-#ifdef TWINRAY_REFINED
-                if (options.level == LEVEL_CERTIFIED)
-                    inside.error = certified_error(AT(options.instances, index), to_object, ray, origin, direction);
-#endif
-                space = make_ray_space(origin, direction, inside.error);
+                space = space_in(instance, inside, ray, options);
                 nodes = instance.nodes;
                 triangles = instance.triangles;
                 stack[height] = END_OF_INSTANCE;
