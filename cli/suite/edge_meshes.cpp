@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/scene/shapes.h"
+#include "engine/verify/draws.h"
 
 namespace twinray::suite {
 namespace {
@@ -133,14 +134,6 @@ std::vector<Ray> exact_grid_rays(uint n, bool slanted, std::size_t count, std::u
         rays.push_back(make_ray(target + offset, -offset));
     }
     return rays;
-}
-
-void measure_both(CaseRun& run, const Mesh& mesh, std::span<const Ray> rays, const CaseRun::RightCount& right,
-                  const Measurement& measurement) {
-    Measurement closest = measurement;
-    closest.fast_is_control = false;  // the crossings are
-    run.measure(world_of(mesh), rays, closest);
-    run.count_crossings(world_of(mesh, {}, {.filtered = true}), rays, right, measurement);
 }
 
 }  // namespace twinray::suite

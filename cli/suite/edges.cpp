@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Edges, vertices, watertightness: the catalogue, and rays from inside closed meshes.
 #include "cli/suite/edge_meshes.h"
+#include "cli/suite/edges.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/inside_rays.h"
@@ -48,6 +49,14 @@ void leak_test(CaseRun& run) {
 }
 
 }  // namespace
+
+void measure_both(CaseRun& run, const Mesh& mesh, std::span<const Ray> rays, const CaseRun::RightCount& right,
+                  const Measurement& measurement) {
+    Measurement closest = measurement;
+    closest.fast_is_control = false;  // the crossings are
+    run.measure(world_of(mesh), rays, closest);
+    run.count_crossings(world_of(mesh, {}, {.filtered = true}), rays, right, measurement);
+}
 
 std::vector<SuiteCase> edge_cases() {
     const std::string closest = "closest hits; crossings";

@@ -4,8 +4,10 @@
 #include <cstring>
 
 #include "cli/suite/edge_meshes.h"
+#include "cli/suite/edges.h"
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
+#include "engine/verify/draws.h"
 #include "engine/verify/inside_rays.h"
 
 namespace twinray::suite {

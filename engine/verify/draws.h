@@ -24,7 +24,7 @@ class Draws {
     // Uniform on the unit sphere, by rejection: only correctly rounded operations.
     glm::dvec3 direction() {
         for (;;) {
-            const double x = between(-1, 1), y = between(-1, 1), z = between(-1, 1);
+            const double z = between(-1, 1), y = between(-1, 1), x = between(-1, 1);
             const double square = x * x + y * y + z * z;
             if (square <= 1 && square > 0x1p-20) return glm::dvec3(x, y, z) / std::sqrt(square);
         }
