@@ -148,5 +148,23 @@ TEST(ClosedMesh, PointsInsideAreInTheWall) {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(few[i] == points[i] && other[i] != points[i]) << i;
 }
 
+TEST(ClosedMesh, PointsInsideKeepAwayFromTheTriangles) {
+    const auto slab = [](float thickness) {
+        Soup soup = cube();
+        for (vec3& position : soup.positions) position.z *= thickness;
+        return soup;
+    };
+    const Soup thin = slab(1.5e-4f), too_thin = slab(1.2e-4f);
+    const ClosedMesh closed(thin.view());
+    EXPECT_EQ(closed.clearance(), 0x1p-14);
+    const std::vector<vec3> points = closed.points_inside(100, 1);
+    EXPECT_EQ(points.size(), 100u);
+    for (const vec3& point : points) {
+        EXPECT_GE(point.z, 0x1p-14f);
+        EXPECT_LE(point.z, 1.5e-4f - 0x1p-14f);
+    }
+    EXPECT_THROW(ClosedMesh(too_thin.view()).points_inside(100, 1), Error);
+}
+
 }  // namespace
 }  // namespace twinray
