@@ -240,7 +240,7 @@ void add_leaks(CLI::App& app, int& exit_code) {
         ->check(CLI::IsMember({"sw", "hw"}))
         ->capture_default_str();
     command->add_option("--level", options->level, "level of the triangle test")
-        ->check(CLI::IsMember({"fast", "watertight", "refined"}))
+        ->check(CLI::IsMember({"fast", "watertight", "refined", "certified"}))
         ->capture_default_str();
     add_common_options(*command, options->common);
     command->callback([options, &exit_code] { exit_code = run(*options) ? 1 : 0; });
