@@ -10,6 +10,7 @@
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 #include "engine/report/statistics.h"
+#include "engine/verify/aimed_rays.h"
 #include "engine/verify/classify.h"
 #include "hwtlas/hw_tlas.h"
 #include "swtlas/sw_tlas.h"
