@@ -51,6 +51,7 @@ nlohmann::json describe(const Context& context);
 void add_devices(CLI::App& app, int& exit_code);
 void add_trace(CLI::App& app, int& exit_code);
 void add_verify(CLI::App& app, int& exit_code);
+void add_leaks(CLI::App& app, int& exit_code);
 void bench_moves(const CommonOptions& options, std::size_t count, std::size_t rounds);
 void add_bench(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
     twinray::cli::add_devices(app, exit_code);
     twinray::cli::add_trace(app, exit_code);
     twinray::cli::add_verify(app, exit_code);
+    twinray::cli::add_leaks(app, exit_code);
     twinray::cli::add_bench(app, exit_code);
     twinray::cli::add_report(app, exit_code);
     try {

@@ -15,7 +15,7 @@ void decide(Record& record, const Subject& subject, const Measurement& measureme
     if (const auto& control = measurement.control) {
         record.variant = control->code.name;
         if (!control->must_show) return;
-        record.pass = record.faults > 0;
+        record.pass = static_cast<double>(record.faults) > control->least_rate * static_cast<double>(record.n);
         record.fault_of = *record.pass ? "" : "twinray";
         return;
     }
@@ -99,6 +99,36 @@ void CaseRun::measure(const World& world, std::span<const Ray> rays, const Measu
         result.error = t_error(references, traced.hits);
         result.time = time_figures(traced);
         decide(result, traced.subject, measurement);
+        add(result);
+    }
+}
+
+std::vector<Subject> CaseRun::crossing_subjects() {
+    std::vector<Subject> able = subjects();
+    std::erase_if(able, [](const Subject& subject) { return subject.backend == Backend::pipeline; });
+    return able;
+}
+
+void CaseRun::count_crossings(const World& world, std::span<const Ray> rays, const RightCount& right,
+                              const Measurement& measurement) {
+    for (const Subject& subject : crossing_subjects()) {
+        AbstractAccel& accel = devices_.empty_accel(subject);
+        world.place(accel);
+        accel.sync();
+        const std::vector<uint> counts = devices_.crossing_counter(subject).count(accel, rays);
+        Record result = record(subject);
+        result.params = measurement.params;
+        result.params.emplace("counted", "crossings");
+        result.reference = "analytic";
+        result.n = rays.size();
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const bool is_right = right(rays[i], counts[i]);
+            ++result.counts[is_right ? "AGREE" : counts[i] < 8 ? text("CROSSED_", counts[i]) : "CROSSED_OFTEN"];
+            if (is_right || result.faults++ > 0) continue;
+            result.example = text("crossed ", counts[i], " times ", hexadecimal(rays[i]));
+        }
+        result.bound95 = upper_bound_95(result.faults, result.n);
+        decide(result, subject, measurement);
         add(result);
     }
 }

@@ -37,7 +37,15 @@ class CaseRun {
     // SW_LEAK, SW_FALSE, T_ERR and 0 hits of invalid rays; a fault of hardware is the driver's.
     void measure(const World& world, std::span<const Ray> rays, const Measurement& measurement = {});
 
-    // The same for answers that a case has traced and judged itself, as the sum of many small scenes.
+    // Counts how often each ray crosses `world`, all of whose instances are filtered, on the subjects that can (see
+    // CrossingCounter: not the pipeline), and records the counts that are not `right`: those of ours are faults, of
+    // hardware the driver's. Record::counts has them by number: CROSSED_0, CROSSED_2, ..., CROSSED_OFTEN from 8 on.
+    using RightCount = std::function<bool(const Ray&, uint)>;
+    void count_crossings(const World& world, std::span<const Ray> rays, const RightCount& right,
+                         const Measurement& measurement = {});
+    std::vector<Subject> crossing_subjects();
+
+    // The same as measure for answers that a case has traced and judged itself, as the sum of many small scenes.
     void add_judged(const Subject& subject, const Judgement& judgement, const Measurement& measurement = {});
 
     // For what no referee judges: `faults` of `n` things were not as specified. `what` says which, and is recorded if

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/suite/controls.h"
 
+#include "control_without_padding.spv.h"
 #include "control_without_precise.spv.h"
 
 namespace twinray::suite {
@@ -9,6 +10,13 @@ Control without_precise() {
     Control control{{}, false};
     control.code.name = "control: without precise";
     control.code.software = control_without_precise_spirv;
+    return control;
+}
+
+Control without_padding() {
+    Control control{{}, true, 0.01};
+    control.code.name = "control: without padding";
+    control.code.software = control_without_padding_spirv;
     return control;
 }
 

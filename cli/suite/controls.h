@@ -12,6 +12,7 @@ struct Control {
     TraceProgramCode code;  // its name becomes Record::variant
     // False: whether it shows faults is up to the driver, so that it is only measured.
     bool must_show = true;
+    double least_rate = 0;  // of faults, which it must exceed
 };
 
 // To add one: a macro in shaders/shared that leaves the thing out, and a twinray_compile_shader() of
@@ -19,5 +20,7 @@ struct Control {
 
 // Without `precise`: no operation is NoContraction. Leaks where the driver contracts or reassociates.
 Control without_precise();
+// Boxes as they are: planes that a ray reaches at the same t are told apart by rounding.
+Control without_padding();
 
 }  // namespace twinray::suite

@@ -58,6 +58,12 @@ AbstractAccel& Devices::empty_accel(const Subject& subject) {
     return *accel;
 }
 
+const CrossingCounter& Devices::crossing_counter(const Subject& subject) {
+    std::unique_ptr<CrossingCounter>& counter = counters_[{subject.backend, subject.level}];
+    if (!counter) counter = std::make_unique<CrossingCounter>(context(subject.backend), subject);
+    return *counter;
+}
+
 void Devices::drop_accels() { accels_.clear(); }
 
 }  // namespace twinray::suite

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/suite/suite.h"
+#include "cli/suite/crossings.h"
 #include "engine/accel/abstract_accel.h"
 
 namespace twinray::suite {
@@ -32,6 +32,8 @@ class Devices {
     static Level level_to_make(const Subject& subject);
     // One of a case's own.
     std::unique_ptr<AbstractAccel> make_accel(const Subject& subject);
+    // Compiled when first needed; not for the pipeline, in which no kernel traces.
+    const CrossingCounter& crossing_counter(const Subject& subject);
     // What the library has warned of since the last call; cases provoke warnings, so they are not printed.
     std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
     // After a failure: the next case gets new ones.
@@ -42,6 +44,7 @@ class Devices {
     ContextDesc desc_;
     std::unique_ptr<Context> context_, pipeline_context_;
     std::map<std::pair<Backend, Level>, std::unique_ptr<AbstractAccel>> accels_;
+    std::map<std::pair<Backend, Level>, std::unique_ptr<CrossingCounter>> counters_;
 };
 
 }  // namespace twinray::suite

@@ -84,10 +84,10 @@ World world_of(const Scene& scene) {
     return {[scene](AbstractAccel& accel) { push_scene(accel, scene); }, Oracle::of(scene)};
 }
 
-World world_of(const Mesh& mesh, const Transform& transform) {
+World world_of(const Mesh& mesh, const Transform& transform, const InstanceOptions& options) {
     const MeshView view = mesh;
-    const OracleInstance instance{0, transform};
-    return {[mesh, transform](AbstractAccel& accel) { accel.push(mesh, transform); },
+    const OracleInstance instance{0, transform, options};
+    return {[=](AbstractAccel& accel) { accel.push(mesh, transform, options); },
             Oracle(std::span(&view, 1), std::span(&instance, 1))};
 }
 

@@ -16,7 +16,7 @@ struct World {
     Oracle oracle;                              // of the same
 };
 World world_of(const Scene& scene);
-World world_of(const Mesh& mesh, const Transform& transform = {});
+World world_of(const Mesh& mesh, const Transform& transform = {}, const InstanceOptions& options = {});
 
 struct Tracing {
     std::span<const Ray> rays;

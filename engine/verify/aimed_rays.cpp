@@ -4,39 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/verify/draws.h"
+
 namespace twinray {
 namespace {
-
-// A stream of random numbers per (seed, ray): the n-th is SplitMix64's finaliser (Steele, Lea and Flood 2014) of a
-// counter, so that any ray can be made alone and in any order.
-class Draws {
-  public:
-    Draws(std::uint64_t seed, std::size_t ray) : state_(mixed(mixed(seed) + ray)) {}
-
-    std::uint64_t bits() { return mixed(state_ += 0x9E3779B97F4A7C15u); }
-    double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  // [0, 1)
-    double between(double low, double high) { return low + (high - low) * unit(); }
-    // Below n: the high word of the 32 x 32 bit product, n < 2^32.
-    uint below(std::size_t n) { return static_cast<uint>((bits() >> 32) * n >> 32); }
-
-    // Uniform on the unit sphere, by rejection: only correctly rounded operations, the same on every platform.
-    glm::dvec3 direction() {
-        for (;;) {
-            const glm::dvec3 p(between(-1, 1), between(-1, 1), between(-1, 1));
-            const double square = p.x * p.x + p.y * p.y + p.z * p.z;
-            if (square <= 1 && square > 0x1p-20) return p / std::sqrt(square);
-        }
-    }
-
-  private:
-    static std::uint64_t mixed(std::uint64_t x) {
-        x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-        x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-        return x ^ (x >> 31);
-    }
-
-    std::uint64_t state_;
-};
 
 Ray endless(const vec3& origin, const glm::dvec3& direction) {
     return {origin, 0.0f, vec3(direction), std::numeric_limits<float>::infinity()};

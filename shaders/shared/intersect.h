@@ -43,8 +43,14 @@ FUNC vec3 dominant_last(vec3 v, uint axis)
 
 FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
 {
+#ifdef TWINRAY_NO_PADDING // a negative control: shows what the padding is for
+    const float NEAR_FACTOR = 1.0f;
+    const float FAR_FACTOR = 1.0f;
+    pad = 0.0f;
+#else
     const float NEAR_FACTOR = 0.99999904632568359375f; // 1 - 2^-20
     const float FAR_FACTOR = 1.00000095367431640625f;  // 1 + 2^-20
+#endif
     RaySpace space;
     space.origin = origin;
     space.direction = direction;
