@@ -15,6 +15,9 @@ find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 
 if(TWINRAY_BUILD_APPS)
     find_package(CLI11 CONFIG REQUIRED)
+    find_path(GMPXX_INCLUDE_DIR gmpxx.h REQUIRED)  # Debian: libgmp-dev
+    find_library(GMPXX_LIBRARY gmpxx REQUIRED)
+    find_library(GMP_LIBRARY gmp REQUIRED)
 endif()
 if(TWINRAY_BUILD_TESTS)
     find_package(GTest REQUIRED)

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/core/error.h"
+#include "engine/verify/certainty.h"
 #include "engine/verify/coverage.h"
 #include "engine/verify/parallel.h"
 
@@ -168,9 +169,14 @@ Verdict verdict(const Ray& ray, const std::optional<Answer>& software, const std
 
 }  // namespace
 
-Verdict classify(const Oracle& oracle, const Ray& ray, const std::optional<Hit>& software,
-                 const std::optional<Hit>& hardware) {
+OracleHit reference_of(const Oracle& oracle, const Ray& ray, const Arbiter& arbiter) {
     const OracleHit reference = oracle.closest_hit(ray);
+    return !arbiter || is_certain(oracle, ray, reference) ? reference : arbiter(ray);
+}
+
+Verdict classify(const Oracle& oracle, const Ray& ray, const std::optional<Hit>& software,
+                 const std::optional<Hit>& hardware, const Arbiter& arbiter) {
+    const OracleHit reference = reference_of(oracle, ray, arbiter);
     return verdict(
         ray, software, hardware, [](const Hit& hit) { return hit.hit != 0; },
         [&](Accelerator accelerator, const Hit& hit) {
@@ -187,7 +193,7 @@ Verdict classify_any(const Oracle& oracle, const Ray& ray, const std::optional<b
 }
 
 std::vector<Verdict> classify_all(const Oracle& oracle, std::span<const Ray> rays, std::span<const Hit> software,
-                                  std::span<const Hit> hardware) {
+                                  std::span<const Hit> hardware, const Arbiter& arbiter) {
     for (const std::span<const Hit> hits : {software, hardware})
         if (!hits.empty() && hits.size() != rays.size())
             fail("classify: ", hits.size(), " hits for ", rays.size(), " rays");
@@ -197,7 +203,7 @@ std::vector<Verdict> classify_all(const Oracle& oracle, std::span<const Ray> ray
             return hits.empty() ? std::optional<Hit>() : hits[i];
         };
         for (std::size_t i = begin; i < end; ++i)
-            verdicts[i] = classify(oracle, rays[i], at(software, i), at(hardware, i));
+            verdicts[i] = classify(oracle, rays[i], at(software, i), at(hardware, i), arbiter);
     });
     return verdicts;
 }

@@ -4,6 +4,7 @@
 // ray exists (see Coverage), so a miss at a shared edge of a closed mesh is a leak and not an excuse.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,16 +23,24 @@ struct Verdict {
     bool operator==(const Verdict&) const = default;
 };
 
+// The exact closest hit, t, u and v rounded once: asked where float64 does not decide (see is_certain). Empty: float64
+// has the last word.
+using Arbiter = std::function<OracleHit(const Ray&)>;
+
+// The oracle's closest hit, or the arbiter's where float64 cannot tell.
+OracleHit reference_of(const Oracle& oracle, const Ray& ray, const Arbiter& arbiter);
+
 // For QUERY_CLOSEST. Hit::custom_index and flags are not judged. Pure and deterministic; threads may share the oracle.
 Verdict classify(const Oracle& oracle, const Ray& ray, const std::optional<Hit>& software,
-                 const std::optional<Hit>& hardware);
+                 const std::optional<Hit>& hardware, const Arbiter& arbiter = {});
 
 // For QUERY_ANY, of which only hit or miss is judged.
 Verdict classify_any(const Oracle& oracle, const Ray& ray, const std::optional<bool>& software,
                      const std::optional<bool>& hardware);
 
-// classify for every ray on all cores; each list of hits is empty or as long as the rays (else Error).
+// classify for every ray on all cores, which call the arbiter at once; each list of hits is empty or as long as the
+// rays (else Error).
 std::vector<Verdict> classify_all(const Oracle& oracle, std::span<const Ray> rays, std::span<const Hit> software,
-                                  std::span<const Hit> hardware);
+                                  std::span<const Hit> hardware, const Arbiter& arbiter = {});
 
 }  // namespace twinray

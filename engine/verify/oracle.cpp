@@ -194,4 +194,16 @@ std::vector<uint> Oracle::instances_hit(const Ray& ray, double t_limit) const {
     return found;
 }
 
+std::vector<uint> Oracle::instances_near(const Ray& ray) const {
+    std::vector<uint> found;
+    if (!is_traceable(ray)) return found;
+    const Search search(*this, ray, {});
+    bvh_.visit_leaves(search.slabs, search.t_min, search.t_limit, [&](uint first, uint last) {
+        for (uint i = first; i < last; ++i) found.push_back(placed_[bvh_.order()[i]]);
+        return true;
+    });
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
 }  // namespace twinray

@@ -74,10 +74,15 @@ class Oracle {
     // Instances, whatever their masks, that the ray hits at some t with t_min < t < t_limit, ascending.
     std::vector<uint> instances_hit(const Ray& ray, double t_limit) const;
 
+    // Instances, whatever their masks, that the ray may meet at some t with t_min < t < t_max, or passes within
+    // float64's rounding, ascending.
+    std::vector<uint> instances_near(const Ray& ray) const;
+
     const Box64& bounds() const { return bvh_.bounds(); }  // of the active triangles in world space
     uint instance_count() const { return static_cast<uint>(instances_.size()); }
     const Geometry64& geometry(uint instance) const { return *geometries_[instances_[instance].geometry]; }
     const Placement64& placement(uint instance) const { return instances_[instance].placement; }
+    const InstanceOptions& options(uint instance) const { return instances_[instance].options; }
 
   private:
     struct PlacedGeometry {

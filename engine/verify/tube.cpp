@@ -6,7 +6,7 @@
 namespace twinray {
 namespace {
 
-constexpr double rounding = 16 * 0x1p-24;
+constexpr double rounding32 = 16 * 0x1p-24, rounding64 = 32 * 0x1p-53;
 
 double cross2(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
@@ -58,14 +58,15 @@ double Footprint::distance_to(double u, double v) const {
     return glm::length((1 - u - v) * corners[0] + u * corners[1] + v * corners[2]);
 }
 
-Tube::Tube(const Ray& ray, const Placement64& placement, Accelerator accelerator) {
+Tube::Tube(const Ray& ray, const Placement64& placement, Accelerator accelerator)
+    : rounding_(accelerator == Accelerator::referee ? rounding64 : rounding32) {
     const glm::dvec3 origin(ray.origin);
     const glm::dvec3 direction(ray.direction);
     origin_ = placement.point_to_object(origin);
     direction_ = placement.vector_to_object(direction);
     length_ = glm::length(direction_);
     if (!placement.is_identity) {
-        const double inverse_error = accelerator == Accelerator::hardware ? placement.condition : 1.0;
+        const double inverse_error = accelerator == Accelerator::software ? 1.0 : placement.condition;
         const glm::dvec3 shift =
             absolute_product(placement.to_object, origin) + absolute_product(placement.to_object, placement.offset);
         origin_error_ = inverse_error * glm::length(shift);
@@ -82,7 +83,7 @@ Tube::Tube(const Ray& ray, const Placement64& placement, Accelerator accelerator
 }
 
 double Tube::radius_at(double distance) const {
-    return rounding * (distance + origin_error_ + distance * direction_error_);
+    return rounding_ * (distance + origin_error_ + distance * direction_error_);
 }
 
 double Tube::max_radius(const Box64& box) const {
