@@ -124,45 +124,4 @@ std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::
     return encoded;
 }
 
-std::size_t Scene::add_geometry(const MeshView& mesh) {
-    const std::vector<LeafBox> boxes = leaves_triangles(mesh.positions, mesh.triangles);
-    const std::vector<uint> codes = morton(boxes, centroids(boxes));
-    const std::vector<uint> order = sort(codes);
-    geometries_.push_back(
-        {{}, hierarchy(boxes, codes, order, true), encode_triangles(mesh.positions, mesh.triangles, order)});
-    return geometries_.size() - 1;
-}
-
-void Scene::add_instance(std::size_t geometry, const InstanceRecord& record) { placed_.push_back({geometry, record}); }
-
-void Scene::build() {
-    for (BuiltGeometry& geometry : geometries_)
-        geometry.header = {{geometry.tree.box.lo, geometry.tree.box.hi, Ref<BvhNode>::to(geometry.tree.nodes.data()),
-                            geometry.tree.root, static_cast<uint>(geometry.triangles.size())},
-                           Ref<BvhTriangle>::to(geometry.triangles.data()),
-                           GEOMETRY_TRIANGLES,
-                           0};
-    std::vector<InstanceRecord> records;
-    for (auto [geometry, record] : placed_) {
-        record.geometry = Ref<SwGeometry>::to(&geometries_[geometry].header).address;
-        records.push_back(record);
-    }
-    const std::vector<LeafBox> boxes = leaves_instances(records, instances_);
-    const std::vector<uint> codes = morton(boxes, centroids(boxes));
-    top_ = hierarchy(boxes, codes, sort(codes), false);
-    header_ = {
-        {top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), top_.root, static_cast<uint>(boxes.size())},
-        Ref<SwInstance>::to(instances_.data()),
-        instances_.size(),
-        0};
-}
-
-Hit Scene::trace(const Ray& ray, uint query, uint mask) const {
-    TraceOptions options{};
-    options.mask = mask;
-    options.query = query;
-    options.level = LEVEL_WATERTIGHT;
-    return traverse(header_, ray, options);
-}
-
 }  // namespace twinray::reference

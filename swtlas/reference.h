@@ -34,26 +34,4 @@ Hierarchy hierarchy(std::span<const LeafBox> boxes, std::span<const uint> codes,
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
                                           std::span<const uint> order);
 
-// A whole software accelerator in host memory: what the GPU builds and traverses, step by step in a debugger.
-class Scene {
-  public:
-    // Returns the geometry's index.
-    std::size_t add_geometry(const MeshView& mesh);
-    void add_instance(std::size_t geometry, const InstanceRecord& record);
-    void build();
-    Hit trace(const Ray& ray, uint query = QUERY_CLOSEST, uint mask = 0xff) const;
-
-  private:
-    struct BuiltGeometry {
-        SwGeometry header;
-        Hierarchy tree;
-        std::vector<BvhTriangle> triangles;
-    };
-    std::vector<BuiltGeometry> geometries_;
-    std::vector<std::pair<std::size_t, InstanceRecord>> placed_;
-    std::vector<SwInstance> instances_;
-    Hierarchy top_;
-    SwScene header_{};
-};
-
 }  // namespace twinray::reference

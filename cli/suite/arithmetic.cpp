@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Self-intersection and arithmetic.
-#include "cli/suite/case_run.h"
+#include "cli/suite/floats.h"
 
 namespace twinray::suite {
 
@@ -17,13 +17,15 @@ std::vector<SuiteCase> arithmetic_cases() {
          "no black triangles with terminator fix; energy change < 1 %", nullptr, "not written yet"},
         {"F05", "concave corner (dihedral 1 degrees..179 degrees)", "0 leaks, 0 false occlusion",
          "0 leaks, 0 false occlusion", nullptr, "not written yet"},
-        {"F06", "contraction on/off/`precise` builds, RTE mode on/off", "identical decisions with `precise`",
-         "identical decisions with `precise`", nullptr, "not written yet"},
-        {"F07", "float probe", "recorded", "recorded", nullptr, "not written yet"},
-        {"F08", "denormal flush on/off", "no decision changes", "no decision changes", nullptr, "not written yet"},
-        {"F09", "GPU vs CPU C++ same kernel (-ffp-contract=off)",
-         "bit-identical ids, u,v,t where division is correctly rounded; else <=3 ulp",
-         "bit-identical ids, u,v,t where division is correctly rounded; else <=3 ulp", nullptr, "not written yet"},
+        {"F06", "rays at the edges of a grid far from the origin; kernels with and without `precise`, and the CPU twin",
+         "decisions other than the twin's", "0 with `precise`", contraction},
+        {"F07", "float probe: roundings, contraction, NaN, denormals", "what watertightness rests on and is not so",
+         "0, else the robust levels cannot be claimed", float_probe},
+        {"F08", "rays with denormal coordinates, on the device, and on its CPU twin with denormals flushed",
+         "classes of both; triangles that change by flushing", "0 SW_LEAK, SW_FALSE, T_ERR", denormals},
+        {"F09", "random and aimed rays on SwTlas and on its twin, the same code compiled for the CPU",
+         "hits that differ in a bit: ids, t, u, v",
+         "0 where the device divides as IEEE 754 does; elsewhere measured only", device_against_twin},
     };
 }
 

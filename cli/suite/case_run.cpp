@@ -94,6 +94,7 @@ void CaseRun::measure(const World& world, std::span<const Ray> rays, const Measu
     for (const Traced& traced : traces) {
         Record result = record(traced.subject);
         result.params = measurement.params;
+        result.results = measurement.results;
         result.reference = "f64";
         set_judgement(result, judge(world.oracle, rays, traced.hits, traced.subject.backend));
         result.error = t_error(references, traced.hits);
@@ -136,6 +137,7 @@ void CaseRun::count_crossings(const World& world, std::span<const Ray> rays, con
 void CaseRun::add_judged(const Subject& subject, const Judgement& judgement, const Measurement& measurement) {
     Record result = record(subject);
     result.params = measurement.params;
+    result.results = measurement.results;
     result.reference = "f64";
     set_judgement(result, judgement);
     decide(result, subject, measurement);

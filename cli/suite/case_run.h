@@ -9,6 +9,7 @@ namespace twinray::suite {
 // What a case says about one of its measurements.
 struct Measurement {
     Values params = {};
+    Values results = {};
     // Level::fast has to show faults here: it is the negative control, without which "0 faults" would say nothing.
     // Elsewhere fast promises nothing at edges and is only measured.
     bool fast_is_control = false;

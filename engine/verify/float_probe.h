@@ -29,7 +29,9 @@ struct FloatFacts {
 // Runs the probe, once for each driver in a process.
 const FloatFacts& probe_floats(Context& context);
 
-// Why watertightness cannot be claimed on such a device, one phrase each; empty: it can.
+// Why watertightness cannot be claimed on such a device, one phrase for each of the conditions that do not hold; empty:
+// it can.
+inline constexpr std::size_t robust_conditions = 6;
 std::vector<std::string> robust_faults(const FloatFacts& facts);
 
 }  // namespace twinray

@@ -7,7 +7,7 @@
 
 #include "engine/scene/shapes.h"
 #include "engine/accel/geometry.h"
-#include "swtlas/reference.h"
+#include "swtlas/reference_scene.h"
 
 namespace twinray {
 namespace {

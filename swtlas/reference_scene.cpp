@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "swtlas/reference_scene.h"
+
+namespace twinray::reference {
+
+std::size_t Scene::add_geometry(const MeshView& mesh) {
+    Geometry geometry(mesh);
+    const std::vector<LeafBox> boxes = leaves_triangles(geometry.positions, geometry.triangles);
+    const std::vector<uint> codes = morton(boxes, centroids(boxes));
+    const std::vector<uint> order = sort(codes);
+    Hierarchy tree = hierarchy(boxes, codes, order, true);
+    std::vector<BvhTriangle> triangles = encode_triangles(geometry.positions, geometry.triangles, order);
+    geometries_.push_back({std::move(geometry), std::move(tree), std::move(triangles)});
+    return geometries_.size() - 1;
+}
+
+void Scene::add_instance(std::size_t geometry, const InstanceRecord& record) { placed_.push_back({geometry, record}); }
+
+// As the kernels see them, each with the address of its geometry's block.
+std::vector<InstanceRecord> Scene::records_in_built_units() {
+    for (BuiltGeometry& built : geometries_) {
+        built.block.geometry = {{built.tree.box.lo, built.tree.box.hi, Ref<BvhNode>::to(built.tree.nodes.data()),
+                                 built.tree.root, static_cast<uint>(built.triangles.size())},
+                                Ref<BvhTriangle>::to(built.triangles.data()),
+                                GEOMETRY_TRIANGLES,
+                                0};
+        built.block.source = {Floats::to(&built.mesh.positions.data()->x), Uints::to(&built.mesh.triangles.data()->x),
+                              built.mesh.scale, 0};
+    }
+    std::vector<InstanceRecord> records;
+    for (auto [geometry, record] : placed_) {
+        record.geometry = Ref<Block>::to(&geometries_[geometry].block).address;
+        records.push_back(in_built_units(record));
+    }
+    return records;
+}
+
+void Scene::build() {
+    const std::vector<InstanceRecord> records = records_in_built_units();
+    const std::vector<LeafBox> boxes = leaves_instances(records, instances_);
+    const std::vector<uint> codes = morton(boxes, centroids(boxes));
+    top_ = hierarchy(boxes, codes, sort(codes), false);
+    header_ = {
+        {top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), top_.root, static_cast<uint>(boxes.size())},
+        Ref<SwInstance>::to(instances_.data()),
+        instances_.size(),
+        0};
+    build_refinement(records);
+}
+
+// The twins of engine/world_bound.comp and engine/refine_gather.comp.
+void Scene::build_refinement(std::span<const InstanceRecord> records) {
+    bound_ = {empty_box().lo, empty_box().hi};
+    refined_.clear();
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const BuiltGeometry& built = geometries_[placed_[i].first];
+        RefineInstance refined{{}, built.block.source.positions, built.block.source.indices};
+        std::copy_n(records[i].object_to_world, 3, refined.object_to_world);
+        refined_.push_back(refined);
+        if (instances_[i].root == NOTHING || !is_active(built.tree.box)) continue;
+        const GeometryBox world = box_in_world({built.tree.box.lo, built.tree.box.hi}, to_world_of(records[i]));
+        bound_ = {min(bound_.lo, world.lo), max(bound_.hi, world.hi)};
+    }
+}
+
+Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {
+    const TraceOptions options{mask, 0, query, level, 0, 0};
+    if (level < LEVEL_REFINED) return traverse(header_, ray, options);
+    double advance = 0;
+    const Hit hit = traverse(header_, advanced(ray, bound_.lo, bound_.hi, advance), options);
+    return hit.hit ? refined(hit, ray, advance, refined_[hit.instance_index]) : hit;
+}
+
+Scene::Tree Scene::geometry_tree(std::size_t instance) const {
+    const BuiltGeometry& built = geometries_[placed_[instance].first];
+    return {built.block.geometry.bvh, built.triangles};
+}
+
+}  // namespace twinray::reference

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "engine/accel/geometry.h"
+#include "engine/accel/refinement.h"
+#include "swtlas/reference.h"
+
+namespace twinray::reference {
+
+// A whole software accelerator in host memory: what the GPU builds and traverses, step by step in a debugger. Its hits
+// are those of SwTlas to the last bit, where the device divides and adds as IEEE 754 does.
+class Scene {
+  public:
+    Scene() = default;
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
+
+    // Returns the geometry's index. Throws as Geometry does.
+    std::size_t add_geometry(const MeshView& mesh);
+    void add_instance(std::size_t geometry, const InstanceRecord& record);
+    void build();
+    // Threads may share it once it is built. level: LEVEL_*.
+    Hit trace(const Ray& ray, uint query = QUERY_CLOSEST, uint mask = 0xff, uint level = LEVEL_WATERTIGHT) const;
+
+    // What build() has made, for who looks into it.
+    struct Tree {
+        const Bvh& bvh;
+        std::span<const BvhTriangle> triangles;  // of a geometry, in units of its scale
+    };
+    Tree scene_tree() const { return {header_.bvh, {}}; }
+    Tree geometry_tree(std::size_t instance) const;
+    const SwInstance& instance(std::size_t index) const { return instances_[index]; }
+
+  private:
+    // What InstanceRecord::geometry points at.
+    struct Block {
+        SwGeometry geometry{};
+        std::uint64_t reserved = 0;
+        GeometrySource source{};
+    };
+    static_assert(offsetof(Block, source) == GEOMETRY_SOURCE_OFFSET);
+    struct BuiltGeometry {
+        Geometry mesh;
+        Hierarchy tree;
+        std::vector<BvhTriangle> triangles;
+        Block block = {};
+    };
+    std::vector<InstanceRecord> records_in_built_units();
+    void build_refinement(std::span<const InstanceRecord> records);
+
+    std::vector<BuiltGeometry> geometries_;
+    std::vector<std::pair<std::size_t, InstanceRecord>> placed_;
+    std::vector<SwInstance> instances_;
+    Hierarchy top_;
+    SwScene header_{};
+    GeometryBox bound_{};  // of the world
+    std::vector<RefineInstance> refined_;
+};
+
+}  // namespace twinray::reference
