@@ -43,7 +43,8 @@ suite::Settings settings_of(const ReportOptions& options) {
             .levels = chosen(suite::all_levels, options.levels),
             .only = options.only,
             .seed = options.common.seed,
-            .seconds = options.suite == "full" ? 0 : quick_seconds};
+            .seconds = options.suite == "full" ? 0 : quick_seconds,
+            .replays_in = options.folder};
 }
 
 Values probe_of(Context& context) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "swtlas/reference_scene.h"
 
+#include "swtlas/plan.h"
+
 namespace twinray::reference {
 
 std::size_t Scene::add_geometry(const MeshView& mesh) {
-    Geometry geometry(mesh);
+    Geometry geometry(mesh, software_unit(mesh.positions));
     const std::vector<LeafBox> boxes = leaves_triangles(geometry.positions, geometry.triangles);
     const std::vector<uint> codes = morton(boxes, centroids(boxes));
     const std::vector<uint> order = sort(codes);
@@ -54,26 +56,30 @@ void Scene::build_refinement(std::span<const InstanceRecord> records) {
     refined_.clear();
     for (std::size_t i = 0; i < records.size(); ++i) {
         const BuiltGeometry& built = geometries_[placed_[i].first];
-        RefineInstance refined{{}, built.block.source.positions, built.block.source.indices};
-        std::copy_n(records[i].object_to_world, 3, refined.object_to_world);
-        refined_.push_back(refined);
+        refined_.push_back(refine_instance(records[i]));
         if (instances_[i].root == NOTHING || !is_active(built.tree.box)) continue;
         const GeometryBox world = box_in_world({built.tree.box.lo, built.tree.box.hi}, to_world_of(records[i]));
         bound_ = {min(bound_.lo, world.lo), max(bound_.hi, world.hi)};
     }
 }
 
+Ray Scene::searched_ray(const Ray& ray, uint level, double& advance) const {
+    advance = 0;
+    return level < LEVEL_REFINED ? ray : advanced(ray, bound_.lo, bound_.hi, advance);
+}
+
 Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {
-    const TraceOptions options{mask, 0, query, level, 0, 0};
-    if (level < LEVEL_REFINED) return traverse(header_, ray, options);
     double advance = 0;
-    const Hit hit = traverse(header_, advanced(ray, bound_.lo, bound_.hi, advance), options);
-    return hit.hit ? refined(hit, ray, advance, refined_[hit.instance_index]) : hit;
+    const Ray searched = searched_ray(ray, level, advance);
+    const TraceOptions options{mask, 0, query, level, 0, 0, ray, advance, Ref<RefineInstance>::to(refined_.data())};
+    const Hit hit = traverse(header_, searched, options);
+    if (level < LEVEL_REFINED || !hit.hit) return hit;
+    return refined(hit, ray, advance, refined_[hit.instance_index]);
 }
 
 Scene::Tree Scene::geometry_tree(std::size_t instance) const {
     const BuiltGeometry& built = geometries_[placed_[instance].first];
-    return {built.block.geometry.bvh, built.triangles};
+    return {built.block.geometry.bvh, built.triangles, built.mesh.scale};
 }
 
 }  // namespace twinray::reference

@@ -22,10 +22,15 @@ class Scene {
     // Threads may share it once it is built. level: LEVEL_*.
     Hit trace(const Ray& ray, uint query = QUERY_CLOSEST, uint mask = 0xff, uint level = LEVEL_WATERTIGHT) const;
 
+    // The ray that the trees are searched with: `ray` itself, or from refined on one that may begin nearer, `advance`
+    // in t.
+    Ray searched_ray(const Ray& ray, uint level, double& advance) const;
+
     // What build() has made, for who looks into it.
     struct Tree {
         const Bvh& bvh;
-        std::span<const BvhTriangle> triangles;  // of a geometry, in units of its scale
+        std::span<const BvhTriangle> triangles;  // of a geometry, in units of `scale`
+        float scale = 1;
     };
     Tree scene_tree() const { return {header_.bvh, {}}; }
     Tree geometry_tree(std::size_t instance) const;

@@ -97,6 +97,8 @@ off by so many units in its last place; rounding alone gives up to 0.5. Times ar
 all accelerators taking turns. In the plots, left is better and down is better; a hollow marker with an arrow is a
 rate of 0 at its bound, bars are 95 % intervals, dashed lines are fitted power laws with the 95 % interval of their
 slope.</p>
+<p>A faulty ray with a <b>replay</b> can be traced again, step by step: <code>twinray verify --replay FILE</code> with the
+file that is linked.</p>
 <p>A <b>control</b> is a kernel known to be wrong: it passes when it shows faults, which proves that the case sees
 them. <code>twinray</code> exits with 1 where anything says &#8220;fault of twinray&#8221;.</p></details>
 )";
@@ -128,6 +130,10 @@ void write_changes(std::ostream& out, const PageInput& input) {
     out << "</table>\n";
 }
 
+std::string replay_link(const Record& record) {
+    return record.replay.empty() ? "" : " <a href=\"" + escaped(record.replay) + "\">replay</a>";
+}
+
 void write_row(std::ostream& out, const Record& record) {
     std::string counts;
     for (const auto& [kind, count] : record.counts)
@@ -148,7 +154,7 @@ void write_row(std::ostream& out, const Record& record) {
         << (record.variant.empty() ? "" : " (" + escaped(record.variant) + ")") << "</td></tr>\n";
     if (!record.reason.empty() || !record.example.empty())
         out << "<tr><td></td><td colspan=\"9\">" << escaped(record.reason) << " <code>" << escaped(record.example)
-            << "</code></td></tr>\n";
+            << "</code>" << replay_link(record) << "</td></tr>\n";
 }
 
 void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vector<const Record*>& records,

@@ -31,7 +31,7 @@ struct LevelPrice {
 };
 std::vector<LevelPrice> level_prices(std::span<const Record> records);
 
-// One page of HTML that is XML, too, and refers to nothing outside of itself.
+// One page of HTML that is XML, too, and refers to nothing outside of itself but the replays that it links.
 std::string page(const PageInput& input);
 
 }  // namespace twinray::report

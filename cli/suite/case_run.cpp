@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "cli/replay/replay.h"
+#include "cli/replay/scene_file.h"
 #include "engine/core/error.h"
 
 namespace twinray::suite {
@@ -83,6 +85,26 @@ std::vector<Subject> CaseRun::control_subject() {
     return {software};
 }
 
+std::string CaseRun::write_replay(const World& world, std::span<const Ray> rays, const Traced& traced,
+                                  const Judgement& judgement) const {
+    if (settings_.replays_in.empty() || !judgement.first_fault) return {};
+    const std::filesystem::path folder = settings_.replays_in / "replays";
+    std::filesystem::create_directories(folder);
+    const Scene scene = replay::scene_of(world.oracle);
+    const std::string hash = replay::hash_of(scene);
+    const std::filesystem::path scene_file = "scene-" + hash + ".glb";
+    if (!std::filesystem::exists(folder / scene_file)) replay::write_glb(folder / scene_file, scene);
+
+    const std::size_t at = *judgement.first_fault;
+    const std::string backend(name(traced.subject.backend)), level(name(traced.subject.level));
+    const Recorder::Run& run = recorder_.run();
+    const std::string file = text(row_.id, '-', recorder_.records().size() + 1, '-', backend, '-', level, ".json");
+    replay::write(folder / file,
+                  {scene_file, hash, backend, level, judgement.example.substr(0, judgement.example.find(' ')), rays[at],
+                   traced.hits[at], world.oracle.closest_hit(rays[at]), run.device.name, run.device.driver, run.git});
+    return "replays/" + file;
+}
+
 void CaseRun::measure(const World& world, std::span<const Ray> rays, const Measurement& measurement) {
     const std::vector<Subject> able = measurement.control ? control_subject() : subjects();
     if (able.empty() || rays.empty()) return;
@@ -96,10 +118,12 @@ void CaseRun::measure(const World& world, std::span<const Ray> rays, const Measu
         result.params = measurement.params;
         result.results = measurement.results;
         result.reference = "f64";
-        set_judgement(result, judge(world.oracle, rays, traced.hits, traced.subject.backend));
+        const Judgement judgement = judge(world.oracle, rays, traced.hits, traced.subject.backend);
+        set_judgement(result, judgement);
         result.error = t_error(references, traced.hits);
         result.time = time_figures(traced);
         decide(result, traced.subject, measurement);
+        if (!result.pass.value_or(true)) result.replay = write_replay(world, rays, traced, judgement);
         add(result);
     }
 }

@@ -71,6 +71,9 @@ class CaseRun {
 
   private:
     Record blank() const;
+    // Writes the ray of judgement.first_fault, if there is one, and returns the file as Record::replay wants it.
+    std::string write_replay(const World& world, std::span<const Ray> rays, const Traced& traced,
+                             const Judgement& judgement) const;
     std::vector<Subject> control_subject();  // SwTlas at watertight if it was asked for
 
     const SuiteCase& row_;

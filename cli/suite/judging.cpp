@@ -18,8 +18,7 @@ double ulp_of(double value) {
 }
 
 bool is_fault(Class kind) {
-    return is_fault_of_ours(kind) || kind == Class::hw_leak || kind == Class::hw_false || kind == Class::hw_t_err ||
-           kind == Class::hw_range || kind == Class::invalid_input;
+    return is_fault_of_ours(kind) || is_fault_of_hardware(kind) || kind == Class::invalid_input;
 }
 
 }  // namespace
@@ -54,7 +53,9 @@ Judgement judge(const Oracle& oracle, std::span<const Ray> rays, std::span<const
         const Class kind = is_ours(backend) ? *verdicts[i].software : *verdicts[i].hardware;
         judgement.classes.add(kind);
         if (!is_fault(kind)) continue;
-        if (judgement.faults++ == 0) judgement.example = std::string(name(kind)) + ' ' + hexadecimal(rays[i]);
+        if (judgement.faults++ > 0) continue;
+        judgement.example = std::string(name(kind)) + ' ' + hexadecimal(rays[i]);
+        judgement.first_fault = i;
     }
     return judgement;
 }

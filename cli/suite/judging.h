@@ -19,6 +19,7 @@ struct Judgement {
     Classes classes;
     std::uint64_t faults = 0;  // of ours, or of the driver's; hits of rays that nobody may trace among them
     std::string example;       // see Record::example
+    std::optional<std::size_t> first_fault = {};  // its ray
 };
 Judgement judge(const Oracle& oracle, std::span<const Ray> rays, std::span<const Hit> hits, Backend backend);
 

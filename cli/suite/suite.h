@@ -38,6 +38,8 @@ struct Settings {
     std::vector<std::string> only = {};  // patterns of case ids with * and ?; empty: all
     std::uint64_t seed = 1;
     double seconds = 0;  // no case is begun after these; 0: no limit
+    // Folder of the report, into whose folder "replays" the first faulty ray of each record goes; "": none is written.
+    std::filesystem::path replays_in = {};
 };
 
 class CaseRun;

@@ -91,6 +91,7 @@ struct Record {
     bool was_run = true;
     std::string reason = {};   // why it was not run, or what did not pass
     std::string example = {};  // the first fault: its class and the ray's 8 floats, hexadecimal, as they lie in a file
+    std::string replay = {};   // file with which that fault can be shown again, relative to the report's folder
 
     bool operator==(const Record&) const = default;
 };

@@ -125,6 +125,7 @@ Record parsed(const Json& json) {
     record.was_run = json.at("status") == "run";
     record.reason = json.at("reason");
     record.example = json.at("example");
+    record.replay = json.value("replay", "");  // reports of before had none
     return record;
 }
 
@@ -165,6 +166,7 @@ std::string to_json(const Record& record) {
         {"status", record.was_run ? "run" : "not run"},
         {"reason", record.reason},
         {"example", record.example},
+        {"replay", record.replay},
     };
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -11,6 +11,10 @@ std::string_view name(Class kind) {
     return names[static_cast<std::size_t>(kind)];
 }
 
+bool is_fault_of_hardware(Class kind) {
+    return kind == Class::hw_leak || kind == Class::hw_false || kind == Class::hw_t_err || kind == Class::hw_range;
+}
+
 bool is_fault_of_ours(Class kind) { return kind == Class::sw_leak || kind == Class::sw_false || kind == Class::t_err; }
 
 Classes& Classes::operator+=(const Classes& other) {

@@ -31,6 +31,8 @@ std::string_view name(Class kind);
 
 // sw_leak, sw_false and t_err: their count must be 0.
 bool is_fault_of_ours(Class kind);
+// hw_leak, hw_false, hw_t_err and hw_range.
+bool is_fault_of_hardware(Class kind);
 
 // How often each class occurred.
 struct Classes {

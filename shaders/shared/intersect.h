@@ -51,11 +51,13 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
     const float NEAR_FACTOR = 0.99999904632568359375f; // 1 - 2^-20
     const float FAR_FACTOR = 1.00000095367431640625f;  // 1 + 2^-20
 #endif
+    const vec3 LARGEST_FLOAT = vec3(uintBitsToFloat(0x7f7fffffu));
     RaySpace space;
     space.origin = origin;
     space.direction = direction;
     vec3 inverse = vec3(reciprocal(direction.x), reciprocal(direction.y), reciprocal(direction.z));
-    space.near_inverse = inverse * NEAR_FACTOR;
+    // The reciprocal of a denormal is infinite, and would put an entry that is near at infinity.
+    space.near_inverse = clamp(inverse, -LARGEST_FLOAT, LARGEST_FLOAT) * NEAR_FACTOR;
     space.far_inverse = inverse * FAR_FACTOR;
     vec3 shift = vec3(inverse.x < 0.0f ? -pad : pad, inverse.y < 0.0f ? -pad : pad, inverse.z < 0.0f ? -pad : pad);
     space.near_origin = origin + shift;

@@ -26,15 +26,17 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance)
     const float FAR = 4.0f;
     advance = double(0.0f);
     float size = max(largest_entry(lo), largest_entry(hi));
+    PRECISE float far = FAR * size;
     // A ray that meets the box after FAR + 1 sizes began at least FAR sizes from 0.
-    if (!(lo.x <= hi.x) || !(largest_entry(ray.origin) > FAR * size) || !is_traceable(ray)) return ray;
+    if (!(lo.x <= hi.x) || !(largest_entry(ray.origin) > far) || !is_traceable(ray)) return ray;
     double entry = double(0.0f);
     if (ray.direction.x != 0.0f) entry = max(entry, slab_entry(ray.origin.x, ray.direction.x, lo.x, hi.x));
     if (ray.direction.y != 0.0f) entry = max(entry, slab_entry(ray.origin.y, ray.direction.y, lo.y, hi.y));
     if (ray.direction.z != 0.0f) entry = max(entry, slab_entry(ray.origin.z, ray.direction.z, lo.z, hi.z));
     PRECISE double box_way = double(size) / double(largest_entry(ray.direction));
     PRECISE double way = entry - box_way;
-    if (!(way > double(FAR) * box_way)) return ray;
+    PRECISE double far_way = double(FAR) * box_way;
+    if (!(way > far_way)) return ray;
     Ray near = ray;
     PRECISE double x = double(ray.origin.x) + way * double(ray.direction.x);
     PRECISE double y = double(ray.origin.y) + way * double(ray.direction.y);

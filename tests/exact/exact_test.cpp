@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdio>
 
 #include "cli/exact/referee.h"
 #include "engine/scene/shapes.h"
@@ -116,8 +117,8 @@ void report(const char* what, const Comparison& sum) {
     EXPECT_EQ(sum.wrong_and_certain, 0u) << what;
 }
 
-vec3 lattice_point(std::mt19937& random) {
-    const auto one = [&] { return static_cast<float>(random() % 5) - 2; };
+vec3 lattice_point(std::mt19937& random, int extent = 2) {
+    const auto one = [&] { return static_cast<float>(static_cast<int>(random() % (2 * extent + 1)) - extent); };
     const float x = one(), y = one();
     return {x, y, one()};
 }
@@ -184,19 +185,37 @@ TEST(Float64Referee, IsRightWhereItIsCertainUnderIllConditionedTransforms) {
     report("squeezed instances", sum);
 }
 
+// The edge at x = 1 of an instance n times as large, hit by a ray at x = n: in float64 n times 1 / n is less than 1 for
+// some n, so that the ray would pass the triangle's box.
+TEST(Referee, FindsWhatRoundingPutsOutsideOfItsBox) {
+    Soup soup;
+    soup.add({1, 0, 1}, {2, 0, 1}, {1, 1, 1});
+    int outside = 0;
+    for (int n = 1; n < 200; ++n) {
+        const float scale = static_cast<float>(n);
+        const Oracle oracle = oracle_of(soup, Transform::scaling({scale, scale, 1}));
+        outside += oracle.placement(0).vector_to_object(glm::dvec3(scale, 0, 0)).x < 1;
+        const auto hit = Referee(oracle).closest_hit(make_ray({scale, scale / 2, 0}, {0, 0, 1}));
+        ASSERT_TRUE(hit) << n;
+        EXPECT_EQ(hit->crossing.incidence, Incidence::edge);
+    }
+    EXPECT_GT(outside, 0);
+}
+
 TEST(Referee, TheHierarchyLosesNothing) {
     using Clock = std::chrono::steady_clock;
     std::mt19937 random(14);
     std::size_t tests = 0;
     Clock::duration spent{};
-    for (int round = 0; round < 20; ++round) {
+    for (int round = 0; round < 8; ++round) {
         Soup soup;
-        for (int i = 0; i < 30; ++i) soup.add(lattice_point(random), lattice_point(random), lattice_point(random));
+        for (int i = 0; i < 30; ++i)
+            soup.add(lattice_point(random, 3), lattice_point(random, 3), lattice_point(random, 3));
         const Transform squeezed = rotation(0.3f, 1) * Transform::scaling({1, 0.01f, 3});
         const Oracle oracle = oracle_of({soup}, {{0, Transform{}}, {0, squeezed}});
         const Referee referee(oracle);
         for (int i = 0; i < 100; ++i) {
-            const Ray ray = make_ray(lattice_point(random), lattice_point(random));
+            const Ray ray = make_ray(lattice_point(random, 3), lattice_point(random, 3));
             const auto fast = referee.closest_hit(ray);
             const Clock::time_point start = Clock::now();
             const auto slow = referee.closest_hit_brute_force(ray);
@@ -206,6 +225,11 @@ TEST(Referee, TheHierarchyLosesNothing) {
             if (!fast) continue;
             EXPECT_EQ(fast->crossing.t, slow->crossing.t);
             EXPECT_EQ(fast->triangles, slow->triangles);
+            const auto [instance, primitive] = fast->triangles.front();
+            const auto first = crossing(object_line(ray, oracle.placement(instance)),
+                                        oracle.geometry(instance).find(primitive)->corners64());
+            EXPECT_EQ(fast->crossing.u, first->u);
+            EXPECT_EQ(fast->crossing.v, first->v);
         }
     }
     std::printf("%.0f ns for a ray and a triangle, half of them under a rotation\n",

@@ -44,10 +44,12 @@ TEST(Page, AFaultOfOursIsInTheFirstLine) {
     bad.fault_of = "twinray";
     bad.faults = 3;
     bad.example = "SW_LEAK 0x1p+0";
+    bad.replay = "replays/W04-1.json";
     const std::string page = page_of({bad});
     EXPECT_TRUE(has(page, "1 measurements show faults of ours"));
     EXPECT_FALSE(has(page, "No fault of ours"));
     EXPECT_TRUE(has(page, "SW_LEAK 0x1p+0"));
+    EXPECT_TRUE(has(page, "<a href=\"replays/W04-1.json\">replay</a>"));
 }
 
 TEST(Page, ListsWhatWasNotRunByReason) {

@@ -42,6 +42,7 @@ Record full_record() {
     record.fault_of = "twinray";
     record.reason = "a, reason";
     record.example = "SW_LEAK 0x1p+0";
+    record.replay = "replays/W04.json";
     return record;
 }
 

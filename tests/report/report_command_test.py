@@ -48,6 +48,14 @@ if "is missing (Debian: apt-get install python3-matplotlib" in said:
 else:
     assert drawn == sorted(plot["id"] for plot in json.loads((first / "plots.json").read_text())), said
 
+# The device's arithmetic: on a CPU driver every bit is that of the CPU twin.
+report("--only", "F06,F07,F08,F09", "--accel", "sw", "-o", str(here / "floats"))
+floats = [r for r in lines("floats/report.jsonl") if r["status"] == "run"]
+assert {r["case"] for r in floats} == {"F06", "F07", "F08", "F09"}
+if "llvmpipe" in floats[0]["device"]["name"]:
+    twins = [r for r in floats if r["case"] == "F09"]
+    assert twins and all(r["pass"] and r["faults"] == 0 and r["n"] > 0 for r in twins), twins
+
 # Beside a baseline of which a count was better, and in which a case passed.
 better = [dict(r, faults=0, counts={}) for r in records]
 (here / "old.jsonl").write_text("".join(json.dumps(r) + "\n" for r in better))

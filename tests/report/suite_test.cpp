@@ -4,11 +4,15 @@
 
 #include <algorithm>
 
+#include "cli/replay/replay.h"
+#include "cli/replay/scene_file.h"
 #include "cli/report/page.h"
 #include "cli/suite/case_run.h"
+#include "cli/suite/judging.h"
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
+#include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"
 
 namespace twinray::suite {
@@ -70,9 +74,10 @@ TEST_F(SuiteRun, MeasuresEveryAbleSubjectAndListsTheOthers) {
 
 TEST_F(SuiteRun, LeaksOfOursAndOfTheDriverAreToldApart) {
     if (!can_run_) return;
+    const test::TempDir folder;
     const std::vector<Record> records =
         run({make_case("W01", [](CaseRun& here) { here.measure(world_with_holes(), rays()); })},
-            {.levels = {Level::fast, Level::watertight}});
+            {.levels = {Level::fast, Level::watertight}, .replays_in = folder / "report"});
     std::size_t ours = 0;
     for (const Record& record : records) {
         if (!record.was_run || record.level != "watertight") continue;
@@ -80,6 +85,11 @@ TEST_F(SuiteRun, LeaksOfOursAndOfTheDriverAreToldApart) {
         EXPECT_EQ(record.fault_of, record.backend == "sw" ? "twinray" : "driver");
         EXPECT_GT(record.counts.at(record.backend == "sw" ? "SW_LEAK" : "HW_LEAK"), 0u);
         EXPECT_FALSE(record.example.empty());
+        const std::filesystem::path file = folder / "report" / record.replay;
+        const replay::Replay replay = replay::read(file);
+        EXPECT_EQ(record.example, replay.kind + ' ' + hexadecimal(replay.ray));
+        EXPECT_EQ(replay.backend + replay.level, record.backend + record.level);
+        EXPECT_EQ(replay::hash_of(load_scene(file.parent_path() / replay.scene)), replay.scene_hash);
         if (record.backend == "sw") ++ours;
     }
     EXPECT_EQ(ours, 1u);

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// Scenes as files that keep every float, so that a ray can be traced through the same scene again.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "engine/scene/scene.h"
+#include "engine/verify/oracle.h"
+
+namespace twinray::replay {
+
+// What an oracle was made of: meshes in the order of its instances, triangles by the same numbers; those that cannot be
+// hit have all corners at 0. Masks and culling are left out.
+Scene scene_of(const Oracle& oracle);
+
+// Binary glTF of positions and transforms alone: load_scene() gives the same floats, triangles and instances. Throws
+// Error where the file cannot be written.
+void write_glb(const std::filesystem::path& file, const Scene& scene);
+
+// 16 hexadecimal digits over all positions, triangles and transforms (FNV-1a).
+std::string hash_of(const Scene& scene);
+
+}  // namespace twinray::replay

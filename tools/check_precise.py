@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Checks in SPIR-V that the compiler may not contract what watertightness rests on: in every function that comes from
+shaders/shared/{exact,intersect,refine,transform,certified,exact_double}.h, each sum, difference, product and quotient of floats is NoContraction.
+Usage: check_precise.py ROOT MODULE.spv...; prints each function with an operation that is not, and exits with 1; else how
+many operations it has seen in which functions."""
+import pathlib
+import re
+import struct
+import sys
+
+HEADERS = ["exact.h", "intersect.h", "refine.h", "transform.h", "certified.h", "exact_double.h"]
+# Not decided by bits that two triangles must share.
+EXEMPT = {
+    "intersect_triangle_fast": "level fast promises nothing at edges",
+    "make_ray_space": "once for a ray: all triangles see the same constants",
+    "reciprocal": "likewise",
+    "certified_ray": "what it gives is off by less than its bound, contracted or not",
+    "certain_side": "a filter, whose bound exceeds what contraction changes",
+    "intersect_in_world": "divisions that give u and v",
+}
+NAME, FUNCTION, FUNCTION_END, DECORATE = 5, 54, 56, 71
+ARITHMETIC = {129: "FAdd", 131: "FSub", 133: "FMul", 136: "FDiv", 142: "VectorTimesScalar", 148: "Dot"}
+NO_CONTRACTION = 42
+DEFINITION = re.compile(r"^FUNC \w+ (\w+)\(", re.M)
+
+
+def instructions(module):
+    words = struct.unpack(f"<{len(module) // 4}I", module)
+    assert words[0] == 0x07230203, "not SPIR-V"
+    at = 5
+    while at < len(words):
+        length, opcode = words[at] >> 16, words[at] & 0xFFFF
+        yield opcode, words[at + 1:at + length]
+        at += length
+
+
+def text(words):
+    return struct.pack(f"<{len(words)}I", *words).split(b"\0")[0].decode()
+
+
+def operations(module):  # of each function by its name in GLSL: (NoContraction, all, which lack it)
+    names, protected, counts, function = {}, set(), {}, None
+    for opcode, operands in instructions(module):
+        if opcode == NAME:
+            names[operands[0]] = text(operands[1:])
+        elif opcode == DECORATE and operands[1] == NO_CONTRACTION:
+            protected.add(operands[0])
+        elif opcode == FUNCTION:
+            function = names.get(operands[1], "").split("(")[0]
+        elif opcode in ARITHMETIC and function:
+            entry = counts.setdefault(function, [0, 0, []])
+            entry[1] += 1
+            if operands[1] in protected:
+                entry[0] += 1
+            else:
+                entry[2].append(ARITHMETIC[opcode])
+    return counts
+
+
+root, modules = pathlib.Path(sys.argv[1]), [pathlib.Path(name) for name in sys.argv[2:]]
+wanted = {name for header in HEADERS for name in DEFINITION.findall((root / "shaders/shared" / header).read_text())}
+found = [f"check_precise: {name} is exempt, but no header has it" for name in EXEMPT if name not in wanted]
+seen, total = set(), 0
+for module in modules:
+    counts = operations(module.read_bytes())
+    for function in sorted(wanted & counts.keys() - EXEMPT.keys()):
+        guarded, every, bare = counts[function]
+        seen.add(function)
+        total += guarded
+        if bare:
+            found.append(f"{module.name}: {function}: {len(bare)} of {every} operations may be contracted: {', '.join(bare)}")
+if not seen:
+    found.append("check_precise: no module has any of the functions")
+print("\n".join(found) or f"check_precise: {total} operations of {len(modules)} modules are NoContraction, in {', '.join(sorted(seen))}")
+sys.exit(1 if found else 0)
