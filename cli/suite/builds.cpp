@@ -7,6 +7,7 @@
 #include <random>
 
 #include "cli/suite/builds.h"
+#include "cli/suite/scenes.h"
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
@@ -16,16 +17,8 @@
 namespace twinray::suite {
 namespace {
 
-constexpr float inf = std::numeric_limits<float>::infinity();
-
 // As the traversal's stack is made for: 30 bits of a Morton code, then the position among equal codes.
 uint depth_limit(std::size_t leaves) { return 30 + static_cast<uint>(std::bit_width(leaves)); }
-
-void add_triangle(Mesh& mesh, vec3 a, vec3 b, vec3 c) {
-    const uint first = static_cast<uint>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), {a, b, c});
-    mesh.triangles.push_back({first, first + 1, first + 2});
-}
 
 TreeCheck check(const SwTlas::Tree& tree, const Mesh& mesh) {
     std::vector<LeafBox> boxes;

@@ -32,14 +32,17 @@ std::vector<OracleHit> references_of(const Oracle& oracle, std::span<const Ray> 
     return references;
 }
 
+std::optional<double> t_ulps(const OracleHit& reference, const Hit& hit) {
+    const bool is_same = hit.hit && reference.hit && hit.instance_index == reference.instance &&
+                         hit.primitive_index == reference.primitive;
+    if (!is_same) return std::nullopt;
+    return std::abs(double{hit.t} - reference.t) / ulp_of(reference.t);
+}
+
 std::optional<ErrorFigures> t_error(std::span<const OracleHit> references, std::span<const Hit> hits) {
     std::vector<double> errors;
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-        const OracleHit& reference = references[i];
-        const bool is_same = hits[i].hit && reference.hit && hits[i].instance_index == reference.instance &&
-                             hits[i].primitive_index == reference.primitive;
-        if (is_same) errors.push_back(std::abs(double{hits[i].t} - reference.t) / ulp_of(reference.t));
-    }
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        if (const auto ulps = t_ulps(references[i], hits[i])) errors.push_back(*ulps);
     if (errors.empty()) return std::nullopt;
     std::sort(errors.begin(), errors.end());
     return ErrorFigures{
