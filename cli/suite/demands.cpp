@@ -17,14 +17,20 @@ std::string not_defined(const Hit& hit) {
 
 }  // namespace
 
-CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays, const Complaint& complaint) {
+CaseRun::Outcome ask_each(const Subject& subject, std::span<const Ray> rays,
+                          const std::function<std::string(std::size_t)>& complaint) {
     CaseRun::Outcome outcome{.n = rays.size()};
-    if (!is_robust(traced.subject)) outcome.only_measured = "fast promises nothing at edges";
+    if (!is_robust(subject)) outcome.only_measured = "fast promises nothing at edges";
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        const std::string wrong = complaint(i, traced.hits[i]);
+        const std::string wrong = complaint(i);
         if (!wrong.empty() && outcome.faults++ == 0) outcome.what = text(wrong, ": ", hexadecimal(rays[i]));
     }
     return outcome;
+}
+
+CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays,
+                          const std::function<std::string(std::size_t, const Hit&)>& complaint) {
+    return ask_each(traced.subject, rays, [&](std::size_t i) { return complaint(i, traced.hits[i]); });
 }
 
 void expect_refined_t(CaseRun& run, const Measured& measured, std::span<const Ray> rays, double ulps, Values params) {

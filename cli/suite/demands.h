@@ -6,12 +6,13 @@
 
 namespace twinray::suite {
 
-// What is wrong with the answer to ray i; "" = nothing.
-using Complaint = std::function<std::string(std::size_t i, const Hit& hit)>;
-
-// How many answers of a subject something is wrong with; the first one is told with its ray. Nothing is demanded of
-// Level::fast.
-CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays, const Complaint& complaint);
+// How many rays something is wrong with, as `complaint` says of ray i ("" = nothing); the first one is told with its
+// ray. Nothing is demanded of Level::fast.
+CaseRun::Outcome ask_each(const Subject& subject, std::span<const Ray> rays,
+                          const std::function<std::string(std::size_t i)>& complaint);
+// The same of the hit of ray i.
+CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays,
+                          const std::function<std::string(std::size_t i, const Hit& hit)>& complaint);
 
 // From Level::refined on: t of every hit that names the referee's primitive is within so many units in its last place.
 // What is wrong is ours, also on hardware: the library computes it.
