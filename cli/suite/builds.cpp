@@ -22,7 +22,8 @@ uint depth_limit(std::size_t leaves) { return 30 + static_cast<uint>(std::bit_wi
 
 TreeCheck check(const SwTlas::Tree& tree, const Mesh& mesh) {
     std::vector<LeafBox> boxes;
-    const std::vector<LeafBox> by_primitive = reference::leaves_triangles(Geometry(mesh, software_unit(mesh.positions)).positions, mesh.triangles);
+    const std::vector<LeafBox> by_primitive =
+        reference::leaves_triangles(Geometry(mesh, software_unit(mesh.positions)).positions, mesh.triangles);
     for (const BvhTriangle& triangle : tree.triangles) boxes.push_back(by_primitive.at(triangle.primitive_index));
     return check_tree(tree.bvh, tree.nodes, boxes);
 }

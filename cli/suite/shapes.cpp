@@ -182,7 +182,7 @@ void nearly_degenerate(CaseRun& run) {
     for (std::size_t i = 0; i < run.amount(512, 50'000); ++i) {
         // On a lattice, so that heights keep their bits where the mesh's unit makes them denormal.
         const float up = std::ceil(random.between(0, 63)) / 64,
-                    along = random.between(0.8f * up + 0.01f, 0.99f - 0.2f * up);
+                    along = 0.75f * up + (1 - up) * random.between(0.05f, 0.95f);
         aimed.rays.push_back({vec3(along * length, up * height, length), 0, vec3(0, 0, -1), inf});
         aimed.targets.push_back(0);
     }
@@ -194,9 +194,7 @@ void nearly_degenerate(CaseRun& run) {
 void huge_triangles(CaseRun& run) {
     constexpr float size = 1e18f;
     Mesh large;
-    for (int axis = 0; axis < 3; ++axis)
-        add_triangle(large, turned(vec3(-size, -size, -1.25f), axis), turned(vec3(size, -size, -1.25f), axis),
-                     turned(vec3(0, size, -1.25f), axis));
+    add_triangle(large, vec3(-size, -size, -1.25f), vec3(size, -size, -1.25f), vec3(0, size, -1.25f));
     const Mesh sphere = make_icosphere(2);
     Scene two;
     two.meshes = {sphere, large};
@@ -205,7 +203,7 @@ void huge_triangles(CaseRun& run) {
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < run.amount(1'024, 100'000); ++i) {
         const float x = random.between(-0.1f, 0.1f), y = random.between(-0.1f, 0.1f);
-        rays.push_back({random.in_box(1), 0, turned(vec3(x, y, -1), static_cast<int>(i % 3)), inf});
+        rays.push_back({random.in_box(1), 0, vec3(x, y, -1), inf});
     }
     Mesh one = sphere;
     append(one, large);
@@ -241,7 +239,7 @@ std::vector<SuiteCase> shape_cases() {
          "certified: the nearest, or one at the same float", shells},
         {"T11", "two height fields 1e-7 of their distance apart", "order of hits", "certified: 0 of the farther one",
          fighting_sheets},
-        {"T12", "triangles of 1e18 beside a unit sphere", "hits, t",
+        {"T12", "a triangle of 1e18 beside a unit sphere", "hits, t",
          "0 SW_LEAK, SW_FALSE, T_ERR; refined t within 2 ulp", huge_triangles},
         {"T13", "rays of |dx| = |dy| = |dz|, and of two equal ones, at vertices and edges of a lattice", "leaks",
          "0 SW_LEAK, SW_FALSE, T_ERR", tied_axes},
