@@ -7,7 +7,7 @@
 
 namespace twinray::suite {
 
-// The referee's answers to all rays, on all cores.
+// The referee's answers to all rays, on all cores, with t of the triangle's plane in long double.
 std::vector<OracleHit> references_of(const Oracle& oracle, std::span<const Ray> rays);
 
 // |t - reference| in units of the reference's last place in float32; nothing unless the hit names the referee's

@@ -24,7 +24,9 @@ struct AimedRays {
     std::vector<uint> targets;
 };
 
-void expect_targets(CaseRun& run, const Mesh& mesh, const AimedRays& aimed, Values params) {
+// excuse: why nothing is demanded of hardware; "" = it is.
+void expect_targets(CaseRun& run, const Mesh& mesh, const AimedRays& aimed, Values params,
+                    const std::string& excuse = {}) {
     const Measured measured = run.measure(world_of(mesh), aimed.rays, {.params = params});
     params.insert_or_assign("measured", "triangles");
     for (const Traced& traced : measured.traces) {
@@ -34,6 +36,7 @@ void expect_targets(CaseRun& run, const Mesh& mesh, const AimedRays& aimed, Valu
         });
         outcome.params = params;
         outcome.reference = "exact";
+        if (!is_ours(traced.subject.backend) && !excuse.empty()) outcome.only_measured = excuse;
         run.expect(traced.subject, outcome);
     }
 }
@@ -180,13 +183,14 @@ void nearly_degenerate(CaseRun& run) {
     Random random(run.seed());
     AimedRays aimed;
     for (std::size_t i = 0; i < run.amount(512, 50'000); ++i) {
-        // On a lattice, so that heights keep their bits where the mesh's unit makes them denormal.
+        // On a lattice, so that heights keep their bits where a unit makes them denormal.
         const float up = std::ceil(random.between(0, 63)) / 64,
                     along = 0.75f * up + (1 - up) * random.between(0.05f, 0.95f);
         aimed.rays.push_back({vec3(along * length, up * height, length), 0, vec3(0, 0, -1), inf});
         aimed.targets.push_back(0);
     }
-    expect_targets(run, mesh, aimed, {{"area", "1e-40"}});
+    expect_targets(run, mesh, aimed, {{"area", "1e-40"}},
+                   "in the unit that hardware meshes are built in, the heights are denormal");
 }
 
 // Three triangles of 1e18 across the axes, with a small sphere between them, in one mesh or in two. Rays meet them
