@@ -7,6 +7,7 @@
 #include <random>
 
 #include "cli/suite/builds.h"
+#include "cli/suite/scenes.h"
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
@@ -16,20 +17,13 @@
 namespace twinray::suite {
 namespace {
 
-constexpr float inf = std::numeric_limits<float>::infinity();
-
 // As the traversal's stack is made for: 30 bits of a Morton code, then the position among equal codes.
 uint depth_limit(std::size_t leaves) { return 30 + static_cast<uint>(std::bit_width(leaves)); }
 
-void add_triangle(Mesh& mesh, vec3 a, vec3 b, vec3 c) {
-    const uint first = static_cast<uint>(mesh.positions.size());
-    mesh.positions.insert(mesh.positions.end(), {a, b, c});
-    mesh.triangles.push_back({first, first + 1, first + 2});
-}
-
 TreeCheck check(const SwTlas::Tree& tree, const Mesh& mesh) {
     std::vector<LeafBox> boxes;
-    const std::vector<LeafBox> by_primitive = reference::leaves_triangles(Geometry(mesh, software_unit(mesh.positions)).positions, mesh.triangles);
+    const std::vector<LeafBox> by_primitive =
+        reference::leaves_triangles(Geometry(mesh, software_unit(mesh.positions)).positions, mesh.triangles);
     for (const BvhTriangle& triangle : tree.triangles) boxes.push_back(by_primitive.at(triangle.primitive_index));
     return check_tree(tree.bvh, tree.nodes, boxes);
 }

@@ -18,6 +18,12 @@ struct Measurement {
     std::optional<Control> control = {};
 };
 
+// What was judged, for what a case asks of the answers beyond their classes.
+struct Measured {
+    std::vector<Traced> traces;         // one of each subject
+    std::vector<OracleHit> references;  // one of each ray
+};
+
 // A case while it runs: what it may use, and where its results go.
 class CaseRun {
   public:
@@ -36,7 +42,7 @@ class CaseRun {
 
     // Traces the closest hits on all subjects, judges them by the referee and records what came out. Ours pass with 0
     // SW_LEAK, SW_FALSE, T_ERR and 0 hits of invalid rays; a fault of hardware is the driver's.
-    void measure(const World& world, std::span<const Ray> rays, const Measurement& measurement = {});
+    Measured measure(const World& world, std::span<const Ray> rays, const Measurement& measurement = {});
 
     // Counts how often each ray crosses `world`, all of whose instances are filtered, on the subjects that can (see
     // CrossingCounter: not the pipeline), and records the counts that are not `right`: those of ours are faults, of
@@ -50,7 +56,7 @@ class CaseRun {
     void add_judged(const Subject& subject, const Judgement& judgement, const Measurement& measurement = {});
 
     // For what no referee judges: `faults` of `n` things were not as specified. `what` says which, and is recorded if
-    // there are any. fault_of: see Record; "" = by the backend.
+    // there are any. fault_of: see Record; "" = by the backend. only_measured: why nothing is demanded; "" = it is.
     struct Outcome {
         Values params = {};
         Values results = {};
@@ -60,6 +66,7 @@ class CaseRun {
         std::string reference = "specification";
         std::string fault_of = {};
         std::optional<TimeFigures> time = {};
+        std::string only_measured = {};
     };
     void expect(const Subject& subject, const Outcome& outcome);
 

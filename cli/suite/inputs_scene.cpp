@@ -5,29 +5,21 @@
 #include <set>
 
 #include "cli/suite/inputs.h"
+#include "cli/suite/scenes.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
 
-constexpr float inf = std::numeric_limits<float>::infinity();
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-std::vector<Ray> rays_at(const World& world, const Mesh& mesh, std::size_t count, std::uint64_t seed) {
-    std::vector<Ray> rays = random_rays(bounds_of(mesh), count, seed);
-    for (const auto& aimed :
-         {vertex_aimed_rays(world.oracle, count / 2, seed), edge_aimed_rays(world.oracle, count / 2, seed)})
-        rays.insert(rays.end(), aimed.begin(), aimed.end());
-    return rays;
-}
 
 // One vertex in the middle of a grid, which six triangles share, has `value` on an axis.
 void spoiled_vertex(CaseRun& run, int axis, float value, const char* setting) {
     Mesh grid = make_grid(16, 16, 0.05f, 3);
     grid.positions[8 * 17 + 8][axis] = value;
     const World world = world_of(grid);
-    const std::vector<Ray> rays = rays_at(world, grid, run.amount(4'096, 500'000), run.seed());
+    const std::vector<Ray> rays = mixed_rays(world, bounds_of(grid), run.amount(8'192, 1'000'000), run.seed());
     run.devices().take_warnings();
     run.measure(world, rays, {.params = {{"vertex", setting}}, .reps = 1});
     const std::vector<std::string> warnings = run.devices().take_warnings();

@@ -3,44 +3,15 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <random>
 
 #include "cli/suite/case_run.h"
+#include "cli/suite/scenes.h"
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
-
-constexpr float inf = std::numeric_limits<float>::infinity();
-
-class Random {
-  public:
-    explicit Random(std::uint64_t seed) : engine_(static_cast<std::uint32_t>(seed)) {}
-    float between(float low, float high) { return low + (high - low) * static_cast<float>(engine_() >> 8) * 0x1p-24f; }
-    vec3 in_box(float extent) {
-        const float x = between(-extent, extent), y = between(-extent, extent);
-        return {x, y, between(-extent, extent)};
-    }
-    // Of a random unit quaternion (rejection, as uniform on the sphere of dimension 4), evaluated in float64.
-    Transform rotation() {
-        for (;;) {
-            const double w = between(-1, 1), x = between(-1, 1), y = between(-1, 1), z = between(-1, 1);
-            const double square = w * w + x * x + y * y + z * z;
-            if (square > 1 || square < 0.01) continue;
-            const double s = 2 / square;
-            Transform result;
-            result.rows[0] = vec4(1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y), 0);
-            result.rows[1] = vec4(s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x), 0);
-            result.rows[2] = vec4(s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y), 0);
-            return result;
-        }
-    }
-
-  private:
-    std::mt19937 engine_;
-};
 
 Scene instances_of(const Mesh& mesh, std::vector<Transform> transforms) {
     Scene scene;
@@ -49,18 +20,9 @@ Scene instances_of(const Mesh& mesh, std::vector<Transform> transforms) {
     return scene;
 }
 
-// Spread over the scene, and aimed at vertices and edges of it.
-std::vector<Ray> rays_for(const World& world, const Bounds& bounds, std::size_t count, std::uint64_t seed) {
-    std::vector<Ray> rays = random_rays(bounds, count / 2, seed);
-    for (const auto& aimed :
-         {vertex_aimed_rays(world.oracle, count / 4, seed), edge_aimed_rays(world.oracle, count / 4, seed)})
-        rays.insert(rays.end(), aimed.begin(), aimed.end());
-    return rays;
-}
-
 void measure_instances(CaseRun& run, const Scene& scene, std::size_t rays, const Values& params = {}) {
     const World world = world_of(scene);
-    run.measure(world, rays_for(world, bounds_of(scene), rays, run.seed()), {.params = params});
+    run.measure(world, mixed_rays(world, bounds_of(scene), rays, run.seed()), {.params = params});
 }
 
 void random_rigid(CaseRun& run) {
@@ -210,7 +172,7 @@ void powers_of_two(CaseRun& run) {
     const Mesh sphere = make_icosphere(3);
     const Scene unit = instances_of(sphere, {Transform()});
     const World world = world_of(unit);
-    const std::vector<Ray> rays = rays_for(world, bounds_of(unit), run.amount(1'024, 100'000), run.seed());
+    const std::vector<Ray> rays = mixed_rays(world, bounds_of(unit), run.amount(1'024, 100'000), run.seed());
     for (const Subject& subject : run.subjects()) {
         const auto hits_at = [&](int exponent) {
             const float scale = std::ldexp(1.0f, exponent);

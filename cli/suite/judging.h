@@ -7,11 +7,14 @@
 
 namespace twinray::suite {
 
-// The referee's answers to all rays, on all cores.
+// The referee's answers to all rays, on all cores, with t of the triangle's plane in long double.
 std::vector<OracleHit> references_of(const Oracle& oracle, std::span<const Ray> rays);
 
-// Differences |t - reference| in units of the reference's last place in float32, of the hits that name the referee's
-// primitive. Nothing where there is none. The floor is the half unit of rounding t itself.
+// |t - reference| in units of the reference's last place in float32; nothing unless the hit names the referee's
+// primitive.
+std::optional<double> t_ulps(const OracleHit& reference, const Hit& hit);
+
+// The figures of t_ulps; nothing where there is none. The floor is the half unit of rounding t itself.
 std::optional<ErrorFigures> t_error(std::span<const OracleHit> references, std::span<const Hit> hits);
 
 // What one accelerator's answers are worth.

@@ -30,6 +30,8 @@ struct Subject {
 
     bool operator==(const Subject&) const = default;
 };
+// False of Level::fast, which promises nothing at edges.
+constexpr bool is_robust(const Subject& subject) { return subject.level != Level::fast; }
 
 struct Settings {
     bool is_full = false;

@@ -123,7 +123,7 @@ FUNC bool intersect_in_world(RefineInstance instance, uint primitive_index, Trac
     hit.v = float(area_c / det);
     bool along_in_world = (det > double(0.0f)) == (d.z > double(0.0f));
     hit.along = along_in_world != (instance.is_mirrored != 0u);
-    return true;
+    return abs(hit.t) <= 3.402823466e+38f; // no t beyond the largest float can be reported
 }
 
 // The same for a triangle in object space that float32 may refuse. `error`: see CertifiedRay.

@@ -4,6 +4,7 @@
 #define TWINRAY_SHARED_INTERSECT_H
 #include "shaders/shared/exact.h"
 #include "shaders/shared/ray.h"
+#include "shaders/shared/transform.h"
 
 // A ray prepared for one coordinate space.
 //  - Boxes: near and far planes use reciprocals padded by a factor 1 -+ 2^-20, which covers the 2.5 ulp that Vulkan
@@ -170,6 +171,19 @@ FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float area_a, float area_b, fl
     return hit;
 }
 
+// By which power of two x and y of the sheared corners may be multiplied, exactly and without overflow of a product of two:
+// where a ray passes a vertex by a denormal distance, the products that decide would underflow, some to 0, and triangles
+// around the vertex would disagree.
+FUNC float room_above(vec3 a, vec3 b, vec3 c)
+{
+    const float TARGET = 1.152921504606846976e+18f;    // 2^60
+    const float MOST = 1.329227995784915872903807e36f; // 2^120
+    float largest = max(max(max(abs(a.x), abs(a.y)), max(abs(b.x), abs(b.y))), max(abs(c.x), abs(c.y)));
+    return largest < TARGET / MOST ? MOST : max(TARGET / power_of_two_below(largest), 1.0f);
+}
+
+FUNC vec3 scaled_across(vec3 v, float scale) { return vec3(v.x * scale, v.y * scale, v.z); }
+
 // Whether the ray's line meets the triangle (a, b, c), and where. No interval test.
 FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(TriangleHit) hit)
 {
@@ -181,6 +195,10 @@ FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(Tr
     float area_c = edge_function(a, b);
     if (area_a == 0.0f || area_b == 0.0f || area_c == 0.0f)
     {
+        float scale = room_above(a, b, c);
+        a = scaled_across(a, scale);
+        b = scaled_across(b, scale);
+        c = scaled_across(c, scale);
         int side_a = 0;
         int side_b = 0;
         int side_c = 0;

@@ -43,7 +43,8 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance)
     PRECISE double z = double(ray.origin.z) + way * double(ray.direction.z);
     near.origin = vec3(float(x), float(y), float(z));
     PRECISE double t_min = double(ray.t_min) - way;
-    PRECISE double t_max = double(ray.t_max) - way;
+    // No t beyond the largest float can be reported.
+    PRECISE double t_max = double(min(ray.t_max, 3.402823466e+38f)) - way;
     near.t_min = max(float(t_min), 0.0f);
     near.t_max = float(t_max);
     advance = way;
@@ -75,6 +76,16 @@ FUNC float rounded_within(double t, Ray ray)
     return rounded;
 }
 
+// The point nearest to 0. Of a triangle's corners, the one from which the distance of its plane cancels least: where
+// coordinates of 1e-6 and 1e6 meet, another one cost 20 units in the last place of t.
+FUNC dvec3 nearest_of(dvec3 a, dvec3 b, dvec3 c)
+{
+    dvec3 nearest = a;
+    if (product_sum(b, b) < product_sum(nearest, nearest)) nearest = b;
+    if (product_sum(c, c) < product_sum(nearest, nearest)) nearest = c;
+    return nearest;
+}
+
 // A hit of advanced(ray) as one of `ray`: t, u and v are what float64 gives, rounded once.
 FUNC Hit refined(Hit hit, Ray ray, double advance, RefineInstance instance)
 {
@@ -91,7 +102,7 @@ FUNC Hit refined(Hit hit, Ray ray, double advance, RefineInstance instance)
     dvec3 normal = cross_product(e1, e2);
     double det = product_sum(normal, direction);
     if (det == double(0.0f)) return hit; // the plane contains the ray: float32 has the last word
-    PRECISE double t = product_sum(normal, a) / det;
+    PRECISE double t = product_sum(normal, nearest_of(a, b, c)) / det;
     // The point from a, and its weights in the plane: w = u e1 + v e2, so (w x e2) = u n and (e1 x w) = v n.
     PRECISE double wx = direction.x * t - a.x;
     PRECISE double wy = direction.y * t - a.y;
