@@ -74,7 +74,7 @@ FUNC double product_error_double(double a, double b, double p)
     return error;
 }
 
-// exact_edge_function of intersect.h in float64.
+// exact_side and accurate_edge_function of intersect.h in float64.
 FUNC double exact_edge_function_double(dvec3 a, dvec3 b, INOUT(int) side)
 {
     PRECISE double p = a.x * b.y;
