@@ -30,13 +30,18 @@ cat >"$work/kernel.comp" <<'GLSL'
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/query.glsl"
+#include "twinray/spawn.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };
 
 void main()
 {
     Hit hit;
-    if (closest_hit(args.scene, AT(args.rays, 0), hit)) AT(args.hits, 0) = hit;
+    Ray ray = AT(args.rays, 0);
+    if (!closest_hit(args.scene, ray, hit)) return;
+    Corners corners = Corners(vec3(0.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0));
+    ray.origin = spawn_position(surface_point(placement_of(REF(InstanceRecord)(args.scene).items[0]), corners, vec2(hit.u, hit.v)), true);
+    if (!any_hit(args.scene, ray)) AT(args.hits, 0) = hit;
 }
 GLSL
 for accel in SW HW; do

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: MIT
 // Self-intersection and arithmetic.
 #include "cli/suite/floats.h"
+#include "cli/suite/spawning.h"
 
 namespace twinray::suite {
 
 std::vector<SuiteCase> arithmetic_cases() {
     return {
-        {"F01", "outward rays from 1e6 surface points of a convex sphere",
-         "0 self-hits; without offset about 50 % (control)", "0 self-hits; without offset about 50 % (control)",
-         nullptr, "not written yet"},
-        {"F02", "the ten settings of the note on self-intersection", "0", "0", nullptr, "not written yet"},
-        {"F03", "light leak: two plates 1e-3..1e-7 apart, spawn between", "offset < gap, or flagged",
-         "offset < gap, or flagged", nullptr, "not written yet"},
+        {"F01", "outward rays from points of a convex sphere, by twinray/spawn.glsl, without offset, and otherwise",
+         "hits of the sphere", "0 self-hits; without offset about half (control)", leave_a_sphere},
+        {"F02", "separate triangles: ten settings of size, position, shape and instance, and four more",
+         "rays that meet the triangle they leave", "0", leave_triangles_of_all_kinds},
+        {"F03", "two plates 1e-3 to 1e-7 apart, rays from the lower one", "rays that miss the upper one",
+         "0 where the gap is wider than twice the offset that the point tells; else flagged", leave_between_plates},
         {"F04", "terminator on coarse sphere (shading vs geometric normal)",
          "no black triangles with terminator fix; energy change < 1 %",
-         "no black triangles with terminator fix; energy change < 1 %", nullptr, "not written yet"},
-        {"F05", "concave corner (dihedral 1 degrees..179 degrees)", "0 leaks, 0 false occlusion",
-         "0 leaks, 0 false occlusion", nullptr, "not written yet"},
+         "no black triangles with terminator fix; energy change < 1 %", nullptr,
+         "the path tracer has no fix for terminators: rays leave by the geometric normal, so coarse meshes show "
+         "facets"},
+        {"F05", "a concave corner of 1 to 179 degrees, rays that end on its wall or lead away from it",
+         "leaks, false occlusion", "0 where the wall is farther than twice the offset; else flagged",
+         leave_a_concave_corner},
         {"F06", "rays at the edges of a grid far from the origin; kernels with and without `precise`, and the CPU twin",
          "decisions other than the twin's", "0 with `precise`", contraction},
         {"F07", "float probe: roundings, contraction, NaN, denormals", "what watertightness rests on and is not so",

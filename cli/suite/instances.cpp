@@ -5,7 +5,9 @@
 #include <limits>
 
 #include "cli/suite/case_run.h"
+#include "cli/suite/random.h"
 #include "cli/suite/scenes.h"
+#include "cli/suite/spawning.h"
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
@@ -215,8 +217,8 @@ std::vector<SuiteCase> instance_cases() {
          identical_boxes},
         {"I08", "many instances in a line and on a shell", "hits, time", "0 faults", many_instances},
         {"I09", "a translation of up to 1e7, the camera beside it", "hits, t", "0 SW_LEAK, SW_FALSE, T_ERR", far_away},
-        {"I10", "an object offset that the instance cancels", "self-hits of rays that leave the surface", "0", nullptr,
-         "the offset of spawned rays is not a public function yet"},
+        {"I10", "an object offset of 10^3 to 10^5 that the instance cancels",
+         "rays of twinray/spawn.glsl that meet the triangle they leave", "0", leave_cancelled_offsets},
         {"I11", "flat geometries, rotated", "hits", "0 SW_LEAK, SW_FALSE, T_ERR", flat_and_rotated},
         {"I12", "boxes that a ray touches only by rounding: edges of rotated squares", "hits",
          "0 SW_LEAK, SW_FALSE, T_ERR", box_touched_by_rounding},

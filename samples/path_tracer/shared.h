@@ -4,19 +4,11 @@
 
 #include <glm/integer.hpp>
 
-#include "engine/core/ray.h"
-
-namespace twinray {
-#include "engine/core/bridge_begin.h"
-#include "shaders/shared/transform.h"
-#include "engine/core/bridge_end.h"
-}  // namespace twinray
+#include "engine/accel/spawn.h"
 
 namespace twinray::path_tracer {
 using glm::bitfieldReverse;
 using glm::clamp;
-using glm::length;
-using glm::normalize;
 using glm::sqrt;
 
 #include "engine/core/bridge_begin.h"
@@ -24,7 +16,6 @@ using glm::sqrt;
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/random.h"
 #include "shaders/path_tracer/sampling.h"
-#include "shaders/path_tracer/spawn.h"
 #include "shaders/path_tracer/bsdf.h"
 #include "engine/core/bridge_end.h"
 

@@ -3,13 +3,11 @@
 #ifndef TWINRAY_EMBED_RENDERER_INCLUDES_GLSL
 #define TWINRAY_EMBED_RENDERER_INCLUDES_GLSL
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/instance.h"
-#include "shaders/shared/transform.h"
+#include "shaders/shared/spawn.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/random.h"
 #include "shaders/path_tracer/sampling.h"
-#include "shaders/path_tracer/spawn.h"
 #include "shaders/path_tracer/texture.glsl"
 #include "shaders/embed_renderer/frame.h"
 

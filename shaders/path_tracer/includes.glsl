@@ -4,11 +4,10 @@
 #define TWINRAY_PATH_TRACER_INCLUDES_GLSL
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/intersect.h"
-#include "shaders/shared/transform.h"
+#include "shaders/shared/spawn.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/sampling.h"
-#include "shaders/path_tracer/spawn.h"
 #include "shaders/path_tracer/bsdf.h"
 #include "shaders/path_tracer/features.glsl"
 #include "shaders/path_tracer/texture.glsl"

@@ -76,7 +76,7 @@ vec3 crossing_of(Ray ray, Placement placement, Corners corners)
     vec3 a = sheared(corners.a, space);
     vec3 b = sheared(corners.b, space);
     vec3 c = sheared(corners.c, space);
-    TriangleHit hit = crossing(a, b, c, edge_function(b, c), edge_function(c, a), edge_function(a, b), space.shear_z);
+    TriangleHit hit = crossing(a, b, c, space.shear_z);
     // Compare and select: a NaN, where the triangle is seen edge on, becomes 0.
     float u = hit.u > 0.0 ? (hit.u < 1.0 ? hit.u : 1.0) : 0.0;
     float v = hit.v > 0.0 ? (hit.v < 1.0 - u ? hit.v : 1.0 - u) : 0.0;

@@ -65,7 +65,7 @@ FUNC int certain_side(vec3 a, vec3 b, float error)
     return area > bound ? 1 : (area < -bound ? -1 : 0);
 }
 
-// exact_edge_function of intersect.h in float64.
+// exact_side and accurate_edge_function of intersect.h in float64.
 FUNC double exact_edge_function_double(dvec3 a, dvec3 b, INOUT(int) side)
 {
     PRECISE double p = a.x * b.y;

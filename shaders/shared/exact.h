@@ -38,6 +38,18 @@ FUNC float sum_error(float a, float b, float s)
     return error;
 }
 
+// p - q in doubled precision for the products p = a b and q = c d: the difference, and what is missing from it.
+FUNC float doubled_difference(float a, float b, float c, float d, INOUT(float) missing)
+{
+    PRECISE float p = a * b;
+    PRECISE float q = c * d;
+    PRECISE float difference = p - q;
+    PRECISE float low = product_error(a, b, p) - product_error(c, d, q);
+    low = low + sum_error(p, -q, difference);
+    missing = low;
+    return difference;
+}
+
 // a.x b.x + a.y b.y + a.z b.z + c in doubled precision: the sum rounded in float32, which is returned, and what is missing
 // from it (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005).
 FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing)

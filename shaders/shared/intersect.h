@@ -118,24 +118,29 @@ FUNC float edge_function(vec3 a, vec3 b)
     return area;
 }
 
-// The same where edge_function gives 0: the exact value, and where that is 0 too, the sign after moving the ray by
-// (e, e^2) for a vanishing e > 0 (simulation of simplicity), so that exactly one of the triangles around an edge or a
-// corner is hit, for any winding. 0 only for a collapsed edge.
-FUNC float exact_edge_function(vec3 a, vec3 b, INOUT(int) side)
+// The same to a rounding or two of itself, where edge_function is right to roundings of its products alone: in slivers
+// they cancel, and the weights of the corners with them.
+FUNC float accurate_edge_function(vec3 a, vec3 b)
+{
+    float missing = 0.0f;
+    PRECISE float area = doubled_difference(a.x, b.y, a.y, b.x, missing);
+    // Never to the other sign; and above 2^115 products cannot be split.
+    if (abs(missing) <= abs(area) || area == 0.0f) area = area + missing;
+    return area;
+}
+
+// The sign of the exact edge function, and where that is 0, the sign after moving the ray by (e, e^2) for a vanishing
+// e > 0 (simulation of simplicity), so that exactly one of the triangles around an edge or a corner is hit, for any
+// winding. 0 only for a collapsed edge.
+FUNC int exact_side(vec3 a, vec3 b)
 {
     PRECISE float p = a.x * b.y;
     PRECISE float q = a.y * b.x;
-    PRECISE float area = p - q;
-    if (p == q)
-    {
-        PRECISE float low = product_error(a.x, b.y, p) - product_error(a.y, b.x, q);
-        area = low;
-    }
-    if (p != q) side = p > q ? 1 : -1;
-    else if (area != 0.0f) side = area > 0.0f ? 1 : -1;
-    else if (a.y != b.y) side = a.y > b.y ? 1 : -1;
-    else side = b.x > a.x ? 1 : (b.x < a.x ? -1 : 0);
-    return area;
+    if (p != q) return p > q ? 1 : -1;
+    float area = accurate_edge_function(a, b);
+    if (area != 0.0f) return area > 0.0f ? 1 : -1;
+    if (a.y != b.y) return a.y > b.y ? 1 : -1;
+    return b.x > a.x ? 1 : (b.x < a.x ? -1 : 0);
 }
 
 struct TriangleHit
@@ -147,9 +152,12 @@ struct TriangleHit
     bool along; // the normal (v1 - v0) x (v2 - v0) points along the ray, not against it
 };
 
-// t, u, v where the ray crosses the plane of the sheared corners, from their edge functions.
-FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float area_a, float area_b, float area_c, float shear_z)
+// t, u, v where the ray crosses the plane of the sheared corners.
+FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float shear_z)
 {
+    float area_a = accurate_edge_function(b, c);
+    float area_b = accurate_edge_function(c, a);
+    float area_c = accurate_edge_function(a, b);
     PRECISE float det = area_a + area_b;
     det = det + area_c;
     // Divided before it is multiplied: a product of three lengths leaves the range of float32 at 1e13 and at 1e-13.
@@ -199,18 +207,14 @@ FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(Tr
         a = scaled_across(a, scale);
         b = scaled_across(b, scale);
         c = scaled_across(c, scale);
-        int side_a = 0;
-        int side_b = 0;
-        int side_c = 0;
-        area_a = exact_edge_function(b, c, side_a);
-        area_b = exact_edge_function(c, a, side_b);
-        area_c = exact_edge_function(a, b, side_c);
-        if (side_a == 0 || side_a != side_b || side_b != side_c) return false;
+        int side_a = exact_side(b, c);
+        if (side_a == 0 || side_a != exact_side(c, a) || side_a != exact_side(a, b)) return false;
     }
     else if ((area_a < 0.0f) != (area_b < 0.0f) || (area_b < 0.0f) != (area_c < 0.0f)) return false;
-    hit = crossing(a, b, c, area_a, area_b, area_c, space.shear_z);
+    hit = crossing(a, b, c, space.shear_z);
     return true;
 }
+
 // The same by Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997: fewer operations, but each
 // triangle decides for itself about a ray through an edge, so that it may be lost or found twice.
 FUNC bool intersect_triangle_fast(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(TriangleHit) hit)

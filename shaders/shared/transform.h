@@ -49,18 +49,6 @@ FUNC vec3 cross_precise(vec3 a, vec3 b)
     return result;
 }
 
-// p - q in doubled precision for the products p = a b and q = c d: the difference, and what is missing from it.
-FUNC float doubled_difference(float a, float b, float c, float d, INOUT(float) missing)
-{
-    PRECISE float p = a * b;
-    PRECISE float q = c * d;
-    PRECISE float difference = p - q;
-    PRECISE float low = product_error(a, b, p) - product_error(c, d, q);
-    low = low + sum_error(p, -q, difference);
-    missing = low;
-    return difference;
-}
-
 // a x b in doubled precision.
 FUNC vec3 doubled_cross(vec3 a, vec3 b, INOUT(vec3) missing)
 {

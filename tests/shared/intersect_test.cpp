@@ -73,11 +73,14 @@ TEST(ExactEdgeFunction, HasTheSignOfTheExactValueWhereRoundingHidesIt) {
         vec3 b(a.x * scale, a.y * scale, 0);  // nearly collinear with a
         if (i % 2) b.x = std::nextafter(b.x, 2.0f);
         const double exact = double{a.x} * b.y - double{a.y} * b.x;  // products of floats are exact in double
-        int side = 0;
-        const float value = exact_edge_function(a, b, side);
+        const float value = accurate_edge_function(a, b);
         if (exact == 0) continue;
-        EXPECT_EQ(side, exact > 0 ? 1 : -1);
+        EXPECT_EQ(exact_side(a, b), exact > 0 ? 1 : -1);
         EXPECT_EQ(value > 0, exact > 0);
+        // Two roundings, but where the sum in doubled precision leaves less than 2^-20 of what it began with.
+        if (std::abs(exact) > 0x1p-44 * std::abs(double{a.x} * b.y)) {
+            EXPECT_NEAR(value, exact, 0x1p-22 * std::abs(exact)) << i;
+        }
         ties += edge_function(a, b) == 0;
     }
     EXPECT_GT(ties, 100) << "the slow path was not exercised";

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// Points on triangles from which rays start without meeting their own triangle, and without an absolute epsilon: a bound
+// of all rounding errors between the triangle and the ray as an accelerator sees it, in the manner of Bitterli et al.,
+// "Self-Intersection Avoidance", NVIDIA 2023.
+//
+//     SurfacePoint point = surface_point(placement, corners, vec2(hit.u, hit.v));
+//     ray.origin = spawn_position(point, dot(ray.direction, point.normal) > 0.0);
+//     ray.t_min = 0.0;
+//
+// With u = 2^-24, half a unit in the last place of 1, to first order and by component, the bound adds up
+//  - in object space the roundings of the point (u of itself, 3 u of the way from the first corner), and of the
+//    triangle test (TEST_ERROR of the triangle's extent);
+//  - in world space those of the map (3 u of |M| |p|, u of the sum) and of adding the offset (u);
+//  - those of an accelerator's way back (INVERSE_ERROR). It inverts M itself: W is wrong by some u |W| |M| |W|, which is
+//    |W| for scales and translations and more where an inverse is hard. Measured in units of u |W| |M| |W| (|P| + |t|): 3.2
+//    for twinray's inverse, 4.1 for plain float32 cofactors, up to condition 10^3 (tests/shared/spawn_test.cpp).
+// It holds for meshes of 2^-60 to 2^60 under instances that keep world coordinates within 2^-100 to 2^100. It cannot
+// hold for hardware whose inverse is wrong by more than INVERSE_ERROR says; case F02 of `twinray report` tells.
+#ifndef TWINRAY_SHARED_SPAWN_H
+#define TWINRAY_SHARED_SPAWN_H
+#include "shaders/shared/instance.h"
+#include "shaders/shared/transform.h"
+#include "shaders/shared/triangle.h"
+
+const float HALF_ULP = 5.9604644775390625e-08f; // u = 2^-24
+const float TEST_ERROR = 4.0f * HALF_ULP;
+const float INVERSE_ERROR = 5.0f * HALF_ULP;
+
+// How an instance lies in the world.
+struct Placement
+{
+    Rows to_world;
+    Rows to_object; // its inverse
+};
+
+// Of a triangle, in object space.
+struct Corners
+{
+    vec3 a;
+    vec3 b;
+    vec3 c;
+};
+
+struct SurfacePoint
+{
+    vec3 position;      // world; up to `offset` beside the triangle, as an accelerator sees it
+    vec3 normal;        // geometric, unit, world; of the side on which the corners turn counter-clockwise in object space
+    float offset;       // world: how far along the normal a ray must start to be clear of the triangle
+    float feature;      // world: the least height of the triangle. offset / feature is the price: what lies within
+                        // `offset` of the triangle is skipped, and near 1 float32 cannot resolve the triangle
+    vec3 normal_object; // unit
+    vec3 error_object;  // bound of how far the point is from the triangle, as an accelerator sees it; by component
+};
+
+FUNC Placement placement_of(Rows to_world)
+{
+    Placement placement;
+    placement.to_world = to_world;
+    placement.to_object = inverse_of(to_world);
+    return placement;
+}
+
+// Of an instance on the device: AbstractAccel::instance_buffer() tells where.
+FUNC Placement placement_of(InstanceRecord instance) { return placement_of(to_world_of(instance)); }
+
+// positions: 3 tightly packed floats a vertex. indices: 3 a triangle.
+FUNC Corners corners_of(Floats positions, Uints indices, uint primitive_index)
+{
+    Corners corners;
+    corners.a = load_position(positions, AT(indices, 3u * primitive_index));
+    corners.b = load_position(positions, AT(indices, 3u * primitive_index + 1u));
+    corners.c = load_position(positions, AT(indices, 3u * primitive_index + 2u));
+    return corners;
+}
+
+FUNC vec3 xyz(vec4 v) { return vec3(v.x, v.y, v.z); }
+FUNC vec3 offset_of(Rows m) { return vec3(m.r0.w, m.r1.w, m.r2.w); }
+
+// |m| |v|, without m's offset: the scale of the rounding errors of the product.
+FUNC vec3 magnitude(Rows m, vec3 v)
+{
+    return vec3(dot(abs(xyz(m.r0)), abs(v)), dot(abs(xyz(m.r1)), abs(v)), dot(abs(xyz(m.r2)), abs(v)));
+}
+
+FUNC vec3 transposed_times(Rows m, vec3 v) { return xyz(m.r0) * v.x + xyz(m.r1) * v.y + xyz(m.r2) * v.z; }
+
+// Bound of what an accelerator's own inverse and the product with it add to a vector of this size in world space.
+FUNC vec3 inverse_error(Placement placement, vec3 size)
+{
+    vec3 back = magnitude(placement.to_object, size);
+    return magnitude(placement.to_object, magnitude(placement.to_world, back)) * INVERSE_ERROR;
+}
+
+// Scaled by a power of two before, so that squares stay within float32.
+FUNC float scaled_length(vec3 v)
+{
+    float scale = power_of_two_below(largest_entry(v));
+    return scale == 0.0f ? 0.0f : length(v / scale) * scale;
+}
+
+FUNC float least_height(vec3 edge1, vec3 edge2)
+{
+    float scale = power_of_two_below(max(largest_entry(edge1), largest_entry(edge2)));
+    if (scale == 0.0f) return 0.0f;
+    edge1 = edge1 / scale;
+    edge2 = edge2 / scale;
+    float longest = max(max(length(edge1), length(edge2)), length(edge1 - edge2));
+    return length(cross_precise(edge1, edge2)) / longest * scale;
+}
+
+// The point (1-u-v) a + u b + v c, as a + (u (b - a) + v (c - a)): the corner is added last, so that only one rounding
+// is of the size of the coordinates. 0 <= u, v and u + v <= 1 but for rounding. A triangle without area has no normal:
+// its point is not a number.
+FUNC SurfacePoint surface_point(Placement placement, Corners corners, vec2 uv)
+{
+    PRECISE vec3 edge1 = corners.b - corners.a;
+    PRECISE vec3 edge2 = corners.c - corners.a;
+    PRECISE vec3 along1 = edge1 * uv.x;
+    PRECISE vec3 along2 = edge2 * uv.y;
+    PRECISE vec3 inside = along1 + along2;
+    PRECISE vec3 position_object = corners.a + inside;
+
+    SurfacePoint point;
+    point.position = transform_point(placement.to_world, position_object);
+    float scale = power_of_two_below(max(largest_entry(edge1), largest_entry(edge2)));
+    point.normal_object = normalize(cross_precise(edge1 / scale, edge2 / scale));
+    vec3 normal = transposed_times(placement.to_object, point.normal_object);
+    float stretch = scaled_length(normal);
+    point.normal = normal / stretch;
+    point.feature = least_height(transform_vector(placement.to_world, edge1), transform_vector(placement.to_world, edge2));
+
+    float extent = largest_entry(abs(edge1) + abs(edge2) + abs(edge1 - edge2));
+    vec3 error_world = (magnitude(placement.to_world, position_object) * 3.0f + abs(point.position) * 2.0f) * HALF_ULP;
+    point.error_object = (abs(position_object) + (abs(along1) + abs(along2)) * 3.0f) * HALF_ULP + extent * TEST_ERROR +
+                         inverse_error(placement, abs(point.position) + abs(offset_of(placement.to_world)));
+    point.offset =
+        dot(error_world, abs(point.normal)) + dot(point.error_object, abs(point.normal_object)) / stretch;
+    return point;
+}
+
+// Where a ray on the given side of the surface starts. The ray's t_min is 0.
+FUNC vec3 spawn_position(SurfacePoint point, bool is_front)
+{
+    PRECISE vec3 position = point.position + point.normal * (is_front ? point.offset : -point.offset);
+    return position;
+}
+
+// A t_min with which the ray goes on behind the triangle that it met at `t`: every accelerator finds that triangle
+// before it, whatever its own t is within rounding.
+FUNC float passing_t(SurfacePoint point, Placement placement, Ray ray, float t)
+{
+    vec3 error = point.error_object + inverse_error(placement, abs(ray.origin) + abs(offset_of(placement.to_world))) +
+                 inverse_error(placement, ray.direction) * t;
+    vec3 direction = transform_vector(placement.to_object, ray.direction);
+    float slack = dot(error, abs(point.normal_object)) / abs(dot(direction, point.normal_object));
+    return (t + slack) * (1.0f + 8.0f * HALF_ULP);
+}
+#endif
