@@ -71,31 +71,9 @@ void in_the_plane(CaseRun& run) {
     }
 }
 
-namespace {
-
-// How many surfaces each ray crosses, up to `most`, if they are farther apart than 2^-18 of t.
-std::vector<uint> crossings(CaseRun& run, const Subject& subject, const World& world, std::vector<Ray> rays,
-                            uint most) {
-    std::vector<uint> counts(rays.size());
-    AbstractAccel& accel = run.devices().empty_accel(subject);
-    world.place(accel);
-    for (uint round = 0; round < most; ++round) {
-        const std::vector<Hit> hits = accel.closest_hits(rays, {.level = subject.level});
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            if (!hits[i].hit) continue;
-            ++counts[i];
-            rays[i].t_min = hits[i].t * (1 + 0x1p-18f);
-        }
-    }
-    return counts;
-}
-
-}  // namespace
-
 // From outside, in the plane of a face and through the edges at its rim: whether the ray is in or out is decided alike
 // by all faces, so it leaves as often as it enters.
 void in_the_plane_of_a_face(CaseRun& run) {
-    const World world = world_of(make_box(vec3(0), vec3(1)));
     Random random(run.seed());
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < run.amount(1'024, 100'000); ++i) {
@@ -107,17 +85,8 @@ void in_the_plane_of_a_face(CaseRun& run) {
         rays.push_back(
             {turned(edge - direction, static_cast<int>(i % 3)), 0, turned(direction, static_cast<int>(i % 3)), inf});
     }
-    for (const Subject& subject : run.subjects()) {
-        const std::vector<uint> counts = crossings(run, subject, world, rays, 4);
-        double crossed = 0;
-        CaseRun::Outcome outcome = ask_each(subject, rays, [&](std::size_t i) {
-            if (counts[i]) ++crossed;
-            return counts[i] % 2 ? text(counts[i], " crossings") : "";
-        });
-        outcome.results = {{"crossed", crossed}};
-        outcome.reference = "exact";
-        run.expect(subject, outcome);
-    }
+    const auto is_even = [](const Ray&, uint count) { return count % 2 == 0; };
+    run.count_crossings(world_of(make_box(vec3(0), vec3(1)), {}, {.filtered = true}), rays, is_even);
 }
 
 // A sphere whose vertices have whole numbers of 16, so that rays through vertices and middles of edges are exact.

@@ -126,6 +126,19 @@ TEST_F(Certified, TheIntervalHoldsExactly) {
     EXPECT_FALSE(is_hit());
 }
 
+TEST_F(Certified, NoDistanceBeyondTheLargestFloatIsReported) {
+    SwTlas accel(context(), {.level = Level::certified});
+    accel.push(square(0));
+    // t has two halves; beyond the largest float the first is infinite, and the second of either sign.
+    for (float z = 1e9f; z < 2e9f; z += 1e8f) {
+        Ray ray{vec3(0.25f, 0.5f, z), 0, vec3(0, 0, -1e-29f), INFINITY};
+        const auto hit = [&] { return accel.closest_hits({&ray, 1}, {.level = Level::certified}).front(); };
+        EXPECT_TRUE(hit().hit) << z;
+        ray.direction.z = -1e-30f;
+        EXPECT_FALSE(hit().hit) << z;
+    }
+}
+
 TEST_F(Certified, IsRefusedWhereTheDriverOrdersTheHits) {
     if (!missing_for_hardware(context().facts()).empty()) TWINRAY_LACKS("ray_tracing", "no hardware ray tracing");
     EXPECT_NE(error_of([&] {

@@ -103,6 +103,38 @@ TEST_P(Refined, AFarCameraHitsTheRightTriangles) {
     }
 }
 
+TEST_P(Refined, AHitNearOneCornerKeepsItsDistanceWhereTheOthersAreFar) {
+    Mesh mesh;
+    const vec3 near(1e-5f, 2e-5f, 3e-5f), far(1e6f, 3e5f, -7e5f), farther(-8e5f, 1e6f, 2e5f);
+    mesh.positions = {far, near, farther};
+    mesh.triangles = {uvec3(0, 1, 2), uvec3(1, 2, 0)};  // none of the two begins with the near corner, or both do
+    const MeshView view = mesh;
+    const OracleInstance instance{0, Transform{}};
+    const Oracle oracle(std::span(&view, 1), std::span(&instance, 1));
+    accel().push(mesh);
+    std::mt19937 random(6);
+    std::uniform_real_distribution<float> weight(1e-11f, 1e-10f);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 500; ++i) {
+        const vec3 origin = vec3(2e-5f, -1e-4f, 5e-5f) * (1 + 0.1f * static_cast<float>(i % 7));
+        rays.push_back({origin, 0, near + weight(random) * far + weight(random) * farther - origin, INFINITY});
+    }
+    const std::vector<Hit> hits = accel().closest_hits(rays, {.level = Level::refined});
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_TRUE(hits[i].hit) << i;
+        EXPECT_LE(ulps(hits[i].t, oracle.closest_hit(rays[i]).t), 0.55) << i;
+    }
+}
+
+TEST_P(Refined, NoDistanceBeyondTheLargestFloatIsReported) {
+    accel().push(make_quad(vec3(1e38f, -1e37f, -1e37f), vec3(0, 2e37f, 0), vec3(0, 0, 2e37f)));
+    Ray ray{vec3(-3e38f, 0.25e37f, 0.5e37f), 0, vec3(2, 0, 0), INFINITY};
+    const auto hit = [&] { return accel().closest_hits({&ray, 1}, {.level = Level::refined}).front(); };
+    EXPECT_EQ(hit().t, static_cast<float>((double{1e38f} + double{3e38f}) / 2));
+    ray.direction.x = 0.5f;
+    EXPECT_FALSE(hit().hit) << "at " << hit().t << ", which is 8e38";
+}
+
 TEST_P(Refined, TheIntervalHoldsInUnitsOfTheRay) {
     accel().push(square(0));
     Ray ray{vec3(0.25f, 0.5f, 1e6f), 0, vec3(0, 0, -1), 1e6f};

@@ -42,6 +42,23 @@ TEST(IntersectTriangle, APointOnASharedCornerBelongsToExactlyOneTriangleForAnyWi
     }
 }
 
+// Products with a denormal distance underflow, unless they are scaled before a tie is decided.
+TEST(IntersectTriangle, APointADenormalDistanceFromASharedCornerBelongsToExactlyOneTriangle) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    for (int round = 0; round < 200; ++round) {
+        Mesh fan;
+        fan.positions.push_back(vec3(0, 0, 1));
+        for (uint i = 0; i < 6; ++i) {
+            const float angle = static_cast<float>(i) + 0.5f * unit(random);
+            fan.positions.push_back((1.5f + unit(random)) * vec3(std::cos(angle), std::sin(angle), 0) + vec3(0, 0, 1));
+            fan.triangles.push_back({0, 1 + i, 1 + (i + 1) % 6});
+        }
+        const vec3 origin(0x1p-149f * std::round(2 * unit(random)), 0x1p-149f * std::round(2 * unit(random)), 0);
+        EXPECT_EQ(hits_of(fan, origin, vec3(0, 0, 1)), 1) << round;
+    }
+}
+
 TEST(IntersectTriangle, PointsOnSharedEdgesOfAGridBelongToExactlyOneTriangle) {
     const Mesh grid = make_grid(4, 4);
     std::mt19937 random(2);
