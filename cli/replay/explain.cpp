@@ -87,16 +87,18 @@ void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const 
         out << "    corner " << i << ", sheared so that the ray is (0, 0): " << corners[i].x << ", " << corners[i].y
             << "; along the ray " << corners[i].z << '\n';
 
+    const float room = room_above(corners[0], corners[1], corners[2]);
     const exact::Line line = exact::object_line(ray_, oracle_.placement(triangle.instance));
     const auto values = exact::edge_values(line, active->corners64());
     const Rational unit = line.direction[static_cast<int>(space.axis)] * Rational(tree.scale) * Rational(tree.scale);
     for (int i = 0; i < 3; ++i) {
         const vec3 a = corners[(i + 1) % 3], b = corners[(i + 2) % 3];
-        int side = 0;
-        const float area = edge_function(a, b), exact_area = exact_edge_function(a, b, side);
+        const float area = edge_function(a, b);
         const Rational truth = unit == 0 ? Rational(0) : Rational(values[static_cast<std::size_t>(i)] / unit);
         out << "    edge across from corner " << i << ": float32 " << area;
-        if (area == 0) out << ", a tie, with its rounding error " << exact_area << ", decided " << sign_of(side);
+        if (area == 0)
+            out << ", a tie, with its rounding error " << accurate_edge_function(a, b) << ", decided "
+                << sign_of(exact_side(scaled_across(a, room), scaled_across(b, room)));
         out << "; exactly " << truth.get_d() << " (" << sign_of(sgn(truth)) << ")\n";
     }
     TriangleHit hit{};

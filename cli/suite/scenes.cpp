@@ -10,6 +10,11 @@ vec3 Random::in_box(float extent) {
     return {x, y, between(-extent, extent)};
 }
 
+vec2 Random::in_triangle() {
+    const float u = between(0, 1), v = between(0, 1);
+    return u + v <= 1 ? vec2(u, v) : vec2(1 - u, 1 - v);
+}
+
 vec3 Random::direction() {
     for (;;) {
         const glm::dvec3 p(in_box(1));

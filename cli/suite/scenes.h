@@ -18,6 +18,8 @@ class Random {
     vec3 in_box(float extent);
     vec3 direction();      // uniform on the unit sphere
     Transform rotation();  // uniform
+    vec2 in_triangle();    // (u, v), uniform
+    uint below(std::size_t count) { return static_cast<uint>(engine_()) % static_cast<uint>(count); }
     // Positive weights of three corners, which sum to 1 and are at least `least`.
     glm::dvec3 weights(double least);
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "cli/suite/random.h"
+#include "cli/suite/scenes.h"
 #include "engine/scene/shapes.h"
 
 namespace twinray::suite {

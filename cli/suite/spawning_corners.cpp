@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/suite/random.h"
+#include "cli/suite/scenes.h"
 #include "cli/suite/spawning.h"
 #include "engine/scene/shapes.h"
 

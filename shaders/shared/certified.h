@@ -28,7 +28,6 @@ struct CertifiedRay
 // off, and rounds at most 12 times; another factor of 2 is slack for the roundings in this bound.
 FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray)
 {
-    const float HALF_ULP = 5.9604644775390625e-08f; // 2^-24
     const float UNKNOWN = 1e37f;                    // larger than any mesh in built units: nothing is refused
     const double MAPPING = double(3.5527136788005009e-15f); // 2^-48
     RowsDouble to_object = instance.world_to_object;

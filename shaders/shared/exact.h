@@ -4,6 +4,8 @@
 #ifndef TWINRAY_SHARED_EXACT_H
 #define TWINRAY_SHARED_EXACT_H
 
+const float HALF_ULP = 5.9604644775390625e-08f; // u = 2^-24, the unit roundoff of float32
+
 // The rounding error of the product p = fl(a b): a b = p + error, exactly, barring over- and underflow.
 // Dekker, "A floating-point technique for extending the available precision", 1971, with Veltkamp's splitting.
 FUNC float product_error(float a, float b, float p)

@@ -22,7 +22,6 @@
 #include "shaders/shared/transform.h"
 #include "shaders/shared/triangle.h"
 
-const float HALF_ULP = 5.9604644775390625e-08f; // u = 2^-24
 const float TEST_ERROR = 4.0f * HALF_ULP;
 const float INVERSE_ERROR = 5.0f * HALF_ULP;
 
