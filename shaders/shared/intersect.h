@@ -187,10 +187,16 @@ FUNC float room_above(vec3 a, vec3 b, vec3 c)
     const float TARGET = 1.152921504606846976e+18f;    // 2^60
     const float MOST = 1.329227995784915872903807e36f; // 2^120
     float largest = max(max(max(abs(a.x), abs(a.y)), max(abs(b.x), abs(b.y))), max(abs(c.x), abs(c.y)));
-    return largest < TARGET / MOST ? MOST : max(TARGET / power_of_two_below(largest), 1.0f);
+    PRECISE float to_target = TARGET / power_of_two_below(largest);
+    return largest < TARGET / MOST ? MOST : max(to_target, 1.0f);
 }
 
-FUNC vec3 scaled_across(vec3 v, float scale) { return vec3(v.x * scale, v.y * scale, v.z); }
+FUNC vec3 scaled_across(vec3 v, float scale)
+{
+    PRECISE float x = v.x * scale;
+    PRECISE float y = v.y * scale;
+    return vec3(x, y, v.z);
+}
 
 // Whether the ray's line meets the triangle (a, b, c), and where. No interval test.
 FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(TriangleHit) hit)
