@@ -12,8 +12,9 @@
 //    triangle test (TEST_ERROR of the triangle's extent);
 //  - in world space those of the map (3 u of |M| |p|, u of the sum) and of adding the offset (u);
 //  - those of an accelerator's way back (INVERSE_ERROR). It inverts M itself: W is wrong by some u |W| |M| |W|, which is
-//    |W| for scales and translations and more where an inverse is hard. Measured in units of u |W| |M| |W| (|P| + |t|): 3.2
-//    for twinray's inverse, 4.1 for plain float32 cofactors, up to condition 10^3 (tests/shared/spawn_test.cpp).
+//    |W| for scales and translations and more where an inverse is hard. The largest of 1.5 * 10^6 placements of condition
+//    up to 10^3, in units of u |W| |M| |W| (|P| + |t|): 3.2 for twinray's inverse, 4.1 for plain float32 cofactors.
+//    tests/shared/spawn_test.cpp holds the whole bound against both.
 // It holds for meshes of 2^-60 to 2^60 under instances that keep world coordinates within 2^-100 to 2^100. It cannot
 // hold for hardware whose inverse is wrong by more than INVERSE_ERROR says; case F02 of `twinray report` tells.
 #ifndef TWINRAY_SHARED_SPAWN_H
