@@ -74,7 +74,7 @@ Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {
     const TraceOptions options{mask, 0, query, level, 0, 0, ray, advance, Ref<RefineInstance>::to(refined_.data())};
     const Hit hit = traverse(header_, searched, options);
     if (level < LEVEL_REFINED || !hit.hit) return hit;
-    return refined(hit, ray, advance, refined_[hit.instance_index]);
+    return refined(hit, ray, advance, refined_[hit.instance_index].mesh);
 }
 
 Scene::Tree Scene::geometry_tree(std::size_t instance) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/suite/controls.h"
 
+#include "control_contracted.spv.h"
 #include "control_without_padding.spv.h"
 #include "control_without_precise.spv.h"
 
@@ -10,6 +11,13 @@ Control without_precise() {
     Control control{{}, false};
     control.code.name = "control: without precise";
     control.code.software = control_without_precise_spirv;
+    return control;
+}
+
+Control contracted() {
+    Control control{{}, true};
+    control.code.name = "control: contracted";
+    control.code.software = control_contracted_spirv;
     return control;
 }
 

@@ -20,6 +20,9 @@ struct Control {
 
 // Without `precise`: no operation is NoContraction. Leaks where the driver contracts or reassociates.
 Control without_precise();
+// What a driver that contracts makes of that, on any driver with float64: edge functions by one rounding instead of
+// two, so that two triangles may disagree about the edge between them.
+Control contracted();
 // Boxes as they are: planes that a ray reaches at the same t are told apart by rounding.
 Control without_padding();
 

@@ -91,8 +91,9 @@ std::vector<SuiteCase> edge_cases() {
          "crossings; width of the crack", "one matrix: exactly one crossing; else the width is measured",
          across_instances},
         {"W14",
-         "a flat grid, rays aimed at its edges, traced by a kernel compiled without `precise` (negative control)",
-         "SW_LEAK", "none: leaks where the driver contracts, which is its right then", without_precise_on_a_grid},
+         "a flat grid, rays aimed at its edges, traced by kernels compiled without `precise`, which leaks where the "
+         "driver contracts, and contracted by itself (negative controls)",
+         "SW_LEAK", "contracted leaks; without `precise` it is measured", without_precise_on_a_grid},
         {"W15", "the rays of W04, traced by a kernel without padding of boxes (negative control)", "SW_LEAK",
          "more than 1 % leaks: without them W04 would not see what the padding is for", without_padding_on_a_grid},
         {"W16", "rays exactly through corners and edges of boxes: a box cut along random planes, from inside", closest,

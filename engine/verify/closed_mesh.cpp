@@ -7,6 +7,7 @@
 #include "engine/core/error.h"
 #include "engine/verify/draws.h"
 #include "engine/verify/parallel.h"
+#include "engine/verify/segment.h"
 
 namespace twinray {
 namespace {
@@ -38,13 +39,6 @@ std::vector<Edge> sorted_edges(const Geometry64& geometry) {
         }
     std::sort(edges.begin(), edges.end());
     return edges;
-}
-
-double distance_to_segment(const dvec3& a, const dvec3& b, const dvec3& point) {
-    const dvec3 edge = b - a;
-    const double square = glm::dot(edge, edge);
-    const double along = square > 0 ? std::clamp(glm::dot(point - a, edge) / square, 0.0, 1.0) : 0.0;
-    return glm::length(a + along * edge - point);
 }
 
 double distance_to_triangle(const Triangle64& corners, const dvec3& point) {

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/verify/segment.h"
+
 namespace twinray {
 namespace {
 
@@ -17,14 +19,6 @@ using Corner = std::array<float, 3>;  // ordered by comparing numbers, so that -
 Corner key_of(const vec3& p) { return {p.x, p.y, p.z}; }
 
 double cross2(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
-
-// Of the point to the segment a b.
-double distance(const dvec2& a, const dvec2& b, const dvec2& point) {
-    const dvec2 edge = b - a;
-    const double square = glm::dot(edge, edge);
-    const double along = square > 0 ? std::clamp(glm::dot(point - a, edge) / square, 0.0, 1.0) : 0.0;
-    return glm::length(a + along * edge - point);
-}
 
 // 1 counterclockwise, -1 clockwise, 0 when the point is not strictly inside.
 int winding(const Footprint& footprint, const dvec2& point) {
@@ -75,7 +69,7 @@ class Patch {
     };
     void keep_distinct(std::span<const PatchTriangle> patch);
     void join_edges();
-    bool is_near_ray(const dvec2& a, const dvec2& b) const { return distance(a, b, dvec2(0)) <= radius_; }
+    bool is_near_ray(const dvec2& a, const dvec2& b) const { return distance_to_segment(a, b, dvec2(0)) <= radius_; }
     double clearance(const dvec2& point) const;
     bool has_lasting_winding(std::size_t seed, const dvec2& point);
 
@@ -133,8 +127,8 @@ double Patch::clearance(const dvec2& point) const {
     double least = INFINITY;
     for (const PatchTriangle& triangle : triangles_)
         for (std::size_t i = 0; i < 3; ++i)
-            least = std::min(least,
-                             distance(triangle.footprint.corners[i], triangle.footprint.corners[(i + 1) % 3], point));
+            least = std::min(least, distance_to_segment(triangle.footprint.corners[i],
+                                                        triangle.footprint.corners[(i + 1) % 3], point));
     return least;
 }
 

@@ -22,8 +22,9 @@ struct CertifiedRay
     float error;
 };
 
-// Float64 maps the ray, so that what is left is rounding: with W the inverse and r its residual, the exact origin o' and
-// direction d' differ by r o' and r d', by less than 2^-48 (|W| |o| + |w|) and 2^-48 |W| |d|, and by a rounding to float32
+// Float64 maps the ray, so that what is left is rounding: with T the instance's place, W the inverse and r its residual, the
+// exact origin o' = W (o - T) and direction d' differ by r o' and r d', by less than 2^-48 |W| (|o| + |T|) (W T has been
+// rounded, and may have cancelled) and 2^-48 |W| |d|, and by a rounding to float32
 // (2^-24). A point of the geometry is at most (|o'| + extent) / |d'| away. The shear along the longest axis doubles what is
 // off, and rounds at most 12 times; another factor of 2 is slack for the roundings in this bound.
 FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray)
@@ -32,11 +33,13 @@ FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray)
     const double MAPPING = double(3.5527136788005009e-15f); // 2^-48
     RowsDouble to_object = instance.world_to_object;
     RowsDouble magnitude = absolute(to_object);
+    dvec3 place = abs(dvec3(double(instance.mesh.object_to_world[0].w), double(instance.mesh.object_to_world[1].w),
+                            double(instance.mesh.object_to_world[2].w)));
     dvec3 o = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
     dvec3 d = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
     dvec3 origin = transform_vector_double(to_object, o) + offset_double(to_object);
     dvec3 direction = transform_vector_double(to_object, d);
-    dvec3 origin_error = MAPPING * (transform_vector_double(magnitude, abs(o)) + offset_double(magnitude));
+    dvec3 origin_error = MAPPING * (transform_vector_double(magnitude, abs(o) + place));
     dvec3 direction_error = MAPPING * transform_vector_double(magnitude, abs(d));
     CertifiedRay mapped;
     mapped.origin = vec3(float(origin.x), float(origin.y), float(origin.z));
@@ -94,16 +97,17 @@ FUNC dvec3 sheared_double(dvec3 corner, dvec3 d, uint axis)
 
 // Whether the ray's line meets the triangle in world space, and where: t of the traced ray, which begins `advance`
 // behind the given one, as t + t_low.
-FUNC bool intersect_in_world(RefineInstance instance, uint primitive_index, TraceOptions options, INOUT(TriangleHit) hit)
+FUNC bool intersect_in_world(uint instance_index, uint primitive_index, TraceOptions options, INOUT(TriangleHit) hit)
 {
+    GivenMesh mesh = load_given_mesh(options.instances, instance_index);
     vec3 o = options.given.origin;
     vec3 w = options.given.direction;
     dvec3 origin = dvec3(double(o.x), double(o.y), double(o.z));
     uint axis = dominant_axis(w);
     dvec3 d = dominant_last_double(dvec3(double(w.x), double(w.y), double(w.z)), axis);
-    dvec3 a = sheared_double(corner_from(origin, instance, 3u * primitive_index), d, axis);
-    dvec3 b = sheared_double(corner_from(origin, instance, 3u * primitive_index + 1u), d, axis);
-    dvec3 c = sheared_double(corner_from(origin, instance, 3u * primitive_index + 2u), d, axis);
+    dvec3 a = sheared_double(corner_from(origin, mesh, 3u * primitive_index), d, axis);
+    dvec3 b = sheared_double(corner_from(origin, mesh, 3u * primitive_index + 1u), d, axis);
+    dvec3 c = sheared_double(corner_from(origin, mesh, 3u * primitive_index + 2u), d, axis);
     int side_a = 0;
     int side_b = 0;
     int side_c = 0;
@@ -121,12 +125,12 @@ FUNC bool intersect_in_world(RefineInstance instance, uint primitive_index, Trac
     hit.u = float(area_b / det);
     hit.v = float(area_c / det);
     bool along_in_world = (det > double(0.0f)) == (d.z > double(0.0f));
-    hit.along = along_in_world != (instance.is_mirrored != 0u);
+    hit.along = along_in_world != (AT(options.instances, instance_index).is_mirrored != 0u);
     return abs(hit.t) <= 3.402823466e+38f; // no t beyond the largest float can be reported
 }
 
 // The same for a triangle in object space that float32 may refuse. `error`: see CertifiedRay.
-FUNC bool intersect_certified(BvhTriangle triangle, RaySpace space, float error, RefineInstance instance,
+FUNC bool intersect_certified(BvhTriangle triangle, RaySpace space, float error, uint instance_index,
                               TraceOptions options, INOUT(TriangleHit) hit)
 {
     vec3 a = sheared(triangle.v0, space);
@@ -136,6 +140,6 @@ FUNC bool intersect_certified(BvhTriangle triangle, RaySpace space, float error,
     int side_b = certain_side(c, a, error);
     int side_c = certain_side(a, b, error);
     if (side_a * side_b < 0 || side_b * side_c < 0 || side_c * side_a < 0) return false;
-    return intersect_in_world(instance, triangle.primitive_index, options, hit);
+    return intersect_in_world(instance_index, triangle.primitive_index, options, hit);
 }
 #endif

@@ -115,6 +115,10 @@ FUNC float edge_function(vec3 a, vec3 b)
     PRECISE float p = a.x * b.y;
     PRECISE float q = a.y * b.x;
     PRECISE float area = p - q;
+#ifdef TWINRAY_CONTRACTED // a negative control: what fma(a.x, b.y, -q) gives, for drivers that do not contract
+    PRECISE double fused = double(a.x) * double(b.y) - double(q);
+    area = float(fused);
+#endif
     return area;
 }
 

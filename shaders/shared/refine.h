@@ -52,14 +52,14 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance)
 }
 
 // A corner in world space, seen from the origin.
-FUNC dvec3 corner_from(dvec3 origin, RefineInstance instance, uint corner)
+FUNC dvec3 corner_from(dvec3 origin, GivenMesh mesh, uint corner)
 {
-    uint at = 3u * AT(instance.indices, corner);
-    dvec3 v = dvec3(double(AT(instance.positions, at)), double(AT(instance.positions, at + 1u)),
-                    double(AT(instance.positions, at + 2u)));
-    vec4 r0 = instance.object_to_world[0];
-    vec4 r1 = instance.object_to_world[1];
-    vec4 r2 = instance.object_to_world[2];
+    uint at = 3u * AT(mesh.indices, corner);
+    dvec3 v = dvec3(double(AT(mesh.positions, at)), double(AT(mesh.positions, at + 1u)),
+                    double(AT(mesh.positions, at + 2u)));
+    vec4 r0 = mesh.object_to_world[0];
+    vec4 r1 = mesh.object_to_world[1];
+    vec4 r2 = mesh.object_to_world[2];
     PRECISE double x = product_sum(dvec3(double(r0.x), double(r0.y), double(r0.z)), v) + (double(r0.w) - origin.x);
     PRECISE double y = product_sum(dvec3(double(r1.x), double(r1.y), double(r1.z)), v) + (double(r1.w) - origin.y);
     PRECISE double z = product_sum(dvec3(double(r2.x), double(r2.y), double(r2.z)), v) + (double(r2.w) - origin.z);
@@ -87,16 +87,16 @@ FUNC dvec3 nearest_of(dvec3 a, dvec3 b, dvec3 c)
 }
 
 // A hit of advanced(ray) as one of `ray`: t, u and v are what float64 gives, rounded once.
-FUNC Hit refined(Hit hit, Ray ray, double advance, RefineInstance instance)
+FUNC Hit refined(Hit hit, Ray ray, double advance, GivenMesh mesh)
 {
     PRECISE double moved = double(hit.t) + advance;
     hit.t = rounded_within(moved, ray);
-    if (uint64_t(instance.indices) == 0ul) return hit;
+    if (uint64_t(mesh.indices) == 0ul) return hit;
     dvec3 origin = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
     dvec3 direction = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
-    dvec3 a = corner_from(origin, instance, 3u * hit.primitive_index);
-    dvec3 b = corner_from(origin, instance, 3u * hit.primitive_index + 1u);
-    dvec3 c = corner_from(origin, instance, 3u * hit.primitive_index + 2u);
+    dvec3 a = corner_from(origin, mesh, 3u * hit.primitive_index);
+    dvec3 b = corner_from(origin, mesh, 3u * hit.primitive_index + 1u);
+    dvec3 c = corner_from(origin, mesh, 3u * hit.primitive_index + 2u);
     dvec3 e1 = b - a;
     dvec3 e2 = c - a;
     dvec3 normal = cross_product(e1, e2);

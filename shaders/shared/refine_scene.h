@@ -5,12 +5,18 @@
 #include "shaders/shared/transform_double.h"
 #include "shaders/shared/world_bound.h"
 
-// An instance of what was built: positions in units of a power of two, which the map contains.
-struct RefineInstance
+// The triangles of an instance as they were given, positions in units of a power of two, which the map contains.
+struct GivenMesh
 {
     vec4 object_to_world[3];
-    Floats positions; // of the mesh, 3 floats a vertex
+    Floats positions; // 3 a vertex
     Uints indices;    // 3 a triangle, in the user's numbering; null: boxes
+};
+
+// An instance of what was built.
+struct RefineInstance
+{
+    GivenMesh mesh;
     RowsDouble world_to_object;
     float residual;   // the relative error of vectors that it maps, at most
     float extent;     // the largest coordinate of the geometry's box
@@ -25,6 +31,22 @@ struct RefineScene
     REF(RefineInstance) instances; // in the order of Hit::instance_index
 };
 BUFFER_OF(RefineScene, 8);
+
+// Fetched in 64-bit components, as in load_node of traverse.h.
+FUNC GivenMesh load_given_mesh(REF(RefineInstance) instances, uint index)
+{
+    Words64 words = Words64(uint64_t(instances) + uint64_t(index) * 176ul);
+    GivenMesh mesh;
+    for (uint row = 0u; row < 3u; row = row + 1u)
+    {
+        uint64_t xy = AT(words, 2u * row);
+        uint64_t zw = AT(words, 2u * row + 1u);
+        mesh.object_to_world[row] = vec4(FLOATS(xy).x, FLOATS(xy).y, FLOATS(zw).x, FLOATS(zw).y);
+    }
+    mesh.positions = Floats(AT(words, 6));
+    mesh.indices = Uints(AT(words, 7));
+    return mesh;
+}
 
 struct RefineGatherArgs
 {
@@ -42,9 +64,9 @@ FUNC RefineInstance refine_instance(InstanceRecord record)
     GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);
     Rows to_world = to_world_of(record);
     RefineInstance instance;
-    for (uint row = 0u; row < 3u; row = row + 1u) instance.object_to_world[row] = record.object_to_world[row];
-    instance.positions = mesh.positions;
-    instance.indices = mesh.indices;
+    for (uint row = 0u; row < 3u; row = row + 1u) instance.mesh.object_to_world[row] = record.object_to_world[row];
+    instance.mesh.positions = mesh.positions;
+    instance.mesh.indices = mesh.indices;
     instance.world_to_object = inverse_double(to_world);
     instance.residual = float(residual_of(instance.world_to_object, to_world)) * UP;
     instance.extent = box.lo.x <= box.hi.x ? max(largest_entry(box.lo), largest_entry(box.hi)) : 0.0f;

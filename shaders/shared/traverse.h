@@ -137,7 +137,7 @@ FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, fl
     bool is_met = false;
 #ifdef TWINRAY_REFINED
     if (options.level == LEVEL_CERTIFIED)
-        is_met = intersect_certified(leaf, space, inside.error, AT(options.instances, inside.index), options, hit);
+        is_met = intersect_certified(leaf, space, inside.error, inside.index, options, hit);
     else
 #endif
     if (options.level == LEVEL_FAST) is_met = intersect_triangle_fast(leaf.v0, leaf.v1, leaf.v2, space, hit);

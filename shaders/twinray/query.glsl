@@ -45,7 +45,7 @@ Hit trace(uint64_t accel, Ray ray, TraceOptions options)
     options.instances = scene.instances;
     Hit hit = trace_float32(accel, near, options);
     if (hit.hit == 0u) return hit;
-    return refined(hit, ray, advance, AT(scene.instances, hit.instance_index));
+    return refined(hit, ray, advance, load_given_mesh(scene.instances, hit.instance_index));
 }
 #else
 Hit trace(uint64_t accel, Ray ray, TraceOptions options) { return trace_float32(accel, ray, options); }
