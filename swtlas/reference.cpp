@@ -61,8 +61,15 @@ std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, s
     instances.clear();
     for (const InstanceRecord& record : records) {
         const Rows to_world = to_world_of(record), to_object = inverse_of(to_world);
-        SwInstance instance{
-            {to_object.r0, to_object.r1, to_object.r2}, {}, {}, NOTHING, record.custom_index_mask, flags_of(record), 0};
+        SwInstance instance{{to_object.r0, to_object.r1, to_object.r2},
+                            {},
+                            {},
+                            NOTHING,
+                            record.custom_index_mask,
+                            flags_of(record),
+                            0,
+                            0,
+                            0};
         LeafBox box = empty_box();
         if (record.geometry && is_usable(to_world, to_object)) {
             const SwGeometry& geometry = *reinterpret_cast<const SwGeometry*>(record.geometry);
@@ -70,6 +77,7 @@ std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, s
             instance.triangles = geometry.triangles;
             instance.root = geometry.bvh.root;
             instance.kind = geometry.kind;
+            instance.extent = std::max(largest_entry(geometry.bvh.lo), largest_entry(geometry.bvh.hi));
             box = box_of_instance(record, geometry.bvh.lo, geometry.bvh.hi, to_object);
         }
         instances.push_back(instance);

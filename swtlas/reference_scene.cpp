@@ -65,7 +65,7 @@ void Scene::build_refinement(std::span<const InstanceRecord> records) {
 
 Ray Scene::searched_ray(const Ray& ray, uint level, double& advance) const {
     advance = 0;
-    return level < LEVEL_REFINED ? ray : advanced(ray, bound_.lo, bound_.hi, advance);
+    return level < LEVEL_REFINED ? ray : advanced(ray, bound_.lo, bound_.hi, level, advance);
 }
 
 Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {

@@ -15,6 +15,6 @@ namespace twinray {
 #include "shaders/shared/traverse.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 80);
+static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 88);
 static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 56 && sizeof(SwScene) == 64);
 }  // namespace twinray

@@ -68,8 +68,9 @@ Explainer::Explainer(const Scene& scene, const Oracle& oracle, const Ray& ray, L
 RaySpace Explainer::object_space(uint instance) const {
     const auto& rows = twin_->instance(instance).world_to_object;
     const Rows to_object{rows[0], rows[1], rows[2]};
-    return make_ray_space(transform_point(to_object, searched_.origin),
-                          transform_vector(to_object, searched_.direction), 0);
+    const vec3 origin = transform_point(to_object, searched_.origin);
+    return make_ray_space(origin, transform_vector(to_object, searched_.direction),
+                          corner_pad(origin, twin_->instance(instance).extent));
 }
 
 void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const {
@@ -87,7 +88,6 @@ void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const 
         out << "    corner " << i << ", sheared so that the ray is (0, 0): " << corners[i].x << ", " << corners[i].y
             << "; along the ray " << corners[i].z << '\n';
 
-    const float room = room_above(corners[0], corners[1], corners[2]);
     const exact::Line line = exact::object_line(ray_, oracle_.placement(triangle.instance));
     const auto values = exact::edge_values(line, active->corners64());
     const Rational unit = line.direction[static_cast<int>(space.axis)] * Rational(tree.scale) * Rational(tree.scale);
@@ -98,7 +98,7 @@ void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const 
         out << "    edge across from corner " << i << ": float32 " << area;
         if (area == 0)
             out << ", a tie, with its rounding error " << accurate_edge_function(a, b) << ", decided "
-                << sign_of(exact_side(scaled_across(a, room), scaled_across(b, room)));
+                << sign_of(exact_side(a, b));
         out << "; exactly " << truth.get_d() << " (" << sign_of(sgn(truth)) << ")\n";
     }
     TriangleHit hit{};

@@ -148,6 +148,15 @@ void print_header(std::ostream& out, const Stage& stage) {
 
 }  // namespace
 
+// What the tests in float32 are to the level that was asked.
+const char* arithmetic_of(Level level) {
+    switch (level) {
+        case Level::fast: return "as SwTlas computes them at watertight; fast has others (Moeller-Trumbore)";
+        case Level::certified: return "which only leave out what is far; certified decides as the exact lines do";
+        default: return "as SwTlas computes them";
+    }
+}
+
 bool show(const std::filesystem::path& file, suite::Devices& devices, std::ostream& out) {
     const Replay replay = read(file);
     const Stage stage(replay, load_checked(file, replay));
@@ -160,7 +169,7 @@ bool show(const std::filesystem::path& file, suite::Devices& devices, std::ostre
     for (const Answer& answer : answers)
         if (answer.hit.hit) involved.insert({answer.hit.instance_index, answer.hit.primitive_index});
     const Explainer explainer(stage.scene, stage.oracle, replay.ray, level_of(replay));
-    out << "Triangle tests, as SwTlas computes them, in units of the mesh's size\n";
+    out << "Triangle tests in float32, " << arithmetic_of(level_of(replay)) << ", in units of the mesh's size\n";
     for (const TriangleId& triangle : involved) explainer.print_test(out, triangle);
     out << "Boxes, of SwTlas's trees; those of the driver cannot be seen\n";
     for (const TriangleId& triangle : involved) explainer.print_boxes(out, triangle);

@@ -98,6 +98,8 @@ std::vector<SuiteCase> edge_cases() {
          "more than 1 % leaks: without them W04 would not see what the padding is for", without_padding_on_a_grid},
         {"W16", "rays exactly through corners and edges of boxes: a box cut along random planes, from inside", closest,
          "0 SW_LEAK, SW_FALSE, T_ERR; exactly one crossing", through_corners_of_boxes},
+        {"W17", "inside a box of triangles up to a million times as long as wide, rays close beside their long edges",
+         closest, "0 SW_LEAK, SW_FALSE, T_ERR; exactly one crossing", beside_long_edges},
     };
 }
 

@@ -26,6 +26,7 @@ void through_corners_of_boxes(CaseRun& run);
 // Cases of edges_limits.cpp: where a gap is allowed, and controls.
 void t_junctions(CaseRun& run);
 void silhouettes(CaseRun& run);
+void beside_long_edges(CaseRun& run);
 void across_instances(CaseRun& run);
 void without_precise_on_a_grid(CaseRun& run);
 void without_padding_on_a_grid(CaseRun& run);

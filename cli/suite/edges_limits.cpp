@@ -238,6 +238,26 @@ void silhouettes(CaseRun& run) {
                      {.params = {{"mesh", name}}});
 }
 
+// Rounding of sheared corners grows with their distance, that of boxes with the hit's: triangles far longer than what
+// is between them and the ray have to be hit beside their edges, too.
+void beside_long_edges(CaseRun& run) {
+    std::vector<float> across;
+    for (int i = 0; i <= 12; ++i) across.push_back(0.137f + 0.97f * static_cast<float>(i));
+    Draws draws(run.seed(), 0);
+    for (const float length : {10.0f, 1e2f, 1e4f, 1e6f}) {
+        const Mesh box = make_cut_box({across, {0.21f, 1.24f}, {-0.913f * length, 1.07f * length}});
+        std::vector<Ray> rays;
+        for (std::size_t i = 0; i < run.amount(2'048, 500'000); ++i) {
+            const vec3 origin(dvec3(draws.between(2, 9), draws.between(0.3, 1.1), draws.between(-0.3, 0.3) * length));
+            const double edge = across[1 + draws.below(across.size() - 2)];
+            const dvec3 target(edge + draws.between(-3e-8, 3e-8) * length, i % 2 ? 0.21 : 1.24,
+                               origin.z + draws.between(-4, 4));
+            rays.push_back(make_ray(origin, vec3(target - dvec3(origin))));
+        }
+        measure_both(run, box, rays, is_one, {.params = {{"length", length}}});
+    }
+}
+
 void across_instances(CaseRun& run) {
     with_one_matrix(run);
     with_two_matrices(run);

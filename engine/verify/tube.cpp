@@ -59,7 +59,8 @@ double Footprint::distance_to(double u, double v) const {
 }
 
 Tube::Tube(const Ray& ray, const Placement64& placement, Accelerator accelerator)
-    : rounding_(accelerator == Accelerator::referee ? rounding64 : rounding32) {
+    : rounding_(accelerator == Accelerator::referee ? rounding64 : rounding32),
+      has_accurate_weights_(accelerator == Accelerator::software) {
     const glm::dvec3 origin(ray.origin);
     const glm::dvec3 direction(ray.direction);
     origin_ = placement.point_to_object(origin);
@@ -124,7 +125,12 @@ void Tube::set_depth_bounds(Footprint& footprint, const Depths& depths) const {
     const double least_area = std::max(0.0, area - 3 * edge_error);
     const double weight_error = edge_error / least_area;
     const double z = depths.z[static_cast<std::size_t>(nearest - corners.begin())] - glm::dot(plane.gradient, *nearest);
-    const double spread = footprint.radius + weight_error * (depths.high - depths.low);
+    const double depth = depths.high - depths.low;
+    // SwTlas's weights are those of its displaced corners (its edge functions are accurate to a rounding), so that it
+    // meets their plane, whose slope differs by what displacements of two corners change; others round the weights.
+    const double slope = (glm::length(plane.gradient) * area + 4 * footprint.radius * depth) / least_area;
+    const double moved = has_accurate_weights_ ? footprint.radius * slope : weight_error * depth;
+    const double spread = footprint.radius + moved;
     double low = depths.low - footprint.radius;
     double high = depths.high + footprint.radius;
     footprint.t = (depths.low * 0.5 + depths.high * 0.5) / length_;

@@ -53,6 +53,7 @@ class Tube {
     void set_depth_bounds(Footprint& footprint, const Depths& depths) const;
 
     double rounding_;  // 16e, or 32e
+    bool has_accurate_weights_;
     glm::dvec3 origin_, direction_;
     double length_;                    // of direction_
     int longest_;                      // axis of direction_

@@ -17,9 +17,11 @@ void main()
     bool has_order = uint64_t(args.order) != 0ul;
     uint index = has_order ? AT(args.order, place) : (has_table ? AT(args.instances, place).instance_index : place);
     InstanceRecord record = in_built_units(AT(args.records, index));
-    HwGeometry geometry = AT(REF(HwGeometry)(record.geometry), 0);
     Rows to_world = to_world_of(record);
-    bool usable = is_usable(to_world, inverse_of(to_world));
+    bool usable = record.geometry != 0ul && is_usable(to_world, inverse_of(to_world));
+    HwGeometry geometry;
+    geometry.kind = GEOMETRY_TRIANGLES;
+    if (usable) geometry = AT(REF(HwGeometry)(record.geometry), 0);
     AreaItem area = no_area();
     if (usable && geometry.lo.x <= geometry.hi.x)
     {
@@ -36,7 +38,8 @@ void main()
     AT(args.driver_records, place) = record;
     if (!has_table) return;
     HwInstance instance;
-    instance.triangles = geometry.triangles;
+    if (usable) instance.triangles = geometry.triangles;
+    else instance.triangles = Uints(0ul);
     instance.instance_index = index;
     instance.pad = 0u;
     AT(args.instances, place) = instance;

@@ -18,7 +18,7 @@ bool has_hit(rayQueryEXT query)
 
 void consider_triangle(HwScene scene, rayQueryEXT query, TraceOptions options)
 {
-    if (accept_hit(candidate_of(scene, query, options), rayQueryGetIntersectionTEXT(query, false),
+    if (accept_hit(candidate_of(scene, query, options), t_of_given(rayQueryGetIntersectionTEXT(query, false), options),
                    rayQueryGetIntersectionBarycentricsEXT(query, false)))
         rayQueryConfirmIntersectionEXT(query);
 }
@@ -37,7 +37,7 @@ void consider_box(HwScene scene, rayQueryEXT query, Ray ray, TraceOptions option
     if (!intersect_primitive(candidate, ray_local, t, at)) return;
     if (!(t > ray_local.t_min && t < ray_local.t_max)) return;
     bool is_filtered = (options.features & FEATURE_FILTERS) != 0u && !rayQueryGetIntersectionCandidateAABBOpaqueEXT(query);
-    if (is_filtered && !accept_hit(candidate, t, at)) return;
+    if (is_filtered && !accept_hit(candidate, t_of_given(t, options), at)) return;
     rayQueryGenerateIntersectionEXT(query, t);
     uv = at;
 }

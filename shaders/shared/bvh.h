@@ -67,6 +67,8 @@ struct SwInstance
     uint custom_index_mask;
     uint flags; // of the instance: INSTANCE_*
     uint kind;  // of its geometry
+    float extent; // the largest coordinate of the geometry's box
+    uint reserved;
 };
 BUFFER_OF(SwInstance, 8);
 

@@ -27,10 +27,12 @@ struct CertifiedRay
 // rounded, and may have cancelled) and 2^-48 |W| |d|, and by a rounding to float32
 // (2^-24). A point of the geometry is at most (|o'| + extent) / |d'| away. The shear along the longest axis doubles what is
 // off, and rounds at most 12 times; another factor of 2 is slack for the roundings in this bound.
-FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray)
+// `is_moved`: the ray is one of advanced(), whose origin is off by a rounding itself.
+FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray, bool is_moved)
 {
     const float UNKNOWN = 1e37f;                    // larger than any mesh in built units: nothing is refused
     const double MAPPING = double(3.5527136788005009e-15f); // 2^-48
+    const double MOVING = double(HALF_ULP);
     RowsDouble to_object = instance.world_to_object;
     RowsDouble magnitude = absolute(to_object);
     dvec3 place = abs(dvec3(double(instance.mesh.object_to_world[0].w), double(instance.mesh.object_to_world[1].w),
@@ -40,6 +42,7 @@ FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray)
     dvec3 origin = transform_vector_double(to_object, o) + offset_double(to_object);
     dvec3 direction = transform_vector_double(to_object, d);
     dvec3 origin_error = MAPPING * (transform_vector_double(magnitude, abs(o) + place));
+    if (is_moved) origin_error = origin_error + MOVING * transform_vector_double(magnitude, abs(o));
     dvec3 direction_error = MAPPING * transform_vector_double(magnitude, abs(d));
     CertifiedRay mapped;
     mapped.origin = vec3(float(origin.x), float(origin.y), float(origin.z));
@@ -95,8 +98,8 @@ FUNC dvec3 sheared_double(dvec3 corner, dvec3 d, uint axis)
     return dvec3(x, y, p.z);
 }
 
-// Whether the ray's line meets the triangle in world space, and where: t of the traced ray, which begins `advance`
-// behind the given one, as t + t_low.
+// Whether the given ray meets the triangle in world space within its interval, and where: t of the traced ray, which begins
+// `advance` behind the given one, as t + t_low.
 FUNC bool intersect_in_world(uint instance_index, uint primitive_index, TraceOptions options, INOUT(TriangleHit) hit)
 {
     GivenMesh mesh = load_given_mesh(options.instances, instance_index);
@@ -117,7 +120,9 @@ FUNC bool intersect_in_world(uint instance_index, uint primitive_index, TraceOpt
     if (side_a == 0 || side_a != side_b || side_b != side_c) return false;
     PRECISE double det = area_a + area_b + area_c;
     PRECISE double z = area_a / det * a.z + area_b / det * b.z + area_c / det * c.z;
-    PRECISE double t = z / d.z - options.advance;
+    PRECISE double given_t = z / d.z;
+    if (given_t <= double(options.given.t_min) || given_t >= double(options.given.t_max)) return false;
+    PRECISE double t = given_t - options.advance;
     double high = rounded_to_24_bits(t);
     PRECISE double low = t - high;
     hit.t = float(high);

@@ -53,8 +53,9 @@ FUNC float doubled_difference(float a, float b, float c, float d, INOUT(float) m
 }
 
 // a.x b.x + a.y b.y + a.z b.z + c in doubled precision: the sum rounded in float32, which is returned, and what is missing
-// from it (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005).
-FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing)
+// from it (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005), with the sum of the magnitudes that this is made of:
+// it is off by five roundings of those.
+FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing, INOUT(float) missing_size)
 {
     PRECISE float p0 = a.x * b.x;
     PRECISE float p1 = a.y * b.y;
@@ -62,21 +63,30 @@ FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing)
     PRECISE float s0 = c + p0;
     PRECISE float s1 = s0 + p1;
     PRECISE float s2 = s1 + p2;
-    PRECISE float low = sum_error(c, p0, s0) + product_error(a.x, b.x, p0);
-    low = low + sum_error(s0, p1, s1);
-    low = low + product_error(a.y, b.y, p1);
-    low = low + sum_error(s1, p2, s2);
-    low = low + product_error(a.z, b.z, p2);
+    float e0 = sum_error(c, p0, s0);
+    float e1 = product_error(a.x, b.x, p0);
+    float e2 = sum_error(s0, p1, s1);
+    float e3 = product_error(a.y, b.y, p1);
+    float e4 = sum_error(s1, p2, s2);
+    float e5 = product_error(a.z, b.z, p2);
+    PRECISE float low = e0 + e1;
+    low = low + e2;
+    low = low + e3;
+    low = low + e4;
+    low = low + e5;
     missing = low;
+    PRECISE float size = abs(e0) + abs(e1) + abs(e2) + abs(e3) + abs(e4) + abs(e5);
+    missing_size = size;
     return s2;
 }
 
-// The same, rounded once.
+// The same, rounded once; above 2^115, where products cannot be split, the plain sum.
 FUNC float accurate_dot(vec3 a, vec3 b, float c)
 {
     float missing = 0.0f;
-    PRECISE float sum = doubled_dot(a, b, c, missing);
+    float missing_size = 0.0f;
+    PRECISE float sum = doubled_dot(a, b, c, missing, missing_size);
     PRECISE float result = sum + missing;
-    return result;
+    return abs(missing) < uintBitsToFloat(0x7f800000u) ? result : sum;
 }
 #endif

@@ -71,6 +71,10 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
     return space;
 }
 
+// How far aside of a ray a corner may be sheared, rounded: 8 of 2^-24 of its distance along an axis. A triangle is hit where its
+// sheared corners say so, and its box must be, too, however near to the ray's origin that is.
+FUNC float corner_pad(vec3 origin, float extent) { return (largest_entry(origin) + extent) * 9.5367431640625e-07f; } // 2^-20
+
 // Whether the ray meets the box within [t_min, t_max], and the distance at which it enters.
 // Compare-and-select instead of min/max: a NaN (0 * infinity: the origin lies on a plane that the ray is parallel to)
 // must leave the interval as it was, which GLSL does not promise of min/max.
@@ -133,11 +137,33 @@ FUNC float accurate_edge_function(vec3 a, vec3 b)
     return area;
 }
 
+// By which power of two x and y of two sheared corners may be multiplied, exactly and without overflow of a product: where a
+// ray passes a vertex by a denormal distance, the products that decide would underflow, some to 0, and triangles around the
+// vertex would disagree. It depends on the edge alone, so that both of its triangles see the same.
+FUNC float room_above(vec3 a, vec3 b)
+{
+    const float TARGET = 1.152921504606846976e+18f;    // 2^60
+    const float MOST = 1.329227995784915872903807e36f; // 2^120
+    float largest = max(max(abs(a.x), abs(a.y)), max(abs(b.x), abs(b.y)));
+    PRECISE float to_target = TARGET / power_of_two_below(largest);
+    return largest < TARGET / MOST ? MOST : max(to_target, 1.0f);
+}
+
+FUNC vec3 scaled_across(vec3 v, float scale)
+{
+    PRECISE float x = v.x * scale;
+    PRECISE float y = v.y * scale;
+    return vec3(x, y, v.z);
+}
+
 // The sign of the exact edge function, and where that is 0, the sign after moving the ray by (e, e^2) for a vanishing
 // e > 0 (simulation of simplicity), so that exactly one of the triangles around an edge or a corner is hit, for any
 // winding. 0 only for a collapsed edge.
-FUNC int exact_side(vec3 a, vec3 b)
+FUNC int exact_side(vec3 corner_a, vec3 corner_b)
 {
+    float scale = room_above(corner_a, corner_b);
+    vec3 a = scaled_across(corner_a, scale);
+    vec3 b = scaled_across(corner_b, scale);
     PRECISE float p = a.x * b.y;
     PRECISE float q = a.y * b.x;
     if (p != q) return p > q ? 1 : -1;
@@ -183,25 +209,6 @@ FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float shear_z)
     return hit;
 }
 
-// By which power of two x and y of the sheared corners may be multiplied, exactly and without overflow of a product of two:
-// where a ray passes a vertex by a denormal distance, the products that decide would underflow, some to 0, and triangles
-// around the vertex would disagree.
-FUNC float room_above(vec3 a, vec3 b, vec3 c)
-{
-    const float TARGET = 1.152921504606846976e+18f;    // 2^60
-    const float MOST = 1.329227995784915872903807e36f; // 2^120
-    float largest = max(max(max(abs(a.x), abs(a.y)), max(abs(b.x), abs(b.y))), max(abs(c.x), abs(c.y)));
-    PRECISE float to_target = TARGET / power_of_two_below(largest);
-    return largest < TARGET / MOST ? MOST : max(to_target, 1.0f);
-}
-
-FUNC vec3 scaled_across(vec3 v, float scale)
-{
-    PRECISE float x = v.x * scale;
-    PRECISE float y = v.y * scale;
-    return vec3(x, y, v.z);
-}
-
 // Whether the ray's line meets the triangle (a, b, c), and where. No interval test.
 FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(TriangleHit) hit)
 {
@@ -213,10 +220,6 @@ FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(Tr
     float area_c = edge_function(a, b);
     if (area_a == 0.0f || area_b == 0.0f || area_c == 0.0f)
     {
-        float scale = room_above(a, b, c);
-        a = scaled_across(a, scale);
-        b = scaled_across(b, scale);
-        c = scaled_across(c, scale);
         int side_a = exact_side(b, c);
         if (side_a == 0 || side_a != exact_side(c, a) || side_a != exact_side(a, b)) return false;
     }

@@ -21,7 +21,7 @@ FUNC double slab_entry(float o, float d, float lo, float hi)
 // The same ray from nearer to the box, if it comes from more than five times as far as the box's largest coordinate: t of the
 // result plus `advance` is t of `ray`. It stops about that coordinate short of the box, so nothing is jumped over. Nearer
 // rays pay for one comparison.
-FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance)
+FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, uint level, INOUT(double) advance)
 {
     const float FAR = 4.0f;
     advance = double(0.0f);
@@ -47,6 +47,9 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, INOUT(double) advance)
     PRECISE double t_max = double(min(ray.t_max, 3.402823466e+38f)) - way;
     near.t_min = max(float(t_min), 0.0f);
     near.t_max = float(t_max);
+    // Certified asks the given interval itself: what the moved one leaves out must not depend on its rounding.
+    if (level == LEVEL_CERTIFIED && near.t_min > 0.0f) near.t_min = uintBitsToFloat(floatBitsToUint(near.t_min) - 1u);
+    if (level == LEVEL_CERTIFIED && near.t_max > 0.0f) near.t_max = uintBitsToFloat(floatBitsToUint(near.t_max) + 1u);
     advance = way;
     return near;
 }

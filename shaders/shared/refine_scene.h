@@ -60,16 +60,22 @@ struct RefineGatherArgs
 FUNC RefineInstance refine_instance(InstanceRecord record)
 {
     const float UP = 1.00000095367431640625f; // 1 + 2^-20: more than rounding to float32 takes
-    GeometrySource mesh = AT(REF(GeometrySource)(record.geometry + uint64_t(GEOMETRY_SOURCE_OFFSET)), 0);
-    GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);
     Rows to_world = to_world_of(record);
     RefineInstance instance;
     for (uint row = 0u; row < 3u; row = row + 1u) instance.mesh.object_to_world[row] = record.object_to_world[row];
-    instance.mesh.positions = mesh.positions;
-    instance.mesh.indices = mesh.indices;
+    instance.mesh.positions = Floats(0ul);
+    instance.mesh.indices = Uints(0ul);
+    instance.extent = 0.0f;
+    if (record.geometry != 0ul)
+    {
+        GeometrySource mesh = AT(REF(GeometrySource)(record.geometry + uint64_t(GEOMETRY_SOURCE_OFFSET)), 0);
+        GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);
+        instance.mesh.positions = mesh.positions;
+        instance.mesh.indices = mesh.indices;
+        instance.extent = box.lo.x <= box.hi.x ? max(largest_entry(box.lo), largest_entry(box.hi)) : 0.0f;
+    }
     instance.world_to_object = inverse_double(to_world);
     instance.residual = float(residual_of(instance.world_to_object, to_world)) * UP;
-    instance.extent = box.lo.x <= box.hi.x ? max(largest_entry(box.lo), largest_entry(box.hi)) : 0.0f;
     dvec3 normal = cross_product(linear_double(to_world.r0), linear_double(to_world.r1));
     instance.is_mirrored = product_sum(normal, linear_double(to_world.r2)) < double(0.0f) ? 1u : 0u;
     instance.reserved = 0u;

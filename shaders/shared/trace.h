@@ -26,6 +26,15 @@ struct TraceOptions
 #endif
 };
 
+// t of the given ray for one of the traced ray.
+FUNC float t_of_given(float t, TraceOptions options)
+{
+#ifdef TWINRAY_REFINED
+    if (options.level >= LEVEL_REFINED) return float(double(t) + options.advance);
+#endif
+    return t;
+}
+
 struct TraceArgs
 {
     uint64_t scene; // AccelView::scene

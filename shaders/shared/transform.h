@@ -86,7 +86,8 @@ FUNC Rows inverse_of(Rows m)
     vec3 c1 = doubled_cross(a2, a0, low1);
     vec3 c2 = doubled_cross(a0, a1, low2);
     float missing = 0.0f;
-    PRECISE float det = doubled_dot(a0, c0, 0.0f, missing);
+    float missing_size = 0.0f;
+    PRECISE float det = doubled_dot(a0, c0, 0.0f, missing, missing_size);
     det = det + (missing + accurate_dot(a0, low0, 0.0f));
     PRECISE vec3 x0 = (c0 + low0) / det / s0;
     PRECISE vec3 x1 = (c1 + low1) / det / s1;

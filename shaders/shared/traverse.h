@@ -87,7 +87,7 @@ FUNC RaySpace space_in(SwInstance instance, INOUT(InInstance) inside, Ray ray, T
 #ifdef TWINRAY_REFINED
     if (options.level == LEVEL_CERTIFIED)
     {
-        CertifiedRay mapped = certified_ray(AT(options.instances, inside.index), ray);
+        CertifiedRay mapped = certified_ray(AT(options.instances, inside.index), ray, options.advance != double(0.0f));
         inside.error = mapped.error;
         return make_ray_space(mapped.origin, mapped.direction, mapped.error);
     }
@@ -96,7 +96,8 @@ FUNC RaySpace space_in(SwInstance instance, INOUT(InInstance) inside, Ray ray, T
     to_object.r0 = instance.world_to_object[0];
     to_object.r1 = instance.world_to_object[1];
     to_object.r2 = instance.world_to_object[2];
-    return make_ray_space(transform_point(to_object, ray.origin), transform_vector(to_object, ray.direction), 0.0f);
+    vec3 origin = transform_point(to_object, ray.origin);
+    return make_ray_space(origin, transform_vector(to_object, ray.direction), corner_pad(origin, instance.extent));
 }
 
 FUNC Candidate candidate_of(InInstance inside, uint primitive_index, TraceOptions options)
@@ -200,7 +201,8 @@ FUNC Hit traverse(SwScene scene, Ray ray, TraceOptions options)
             if (intersect_leaf(leaf, inside, space, t_min, t_best, options, hit) && comes_after(hit, t_min) &&
                 comes_before(hit, inside.index, leaf.primitive_index, t_best, t_best_low, best) &&
                 (!inside.is_filtered ||
-                 accept_hit(candidate_of(inside, leaf.primitive_index, options), hit.t, vec2(hit.u, hit.v))))
+                 accept_hit(candidate_of(inside, leaf.primitive_index, options), t_of_given(hit.t, options),
+                            vec2(hit.u, hit.v))))
             {
                 t_best = hit.t;
                 t_best_low = hit.t_low;

@@ -50,11 +50,13 @@ FUNC float next_below(float x)
 FUNC float dot_below(vec3 a, vec3 b, float c)
 {
     float missing = 0.0f;
-    PRECISE float sum = doubled_dot(a, b, c, missing);
+    float missing_size = 0.0f;
+    PRECISE float sum = doubled_dot(a, b, c, missing, missing_size);
     // Veltkamp's splitting overflows near the end of the range; then plain rounding and a wide step must do.
     if (!(abs(missing) < uintBitsToFloat(0x7f800000u))) return sum - abs(sum) * 2.384185791015625e-07f;
-    PRECISE float result = sum + missing;
-    return sum_error(sum, missing, result) < 0.0f ? next_below(result) : result;
+    PRECISE float lowest = missing - missing_size * 4.76837158203125e-07f; // 2^-21: 8 roundings
+    PRECISE float result = sum + lowest;
+    return sum_error(sum, lowest, result) < 0.0f ? next_below(result) : result;
 }
 
 // The least coordinate that `row` gives to the points of the box (lo, hi), rounded down.

@@ -21,6 +21,8 @@ LeafBox place_instance(uint index)
     instance.flags = flags_of(record);
     instance.kind = GEOMETRY_TRIANGLES;
     instance.root = NOTHING;
+    instance.extent = 0.0f;
+    instance.reserved = 0u;
     LeafBox box = empty_box();
     if (record.geometry != 0ul && is_usable(to_world, to_object))
     {
@@ -29,6 +31,7 @@ LeafBox place_instance(uint index)
         instance.triangles = geometry.triangles;
         instance.root = geometry.bvh.root;
         instance.kind = geometry.kind;
+        instance.extent = max(largest_entry(geometry.bvh.lo), largest_entry(geometry.bvh.hi));
         box = box_of_instance(record, geometry.bvh.lo, geometry.bvh.hi, to_object);
     }
     AT(args.instances, index) = instance;

@@ -39,7 +39,7 @@ Hit trace(uint64_t accel, Ray ray, TraceOptions options)
     RefineScene scene = AT(REF(RefineScene)(refinement_of(accel)), 0);
     WorldBound bound = AT(scene.bound, 0);
     double advance = 0.0;
-    Ray near = advanced(ray, bound.lo, bound.hi, advance);
+    Ray near = advanced(ray, bound.lo, bound.hi, options.level, advance);
     options.given = ray;
     options.advance = advance;
     options.instances = scene.instances;

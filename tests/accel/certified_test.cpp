@@ -80,6 +80,22 @@ TEST_F(Certified, NearlySingularTransformsAreHitAsTheyWereGiven) {
     }
 }
 
+// Moving an origin rounds it, and maps that squeeze an axis make much of that.
+TEST_F(Certified, FarRaysHitSqueezedInstances) {
+    for (const float squeeze : {1e-3f, 1e-6f}) {
+        const Scene scene =
+            scene_of({make_icosphere(3)}, Transform::translation({1000, 0, 0}) * Transform::scaling({squeeze, 1, 1}));
+        std::mt19937 random(4);
+        std::uniform_real_distribution<float> unit(-1, 1);
+        std::vector<Ray> rays;
+        for (int i = 0; i < 4'000; ++i) {
+            const vec3 target(1000 + 0.6f * squeeze * unit(random), 0, 0.6f * unit(random));
+            rays.push_back({vec3(target.x, 1e5f, target.z), 0, vec3(squeeze * unit(random) * 1e-5f, -1, 0), INFINITY});
+        }
+        EXPECT_EQ(wrong(scene, rays, Level::certified), 0u) << squeeze;
+    }
+}
+
 TEST_F(Certified, NothingLeaksAtEdgesAndVertices) {
     const Mesh sphere = make_icosphere(4);
     SwTlas accel(context(), {.level = Level::certified});
@@ -124,6 +140,23 @@ TEST_F(Certified, TheIntervalHoldsExactly) {
     EXPECT_TRUE(is_hit());
     ray.t_min = above;
     EXPECT_FALSE(is_hit());
+}
+
+TEST_F(Certified, TheIntervalHoldsExactlyForFarRays) {
+    SwTlas accel(context(), {.level = Level::certified});
+    accel.push(square(0));
+    for (const float speed : {3.0f, 5.0f, 7.0f}) {
+        const float t = 0x1p20f;
+        Ray ray{vec3(0.25f, 0.5f, t * speed), 0, vec3(0, 0, -speed), t};  // t is exact
+        const auto is_hit = [&] { return accel.closest_hits({&ray, 1}, {.level = Level::certified}).front().hit == 1; };
+        EXPECT_FALSE(is_hit()) << speed;
+        ray.t_max = std::nextafter(t, INFINITY);
+        EXPECT_TRUE(is_hit()) << speed;
+        ray.t_min = t;
+        EXPECT_FALSE(is_hit()) << speed;
+        ray.t_min = std::nextafter(t, 0.0f);
+        EXPECT_TRUE(is_hit()) << speed;
+    }
 }
 
 TEST_F(Certified, NoDistanceBeyondTheLargestFloatIsReported) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The trace program of trace_program_test.cpp: boxes are spheres, and filtered hits count in stripes.
+// The trace program of trace_program_test.cpp: boxes are spheres, and filtered hits count in stripes, or, of custom
+// indices from 1000 on, at a smaller t.
 #include "shaders/shared/program.h"
 
 struct Sphere
@@ -26,5 +27,6 @@ bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inou
 
 bool accept_hit(Candidate candidate, float t, vec2 uv)
 {
+    if (candidate.custom_index >= 1000u) return t < float(candidate.custom_index);
     return fract(uv.x * 5.0f + float(candidate.custom_index) * 0.3f) < 0.5f;
 }

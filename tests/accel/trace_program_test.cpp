@@ -210,6 +210,20 @@ TEST_P(Program, BoxesMustBeFiniteAndNotEmpty) {
     EXPECT_EQ(accel().n_geometries(), 0u);
 }
 
+TEST_P(Program, TheFilterSeesTheDistanceOfTheGivenRayAtEveryLevel) {
+    const Ray ray{vec3(0.3f, 0.6f, 1e6f), 0, vec3(0, 0, -1), INFINITY};  // far: refined moves it
+    for (const Level level : {Level::watertight, Level::refined, Level::certified}) {
+        if (accel().capability(feature_of(level)).support == Support::unsupported) continue;
+        const std::unique_ptr<AbstractAccel> here = make_accel({.level = level});
+        here->push(square(0), Transform{}, {.custom_index = 2'000'000, .filtered = true});
+        here->push(square(1), Transform{}, {.custom_index = 1000, .filtered = true});
+        const auto program = here->make_program(test_program);
+        const Hit hit = here->closest_hits({&ray, 1}, {.level = level, .program = program.get()}).front();
+        EXPECT_EQ(hit.custom_index, 2'000'000u) << "level " << static_cast<int>(level);
+        EXPECT_EQ(hit.t, 1e6f);
+    }
+}
+
 TEST_P(Program, LevelsThatAreUnsupportedAreRefused) {
     accel().push(square(0));
     const Ray ray = down(0.3f, 0.6f);

@@ -61,6 +61,28 @@ TEST(Transform, TheShadersInverseIsAccurateToARoundingForWellConditionedMaps) {
     }
 }
 
+TEST(Transform, TheFloat32InverseHoldsWhereProductsCannotBeSplit) {
+    for (const float place : {1e34f, 1e35f, 1e37f}) {
+        const Rows rows = inverse_of({vec4(0, -1, 0, place), vec4(1, 0, 0, 0), vec4(0, 0, 1, 0)});
+        EXPECT_TRUE(is_finite_map(rows)) << place;
+        EXPECT_EQ(rows.r1, vec4(-1, 0, 0, place));
+    }
+}
+
+TEST(WorldBound, IsNotAboveWhereOffsetsCancel) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    for (int i = 0; i < 100'000; ++i) {
+        const vec3 a(unit(random), unit(random), unit(random));
+        const vec3 b = vec3(1e6f) + 1e5f * vec3(unit(random), unit(random), unit(random));
+        const double exact = glm::dot(glm::dvec3(a), glm::dvec3(b));
+        const auto c = static_cast<float>(unit(random) - exact);
+        // Products of float32 are exact in float64, and their sum to 2^-52 of 3e6.
+        ASSERT_LE(double{dot_below(a, b, c)}, exact + c + 3e6 * 0x1p-51) << i;
+        ASSERT_NEAR(dot_below(a, b, c), exact + c, 1e-6);
+    }
+}
+
 // Scales of 1 : 1e6 between two rotations: each entry is right to a few of its own roundings.
 TEST(Transform, TheFloat32InverseHoldsForIllConditionedMaps) {
     std::mt19937 random(8);

@@ -90,7 +90,7 @@ Verdicts verdicts(float factor) {
             for (const double distance : {3.0, 1e4})
                 for (int i = 0; i < 400; ++i) {
                     const Sample drawn = sample(draws, stretch, place, distance);
-                    const CertifiedRay mapped = certified_ray(instance_of(drawn.transform), drawn.ray);
+                    const CertifiedRay mapped = certified_ray(instance_of(drawn.transform), drawn.ray, false);
                     const RaySpace space = make_ray_space(mapped.origin, mapped.direction, 0);
                     const int side =
                         certain_side(sheared(drawn.a, space), sheared(drawn.b, space), factor * mapped.error);

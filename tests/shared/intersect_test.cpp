@@ -59,6 +59,19 @@ TEST(IntersectTriangle, APointADenormalDistanceFromASharedCornerBelongsToExactly
     }
 }
 
+// Products along the common edge are 2^112 times smaller than those with the third corners, which differ in size too.
+TEST(IntersectTriangle, ATinyEdgeOfNeedlesBelongsToExactlyOneOfThem) {
+    const float tiny = 0x1p-112f;
+    const vec3 a = vec3(1 + 0x1p-23f, 1 + 0x1p-22f, 0) * tiny, b = vec3(-1, -(1 + 0x1p-23f), 0) * tiny;
+    const vec3 d = vec3(3, -3, 0) * tiny;
+    for (const vec3 c : {vec3(-1, 1, 0), vec3(-0x1p-40f, 0x1p-40f, 0), vec3(-0x1p40f, 0x1p40f, 0)}) {
+        const RaySpace space = make_ray_space(vec3(0, 0, 1), vec3(0, 0, -1), 0);
+        TriangleHit hit;
+        const bool first = intersect_triangle(a, c, b, space, hit), second = intersect_triangle(b, a, d, space, hit);
+        EXPECT_NE(first, second) << c.x;
+    }
+}
+
 TEST(IntersectTriangle, PointsOnSharedEdgesOfAGridBelongToExactlyOneTriangle) {
     const Mesh grid = make_grid(4, 4);
     std::mt19937 random(2);

@@ -19,7 +19,7 @@ struct TriangleHit32 {
     float t, u, v;
 };
 
-// Woop et al. 2013 in float32, zero counts as inside, with float64 deciding the sign of an edge function that is 0.
+// Woop et al. 2013 in float32, zero counts as inside, with edge functions that are right to a rounding.
 inline std::optional<TriangleHit32> watertight32(vec3 o, vec3 d, const std::array<vec3, 3>& corners) {
     const vec3 size = abs(d);
     const int kz = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
@@ -34,8 +34,7 @@ inline std::optional<TriangleHit32> watertight32(vec3 o, vec3 d, const std::arra
     for (std::size_t i = 0; i < 3; ++i) {
         const vec3& a = p[(i + 2) % 3];
         const vec3& b = p[(i + 1) % 3];
-        weight[i] = a.x * b.y - a.y * b.x;
-        if (weight[i] == 0) weight[i] = float(double{a.x} * double{b.y} - double{a.y} * double{b.x});
+        weight[i] = float(double{a.x} * double{b.y} - double{a.y} * double{b.x});
     }
     const auto [least, most] = std::minmax({weight[0], weight[1], weight[2]});
     const float sum = weight[0] + weight[1] + weight[2];
