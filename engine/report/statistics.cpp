@@ -134,6 +134,8 @@ std::optional<PowerLaw> fit_power_law(std::span<const double> x, std::span<const
     for (std::size_t i = 0; i < x.size(); ++i)
         if (is_usable(x[i]) && is_usable(y[i])) logs.emplace_back(std::log(x[i]), std::log(y[i]));
     if (logs.size() < 3) return std::nullopt;
+    const auto [least, most] = std::minmax_element(logs.begin(), logs.end());
+    if (most->first - least->first < std::log(2.0)) return std::nullopt;
     const double n = static_cast<double>(logs.size());
     double mean_x = 0, mean_y = 0, xx = 0, xy = 0, residual = 0;
     for (const auto& [log_x, log_y] : logs) mean_x += log_x / n, mean_y += log_y / n;
@@ -141,7 +143,6 @@ std::optional<PowerLaw> fit_power_law(std::span<const double> x, std::span<const
         xx += (log_x - mean_x) * (log_x - mean_x);
         xy += (log_x - mean_x) * (log_y - mean_y);
     }
-    if (!(xx > 0)) return std::nullopt;
     const double slope = xy / xx;
     for (const auto& [log_x, log_y] : logs) residual += std::pow(log_y - mean_y - slope * (log_x - mean_x), 2);
     const double margin = student_97_5(n - 2) * std::sqrt(residual / (n - 2) / xx);

@@ -43,8 +43,8 @@ struct PowerLaw {
     Interval slope_95;
     std::size_t points = 0;  // those used
 };
-// Points that are not positive and finite are left out; nothing with fewer than 3, or where all x are equal. x and y
-// are equally long.
+// Points that are not positive and finite are left out; nothing with fewer than 3, or where the largest x is less than
+// twice the smallest: over less, scatter decides the slope. x and y are equally long.
 std::optional<PowerLaw> fit_power_law(std::span<const double> x, std::span<const double> y);
 
 }  // namespace twinray

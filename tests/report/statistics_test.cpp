@@ -93,13 +93,16 @@ TEST(PowerLaw, IntervalIsStudents) {
     EXPECT_NEAR(fit->slope_95.high - fit->slope, 4.302653 * std::sqrt(0.042 / 2 / 5), 1e-5);
 }
 
-TEST(PowerLaw, NeedsThreeDifferentPositivePoints) {
+TEST(PowerLaw, NeedsThreePositivePointsOverAFactorOfTwo) {
     const std::vector<double> two = {1, 2};
     EXPECT_FALSE(fit_power_law(two, two));
     const std::vector<double> x = {1, 0, 2, INFINITY}, y = {1, 1, 2, 3};
     EXPECT_FALSE(fit_power_law(x, y));
     const std::vector<double> same = {2, 2, 2}, different = {1, 2, 3};
     EXPECT_FALSE(fit_power_law(same, different));
+    const std::vector<double> near = {0.4939, 0.495, 0.4954}, wide = {0.25, 0.3, 0.5}, times = {357, 254, 759};
+    EXPECT_FALSE(fit_power_law(near, times));
+    EXPECT_TRUE(fit_power_law(wide, times));
 }
 
 // Reference values: bisection on the binomial tail summed term by term in Python's math module.
