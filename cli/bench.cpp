@@ -25,6 +25,7 @@ struct BenchOptions {
     std::size_t rounds = 5;
     std::size_t moves = 0;
     std::vector<Level> levels = {Level::watertight};
+    std::vector<Layout> layouts = {all_layouts.begin(), all_layouts.end()};
 };
 
 // By Level.
@@ -33,6 +34,7 @@ const char* name_of(Level level) { return level_names[static_cast<std::size_t>(l
 
 struct Candidate {
     std::string name, backend, path;
+    std::string layout;
     Level level;
     std::function<std::unique_ptr<AbstractAccel>()> make;
     std::unique_ptr<AbstractAccel> accel = {};
@@ -47,16 +49,20 @@ double total_ms(const std::vector<PassTiming>& timings) {
 }
 
 // The first is what all are compared with.
-std::vector<Candidate> make_candidates(Context& context, std::span<const Level> levels) {
+std::vector<Candidate> make_candidates(Context& context, std::span<const Level> levels,
+                                       std::span<const Layout> layouts) {
     std::vector<Candidate> candidates;
-    for (const Level level : levels)
-        candidates.push_back({text("sw ", name_of(level)), "sw", "compute", level,
-                              [&, level] { return std::make_unique<SwTlas>(context, AccelOptions{level}); }});
+    for (const Layout layout : layouts)
+        for (const Level level : levels)
+            candidates.push_back({text("sw ", name_of(layout), ' ', name_of(level)), "sw", "compute",
+                                  std::string(name_of(layout)), level, [&, level, layout] {
+                                      return std::make_unique<SwTlas>(context, AccelOptions{level, layout});
+                                  }});
     if (!missing_for_hardware(context.facts()).empty()) return candidates;
     const auto add = [&](const std::string& name, BuildOrder order, Level level) {
-        candidates.push_back({name, "hw", HwTlas(context, order).trace_path(), level, [&context, order, level] {
-                                  return std::make_unique<HwTlas>(context, order, AccelOptions{level});
-                              }});
+        candidates.push_back(
+            {name, "hw", HwTlas(context, order).trace_path(), "driver", level,
+             [&context, order, level] { return std::make_unique<HwTlas>(context, order, AccelOptions{level}); }});
     };
     for (const Level level : levels)
         if (HwTlas::capability_on(context.facts(), feature_of(level)).support != Support::unsupported)
@@ -103,8 +109,8 @@ void report(const BenchOptions& options, const Context& context, const std::vect
             const Scene& scene, const std::vector<Ray>& rays) {
     const Oracle oracle = Oracle::of(scene);
     const double triangles = static_cast<double>(std::max<std::size_t>(count_triangles(scene), 1));
-    std::cout
-        << "  accelerator        build ms  Mrays/s   sw is faster by  bytes/triangle  agree or tie with float64\n";
+    std::cout << "  accelerator                 build ms  Mrays/s   sw is faster by  bytes/triangle  agree or tie with "
+                 "float64\n";
     for (const Candidate& candidate : candidates) {
         const double build_ms = median(candidate.build_ms);
         const double mrays = static_cast<double>(rays.size()) / median(candidate.trace_ms) * 1e-3;
@@ -113,7 +119,7 @@ void report(const BenchOptions& options, const Context& context, const std::vect
             static_cast<double>(classes[Class::agree] + classes[Class::tie]) / static_cast<double>(classes.total());
         const double ratio = median(candidate.trace_ms) / median(candidates.front().trace_ms);
         const double bytes = static_cast<double>(candidate.accel->memory_usage().structures()) / triangles;
-        std::cout << "  " << std::left << std::setw(16) << candidate.name << std::right << std::fixed
+        std::cout << "  " << std::left << std::setw(25) << candidate.name << std::right << std::fixed
                   << std::setprecision(1) << std::setw(11) << build_ms << std::setprecision(3) << std::setw(9) << mrays
                   << std::setprecision(2) << std::setw(15) << ratio << 'x' << std::setprecision(1) << std::setw(16)
                   << bytes << std::setprecision(4) << std::setw(17) << 100 * sound << " % of " << classes.total()
@@ -127,7 +133,7 @@ void report(const BenchOptions& options, const Context& context, const std::vect
                                           {"backend", candidate.backend},
                                           {"path", candidate.path},
                                           {"order", candidate.name == "hw input order" ? "input" : "sorted"},
-                                          {"layout", candidate.backend == "sw" ? "bvh2" : "driver"},
+                                          {"layout", candidate.layout},
                                           {"builder", candidate.backend == "sw" ? "lbvh" : "driver"},
                                           {"level", name_of(candidate.level)},
                                           {"mrays_per_s", mrays},
@@ -142,7 +148,7 @@ void run(const BenchOptions& options) {
     const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
     const std::unique_ptr<Context> context = make_context(options.common);
     const std::vector<Ray> rays = primary_rays(bounds_of(scene), options.width);
-    std::vector<Candidate> candidates = make_candidates(*context, options.levels);
+    std::vector<Candidate> candidates = make_candidates(*context, options.levels, options.layouts);
     const Buffer ray_buffer(*context, {.name = "bench rays", .bytes = rays.size() * sizeof(Ray)});
     const Buffer hit_buffer(*context, {.name = "bench hits", .bytes = rays.size() * sizeof(Hit)});
     Commands upload(*context, "bench input");
@@ -190,6 +196,9 @@ void add_bench(CLI::App& app, int&) {
     command->add_option("--levels", options->levels, "fast, watertight, refined, certified; separated by commas")
         ->delimiter(',')
         ->transform(CLI::CheckedTransformer(levels));
+    command->add_option("--layouts", options->layouts, "of SwTlas: compressed4, bvh2; separated by commas")
+        ->delimiter(',')
+        ->transform(CLI::CheckedTransformer(layouts_by_name()));
     command->add_option("--rounds", options->rounds)->check(CLI::Range(1, 1000))->capture_default_str();
     add_common_options(*command, options->common);
     command->callback([options] {

@@ -25,6 +25,17 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_flag("--validation", options.validation, "run under the Vulkan validation layer");
 }
 
+std::map<std::string, Layout> layouts_by_name() {
+    std::map<std::string, Layout> layouts;
+    for (const Layout layout : all_layouts) layouts.emplace(name_of(layout), layout);
+    return layouts;
+}
+
+void add_layout_option(CLI::App& command, Layout& layout) {
+    command.add_option("--layout", layout, "of the software accelerator's trees: compressed4 (the default) or bvh2")
+        ->transform(CLI::CheckedTransformer(layouts_by_name()));
+}
+
 ContextDesc context_desc(const CommonOptions& options) {
     ContextDesc desc{.device = options.device, .validation = options.validation};
     if (options.quiet && !options.validation) desc.log = [](std::string_view) {};

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct CommonOptions {
     bool validation = false;
 };
 void add_common_options(CLI::App& command, CommonOptions& options);
+
+std::map<std::string, Layout> layouts_by_name();
+void add_layout_option(CLI::App& command, Layout& layout);
 
 // A context for these options; TWINRAY_DISABLE (a comma-separated list of ray_query, ray_tracing_pipeline) leaves
 // features of the device unused.

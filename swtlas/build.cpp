@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "swtlas/build.h"
 
+#include <algorithm>
+
+#include "swtlas_collapse.spv.h"
 #include "swtlas_encode_triangles.spv.h"
 #include "swtlas_hierarchy.spv.h"
 #include "swtlas_leaves_instances.spv.h"
@@ -21,9 +24,16 @@ KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv) {
     return {.name = name, .spirv = spirv, .group_size = BUILD_GROUP};
 }
 
+KernelDesc collapse_stage(uint step) {
+    KernelDesc desc = stage("swtlas_collapse", swtlas_collapse_spirv);
+    desc.constants = {{0, step}};
+    return desc;
+}
+
 }  // namespace
 
 struct Builder::Batch {
+    const Buffer& scratch;
     Ref<BuildTree> trees;
     Ref<BuildBlock> blocks;
     Ref<LeafBox> boxes;
@@ -31,6 +41,7 @@ struct Builder::Batch {
     Uints codes, tree_of, meeting, counters;
     RadixSort::Pairs pairs, spare;
     uint block_count;
+    bool has_records;
 };
 
 Builder::Builder(Context& context)
@@ -43,33 +54,31 @@ Builder::Builder(Context& context)
       tree_keys_(context, stage("swtlas_tree_keys", swtlas_tree_keys_spirv)),
       hierarchy_(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv)),
       encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv)),
+      collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS)),
+      collapse_level_(context, collapse_stage(COLLAPSE_LEVEL)),
+      collapse_rest_(context, collapse_stage(COLLAPSE_REST)),
       parents_(context, stage("swtlas_parents", swtlas_parents_spirv)),
       refit_(context, stage("swtlas_refit", swtlas_refit_spirv)),
       refit_triangles_(context, stage("swtlas_refit_triangles", swtlas_refit_triangles_spirv)) {}
-
-// One tree, in scratch of its own.
-Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, const BuildTree& tree) const {
-    Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = plan.scratch.bytes});
-    const Batch batch = begin(commands, plan, std::span(&tree, 1), scratch);
-    commands.keep(std::move(scratch));
-    return batch;
-}
 
 Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                               const Buffer& scratch) const {
     const BuildScratch& at = plan.scratch;
     const uint none = ordered_bits(-INFINITY), all = ordered_bits(INFINITY);
     const std::vector<CentroidBounds> empty(trees.size(), {uvec3(all), uvec3(none)});
+    const std::vector<CollapseLevel> levels(plan.collapse_levels + 2, {0, 1, 1, 0});
     {
         const auto pass = commands.pass("swtlas build input");
         const Commands::Piece pieces[] = {{at.trees, std::as_bytes(trees)},
                                           {at.blocks, std::as_bytes(std::span(plan.blocks))},
-                                          {at.centroids, std::as_bytes(std::span(empty))}};
+                                          {at.centroids, std::as_bytes(std::span(empty))},
+                                          {at.levels, std::as_bytes(std::span(levels))}};
         commands.upload_pieces(scratch, pieces);
         commands.fill(scratch, at.meeting, std::uint64_t{plan.leaf_count} * sizeof(uint), NOTHING);
     }
     const std::uint64_t base = scratch.address();
-    return {{base + at.trees},
+    return {scratch,
+            {base + at.trees},
             {base + at.blocks},
             {base + at.boxes},
             {base + at.centroids},
@@ -79,7 +88,8 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
             {base + at.counters},
             {{base + at.keys[0]}, {base + at.order[0]}},
             {{base + at.keys[1]}, {base + at.order[1]}},
-            static_cast<uint>(plan.blocks.size())};
+            static_cast<uint>(plan.blocks.size()),
+            std::any_of(trees.begin(), trees.end(), [](const BuildTree& tree) { return tree.records.address != 0; })};
 }
 
 Uints Builder::record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
@@ -111,16 +121,50 @@ void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::s
     record_hierarchy(commands, batch, order, true);
     encode_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, order, batch.block_count, 0},
                                       batch.block_count);
+    record_collapse(commands, plan, batch);
 }
 
 void Builder::record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
                                Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
     if (plan.leaf_count == 0) return;
-    const Batch batch = begin(commands, plan, tree);
+    Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = plan.scratch.bytes});
+    const Batch batch = begin(commands, plan, std::span(&tree, 1), scratch);
     leaves_instances_.dispatch_groups(
         commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
         batch.block_count);
     record_hierarchy(commands, batch, record_order(commands, plan, batch), false);
+    record_collapse(commands, plan, batch);
+    commands.keep(std::move(scratch));
+}
+
+void Builder::record_collapse(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                              const Buffer& scratch) const {
+    if (plan.leaf_count != 0) record_collapse(commands, plan, begin(commands, plan, trees, scratch));
+}
+
+// Levels share the scratch of the sort, which is done: a level has half as many items as there are leaves at most.
+void Builder::record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+    if (!batch.has_records) return;
+    const auto pass = commands.pass(collapse_level_.name());
+    const auto tree_count = static_cast<uint>(plan.first.size());
+    const std::uint64_t items[] = {batch.pairs.keys.address, batch.spare.keys.address};
+    const auto level_at = [&](uint level) { return plan.scratch.levels + level * sizeof(CollapseLevel); };
+    const auto args = [&](uint level) {
+        return CollapseArgs{batch.trees,
+                            {items[level % 2]},
+                            {items[(level + 1) % 2]},
+                            {batch.scratch.address() + level_at(level)},
+                            tree_count,
+                            0};
+    };
+    collapse_roots_.dispatch(commands, args(0), tree_count);
+    for (uint level = 1; level <= plan.collapse_levels; ++level) {
+        commands.barrier();
+        collapse_level_.dispatch_indirect(commands, args(level), batch.scratch, level_at(level));
+    }
+    commands.barrier();
+    const uint last = plan.collapse_levels + 1;
+    collapse_rest_.dispatch_indirect(commands, args(last), batch.scratch, level_at(last));
 }
 
 // The boxes of all inner nodes from those of the leaves.
@@ -163,16 +207,20 @@ void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, s
     refit_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.boxes, batch.block_count, 0},
                                      batch.block_count);
     record_climb(commands, batch);
+    record_collapse(commands, plan, batch);
 }
 
 void Builder::record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
                            Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
     if (plan.leaf_count == 0) return;
-    const Batch batch = begin(commands, plan, tree);
+    Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = plan.scratch.bytes});
+    const Batch batch = begin(commands, plan, std::span(&tree, 1), scratch);
     leaves_instances_.dispatch_groups(
         commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
         batch.block_count);
     record_climb(commands, batch);
+    record_collapse(commands, plan, batch);
+    commands.keep(std::move(scratch));
 }
 
 }  // namespace twinray

@@ -8,7 +8,7 @@ namespace twinray {
 
 // Records the build of a batch of trees on the GPU, the same stages for triangles and for instances:
 //
-//     leaves -> morton -> sort by code (-> sort by tree) -> hierarchy (-> encode triangles)
+//     leaves -> morton -> sort by code (-> sort by tree) -> hierarchy (-> encode triangles) (-> collapse)
 //
 // Each stage is one kernel over all trees of the batch; what it computes has a serial twin of the same name in
 // swtlas/reference.h.
@@ -30,6 +30,10 @@ class Builder {
     void record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
                       Ref<SwInstance> instances) const;
 
+    // The records of layout compressed4, for binary trees that are finished.
+    void record_collapse(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                         const Buffer& scratch) const;
+
     // What sah() tells of finished trees.
     struct Measured {
         Ref<Bvh> tree;
@@ -44,10 +48,10 @@ class Builder {
     struct Batch;
     Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                 const Buffer& scratch) const;
-    Batch begin(Commands& commands, const BuildPlan& plan, const BuildTree& tree) const;
     Uints record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_hierarchy(Commands& commands, const Batch& batch, Uints order, bool leaves_are_sorted) const;
     void record_climb(Commands& commands, const Batch& batch) const;
+    void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
 
     RadixSort sort_;
     SurfaceArea areas_;
@@ -58,6 +62,7 @@ class Builder {
     Kernel<TreeKeysArgs> tree_keys_;
     Kernel<HierarchyArgs> hierarchy_;
     Kernel<EncodeTrianglesArgs> encode_triangles_;
+    Kernel<CollapseArgs> collapse_roots_, collapse_level_, collapse_rest_;
     Kernel<ParentsArgs> parents_;
     Kernel<RefitArgs> refit_;
     Kernel<RefitTrianglesArgs> refit_triangles_;

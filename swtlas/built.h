@@ -11,13 +11,17 @@ struct SwTlas::SwBuiltGeometry : BuiltGeometry {
     GeometryLayout layout;
     Buffer buffer;
 
-    SwBuiltGeometry(Context& context, const Geometry& geometry)
-        : layout(layout_geometry(static_cast<uint>(geometry.primitive_count()))),
+    SwBuiltGeometry(Context& context, const Geometry& geometry, Layout of_trees)
+        : layout(layout_geometry(static_cast<uint>(geometry.primitive_count()), of_trees)),
           buffer(context, {.name = "SwTlas geometry '" + geometry.name + "'", .bytes = layout.bytes}) {
         bytes = layout.bytes;
     }
     Ref<BvhNode> nodes() const { return buffer.ref<BvhNode>(layout.nodes); }
     Ref<BvhTriangle> triangles() const { return buffer.ref<BvhTriangle>(layout.triangles); }
+    // Null where the layout has none.
+    Ref<CompressedRecord> records() const {
+        return layout.records < layout.bytes ? buffer.ref<CompressedRecord>(layout.records) : Ref<CompressedRecord>{};
+    }
 };
 
 }  // namespace twinray

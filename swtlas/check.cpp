@@ -8,7 +8,7 @@
 namespace twinray {
 namespace {
 
-constexpr uint max_depth = 54;  // see STACK_SIZE
+constexpr uint max_depth = DEEPEST_TREE;
 constexpr std::size_t max_violations = 20;
 
 bool same(vec3 a, vec3 b) { return a == b; }

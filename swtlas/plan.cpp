@@ -39,9 +39,19 @@ BuildScratch layout_scratch(const BuildPlan& plan) {
         scratch.order[i] = arena.take<uint>(n);
     }
     scratch.counters = arena.take<std::byte>(RadixSort::counter_bytes(n));
+    scratch.levels = arena.take<CollapseLevel>(plan.collapse_levels + 2);
     scratch.bytes = arena.bytes;
     return scratch;
 }
+
+// A tree of four children a node is half as deep as a balanced binary one; Morton codes make it deeper. Small trees are
+// not worth a dispatch a level.
+uint levels_to_collapse(uint leaf_count) {
+    return leaf_count <= BUILD_GROUP ? 0 : std::min(static_cast<uint>(std::bit_width(leaf_count)), DEEPEST_TREE);
+}
+
+// Without the root's of an empty tree.
+uint record_count(uint leaf_count) { return leaf_count ? 1 + records_below(leaf_count) : 0; }
 
 }  // namespace
 
@@ -72,23 +82,29 @@ BuildPlan plan_build(std::span<const uint> leaf_counts) {
     }
     plan.leaf_count = static_cast<uint>(total);
     if (leaf_counts.size() > 1) plan.tree_bits = static_cast<uint>(std::bit_width(leaf_counts.size() - 1));
+    if (!leaf_counts.empty())
+        plan.collapse_levels = levels_to_collapse(*std::max_element(leaf_counts.begin(), leaf_counts.end()));
     plan.scratch = layout_scratch(plan);
     return plan;
 }
 
-GeometryLayout layout_geometry(uint triangle_count) {
+GeometryLayout layout_geometry(uint triangle_count, Layout layout) {
     Arena arena;
     const std::uint64_t nodes = arena.take<BvhNode>(inner_count(triangle_count));
     const std::uint64_t triangles = arena.take<BvhTriangle>(triangle_count);
-    return {nodes, triangles, arena.bytes};
+    const std::uint64_t records =
+        arena.take<CompressedRecord>(layout == Layout::compressed4 ? record_count(triangle_count) : 0);
+    return {nodes, triangles, records, arena.bytes};
 }
 
-SceneLayout layout_scene(uint instance_count) {
+SceneLayout layout_scene(uint instance_count, Layout layout) {
     Arena arena;
     arena.take<SwScene>(1);
     const std::uint64_t nodes = arena.take<BvhNode>(inner_count(instance_count));
     const std::uint64_t instances = arena.take<SwInstance>(instance_count);
-    return {nodes, instances, arena.bytes};
+    const std::uint64_t records =
+        arena.take<CompressedRecord>(layout == Layout::compressed4 ? record_count(instance_count) : 0);
+    return {nodes, instances, records, arena.bytes};
 }
 
 }  // namespace twinray

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/accel/trace_desc.h"
 #include "swtlas/structures.h"
 
 namespace twinray {
@@ -18,7 +19,7 @@ float software_unit(std::span<const vec3> positions);
 struct BuildScratch {
     std::uint64_t trees = 0, blocks = 0, boxes = 0, centroids = 0, codes = 0, tree_of = 0, meeting = 0;
     std::uint64_t keys[2] = {}, order[2] = {};
-    std::uint64_t counters = 0;
+    std::uint64_t counters = 0, levels = 0;
     std::uint64_t bytes = 0;
 };
 
@@ -27,6 +28,7 @@ struct BuildPlan {
     std::vector<BuildBlock> blocks;  // runs of leaves that one group handles, never across trees
     uint leaf_count = 0;             // of the batch
     uint tree_bits = 0;              // bits of the largest tree index; 0 = one tree, no sort by tree
+    uint collapse_levels = 0;        // below the roots that are collapsed one by one; the rest goes by subtrees
     BuildScratch scratch;
 };
 
@@ -40,14 +42,14 @@ uint inner_count(uint leaf_count);
 
 // Where the parts of a built geometry lie in its buffer; its SwGeometry is the geometry block.
 struct GeometryLayout {
-    std::uint64_t nodes = 0, triangles = 0, bytes = 0;
+    std::uint64_t nodes = 0, triangles = 0, records = 0, bytes = 0;
 };
-GeometryLayout layout_geometry(uint triangle_count);
+GeometryLayout layout_geometry(uint triangle_count, Layout layout);
 
-// Where the parts of a scene lie in its buffer: SwScene at 0, then nodes, then instances.
+// Where the parts of a scene lie in its buffer; its SwScene is at 0.
 struct SceneLayout {
-    std::uint64_t nodes = 0, instances = 0, bytes = 0;
+    std::uint64_t nodes = 0, instances = 0, records = 0, bytes = 0;
 };
-SceneLayout layout_scene(uint instance_count);
+SceneLayout layout_scene(uint instance_count, Layout layout);
 
 }  // namespace twinray

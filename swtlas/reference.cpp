@@ -61,20 +61,19 @@ std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, s
     instances.clear();
     for (const InstanceRecord& record : records) {
         const Rows to_world = to_world_of(record), to_object = inverse_of(to_world);
-        SwInstance instance{{to_object.r0, to_object.r1, to_object.r2},
-                            {},
-                            {},
-                            NOTHING,
-                            record.custom_index_mask,
-                            flags_of(record),
-                            0,
-                            0,
-                            0};
+        SwInstance instance{};
+        instance.world_to_object[0] = to_object.r0;
+        instance.world_to_object[1] = to_object.r1;
+        instance.world_to_object[2] = to_object.r2;
+        instance.root = NOTHING;
+        instance.custom_index_mask = record.custom_index_mask;
+        instance.flags = flags_of(record);
         LeafBox box = empty_box();
         if (record.geometry && is_usable(to_world, to_object)) {
             const SwGeometry& geometry = *reinterpret_cast<const SwGeometry*>(record.geometry);
             instance.nodes = geometry.bvh.nodes;
             instance.triangles = geometry.triangles;
+            instance.records = geometry.records;
             instance.root = geometry.bvh.root;
             instance.kind = geometry.kind;
             instance.extent = std::max(largest_entry(geometry.bvh.lo), largest_entry(geometry.bvh.hi));
@@ -130,6 +129,27 @@ std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::
     for (const uint primitive : order)
         encoded.push_back(without_inactive_corners(gather(positions, triangles[primitive], primitive)));
     return encoded;
+}
+
+std::vector<CompressedRecord> collapse(const Hierarchy& tree, std::span<const BvhTriangle> triangles, uint leaf_count) {
+    if (leaf_count == 0) return {};
+    std::vector<CompressedRecord> records(1 + records_below(leaf_count));
+    const Bvh bvh{tree.box.lo, tree.box.hi, Ref<BvhNode>::to(tree.nodes.data()), tree.root, leaf_count};
+    BuildTree input{};
+    input.bvh = Ref<Bvh>::to(&bvh);
+    if (!triangles.empty()) input.triangles = Ref<BvhTriangle>::to(triangles.data());
+    input.records = Ref<CompressedRecord>::to(records.data());
+    std::vector<CollapseItem> waiting;
+    const auto push = [&](const CollapseStep& step) {
+        waiting.insert(waiting.end(), step.items, step.items + step.count);
+    };
+    push(begin_collapse(input, 0));
+    while (!waiting.empty()) {
+        const CollapseItem item = waiting.back();
+        waiting.pop_back();
+        push(twinray::collapse(input, item));
+    }
+    return records;
 }
 
 }  // namespace twinray::reference

@@ -34,4 +34,7 @@ Hierarchy hierarchy(std::span<const LeafBox> boxes, std::span<const uint> codes,
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
                                           std::span<const uint> order);
 
+// Of layout compressed4; without triangles the leaves are instances. Records that the tree does not use are 0.
+std::vector<CompressedRecord> collapse(const Hierarchy& tree, std::span<const BvhTriangle> triangles, uint leaf_count);
+
 }  // namespace twinray::reference

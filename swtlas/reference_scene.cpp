@@ -12,7 +12,9 @@ std::size_t Scene::add_geometry(const MeshView& mesh) {
     const std::vector<uint> order = sort(codes);
     Hierarchy tree = hierarchy(boxes, codes, order, true);
     std::vector<BvhTriangle> triangles = encode_triangles(geometry.positions, geometry.triangles, order);
-    geometries_.push_back({std::move(geometry), std::move(tree), std::move(triangles)});
+    std::vector<CompressedRecord> records;
+    if (layout_ == Layout::compressed4) records = collapse(tree, triangles, static_cast<uint>(triangles.size()));
+    geometries_.push_back({std::move(geometry), std::move(tree), std::move(triangles), std::move(records)});
     return geometries_.size() - 1;
 }
 
@@ -24,6 +26,7 @@ std::vector<InstanceRecord> Scene::records_in_built_units() {
         built.block.geometry = {{built.tree.box.lo, built.tree.box.hi, Ref<BvhNode>::to(built.tree.nodes.data()),
                                  built.tree.root, static_cast<uint>(built.triangles.size())},
                                 Ref<BvhTriangle>::to(built.triangles.data()),
+                                Ref<CompressedRecord>::to(built.records.data()),
                                 GEOMETRY_TRIANGLES,
                                 0};
         built.block.source = {Floats::to(&built.mesh.positions.data()->x), Uints::to(&built.mesh.triangles.data()->x),
@@ -42,11 +45,13 @@ void Scene::build() {
     const std::vector<LeafBox> boxes = leaves_instances(records, instances_);
     const std::vector<uint> codes = morton(boxes, centroids(boxes));
     top_ = hierarchy(boxes, codes, sort(codes), false);
-    header_ = {
-        {top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), top_.root, static_cast<uint>(boxes.size())},
-        Ref<SwInstance>::to(instances_.data()),
-        instances_.size(),
-        0};
+    const auto count = static_cast<uint>(boxes.size());
+    if (layout_ == Layout::compressed4) top_records_ = collapse(top_, {}, count);
+    header_ = {{top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), top_.root, count},
+               Ref<CompressedRecord>::to(top_records_.data()),
+               Ref<SwInstance>::to(instances_.data()),
+               instances_.size(),
+               0};
     build_refinement(records);
 }
 
@@ -71,7 +76,9 @@ Ray Scene::searched_ray(const Ray& ray, uint level, double& advance) const {
 Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {
     double advance = 0;
     const Ray searched = searched_ray(ray, level, advance);
-    const TraceOptions options{mask, 0, query, level, 0, 0, ray, advance, Ref<RefineInstance>::to(refined_.data())};
+    const uint features = layout_ == Layout::bvh2 ? FEATURE_BVH2 : FEATURE_COMPRESSED;
+    const TraceOptions options{
+        mask, 0, query, level, features, 0, ray, advance, Ref<RefineInstance>::to(refined_.data())};
     const Hit hit = traverse(header_, searched, options);
     if (level < LEVEL_REFINED || !hit.hit) return hit;
     return refined(hit, ray, advance, refined_[hit.instance_index].mesh);

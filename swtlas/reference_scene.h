@@ -3,6 +3,7 @@
 
 #include "engine/accel/geometry.h"
 #include "engine/accel/refinement.h"
+#include "engine/accel/trace_desc.h"
 #include "swtlas/reference.h"
 
 namespace twinray::reference {
@@ -11,7 +12,7 @@ namespace twinray::reference {
 // are those of SwTlas to the last bit, where the device divides and adds as IEEE 754 does.
 class Scene {
   public:
-    Scene() = default;
+    explicit Scene(Layout layout = AccelOptions{}.layout) : layout_(layout) {}
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
@@ -40,7 +41,6 @@ class Scene {
     // What InstanceRecord::geometry points at.
     struct Block {
         SwGeometry geometry{};
-        std::uint64_t reserved = 0;
         GeometrySource source{};
     };
     static_assert(offsetof(Block, source) == GEOMETRY_SOURCE_OFFSET);
@@ -48,15 +48,18 @@ class Scene {
         Geometry mesh;
         Hierarchy tree;
         std::vector<BvhTriangle> triangles;
+        std::vector<CompressedRecord> records;
         Block block = {};
     };
     std::vector<InstanceRecord> records_in_built_units();
     void build_refinement(std::span<const InstanceRecord> records);
 
+    Layout layout_;
     std::vector<BuiltGeometry> geometries_;
     std::vector<std::pair<std::size_t, InstanceRecord>> placed_;
     std::vector<SwInstance> instances_;
     Hierarchy top_;
+    std::vector<CompressedRecord> top_records_;
     SwScene header_{};
     GeometryBox bound_{};  // of the world
     std::vector<RefineInstance> refined_;

@@ -39,15 +39,21 @@ SwTlas::Loaded SwTlas::load(Context& context, const std::filesystem::path& file)
 
 AccelHandle SwTlas::push_saved(Commands& commands, SavedGeometry&& saved) {
     Buffer block(context(), {.name = "geometry block", .bytes = geometry_block_bytes});
-    auto built = std::make_unique<SwBuiltGeometry>(context(), saved.mesh);
+    auto built = std::make_unique<SwBuiltGeometry>(context(), saved.mesh, options().layout);
     saved.bvh.nodes = built->nodes();
     {
         const auto pass = commands.pass("swtlas load");
-        commands.write(block, SwGeometry{saved.bvh, built->triangles(), saved.mesh.kind, 0});
+        commands.write(block, SwGeometry{saved.bvh, built->triangles(), built->records(), saved.mesh.kind, 0});
         const Commands::Piece pieces[] = {{built->layout.nodes, std::as_bytes(std::span(saved.nodes))},
                                           {built->layout.triangles, std::as_bytes(std::span(saved.leaves))}};
         commands.upload_pieces(built->buffer, pieces);
     }
+    const auto count = static_cast<uint>(saved.leaves.size());
+    const BuildPlan plan = plan_build(std::span(&count, 1));
+    const BuildTree tree{0, count, {}, {}, built->triangles(), {block.address()}, built->records()};
+    Buffer scratch(context(), {.name = "swtlas load scratch", .bytes = plan.scratch.bytes});
+    builder_.record_collapse(commands, plan, std::span(&tree, 1), scratch);
+    commands.keep(std::move(scratch));
     return push_built(std::move(saved.mesh), std::move(block), std::move(built), saved.records);
 }
 

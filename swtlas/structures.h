@@ -11,10 +11,12 @@
 namespace twinray {
 #include "engine/core/bridge_begin.h"
 #include "shaders/shared/build.h"
+#include "shaders/shared/collapse.h"
 #include "shaders/shared/morton.h"
 #include "shaders/shared/traverse.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 88);
-static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 56 && sizeof(SwScene) == 64);
+static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 96 &&
+              sizeof(CompressedRecord) == 48);
+static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 64 && sizeof(SwScene) == 72);
 }  // namespace twinray

@@ -24,21 +24,27 @@ struct SwTlas::Batch {
 
     // Of input i, over a mesh on the device.
     BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const DeviceMesh& mesh) const {
-        return {plan.first[i], counts[i],          mesh.positions,
-                mesh.indices,  target.triangles(), {inputs[i].block->address()}};
+        return {plan.first[i],   counts[i],          mesh.positions,
+                mesh.indices,    target.triangles(), {inputs[i].block->address()},
+                target.records()};
     }
 };
 
 struct SwTlas::SwBuiltScene : BuiltScene {
-    Buffer buffer;  // see layout_scene
+    Buffer buffer;
+    SceneLayout layout;
 
     BuildTree tree(uint count) const {
         BuildTree tree{};
         tree.count = count;
         tree.bvh = {address};
+        tree.records = records();
         return tree;
     }
-    Ref<SwInstance> instances() const { return {address + layout_scene(static_cast<uint>(capacity)).instances}; }
+    Ref<BvhNode> nodes() const { return {address + layout.nodes}; }
+    Ref<SwInstance> instances() const { return {address + layout.instances}; }
+    // Null where the layout has none.
+    Ref<CompressedRecord> records() const { return {layout.records < layout.bytes ? address + layout.records : 0}; }
 };
 
 SwTlas::SwTlas(Context& context, const AccelOptions& options)
@@ -122,9 +128,10 @@ void SwTlas::record_build(Commands& commands, const Batch& batch, const Buffer& 
         for (std::size_t i = 0; i < batch.inputs.size(); ++i) {
             const GeometryInput& input = batch.inputs[i];
             std::unique_ptr<SwBuiltGeometry> made;
-            if (!input.current) made = std::make_unique<SwBuiltGeometry>(context(), *input.geometry);
+            if (!input.current) made = std::make_unique<SwBuiltGeometry>(context(), *input.geometry, options().layout);
             const auto& target = made ? *made : static_cast<const SwBuiltGeometry&>(*input.current);
-            const SwGeometry block{empty_bvh(target.nodes().address), target.triangles(), input.geometry->kind, 0};
+            const SwGeometry block{empty_bvh(target.nodes().address), target.triangles(), target.records(),
+                                   input.geometry->kind, 0};
             commands.write(*input.block, block);
             trees.push_back(batch.tree(i, target, meshes[i]));
             built.push_back(std::move(made));
@@ -164,14 +171,14 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
         !scene || capacity != scene->capacity) {
         made = std::make_unique<SwBuiltScene>();
         made->capacity = capacity;
-        made->buffer =
-            Buffer(context(), {.name = "SwTlas scene", .bytes = layout_scene(static_cast<uint>(capacity)).bytes});
+        made->layout = layout_scene(static_cast<uint>(capacity), options().layout);
+        made->buffer = Buffer(context(), {.name = "SwTlas scene", .bytes = made->layout.bytes});
         made->address = made->buffer.address();
         made->bytes = made->buffer.bytes();
         scene = made.get();
     }
-    const SwScene header{empty_bvh(scene->address + layout_scene(static_cast<uint>(scene->capacity)).nodes),
-                         scene->instances(), input.count, input.refinement.address};
+    const SwScene header{empty_bvh(scene->nodes().address), scene->records(), scene->instances(), input.count,
+                         input.refinement.address};
     {
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
@@ -188,7 +195,7 @@ BuildBytes SwTlas::geometry_bytes(std::span<const GeometrySize> geometries) cons
     std::vector<std::uint64_t> shares;
     for (const GeometrySize& size : geometries) {
         const auto count = static_cast<uint>(size.triangles);
-        bytes.structures += layout_geometry(count).bytes;
+        bytes.structures += layout_geometry(count, options().layout).bytes;
         shares.push_back(scratch_share(count) + size.vertices * sizeof(vec3) + size.triangles * sizeof(uvec3));
     }
     bytes.scratch = cut_into_batches(shares, scratch_budget()).scratch_bytes;
@@ -197,7 +204,7 @@ BuildBytes SwTlas::geometry_bytes(std::span<const GeometrySize> geometries) cons
 
 BuildBytes SwTlas::scene_bytes(std::size_t count, std::size_t capacity) const {
     const auto leaves = static_cast<uint>(count);
-    return {layout_scene(static_cast<uint>(capacity)).bytes,
+    return {layout_scene(static_cast<uint>(capacity), options().layout).bytes,
             plan_build(std::span(&leaves, 1)).scratch.bytes + Builder::cost_bytes(leaves)};
 }
 
@@ -216,19 +223,27 @@ std::unique_ptr<TraceProgram> SwTlas::create_program(const TraceProgramCode* cod
         code ? code->software_refined : std::span<const std::uint32_t>(swtlas_trace_refined_spirv));
 }
 
+std::vector<CompressedRecord> SwTlas::download_records(const Buffer& buffer, std::uint64_t begin,
+                                                       std::uint64_t end) const {
+    return download<CompressedRecord>(context(), buffer, (end - begin) / sizeof(CompressedRecord), begin);
+}
+
 SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {
     const auto& built = static_cast<const SwBuiltGeometry&>(built_geometry(handle));
     const Bvh bvh = download<SwGeometry>(context(), geometry_block(handle), 1).front().bvh;
-    const GeometryLayout layout = layout_geometry(bvh.leaf_count);
+    const GeometryLayout& layout = built.layout;
     return {bvh, download<BvhNode>(context(), built.buffer, std::max(bvh.leaf_count, 1u) - 1, layout.nodes),
-            download<BvhTriangle>(context(), built.buffer, bvh.leaf_count, layout.triangles)};
+            download<BvhTriangle>(context(), built.buffer, bvh.leaf_count, layout.triangles),
+            download_records(built.buffer, layout.records, layout.bytes)};
 }
 
 SwTlas::Tree SwTlas::download_scene() const {
     const auto& built = static_cast<const SwBuiltScene&>(built_scene());
     const Bvh bvh = download<SwScene>(context(), built.buffer, 1).front().bvh;
-    const SceneLayout layout = layout_scene(static_cast<uint>(built.capacity));
-    return {bvh, download<BvhNode>(context(), built.buffer, std::max(bvh.leaf_count, 1u) - 1, layout.nodes), {}};
+    return {bvh,
+            download<BvhNode>(context(), built.buffer, std::max(bvh.leaf_count, 1u) - 1, built.layout.nodes),
+            {},
+            download_records(built.buffer, built.layout.records, built.layout.bytes)};
 }
 
 }  // namespace twinray

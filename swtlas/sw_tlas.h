@@ -39,7 +39,8 @@ class SwTlas final : public AbstractAccel {
     struct Tree {
         Bvh bvh;
         std::vector<BvhNode> nodes;
-        std::vector<BvhTriangle> triangles;  // of a geometry; empty for the scene
+        std::vector<BvhTriangle> triangles;     // of a geometry; empty for the scene
+        std::vector<CompressedRecord> records;  // of layout compressed4
     };
     Tree download_geometry(AccelHandle handle) const;
     Tree download_scene() const;
@@ -54,6 +55,7 @@ class SwTlas final : public AbstractAccel {
     Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const override;
     BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
+    std::vector<CompressedRecord> download_records(const Buffer& buffer, std::uint64_t begin, std::uint64_t end) const;
     static std::uint64_t source_bytes(const GeometryInput& input);
     static std::vector<Builder::Measured> measured(std::span<const GeometryInput> inputs);
     void record_batches(Commands& commands, std::span<const GeometryInput> inputs,
@@ -64,6 +66,7 @@ class SwTlas final : public AbstractAccel {
                                             const BuiltScene* current) override;
     void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
     float unit_of(std::span<const vec3> positions) const override { return software_unit(positions); }
+    uint own_features() const override { return options().layout == Layout::bvh2 ? FEATURE_BVH2 : FEATURE_COMPRESSED; }
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
 
     Builder builder_;

@@ -171,7 +171,8 @@ bool show(const std::filesystem::path& file, suite::Devices& devices, std::ostre
     const Explainer explainer(stage.scene, stage.oracle, replay.ray, level_of(replay));
     out << "Triangle tests in float32, " << arithmetic_of(level_of(replay)) << ", in units of the mesh's size\n";
     for (const TriangleId& triangle : involved) explainer.print_test(out, triangle);
-    out << "Boxes, of SwTlas's trees; those of the driver cannot be seen\n";
+    out << "Boxes, of SwTlas's binary trees, which layout compressed4 rounds outwards; those of the driver cannot be "
+           "seen\n";
     for (const TriangleId& triangle : involved) explainer.print_boxes(out, triangle);
 
     out << "Verdict\n";

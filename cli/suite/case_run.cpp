@@ -50,6 +50,8 @@ Record CaseRun::record(const Subject& subject) const {
     Record record = blank();
     record.backend = name(subject.backend);
     record.level = name(subject.level);
+    if (is_ours(subject.backend) && devices_.layout() != AccelOptions{}.layout)
+        record.variant = text("layout ", name_of(devices_.layout()));
     return record;
 }
 

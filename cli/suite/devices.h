@@ -18,12 +18,13 @@ namespace twinray::suite {
 class Devices {
   public:
     // Warnings go to take_warnings() in place of desc.log, unless desc.validation is set: then to both.
-    explicit Devices(ContextDesc desc);
+    explicit Devices(ContextDesc desc, Layout layout = AccelOptions{}.layout);
     ~Devices();
     Devices(const Devices&) = delete;
     Devices& operator=(const Devices&) = delete;
 
     Context& context(Backend backend);
+    Layout layout() const { return layout_; }  // of the software accelerators
     // Why it cannot answer here; "" if it can.
     std::string why_not(const Subject& subject);
     // Empty: whatever an earlier case left is erased.
@@ -42,6 +43,7 @@ class Devices {
   private:
     std::vector<std::string> warnings_;
     ContextDesc desc_;
+    Layout layout_;
     std::unique_ptr<Context> context_, pipeline_context_;
     std::map<std::pair<Backend, Level>, std::unique_ptr<AbstractAccel>> accels_;
     std::map<std::pair<Backend, Level>, std::unique_ptr<CrossingCounter>> counters_;

@@ -2,6 +2,9 @@
 // What to trace, and how.
 #pragma once
 
+#include <array>
+#include <string_view>
+
 #include "engine/accel/trace_args.h"
 
 namespace twinray {
@@ -19,10 +22,20 @@ enum class Level : std::uint8_t {
     certified,   // float64 decides what is hit and in which order; software only
 };
 
+// How the software accelerator lays out its trees. The hits are the same, bit for bit.
+enum class Layout : std::uint8_t {
+    compressed4,  // four children a node, boxes in 8 bits a plane, primitives among the nodes: the fastest
+    bvh2,         // two children a node, boxes in float32
+};
+
+inline constexpr std::array all_layouts = {Layout::compressed4, Layout::bvh2};
+constexpr std::string_view name_of(Layout layout) { return layout == Layout::bvh2 ? "bvh2" : "compressed4"; }
+
 struct AccelOptions {
     // The highest level that traces ask for. From refined on, the accelerator keeps all meshes and transforms on the
     // device; it needs float64 there.
     Level level = Level::watertight;
+    Layout layout = Layout::compressed4;  // of software
 };
 
 // Which triangles are not hit: those seen from the back, or from the front. The front is the side that

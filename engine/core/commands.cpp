@@ -125,13 +125,17 @@ void Commands::write_timestamp(std::uint32_t index) const {
 }
 
 void Commands::end_pass() {
+    barrier();
+    in_pass_ = false;
+}
+
+void Commands::barrier() {
     VkMemoryBarrier barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
     barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
     barrier.dstAccessMask = consumer_access_;
     context_.vk().vkCmdPipelineBarrier(handle_, context_.stages(), context_.stages() | consumer_stages_, 0, 1, &barrier,
                                        0, nullptr, 0, nullptr);
-    in_pass_ = false;
 }
 
 void Commands::upload(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data) {

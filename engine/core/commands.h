@@ -54,6 +54,8 @@ class Commands {
     };
     [[nodiscard]] Pass pass(const std::string& name) { return Pass(*this, name); }
     bool in_pass() const { return in_pass_; }
+    // Within a pass: what follows sees what went before, as from one pass to the next.
+    void barrier();
 
     // Copies into `target` through a staging buffer that lives until the GPU has read it.
     void upload(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data);

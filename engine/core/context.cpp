@@ -205,7 +205,8 @@ void Context::destroy_everything() noexcept {
 }
 
 VkPipelineStageFlags Context::stages() const {
-    VkPipelineStageFlags stages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+    VkPipelineStageFlags stages =
+        VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
     if (facts_.acceleration_structure) stages |= VK_PIPELINE_STAGE_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
     if (facts_.ray_tracing_pipeline) stages |= VK_PIPELINE_STAGE_RAY_TRACING_SHADER_BIT_KHR;
     return stages;

@@ -83,16 +83,28 @@ ComputePipeline::~ComputePipeline() {
     });
 }
 
+void ComputePipeline::bind(Commands& commands, const void* args) const {
+    const VulkanFunctions& vk = context_.vk();
+    vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
+    vk.vkCmdPushConstants(commands.handle(), layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, args_bytes_, args);
+}
+
 void ComputePipeline::dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count) const {
     if (group_count == 0) return;
     std::optional<Commands::Pass> own_pass;
     if (!commands.in_pass()) own_pass.emplace(commands, name_);
+    bind(commands, args);
     const std::uint64_t rows = (group_count + groups_per_row - 1) / groups_per_row;
-    const VulkanFunctions& vk = context_.vk();
-    vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
-    vk.vkCmdPushConstants(commands.handle(), layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, args_bytes_, args);
-    vk.vkCmdDispatch(commands.handle(), static_cast<std::uint32_t>(std::min(group_count, groups_per_row)),
-                     static_cast<std::uint32_t>(rows), 1);
+    context_.vk().vkCmdDispatch(commands.handle(), static_cast<std::uint32_t>(std::min(group_count, groups_per_row)),
+                                static_cast<std::uint32_t>(rows), 1);
+}
+
+void ComputePipeline::dispatch_indirect(Commands& commands, const void* args, const Buffer& counts,
+                                        std::uint64_t offset) const {
+    std::optional<Commands::Pass> own_pass;
+    if (!commands.in_pass()) own_pass.emplace(commands, name_);
+    bind(commands, args);
+    context_.vk().vkCmdDispatchIndirect(commands.handle(), counts.handle(), offset);
 }
 
 }  // namespace twinray

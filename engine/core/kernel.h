@@ -30,11 +30,15 @@ class ComputePipeline {
     ComputePipeline& operator=(const ComputePipeline&) = delete;
 
     void dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count) const;
+    // As many groups as the VkDispatchIndirectCommand at `offset` of `counts` says.
+    void dispatch_indirect(Commands& commands, const void* args, const Buffer& counts, std::uint64_t offset) const;
 
     const std::string& name() const { return name_; }
     std::uint32_t group_size() const { return group_size_; }
 
   private:
+    void bind(Commands& commands, const void* args) const;
+
     Context& context_;
     std::string name_;
     std::uint32_t group_size_;
@@ -58,6 +62,9 @@ class Kernel {
     }
     void dispatch_groups(Commands& commands, const Args& args, std::uint64_t group_count) const {
         pipeline_.dispatch_groups(commands, &args, group_count);
+    }
+    void dispatch_indirect(Commands& commands, const Args& args, const Buffer& counts, std::uint64_t offset) const {
+        pipeline_.dispatch_indirect(commands, &args, counts, offset);
     }
     const std::string& name() const { return pipeline_.name(); }
 

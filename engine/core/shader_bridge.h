@@ -13,6 +13,7 @@ namespace twinray {
 
 using uint = std::uint32_t;
 using glm::abs;
+using glm::ceil;
 using glm::clamp;
 using glm::cross;
 using glm::dot;

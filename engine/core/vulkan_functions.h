@@ -59,6 +59,7 @@
     F(vkCmdBindPipeline)            \
     F(vkCmdPushConstants)           \
     F(vkCmdDispatch)                \
+    F(vkCmdDispatchIndirect)        \
     F(vkCmdPipelineBarrier)         \
     F(vkCmdCopyBuffer)              \
     F(vkCmdFillBuffer)              \

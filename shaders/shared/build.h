@@ -33,8 +33,9 @@ struct BuildTree
     uint count;
     Floats positions;          // 3 floats a vertex of triangles, 6 a box
     Uints indices;             // 3 a triangle; null: boxes
-    REF(BvhTriangle) triangles;
+    REF(BvhTriangle) triangles; // null: instances
     REF(Bvh) bvh;
+    REF(CompressedRecord) records; // null in layout bvh2
 };
 BUFFER_OF(BuildTree, 8);
 

@@ -3,6 +3,8 @@
 //
 //   SwScene -> top-level Bvh over instances -> SwInstance -> bottom-level Bvh over triangles
 //
+// A Bvh is binary, and for layout compressed4 also a tree of four children a node, made of CompressedRecords.
+//
 // A reference to a child is the index of an inner node, or LEAF_BIT with the index of a leaf. n leaves have n - 1
 // inner nodes; with one leaf the root is that leaf, with none it is NOTHING.
 #ifndef TWINRAY_SHARED_BVH_H
@@ -11,6 +13,9 @@
 
 const uint LEAF_BIT = 0x80000000u;
 const uint NOTHING = 0xffffffffu;
+
+// Inner nodes on a path split on ever lower bits of (30-bit Morton code, 24-bit position).
+const uint DEEPEST_TREE = 54u;
 
 // 64 bytes. Child boxes lie in the parent, so that one fetch decides both. A box is empty where lo > hi.
 struct BvhNode
@@ -37,6 +42,20 @@ struct BvhTriangle
 };
 BUFFER_OF(BvhTriangle, 8);
 
+// 48 bytes, see compressed.h.
+//
+// node       a: lower corner of the grid; w: exponents of the cells' sizes, 8 bits an axis, count of children << 24
+//            b: lo.x, hi.x, lo.y, hi.y in cells, 8 bits a child      c: lo.z, hi.z, the first child, -
+// primitive  a: v0; w: LEAF_BIT | primitive_index      b: v1; w, c.xy: v2
+// instance   a.w: LEAF_BIT | index
+struct CompressedRecord
+{
+    uvec4 a;
+    uvec4 b;
+    uvec4 c;
+};
+BUFFER_OF(CompressedRecord, 16);
+
 struct Bvh
 {
     vec3 lo; // around all active leaves; lo > hi: there are none
@@ -52,6 +71,7 @@ struct SwGeometry
 {
     Bvh bvh;
     REF(BvhTriangle) triangles;
+    REF(CompressedRecord) records; // null in layout bvh2; the root's is the first
     uint kind; // GEOMETRY_*
     uint reserved;
 };
@@ -63,6 +83,7 @@ struct SwInstance
     vec4 world_to_object[3];
     REF(BvhNode) nodes;
     REF(BvhTriangle) triangles;
+    REF(CompressedRecord) records;
     uint root;
     uint custom_index_mask;
     uint flags; // of the instance: INSTANCE_*
@@ -75,9 +96,40 @@ BUFFER_OF(SwInstance, 8);
 struct SwScene
 {
     Bvh bvh;
+    REF(CompressedRecord) records; // as in SwGeometry
     REF(SwInstance) instances;
     uint64_t instance_count;
     uint64_t refinement; // address of a RefineScene, or 0
 };
 BUFFER_OF(SwScene, 8);
+
+FUNC BvhNode load_node(REF(BvhNode) nodes, uint index)
+{
+    // Fetched in 64-bit components: drivers on CPUs pay per component, not per byte.
+    Words64 words = Words64(uint64_t(nodes) + uint64_t(index) * 64ul);
+    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3);
+    uint64_t w4 = AT(words, 4), w5 = AT(words, 5), w6 = AT(words, 6), w7 = AT(words, 7);
+    BvhNode node;
+    node.lo0 = vec3(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x);
+    node.child0 = UINTS(w1).y;
+    node.hi0 = vec3(FLOATS(w2).x, FLOATS(w2).y, FLOATS(w3).x);
+    node.child1 = UINTS(w3).y;
+    node.lo1 = vec3(FLOATS(w4).x, FLOATS(w4).y, FLOATS(w5).x);
+    node.first = UINTS(w5).y;
+    node.hi1 = vec3(FLOATS(w6).x, FLOATS(w6).y, FLOATS(w7).x);
+    node.last = UINTS(w7).y;
+    return node;
+}
+
+FUNC BvhTriangle load_triangle(REF(BvhTriangle) triangles, uint index)
+{
+    Words64 words = Words64(uint64_t(triangles) + uint64_t(index) * 40ul);
+    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4);
+    BvhTriangle triangle;
+    triangle.v0 = vec3(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x);
+    triangle.v1 = vec3(FLOATS(w1).y, FLOATS(w2).x, FLOATS(w2).y);
+    triangle.v2 = vec3(FLOATS(w3).x, FLOATS(w3).y, FLOATS(w4).x);
+    triangle.primitive_index = UINTS(w4).y;
+    return triangle;
+}
 #endif

@@ -7,7 +7,9 @@
 const uint FEATURE_BOXES = 1u;   // geometry of boxes, met by the intersection of a trace program
 const uint FEATURE_FILTERS = 2u; // instances whose hits a trace program may refuse
 const uint FEATURE_REMAP = 4u;   // hardware: triangles and instances were reordered for the driver
-const uint FEATURES_ALL = 7u;
+const uint FEATURE_BVH2 = 8u;    // software: layout bvh2
+const uint FEATURE_COMPRESSED = 16u; // software: layout compressed4
+const uint FEATURES_ALL = 31u;
 
 // How a ray is tested against triangles.
 const uint LEVEL_FAST = 0u;       // Moeller-Trumbore: may lose rays at edges

@@ -29,6 +29,7 @@ LeafBox place_instance(uint index)
         SwGeometry geometry = AT(REF(SwGeometry)(record.geometry), 0);
         instance.nodes = geometry.bvh.nodes;
         instance.triangles = geometry.triangles;
+        instance.records = geometry.records;
         instance.root = geometry.bvh.root;
         instance.kind = geometry.kind;
         instance.extent = max(largest_entry(geometry.bvh.lo), largest_entry(geometry.bvh.hi));

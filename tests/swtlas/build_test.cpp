@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <random>
 
 #include "engine/scene/shapes.h"
 #include "swtlas/check.h"
+#include "swtlas/check_compressed.h"
 #include "swtlas/reference.h"
 #include "swtlas/sw_tlas.h"
 #include "tests/support/device.h"
@@ -33,7 +35,14 @@ std::vector<LeafBox> boxes_of(const std::vector<BvhTriangle>& triangles, const M
     return boxes;
 }
 
+void expect_sound(std::span<const CompressedRecord> records, const std::vector<LeafBox>& boxes,
+                  const std::string& name) {
+    for (const std::string& violation : check_compressed(records, boxes).violations)
+        ADD_FAILURE() << name << ", compressed: " << violation;
+}
+
 void expect_sound(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr) {
+    expect_sound(tree.records, reference::leaves_triangles(built(mesh, pushed), mesh.triangles), mesh.name);
     const TreeCheck check = check_tree(tree.bvh, tree.nodes, boxes_of(tree.triangles, mesh, pushed));
     for (const std::string& violation : check.violations) ADD_FAILURE() << mesh.name << ": " << violation;
 }
@@ -47,6 +56,12 @@ void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh) {
     EXPECT_TRUE(same_bytes(tree.nodes, twin.nodes)) << mesh.name;
     EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(built(mesh), mesh.triangles, order)))
         << mesh.name;
+    const std::vector<CompressedRecord> records =
+        reference::collapse(twin, tree.triangles, static_cast<uint>(tree.triangles.size()));
+    ASSERT_EQ(records.size(), tree.records.size()) << mesh.name;
+    for (const uint used : check_compressed(tree.records, boxes).used)
+        ASSERT_EQ(std::memcmp(&tree.records[used], &records[used], sizeof(CompressedRecord)), 0)
+            << mesh.name << ", record " << used;
 }
 
 // n copies of one triangle: all centroids equal.
@@ -166,7 +181,7 @@ std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transfor
     const std::vector<LeafBox> triangles = reference::leaves_triangles(mesh.positions, mesh.triangles);
     LeafBox all = empty_box();
     for (const LeafBox& box : triangles) all = {min(all.lo, box.lo), max(all.hi, box.hi)};
-    const SwGeometry block{{all.lo, all.hi, {}, 0, static_cast<uint>(triangles.size())}, {}, GEOMETRY_TRIANGLES, 0};
+    const SwGeometry block{{all.lo, all.hi, {}, 0, static_cast<uint>(triangles.size())}, {}, {}, GEOMETRY_TRIANGLES, 0};
     std::vector<InstanceRecord> records;
     for (const Transform& transform : transforms) {
         records.push_back(make_instance_record(transform));
@@ -194,6 +209,7 @@ TEST_F(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
     accel.sync();
     const SwTlas::Tree tree = accel.download_scene();
     const std::vector<LeafBox> boxes = instance_boxes(mesh, transforms);
+    expect_sound(tree.records, boxes, "instances");
     for (const std::string& violation : check_tree(tree.bvh, tree.nodes, boxes).violations) ADD_FAILURE() << violation;
     const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
     EXPECT_TRUE(same_bytes(tree.nodes, reference::hierarchy(boxes, codes, reference::sort(codes), false).nodes));
@@ -212,6 +228,7 @@ TEST_F(SwBuild, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
         accel.update_transforms(handle, moved);
         accel.sync();
         const SwTlas::Tree after = accel.download_scene();
+        expect_sound(after.records, instance_boxes(mesh, moved), "instances");
         for (const std::string& violation : check_tree(after.bvh, after.nodes, instance_boxes(mesh, moved)).violations)
             ADD_FAILURE() << count << ": " << violation;
         for (std::size_t i = 0; i < before.nodes.size(); ++i) {
@@ -276,6 +293,53 @@ TEST_F(SwBuild, TheCostOnTheDeviceIsThatOfTheChecker) {
             EXPECT_EQ(accel.sah_if_ready(handle), accel.sah(handle));
         }
     }
+}
+
+TEST(CompressedCheck, NamesWhatIsWrong) {
+    const Mesh mesh = make_soup(20, 1);
+    const std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);
+    const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
+    const std::vector<uint> order = reference::sort(codes);
+    const std::vector<CompressedRecord> good =
+        reference::collapse(reference::hierarchy(boxes, codes, order, true),
+                            reference::encode_triangles(mesh.positions, mesh.triangles, order), 20);
+    EXPECT_TRUE(check_compressed(good, boxes).violations.empty());
+    const auto wrong = [&](const std::function<void(CompressedRecord&)>& spoil) {
+        std::vector<CompressedRecord> bad = good;
+        spoil(bad.front());
+        const CompressedCheck check = check_compressed(bad, boxes);
+        return check.violations.empty() ? "" : check.violations.front();
+    };
+    EXPECT_NE(wrong([](CompressedRecord& root) { root.b.y -= 1; }).find("lies in planes"), std::string::npos);
+    EXPECT_NE(wrong([](CompressedRecord& root) { root.c.z = 1u << 24; }).find("of 3"), std::string::npos);
+    EXPECT_NE(wrong([](CompressedRecord& root) { root.a.w |= 7u << 24; }).find("has 7 children"), std::string::npos);
+    EXPECT_NE(wrong([](CompressedRecord& root) { root.c.z += 1; }), "");
+}
+
+TEST(Compressed, PlanesLieOutsideAtAnySizeAndPlace) {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    for (int i = 0; i < 20'000; ++i) {
+        const auto power = [&](int range) {
+            return std::ldexp(1.0f, static_cast<int>(random() % (2 * range)) - range);
+        };
+        const vec3 place = vec3(unit(random), unit(random), unit(random)) * power(100);
+        const float size = power(100);
+        NodeChildren children{};
+        std::vector<LeafBox> boxes;
+        children.count = 2 + static_cast<uint>(random() % 3);
+        for (uint child = 0; child < children.count; ++child) {
+            const vec3 a = place + size * vec3(unit(random), unit(random), unit(random));
+            const vec3 b = random() % 4 ? place + size * vec3(unit(random), unit(random), unit(random)) : a;
+            children.box[child] = {min(a, b), max(a, b)};
+            boxes.push_back(children.box[child]);
+        }
+        std::vector<CompressedRecord> records = {encode_node(children, 1)};
+        for (uint child = 0; child < children.count; ++child) records.push_back(encode_instance(child));
+        const CompressedCheck check = check_compressed(records, boxes);
+        ASSERT_TRUE(check.violations.empty()) << check.violations.front();
+    }
+    EXPECT_LT(1 + records_below(static_cast<uint>(Geometry::max_primitives)), MOST_RECORDS);
 }
 
 TEST(TreeCheck, NamesWhatIsWrong) {

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// Layout compressed4: one array of records, of which each is a node of up to four children, a primitive or an instance. The children of a node lie side by side, so that one number leads to all of them, and a traversal fetches
+// one record an iteration, whatever it is.
+//
+// A node keeps its children's boxes as planes of a grid, 8 bits each, rounded outwards by more than a traversal's
+// arithmetic may lose (after Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
+// BVHs", 2017, who have eight children and bit masks).
+#ifndef TWINRAY_SHARED_COMPRESSED_H
+#define TWINRAY_SHARED_COMPRESSED_H
+#include "shaders/shared/build.h"
+
+const uint MOST_RECORDS = 1u << 25u; // a tree may have: what an entry on the stack can name; 20 million leaves
+
+// Records that a tree of so many leaves needs at most, without its root's: a node with fewer than four children has
+// leaves only, so that the most nodes come from pairs of leaves, of which 3 n + 1 have n nodes above them.
+FUNC uint records_below(uint leaf_count) { return leaf_count < 2u ? 0u : (5u * leaf_count - 4u) / 3u; }
+
+// The exponent of the smallest power of two by which lo..hi is 252 cells long at most, and a cell some roundings of the
+// coordinates: then what lies a cell below lo, rounded, is 1/2 to 3/2 of a cell below.
+FUNC uint cell_exponent(float lo, float hi)
+{
+    const float LONGEST = 0.003968253968f;              // 1 / 252
+    const float ROUNDINGS = 4.76837158203125e-07f;      // 2^-21
+    PRECISE float size = (hi - lo) * LONGEST;
+    float least = max(size, max(abs(lo), abs(hi)) * ROUNDINGS);
+    return clamp((floatBitsToUint(least) >> 23u) + 1u, 1u, 253u);
+}
+FUNC float cell_size(uint exponent) { return uintBitsToFloat(exponent << 23u); }
+FUNC float cells_per_unit(uint exponent) { return uintBitsToFloat((254u - exponent) << 23u); }
+
+// A plane in cells from the origin, moved outwards by a 256th of a cell at least: a traversal that computes with a plane's
+// distance from the ray in float32 is off by less than 2^-14 cells near it, and by its own padding far from it.
+FUNC uint cell_below(float plane, float origin, float per_unit)
+{
+    PRECISE float cells = (plane - origin) * per_unit - 0.00390625f;
+    return uint(clamp(floor(cells), 0.0f, 255.0f));
+}
+FUNC uint cell_above(float plane, float origin, float per_unit)
+{
+    PRECISE float cells = (plane - origin) * per_unit + 0.00390625f;
+    return uint(clamp(ceil(cells), 0.0f, 255.0f));
+}
+
+struct NodeChildren
+{
+    uint child[4]; // as in BvhNode
+    LeafBox box[4];
+    uint first[4]; // the leaves below are first..last in sorted order
+    uint last[4];
+    uint count;
+};
+
+// The planes of one axis: x those below, y those above.
+FUNC uvec2 encode_axis(NodeChildren children, uint axis, float origin, float per_unit)
+{
+    uvec2 planes = uvec2(0u, 0u);
+    for (uint i = 0u; i < children.count; i = i + 1u)
+    {
+        // A box that nothing hits has lo > hi.
+        bool is_solid = is_active(children.box[i]);
+        uint below = is_solid ? cell_below(children.box[i].lo[axis], origin, per_unit) : 255u;
+        uint above = is_solid ? cell_above(children.box[i].hi[axis], origin, per_unit) : 0u;
+        planes = uvec2(planes.x | below << 8u * i, planes.y | above << 8u * i);
+    }
+    return planes;
+}
+
+FUNC CompressedRecord encode_node(NodeChildren children, uint first_child)
+{
+    const float FARTHEST = 1.329227995784916e+36f; // 2^120
+    LeafBox around = empty_box();
+    for (uint i = 0u; i < children.count; i = i + 1u)
+    {
+        around.lo = min(around.lo, children.box[i].lo);
+        around.hi = max(around.hi, children.box[i].hi);
+    }
+    around.lo = is_active(around) ? clamp(around.lo, vec3(-FARTHEST), vec3(FARTHEST)) : vec3(0.0f);
+    around.hi = around.lo.x <= around.hi.x ? clamp(around.hi, vec3(-FARTHEST), vec3(FARTHEST)) : vec3(0.0f);
+    uint header = children.count << 24u;
+    vec3 origin = vec3(0.0f);
+    uvec2 planes[3];
+    for (uint axis = 0u; axis < 3u; axis = axis + 1u)
+    {
+        uint exponent = cell_exponent(around.lo[axis], around.hi[axis]);
+        PRECISE float lower = around.lo[axis] - cell_size(exponent);
+        origin[axis] = lower;
+        header = header | exponent << 8u * axis;
+        planes[axis] = encode_axis(children, axis, lower, cells_per_unit(exponent));
+    }
+    CompressedRecord record;
+    record.a = uvec4(floatBitsToUint(origin.x), floatBitsToUint(origin.y), floatBitsToUint(origin.z), header);
+    record.b = uvec4(planes[0].x, planes[0].y, planes[1].x, planes[1].y);
+    record.c = uvec4(planes[2].x, planes[2].y, first_child, 0u);
+    return record;
+}
+
+FUNC CompressedRecord encode_primitive(BvhTriangle t)
+{
+    CompressedRecord record;
+    record.a = uvec4(floatBitsToUint(t.v0.x), floatBitsToUint(t.v0.y), floatBitsToUint(t.v0.z), LEAF_BIT | t.primitive_index);
+    record.b = uvec4(floatBitsToUint(t.v1.x), floatBitsToUint(t.v1.y), floatBitsToUint(t.v1.z), floatBitsToUint(t.v2.x));
+    record.c = uvec4(floatBitsToUint(t.v2.y), floatBitsToUint(t.v2.z), 0u, 0u);
+    return record;
+}
+
+FUNC CompressedRecord encode_instance(uint index)
+{
+    CompressedRecord record;
+    record.a = uvec4(0u, 0u, 0u, LEAF_BIT | index);
+    record.b = uvec4(0u);
+    record.c = uvec4(0u);
+    return record;
+}
+
+FUNC BvhTriangle primitive_of(CompressedRecord record)
+{
+    BvhTriangle t;
+    t.v0 = vec3(uintBitsToFloat(record.a.x), uintBitsToFloat(record.a.y), uintBitsToFloat(record.a.z));
+    t.v1 = vec3(uintBitsToFloat(record.b.x), uintBitsToFloat(record.b.y), uintBitsToFloat(record.b.z));
+    t.v2 = vec3(uintBitsToFloat(record.b.w), uintBitsToFloat(record.c.x), uintBitsToFloat(record.c.y));
+    t.primitive_index = record.a.w & ~LEAF_BIT;
+    return t;
+}
+#endif

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// Traversal of a SwScene of layout bvh2: one loop over both levels, one stack.
+#ifndef TWINRAY_SHARED_TRAVERSE_BVH2_H
+#define TWINRAY_SHARED_TRAVERSE_BVH2_H
+#include "shaders/shared/visit.h"
+
+// Each inner node on a path leaves at most one entry: those of both levels, the mark between them and the bottom.
+const uint STACK_SIZE = 2u * DEEPEST_TREE + 4u;
+
+const uint END_OF_STACK = 0xffffffffu;   // == NOTHING: an empty scene ends at once
+const uint END_OF_INSTANCE = 0xfffffffeu;
+
+FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
+{
+    Search search = begin_search(ray);
+    RaySpace space = world_space(ray);
+    REF(BvhNode) nodes = scene.bvh.nodes;
+    REF(BvhTriangle) triangles = REF(BvhTriangle)(0ul);
+    bool in_instance = false;
+    InInstance inside;
+
+    uint stack[STACK_SIZE];
+    uint height = 1u;
+    stack[0] = END_OF_STACK;
+    uint cursor = scene.bvh.root;
+    while (cursor != END_OF_STACK)
+    {
+        bool descend = false;
+        if ((cursor & LEAF_BIT) == 0u)
+        {
+            BvhNode node = load_node(nodes, cursor);
+            float enter0 = 0.0f;
+            float enter1 = 0.0f;
+            bool hit0 = enter_box(node.lo0, node.hi0, space, search.t_min, search.t_best, enter0);
+            bool hit1 = enter_box(node.lo1, node.hi1, space, search.t_min, search.t_best, enter1);
+            bool first_is_0 = hit0 && (!hit1 || enter0 <= enter1);
+            cursor = first_is_0 ? node.child0 : node.child1;
+            if (hit0 && hit1)
+            {
+                stack[height] = first_is_0 ? node.child1 : node.child0;
+                height = height + 1u;
+            }
+            descend = hit0 || hit1;
+        }
+        else if (in_instance)
+        {
+            BvhTriangle leaf = load_triangle(triangles, cursor & ~LEAF_BIT);
+            if (visit_leaf(leaf, inside, space, options, search) && options.query == QUERY_ANY) break;
+        }
+        else
+        {
+            uint index = cursor & ~LEAF_BIT;
+            SwInstance instance = AT(scene.instances, index);
+            if (is_visible(instance, options.mask))
+            {
+                inside = enter_instance(instance, index, options);
+                space = space_in(instance, inside, ray, options);
+                nodes = instance.nodes;
+                triangles = instance.triangles;
+                stack[height] = END_OF_INSTANCE;
+                height = height + 1u;
+                in_instance = true;
+                cursor = instance.root;
+                descend = true;
+            }
+        }
+        if (!descend)
+        {
+            height = height - 1u;
+            cursor = stack[height];
+            if (cursor == END_OF_INSTANCE)
+            {
+                space = world_space(ray);
+                nodes = scene.bvh.nodes;
+                in_instance = false;
+                height = height - 1u;
+                cursor = stack[height];
+            }
+        }
+    }
+    return search.best;
+}
+#endif

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+// What every traversal of a SwScene does at instances and at primitives, whatever its layout.
+#ifndef TWINRAY_SHARED_VISIT_H
+#define TWINRAY_SHARED_VISIT_H
+#include "shaders/shared/bvh.h"
+#include "shaders/shared/intersect.h"
+#include "shaders/shared/trace.h"
+#include "shaders/shared/transform.h"
+#ifdef TWINRAY_REFINED
+#include "shaders/shared/certified.h"
+#endif
+
+// Rounding of the world-to-object transform moves a ray by a few roundings of its origin's size.
+FUNC float world_pad(vec3 origin) { return largest_entry(origin) * 9.5367431640625e-07f; } // 2^-20
+
+// Which side an instance's triangles hide from a ray: CULL_FRONT, CULL_BACK or 0.
+FUNC uint culled_side(uint ray_flags, uint instance_flags)
+{
+    uint side = ray_flags & (CULL_BACK | CULL_FRONT);
+    if (side == 0u || (instance_flags & INSTANCE_NO_CULLING) != 0u) return 0u;
+    return (instance_flags & INSTANCE_TURNED) != 0u ? side ^ (CULL_BACK | CULL_FRONT) : side;
+}
+
+// What traversal must know of the instance it is in.
+struct InInstance
+{
+    uint index;
+    uint custom_index;
+    uint culled; // side of its triangles that is not hit
+    bool has_boxes;
+    bool is_filtered;
+    float error; // at LEVEL_CERTIFIED: see CertifiedRay; else 0
+};
+
+FUNC InInstance enter_instance(SwInstance instance, uint index, TraceOptions options)
+{
+    InInstance inside;
+    inside.index = index;
+    inside.custom_index = instance.custom_index_mask & 0xffffffu;
+    inside.culled = culled_side(options.flags, instance.flags);
+    inside.has_boxes = (options.features & FEATURE_BOXES) != 0u && instance.kind == GEOMETRY_BOXES;
+    inside.error = 0.0f;
+    inside.is_filtered = (options.features & FEATURE_FILTERS) != 0u && (instance.flags & INSTANCE_FILTERED) != 0u;
+    return inside;
+}
+
+// The ray in the space of the instance's geometry.
+FUNC RaySpace space_in(SwInstance instance, INOUT(InInstance) inside, Ray ray, TraceOptions options)
+{
+#ifdef TWINRAY_REFINED
+    if (options.level == LEVEL_CERTIFIED)
+    {
+        CertifiedRay mapped = certified_ray(AT(options.instances, inside.index), ray, options.advance != double(0.0f));
+        inside.error = mapped.error;
+        return make_ray_space(mapped.origin, mapped.direction, mapped.error);
+    }
+#endif
+    Rows to_object;
+    to_object.r0 = instance.world_to_object[0];
+    to_object.r1 = instance.world_to_object[1];
+    to_object.r2 = instance.world_to_object[2];
+    vec3 origin = transform_point(to_object, ray.origin);
+    return make_ray_space(origin, transform_vector(to_object, ray.direction), corner_pad(origin, instance.extent));
+}
+
+FUNC Candidate candidate_of(InInstance inside, uint primitive_index, TraceOptions options)
+{
+    Candidate candidate;
+    candidate.primitive_index = primitive_index;
+    candidate.instance_index = inside.index;
+    candidate.custom_index = inside.custom_index;
+    candidate.user_data = options.user_data;
+    return candidate;
+}
+
+FUNC bool intersect_box(BvhTriangle box, InInstance inside, RaySpace space, float t_min, float t_best,
+                        TraceOptions options, INOUT(TriangleHit) hit)
+{
+    float enter = 0.0f;
+    if (!enter_box(box.v0, box.v1, space, t_min, t_best, enter)) return false;
+    Ray ray_local;
+    ray_local.origin = space.origin;
+    ray_local.direction = space.direction;
+    ray_local.t_min = t_min;
+    ray_local.t_max = t_best;
+    vec2 uv = vec2(0.0f);
+    hit.t = 0.0f;
+    hit.t_low = 0.0f;
+    hit.along = false;
+    bool is_met = intersect_primitive(candidate_of(inside, box.primitive_index, options), ray_local, hit.t, uv);
+    hit.u = uv.x;
+    hit.v = uv.y;
+    return is_met;
+}
+
+// Whether the ray's line meets the primitive on a side that counts, and where.
+FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, float t_min, float t_best,
+                         TraceOptions options, INOUT(TriangleHit) hit)
+{
+    if (inside.has_boxes) return intersect_box(leaf, inside, space, t_min, t_best, options, hit);
+    bool is_met = false;
+#ifdef TWINRAY_REFINED
+    if (options.level == LEVEL_CERTIFIED)
+        is_met = intersect_certified(leaf, space, inside.error, inside.index, options, hit);
+    else
+#endif
+    if (options.level == LEVEL_FAST) is_met = intersect_triangle_fast(leaf.v0, leaf.v1, leaf.v2, space, hit);
+    else is_met = intersect_triangle(leaf.v0, leaf.v1, leaf.v2, space, hit);
+    return is_met && (inside.culled == 0u || inside.culled != (hit.along ? CULL_BACK : CULL_FRONT));
+}
+
+// The order of hits: by t, then by (instance, primitive). `low`: see TriangleHit::t_low; of a limit 0.
+FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_index, float t_best, float t_best_low, Hit best)
+{
+    bool is_lower = best.hit != 0u && (instance_index < best.instance_index ||
+                    (instance_index == best.instance_index && primitive_index < best.primitive_index));
+    return hit.t < t_best ||
+           (hit.t == t_best && (hit.t_low < t_best_low || (hit.t_low == t_best_low && is_lower)));
+}
+FUNC bool comes_after(TriangleHit hit, float t_min) { return hit.t > t_min || (hit.t == t_min && hit.t_low > 0.0f); }
+
+// What has been found so far, and where there is more to find.
+struct Search
+{
+    Hit best;
+    float t_min;
+    float t_best;
+    float t_best_low;
+};
+
+FUNC Search begin_search(Ray ray)
+{
+    Search search;
+    search.best = miss();
+    search.t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;
+    search.t_best = ray.t_max;
+    search.t_best_low = 0.0f;
+    return search;
+}
+
+// Whether the primitive is hit before all that were found.
+FUNC bool visit_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
+{
+    TriangleHit hit;
+    if (!intersect_leaf(leaf, inside, space, search.t_min, search.t_best, options, hit) || !comes_after(hit, search.t_min) ||
+        !comes_before(hit, inside.index, leaf.primitive_index, search.t_best, search.t_best_low, search.best) ||
+        (inside.is_filtered &&
+         !accept_hit(candidate_of(inside, leaf.primitive_index, options), t_of_given(hit.t, options),
+                     vec2(hit.u, hit.v))))
+        return false;
+    search.t_best = hit.t;
+    search.t_best_low = hit.t_low;
+    search.best.hit = 1u;
+    search.best.t = hit.t;
+    search.best.u = hit.u;
+    search.best.v = hit.v;
+    search.best.primitive_index = leaf.primitive_index;
+    search.best.instance_index = inside.index;
+    search.best.custom_index = inside.custom_index;
+    return true;
+}
+
+FUNC bool is_visible(SwInstance instance, uint mask)
+{
+    return (instance.custom_index_mask >> 24u & mask) != 0u && instance.root != NOTHING;
+}
+
+FUNC RaySpace world_space(Ray ray) { return make_ray_space(ray.origin, ray.direction, world_pad(ray.origin)); }
+#endif

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "swtlas/check_compressed.h"
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+constexpr std::size_t max_violations = 20;
+constexpr double least_margin = 1.0 / 512;  // of a cell: half of what is added, the rest may round
+
+// The planes of the boxes of a node's children, exactly.
+struct Planes {
+    glm::dvec3 lo, hi;
+    glm::dvec3 cell;
+};
+
+Planes planes_of(const CompressedRecord& node, uint child) {
+    const auto plane = [&](uint word) { return static_cast<double>(word >> 8 * child & 0xff); };
+    const glm::dvec3 origin(uintBitsToFloat(node.a.x), uintBitsToFloat(node.a.y), uintBitsToFloat(node.a.z));
+    const glm::dvec3 cell(cell_size(node.a.w & 0xff), cell_size(node.a.w >> 8 & 0xff),
+                          cell_size(node.a.w >> 16 & 0xff));
+    return {origin + cell * glm::dvec3(plane(node.b.x), plane(node.b.z), plane(node.c.x)),
+            origin + cell * glm::dvec3(plane(node.b.y), plane(node.b.w), plane(node.c.y)), cell};
+}
+
+class Walk {
+  public:
+    Walk(std::span<const CompressedRecord> records, std::span<const LeafBox> leaf_boxes, CompressedCheck& result)
+        : records_(records),
+          leaf_boxes_(leaf_boxes),
+          result_(result),
+          seen_records_(records.size()),
+          seen_leaves_(leaf_boxes.size()) {}
+
+    LeafBox visit(uint index, uint depth) {
+        if (index >= records_.size()) return violated(text("record ", index, " of ", records_.size()));
+        if (seen_records_[index]) return violated(text("record ", index, " is reached twice"));
+        seen_records_[index] = true;
+        result_.used.push_back(index);
+        const CompressedRecord& record = records_[index];
+        if (record.a.w & LEAF_BIT) return visit_leaf(record.a.w & ~LEAF_BIT);
+        result_.depth = std::max(result_.depth, depth + 1);
+        if (depth >= DEEPEST_TREE) return violated(text("depth exceeds ", DEEPEST_TREE));
+        return visit_node(index, depth);
+    }
+
+    void finish() {
+        for (std::size_t i = 0; i < seen_leaves_.size(); ++i)
+            if (!seen_leaves_[i]) violated(text("leaf ", i, " is not reached"));
+    }
+
+    LeafBox violated(std::string sentence) {
+        if (result_.violations.size() < max_violations) result_.violations.push_back(std::move(sentence));
+        return empty_box();
+    }
+
+  private:
+    LeafBox visit_leaf(uint leaf) {
+        if (leaf >= leaf_boxes_.size()) return violated(text("leaf ", leaf, " of ", leaf_boxes_.size()));
+        if (seen_leaves_[leaf]) violated(text("leaf ", leaf, " is reached twice"));
+        seen_leaves_[leaf] = true;
+        return leaf_boxes_[leaf];
+    }
+
+    LeafBox visit_node(uint index, uint depth) {
+        const CompressedRecord& node = records_[index];
+        const uint count = node.a.w >> 24;
+        if (count < 2 || count > 4) return violated(text("record ", index, " has ", count, " children"));
+        ++result_.nodes;
+        result_.children += count;
+        LeafBox all = empty_box();
+        for (uint child = 0; child < count; ++child) {
+            const LeafBox below = visit(node.c.z + child, depth + 1);
+            if (!is_active(below)) continue;
+            const Planes planes = planes_of(node, child);
+            for (int axis = 0; axis < 3; ++axis)
+                if (planes.lo[axis] + least_margin * planes.cell[axis] > double{below.lo[axis]} ||
+                    planes.hi[axis] - least_margin * planes.cell[axis] < double{below.hi[axis]})
+                    violated(text("record ", index, ": child ", child, " from ", below.lo[axis], " to ", below.hi[axis],
+                                  " lies in planes ", planes.lo[axis], " and ", planes.hi[axis]));
+            all = {min(all.lo, below.lo), max(all.hi, below.hi)};
+        }
+        return all;
+    }
+
+    std::span<const CompressedRecord> records_;
+    std::span<const LeafBox> leaf_boxes_;
+    CompressedCheck& result_;
+    std::vector<bool> seen_records_, seen_leaves_;
+};
+
+}  // namespace
+
+CompressedCheck check_compressed(std::span<const CompressedRecord> records, std::span<const LeafBox> leaf_boxes) {
+    CompressedCheck result;
+    Walk walk(records, leaf_boxes, result);
+    if (leaf_boxes.empty()) return result;
+    walk.visit(0, 0);
+    walk.finish();
+    return result;
+}
+
+}  // namespace twinray

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// Layouts of SwTlas: the same hits, bit for bit.
+#include <cstring>
+#include <random>
+
+#include "engine/verify/aimed_rays.h"
+#include "tests/accel/accel_fixture.h"
+#include "test_program.trace_program.h"
+
+namespace twinray {
+namespace {
+
+class Layouts : public test::VulkanTest, public ::testing::WithParamInterface<Level> {
+  protected:
+    void SetUp() override {
+        VulkanTest::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        if (SwTlas::capability_on(context().facts(), feature_of(GetParam())).support == Support::unsupported)
+            TWINRAY_LACKS("float64", "no float64");
+        for (const Layout layout : {Layout::bvh2, Layout::compressed4})
+            accels_.push_back(std::make_unique<SwTlas>(
+                context(), AccelOptions{.level = std::max(GetParam(), Level::watertight), .layout = layout}));
+    }
+    void TearDown() override {
+        accels_.clear();
+        VulkanTest::TearDown();
+    }
+    void expect_equal(std::span<const Ray> rays, TraceDesc desc = {}) {
+        desc.level = GetParam();
+        std::vector<Hit> closest[2], any[2];
+        for (std::size_t i = 0; i < 2; ++i) {
+            const auto program = accels_[i]->make_program(test_program);
+            desc.program = program.get();
+            closest[i] = accels_[i]->closest_hits(rays, desc);
+            any[i] = accels_[i]->any_hits(rays, desc);
+        }
+        std::size_t hits = 0;
+        for (std::size_t r = 0; r < rays.size(); ++r) {
+            ASSERT_EQ(std::memcmp(&closest[0][r], &closest[1][r], sizeof(Hit)), 0) << "ray " << r;
+            ASSERT_EQ(any[0][r].hit, closest[0][r].hit);
+            ASSERT_EQ(any[1][r].hit, closest[1][r].hit);
+            hits += closest[0][r].hit;
+        }
+        EXPECT_GT(hits, rays.size() / 50);
+    }
+
+    std::vector<std::unique_ptr<SwTlas>> accels_;
+};
+
+std::string name_of_level(const ::testing::TestParamInfo<Level>& info) {
+    const char* names[] = {"fast", "watertight", "refined", "certified"};
+    return names[static_cast<std::size_t>(info.param)];
+}
+INSTANTIATE_TEST_SUITE_P(Every, Layouts,
+                         ::testing::Values(Level::fast, Level::watertight, Level::refined, Level::certified),
+                         name_of_level);
+
+TEST_P(Layouts, AgreeOnInstancesOfEveryKind) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    const Mesh meshes[] = {make_icosphere(3), make_soup(500, 3, 0.2f), make_grid(8, 8), make_soup(1, 5)};
+    for (const auto& accel : accels_) {
+        random.seed(3);
+        for (uint i = 0; i < 60; ++i) {
+            const vec3 place = 3.0f * vec3(unit(random), unit(random), unit(random));
+            const vec3 size(unit(random), 0.7f, i % 5 ? 1 : -1e-3f);
+            accel->push(meshes[i % 4], Transform::translation(place) * Transform::scaling(size),
+                        {.custom_index = i, .mask = static_cast<std::uint8_t>(1 + i % 3), .filtered = i % 7 == 0});
+        }
+    }
+    const std::vector<Ray> rays = random_rays({vec3(-4), vec3(4)}, 20'000, 4);
+    expect_equal(rays);
+    expect_equal(rays, {.mask = 2});
+    expect_equal(rays, {.cull = Cull::back});
+    expect_equal(rays, {.cull = Cull::front});
+}
+
+// Rays within planes of boxes, through corners, from far away, and along axes.
+TEST_P(Layouts, AgreeWhereBoxesAreMetExactly) {
+    const Mesh grid = make_grid(16, 16);
+    for (const auto& accel : accels_) accel->push(grid, Transform::scaling({16, 16, 16}));
+    std::mt19937 random(5);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 20'000; ++i) {
+        const auto whole = [&] { return static_cast<float>(random() % 17) - 8; };
+        const vec3 target(whole(), 0, whole());
+        const float far = i % 3 ? 1.0f : 1e5f;
+        const vec3 direction(i % 2 ? 0.0f : whole(), -1, i % 5 ? 0.0f : whole());
+        rays.push_back({target - far * direction, 0, direction, INFINITY});
+    }
+    expect_equal(rays);
+}
+
+TEST_P(Layouts, AgreeAfterRefits) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    Mesh soup = make_soup(700, 3, 0.2f);
+    std::vector<AccelHandle> handles;
+    for (const auto& accel : accels_) {
+        handles.push_back(accel->push(soup, std::vector<Transform>(20)));
+        accel->sync();
+    }
+    for (int step = 0; step < 3; ++step) {
+        for (vec3& position : soup.positions) position += 0.3f * vec3(unit(random), unit(random), unit(random));
+        std::vector<Transform> transforms;
+        for (int i = 0; i < 20; ++i)
+            transforms.push_back(Transform::translation(2.0f * vec3(unit(random), unit(random), unit(random))));
+        for (std::size_t a = 0; a < 2; ++a) {
+            accels_[a]->update_vertices(handles[a], soup.positions);
+            accels_[a]->update_transforms(handles[a], transforms);
+            accels_[a]->sync();
+        }
+        expect_equal(random_rays({vec3(-3), vec3(3)}, 10'000, static_cast<std::uint64_t>(step)));
+    }
+}
+
+}  // namespace
+}  // namespace twinray
