@@ -24,6 +24,7 @@ Control contracted() {
 Control without_padding() {
     Control control{{}, true, 0.01};
     control.code.name = "control: without padding";
+    control.layout = Layout::bvh2;
     control.code.software = control_without_padding_spirv;
     return control;
 }

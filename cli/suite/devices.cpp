@@ -44,16 +44,16 @@ std::string Devices::why_not(const Subject& subject) {
 
 Level Devices::level_to_make(const Subject& subject) { return std::max(subject.level, Level::watertight); }
 
-std::unique_ptr<AbstractAccel> Devices::make_accel(const Subject& subject) {
-    const AccelOptions options{level_to_make(subject), layout_};
+std::unique_ptr<AbstractAccel> Devices::make_accel(const Subject& subject, Layout layout) {
+    const AccelOptions options{level_to_make(subject), layout};
     Context& where = context(subject.backend);
     if (is_ours(subject.backend)) return std::make_unique<SwTlas>(where, options);
     return std::make_unique<HwTlas>(where, BuildOrder::automatic, options);
 }
 
-AbstractAccel& Devices::empty_accel(const Subject& subject) {
-    std::unique_ptr<AbstractAccel>& accel = accels_[{subject.backend, level_to_make(subject)}];
-    if (!accel) accel = make_accel(subject);
+AbstractAccel& Devices::empty_accel(const Subject& subject, Layout layout) {
+    std::unique_ptr<AbstractAccel>& accel = accels_[{subject.backend, level_to_make(subject), layout}];
+    if (!accel) accel = make_accel(subject, layout);
     for (const AccelHandle handle : accel->handles()) accel->erase(handle);
     return *accel;
 }

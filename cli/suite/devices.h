@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <tuple>
 #include <memory>
 #include <string>
 #include <utility>
@@ -28,11 +29,13 @@ class Devices {
     // Why it cannot answer here; "" if it can.
     std::string why_not(const Subject& subject);
     // Empty: whatever an earlier case left is erased.
-    AbstractAccel& empty_accel(const Subject& subject);
+    AbstractAccel& empty_accel(const Subject& subject) { return empty_accel(subject, layout_); }
+    AbstractAccel& empty_accel(const Subject& subject, Layout layout);
     // The level of the accelerator that a subject's traces run on: subjects that share it share the accelerator.
     static Level level_to_make(const Subject& subject);
     // One of a case's own.
-    std::unique_ptr<AbstractAccel> make_accel(const Subject& subject);
+    std::unique_ptr<AbstractAccel> make_accel(const Subject& subject) { return make_accel(subject, layout_); }
+    std::unique_ptr<AbstractAccel> make_accel(const Subject& subject, Layout layout);
     // Compiled when first needed; not for the pipeline, in which no kernel traces.
     const CrossingCounter& crossing_counter(const Subject& subject);
     // What the library has warned of since the last call; cases provoke warnings, so they are not printed.
@@ -45,7 +48,7 @@ class Devices {
     ContextDesc desc_;
     Layout layout_;
     std::unique_ptr<Context> context_, pipeline_context_;
-    std::map<std::pair<Backend, Level>, std::unique_ptr<AbstractAccel>> accels_;
+    std::map<std::tuple<Backend, Level, Layout>, std::unique_ptr<AbstractAccel>> accels_;
     std::map<std::pair<Backend, Level>, std::unique_ptr<CrossingCounter>> counters_;
 };
 

@@ -68,6 +68,11 @@ assert [r["counts"] for r in again] == [r["counts"] for r in records
 
 report("--only", "N07", "-o", str(here / "third"), "--baseline", str(here / "none.jsonl"), status=1)
 assert not (here / "third").exists(), "a report was begun although its baseline cannot be read"
+# Negative controls show faults in both layouts, or the report fails.
+for layout in ("compressed4", "bvh2"):
+    report("--only", "W14,W15", "--accel", "sw", "--layout", layout, "-o", str(here / ("controls_" + layout)))
+    assert sum(r["variant"].startswith("control: ") and bool(r["pass"])
+               for r in lines("controls_" + layout + "/report.jsonl")) >= 2
 report("--accel", "gpu", status=2)
 report("--only", "Q99", "-o", str(here / "fourth"), status=1)
 print("report: the command works")
