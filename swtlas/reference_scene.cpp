@@ -76,7 +76,8 @@ Ray Scene::searched_ray(const Ray& ray, uint level, double& advance) const {
 Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {
     double advance = 0;
     const Ray searched = searched_ray(ray, level, advance);
-    const uint features = layout_ == Layout::bvh2 ? FEATURE_BVH2 : FEATURE_COMPRESSED;
+    const uint features = (layout_ == Layout::bvh2 ? FEATURE_BVH2 : FEATURE_COMPRESSED) |
+                          (instances_.size() == 1 ? 0 : FEATURE_INSTANCES);
     const TraceOptions options{
         mask, 0, query, level, features, 0, ray, advance, Ref<RefineInstance>::to(refined_.data())};
     const Hit hit = traverse(header_, searched, options);

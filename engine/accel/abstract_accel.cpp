@@ -164,7 +164,7 @@ uint AbstractAccel::Placement::features() const {
 }
 
 uint AbstractAccel::features_of_placements() const {
-    uint features = own_features();
+    uint features = own_features() | features_of_count(n_instances());
     for (const auto& [id, placement] : placements_) features |= placement.features();
     return features;
 }

@@ -258,6 +258,8 @@ class AbstractAccel {
     virtual float unit_of(std::span<const vec3> positions) const { return Geometry::near_unit(positions); }
     // FEATURE_* of whatever the scene holds.
     virtual uint own_features() const { return 0; }
+    // FEATURE_* of a scene of so many instances.
+    virtual uint features_of_count(std::size_t) const { return 0; }
     // With `code`, or with the accelerator's own code where the scene needs no program.
     virtual std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const = 0;
     std::uint64_t id() const { return id_; }
@@ -323,6 +325,7 @@ class AbstractAccel {
     bool is_compactable(const Placement& placement) const;
     uint features_of_placements() const;
     void warn_of_unusable_instances();
+    const TraceProgram& own_program(uint features) const;
     const TraceProgram& program_for(const AccelView& view, const TraceDesc& desc) const;
     void check_desc(const AccelView& view, const TraceDesc& desc) const;
 
@@ -341,8 +344,8 @@ class AbstractAccel {
     Dirty dirty_ = Dirty::structure;
     bool has_moved_ = false;  // something has moved after a build, so that builds allow refits
     std::uint64_t revision_ = 0;
-    uint features_ = 0;                                  // of the scene that was built
-    mutable std::unique_ptr<TraceProgram> own_program_;  // made by the first trace
+    uint features_ = 0;                                                   // of the scene that was built
+    mutable std::map<uint, std::unique_ptr<TraceProgram>> own_programs_;  // by features, made by the first trace
     SyncPoint synced_;
     uint warned_unusable_ = 0;
     std::unique_ptr<BuiltScene> scene_;

@@ -39,13 +39,23 @@ void AbstractAccel::check_desc(const AccelView& view, const TraceDesc& desc) con
              name_of(feature_of(options_.level)), "; see AccelOptions");
 }
 
+const TraceProgram& AbstractAccel::own_program(uint features) const {
+    const uint without_program = features & ~(FEATURE_BOXES | FEATURE_FILTERS);
+    std::unique_ptr<TraceProgram>& program = own_programs_[without_program];
+    if (!program) program = create_program(nullptr, without_program);
+    return *program;
+}
+
 // Boxes that nothing can meet, and hits that nobody judges, are no answer.
 const TraceProgram& AbstractAccel::program_for(const AccelView& view, const TraceDesc& desc) const {
-    if (!desc.program && !own_program_) own_program_ = create_program(nullptr, own_features());
-    const TraceProgram& program = desc.program ? *desc.program : *own_program_;
+    const TraceProgram& program = desc.program ? *desc.program : own_program(view.features);
     if (program.accel() != id_) fail(name_, ": trace: program '", program.name(), "' was made by another accelerator");
     if (const uint missing = view.features & ~program.features(); missing)
-        fail(name_, ": trace: the scene has ", missing & FEATURE_BOXES ? "boxes" : "filtered instances", ", and ",
+        fail(name_, ": trace: the scene has ",
+             missing & FEATURE_BOXES     ? "boxes"
+             : missing & FEATURE_FILTERS ? "filtered instances"
+                                         : "several instances",
+             ", and ",
              desc.program ? "program '" + program.name() + "' is not specialised for them"
                           : std::string("TraceDesc::program is not set"));
     return program;

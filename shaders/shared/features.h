@@ -9,7 +9,8 @@ const uint FEATURE_FILTERS = 2u; // instances whose hits a trace program may ref
 const uint FEATURE_REMAP = 4u;   // hardware: triangles and instances were reordered for the driver
 const uint FEATURE_BVH2 = 8u;    // software: layout bvh2
 const uint FEATURE_COMPRESSED = 16u; // software: layout compressed4
-const uint FEATURES_ALL = 31u;
+const uint FEATURE_INSTANCES = 32u;  // software: not exactly one instance, so that there is a top level to traverse
+const uint FEATURES_ALL = 63u;
 
 // How a ray is tested against triangles.
 const uint LEVEL_FAST = 0u;       // Moeller-Trumbore: may lose rays at edges

@@ -13,16 +13,28 @@ const uint END_OF_INSTANCE = 0xfffffffeu;
 FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
 {
     Search search = begin_search(ray);
-    RaySpace space = world_space(ray);
+    bool has_top = (options.features & FEATURE_INSTANCES) != 0u;
+    RaySpace space;
     REF(BvhNode) nodes = scene.bvh.nodes;
     REF(BvhTriangle) triangles = REF(BvhTriangle)(0ul);
-    bool in_instance = false;
     InInstance inside;
+    uint cursor = scene.bvh.root;
+    if (has_top) space = world_space(ray);
+    else if (cursor != END_OF_STACK)
+    {
+        SwInstance instance = AT(scene.instances, 0);
+        if (!is_visible(instance, options.mask)) return search.best;
+        inside = enter_instance(instance, 0u, options);
+        space = space_in(instance, inside, ray, options);
+        nodes = instance.nodes;
+        triangles = instance.triangles;
+        cursor = instance.root;
+    }
+    bool in_instance = !has_top;
 
     uint stack[STACK_SIZE];
     uint height = 1u;
     stack[0] = END_OF_STACK;
-    uint cursor = scene.bvh.root;
     while (cursor != END_OF_STACK)
     {
         bool descend = false;
@@ -42,7 +54,7 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
             }
             descend = hit0 || hit1;
         }
-        else if (in_instance)
+        else if (!has_top || in_instance)
         {
             BvhTriangle leaf = load_triangle(triangles, cursor & ~LEAF_BIT);
             if (visit_leaf(leaf, inside, space, options, search) && options.query == QUERY_ANY) break;
@@ -68,7 +80,7 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
         {
             height = height - 1u;
             cursor = stack[height];
-            if (cursor == END_OF_INSTANCE)
+            if (has_top && cursor == END_OF_INSTANCE)
             {
                 space = world_space(ray);
                 nodes = scene.bvh.nodes;

@@ -125,10 +125,20 @@ FUNC Hit traverse_compressed(SwScene scene, Ray ray, TraceOptions options)
 {
     Search search = begin_search(ray);
     if (scene.bvh.root == NOTHING) return search.best;
-    RaySpace space = world_space(ray);
+    bool has_top = (options.features & FEATURE_INSTANCES) != 0u;
+    RaySpace space;
     REF(CompressedRecord) records = scene.records;
-    bool in_instance = false;
     InInstance inside;
+    if (has_top) space = world_space(ray);
+    else
+    {
+        SwInstance instance = AT(scene.instances, 0);
+        if (!is_visible(instance, options.mask)) return search.best;
+        inside = enter_instance(instance, 0u, options);
+        space = space_in(instance, inside, ray, options);
+        records = instance.records;
+    }
+    bool in_instance = !has_top;
 
     uint stack[GROUP_STACK_SIZE];
     uint height = 1u;
@@ -151,7 +161,7 @@ FUNC Hit traverse_compressed(SwScene scene, Ray ray, TraceOptions options)
             }
             descend = count > 0u;
         }
-        else if (in_instance)
+        else if (!has_top || in_instance)
         {
             if (visit_leaf(primitive_of(record), inside, space, options, search) && options.query == QUERY_ANY) break;
         }
@@ -179,7 +189,7 @@ FUNC Hit traverse_compressed(SwScene scene, Ray ray, TraceOptions options)
         {
             height = height - 1u;
             group = stack[height];
-            if (group == LEAVE_INSTANCE)
+            if (has_top && group == LEAVE_INSTANCE)
             {
                 space = world_space(ray);
                 records = scene.records;

@@ -91,6 +91,34 @@ TEST_P(Layouts, AgreeWhereBoxesAreMetExactly) {
     expect_equal(rays);
 }
 
+// One instance needs no top level, and the kernel for it must not be used for more.
+TEST_P(Layouts, InstancesMayComeAndGo) {
+    const Ray rays[] = {test::down(0.3f, 0.6f), test::down(10.3f, 0.6f)};
+    for (const auto& accel : accels_) {
+        const auto is_hit = [&] {
+            const std::vector<Hit> hits = accel->closest_hits(rays, {.level = GetParam()});
+            return std::pair{hits[0].hit, hits[1].hit};
+        };
+        EXPECT_EQ(is_hit(), std::pair(0u, 0u));
+        const AccelHandle first = accel->push(test::square(0));
+        EXPECT_EQ(is_hit(), std::pair(1u, 0u));
+        const AccelView one = accel->view();
+        EXPECT_EQ(one.features & FEATURE_INSTANCES, 0u);
+        const auto for_one = accel->make_program(test_program, one.features);
+        const AccelHandle second = accel->push(test::square(0), Transform::translation({10, 0, 0}), {.mask = 2});
+        EXPECT_EQ(is_hit(), std::pair(1u, 1u));
+        EXPECT_NE(test::error_of([&] {
+                      accel->closest_hits(rays, {.level = GetParam(), .program = for_one.get()});
+                  }).find("several instances"),
+                  std::string::npos);
+        accel->erase(first);
+        EXPECT_EQ(is_hit(), std::pair(0u, 1u));
+        EXPECT_EQ(accel->closest_hits(rays, {.mask = 1, .level = GetParam()})[1].hit, 0u) << "of another mask";
+        accel->erase(second);
+        EXPECT_EQ(is_hit(), std::pair(0u, 0u));
+    }
+}
+
 TEST_P(Layouts, AgreeAfterRefits) {
     std::mt19937 random(6);
     std::uniform_real_distribution<float> unit(-1, 1);
