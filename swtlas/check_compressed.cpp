@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "swtlas/check_compressed.h"
 
-#include <algorithm>
-
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -42,7 +40,6 @@ class Walk {
         result_.used.push_back(index);
         const CompressedRecord& record = records_[index];
         if (record.a.w & LEAF_BIT) return visit_leaf(record.a.w & ~LEAF_BIT);
-        result_.depth = std::max(result_.depth, depth + 1);
         if (depth >= DEEPEST_TREE) return violated(text("depth exceeds ", DEEPEST_TREE));
         return visit_node(index, depth);
     }
@@ -69,8 +66,6 @@ class Walk {
         const CompressedRecord& node = records_[index];
         const uint count = node.a.w >> 24;
         if (count < 2 || count > 4) return violated(text("record ", index, " has ", count, " children"));
-        ++result_.nodes;
-        result_.children += count;
         LeafBox all = empty_box();
         for (uint child = 0; child < count; ++child) {
             const LeafBox below = visit(node.c.z + child, depth + 1);

@@ -12,8 +12,6 @@ namespace twinray {
 struct CompressedCheck {
     std::vector<std::string> violations;  // one sentence each, at most 20
     std::vector<uint> used;               // records that are reached from the root's
-    uint depth = 0;                       // nodes on the longest path
-    std::size_t nodes = 0, children = 0;
 };
 
 // Walks a tree of layout compressed4 from records[0] and checks what traversal relies on: every leaf is reached exactly

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "engine/verify/segment.h"
+
 namespace twinray {
 namespace {
 
@@ -12,14 +14,6 @@ double cross2(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y
 
 glm::dvec3 absolute_product(const glm::dmat3& m, const glm::dvec3& v) {
     return glm::abs(m[0]) * std::abs(v.x) + glm::abs(m[1]) * std::abs(v.y) + glm::abs(m[2]) * std::abs(v.z);
-}
-
-double distance_to_segment(const glm::dvec2& a, const glm::dvec2& b) {
-    const glm::dvec2 edge = b - a;
-    const double square = glm::dot(edge, edge);
-    if (!(square > 0)) return glm::length(a);
-    const double along = std::clamp(-glm::dot(a, edge) / square, 0.0, 1.0);
-    return glm::length(a + along * edge);
 }
 
 // Positive inside, negative outside; a triangle seen edge-on has no inside.
@@ -32,7 +26,7 @@ double margin_of(const std::array<glm::dvec2, 3>& corners) {
         const double side = cross2(a, b);
         any_negative |= side < 0;
         any_positive |= side > 0;
-        distance = std::min(distance, distance_to_segment(a, b));
+        distance = std::min(distance, distance_to_segment(a, b, glm::dvec2(0)));
     }
     return any_negative != any_positive ? distance : -distance;
 }
