@@ -20,8 +20,8 @@ namespace {
 
 constexpr uint morton_bits = 30;
 
-KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv) {
-    return {.name = name, .spirv = spirv, .group_size = BUILD_GROUP};
+KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv, uint group_size = BUILD_GROUP) {
+    return {.name = name, .spirv = spirv, .group_size = group_size};
 }
 
 KernelDesc collapse_stage(uint step) {
@@ -45,10 +45,11 @@ struct Builder::Batch {
 };
 
 Builder::Builder(Context& context)
-    : sort_(context),
+    : run_(context.facts().kind == DeviceKind::cpu ? BUILD_GROUP : 8),
+      sort_(context),
       areas_(context),
-      leaves_triangles_(context, stage("swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
-      leaves_instances_(context, stage("swtlas_leaves_instances", swtlas_leaves_instances_spirv)),
+      leaves_triangles_(context, stage("swtlas_leaves_triangles", swtlas_leaves_triangles_spirv, LEAVES_GROUP)),
+      leaves_instances_(context, stage("swtlas_leaves_instances", swtlas_leaves_instances_spirv, LEAVES_GROUP)),
       morton_(context, stage("swtlas_morton", swtlas_morton_spirv)),
       node_areas_(context, stage("swtlas_node_areas", swtlas_node_areas_spirv)),
       tree_keys_(context, stage("swtlas_tree_keys", swtlas_tree_keys_spirv)),
@@ -106,9 +107,17 @@ Uints Builder::record_order(Commands& commands, const BuildPlan& plan, const Bat
 }
 
 void Builder::record_hierarchy(Commands& commands, const Batch& batch, Uints order, bool leaves_are_sorted) const {
-    const HierarchyArgs args{batch.trees, batch.blocks,  batch.boxes,       batch.codes,
-                             order,       batch.meeting, batch.block_count, leaves_are_sorted ? 1u : 0u};
-    hierarchy_.dispatch_groups(commands, args, batch.block_count);
+    const HierarchyArgs args{batch.trees,
+                             batch.blocks,
+                             batch.boxes,
+                             batch.codes,
+                             order,
+                             batch.meeting,
+                             batch.block_count,
+                             leaves_are_sorted ? 1u : 0u,
+                             run_,
+                             0};
+    hierarchy_.dispatch(commands, args, std::uint64_t{batch.block_count} * (BUILD_GROUP / run_));
 }
 
 void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,

@@ -53,6 +53,7 @@ class Builder {
     void record_climb(Commands& commands, const Batch& batch) const;
     void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
 
+    uint run_;  // leaves of an invocation of the hierarchy: few where there are many invocations
     RadixSort sort_;
     SurfaceArea areas_;
     Kernel<TriangleLeavesArgs> leaves_triangles_;

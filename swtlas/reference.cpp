@@ -41,8 +41,8 @@ struct TopDown {
         const std::size_t split = highest_split(first, last);
         const auto [child0, box0] = build(first, split);
         const auto [child1, box1] = build(split + 1, last);
-        nodes[split] = {
-            box0.lo, child0, box0.hi, child1, box1.lo, static_cast<uint>(first), box1.hi, static_cast<uint>(last)};
+        nodes[split] = {box0.lo, child0, box0.hi, static_cast<uint>(first),
+                        box1.lo, child1, box1.hi, static_cast<uint>(last)};
         return {static_cast<uint>(split), joined(box0, box1)};
     }
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/radix_sort.h"
 
+#include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "engine_sort_histogram.spv.h"
@@ -10,23 +12,37 @@
 namespace twinray {
 namespace {
 
-std::uint64_t block_count(std::uint64_t count) { return (count + SORT_BLOCK - 1) / SORT_BLOCK; }
+std::uint64_t block_count(std::uint64_t count, uint run) {
+    const std::uint64_t block = std::uint64_t{SORT_DIGITS} * run;
+    return (count + block - 1) / block;
+}
 
 }  // namespace
 
 RadixSort::RadixSort(Context& context)
-    : histogram_(context, {.name = "sort_histogram", .spirv = engine_sort_histogram_spirv, .group_size = SORT_DIGITS}),
+    : is_on_cpu_(context.facts().kind == DeviceKind::cpu),
+      histogram_(context, {.name = "sort_histogram", .spirv = engine_sort_histogram_spirv, .group_size = SORT_DIGITS}),
       scan_(context, {.name = "sort_scan", .spirv = engine_sort_scan_spirv, .group_size = SCAN_GROUP}),
       scatter_(context, {.name = "sort_scatter", .spirv = engine_sort_scatter_spirv, .group_size = SORT_DIGITS}) {}
 
-std::uint64_t RadixSort::counter_bytes(std::uint64_t count) { return block_count(count) * SORT_DIGITS * sizeof(uint); }
+std::uint64_t RadixSort::counter_bytes(std::uint64_t count) {
+    return block_count(count, SORT_SHORTEST_RUN) * SORT_DIGITS * sizeof(uint);
+}
+
+uint RadixSort::run_of(std::uint64_t count, bool is_on_cpu) {
+    constexpr uint blocks_that_keep_a_cpu_busy = 64;
+    if (!is_on_cpu) return SORT_SHORTEST_RUN;
+    const std::uint64_t run = std::bit_ceil(count / (SORT_DIGITS * blocks_that_keep_a_cpu_busy) + 1);
+    return static_cast<uint>(std::clamp<std::uint64_t>(run, SORT_SHORTEST_RUN, SORT_LONGEST_RUN));
+}
 
 RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
                                    std::uint32_t bits) const {
     if (count < 2) return pairs;
-    const auto blocks = static_cast<uint>(block_count(count));
+    const uint run = run_of(count, is_on_cpu_);
+    const auto blocks = static_cast<uint>(block_count(count, run));
     for (uint shift = 0; shift < bits; shift += SORT_DIGIT_BITS) {
-        const SortArgs args{pairs.keys, pairs.values, spare.keys, spare.values, counters, count, shift, blocks, 0};
+        const SortArgs args{pairs.keys, pairs.values, spare.keys, spare.values, counters, count, shift, blocks, run};
         histogram_.dispatch_groups(commands, args, blocks);
         scan_.dispatch_groups(commands, {counters, blocks * SORT_DIGITS, 0}, 1);
         scatter_.dispatch_groups(commands, args, blocks);

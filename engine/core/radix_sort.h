@@ -23,7 +23,12 @@ class RadixSort {
     Pairs record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
                  std::uint32_t bits) const;
 
+    // How many items a thread sorts: few on a GPU, which wants many threads; on a CPU so many that the counters of a
+    // thread, which do not depend on it, cost little.
+    static uint run_of(std::uint64_t count, bool is_on_cpu);
+
   private:
+    bool is_on_cpu_;
     Kernel<SortArgs> histogram_;
     Kernel<ScanArgs> scan_;
     Kernel<SortArgs> scatter_;

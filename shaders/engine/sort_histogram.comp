@@ -3,24 +3,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/sort.h"
+#include "shaders/engine/sort_columns.glsl"
 layout(local_size_x = SORT_DIGITS) in;
 layout(push_constant, scalar) uniform Push { SortArgs args; };
-
-shared uint histogram[SORT_DIGITS];
 
 void main()
 {
     uint thread = gl_LocalInvocationIndex;
     uint block = group_index();
     if (block >= args.block_count) return;
-    histogram[thread] = 0u;
-    barrier();
-    for (uint i = 0u; i < SORT_ITEMS_PER_THREAD; ++i)
-    {
-        uint item = block * SORT_BLOCK + i * SORT_DIGITS + thread;
-        if (item < args.count) atomicAdd(histogram[(AT(args.keys_in, item) >> args.shift) & (SORT_DIGITS - 1u)], 1u);
-    }
-    barrier();
-    AT(args.counts, thread * args.block_count + block) = histogram[thread];
+    uint begin = min((block * SORT_DIGITS + thread) * args.run, args.count);
+    count_digits(args, begin, min(begin + args.run, args.count));
+    uint sum = 0u;
+    for (uint t = 0u; t < SORT_DIGITS; ++t) sum += columns[thread * SORT_DIGITS + t];
+    AT(args.counts, thread * args.block_count + block) = sum;
 }

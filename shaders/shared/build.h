@@ -9,6 +9,7 @@
 #include "shaders/shared/triangle.h"
 
 const uint BUILD_GROUP = 256u;
+const uint LEAVES_GROUP = 32u; // invocations that share a block's leaves where they need each other: few barriers
 const uint INACTIVE_CODE = 0x3fffffffu; // Morton code of leaves without a finite box: last
 
 struct LeafBox
@@ -101,6 +102,8 @@ struct HierarchyArgs
     Uints meeting;          // by inner node: the far end of the range that arrived first, NOTHING before
     uint block_count;
     uint leaves_are_sorted; // 1: leaf references count sorted leaves; 0: they are the leaf's own index
+    uint run;               // leaves of an invocation, a divisor of BUILD_GROUP
+    uint reserved;
 };
 
 // Leads from a child to its parent: node << 1 | side, NOTHING for the root.

@@ -23,9 +23,9 @@ struct BvhNode
     vec3 lo0;
     uint child0;
     vec3 hi0;
-    uint child1;
-    vec3 lo1;
     uint first; // the leaves below are first..last in sorted order
+    vec3 lo1;
+    uint child1;
     vec3 hi1;
     uint last;
 };
@@ -113,9 +113,9 @@ FUNC BvhNode load_node(REF(BvhNode) nodes, uint index)
     node.lo0 = vec3(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x);
     node.child0 = UINTS(w1).y;
     node.hi0 = vec3(FLOATS(w2).x, FLOATS(w2).y, FLOATS(w3).x);
-    node.child1 = UINTS(w3).y;
+    node.first = UINTS(w3).y;
     node.lo1 = vec3(FLOATS(w4).x, FLOATS(w4).y, FLOATS(w5).x);
-    node.first = UINTS(w5).y;
+    node.child1 = UINTS(w5).y;
     node.hi1 = vec3(FLOATS(w6).x, FLOATS(w6).y, FLOATS(w7).x);
     node.last = UINTS(w7).y;
     return node;

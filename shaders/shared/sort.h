@@ -6,8 +6,8 @@
 
 const uint SORT_DIGIT_BITS = 6u;
 const uint SORT_DIGITS = 64u;             // == threads of a group, each of which owns one digit
-const uint SORT_ITEMS_PER_THREAD = 32u;
-const uint SORT_BLOCK = 2048u;            // items of a group
+const uint SORT_SHORTEST_RUN = 32u;       // items of a thread
+const uint SORT_LONGEST_RUN = 512u;
 const uint SCAN_GROUP = 256u;
 
 // counts[digit * block_count + block]: how often a digit occurs in a block; after the scan, where its items go.
@@ -21,7 +21,7 @@ struct SortArgs
     uint count;
     uint shift;
     uint block_count;
-    uint reserved;
+    uint run; // items of a thread; a block has SORT_DIGITS runs
 };
 
 // In-place exclusive prefix sum by one group.

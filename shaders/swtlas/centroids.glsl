@@ -1,23 +1,30 @@
 // SPDX-License-Identifier: MIT
-// Adds the centres of a group's leaves to their tree's CentroidBounds: a tree in workgroup memory, then six atomics.
+// Adds the centres of a block's leaves to their tree's CentroidBounds: each invocation those of its own leaves, then a tree
+// in workgroup memory, then six atomics.
 #ifndef TWINRAY_SWTLAS_CENTROIDS_GLSL
 #define TWINRAY_SWTLAS_CENTROIDS_GLSL
 #include "shaders/shared/build.h"
 #include "shaders/shared/morton.h"
 
-shared vec3 group_lo[BUILD_GROUP];
-shared vec3 group_hi[BUILD_GROUP];
+shared vec3 group_lo[LEAVES_GROUP];
+shared vec3 group_hi[LEAVES_GROUP];
 
-// Called by all invocations of the group; those without a leaf pass an empty box.
-void add_centroids(REF(CentroidBounds) centroids, uint tree, LeafBox box)
+void add_center(inout LeafBox centers, LeafBox box)
+{
+    if (!is_active(box)) return;
+    vec3 center = center_of(box);
+    centers.lo = min(centers.lo, center);
+    centers.hi = max(centers.hi, center);
+}
+
+// Called by all invocations of the group.
+void add_centroids(REF(CentroidBounds) centroids, uint tree, LeafBox centers)
 {
     uint thread = gl_LocalInvocationIndex;
-    LeafBox none = empty_box();
-    vec3 center = center_of(box);
-    group_lo[thread] = is_active(box) ? center : none.lo;
-    group_hi[thread] = is_active(box) ? center : none.hi;
+    group_lo[thread] = centers.lo;
+    group_hi[thread] = centers.hi;
     barrier();
-    for (uint stride = BUILD_GROUP / 2u; stride > 0u; stride /= 2u)
+    for (uint stride = LEAVES_GROUP / 2u; stride > 0u; stride /= 2u)
     {
         if (thread < stride)
         {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Topology and boxes in one bottom-up pass: Apetrei, "Fast and Simple Agglomerative LBVH Construction", 2014.
+// Topology and boxes in one bottom-up pass: after Apetrei, "Fast and Simple Agglomerative LBVH Construction", 2014.
 //
 // Sorted leaves i and i + 1 are separated by their split: the highest bit in which their codes differ, or, where the
 // codes are equal, their positions. A finished range [first, last] is joined with the neighbour across the lower of
@@ -9,8 +9,10 @@
 //     code  000  001  100  101            leaf 0 meets leaf 1 at node 0, leaf 2 meets leaf 3 at node 2,
 //     split     0    2    0               and [0, 1] meets [2, 3] at node 1.
 //
-// Each leaf climbs. Of the two ranges that meet at a node the first leaves its own far end in meeting[] and stops; the
-// second finds it there and goes on with both. A range writes its box into the node before the exchange.
+// An invocation has a run of leaves. A range that is to be joined with one to its right waits in the left half of their
+// node; within a run the next ranges find it there. A range that reaches over the end of its run climbs: of the two that
+// meet at a node the first leaves its own far end in meeting[] and stops; the second finds it there and goes on with both.
+// A range writes its half of the node before the exchange.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -18,76 +20,165 @@
 layout(local_size_x = BUILD_GROUP) in;
 layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
 
-// The nodes as seen by all groups, not through caches of one.
-layout(buffer_reference, scalar, buffer_reference_align = 16) coherent buffer SharedNodes { BvhNode items[]; };
+// The nodes as seen by all groups, not through caches of one; eight words each.
+layout(buffer_reference, scalar, buffer_reference_align = 16) coherent buffer SharedNodes { uint64_t words[]; };
+
+const uint64_t TREE_END = ~0ul; // the split beside the first and the last leaf
+
+struct Range
+{
+    uint first;
+    uint last;
+    LeafBox box;
+    uint self; // reference to it, as a child
+};
 
 // Larger = separates higher up. Codes decide; positions only between equal codes.
+uint64_t split_of(BuildTree tree, uint position, uint code, uint next_code)
+{
+    uint place = position - tree.first;
+    return uint64_t(code ^ next_code) << 32 | uint64_t(place ^ (place + 1u));
+}
 uint64_t split_after(BuildTree tree, uint position)
 {
-    uint a = AT(args.codes, AT(args.order, position));
-    uint b = AT(args.codes, AT(args.order, position + 1u));
-    return (uint64_t(a ^ b) << 32) | uint64_t((position - tree.first) ^ (position - tree.first + 1u));
+    return split_of(tree, position, AT(args.codes, AT(args.order, position)), AT(args.codes, AT(args.order, position + 1u)));
 }
 
-void climb(BuildTree tree, uint position)
+uint64_t word_of(float a, float b) { return packUint2x32(floatBitsToUint(vec2(a, b))); }
+uint64_t word_of(float a, uint b) { return packUint2x32(uvec2(floatBitsToUint(a), b)); }
+
+// Half 0 of a node is its left one, half 1 its right one; `end` is the end of the range away from the split.
+void put_half(SharedNodes nodes, uint node, uint side, Range range, uint end)
+{
+    uint at = node * 8u + side * 4u;
+    nodes.words[at] = word_of(range.box.lo.x, range.box.lo.y);
+    nodes.words[at + 1u] = word_of(range.box.lo.z, range.self);
+    nodes.words[at + 2u] = word_of(range.box.hi.x, range.box.hi.y);
+    nodes.words[at + 3u] = word_of(range.box.hi.z, end);
+}
+
+struct Half
+{
+    LeafBox box;
+    uint self;
+    uint end;
+};
+Half get_half(SharedNodes nodes, uint node, uint side)
+{
+    uint at = node * 8u + side * 4u;
+    uint64_t w0 = nodes.words[at], w1 = nodes.words[at + 1u], w2 = nodes.words[at + 2u], w3 = nodes.words[at + 3u];
+    Half found;
+    found.box.lo = vec3(FLOATS(w0), FLOATS(w1).x);
+    found.box.hi = vec3(FLOATS(w2), FLOATS(w3).x);
+    found.self = UINTS(w1).y;
+    found.end = UINTS(w3).y;
+    return found;
+}
+
+void join(inout Range range, Half other, uint node)
+{
+    range.box.lo = min(range.box.lo, other.box.lo);
+    range.box.hi = max(range.box.hi, other.box.hi);
+    range.self = node;
+}
+
+void finish(BuildTree tree, Range root)
+{
+    AT(tree.bvh, 0).root = root.self;
+    AT(tree.bvh, 0).leaf_count = tree.count;
+    AT(tree.bvh, 0).lo = root.box.lo;
+    AT(tree.bvh, 0).hi = root.box.hi;
+}
+
+void climb(BuildTree tree, SharedNodes nodes, Range range)
+{
+    uint tree_last = tree.first + tree.count - 1u;
+    while (range.first != tree.first || range.last != tree_last)
+    {
+        uint64_t left = range.first == tree.first ? TREE_END : split_after(tree, range.first - 1u);
+        bool joins_right = range.last != tree_last && split_after(tree, range.last) < left;
+        uint split = joins_right ? range.last : range.first - 1u;
+        uint node = split - tree.first;
+        uint end = joins_right ? range.first : range.last;
+        put_half(nodes, node, joins_right ? 0u : 1u, range, end - tree.first);
+        memoryBarrierBuffer();
+        uint other = atomicExchange(AT(args.meeting, split), end);
+        if (other == NOTHING) return;
+        memoryBarrierBuffer();
+        join(range, get_half(nodes, node, joins_right ? 1u : 0u), node);
+        if (joins_right) range.last = other;
+        else range.first = other;
+    }
+    finish(tree, range);
+}
+
+// The leaves begin .. end - 1.
+void build_run(BuildTree tree, uint begin, uint end)
 {
     SharedNodes nodes = SharedNodes(uint64_t(AT(tree.bvh, 0).nodes));
     uint tree_last = tree.first + tree.count - 1u;
-    uint first = position;
-    uint last = position;
-    uint element = AT(args.order, position);
-    LeafBox box = AT(args.boxes, element);
-    uint self = LEAF_BIT | ((args.leaves_are_sorted != 0u ? position : element) - tree.first);
-    while (first != tree.first || last != tree_last)
+    uint base = begin; // ranges before it have left the run
+    uint64_t left = begin == tree.first ? TREE_END : split_after(tree, begin - 1u);
+    uint element = AT(args.order, begin);
+    uint code = AT(args.codes, element);
+    Range range;
+    for (uint i = begin; i < end; ++i)
     {
-        bool joins_right = first == tree.first || (last != tree_last && split_after(tree, last) < split_after(tree, first - 1u));
-        uint split = joins_right ? last : first - 1u;
-        uint node = split - tree.first;
-        if (joins_right)
+        range.first = i;
+        range.last = i;
+        range.box = AT(args.boxes, element);
+        range.self = LEAF_BIT | ((args.leaves_are_sorted != 0u ? i : element) - tree.first);
+        uint64_t right = TREE_END;
+        if (i != tree_last)
         {
-            nodes.items[node].lo0 = box.lo;
-            nodes.items[node].hi0 = box.hi;
-            nodes.items[node].child0 = self;
-            nodes.items[node].first = first - tree.first;
+            uint last_code = code;
+            element = AT(args.order, i + 1u);
+            code = AT(args.codes, element);
+            right = split_of(tree, i, last_code, code);
         }
-        else
+        while (range.first != base && left < right)
         {
-            nodes.items[node].lo1 = box.lo;
-            nodes.items[node].hi1 = box.hi;
-            nodes.items[node].child1 = self;
-            nodes.items[node].last = last - tree.first;
+            uint node = range.first - 1u - tree.first;
+            Half waiting = get_half(nodes, node, 0u);
+            left = nodes.words[node * 8u + 4u];
+            put_half(nodes, node, 1u, range, i - tree.first);
+            join(range, waiting, node);
+            range.first = waiting.end + tree.first;
         }
-        memoryBarrierBuffer();
-        uint other = atomicExchange(AT(args.meeting, split), joins_right ? first : last);
-        if (other == NOTHING) return;
-        memoryBarrierBuffer();
-        LeafBox sibling;
-        if (joins_right)
+        if (left <= right)
         {
-            last = other;
-            sibling.lo = nodes.items[node].lo1;
-            sibling.hi = nodes.items[node].hi1;
+            climb(tree, nodes, range);
+            base = i + 1u;
         }
-        else
+        else if (i + 1u != end)
         {
-            first = other;
-            sibling.lo = nodes.items[node].lo0;
-            sibling.hi = nodes.items[node].hi0;
+            put_half(nodes, i - tree.first, 0u, range, range.first - tree.first);
+            nodes.words[(i - tree.first) * 8u + 4u] = left; // in the half that is still free
         }
-        box.lo = min(box.lo, sibling.lo);
-        box.hi = max(box.hi, sibling.hi);
-        self = node;
+        left = right;
     }
-    AT(tree.bvh, 0).root = self;
-    AT(tree.bvh, 0).leaf_count = tree.count;
-    AT(tree.bvh, 0).lo = box.lo;
-    AT(tree.bvh, 0).hi = box.hi;
+    // What is left waits for ranges of the next run.
+    for (uint first = end; first != base; first = range.first)
+    {
+        if (first != end)
+        {
+            Half waiting = get_half(nodes, first - 1u - tree.first, 0u);
+            range.first = waiting.end + tree.first;
+            range.last = first - 1u;
+            range.box = waiting.box;
+            range.self = waiting.self;
+        }
+        climb(tree, nodes, range);
+    }
 }
 
 void main()
 {
-    if (group_index() >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index());
-    if (gl_LocalInvocationIndex >= block.count) return;
-    climb(AT(args.trees, block.tree), block.first + gl_LocalInvocationIndex);
+    uint runs = BUILD_GROUP / args.run;
+    uint index = global_index();
+    if (index / runs >= args.block_count) return;
+    BuildBlock block = AT(args.blocks, index / runs);
+    uint begin = index % runs * args.run;
+    if (begin >= block.count) return;
+    build_run(AT(args.trees, block.tree), block.first + begin, block.first + min(begin + args.run, block.count));
 }

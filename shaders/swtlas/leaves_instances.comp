@@ -5,7 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/swtlas/centroids.glsl"
-layout(local_size_x = BUILD_GROUP) in;
+layout(local_size_x = LEAVES_GROUP) in;
 layout(push_constant, scalar) uniform Push { InstanceLeavesArgs args; };
 
 LeafBox place_instance(uint index)
@@ -43,12 +43,12 @@ void main()
 {
     if (group_index() >= args.block_count) return;
     BuildBlock block = AT(args.blocks, group_index());
-    LeafBox box = empty_box();
-    if (gl_LocalInvocationIndex < block.count)
+    LeafBox centers = empty_box();
+    for (uint i = gl_LocalInvocationIndex; i < block.count; i += LEAVES_GROUP)
     {
-        uint leaf = block.first + gl_LocalInvocationIndex;
-        box = place_instance(leaf);
-        AT(args.boxes, leaf) = box;
+        LeafBox box = place_instance(block.first + i);
+        AT(args.boxes, block.first + i) = box;
+        add_center(centers, box);
     }
-    add_centroids(args.centroids, block.tree, box);
+    add_centroids(args.centroids, block.tree, centers);
 }

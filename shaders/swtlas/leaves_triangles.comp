@@ -4,20 +4,20 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/swtlas/centroids.glsl"
-layout(local_size_x = BUILD_GROUP) in;
+layout(local_size_x = LEAVES_GROUP) in;
 layout(push_constant, scalar) uniform Push { TriangleLeavesArgs args; };
 
 void main()
 {
     if (group_index() >= args.block_count) return;
     BuildBlock block = AT(args.blocks, group_index());
-    LeafBox box = empty_box();
-    if (gl_LocalInvocationIndex < block.count)
+    BuildTree tree = AT(args.trees, block.tree);
+    LeafBox centers = empty_box();
+    for (uint i = gl_LocalInvocationIndex; i < block.count; i += LEAVES_GROUP)
     {
-        uint leaf = block.first + gl_LocalInvocationIndex;
-        BuildTree tree = AT(args.trees, block.tree);
-        box = box_of_primitive(tree, leaf - tree.first);
-        AT(args.boxes, leaf) = box;
+        LeafBox box = box_of_primitive(tree, block.first + i - tree.first);
+        AT(args.boxes, block.first + i) = box;
+        add_center(centers, box);
     }
-    add_centroids(args.centroids, block.tree, box);
+    add_centroids(args.centroids, block.tree, centers);
 }

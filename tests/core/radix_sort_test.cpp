@@ -62,5 +62,12 @@ TEST_F(RadixSortTest, EqualKeysKeepTheirOrder) {
     EXPECT_EQ(sorted_values(sort, keys, 30), expected_values(keys, 30));
 }
 
+TEST(RadixSortRun, IsLongWhereAProcessorRunsTheThreads) {
+    EXPECT_EQ(RadixSort::run_of(100'000'000, false), SORT_SHORTEST_RUN);
+    EXPECT_EQ(RadixSort::run_of(0, true), SORT_SHORTEST_RUN);
+    EXPECT_EQ(RadixSort::run_of(1'000'000, true), 256u);
+    EXPECT_EQ(RadixSort::run_of(100'000'000, true), SORT_LONGEST_RUN);
+}
+
 }  // namespace
 }  // namespace twinray
