@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "swtlas_collapse.spv.h"
+#include "swtlas_encode_records.spv.h"
 #include "swtlas_encode_triangles.spv.h"
 #include "swtlas_hierarchy.spv.h"
 #include "swtlas_leaves_instances.spv.h"
@@ -11,7 +12,9 @@
 #include "swtlas_morton.spv.h"
 #include "swtlas_node_areas.spv.h"
 #include "swtlas_parents.spv.h"
+#include "swtlas_record_parents.spv.h"
 #include "swtlas_refit.spv.h"
+#include "swtlas_refit_records.spv.h"
 #include "swtlas_refit_triangles.spv.h"
 #include "swtlas_tree_keys.spv.h"
 
@@ -25,7 +28,7 @@ KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv, uint gr
 }
 
 KernelDesc collapse_stage(uint step) {
-    KernelDesc desc = stage("swtlas_collapse", swtlas_collapse_spirv);
+    KernelDesc desc = stage("swtlas_collapse", swtlas_collapse_spirv, COLLAPSE_GROUP);
     desc.constants = {{0, step}};
     return desc;
 }
@@ -41,7 +44,6 @@ struct Builder::Batch {
     Uints codes, tree_of, meeting, counters;
     RadixSort::Pairs pairs, spare;
     uint block_count;
-    bool has_records;
 };
 
 Builder::Builder(Context& context)
@@ -58,6 +60,9 @@ Builder::Builder(Context& context)
       collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS)),
       collapse_level_(context, collapse_stage(COLLAPSE_LEVEL)),
       collapse_rest_(context, collapse_stage(COLLAPSE_REST)),
+      encode_records_(context, stage("swtlas_encode_records", swtlas_encode_records_spirv)),
+      record_parents_(context, stage("swtlas_record_parents", swtlas_record_parents_spirv)),
+      refit_records_(context, stage("swtlas_refit_records", swtlas_refit_records_spirv)),
       parents_(context, stage("swtlas_parents", swtlas_parents_spirv)),
       refit_(context, stage("swtlas_refit", swtlas_refit_spirv)),
       refit_triangles_(context, stage("swtlas_refit_triangles", swtlas_refit_triangles_spirv)) {}
@@ -68,16 +73,19 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
     const uint none = ordered_bits(-INFINITY), all = ordered_bits(INFINITY);
     const std::vector<CentroidBounds> empty(trees.size(), {uvec3(all), uvec3(none)});
     const std::vector<CollapseLevel> levels(plan.collapse_levels + 2, {0, 1, 1, 0});
+    const std::uint64_t base = scratch.address();
+    std::vector<BuildTree> with_nodes(trees.begin(), trees.end());
+    if (plan.layout == Layout::compressed4)
+        for (BuildTree& tree : with_nodes) tree.nodes.address = base + at.nodes + tree.first * sizeof(BvhNode);
     {
         const auto pass = commands.pass("swtlas build input");
-        const Commands::Piece pieces[] = {{at.trees, std::as_bytes(trees)},
+        const Commands::Piece pieces[] = {{at.trees, std::as_bytes(std::span(with_nodes))},
                                           {at.blocks, std::as_bytes(std::span(plan.blocks))},
                                           {at.centroids, std::as_bytes(std::span(empty))},
                                           {at.levels, std::as_bytes(std::span(levels))}};
         commands.upload_pieces(scratch, pieces);
         commands.fill(scratch, at.meeting, std::uint64_t{plan.leaf_count} * sizeof(uint), NOTHING);
     }
-    const std::uint64_t base = scratch.address();
     return {scratch,
             {base + at.trees},
             {base + at.blocks},
@@ -89,8 +97,7 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
             {base + at.counters},
             {{base + at.keys[0]}, {base + at.order[0]}},
             {{base + at.keys[1]}, {base + at.order[1]}},
-            static_cast<uint>(plan.blocks.size()),
-            std::any_of(trees.begin(), trees.end(), [](const BuildTree& tree) { return tree.records.address != 0; })};
+            static_cast<uint>(plan.blocks.size())};
 }
 
 Uints Builder::record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
@@ -127,10 +134,14 @@ void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::s
     leaves_triangles_.dispatch_groups(
         commands, {batch.trees, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0}, batch.block_count);
     const Uints order = record_order(commands, plan, batch);
+    if (plan.layout == Layout::compressed4) {
+        record_hierarchy(commands, batch, order, false);
+        record_collapse(commands, plan, batch);
+        return;
+    }
     record_hierarchy(commands, batch, order, true);
     encode_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, order, batch.block_count, 0},
                                       batch.block_count);
-    record_collapse(commands, plan, batch);
 }
 
 void Builder::record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
@@ -142,18 +153,19 @@ void Builder::record_instances(Commands& commands, const BuildPlan& plan, const 
         commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
         batch.block_count);
     record_hierarchy(commands, batch, record_order(commands, plan, batch), false);
-    record_collapse(commands, plan, batch);
+    if (plan.layout == Layout::compressed4) record_collapse(commands, plan, batch);
     commands.keep(std::move(scratch));
 }
 
-void Builder::record_collapse(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
-                              const Buffer& scratch) const {
-    if (plan.leaf_count != 0) record_collapse(commands, plan, begin(commands, plan, trees, scratch));
+// Levels share the scratch of the sort, which is done: a level has half as many items as there are leaves at most. The
+// codes are done, too.
+void Builder::record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+    record_levels(commands, plan, batch);
+    encode_records_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.codes, batch.block_count, 0},
+                                    batch.block_count);
 }
 
-// Levels share the scratch of the sort, which is done: a level has half as many items as there are leaves at most.
-void Builder::record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
-    if (!batch.has_records) return;
+void Builder::record_levels(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
     const auto pass = commands.pass(collapse_level_.name());
     const auto tree_count = static_cast<uint>(plan.first.size());
     const std::uint64_t items[] = {batch.pairs.keys.address, batch.spare.keys.address};
@@ -163,6 +175,7 @@ void Builder::record_collapse(Commands& commands, const BuildPlan& plan, const B
                             {items[level % 2]},
                             {items[(level + 1) % 2]},
                             {batch.scratch.address() + level_at(level)},
+                            batch.codes,
                             tree_count,
                             0};
     };
@@ -176,7 +189,24 @@ void Builder::record_collapse(Commands& commands, const BuildPlan& plan, const B
     collapse_rest_.dispatch_indirect(commands, args(last), batch.scratch, level_at(last));
 }
 
-// The boxes of all inner nodes from those of the leaves.
+// The boxes of all inner nodes, and the records, from the boxes of the leaves.
+void Builder::record_records_climb(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+    const std::uint64_t base = batch.scratch.address();
+    const Uints parents{base + plan.scratch.parents}, missing{base + plan.scratch.missing};
+    record_parents_.dispatch_groups(commands, {batch.trees, batch.blocks, parents, missing, batch.block_count, 0},
+                                    batch.block_count);
+    refit_records_.dispatch_groups(commands,
+                                   {batch.trees,
+                                    batch.blocks,
+                                    batch.boxes,
+                                    {base + plan.scratch.slot_boxes},
+                                    parents,
+                                    missing,
+                                    batch.block_count,
+                                    0},
+                                   batch.block_count);
+}
+
 void Builder::record_climb(Commands& commands, const Batch& batch) const {
     // Nothing is sorted in a refit: that scratch holds the parents.
     const Uints node_parents = batch.pairs.keys, leaf_parents = batch.pairs.values;
@@ -188,22 +218,34 @@ void Builder::record_climb(Commands& commands, const Batch& batch) const {
         batch.block_count);
 }
 
-std::uint64_t Builder::cost_bytes(uint leaf_count) {
-    const std::uint64_t groups = (std::uint64_t{inner_count(leaf_count)} + AREA_GROUP - 1) / AREA_GROUP;
-    return AreaWork{groups, {}, {}, false}.bytes();
+namespace {
+
+// The nodes, or the records, among which areas are summed.
+uint area_count(const Builder::Measured& tree) {
+    return tree.records.address ? record_count(tree.leaf_count) : inner_count(tree.leaf_count);
+}
+
+std::uint64_t area_groups(const Builder::Measured& tree) {
+    return (std::uint64_t{area_count(tree)} + AREA_GROUP - 1) / AREA_GROUP;
+}
+
+}  // namespace
+
+std::uint64_t Builder::cost_bytes(uint leaf_count, Layout layout) {
+    // An address stands for any.
+    const Measured tree{{}, {layout == Layout::compressed4 ? 1u : 0u}, leaf_count, {}};
+    return AreaWork{area_groups(tree), {}, {}, false}.bytes();
 }
 
 void Builder::record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const {
     std::vector<AreaWork> work;
-    for (const Measured& tree : trees) {
-        const std::uint64_t groups = (std::uint64_t{inner_count(tree.leaf_count)} + AREA_GROUP - 1) / AREA_GROUP;
-        work.push_back({groups, {tree.tree.address}, tree.target, is_build});
-    }
+    for (const Measured& tree : trees) work.push_back({area_groups(tree), {tree.tree.address}, tree.target, is_build});
     SurfaceArea::place(commands, work);
     if (!work.empty()) {
         const auto pass = commands.pass(node_areas_.name());
         for (std::size_t i = 0; i < trees.size(); ++i)
-            node_areas_.dispatch_groups(commands, {trees[i].tree, work[i].items, inner_count(trees[i].leaf_count), 0},
+            node_areas_.dispatch_groups(commands,
+                                        {trees[i].tree, trees[i].records, work[i].items, area_count(trees[i]), 0},
                                         work[i].item_count);
     }
     areas_.record(commands, std::move(work));
@@ -213,10 +255,10 @@ void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, s
                                     const Buffer& scratch) const {
     if (plan.leaf_count == 0) return;
     const Batch batch = begin(commands, plan, trees, scratch);
+    if (plan.layout == Layout::compressed4) return record_records_climb(commands, plan, batch);
     refit_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.boxes, batch.block_count, 0},
                                      batch.block_count);
     record_climb(commands, batch);
-    record_collapse(commands, plan, batch);
 }
 
 void Builder::record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
@@ -227,8 +269,10 @@ void Builder::record_refit(Commands& commands, const BuildPlan& plan, const Buil
     leaves_instances_.dispatch_groups(
         commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
         batch.block_count);
-    record_climb(commands, batch);
-    record_collapse(commands, plan, batch);
+    if (plan.layout == Layout::compressed4)
+        record_records_climb(commands, plan, batch);
+    else
+        record_climb(commands, batch);
     commands.keep(std::move(scratch));
 }
 

@@ -8,7 +8,8 @@ namespace twinray {
 
 // Records the build of a batch of trees on the GPU, the same stages for triangles and for instances:
 //
-//     leaves -> morton -> sort by code (-> sort by tree) -> hierarchy (-> encode triangles) (-> collapse)
+//     leaves -> morton -> sort by code (-> sort by tree) -> hierarchy -> encode triangles, or
+//                                                                     -> collapse -> encode records
 //
 // Each stage is one kernel over all trees of the batch; what it computes has a serial twin of the same name in
 // swtlas/reference.h.
@@ -16,8 +17,8 @@ class Builder {
   public:
     explicit Builder(Context& context);
 
-    // trees[i] has leaf_counts[i] triangles; its Bvh must name its node array already and describe an empty tree.
-    // `scratch` has plan.scratch.bytes at least.
+    // trees[i] has leaf_counts[i] triangles; its Bvh must describe an empty tree, and names its node array if it keeps
+    // one. `scratch` has plan.scratch.bytes at least.
     void record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                           const Buffer& scratch) const;
     // One tree over the records; fills `instances`.
@@ -30,17 +31,14 @@ class Builder {
     void record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
                       Ref<SwInstance> instances) const;
 
-    // The records of layout compressed4, for binary trees that are finished.
-    void record_collapse(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
-                         const Buffer& scratch) const;
-
     // What sah() tells of finished trees.
     struct Measured {
         Ref<Bvh> tree;
+        Ref<CompressedRecord> records;  // null in layout bvh2
         uint leaf_count;
         CostTarget target;
     };
-    static std::uint64_t cost_bytes(uint leaf_count);  // of scratch, for one tree
+    static std::uint64_t cost_bytes(uint leaf_count, Layout layout);  // of scratch, for one tree
     void record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const;
 
   private:
@@ -50,8 +48,10 @@ class Builder {
                 const Buffer& scratch) const;
     Uints record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_hierarchy(Commands& commands, const Batch& batch, Uints order, bool leaves_are_sorted) const;
-    void record_climb(Commands& commands, const Batch& batch) const;
     void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
+    void record_levels(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
+    void record_climb(Commands& commands, const Batch& batch) const;
+    void record_records_climb(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
 
     uint run_;  // leaves of an invocation of the hierarchy: few where there are many invocations
     RadixSort sort_;
@@ -64,6 +64,9 @@ class Builder {
     Kernel<HierarchyArgs> hierarchy_;
     Kernel<EncodeTrianglesArgs> encode_triangles_;
     Kernel<CollapseArgs> collapse_roots_, collapse_level_, collapse_rest_;
+    Kernel<EncodeRecordsArgs> encode_records_;
+    Kernel<RecordParentsArgs> record_parents_;
+    Kernel<RefitRecordsArgs> refit_records_;
     Kernel<ParentsArgs> parents_;
     Kernel<RefitArgs> refit_;
     Kernel<RefitTrianglesArgs> refit_triangles_;

@@ -16,11 +16,15 @@ struct SwTlas::SwBuiltGeometry : BuiltGeometry {
           buffer(context, {.name = "SwTlas geometry '" + geometry.name + "'", .bytes = layout.bytes}) {
         bytes = layout.bytes;
     }
-    Ref<BvhNode> nodes() const { return buffer.ref<BvhNode>(layout.nodes); }
-    Ref<BvhTriangle> triangles() const { return buffer.ref<BvhTriangle>(layout.triangles); }
-    // Null where the layout has none.
-    Ref<CompressedRecord> records() const {
-        return layout.records < layout.bytes ? buffer.ref<CompressedRecord>(layout.records) : Ref<CompressedRecord>{};
+    // Null where there are none.
+    Ref<BvhNode> nodes() const { return part<BvhNode>(layout.node_count, layout.nodes); }
+    Ref<BvhTriangle> triangles() const { return part<BvhTriangle>(layout.triangle_count, layout.triangles); }
+    Ref<CompressedRecord> records() const { return part<CompressedRecord>(layout.record_count, layout.records); }
+
+  private:
+    template <class T>
+    Ref<T> part(uint count, std::uint64_t offset) const {
+        return count ? buffer.ref<T>(offset) : Ref<T>{};
     }
 };
 

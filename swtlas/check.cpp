@@ -72,9 +72,9 @@ class Walk {
             violated(text("node ", index, ": box 0 is not the union of what is below"));
         if (!same(b.box.lo, node.lo1) || !same(b.box.hi, node.hi1))
             violated(text("node ", index, ": box 1 is not the union of what is below"));
-        if (a.leaves + b.leaves != node.last - node.first + 1)
-            violated(
-                text("node ", index, ": range ", node.first, "..", node.last, " for ", a.leaves + b.leaves, " leaves"));
+        if (a.leaves != node.leaves0 || b.leaves != node.leaves1)
+            violated(text("node ", index, ": ", node.leaves0, " and ", node.leaves1, " leaves, not ", a.leaves, " and ",
+                          b.leaves));
         area_ += half_area(a.box) + half_area(b.box);
         return {{min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)}, a.leaves + b.leaves};
     }

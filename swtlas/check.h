@@ -16,8 +16,8 @@ struct TreeCheck {
 };
 
 // Walks a built tree and checks what traversal relies on: every leaf and every inner node is reached exactly once,
-// every child's box is the union of what lies below it (so it contains that, exactly), the leaf ranges are right, the
-// depth is within what the traversal's stack is made for. leaf_boxes[i] is the box of the leaf that reference
+// every child's box is the union of what lies below it (so it contains that, exactly), its leaves are counted right,
+// the depth is within what the traversal's stack is made for. leaf_boxes[i] is the box of the leaf that reference
 // LEAF_BIT | i names.
 TreeCheck check_tree(const Bvh& bvh, std::span<const BvhNode> nodes, std::span<const LeafBox> leaf_boxes);
 

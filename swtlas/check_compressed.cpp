@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "swtlas/check_compressed.h"
 
+#include <algorithm>
+
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -8,6 +10,11 @@ namespace {
 
 constexpr std::size_t max_violations = 20;
 constexpr double least_margin = 1.0 / 512;  // of a cell: half of what is added, the rest may round
+
+double half_area(glm::dvec3 lo, glm::dvec3 hi) {
+    const glm::dvec3 size = hi - lo;
+    return lo.x <= hi.x ? size.x * size.y + size.y * size.z + size.z * size.x : 0;
+}
 
 // The planes of the boxes of a node's children, exactly.
 struct Planes {
@@ -39,12 +46,19 @@ class Walk {
         seen_records_[index] = true;
         result_.used.push_back(index);
         const CompressedRecord& record = records_[index];
-        if (record.a.w & LEAF_BIT) return visit_leaf(record.a.w & ~LEAF_BIT);
+        if (is_leaf(record)) return visit_leaf(record.a.w & ~LEAF_BIT);
         if (depth >= DEEPEST_TREE) return violated(text("depth exceeds ", DEEPEST_TREE));
+        result_.depth = std::max(result_.depth, depth + 1);
         return visit_node(index, depth);
     }
 
-    void finish() {
+    void finish(const Bvh& bvh, const LeafBox& all) {
+        if (bvh.root != 0) violated(text("the root is record ", bvh.root, ", not 0"));
+        if (bvh.lo != all.lo || bvh.hi != all.hi) violated("the root's box is not the union of the leaves");
+        for (std::size_t i = 0; i < seen_records_.size(); ++i)
+            if (!seen_records_[i] && (is_leaf(records_[i]) || children_in(records_[i]) != 0))
+                violated(text("record ", i, " is not reached, and not none"));
+        if (const double root = half_area(all.lo, all.hi); root > 0) result_.sah = area_ / root;
         for (std::size_t i = 0; i < seen_leaves_.size(); ++i)
             if (!seen_leaves_[i]) violated(text("leaf ", i, " is not reached"));
     }
@@ -64,13 +78,14 @@ class Walk {
 
     LeafBox visit_node(uint index, uint depth) {
         const CompressedRecord& node = records_[index];
-        const uint count = node.a.w >> 24;
+        const uint count = children_in(node);
         if (count < 2 || count > 4) return violated(text("record ", index, " has ", count, " children"));
         LeafBox all = empty_box();
         for (uint child = 0; child < count; ++child) {
             const LeafBox below = visit(node.c.z + child, depth + 1);
-            if (!is_active(below)) continue;
             const Planes planes = planes_of(node, child);
+            area_ += half_area(planes.lo, planes.hi);
+            if (!is_active(below)) continue;
             for (int axis = 0; axis < 3; ++axis)
                 if (planes.lo[axis] + least_margin * planes.cell[axis] > double{below.lo[axis]} ||
                     planes.hi[axis] - least_margin * planes.cell[axis] < double{below.hi[axis]})
@@ -85,16 +100,22 @@ class Walk {
     std::span<const LeafBox> leaf_boxes_;
     CompressedCheck& result_;
     std::vector<bool> seen_records_, seen_leaves_;
+    double area_ = 0;
 };
 
 }  // namespace
 
-CompressedCheck check_compressed(std::span<const CompressedRecord> records, std::span<const LeafBox> leaf_boxes) {
+CompressedCheck check_compressed(const Bvh& bvh, std::span<const CompressedRecord> records,
+                                 std::span<const LeafBox> leaf_boxes) {
     CompressedCheck result;
     Walk walk(records, leaf_boxes, result);
-    if (leaf_boxes.empty()) return result;
-    walk.visit(0, 0);
-    walk.finish();
+    if (bvh.leaf_count != leaf_boxes.size())
+        walk.violated(text("the tree has ", bvh.leaf_count, " leaves, not ", leaf_boxes.size()));
+    if (leaf_boxes.empty()) {
+        if (bvh.root != NOTHING) walk.violated("an empty tree has a root");
+        return result;
+    }
+    walk.finish(bvh, walk.visit(0, 0));
     return result;
 }
 

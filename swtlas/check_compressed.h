@@ -12,12 +12,16 @@ namespace twinray {
 struct CompressedCheck {
     std::vector<std::string> violations;  // one sentence each, at most 20
     std::vector<uint> used;               // records that are reached from the root's
+    uint depth = 0;                       // nodes on the longest path
+    double sah = 0;                       // the surface-area cost of the boxes as rays meet them, see surface_area.h
 };
 
-// Walks a tree of layout compressed4 from records[0] and checks what traversal relies on: every leaf is reached exactly
-// once, no record twice, nodes have two to four children, the planes of a child lie outside of what is below it by more
-// than traversal's rounding, and the depth is within what its stack is made for. leaf_boxes[i] is the box of primitive
-// or instance i; one that is empty may lie anywhere.
-CompressedCheck check_compressed(std::span<const CompressedRecord> records, std::span<const LeafBox> leaf_boxes);
+// Walks a tree of layout compressed4 from records[0] and checks what traversal and refits rely on: `bvh` has the box of
+// all leaves, every leaf is reached exactly once, no record twice, those that are not reached are none, nodes have two
+// to four children, the planes of a child lie outside of what is below it by more than traversal's rounding, and the
+// depth is within what its stack is made for. leaf_boxes[i] is the box of primitive or instance i; one that is empty
+// may lie anywhere.
+CompressedCheck check_compressed(const Bvh& bvh, std::span<const CompressedRecord> records,
+                                 std::span<const LeafBox> leaf_boxes);
 
 }  // namespace twinray

@@ -40,7 +40,17 @@ BuildScratch layout_scratch(const BuildPlan& plan) {
     }
     scratch.counters = arena.take<std::byte>(RadixSort::counter_bytes(n));
     scratch.levels = arena.take<CollapseLevel>(plan.collapse_levels + 2);
-    scratch.bytes = arena.bytes;
+    if (plan.layout == Layout::bvh2) {
+        scratch.bytes = arena.bytes;
+        return scratch;
+    }
+    Arena refit = arena;
+    const std::uint64_t slots = 2 * std::uint64_t{n};
+    scratch.slot_boxes = refit.take<LeafBox>(slots);
+    scratch.parents = refit.take<uint>(slots);
+    scratch.missing = refit.take<uint>(slots);
+    scratch.nodes = arena.take<BvhNode>(n);
+    scratch.bytes = std::max(arena.bytes, refit.bytes);
     return scratch;
 }
 
@@ -50,9 +60,6 @@ uint levels_to_collapse(uint leaf_count) {
     return leaf_count <= BUILD_GROUP ? 0 : std::min(static_cast<uint>(std::bit_width(leaf_count)), DEEPEST_TREE);
 }
 
-// Without the root's of an empty tree.
-uint record_count(uint leaf_count) { return leaf_count ? 1 + records_below(leaf_count) : 0; }
-
 }  // namespace
 
 float software_unit(std::span<const vec3> positions) {
@@ -61,16 +68,17 @@ float software_unit(std::span<const vec3> positions) {
 }
 
 // Alone it needs no tree_of; all other parts are as long or, rounded up one by one, longer.
-std::uint64_t scratch_share(uint leaf_count) {
+std::uint64_t scratch_share(uint leaf_count, Layout layout) {
     Arena tree_of;
     tree_of.take<uint>(leaf_count);
-    return plan_build(std::span(&leaf_count, 1)).scratch.bytes + tree_of.bytes;
+    return plan_build(std::span(&leaf_count, 1), layout).scratch.bytes + tree_of.bytes;
 }
 
 uint inner_count(uint leaf_count) { return std::max(leaf_count, 1u) - 1u; }
 
-BuildPlan plan_build(std::span<const uint> leaf_counts) {
+BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout) {
     BuildPlan plan;
+    plan.layout = layout;
     std::uint64_t total = 0;
     for (std::size_t tree = 0; tree < leaf_counts.size(); ++tree) {
         plan.first.push_back(static_cast<uint>(total));
@@ -89,22 +97,33 @@ BuildPlan plan_build(std::span<const uint> leaf_counts) {
 }
 
 GeometryLayout layout_geometry(uint triangle_count, Layout layout) {
+    GeometryLayout parts;
+    if (layout == Layout::compressed4) {
+        parts.record_count = record_count(triangle_count);
+    } else {
+        parts.node_count = inner_count(triangle_count);
+        parts.triangle_count = triangle_count;
+    }
     Arena arena;
-    const std::uint64_t nodes = arena.take<BvhNode>(inner_count(triangle_count));
-    const std::uint64_t triangles = arena.take<BvhTriangle>(triangle_count);
-    const std::uint64_t records =
-        arena.take<CompressedRecord>(layout == Layout::compressed4 ? record_count(triangle_count) : 0);
-    return {nodes, triangles, records, arena.bytes};
+    parts.nodes = arena.take<BvhNode>(parts.node_count);
+    parts.triangles = arena.take<BvhTriangle>(parts.triangle_count);
+    parts.records = arena.take<CompressedRecord>(parts.record_count);
+    parts.bytes = arena.bytes;
+    return parts;
 }
 
 SceneLayout layout_scene(uint instance_count, Layout layout) {
+    SceneLayout parts;
+    const bool has_records = layout == Layout::compressed4;
+    parts.node_count = has_records ? 0 : inner_count(instance_count);
+    parts.record_count = has_records ? record_count(instance_count) : 0;
     Arena arena;
     arena.take<SwScene>(1);
-    const std::uint64_t nodes = arena.take<BvhNode>(inner_count(instance_count));
-    const std::uint64_t instances = arena.take<SwInstance>(instance_count);
-    const std::uint64_t records =
-        arena.take<CompressedRecord>(layout == Layout::compressed4 ? record_count(instance_count) : 0);
-    return {nodes, instances, records, arena.bytes};
+    parts.nodes = arena.take<BvhNode>(parts.node_count);
+    parts.instances = arena.take<SwInstance>(instance_count);
+    parts.records = arena.take<CompressedRecord>(parts.record_count);
+    parts.bytes = arena.bytes;
+    return parts;
 }
 
 }  // namespace twinray

@@ -20,6 +20,8 @@ struct BuildScratch {
     std::uint64_t trees = 0, blocks = 0, boxes = 0, centroids = 0, codes = 0, tree_of = 0, meeting = 0;
     std::uint64_t keys[2] = {}, order[2] = {};
     std::uint64_t counters = 0, levels = 0;
+    std::uint64_t nodes = 0;                                 // of layout compressed4, whose trees do not keep them
+    std::uint64_t slot_boxes = 0, parents = 0, missing = 0;  // of a refit in that layout: in the place of the nodes
     std::uint64_t bytes = 0;
 };
 
@@ -29,25 +31,28 @@ struct BuildPlan {
     uint leaf_count = 0;             // of the batch
     uint tree_bits = 0;              // bits of the largest tree index; 0 = one tree, no sort by tree
     uint collapse_levels = 0;        // below the roots that are collapsed one by one; the rest goes by subtrees
+    Layout layout = Layout::compressed4;
     BuildScratch scratch;
 };
 
 // Throws Error if the batch has 2^32 leaves or more.
-BuildPlan plan_build(std::span<const uint> leaf_counts);
+BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout);
 
 // What a tree of so many leaves adds to the scratch of its batch, at most.
-std::uint64_t scratch_share(uint leaf_count);
+std::uint64_t scratch_share(uint leaf_count, Layout layout);
 
 uint inner_count(uint leaf_count);
 
-// Where the parts of a built geometry lie in its buffer; its SwGeometry is the geometry block.
+// Where the parts of a built geometry lie in its buffer, and how many there are; its SwGeometry is the geometry block.
 struct GeometryLayout {
+    uint node_count = 0, triangle_count = 0, record_count = 0;
     std::uint64_t nodes = 0, triangles = 0, records = 0, bytes = 0;
 };
 GeometryLayout layout_geometry(uint triangle_count, Layout layout);
 
 // Where the parts of a scene lie in its buffer; its SwScene is at 0.
 struct SceneLayout {
+    uint node_count = 0, record_count = 0;
     std::uint64_t nodes = 0, instances = 0, records = 0, bytes = 0;
 };
 SceneLayout layout_scene(uint instance_count, Layout layout);

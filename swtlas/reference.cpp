@@ -41,11 +41,34 @@ struct TopDown {
         const std::size_t split = highest_split(first, last);
         const auto [child0, box0] = build(first, split);
         const auto [child1, box1] = build(split + 1, last);
-        nodes[split] = {box0.lo, child0, box0.hi, static_cast<uint>(first),
-                        box1.lo, child1, box1.hi, static_cast<uint>(last)};
+        nodes[split] = {box0.lo, child0, box0.hi, static_cast<uint>(split - first + 1),
+                        box1.lo, child1, box1.hi, static_cast<uint>(last - split)};
         return {static_cast<uint>(split), joined(box0, box1)};
     }
 };
+
+std::vector<CompressedRecord> records_of(const Hierarchy& tree, BuildTree input) {
+    std::vector<CompressedRecord> records(record_count(input.count));
+    std::vector<uint> places(input.count);
+    Bvh bvh{tree.box.lo, tree.box.hi, {}, tree.root, input.count};
+    input.bvh = Ref<Bvh>::to(&bvh);
+    input.nodes = Ref<BvhNode>::to(tree.nodes.data());
+    input.records = Ref<CompressedRecord>::to(records.data());
+    const Uints places_ref = Uints::to(places.data());
+    std::vector<CollapseItem> waiting;
+    const auto push = [&](const CollapseStep& step) {
+        for (int i = 0; i < 4; ++i)
+            if (step.is_inner[i]) waiting.push_back(step.items[i]);
+    };
+    push(begin_collapse(input, places_ref, 0));
+    while (!waiting.empty()) {
+        const CollapseItem item = waiting.back();
+        waiting.pop_back();
+        push(twinray::collapse(input, places_ref, item));
+    }
+    for (uint leaf = 0; leaf < input.count; ++leaf) store_record(input.records, places[leaf], encode_leaf(input, leaf));
+    return records;
+}
 
 }  // namespace
 
@@ -131,25 +154,20 @@ std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::
     return encoded;
 }
 
-std::vector<CompressedRecord> collapse(const Hierarchy& tree, std::span<const BvhTriangle> triangles, uint leaf_count) {
-    if (leaf_count == 0) return {};
-    std::vector<CompressedRecord> records(1 + records_below(leaf_count));
-    const Bvh bvh{tree.box.lo, tree.box.hi, Ref<BvhNode>::to(tree.nodes.data()), tree.root, leaf_count};
+std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions,
+                                                   std::span<const uvec3> triangles) {
     BuildTree input{};
-    input.bvh = Ref<Bvh>::to(&bvh);
-    if (!triangles.empty()) input.triangles = Ref<BvhTriangle>::to(triangles.data());
-    input.records = Ref<CompressedRecord>::to(records.data());
-    std::vector<CollapseItem> waiting;
-    const auto push = [&](const CollapseStep& step) {
-        waiting.insert(waiting.end(), step.items, step.items + step.count);
-    };
-    push(begin_collapse(input, 0));
-    while (!waiting.empty()) {
-        const CollapseItem item = waiting.back();
-        waiting.pop_back();
-        push(twinray::collapse(input, item));
-    }
-    return records;
+    input.count = static_cast<uint>(triangles.size());
+    if (triangles.empty()) return {};
+    input.positions = Floats::to(&positions.data()->x);
+    input.indices = Uints::to(&triangles.data()->x);
+    return records_of(tree, input);
+}
+
+std::vector<CompressedRecord> records_of_instances(const Hierarchy& tree, uint leaf_count) {
+    BuildTree input{};
+    input.count = leaf_count;
+    return records_of(tree, input);
 }
 
 }  // namespace twinray::reference

@@ -34,7 +34,9 @@ Hierarchy hierarchy(std::span<const LeafBox> boxes, std::span<const uint> codes,
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
                                           std::span<const uint> order);
 
-// Of layout compressed4; without triangles the leaves are instances. Records that the tree does not use are 0.
-std::vector<CompressedRecord> collapse(const Hierarchy& tree, std::span<const BvhTriangle> triangles, uint leaf_count);
+// The records of layout compressed4 for a tree whose references are the leaves' own indices.
+std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions,
+                                                   std::span<const uvec3> triangles);
+std::vector<CompressedRecord> records_of_instances(const Hierarchy& tree, uint leaf_count);
 
 }  // namespace twinray::reference

@@ -10,10 +10,14 @@ std::size_t Scene::add_geometry(const MeshView& mesh) {
     const std::vector<LeafBox> boxes = leaves_triangles(geometry.positions, geometry.triangles);
     const std::vector<uint> codes = morton(boxes, centroids(boxes));
     const std::vector<uint> order = sort(codes);
-    Hierarchy tree = hierarchy(boxes, codes, order, true);
-    std::vector<BvhTriangle> triangles = encode_triangles(geometry.positions, geometry.triangles, order);
+    const bool has_records = layout_ == Layout::compressed4;
+    Hierarchy tree = hierarchy(boxes, codes, order, !has_records);
+    std::vector<BvhTriangle> triangles;
     std::vector<CompressedRecord> records;
-    if (layout_ == Layout::compressed4) records = collapse(tree, triangles, static_cast<uint>(triangles.size()));
+    if (has_records)
+        records = records_of_triangles(tree, geometry.positions, geometry.triangles);
+    else
+        triangles = encode_triangles(geometry.positions, geometry.triangles, order);
     geometries_.push_back({std::move(geometry), std::move(tree), std::move(triangles), std::move(records)});
     return geometries_.size() - 1;
 }
@@ -24,7 +28,7 @@ void Scene::add_instance(std::size_t geometry, const InstanceRecord& record) { p
 std::vector<InstanceRecord> Scene::records_in_built_units() {
     for (BuiltGeometry& built : geometries_) {
         built.block.geometry = {{built.tree.box.lo, built.tree.box.hi, Ref<BvhNode>::to(built.tree.nodes.data()),
-                                 built.tree.root, static_cast<uint>(built.triangles.size())},
+                                 built.tree.root, static_cast<uint>(built.mesh.triangles.size())},
                                 Ref<BvhTriangle>::to(built.triangles.data()),
                                 Ref<CompressedRecord>::to(built.records.data()),
                                 GEOMETRY_TRIANGLES,
@@ -46,7 +50,7 @@ void Scene::build() {
     const std::vector<uint> codes = morton(boxes, centroids(boxes));
     top_ = hierarchy(boxes, codes, sort(codes), false);
     const auto count = static_cast<uint>(boxes.size());
-    if (layout_ == Layout::compressed4) top_records_ = collapse(top_, {}, count);
+    if (layout_ == Layout::compressed4) top_records_ = records_of_instances(top_, count);
     header_ = {{top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), top_.root, count},
                Ref<CompressedRecord>::to(top_records_.data()),
                Ref<SwInstance>::to(instances_.data()),

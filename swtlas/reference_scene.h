@@ -30,7 +30,7 @@ class Scene {
     // What build() has made, for who looks into it.
     struct Tree {
         const Bvh& bvh;
-        std::span<const BvhTriangle> triangles;  // of a geometry, in units of `scale`
+        std::span<const BvhTriangle> triangles;  // of a geometry in layout bvh2, in units of `scale`
         float scale = 1;
     };
     Tree scene_tree() const { return {header_.bvh, {}}; }

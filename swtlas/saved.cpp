@@ -10,6 +10,7 @@
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "swtlas/check.h"
+#include "swtlas/check_compressed.h"
 
 namespace twinray {
 namespace {
@@ -36,7 +37,8 @@ SavedHeader own_header() {
     header.entry_bytes = sizeof(SavedEntry);
     header.node_bytes = sizeof(BvhNode);
     header.leaf_bytes = sizeof(BvhTriangle);
-    header.record_bytes = sizeof(InstanceRecord);
+    header.record_bytes = sizeof(CompressedRecord);
+    header.instance_bytes = sizeof(InstanceRecord);
     return header;
 }
 
@@ -44,13 +46,13 @@ void check_header(const SavedHeader& found, std::size_t file_bytes) {
     const SavedHeader own = own_header();
     if (checksum_of(found) != found.checksum)
         fail("damaged: the header's checksum is ", checksum_of(found), ", not ", found.checksum);
-    const std::tuple<const char*, uint, uint> sizes[] = {{"header", found.header_bytes, own.header_bytes},
-                                                         {"entry", found.entry_bytes, own.entry_bytes},
-                                                         {"node", found.node_bytes, own.node_bytes},
-                                                         {"leaf", found.leaf_bytes, own.leaf_bytes},
-                                                         {"instance record", found.record_bytes, own.record_bytes}};
+    const std::tuple<const char*, uint, uint> sizes[] = {
+        {"header", found.header_bytes, own.header_bytes}, {"entry", found.entry_bytes, own.entry_bytes},
+        {"node", found.node_bytes, own.node_bytes},       {"leaf", found.leaf_bytes, own.leaf_bytes},
+        {"record", found.record_bytes, own.record_bytes}, {"instance", found.instance_bytes, own.instance_bytes}};
     for (const auto& [name, there, here] : sizes)
         if (there != here) fail("its ", name, " has ", there, " bytes; this library's has ", here);
+    if (found.layout >= all_layouts.size()) fail("unknown layout ", found.layout);
     if (found.file_bytes != file_bytes)
         fail("truncated or joined: it has ", file_bytes, " bytes, and its header says ", found.file_bytes);
 }
@@ -92,7 +94,7 @@ SavedHeader read_header(Reader& reader, std::size_t file_bytes) {
 }
 
 // What traversal relies on: it follows indices without looking.
-void check_structure(const SavedGeometry& geometry) {
+void check_bvh2(const SavedGeometry& geometry) {
     const std::size_t primitives = geometry.mesh.primitive_count();
     if (geometry.leaves.size() != primitives)
         fail("a tree of ", geometry.leaves.size(), " leaves for ", primitives, " primitives");
@@ -107,6 +109,47 @@ void check_structure(const SavedGeometry& geometry) {
     }
     const TreeCheck check = check_tree(geometry.bvh, geometry.nodes, boxes);
     if (!check.violations.empty()) fail("unsound tree: ", check.violations.front());
+}
+
+// A mesh as the builder sees it.
+BuildTree source_of(const Geometry& mesh) {
+    BuildTree source{};
+    if (mesh.kind == GEOMETRY_BOXES) {
+        source.positions = Floats::to(&mesh.boxes.data()->lo.x);
+        return source;
+    }
+    source.positions = Floats::to(&mesh.positions.data()->x);
+    source.indices = Uints::to(&mesh.triangles.data()->x);
+    return source;
+}
+
+void check_records(const SavedGeometry& geometry) {
+    const auto primitives = static_cast<uint>(geometry.mesh.primitive_count());
+    if (const std::size_t count = record_count(primitives); geometry.records.size() != count)
+        fail("a tree of ", geometry.records.size(), " records for ", primitives, " primitives, not ", count);
+    if (primitives == 0) return;
+    const BuildTree source = source_of(geometry.mesh);
+    for (const CompressedRecord& record : geometry.records) {
+        if (!is_leaf(record)) continue;
+        const uint primitive = record.a.w & ~LEAF_BIT;
+        if (primitive >= primitives) fail("primitive ", primitive, " of ", primitives);
+        if (const CompressedRecord right = encode_leaf(source, primitive);
+            std::memcmp(&record, &right, sizeof right) != 0)
+            fail("the record of primitive ", primitive, " does not have its corners");
+    }
+    std::vector<LeafBox> boxes;
+    boxes.reserve(primitives);
+    for (uint i = 0; i < primitives; ++i) boxes.push_back(box_of_primitive(source, i));
+    const CompressedCheck check = check_compressed(geometry.bvh, geometry.records, boxes);
+    if (!check.violations.empty()) fail("unsound tree: ", check.violations.front());
+}
+
+void check_structure(Layout layout, const SavedGeometry& geometry) {
+    const bool has_records = layout == Layout::compressed4;
+    if (has_records ? !geometry.nodes.empty() || !geometry.leaves.empty() : !geometry.records.empty())
+        fail(geometry.nodes.size(), " nodes, ", geometry.leaves.size(), " leaves and ", geometry.records.size(),
+             " records in layout ", name_of(layout));
+    has_records ? check_records(geometry) : check_bvh2(geometry);
 }
 
 Geometry read_mesh(Reader& reader, const SavedEntry& entry) {
@@ -127,45 +170,48 @@ Geometry read_mesh(Reader& reader, const SavedEntry& entry) {
     return geometry;
 }
 
-SavedGeometry read_geometry(Reader& reader, const SavedEntry& entry) {
+SavedGeometry read_geometry(Reader& reader, Layout layout, const SavedEntry& entry) {
     const std::span<const std::byte> all = reader.rest();
     Geometry mesh = read_mesh(reader, entry);
     std::vector<BvhNode> nodes = reader.take<BvhNode>(entry.nodes, "nodes");
     std::vector<BvhTriangle> leaves = reader.take<BvhTriangle>(entry.leaves, "leaves");
-    std::vector<InstanceRecord> records = reader.take<InstanceRecord>(entry.instances, "instance records");
+    std::vector<CompressedRecord> records = reader.take<CompressedRecord>(entry.records, "records");
+    std::vector<InstanceRecord> instances = reader.take<InstanceRecord>(entry.instances, "instances");
     if (const uint found = crc32_of(all.first(all.size() - reader.rest().size())); found != entry.checksum)
         fail("damaged: the checksum is ", found, ", not ", entry.checksum);
-    const Bvh bvh{entry.lo, entry.hi, {}, entry.root, static_cast<uint>(entry.leaves)};
-    SavedGeometry geometry{std::move(mesh), bvh, std::move(nodes), std::move(leaves), std::move(records)};
-    check_structure(geometry);
+    const Bvh bvh{entry.lo, entry.hi, {}, entry.root, static_cast<uint>(mesh.primitive_count())};
+    SavedGeometry geometry{std::move(mesh),     bvh, std::move(nodes), std::move(leaves), std::move(records),
+                           std::move(instances)};
+    check_structure(layout, geometry);
     return geometry;
 }
 
-std::vector<SavedGeometry> read_all(std::span<const std::uint8_t> file) {
+DecodedSave read_all(std::span<const std::uint8_t> file) {
     Reader reader(file);
     const SavedHeader header = read_header(reader, file.size());
     const std::vector<SavedEntry> entries = reader.take<SavedEntry>(header.geometry_count, "geometries");
     if (const uint found = crc32_of(bytes_of(entries)); found != header.entries_checksum)
         fail("damaged: the checksum of the list of geometries is ", found, ", not ", header.entries_checksum);
-    std::vector<SavedGeometry> geometries;
+    DecodedSave decoded{static_cast<Layout>(header.layout), {}};
     std::uint64_t instances = 0;
     for (std::size_t i = 0; i < entries.size(); ++i) try {
-            geometries.push_back(read_geometry(reader, entries[i]));
+            decoded.geometries.push_back(read_geometry(reader, decoded.layout, entries[i]));
             instances += entries[i].instances;
         } catch (const Error& error) {
             fail("geometry ", i, ": ", error.what());
         }
     if (!reader.rest().empty()) fail(reader.rest().size(), " bytes too many");
     if (instances > max_instances) fail(instances, " instances; at most ", max_instances, " fit");
-    return geometries;
+    return decoded;
 }
 
 }  // namespace
 
-EncodedSave encode_save(std::span<const SavedGeometry> geometries) {
+EncodedSave encode_save(Layout layout, std::span<const SavedGeometry> geometries) {
     EncodedSave file;
     std::vector<SavedEntry> entries;
     SavedHeader header = own_header();
+    header.layout = static_cast<uint>(layout);
     header.geometry_count = geometries.size();
     header.file_bytes = sizeof(SavedHeader) + geometries.size() * sizeof(SavedEntry);
     for (const SavedGeometry& geometry : geometries) {
@@ -173,14 +219,16 @@ EncodedSave encode_save(std::span<const SavedGeometry> geometries) {
         uint checksum = 0;
         for (const std::span<const std::byte> array :
              {std::as_bytes(std::span(mesh.name)), bytes_of(mesh.positions), bytes_of(mesh.triangles),
-              bytes_of(mesh.boxes), bytes_of(geometry.nodes), bytes_of(geometry.leaves), bytes_of(geometry.records)}) {
+              bytes_of(mesh.boxes), bytes_of(geometry.nodes), bytes_of(geometry.leaves), bytes_of(geometry.records),
+              bytes_of(geometry.instances)}) {
             checksum = crc32_of(array, checksum);
             header.file_bytes += array.size();
             file.body.push_back(array);
         }
         entries.push_back({mesh.name.size(), mesh.positions.size(), mesh.triangles.size(), mesh.boxes.size(),
-                           geometry.nodes.size(), geometry.leaves.size(), geometry.records.size(), geometry.bvh.lo,
-                           geometry.bvh.hi, geometry.bvh.root, mesh.kind, mesh.scale, checksum});
+                           geometry.nodes.size(), geometry.leaves.size(), geometry.records.size(),
+                           geometry.instances.size(), geometry.bvh.lo, geometry.bvh.hi, geometry.bvh.root, mesh.kind,
+                           mesh.scale, checksum});
     }
     header.entries_checksum = crc32_of(bytes_of(entries));
     header.checksum = checksum_of(header);
@@ -189,7 +237,7 @@ EncodedSave encode_save(std::span<const SavedGeometry> geometries) {
     return file;
 }
 
-std::vector<SavedGeometry> decode_save(std::span<const std::uint8_t> file, const std::string& object) {
+DecodedSave decode_save(std::span<const std::uint8_t> file, const std::string& object) {
     try {
         return read_all(file);
     } catch (const Error& error) {

@@ -2,7 +2,7 @@
 // The file of a saved SwTlas: what it holds and what is checked. Pure, tested without a device.
 //
 //   header | one entry per geometry | per geometry: name, positions, triangles, boxes,
-//   nodes, leaves, instance records
+//   nodes and leaves (layout bvh2) or records (layout compressed4), instances
 //
 // Arrays are as in memory, one after the other without padding; trees refer by index, so none of it knows an address.
 // Header, entries and the arrays of each geometry have a CRC-32 each, so every byte of the file is under one.
@@ -14,18 +14,20 @@
 #include <vector>
 
 #include "engine/accel/geometry.h"
+#include "engine/accel/trace_desc.h"
 #include "swtlas/structures.h"
 
 namespace twinray {
 
-constexpr uint saved_version = 2;
+constexpr uint saved_version = 3;
 
 struct SavedHeader {
     char magic[8];
     uint version;
     uint byte_order;  // 0x01020304 as the writer's memory has it
     // Sizes of the structs in the file, which the version alone does not tell.
-    uint header_bytes, entry_bytes, node_bytes, leaf_bytes, record_bytes;
+    uint header_bytes, entry_bytes, node_bytes, leaf_bytes, record_bytes, instance_bytes;
+    uint layout;  // Layout
     uint entries_checksum;
     std::uint64_t file_bytes;
     std::uint64_t geometry_count;
@@ -34,14 +36,14 @@ struct SavedHeader {
 };
 
 struct SavedEntry {
-    std::uint64_t name_bytes, positions, triangles, boxes, nodes, leaves, instances;  // how many
-    vec3 lo, hi;                                                                      // of Bvh
+    std::uint64_t name_bytes, positions, triangles, boxes, nodes, leaves, records, instances;  // how many
+    vec3 lo, hi;                                                                               // of Bvh
     uint root;
     uint kind;      // GEOMETRY_*
     float scale;    // of Geometry
     uint checksum;  // of the geometry's arrays
 };
-static_assert(sizeof(SavedHeader) == 64 && sizeof(SavedEntry) == 96);
+static_assert(sizeof(SavedHeader) == 72 && sizeof(SavedEntry) == 104);
 
 // A built geometry and its instances.
 struct SavedGeometry {
@@ -49,7 +51,8 @@ struct SavedGeometry {
     Bvh bvh;  // nodes: 0
     std::vector<BvhNode> nodes;
     std::vector<BvhTriangle> leaves;
-    std::vector<InstanceRecord> records;  // geometry: 0
+    std::vector<CompressedRecord> records;
+    std::vector<InstanceRecord> instances;  // geometry: 0
 };
 
 // The file in pieces; those of the body lie in what was given.
@@ -57,11 +60,15 @@ struct EncodedSave {
     std::vector<std::byte> head;
     std::vector<std::span<const std::byte>> body;
 };
-EncodedSave encode_save(std::span<const SavedGeometry> geometries);
+EncodedSave encode_save(Layout layout, std::span<const SavedGeometry> geometries);
 
 // Throws Error, naming `object`, on anything that encode_save would not have made, and on trees that traversal could
 // not walk safely: a checksum keeps accidents out, not malice. Allocates no more than the file is long, and half as
 // much again.
-std::vector<SavedGeometry> decode_save(std::span<const std::uint8_t> file, const std::string& object);
+struct DecodedSave {
+    Layout layout;
+    std::vector<SavedGeometry> geometries;
+};
+DecodedSave decode_save(std::span<const std::uint8_t> file, const std::string& object);
 
 }  // namespace twinray

@@ -24,9 +24,8 @@ struct SwTlas::Batch {
 
     // Of input i, over a mesh on the device.
     BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const DeviceMesh& mesh) const {
-        return {plan.first[i],   counts[i],          mesh.positions,
-                mesh.indices,    target.triangles(), {inputs[i].block->address()},
-                target.records()};
+        return {plan.first[i],  counts[i],          mesh.positions,  mesh.indices, {inputs[i].block->address()},
+                target.nodes(), target.triangles(), target.records()};
     }
 };
 
@@ -38,13 +37,13 @@ struct SwTlas::SwBuiltScene : BuiltScene {
         BuildTree tree{};
         tree.count = count;
         tree.bvh = {address};
+        tree.nodes = nodes();
         tree.records = records();
         return tree;
     }
-    Ref<BvhNode> nodes() const { return {address + layout.nodes}; }
+    Ref<BvhNode> nodes() const { return {layout.node_count ? address + layout.nodes : 0}; }
     Ref<SwInstance> instances() const { return {address + layout.instances}; }
-    // Null where the layout has none.
-    Ref<CompressedRecord> records() const { return {layout.records < layout.bytes ? address + layout.records : 0}; }
+    Ref<CompressedRecord> records() const { return {layout.record_count ? address + layout.records : 0}; }
 };
 
 SwTlas::SwTlas(Context& context, const AccelOptions& options)
@@ -73,26 +72,26 @@ void SwTlas::record_batches(Commands& commands, std::span<const GeometryInput> i
                             const std::function<void(const Batch&, const Buffer& scratch)>& record) {
     std::vector<std::uint64_t> shares;
     for (const GeometryInput& input : inputs)
-        shares.push_back(scratch_share(static_cast<uint>(input.geometry->primitive_count())) + source_bytes(input));
+        shares.push_back(scratch_share(static_cast<uint>(input.geometry->primitive_count()), options().layout) +
+                         source_bytes(input));
     const Batches batches = cut_into_batches(shares, scratch_budget());
     Buffer scratch(context(), {.name = "swtlas geometry scratch", .bytes = batches.scratch_bytes});
     for (const Batches::Run& run : batches.runs) {
         Batch batch{inputs.subspan(run.first, run.count)};
         for (const GeometryInput& input : batch.inputs)
             batch.counts.push_back(static_cast<uint>(input.geometry->primitive_count()));
-        batch.plan = plan_build(batch.counts);
+        batch.plan = plan_build(batch.counts, options().layout);
         record(batch, scratch);
     }
     commands.keep(std::move(scratch));
 }
 
-std::vector<Builder::Measured> SwTlas::measured(std::span<const GeometryInput> inputs) {
-    std::vector<Builder::Measured> trees;
-    for (const GeometryInput& input : inputs)
-        if (input.cost.result.address)
-            trees.push_back(
-                {{input.block->address()}, static_cast<uint>(input.geometry->triangles.size()), input.cost});
-    return trees;
+std::vector<Builder::Measured> SwTlas::measured(const Batch& batch, std::span<const BuildTree> trees) {
+    std::vector<Builder::Measured> wanted;
+    for (std::size_t i = 0; i < trees.size(); ++i)
+        if (const CostTarget& cost = batch.inputs[i].cost; cost.result.address)
+            wanted.push_back({trees[i].bvh, trees[i].records, trees[i].count, cost});
+    return wanted;
 }
 
 // Where the meshes lie on the device; those that are not there yet are uploaded.
@@ -138,7 +137,7 @@ void SwTlas::record_build(Commands& commands, const Batch& batch, const Buffer& 
         }
     }
     builder_.record_triangles(commands, batch.plan, trees, scratch);
-    builder_.record_costs(commands, measured(batch.inputs), true);
+    builder_.record_costs(commands, measured(batch, trees), true);
 }
 
 SwTlas::Built SwTlas::build_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
@@ -154,11 +153,11 @@ SwTlas::Built SwTlas::refit_geometries(Commands& commands, std::span<const Geome
         for (std::size_t i = 0; i < batch.inputs.size(); ++i)
             trees.push_back(
                 batch.tree(i, static_cast<const SwBuiltGeometry&>(*batch.inputs[i].current), batch.inputs[i].mesh));
-        std::vector<Builder::Measured> as_built = measured(batch.inputs);
+        std::vector<Builder::Measured> as_built = measured(batch, trees);
         std::erase_if(as_built, [](const Builder::Measured& tree) { return !tree.target.is_first; });
         builder_.record_costs(commands, as_built, true);
         builder_.record_triangle_refit(commands, batch.plan, trees, scratch);
-        builder_.record_costs(commands, measured(batch.inputs), false);
+        builder_.record_costs(commands, measured(batch, trees), false);
     });
     return Built(inputs.size());
 }
@@ -183,9 +182,9 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
     }
-    builder_.record_instances(commands, plan_build(std::span(&input.count, 1)), scene->tree(input.count), input.records,
-                              scene->instances());
-    const Builder::Measured measured{{scene->address}, input.count, input.cost};
+    builder_.record_instances(commands, plan_build(std::span(&input.count, 1), options().layout),
+                              scene->tree(input.count), input.records, scene->instances());
+    const Builder::Measured measured{{scene->address}, scene->records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), true);
     return made;
 }
@@ -196,7 +195,8 @@ BuildBytes SwTlas::geometry_bytes(std::span<const GeometrySize> geometries) cons
     for (const GeometrySize& size : geometries) {
         const auto count = static_cast<uint>(size.triangles);
         bytes.structures += layout_geometry(count, options().layout).bytes;
-        shares.push_back(scratch_share(count) + size.vertices * sizeof(vec3) + size.triangles * sizeof(uvec3));
+        shares.push_back(scratch_share(count, options().layout) + size.vertices * sizeof(vec3) +
+                         size.triangles * sizeof(uvec3));
     }
     bytes.scratch = cut_into_batches(shares, scratch_budget()).scratch_bytes;
     return bytes;
@@ -205,14 +205,15 @@ BuildBytes SwTlas::geometry_bytes(std::span<const GeometrySize> geometries) cons
 BuildBytes SwTlas::scene_bytes(std::size_t count, std::size_t capacity) const {
     const auto leaves = static_cast<uint>(count);
     return {layout_scene(static_cast<uint>(capacity), options().layout).bytes,
-            plan_build(std::span(&leaves, 1)).scratch.bytes + Builder::cost_bytes(leaves)};
+            plan_build(std::span(&leaves, 1), options().layout).scratch.bytes +
+                Builder::cost_bytes(leaves, options().layout)};
 }
 
 void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
     const auto& scene = static_cast<const SwBuiltScene&>(current);
-    builder_.record_refit(commands, plan_build(std::span(&input.count, 1)), scene.tree(input.count), input.records,
-                          scene.instances());
-    const Builder::Measured measured{{scene.address}, input.count, input.cost};
+    builder_.record_refit(commands, plan_build(std::span(&input.count, 1), options().layout), scene.tree(input.count),
+                          input.records, scene.instances());
+    const Builder::Measured measured{{scene.address}, scene.records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), false);
 }
 
@@ -223,27 +224,23 @@ std::unique_ptr<TraceProgram> SwTlas::create_program(const TraceProgramCode* cod
         code ? code->software_refined : std::span<const std::uint32_t>(swtlas_trace_refined_spirv));
 }
 
-std::vector<CompressedRecord> SwTlas::download_records(const Buffer& buffer, std::uint64_t begin,
-                                                       std::uint64_t end) const {
-    return download<CompressedRecord>(context(), buffer, (end - begin) / sizeof(CompressedRecord), begin);
-}
-
 SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {
     const auto& built = static_cast<const SwBuiltGeometry&>(built_geometry(handle));
     const Bvh bvh = download<SwGeometry>(context(), geometry_block(handle), 1).front().bvh;
     const GeometryLayout& layout = built.layout;
-    return {bvh, download<BvhNode>(context(), built.buffer, std::max(bvh.leaf_count, 1u) - 1, layout.nodes),
-            download<BvhTriangle>(context(), built.buffer, bvh.leaf_count, layout.triangles),
-            download_records(built.buffer, layout.records, layout.bytes)};
+    return {bvh, download<BvhNode>(context(), built.buffer, layout.node_count, layout.nodes),
+            download<BvhTriangle>(context(), built.buffer, layout.triangle_count, layout.triangles),
+            download<CompressedRecord>(context(), built.buffer, layout.record_count, layout.records)};
 }
 
 SwTlas::Tree SwTlas::download_scene() const {
     const auto& built = static_cast<const SwBuiltScene&>(built_scene());
     const Bvh bvh = download<SwScene>(context(), built.buffer, 1).front().bvh;
+    const SceneLayout of_them = layout_scene(bvh.leaf_count, options().layout);
     return {bvh,
-            download<BvhNode>(context(), built.buffer, std::max(bvh.leaf_count, 1u) - 1, built.layout.nodes),
+            download<BvhNode>(context(), built.buffer, of_them.node_count, built.layout.nodes),
             {},
-            download_records(built.buffer, built.layout.records, built.layout.bytes)};
+            download<CompressedRecord>(context(), built.buffer, of_them.record_count, built.layout.records)};
 }
 
 }  // namespace twinray

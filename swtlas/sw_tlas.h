@@ -38,8 +38,8 @@ class SwTlas final : public AbstractAccel {
     // For checks and tools: copies of the built trees, downloaded. Throws Error on a dead or unsynced handle.
     struct Tree {
         Bvh bvh;
-        std::vector<BvhNode> nodes;
-        std::vector<BvhTriangle> triangles;     // of a geometry; empty for the scene
+        std::vector<BvhNode> nodes;             // of layout bvh2
+        std::vector<BvhTriangle> triangles;     // of a geometry in layout bvh2
         std::vector<CompressedRecord> records;  // of layout compressed4
     };
     Tree download_geometry(AccelHandle handle) const;
@@ -55,9 +55,8 @@ class SwTlas final : public AbstractAccel {
     Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const override;
     BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
-    std::vector<CompressedRecord> download_records(const Buffer& buffer, std::uint64_t begin, std::uint64_t end) const;
     static std::uint64_t source_bytes(const GeometryInput& input);
-    static std::vector<Builder::Measured> measured(std::span<const GeometryInput> inputs);
+    static std::vector<Builder::Measured> measured(const Batch& batch, std::span<const BuildTree> trees);
     void record_batches(Commands& commands, std::span<const GeometryInput> inputs,
                         const std::function<void(const Batch&, const Buffer& scratch)>& record);
     void record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built);

@@ -60,7 +60,7 @@ void print_path(std::ostream& out, const char* tree, const std::vector<Box>& pat
 }  // namespace
 
 Explainer::Explainer(const Scene& scene, const Oracle& oracle, const Ray& ray, Level level)
-    : oracle_(oracle), ray_(ray), twin_(suite::twin_of(scene)) {
+    : oracle_(oracle), ray_(ray), twin_(suite::twin_of(scene, Layout::bvh2)) {
     double advance = 0;
     searched_ = twin_->searched_ray(ray, static_cast<uint>(level), advance);
 }

@@ -12,6 +12,7 @@
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 #include "swtlas/check.h"
+#include "swtlas/check_compressed.h"
 #include "swtlas/reference.h"
 
 namespace twinray::suite {
@@ -21,11 +22,28 @@ namespace {
 uint depth_limit(std::size_t leaves) { return 30 + static_cast<uint>(std::bit_width(leaves)); }
 
 TreeCheck check(const SwTlas::Tree& tree, const Mesh& mesh) {
-    std::vector<LeafBox> boxes;
     const std::vector<LeafBox> by_primitive =
         reference::leaves_triangles(Geometry(mesh, software_unit(mesh.positions)).positions, mesh.triangles);
+    if (!tree.records.empty()) {
+        CompressedCheck found = check_compressed(tree.bvh, tree.records, by_primitive);
+        return {std::move(found.violations), found.depth, found.sah};
+    }
+    std::vector<LeafBox> boxes;
     for (const BvhTriangle& triangle : tree.triangles) boxes.push_back(by_primitive.at(triangle.primitive_index));
     return check_tree(tree.bvh, tree.nodes, boxes);
+}
+
+template <class T>
+void append_bytes(std::vector<std::byte>& bytes, const std::vector<T>& values) {
+    const std::span<const std::byte> more = std::as_bytes(std::span(values));
+    bytes.insert(bytes.end(), more.begin(), more.end());
+}
+
+std::vector<std::byte> bytes_of(const SwTlas::Tree& tree) {
+    std::vector<std::byte> bytes;
+    append_bytes(bytes, tree.nodes);
+    append_bytes(bytes, tree.records);
+    return bytes;
 }
 
 }  // namespace
@@ -154,7 +172,7 @@ void repeated_builds(CaseRun& run) {
     const Mesh mesh = make_soup(static_cast<uint>(run.amount(5'000, 500'000)), 21);
     const std::vector<Ray> rays = random_rays(bounds_of(mesh), run.amount(1'024, 100'000), run.seed());
     for (const Subject& subject : run.one_subject_each()) {
-        std::vector<BvhNode> nodes;
+        std::vector<std::byte> nodes;
         std::vector<Hit> hits;
         CaseRun::Outcome outcome{.params = {{"compared", is_ours(subject.backend) ? "nodes and hits" : "hits"}},
                                  .n = builds,
@@ -165,7 +183,7 @@ void repeated_builds(CaseRun& run) {
             const AccelHandle handle = accel.push(mesh);
             const std::vector<Hit> now = accel.closest_hits(rays, {.level = subject.level});
             const auto* software = dynamic_cast<SwTlas*>(&accel);
-            const auto tree = software ? software->download_geometry(handle).nodes : std::vector<BvhNode>();
+            const auto tree = software ? bytes_of(software->download_geometry(handle)) : std::vector<std::byte>();
             if (i == 0) nodes = tree, hits = now;
             if (!same_bytes(nodes, tree) || !same_bytes(hits, now)) ++outcome.faults;
         }

@@ -9,3 +9,5 @@
 #define BUFFER_OF(T, alignment) static_assert(sizeof(T) % (alignment) == 0)
 #define FLOATS(word) floats_of(word)
 #define UINTS(word) uints_of(word)
+#define WORD(low, high) word_of(low, high)
+#define UNROLL

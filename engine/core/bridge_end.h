@@ -9,3 +9,5 @@
 #undef BUFFER_OF
 #undef FLOATS
 #undef UINTS
+#undef WORD
+#undef UNROLL

@@ -32,7 +32,11 @@ struct DeviceFacts {
 
 // One thing that twinray uses of a device.
 struct Requirement {
-    enum class Of : std::uint8_t { everything, hardware, refinement };  // what does not work without: all, HwTlas, levels
+    enum class Of : std::uint8_t {
+        everything,
+        hardware,
+        refinement
+    };  // what does not work without: all, HwTlas, levels
     const char* what;
     const char* why;  // "because ..."
     Of of;

@@ -53,5 +53,6 @@ inline vec2 floats_of(std::uint64_t word) {
     return {uintBitsToFloat(static_cast<uint>(word)), uintBitsToFloat(static_cast<uint>(word >> 32))};
 }
 inline uvec2 uints_of(std::uint64_t word) { return {static_cast<uint>(word), static_cast<uint>(word >> 32)}; }
+inline std::uint64_t word_of(uint low, uint high) { return std::uint64_t{high} << 32 | low; }
 
 }  // namespace twinray

@@ -22,6 +22,8 @@
 // Reads the two floats that lie in one 64-bit word, low word first.
 #define FLOATS(word) uintBitsToFloat(unpackUint2x32(word))
 #define UINTS(word) unpackUint2x32(word)
+#define WORD(low, high) packUint2x32(uvec2(low, high))
+#define UNROLL [[unroll]]
 
 BUFFER_OF_WORDS(Words64, uint64_t, 8);
 BUFFER_OF_WORDS(Floats, float, 4);

@@ -32,11 +32,12 @@ struct BuildTree
 {
     uint first;
     uint count;
-    Floats positions;          // 3 floats a vertex of triangles, 6 a box
-    Uints indices;             // 3 a triangle; null: boxes
-    REF(BvhTriangle) triangles; // null: instances
+    Floats positions;              // 3 floats a vertex of triangles, 6 a box; null: instances
+    Uints indices;                 // 3 a triangle; null: boxes
     REF(Bvh) bvh;
-    REF(CompressedRecord) records; // null in layout bvh2
+    REF(BvhNode) nodes;            // in layout compressed4 of the scratch
+    REF(BvhTriangle) triangles;    // of layout bvh2
+    REF(CompressedRecord) records; // of layout compressed4
 };
 BUFFER_OF(BuildTree, 8);
 
@@ -139,6 +140,38 @@ struct RefitTrianglesArgs
     uint reserved;
 };
 
+// New records for an old topology. A tree's slots are its places for records; they begin at 2 * BuildTree::first.
+struct RecordParentsArgs
+{
+    REF(BuildTree) trees;
+    REF(BuildBlock) blocks;
+    Uints parents; // by slot: that of the node above, NOTHING for the root
+    Uints missing; // by slot of a node: how many of its children have no box yet
+    uint block_count;
+    uint reserved;
+};
+
+struct RefitRecordsArgs
+{
+    REF(BuildTree) trees;
+    REF(BuildBlock) blocks;
+    REF(LeafBox) boxes; // of instances
+    REF(LeafBox) slot_boxes;
+    Uints parents;
+    Uints missing;
+    uint block_count;
+    uint reserved;
+};
+
+struct EncodeRecordsArgs
+{
+    REF(BuildTree) trees;
+    REF(BuildBlock) blocks;
+    Uints places; // by leaf: its slot
+    uint block_count;
+    uint reserved;
+};
+
 struct EncodeTrianglesArgs
 {
     REF(BuildTree) trees;
@@ -167,6 +200,7 @@ FUNC vec3 center_of(LeafBox box)
     return center;
 }
 
+FUNC bool has_instances(BuildTree tree) { return uint64_t(tree.positions) == 0ul; }
 FUNC bool has_boxes(BuildTree tree) { return uint64_t(tree.indices) == 0ul; }
 
 FUNC BvhTriangle fetch_primitive(BuildTree tree, uint primitive)

@@ -3,10 +3,11 @@
 //
 //   SwScene -> top-level Bvh over instances -> SwInstance -> bottom-level Bvh over triangles
 //
-// A Bvh is binary, and for layout compressed4 also a tree of four children a node, made of CompressedRecords.
+// Trees are built binary, of BvhNodes. In layout bvh2 they stay; in layout compressed4 a tree of CompressedRecords takes
+// their place.
 //
 // A reference to a child is the index of an inner node, or LEAF_BIT with the index of a leaf. n leaves have n - 1
-// inner nodes; with one leaf the root is that leaf, with none it is NOTHING.
+// inner nodes; with one leaf the root is that leaf, with none it is NOTHING. Records have their root at 0.
 #ifndef TWINRAY_SHARED_BVH_H
 #define TWINRAY_SHARED_BVH_H
 #include "shaders/shared/instance.h"
@@ -23,11 +24,11 @@ struct BvhNode
     vec3 lo0;
     uint child0;
     vec3 hi0;
-    uint first; // the leaves below are first..last in sorted order
+    uint leaves0; // how many leaves are below child0
     vec3 lo1;
     uint child1;
     vec3 hi1;
-    uint last;
+    uint leaves1;
 };
 BUFFER_OF(BvhNode, 16);
 
@@ -48,6 +49,7 @@ BUFFER_OF(BvhTriangle, 8);
 //            b: lo.x, hi.x, lo.y, hi.y in cells, 8 bits a child      c: lo.z, hi.z, the first child, -
 // primitive  a: v0; w: LEAF_BIT | primitive_index      b: v1; w, c.xy: v2
 // instance   a.w: LEAF_BIT | index
+// none       0
 struct CompressedRecord
 {
     uvec4 a;
@@ -60,7 +62,7 @@ struct Bvh
 {
     vec3 lo; // around all active leaves; lo > hi: there are none
     vec3 hi;
-    REF(BvhNode) nodes;
+    REF(BvhNode) nodes; // null in layout compressed4
     uint root;
     uint leaf_count;
 };
@@ -70,8 +72,8 @@ BUFFER_OF(Bvh, 8);
 struct SwGeometry
 {
     Bvh bvh;
-    REF(BvhTriangle) triangles;
-    REF(CompressedRecord) records; // null in layout bvh2; the root's is the first
+    REF(BvhTriangle) triangles;    // null in layout compressed4
+    REF(CompressedRecord) records; // null in layout bvh2
     uint kind; // GEOMETRY_*
     uint reserved;
 };
@@ -113,11 +115,11 @@ FUNC BvhNode load_node(REF(BvhNode) nodes, uint index)
     node.lo0 = vec3(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x);
     node.child0 = UINTS(w1).y;
     node.hi0 = vec3(FLOATS(w2).x, FLOATS(w2).y, FLOATS(w3).x);
-    node.first = UINTS(w3).y;
+    node.leaves0 = UINTS(w3).y;
     node.lo1 = vec3(FLOATS(w4).x, FLOATS(w4).y, FLOATS(w5).x);
     node.child1 = UINTS(w5).y;
     node.hi1 = vec3(FLOATS(w6).x, FLOATS(w6).y, FLOATS(w7).x);
-    node.last = UINTS(w7).y;
+    node.leaves1 = UINTS(w7).y;
     return node;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// From a binary tree to nodes of four children. Where the records of a subtree go follows from the leaves before it
-// alone, so that the result does not depend on the order in which invocations run.
+// From a binary tree to nodes of four children. Where the records of a subtree go follows from the number of its leaves
+// and of those before it, so that the result does not depend on the order in which invocations run.
 #ifndef TWINRAY_SHARED_COLLAPSE_H
 #define TWINRAY_SHARED_COLLAPSE_H
 #include "shaders/shared/compressed.h"
@@ -26,6 +26,8 @@ struct CollapseLevel
 };
 BUFFER_OF(CollapseLevel, 4);
 
+const uint COLLAPSE_GROUP = 64u;
+
 // Specialisations of the kernel.
 const uint COLLAPSE_ROOTS = 0u; // makes the items of the roots
 const uint COLLAPSE_LEVEL = 1u; // does a level and makes the items of the next
@@ -37,111 +39,132 @@ struct CollapseArgs
     REF(CollapseItem) items;
     REF(CollapseItem) next_items;
     REF(CollapseLevel) level; // the next one follows
+    Uints places;             // by leaf: where its record goes
     uint tree_count;
     uint reserved;
 };
 
-FUNC void set_child(INOUT(NodeChildren) children, uint i, uint child, vec3 lo, vec3 hi, uint first, uint last)
+FUNC void set_child(INOUT(NodeChildren) children, uint at, uint child, vec3 lo, vec3 hi, uint leaves)
 {
-    children.child[i] = child;
-    children.box[i].lo = lo;
-    children.box[i].hi = hi;
-    children.first[i] = first;
-    children.last[i] = last;
-}
-
-// The child with the largest box of those that have children themselves, or 4.
-FUNC uint widest_inner(NodeChildren children, float unit)
-{
-    uint widest = 4u;
-    float largest = -1.0f;
-    for (uint i = 0u; i < children.count; i = i + 1u)
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
     {
-        if ((children.child[i] & LEAF_BIT) != 0u) continue;
-        float area = half_area(children.box[i].lo, children.box[i].hi, unit);
-        widest = area > largest ? i : widest;
-        largest = max(area, largest);
+        bool is_here = i == at;
+        children.child[i] = is_here ? child : children.child[i];
+        children.box[i].lo = is_here ? lo : children.box[i].lo;
+        children.box[i].hi = is_here ? hi : children.box[i].hi;
+        children.leaves[i] = is_here ? leaves : children.leaves[i];
     }
-    return widest;
 }
 
-// Splits `node`, which has place i among the children, into its own two, the second at the end. A binary node has the number
-// of the last leaf below its first child (see swtlas/hierarchy.comp).
+// Splits `node`, which has place i among the children, into its own two, the second at the end.
 FUNC void open_child(REF(BvhNode) nodes, uint node, uint i, INOUT(NodeChildren) children)
 {
     BvhNode opened = load_node(nodes, node);
-    set_child(children, i, opened.child0, opened.lo0, opened.hi0, opened.first, node);
-    set_child(children, children.count, opened.child1, opened.lo1, opened.hi1, node + 1u, opened.last);
+    set_child(children, i, opened.child0, opened.lo0, opened.hi0, opened.leaves0);
+    set_child(children, children.count, opened.child1, opened.lo1, opened.hi1, opened.leaves1);
     children.count = children.count + 1u;
+}
+
+// Opens the child with the largest box of those that have children themselves, if there is one.
+FUNC void open_widest(REF(BvhNode) nodes, float unit, INOUT(NodeChildren) children)
+{
+    uint widest = 4u;
+    uint node = 0u;
+    float largest = -1.0f;
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
+    {
+        float area = half_area(children.box[i].lo, children.box[i].hi, unit);
+        bool is_wider = i < children.count && (children.child[i] & LEAF_BIT) == 0u && area > largest;
+        widest = is_wider ? i : widest;
+        node = is_wider ? children.child[i] : node;
+        largest = is_wider ? area : largest;
+    }
+    if (widest < 4u) open_child(nodes, node, widest, children);
 }
 
 // The children of the node of four that a binary node becomes: the largest boxes are opened first.
 FUNC NodeChildren children_of(REF(BvhNode) nodes, uint node)
 {
     NodeChildren children;
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
+    {
+        children.child[i] = LEAF_BIT;
+        children.box[i] = empty_box();
+        children.leaves[i] = 0u;
+    }
     children.count = 1u;
     open_child(nodes, node, 0u, children);
-    float unit = area_unit(min(children.box[0].lo, children.box[1].lo), max(children.box[0].hi, children.box[1].hi));
-    for (uint widest = widest_inner(children, unit); children.count < 4u && widest < 4u; widest = widest_inner(children, unit))
-        open_child(nodes, children.child[widest], widest, children);
+    LeafBox around = box_around(children);
+    float unit = area_unit(around.lo, around.hi);
+    open_widest(nodes, unit, children);
+    open_widest(nodes, unit, children);
     return children;
 }
 
 struct CollapseStep
 {
-    CollapseItem items[4]; // those of the children that are inner nodes
-    uint count;
+    CollapseItem items[4]; // of the children
+    bool is_inner[4];      // only these have one
 };
 
-FUNC CompressedRecord encode_leaf(BuildTree tree, uint leaf)
+FUNC CollapseStep no_step()
 {
-    if (uint64_t(tree.triangles) == 0ul) return encode_instance(leaf);
-    return encode_primitive(load_triangle(tree.triangles, leaf));
-}
-
-// Writes the node of an item and the leaves among its children.
-FUNC CollapseStep collapse(BuildTree tree, CollapseItem item)
-{
-    NodeChildren children = children_of(AT(tree.bvh, 0).nodes, item.node);
-    AT(tree.records, item.record) = encode_node(children, item.below);
     CollapseStep step;
-    step.count = 0u;
-    uint below = item.below + children.count;
-    for (uint i = 0u; i < children.count; i = i + 1u)
-    {
-        uint child = children.child[i];
-        if ((child & LEAF_BIT) != 0u)
-        {
-            AT(tree.records, item.below + i) = encode_leaf(tree, child & ~LEAF_BIT);
-            continue;
-        }
-        step.items[step.count].tree = item.tree;
-        step.items[step.count].node = child;
-        step.items[step.count].record = item.below + i;
-        step.items[step.count].below = below;
-        step.count = step.count + 1u;
-        below = below + records_below(children.last[i] - children.first[i] + 1u);
-    }
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u) step.is_inner[i] = false;
     return step;
 }
 
-// The whole of a tree that is no inner node, and nothing; or the item of its root.
-FUNC CollapseStep begin_collapse(BuildTree tree, uint index)
+// Writes the node of an item, and where the leaves among its children go.
+FUNC CollapseStep collapse(BuildTree tree, Uints places, CollapseItem item)
 {
-    CollapseStep step;
-    step.count = 0u;
+    NodeChildren children = children_of(tree.nodes, item.node);
+    store_record(tree.records, item.record, encode_node(children, item.below));
+    CollapseStep step = no_step();
+    uint below = item.below + children.count;
+    uint leaves = 0u;
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
+    {
+        if (i >= children.count) continue;
+        leaves = leaves + children.leaves[i];
+        uint child = children.child[i];
+        step.is_inner[i] = (child & LEAF_BIT) == 0u;
+        if (!step.is_inner[i])
+        {
+            AT(places, tree.first + (child & ~LEAF_BIT)) = item.below + i;
+            continue;
+        }
+        step.items[i].tree = item.tree;
+        step.items[i].node = child;
+        step.items[i].record = item.below + i;
+        step.items[i].below = below;
+        below = below + records_below(children.leaves[i]);
+    }
+    for (uint end = item.below + records_below(leaves); below < end; below = below + 1u)
+        store_record(tree.records, below, no_record());
+    return step;
+}
+
+// The item of a tree's root, if that is an inner node.
+FUNC CollapseStep begin_collapse(BuildTree tree, Uints places, uint index)
+{
+    CollapseStep step = no_step();
     uint root = AT(tree.bvh, 0).root;
     if (root == NOTHING) return step;
-    if ((root & LEAF_BIT) != 0u)
-    {
-        AT(tree.records, 0) = encode_leaf(tree, root & ~LEAF_BIT);
-        return step;
-    }
+    AT(tree.bvh, 0).root = 0u;
+    step.is_inner[0] = (root & LEAF_BIT) == 0u;
     step.items[0].tree = index;
     step.items[0].node = root;
     step.items[0].record = 0u;
     step.items[0].below = 1u;
-    step.count = 1u;
+    if (!step.is_inner[0]) AT(places, tree.first) = 0u;
     return step;
+}
+
+// The record of a leaf of a tree.
+FUNC CompressedRecord encode_leaf(BuildTree tree, uint leaf)
+{
+    if (has_instances(tree)) return encode_instance(leaf);
+    BvhTriangle fetched = fetch_primitive(tree, leaf);
+    return encode_primitive(has_boxes(tree) ? fetched : without_inactive_corners(fetched));
 }
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Layout compressed4: one array of records, of which each is a node of up to four children, a primitive or an instance. The children of a node lie side by side, so that one number leads to all of them, and a traversal fetches
-// one record an iteration, whatever it is.
+// Layout compressed4: one array of records, of which each is a node of up to four children, a primitive or an instance. The
+// children of a node lie side by side, so that one number leads to all of them, and a traversal fetches one record an
+// iteration, whatever it is.
 //
 // A node keeps its children's boxes as planes of a grid, 8 bits each, rounded outwards by more than a traversal's
 // arithmetic may lose (after Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
@@ -8,12 +9,38 @@
 #ifndef TWINRAY_SHARED_COMPRESSED_H
 #define TWINRAY_SHARED_COMPRESSED_H
 #include "shaders/shared/build.h"
+#include "shaders/shared/surface_area.h"
 
 const uint MOST_RECORDS = 1u << 25u; // a tree may have: what an entry on the stack can name; 20 million leaves
 
-// Records that a tree of so many leaves needs at most, without its root's: a node with fewer than four children has
-// leaves only, so that the most nodes come from pairs of leaves, of which 3 n + 1 have n nodes above them.
-FUNC uint records_below(uint leaf_count) { return leaf_count < 2u ? 0u : (5u * leaf_count - 4u) / 3u; }
+// Records that a tree of so many leaves needs at most: a node with fewer than four children has leaves only, so that the most
+// nodes come from pairs of leaves, of which 3 n + 1 have n nodes above them. Those that a tree does not use are `none`.
+FUNC uint record_count(uint leaf_count) { return leaf_count == 0u ? 0u : (5u * leaf_count - 1u) / 3u; }
+FUNC uint records_below(uint leaf_count) { return leaf_count < 2u ? 0u : record_count(leaf_count) - 1u; }
+FUNC uint children_in(CompressedRecord node) { return node.a.w >> 24u; } // 0: none
+FUNC bool is_leaf(CompressedRecord record) { return (record.a.w & LEAF_BIT) != 0u; }
+
+FUNC CompressedRecord load_record(REF(CompressedRecord) records, uint index)
+{
+    // In 64-bit components: drivers on CPUs pay per component, not per byte.
+    Words64 words = Words64(uint64_t(records) + uint64_t(index) * 48ul);
+    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4), w5 = AT(words, 5);
+    CompressedRecord record;
+    record.a = uvec4(UINTS(w0).x, UINTS(w0).y, UINTS(w1).x, UINTS(w1).y);
+    record.b = uvec4(UINTS(w2).x, UINTS(w2).y, UINTS(w3).x, UINTS(w3).y);
+    record.c = uvec4(UINTS(w4).x, UINTS(w4).y, UINTS(w5).x, UINTS(w5).y);
+    return record;
+}
+FUNC void store_record(REF(CompressedRecord) records, uint index, CompressedRecord record)
+{
+    Words64 words = Words64(uint64_t(records) + uint64_t(index) * 48ul);
+    AT(words, 0) = WORD(record.a.x, record.a.y);
+    AT(words, 1) = WORD(record.a.z, record.a.w);
+    AT(words, 2) = WORD(record.b.x, record.b.y);
+    AT(words, 3) = WORD(record.b.z, record.b.w);
+    AT(words, 4) = WORD(record.c.x, record.c.y);
+    AT(words, 5) = WORD(record.c.z, record.c.w);
+}
 
 // The exponent of the smallest power of two by which lo..hi is 252 cells long at most, and a cell some roundings of the
 // coordinates: then what lies a cell below lo, rounded, is 1/2 to 3/2 of a cell below.
@@ -41,26 +68,38 @@ FUNC uint cell_above(float plane, float origin, float per_unit)
     return uint(clamp(ceil(cells), 0.0f, 255.0f));
 }
 
+// Only ever indexed by constants, so that drivers keep it in registers.
 struct NodeChildren
 {
     uint child[4]; // as in BvhNode
     LeafBox box[4];
-    uint first[4]; // the leaves below are first..last in sorted order
-    uint last[4];
+    uint leaves[4]; // below it
     uint count;
 };
+
+FUNC LeafBox box_around(NodeChildren children)
+{
+    LeafBox around = empty_box();
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
+    {
+        if (i >= children.count) continue;
+        around.lo = min(around.lo, children.box[i].lo);
+        around.hi = max(around.hi, children.box[i].hi);
+    }
+    return around;
+}
 
 // The planes of one axis: x those below, y those above.
 FUNC uvec2 encode_axis(NodeChildren children, uint axis, float origin, float per_unit)
 {
     uvec2 planes = uvec2(0u, 0u);
-    for (uint i = 0u; i < children.count; i = i + 1u)
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
     {
         // A box that nothing hits has lo > hi.
         bool is_solid = is_active(children.box[i]);
         uint below = is_solid ? cell_below(children.box[i].lo[axis], origin, per_unit) : 255u;
         uint above = is_solid ? cell_above(children.box[i].hi[axis], origin, per_unit) : 0u;
-        planes = uvec2(planes.x | below << 8u * i, planes.y | above << 8u * i);
+        if (i < children.count) planes = uvec2(planes.x | below << 8u * i, planes.y | above << 8u * i);
     }
     return planes;
 }
@@ -68,18 +107,13 @@ FUNC uvec2 encode_axis(NodeChildren children, uint axis, float origin, float per
 FUNC CompressedRecord encode_node(NodeChildren children, uint first_child)
 {
     const float FARTHEST = 1.329227995784916e+36f; // 2^120
-    LeafBox around = empty_box();
-    for (uint i = 0u; i < children.count; i = i + 1u)
-    {
-        around.lo = min(around.lo, children.box[i].lo);
-        around.hi = max(around.hi, children.box[i].hi);
-    }
+    LeafBox around = box_around(children);
     around.lo = is_active(around) ? clamp(around.lo, vec3(-FARTHEST), vec3(FARTHEST)) : vec3(0.0f);
     around.hi = around.lo.x <= around.hi.x ? clamp(around.hi, vec3(-FARTHEST), vec3(FARTHEST)) : vec3(0.0f);
     uint header = children.count << 24u;
     vec3 origin = vec3(0.0f);
     uvec2 planes[3];
-    for (uint axis = 0u; axis < 3u; axis = axis + 1u)
+    UNROLL for (uint axis = 0u; axis < 3u; axis = axis + 1u)
     {
         uint exponent = cell_exponent(around.lo[axis], around.hi[axis]);
         PRECISE float lower = around.lo[axis] - cell_size(exponent);
@@ -103,13 +137,45 @@ FUNC CompressedRecord encode_primitive(BvhTriangle t)
     return record;
 }
 
-FUNC CompressedRecord encode_instance(uint index)
+FUNC CompressedRecord no_record()
 {
     CompressedRecord record;
-    record.a = uvec4(0u, 0u, 0u, LEAF_BIT | index);
+    record.a = uvec4(0u);
     record.b = uvec4(0u);
     record.c = uvec4(0u);
     return record;
+}
+
+FUNC CompressedRecord encode_instance(uint index)
+{
+    CompressedRecord record = no_record();
+    record.a.w = LEAF_BIT | index;
+    return record;
+}
+
+FUNC vec3 grid_origin(CompressedRecord node)
+{
+    return vec3(uintBitsToFloat(node.a.x), uintBitsToFloat(node.a.y), uintBitsToFloat(node.a.z));
+}
+FUNC vec3 grid_cell(CompressedRecord node)
+{
+    return vec3(cell_size(node.a.w & 0xffu), cell_size(node.a.w >> 8u & 0xffu), cell_size(node.a.w >> 16u & 0xffu));
+}
+
+// Half the areas of the boxes of a node's children, as rays meet them; 0 of other records.
+FUNC float areas_in(CompressedRecord node, float unit)
+{
+    if (is_leaf(node)) return 0.0f;
+    vec3 origin = grid_origin(node);
+    vec3 cell = grid_cell(node);
+    float sum = 0.0f;
+    for (uint i = 0u; i < children_in(node); i = i + 1u)
+    {
+        uvec3 below = uvec3(node.b.x, node.b.z, node.c.x) >> 8u * i & 0xffu;
+        uvec3 above = uvec3(node.b.y, node.b.w, node.c.y) >> 8u * i & 0xffu;
+        if (below.x <= above.x) sum = sum + half_area(origin + cell * vec3(below), origin + cell * vec3(above), unit);
+    }
+    return sum;
 }
 
 FUNC BvhTriangle primitive_of(CompressedRecord record)

@@ -36,12 +36,13 @@ struct JoinAreasArgs
     uint is_build;
 };
 
-// One item for AREA_GROUP nodes of a tree.
+// One item for AREA_GROUP nodes of a tree, or AREA_GROUP records.
 struct NodeAreasArgs
 {
     REF(Bvh) tree;
+    REF(CompressedRecord) records; // null: binary nodes
     REF(AreaItem) items;
-    uint node_count;
+    uint count;
     uint reserved;
 };
 

@@ -27,18 +27,6 @@ FUNC uint rest_of(uint group)
     return is_last ? BOTTOM : (group & 0xe1ffffffu) | (group >> 2u & 0x1e000000u);
 }
 
-FUNC CompressedRecord load_record(REF(CompressedRecord) records, uint index)
-{
-    // Fetched in 64-bit components: drivers on CPUs pay per component, not per byte.
-    Words64 words = Words64(uint64_t(records) + uint64_t(index) * 48ul);
-    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4), w5 = AT(words, 5);
-    CompressedRecord record;
-    record.a = uvec4(UINTS(w0).x, UINTS(w0).y, UINTS(w1).x, UINTS(w1).y);
-    record.b = uvec4(UINTS(w2).x, UINTS(w2).y, UINTS(w3).x, UINTS(w3).y);
-    record.c = uvec4(UINTS(w4).x, UINTS(w4).y, UINTS(w5).x, UINTS(w5).y);
-    return record;
-}
-
 // The grid of a node as a ray sees it: distances in float32 along each axis are those of planes * cell + base.
 struct SeenGrid
 {
@@ -52,8 +40,8 @@ struct SeenGrid
 FUNC SeenGrid grid_of(CompressedRecord node, RaySpace space)
 {
     SeenGrid grid;
-    vec3 origin = vec3(uintBitsToFloat(node.a.x), uintBitsToFloat(node.a.y), uintBitsToFloat(node.a.z));
-    grid.cell = vec3(cell_size(node.a.w & 0xffu), cell_size(node.a.w >> 8u & 0xffu), cell_size(node.a.w >> 16u & 0xffu));
+    vec3 origin = grid_origin(node);
+    grid.cell = grid_cell(node);
     grid.near_base = origin - space.near_origin;
     grid.far_base = origin - space.far_origin;
     bool flip_x = space.near_inverse.x < 0.0f;
@@ -103,7 +91,7 @@ FUNC uint entered_children(CompressedRecord node, RaySpace space, float t_min, f
                            INOUT(uint) group)
 {
     SeenGrid grid = grid_of(node, space);
-    uint children = node.a.w >> 24u;
+    uint children = children_in(node);
     // The number of the child in the last bits of where it is entered.
     uint key0 = enter_child(grid, 0u, space, t_min, t_max);
     uint key1 = enter_child(grid, 8u, space, t_min, t_max) | 1u;
@@ -149,7 +137,7 @@ FUNC Hit traverse_compressed(SwScene scene, Ray ray, TraceOptions options)
     {
         CompressedRecord record = load_record(records, cursor);
         bool descend = false;
-        if ((record.a.w & LEAF_BIT) == 0u)
+        if (!is_leaf(record))
         {
             uint others = BOTTOM;
             uint count = entered_children(record, space, search.t_min, search.t_best, cursor, others);

@@ -5,7 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/collapse.h"
-layout(local_size_x = BUILD_GROUP) in;
+layout(local_size_x = COLLAPSE_GROUP) in;
 layout(constant_id = 0) const uint STEP = COLLAPSE_LEVEL;
 layout(push_constant, scalar) uniform Push { CollapseArgs args; };
 
@@ -20,9 +20,13 @@ void collapse_all(CollapseItem item)
     BuildTree tree = AT(args.trees, item.tree);
     for (;;)
     {
-        CollapseStep done = collapse(tree, item);
-        for (uint i = 0u; i < done.count; i = i + 1u) stack[height + i] = done.items[i];
-        height = height + done.count;
+        CollapseStep done = collapse(tree, args.places, item);
+        UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
+        {
+            if (!done.is_inner[i]) continue;
+            stack[height] = done.items[i];
+            height = height + 1u;
+        }
         if (height == 0u) return;
         height = height - 1u;
         item = stack[height];
@@ -33,33 +37,38 @@ CollapseStep step_of(uint i)
 {
     if (STEP == COLLAPSE_ROOTS)
     {
-        if (i < args.tree_count) return begin_collapse(AT(args.trees, i), i);
+        if (i < args.tree_count) return begin_collapse(AT(args.trees, i), args.places, i);
     }
     else if (i < AT(args.level, 0).count)
     {
         CollapseItem item = AT(args.items, i);
-        if (STEP == COLLAPSE_LEVEL) return collapse(AT(args.trees, item.tree), item);
+        if (STEP == COLLAPSE_LEVEL) return collapse(AT(args.trees, item.tree), args.places, item);
         collapse_all(item);
     }
-    CollapseStep nothing;
-    nothing.count = 0u;
-    return nothing;
+    return no_step();
 }
 
 void push(CollapseStep found)
 {
+    uint count = 0u;
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u) count = count + (found.is_inner[i] ? 1u : 0u);
     if (gl_LocalInvocationIndex == 0u) pushed = 0u;
     barrier();
-    uint before = atomicAdd(pushed, found.count);
+    uint place = atomicAdd(pushed, count);
     barrier();
     if (gl_LocalInvocationIndex == 0u && pushed != 0u)
     {
         pushed_before = atomicAdd(AT(args.level, 1).count, pushed);
-        atomicMax(AT(args.level, 1).groups_x, (pushed_before + pushed + BUILD_GROUP - 1u) / BUILD_GROUP);
+        atomicMax(AT(args.level, 1).groups_x, (pushed_before + pushed + COLLAPSE_GROUP - 1u) / COLLAPSE_GROUP);
     }
     barrier();
-    for (uint i = 0u; i < found.count; i = i + 1u)
-        AT(args.next_items, pushed_before + before + i) = found.items[i];
+    place = place + pushed_before;
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
+    {
+        if (!found.is_inner[i]) continue;
+        AT(args.next_items, place) = found.items[i];
+        place = place + 1u;
+    }
 }
 
 void main()

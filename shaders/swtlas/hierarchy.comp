@@ -44,24 +44,23 @@ uint64_t split_after(BuildTree tree, uint position)
     return split_of(tree, position, AT(args.codes, AT(args.order, position)), AT(args.codes, AT(args.order, position + 1u)));
 }
 
-uint64_t word_of(float a, float b) { return packUint2x32(floatBitsToUint(vec2(a, b))); }
-uint64_t word_of(float a, uint b) { return packUint2x32(uvec2(floatBitsToUint(a), b)); }
-
-// Half 0 of a node is its left one, half 1 its right one; `end` is the end of the range away from the split.
-void put_half(SharedNodes nodes, uint node, uint side, Range range, uint end)
+// Half 0 of a node is its left one, half 1 its right one.
+void put_half(SharedNodes nodes, uint node, uint side, Range range)
 {
     uint at = node * 8u + side * 4u;
-    nodes.words[at] = word_of(range.box.lo.x, range.box.lo.y);
-    nodes.words[at + 1u] = word_of(range.box.lo.z, range.self);
-    nodes.words[at + 2u] = word_of(range.box.hi.x, range.box.hi.y);
-    nodes.words[at + 3u] = word_of(range.box.hi.z, end);
+    uvec3 lo = floatBitsToUint(range.box.lo);
+    uvec3 hi = floatBitsToUint(range.box.hi);
+    nodes.words[at] = WORD(lo.x, lo.y);
+    nodes.words[at + 1u] = WORD(lo.z, range.self);
+    nodes.words[at + 2u] = WORD(hi.x, hi.y);
+    nodes.words[at + 3u] = WORD(hi.z, range.last - range.first + 1u);
 }
 
 struct Half
 {
     LeafBox box;
     uint self;
-    uint end;
+    uint leaves;
 };
 Half get_half(SharedNodes nodes, uint node, uint side)
 {
@@ -71,7 +70,7 @@ Half get_half(SharedNodes nodes, uint node, uint side)
     found.box.lo = vec3(FLOATS(w0), FLOATS(w1).x);
     found.box.hi = vec3(FLOATS(w2), FLOATS(w3).x);
     found.self = UINTS(w1).y;
-    found.end = UINTS(w3).y;
+    found.leaves = UINTS(w3).y;
     return found;
 }
 
@@ -99,10 +98,9 @@ void climb(BuildTree tree, SharedNodes nodes, Range range)
         bool joins_right = range.last != tree_last && split_after(tree, range.last) < left;
         uint split = joins_right ? range.last : range.first - 1u;
         uint node = split - tree.first;
-        uint end = joins_right ? range.first : range.last;
-        put_half(nodes, node, joins_right ? 0u : 1u, range, end - tree.first);
+        put_half(nodes, node, joins_right ? 0u : 1u, range);
         memoryBarrierBuffer();
-        uint other = atomicExchange(AT(args.meeting, split), end);
+        uint other = atomicExchange(AT(args.meeting, split), joins_right ? range.first : range.last);
         if (other == NOTHING) return;
         memoryBarrierBuffer();
         join(range, get_half(nodes, node, joins_right ? 1u : 0u), node);
@@ -115,7 +113,7 @@ void climb(BuildTree tree, SharedNodes nodes, Range range)
 // The leaves begin .. end - 1.
 void build_run(BuildTree tree, uint begin, uint end)
 {
-    SharedNodes nodes = SharedNodes(uint64_t(AT(tree.bvh, 0).nodes));
+    SharedNodes nodes = SharedNodes(uint64_t(tree.nodes));
     uint tree_last = tree.first + tree.count - 1u;
     uint base = begin; // ranges before it have left the run
     uint64_t left = begin == tree.first ? TREE_END : split_after(tree, begin - 1u);
@@ -141,9 +139,9 @@ void build_run(BuildTree tree, uint begin, uint end)
             uint node = range.first - 1u - tree.first;
             Half waiting = get_half(nodes, node, 0u);
             left = nodes.words[node * 8u + 4u];
-            put_half(nodes, node, 1u, range, i - tree.first);
+            put_half(nodes, node, 1u, range);
             join(range, waiting, node);
-            range.first = waiting.end + tree.first;
+            range.first = range.first - waiting.leaves;
         }
         if (left <= right)
         {
@@ -152,7 +150,7 @@ void build_run(BuildTree tree, uint begin, uint end)
         }
         else if (i + 1u != end)
         {
-            put_half(nodes, i - tree.first, 0u, range, range.first - tree.first);
+            put_half(nodes, i - tree.first, 0u, range);
             nodes.words[(i - tree.first) * 8u + 4u] = left; // in the half that is still free
         }
         left = right;
@@ -163,7 +161,7 @@ void build_run(BuildTree tree, uint begin, uint end)
         if (first != end)
         {
             Half waiting = get_half(nodes, first - 1u - tree.first, 0u);
-            range.first = waiting.end + tree.first;
+            range.first = first - waiting.leaves;
             range.last = first - 1u;
             range.box = waiting.box;
             range.self = waiting.self;

@@ -24,7 +24,7 @@ void main()
     uint node = block.first - tree.first + gl_LocalInvocationIndex;
     if (node == 0u) set_parent(tree.first, AT(tree.bvh, 0).root, NOTHING);
     if (node + 1u >= tree.count) return;
-    BvhNode children = AT(AT(tree.bvh, 0).nodes, node);
+    BvhNode children = AT(tree.nodes, node);
     set_parent(tree.first, children.child0, node << 1u);
     set_parent(tree.first, children.child1, node << 1u | 1u);
 }

@@ -13,7 +13,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) coherent buffer Sh
 
 void climb(BuildTree tree, uint leaf)
 {
-    SharedNodes nodes = SharedNodes(uint64_t(AT(tree.bvh, 0).nodes));
+    SharedNodes nodes = SharedNodes(uint64_t(tree.nodes));
     LeafBox box = AT(args.boxes, leaf);
     uint parent = AT(args.leaf_parents, leaf);
     while (parent != NOTHING)

@@ -4,6 +4,7 @@
 #include <functional>
 #include <random>
 
+#include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "swtlas/check.h"
 #include "swtlas/check_compressed.h"
@@ -14,7 +15,12 @@
 namespace twinray {
 namespace {
 
-class SwBuild : public test::VulkanTest {};
+class SwBuild : public test::VulkanTest, public testing::WithParamInterface<Layout> {
+  protected:
+    AccelOptions options() const { return {.layout = GetParam()}; }
+};
+INSTANTIATE_TEST_SUITE_P(Every, SwBuild, testing::ValuesIn(all_layouts),
+                         [](const auto& layout) { return std::string(name_of(layout.param)); });
 
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
@@ -35,33 +41,44 @@ std::vector<LeafBox> boxes_of(const std::vector<BvhTriangle>& triangles, const M
     return boxes;
 }
 
-void expect_sound(std::span<const CompressedRecord> records, const std::vector<LeafBox>& boxes,
-                  const std::string& name) {
-    for (const std::string& violation : check_compressed(records, boxes).violations)
-        ADD_FAILURE() << name << ", compressed: " << violation;
+bool has_records(const SwTlas::Tree& tree) { return !tree.records.empty(); }
+
+// Of a tree whose references are the leaves' own indices, or with records.
+void expect_sound(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes, const std::string& name) {
+    const std::vector<std::string> violations = has_records(tree)
+                                                    ? check_compressed(tree.bvh, tree.records, boxes).violations
+                                                    : check_tree(tree.bvh, tree.nodes, boxes).violations;
+    for (const std::string& violation : violations) ADD_FAILURE() << name << ": " << violation;
+}
+
+std::vector<LeafBox> leaf_boxes(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr) {
+    return has_records(tree) ? reference::leaves_triangles(built(mesh, pushed), mesh.triangles)
+                             : boxes_of(tree.triangles, mesh, pushed);
 }
 
 void expect_sound(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr) {
-    expect_sound(tree.records, reference::leaves_triangles(built(mesh, pushed), mesh.triangles), mesh.name);
-    const TreeCheck check = check_tree(tree.bvh, tree.nodes, boxes_of(tree.triangles, mesh, pushed));
-    for (const std::string& violation : check.violations) ADD_FAILURE() << mesh.name << ": " << violation;
+    expect_sound(tree, leaf_boxes(tree, mesh, pushed), mesh.name);
+}
+
+double sah_of(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes) {
+    return has_records(tree) ? check_compressed(tree.bvh, tree.records, boxes).sah
+                             : check_tree(tree.bvh, tree.nodes, boxes).sah;
 }
 
 void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh) {
     const std::vector<LeafBox> boxes = reference::leaves_triangles(built(mesh), mesh.triangles);
     const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
-    const reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, true);
+    const reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, !has_records(tree));
+    if (has_records(tree)) {
+        EXPECT_TRUE(same_bytes(tree.records, reference::records_of_triangles(twin, built(mesh), mesh.triangles)))
+            << mesh.name;
+        return;
+    }
     EXPECT_EQ(tree.bvh.root, twin.root) << mesh.name;
     EXPECT_TRUE(same_bytes(tree.nodes, twin.nodes)) << mesh.name;
     EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(built(mesh), mesh.triangles, order)))
         << mesh.name;
-    const std::vector<CompressedRecord> records =
-        reference::collapse(twin, tree.triangles, static_cast<uint>(tree.triangles.size()));
-    ASSERT_EQ(records.size(), tree.records.size()) << mesh.name;
-    for (const uint used : check_compressed(tree.records, boxes).used)
-        ASSERT_EQ(std::memcmp(&tree.records[used], &records[used], sizeof(CompressedRecord)), 0)
-            << mesh.name << ", record " << used;
 }
 
 // n copies of one triangle: all centroids equal.
@@ -73,8 +90,8 @@ Mesh equal_triangles(std::size_t n) {
     return mesh;
 }
 
-TEST_F(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsTwin) {
-    SwTlas accel(context());
+TEST_P(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsTwin) {
+    SwTlas accel(context(), options());
     std::vector<Mesh> meshes;
     std::vector<AccelHandle> handles;
     for (std::size_t n = 0; n <= 300; ++n) {
@@ -89,8 +106,8 @@ TEST_F(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsTwin) {
     }
 }
 
-TEST_F(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
-    SwTlas accel(context());
+TEST_P(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
+    SwTlas accel(context(), options());
     const Mesh meshes[] = {make_soup(5, 1), equal_triangles(1000), make_soup(3, 2), equal_triangles(77)};
     std::vector<AccelHandle> handles;
     for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
@@ -98,11 +115,11 @@ TEST_F(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
     for (std::size_t i = 0; i < handles.size(); ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i]);
 }
 
-TEST_F(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
+TEST_P(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
     std::vector<Mesh> meshes;
     for (const uint n : {700u, 0u, 1u, 2048u, 3000u, 5u, 257u}) meshes.push_back(make_soup(n, n));
     for (const std::uint64_t budget : {std::uint64_t{0}, std::uint64_t{200'000}, UINT64_MAX}) {
-        SwTlas accel(context());
+        SwTlas accel(context(), options());
         accel.set_scratch_budget(budget);
         std::vector<AccelHandle> handles;
         for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
@@ -114,9 +131,9 @@ TEST_F(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
     }
 }
 
-TEST_F(SwBuild, LargeMeshesAreSound) {
+TEST_P(SwBuild, LargeMeshesAreSound) {
     for (const uint n : {100'000u, 1'000'000u}) {
-        SwTlas accel(context());
+        SwTlas accel(context(), options());
         const Mesh mesh = make_soup(n, 7, 0.01f);
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
@@ -126,24 +143,27 @@ TEST_F(SwBuild, LargeMeshesAreSound) {
     }
 }
 
-TEST_F(SwBuild, EqualCentroidsAreSplitByPosition) {
-    SwTlas accel(context());
+TEST_P(SwBuild, EqualCentroidsAreSplitByPosition) {
+    SwTlas accel(context(), options());
     const Mesh mesh = equal_triangles(1000);
     const AccelHandle handle = accel.push(mesh);
     accel.sync();
     const SwTlas::Tree tree = accel.download_geometry(handle);
     expect_sound(tree, mesh);
     expect_twin(tree, mesh);
-    EXPECT_LE(check_tree(tree.bvh, tree.nodes, boxes_of(tree.triangles, mesh)).depth, 10u);
+    const std::vector<LeafBox> boxes = leaf_boxes(tree, mesh);
+    EXPECT_LE(has_records(tree) ? check_compressed(tree.bvh, tree.records, boxes).depth
+                                : check_tree(tree.bvh, tree.nodes, boxes).depth,
+              10u);
 }
 
-TEST_F(SwBuild, NonFiniteTrianglesAreInactiveAndKeepTheirIndex) {
+TEST_P(SwBuild, NonFiniteTrianglesAreInactiveAndKeepTheirIndex) {
     Mesh mesh = make_soup(500, 11);
     for (const std::size_t i : {0u, 17u, 255u, 256u, 499u}) {
         const float bad[] = {NAN, INFINITY, -INFINITY};
         mesh.positions[3 * i + i % 3][static_cast<int>(i / 7 % 3)] = bad[i % 3];
     }
-    SwTlas accel(context());
+    SwTlas accel(context(), options());
     const AccelHandle handle = accel.push(mesh);
     accel.sync();
     const SwTlas::Tree tree = accel.download_geometry(handle);
@@ -152,10 +172,10 @@ TEST_F(SwBuild, NonFiniteTrianglesAreInactiveAndKeepTheirIndex) {
     EXPECT_TRUE(std::isfinite(tree.bvh.lo.x) && std::isfinite(tree.bvh.hi.x));
 }
 
-TEST_F(SwBuild, AMeshOfNothingButNansIsEmpty) {
+TEST_P(SwBuild, AMeshOfNothingButNansIsEmpty) {
     Mesh mesh = make_soup(5, 3);
     for (vec3& position : mesh.positions) position.y = NAN;
-    SwTlas accel(context());
+    SwTlas accel(context(), options());
     const AccelHandle handle = accel.push(mesh);
     accel.sync();
     EXPECT_GT(accel.download_geometry(handle).bvh.lo.x, accel.download_geometry(handle).bvh.hi.x);
@@ -163,17 +183,18 @@ TEST_F(SwBuild, AMeshOfNothingButNansIsEmpty) {
     EXPECT_EQ(hit.hit, 0u);
 }
 
-TEST_F(SwBuild, ASecondBuildIsBitIdentical) {
+TEST_P(SwBuild, ASecondBuildIsBitIdentical) {
     const Mesh mesh = make_soup(50'000, 5, 0.02f);
     SwTlas::Tree trees[2];
     for (SwTlas::Tree& tree : trees) {
-        SwTlas accel(context());
+        SwTlas accel(context(), options());
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
         tree = accel.download_geometry(handle);
     }
     EXPECT_TRUE(same_bytes(trees[0].nodes, trees[1].nodes));
     EXPECT_TRUE(same_bytes(trees[0].triangles, trees[1].triangles));
+    EXPECT_TRUE(same_bytes(trees[0].records, trees[1].records));
 }
 
 // The scene tree over these placements of one mesh, and the boxes of its leaves by the serial twin.
@@ -201,24 +222,55 @@ std::vector<Transform> scattered(std::size_t count, uint seed) {
     return transforms;
 }
 
-TEST_F(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
-    SwTlas accel(context());
+TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
+    SwTlas accel(context(), options());
     const Mesh mesh = make_soup(10, 1);
     const std::vector<Transform> transforms = scattered(777, 3);
     accel.push(mesh, transforms);
     accel.sync();
     const SwTlas::Tree tree = accel.download_scene();
     const std::vector<LeafBox> boxes = instance_boxes(mesh, transforms);
-    expect_sound(tree.records, boxes, "instances");
-    for (const std::string& violation : check_tree(tree.bvh, tree.nodes, boxes).violations) ADD_FAILURE() << violation;
+    expect_sound(tree, boxes, "instances");
     const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
-    EXPECT_TRUE(same_bytes(tree.nodes, reference::hierarchy(boxes, codes, reference::sort(codes), false).nodes));
+    const reference::Hierarchy twin = reference::hierarchy(boxes, codes, reference::sort(codes), false);
+    if (has_records(tree))
+        EXPECT_TRUE(same_bytes(tree.records, reference::records_of_instances(twin, 777)));
+    else
+        EXPECT_TRUE(same_bytes(tree.nodes, twin.nodes));
 }
 
-TEST_F(SwBuild, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
+void expect_same_topology(const SwTlas::Tree& after, const SwTlas::Tree& before) {
+    ASSERT_EQ(after.nodes.size(), before.nodes.size());
+    for (std::size_t i = 0; i < before.nodes.size(); ++i) {
+        EXPECT_EQ(after.nodes[i].child0, before.nodes[i].child0);
+        EXPECT_EQ(after.nodes[i].child1, before.nodes[i].child1);
+    }
+    ASSERT_EQ(after.records.size(), before.records.size());
+    for (std::size_t i = 0; i < before.records.size(); ++i) {
+        const CompressedRecord &now = after.records[i], &then = before.records[i];
+        EXPECT_EQ(is_leaf(now), is_leaf(then));
+        if (is_leaf(then))
+            EXPECT_EQ(now.a.w, then.a.w);
+        else
+            EXPECT_EQ(std::pair(children_in(now), now.c.z), std::pair(children_in(then), then.c.z));
+    }
+}
+
+void expect_leaves_of(std::span<const CompressedRecord> records, std::span<const vec3> positions,
+                      std::span<const uvec3> triangles) {
+    for (const CompressedRecord& record : records) {
+        if (!is_leaf(record)) continue;
+        const uint primitive = record.a.w & ~LEAF_BIT;
+        const CompressedRecord right =
+            encode_primitive(reference::encode_triangles(positions, triangles, std::span(&primitive, 1)).front());
+        EXPECT_EQ(std::memcmp(&record, &right, sizeof right), 0) << "primitive " << primitive;
+    }
+}
+
+TEST_P(SwBuild, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
     const Mesh mesh = make_soup(10, 1);
     for (const std::size_t count : {1u, 2u, 3u, 255u, 256u, 257u, 1000u}) {
-        SwTlas accel(context());
+        SwTlas accel(context(), options());
         const AccelHandle handle = accel.push(mesh, scattered(count, 1));
         accel.sync();
         accel.update_transforms(handle, scattered(count, 2));  // the first move rebuilds
@@ -228,18 +280,13 @@ TEST_F(SwBuild, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
         accel.update_transforms(handle, moved);
         accel.sync();
         const SwTlas::Tree after = accel.download_scene();
-        expect_sound(after.records, instance_boxes(mesh, moved), "instances");
-        for (const std::string& violation : check_tree(after.bvh, after.nodes, instance_boxes(mesh, moved)).violations)
-            ADD_FAILURE() << count << ": " << violation;
-        for (std::size_t i = 0; i < before.nodes.size(); ++i) {
-            EXPECT_EQ(after.nodes[i].child0, before.nodes[i].child0);
-            EXPECT_EQ(after.nodes[i].child1, before.nodes[i].child1);
-        }
+        expect_sound(after, instance_boxes(mesh, moved), text(count, " instances"));
+        expect_same_topology(after, before);
     }
 }
 
-TEST_F(SwBuild, ARefittedGeometryIsSoundAndKeepsItsTopology) {
-    SwTlas accel(context());
+TEST_P(SwBuild, ARefittedGeometryIsSoundAndKeepsItsTopology) {
+    SwTlas accel(context(), options());
     std::vector<Mesh> meshes;
     std::vector<AccelHandle> handles;
     std::vector<SwTlas::Tree> before;
@@ -259,28 +306,29 @@ TEST_F(SwBuild, ARefittedGeometryIsSoundAndKeepsItsTopology) {
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         const SwTlas::Tree after = accel.download_geometry(handles[i]);
         expect_sound(after, meshes[i], &pushed[i]);
+        expect_same_topology(after, before[i]);
+        EXPECT_EQ(after.bvh.nodes.address, before[i].bvh.nodes.address);
+        const std::vector<vec3> positions = built(meshes[i], &pushed[i]);
+        if (has_records(after)) {
+            expect_leaves_of(after.records, positions, meshes[i].triangles);
+            continue;
+        }
         std::vector<uint> order;
         for (const BvhTriangle& triangle : before[i].triangles) order.push_back(triangle.primitive_index);
-        EXPECT_TRUE(same_bytes(after.triangles,
-                               reference::encode_triangles(built(meshes[i], &pushed[i]), meshes[i].triangles, order)));
-        EXPECT_EQ(after.bvh.nodes.address, before[i].bvh.nodes.address);
-        for (std::size_t node = 0; node < after.nodes.size(); ++node) {
-            EXPECT_EQ(after.nodes[node].child0, before[i].nodes[node].child0);
-            EXPECT_EQ(after.nodes[node].child1, before[i].nodes[node].child1);
-        }
+        EXPECT_TRUE(same_bytes(after.triangles, reference::encode_triangles(positions, meshes[i].triangles, order)));
     }
 }
 
-TEST_F(SwBuild, TheCostOnTheDeviceIsThatOfTheChecker) {
+TEST_P(SwBuild, TheCostOnTheDeviceIsThatOfTheChecker) {
     for (const uint n : {1u, 2u, 3u, 256u, 257u, 258u, 1000u, 70'000u}) {
-        SwTlas accel(context());
+        SwTlas accel(context(), options());
         Mesh mesh = make_soup(n, 5, 0.1f);
         const std::vector<Transform> transforms = scattered(std::min(n, 1000u), n);
         const AccelHandle handle = accel.push(mesh, transforms);
         accel.sync();
         EXPECT_EQ(accel.sah(handle), std::nullopt) << "not measured before its vertices move";
         const SwTlas::Tree top = accel.download_scene();
-        const double expected = check_tree(top.bvh, top.nodes, instance_boxes(mesh, transforms)).sah;
+        const double expected = sah_of(top, instance_boxes(mesh, transforms));
         EXPECT_NEAR(*accel.sah(), expected, 1e-5 * expected) << n;
         for (const uint seed : {6u, 7u}) {
             mesh.positions = make_soup(n, seed, 0.1f).positions;
@@ -288,7 +336,7 @@ TEST_F(SwBuild, TheCostOnTheDeviceIsThatOfTheChecker) {
             accel.update_vertices(handle, mesh.positions);
             accel.sync();
             const SwTlas::Tree tree = accel.download_geometry(handle);
-            const double cost = check_tree(tree.bvh, tree.nodes, boxes_of(tree.triangles, mesh)).sah;
+            const double cost = sah_of(tree, leaf_boxes(tree, mesh));
             EXPECT_NEAR(*accel.sah(handle), cost, 1e-5 * cost) << n;
             EXPECT_EQ(accel.sah_if_ready(handle), accel.sah(handle));
         }
@@ -300,14 +348,16 @@ TEST(CompressedCheck, NamesWhatIsWrong) {
     const std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);
     const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
-    const std::vector<CompressedRecord> good =
-        reference::collapse(reference::hierarchy(boxes, codes, order, true),
-                            reference::encode_triangles(mesh.positions, mesh.triangles, order), 20);
-    EXPECT_TRUE(check_compressed(good, boxes).violations.empty());
+    const reference::Hierarchy tree = reference::hierarchy(boxes, codes, order, false);
+    const std::vector<CompressedRecord> good = reference::records_of_triangles(tree, mesh.positions, mesh.triangles);
+    const Bvh bvh{tree.box.lo, tree.box.hi, {}, 0, 20};
+    EXPECT_TRUE(check_compressed(bvh, good, boxes).violations.empty());
+    EXPECT_FALSE(check_compressed({tree.box.lo, tree.box.hi, {}, 1, 20}, good, boxes).violations.empty());
+    EXPECT_FALSE(check_compressed({tree.box.lo, tree.box.lo, {}, 0, 20}, good, boxes).violations.empty());
     const auto wrong = [&](const std::function<void(CompressedRecord&)>& spoil) {
         std::vector<CompressedRecord> bad = good;
         spoil(bad.front());
-        const CompressedCheck check = check_compressed(bad, boxes);
+        const CompressedCheck check = check_compressed(bvh, bad, boxes);
         return check.violations.empty() ? "" : check.violations.front();
     };
     EXPECT_NE(wrong([](CompressedRecord& root) { root.b.y -= 1; }).find("lies in planes"), std::string::npos);
@@ -336,10 +386,13 @@ TEST(Compressed, PlanesLieOutsideAtAnySizeAndPlace) {
         }
         std::vector<CompressedRecord> records = {encode_node(children, 1)};
         for (uint child = 0; child < children.count; ++child) records.push_back(encode_instance(child));
-        const CompressedCheck check = check_compressed(records, boxes);
+        LeafBox all = empty_box();
+        for (const LeafBox& box : boxes) all = {min(all.lo, box.lo), max(all.hi, box.hi)};
+        const Bvh bvh{all.lo, all.hi, {}, 0, children.count};
+        const CompressedCheck check = check_compressed(bvh, records, boxes);
         ASSERT_TRUE(check.violations.empty()) << check.violations.front();
     }
-    EXPECT_LT(1 + records_below(static_cast<uint>(Geometry::max_primitives)), MOST_RECORDS);
+    EXPECT_LT(record_count(static_cast<uint>(Geometry::max_primitives)), MOST_RECORDS);
 }
 
 TEST(TreeCheck, NamesWhatIsWrong) {

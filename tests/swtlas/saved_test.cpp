@@ -2,6 +2,7 @@
 // The file format of a saved SwTlas, without a device: what is accepted, and what is refused and how.
 #include "swtlas/saved.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -18,20 +19,29 @@ namespace {
 using test::error_of;
 using test::expect_contains;
 
-SavedGeometry saved(const Mesh& mesh, std::size_t instances) {
-    const std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);
+SavedGeometry saved(Layout layout, const Mesh& mesh, std::size_t instances) {
+    const Geometry geometry(mesh);
+    const std::vector<LeafBox> boxes = reference::leaves_triangles(geometry.positions, mesh.triangles);
     const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
-    const reference::Hierarchy tree = reference::hierarchy(boxes, codes, order, true);
-    std::vector<InstanceRecord> records;
+    std::vector<InstanceRecord> placed;
     for (uint i = 0; i < instances; ++i)
-        records.push_back(make_instance_record(Transform::translation({static_cast<float>(i), 0, 0}),
-                                               {.custom_index = i, .mask = 0x55, .turned = i % 2 == 1}));
-    return {Geometry(mesh),
-            {tree.box.lo, tree.box.hi, {}, tree.root, static_cast<uint>(boxes.size())},
-            tree.nodes,
-            reference::encode_triangles(mesh.positions, mesh.triangles, order),
-            records};
+        placed.push_back(make_instance_record(Transform::translation({static_cast<float>(i), 0, 0}),
+                                              {.custom_index = i, .mask = 0x55, .turned = i % 2 == 1}));
+    const auto count = static_cast<uint>(boxes.size());
+    if (layout == Layout::compressed4) {
+        const reference::Hierarchy tree = reference::hierarchy(boxes, codes, order, false);
+        return {geometry,
+                {tree.box.lo, tree.box.hi, {}, count ? 0 : NOTHING, count},
+                {},
+                {},
+                reference::records_of_triangles(tree, geometry.positions, mesh.triangles),
+                placed};
+    }
+    const reference::Hierarchy tree = reference::hierarchy(boxes, codes, order, true);
+    return {geometry,   {tree.box.lo, tree.box.hi, {}, tree.root, count},
+            tree.nodes, reference::encode_triangles(geometry.positions, mesh.triangles, order),
+            {},         placed};
 }
 
 SavedGeometry saved_boxes() {
@@ -46,22 +56,23 @@ SavedGeometry saved_boxes() {
     const reference::Hierarchy tree = reference::hierarchy(leaf_boxes, codes, order, true);
     std::vector<BvhTriangle> leaves;
     for (const uint i : order) leaves.push_back({boxes[i].lo, boxes[i].hi, vec3(0), i});
-    return {Geometry(BoxesView{"boxes", boxes}), {tree.box.lo, tree.box.hi, {}, tree.root, 7}, tree.nodes, leaves, {}};
+    return {
+        Geometry(BoxesView{"boxes", boxes}), {tree.box.lo, tree.box.hi, {}, tree.root, 7}, tree.nodes, leaves, {}, {}};
 }
 
-std::vector<SavedGeometry> some_geometries() {
+std::vector<SavedGeometry> some_geometries(Layout layout) {
     Mesh bad = make_soup(9, 3);
     bad.name = "with a NaN";
     bad.positions[4].y = NAN;
     std::vector<SavedGeometry> geometries;
     for (const Mesh& mesh : {make_soup(20, 1), Mesh{}, make_soup(1, 2), bad})
-        geometries.push_back(saved(mesh, geometries.size()));
-    geometries.push_back(saved_boxes());
+        geometries.push_back(saved(layout, mesh, geometries.size()));
+    if (layout == Layout::bvh2) geometries.push_back(saved_boxes());
     return geometries;
 }
 
-Bytes file_of(const std::vector<SavedGeometry>& geometries) {
-    const EncodedSave encoded = encode_save(geometries);
+Bytes file_of(Layout layout, const std::vector<SavedGeometry>& geometries) {
+    const EncodedSave encoded = encode_save(layout, geometries);
     Bytes file;
     const auto append = [&](std::span<const std::byte> piece) {
         for (const std::byte byte : piece) file.push_back(static_cast<std::uint8_t>(byte));
@@ -97,9 +108,14 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
-TEST(SavedFile, ComesBackBitForBit) {
-    const std::vector<SavedGeometry> before = some_geometries();
-    const std::vector<SavedGeometry> after = decode_save(file_of(before), "a.file");
+class SavedFile : public testing::TestWithParam<Layout> {};
+INSTANTIATE_TEST_SUITE_P(Every, SavedFile, testing::ValuesIn(all_layouts),
+                         [](const auto& layout) { return std::string(name_of(layout.param)); });
+
+TEST_P(SavedFile, ComesBackBitForBit) {
+    const std::vector<SavedGeometry> before = some_geometries(GetParam());
+    const auto [layout, after] = decode_save(file_of(GetParam(), before), "a.file");
+    EXPECT_EQ(layout, GetParam());
     ASSERT_EQ(after.size(), before.size());
     for (std::size_t i = 0; i < before.size(); ++i) {
         EXPECT_EQ(after[i].mesh.name, before[i].mesh.name);
@@ -111,14 +127,15 @@ TEST(SavedFile, ComesBackBitForBit) {
         EXPECT_TRUE(same_bytes(after[i].nodes, before[i].nodes));
         EXPECT_TRUE(same_bytes(after[i].leaves, before[i].leaves));
         EXPECT_TRUE(same_bytes(after[i].records, before[i].records));
+        EXPECT_TRUE(same_bytes(after[i].instances, before[i].instances));
         EXPECT_EQ(after[i].bvh.root, before[i].bvh.root);
         EXPECT_EQ(after[i].bvh.lo, before[i].bvh.lo);
     }
-    EXPECT_TRUE(decode_save(file_of({}), "a.file").empty());
+    EXPECT_TRUE(decode_save(file_of(GetParam(), {}), "a.file").geometries.empty());
 }
 
-TEST(SavedFile, EveryFlippedBitIsFound) {
-    const Bytes good = file_of(some_geometries());
+TEST_P(SavedFile, EveryFlippedBitIsFound) {
+    const Bytes good = file_of(GetParam(), some_geometries(GetParam()));
     for (std::size_t bit = 0; bit < good.size() * 8; ++bit) {
         Bytes bad = good;
         bad[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
@@ -128,8 +145,8 @@ TEST(SavedFile, EveryFlippedBitIsFound) {
     std::printf("%zu flipped bits, each refused\n", good.size() * 8);
 }
 
-TEST(SavedFile, EveryOtherLengthIsFound) {
-    const Bytes good = file_of(some_geometries());
+TEST_P(SavedFile, EveryOtherLengthIsFound) {
+    const Bytes good = file_of(GetParam(), some_geometries(GetParam()));
     for (std::size_t bytes = 0; bytes < good.size(); ++bytes) {
         const std::string what = refusal(Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(bytes)));
         ASSERT_NE(what.find(bytes < 8 ? "not a saved SwTlas" : "truncated"), std::string::npos)
@@ -140,31 +157,33 @@ TEST(SavedFile, EveryOtherLengthIsFound) {
     expect_contains(refusal(longer), text("it has ", longer.size(), " bytes, and its header says ", good.size()));
 }
 
-TEST(SavedFile, OtherFormatsAreNamed) {
-    const Bytes good = file_of(some_geometries());
+TEST_P(SavedFile, OtherFormatsAreNamed) {
+    const Bytes good = file_of(GetParam(), some_geometries(GetParam()));
     const std::string words = "solid cube\nfacet normal 0 0 1\n outer loop\n and so on, more than a header has bytes\n";
     expect_contains(refusal(Bytes(words.begin(), words.end())), "not a saved SwTlas");
     const auto edited = [&](const std::function<void(SavedHeader&)>& edit) {
         return refusal(resealed(good, [&](SavedHeader& header, SavedEntry&) { edit(header); }));
     };
-    expect_contains(edited([](SavedHeader& h) { h.version = 9; }), "format version 9; this library reads version 2");
+    expect_contains(edited([](SavedHeader& h) { h.version = 9; }), "format version 9; this library reads version 3");
     expect_contains(edited([](SavedHeader& h) { h.byte_order = 0x04030201; }), "another byte order");
     expect_contains(edited([](SavedHeader& h) { h.node_bytes = 80; }), "its node has 80 bytes; this library's has 64");
     expect_contains(edited([](SavedHeader& h) { h.leaf_bytes = 48; }), "its leaf has 48 bytes; this library's has 40");
-    expect_contains(edited([](SavedHeader& h) { h.header_bytes = 72; }), "its header has 72 bytes");
+    expect_contains(edited([](SavedHeader& h) { h.header_bytes = 64; }), "its header has 64 bytes");
+    expect_contains(edited([](SavedHeader& h) { h.instance_bytes = 72; }), "its instance has 72 bytes");
+    expect_contains(edited([](SavedHeader& h) { h.layout = 2; }), "unknown layout 2");
     expect_contains(edited([](SavedHeader& h) { h.entry_bytes = 80; }), "its entry has 80 bytes");
-    expect_contains(edited([](SavedHeader& h) { h.record_bytes = 0; }), "its instance record has 0 bytes");
+    expect_contains(edited([](SavedHeader& h) { h.record_bytes = 0; }), "its record has 0 bytes");
 }
 
 // Nothing is allocated for them: 2^60 of anything would end the test.
-TEST(SavedFile, CountsBeyondTheFileAreRefusedWhateverTheChecksumsSay) {
-    const Bytes good = file_of(some_geometries());
+TEST_P(SavedFile, CountsBeyondTheFileAreRefusedWhateverTheChecksumsSay) {
+    const Bytes good = file_of(GetParam(), some_geometries(GetParam()));
     for (const std::uint64_t count : {std::uint64_t{1} << 60, ~std::uint64_t{0}, std::uint64_t{1'000'000}}) {
         expect_contains(refusal(resealed(good, [&](SavedHeader& h, SavedEntry&) { h.geometry_count = count; })),
-                        text(count, " geometries of 96 bytes exceed"));
+                        text(count, " geometries of 104 bytes exceed"));
         for (const auto member :
              {&SavedEntry::name_bytes, &SavedEntry::positions, &SavedEntry::triangles, &SavedEntry::boxes,
-              &SavedEntry::nodes, &SavedEntry::leaves, &SavedEntry::instances}) {
+              &SavedEntry::nodes, &SavedEntry::leaves, &SavedEntry::records, &SavedEntry::instances}) {
             const std::string what = refusal(resealed(good, [&](SavedHeader&, SavedEntry& e) { e.*member = count; }));
             expect_contains(what, "geometry 0: ");
             expect_contains(what, " exceed the ");
@@ -173,11 +192,15 @@ TEST(SavedFile, CountsBeyondTheFileAreRefusedWhateverTheChecksumsSay) {
 }
 
 // Checksums are right here: such a file is made, not damaged.
-TEST(SavedFile, TreesThatCannotBeWalkedSafelyAreRefused) {
+std::string refusal_of_edited(Layout layout, const std::function<void(SavedGeometry&)>& edit) {
+    std::vector<SavedGeometry> geometries = some_geometries(layout);
+    edit(geometries.front());
+    return refusal(file_of(layout, geometries));
+}
+
+TEST(SavedTrees, BinaryOnesThatCannotBeWalkedSafelyAreRefused) {
     const auto edited = [](const std::function<void(SavedGeometry&)>& edit) {
-        std::vector<SavedGeometry> geometries = some_geometries();
-        edit(geometries.front());
-        return refusal(file_of(geometries));
+        return refusal_of_edited(Layout::bvh2, edit);
     };
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child0 = 1000; }), "node 1000 of 19");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child1 = LEAF_BIT | 20; }), "leaf 20 of 20");
@@ -193,6 +216,31 @@ TEST(SavedFile, TreesThatCannotBeWalkedSafelyAreRefused) {
     expect_contains(edited([](SavedGeometry& g) { g.mesh.kind = GEOMETRY_BOXES; }), "20 triangles of 60 positions");
     expect_contains(edited([](SavedGeometry& g) { g = saved_boxes(), g.mesh.boxes[2].hi.x = INFINITY; }), "box 2 from");
     expect_contains(edited([](SavedGeometry& g) { g = saved_boxes(), g.leaves[2].v1.x += 1; }), "not the union");
+    expect_contains(edited([](SavedGeometry& g) { g.records.resize(1); }), "1 records in layout bvh2");
+}
+
+TEST(SavedTrees, RecordsThatCannotBeWalkedSafelyAreRefused) {
+    const auto edited = [](const std::function<void(SavedGeometry&)>& edit) {
+        return refusal_of_edited(Layout::compressed4, edit);
+    };
+    const auto leaf_of = [](SavedGeometry& g, uint primitive) -> CompressedRecord& {
+        return *std::ranges::find(g.records, LEAF_BIT | primitive, [](const CompressedRecord& r) { return r.a.w; });
+    };
+    expect_contains(edited([](SavedGeometry& g) { g.records[0].c.z = 1000; }), "record 1000 of 33");
+    expect_contains(edited([](SavedGeometry& g) { g.records[0].c.z = 0; }), "record 0 is reached twice");
+    expect_contains(edited([](SavedGeometry& g) { g.records[0].a.w |= 7u << 24; }), "has 7 children");
+    expect_contains(edited([](SavedGeometry& g) { g.bvh.root = NOTHING; }), "the root is record");
+    expect_contains(edited([](SavedGeometry& g) { g.bvh.lo.x -= 1; }), "not the union");
+    expect_contains(edited([](SavedGeometry& g) { g.records[0].b.y -= 1; }), "lies in planes");
+    expect_contains(edited([&](SavedGeometry& g) { leaf_of(g, 5).a.w = LEAF_BIT | 20; }), "primitive 20 of 20");
+    expect_contains(edited([&](SavedGeometry& g) { leaf_of(g, 5).b.y ^= 1; }), "primitive 5 does not have its corners");
+    expect_contains(edited([](SavedGeometry& g) { g.records.pop_back(); }), "32 records for 20 primitives, not 33");
+    expect_contains(edited([](SavedGeometry& g) { g.leaves.resize(1); }), "1 leaves and 33 records in layout");
+    expect_contains(edited([](SavedGeometry& g) {
+                        *std::ranges::find(g.records, 0u, [](const CompressedRecord& r) { return r.a.w; }) =
+                            g.records[0];
+                    }),
+                    "is not reached, and not none");
 }
 
 }  // namespace

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// The node above each record of finished trees.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/swtlas/slots.glsl"
+layout(local_size_x = BUILD_GROUP) in;
+layout(push_constant, scalar) uniform Push { RecordParentsArgs args; };
+
+void visit(BuildTree tree, uint slot)
+{
+    uint base = 2u * tree.first;
+    if (slot == 0u) AT(args.parents, base) = NOTHING;
+    CompressedRecord record = load_record(tree.records, slot);
+    if (is_leaf(record)) return;
+    AT(args.missing, base + slot) = children_in(record);
+    for (uint i = 0u; i < children_in(record); ++i) AT(args.parents, base + record.c.z + i) = slot;
+}
+
+void main()
+{
+    if (group_index() >= args.block_count) return;
+    BuildBlock block = AT(args.blocks, group_index());
+    BuildTree tree = AT(args.trees, block.tree);
+    for (uint slot = slots_begin(tree, block) + gl_LocalInvocationIndex; slot < slots_end(tree, block); slot += BUILD_GROUP)
+        visit(tree, slot);
+}
