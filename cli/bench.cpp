@@ -1,177 +1,169 @@
 // SPDX-License-Identifier: MIT
-// `twinray bench`: build times and trace rates of both accelerators on the same rays, interleaved in one process.
-#include <algorithm>
+// `twinray bench`: build times and trace rates of both accelerators beside others, with their errors.
 #include <cmath>
-#include <functional>
-#include <iomanip>
 #include <iostream>
 
+#include "bench/embree_contestant.h"
+#include "bench/growth.h"
+#include "bench/report.h"
+#include "bench/run.h"
 #include "cli/common.h"
-#include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
-#include "engine/report/statistics.h"
-#include "engine/verify/aimed_rays.h"
-#include "engine/verify/classify.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include "engine/report/recorder.h"
+#include "twinray_version.h"
 
 namespace twinray::cli {
 namespace {
 
+using bench::BenchScene;
+using bench::LineUp;
+using bench::Measured;
+using bench::RayKind;
+
 struct BenchOptions {
     CommonOptions common;
-    std::filesystem::path scene;
-    uint width = 1024;
-    std::size_t rounds = 5;
+    bench::RunOptions run;
+    std::string scene;
+    std::vector<RayKind> kinds;
+    std::vector<double> growth = {1e3, 1e4, 1e5, 1e6, 1e7};
     std::size_t moves = 0;
-    std::vector<Level> levels = {Level::watertight};
-    std::vector<Layout> layouts = {all_layouts.begin(), all_layouts.end()};
+    bool no_embree = false, no_build = false;
 };
 
-// By Level.
-constexpr const char* level_names[] = {"fast", "watertight", "refined", "certified"};
-const char* name_of(Level level) { return level_names[static_cast<std::size_t>(level)]; }
-
-struct Candidate {
-    std::string name, backend, path;
-    std::string layout;
-    Level level;
-    std::function<std::unique_ptr<AbstractAccel>()> make;
-    std::unique_ptr<AbstractAccel> accel = {};
-    std::vector<double> build_ms = {}, trace_ms = {};
-    std::vector<Hit> hits = {};
+// The devices and who runs on them.
+struct Setup {
+    std::unique_ptr<Context> context, pipeline;  // the latter is null where the former needs the pipeline itself
+    LineUp line_up;
 };
 
-double total_ms(const std::vector<PassTiming>& timings) {
-    double sum = 0;
-    for (const PassTiming& timing : timings) sum += timing.ms;
-    return sum;
-}
-
-// The first is what all are compared with.
-std::vector<Candidate> make_candidates(Context& context, std::span<const Level> levels,
-                                       std::span<const Layout> layouts) {
-    std::vector<Candidate> candidates;
-    for (const Layout layout : layouts)
-        for (const Level level : levels)
-            candidates.push_back({text("sw ", name_of(layout), ' ', name_of(level)), "sw", "compute",
-                                  std::string(name_of(layout)), level, [&, level, layout] {
-                                      return std::make_unique<SwTlas>(context, AccelOptions{level, layout});
-                                  }});
-    if (!missing_for_hardware(context.facts()).empty()) return candidates;
-    const auto add = [&](const std::string& name, BuildOrder order, Level level) {
-        candidates.push_back(
-            {name, "hw", HwTlas(context, order).trace_path(), "driver", level,
-             [&context, order, level] { return std::make_unique<HwTlas>(context, order, AccelOptions{level}); }});
-    };
-    for (const Level level : levels)
-        if (HwTlas::capability_on(context.facts(), feature_of(level)).support != Support::unsupported)
-            add(text("hw ", name_of(level)), BuildOrder::automatic, level);
-    if (context.facts().builds_in_input_order) add("hw input order", BuildOrder::input, levels.front());
-    return candidates;
-}
-
-// A build from nothing; the last one is kept.
-double build_once(Candidate& candidate, const Scene& scene) {
-    candidate.accel = candidate.make();
-    push_scene(*candidate.accel, scene);
-    candidate.accel->sync();
-    return total_ms(candidate.accel->build_timings());
-}
-
-double trace_once(const Candidate& candidate, const Buffer& rays, const Buffer& hits, std::uint64_t count) {
-    Commands commands(candidate.accel->context(), "bench");
-    candidate.accel->trace(
-        commands, candidate.accel->view(),
-        {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = count, .level = candidate.level});
-    commands.submit();
-    return total_ms(commands.timings());
-}
-
-// Errors of a sample of the hits, judged by the referee.
-Classes judge(const Oracle& oracle, const Candidate& candidate, const std::vector<Ray>& rays) {
-    constexpr std::size_t sample = 20'000;
-    std::vector<Ray> some_rays;
-    std::vector<Hit> some_hits;
-    for (std::size_t i = 0; i < rays.size(); i += std::max<std::size_t>(rays.size() / sample, 1)) {
-        some_rays.push_back(rays[i]);
-        some_hits.push_back(candidate.hits[i]);
+Setup set_up(const BenchOptions& options) {
+    Setup setup;
+    ContextDesc desc = context_desc(options.common);
+    setup.context = std::make_unique<Context>(desc);
+    const DeviceFacts& facts = setup.context->facts();
+    if (facts.ray_query && facts.ray_tracing_pipeline) {
+        desc.use_ray_query = false;
+        setup.pipeline = std::make_unique<Context>(desc);
     }
-    Classes classes;
-    const bool ours = candidate.backend == "sw";
-    const std::vector<Verdict> verdicts =
-        ours ? classify_all(oracle, some_rays, some_hits, {}) : classify_all(oracle, some_rays, {}, some_hits);
-    for (const Verdict& verdict : verdicts) classes.add(ours ? *verdict.software : *verdict.hardware);
-    return classes;
+    setup.line_up = bench::make_line_up(*setup.context, setup.pipeline.get(), options.run.line_up);
+    if (options.run.line_up.has_embree && !options.common.quiet && !bench::why_no_embree().empty())
+        std::cout << "  " << bench::why_no_embree() << '\n';
+    return setup;
 }
 
-void report(const BenchOptions& options, const Context& context, const std::vector<Candidate>& candidates,
-            const Scene& scene, const std::vector<Ray>& rays) {
-    const Oracle oracle = Oracle::of(scene);
-    const double triangles = static_cast<double>(std::max<std::size_t>(count_triangles(scene), 1));
-    std::cout << "  accelerator                 build ms  Mrays/s   sw is faster by  bytes/triangle  agree or tie with "
-                 "float64\n";
-    for (const Candidate& candidate : candidates) {
-        const double build_ms = median(candidate.build_ms);
-        const double mrays = static_cast<double>(rays.size()) / median(candidate.trace_ms) * 1e-3;
-        const Classes classes = judge(oracle, candidate, rays);
-        const double sound =
-            static_cast<double>(classes[Class::agree] + classes[Class::tie]) / static_cast<double>(classes.total());
-        const double ratio = median(candidate.trace_ms) / median(candidates.front().trace_ms);
-        const double bytes = static_cast<double>(candidate.accel->memory_usage().structures()) / triangles;
-        std::cout << "  " << std::left << std::setw(25) << candidate.name << std::right << std::fixed
-                  << std::setprecision(1) << std::setw(11) << build_ms << std::setprecision(3) << std::setw(9) << mrays
-                  << std::setprecision(2) << std::setw(15) << ratio << 'x' << std::setprecision(1) << std::setw(16)
-                  << bytes << std::setprecision(4) << std::setw(17) << 100 * sound << " % of " << classes.total()
-                  << '\n';
-        append_json(options.common.json, {{"schema", "twinray-bench/1"},
-                                          {"device", describe(context)},
-                                          {"scene", options.scene.string()},
-                                          {"rays", "primary"},
-                                          {"n", rays.size()},
-                                          {"rounds", options.rounds},
-                                          {"backend", candidate.backend},
-                                          {"path", candidate.path},
-                                          {"order", candidate.name == "hw input order" ? "input" : "sorted"},
-                                          {"layout", candidate.layout},
-                                          {"builder", candidate.backend == "sw" ? "lbvh" : "driver"},
-                                          {"level", name_of(candidate.level)},
-                                          {"mrays_per_s", mrays},
-                                          {"build_ms", build_ms},
-                                          {"bytes_per_triangle", bytes},
-                                          {"vs_sw", 1 / ratio},
-                                          {"agreement", sound}});
-    }
+nlohmann::json base_record(const BenchOptions& options, const Context& context) {
+    return {{"device", describe(context)},
+            {"started", utc_now()},
+            {"git", twinray_version},
+            {"width", options.run.width},
+            {"seed", options.common.seed}};
+}
+
+BenchScene load(const BenchOptions& options, const std::string& name) {
+    BenchScene scene = bench::make_scene(name);
+    if (!options.common.quiet)
+        for (const std::string& warning : scene.scene.warnings) std::cerr << "twinray: warning: " << warning << '\n';
+    return scene;
+}
+
+void append_records(const BenchOptions& options, const nlohmann::json& base, const bench::Results& results,
+                    const Measured& measured) {
+    for (const auto& [kind, traces] : measured.traces)
+        for (const nlohmann::json& record : bench::records_of(base, results, kind, traces))
+            append_json(options.common.json, record);
 }
 
 void run(const BenchOptions& options) {
-    const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
-    const std::unique_ptr<Context> context = make_context(options.common);
-    const std::vector<Ray> rays = primary_rays(bounds_of(scene), options.width);
-    std::vector<Candidate> candidates = make_candidates(*context, options.levels, options.layouts);
-    const Buffer ray_buffer(*context, {.name = "bench rays", .bytes = rays.size() * sizeof(Ray)});
-    const Buffer hit_buffer(*context, {.name = "bench hits", .bytes = rays.size() * sizeof(Hit)});
-    Commands upload(*context, "bench input");
-    {
-        const auto pass = upload.pass("bench rays");
-        upload.upload(ray_buffer, std::span<const Ray>(rays));
+    const BenchScene scene = load(options, options.scene);
+    Setup setup = set_up(options);
+    std::cout << "bench " << scene.name << ": " << count_triangles(scene.scene) << " triangles, "
+              << options.run.width * options.run.width << " rays a set, medians of " << options.run.rounds
+              << " interleaved rounds, on " << setup.context->facts().name << '\n';
+    const Measured measured = bench::measure(*setup.context, setup.line_up, scene, options.run);
+    const bench::Results results{scene, setup.line_up, measured.builds};
+    if (options.run.times_builds) bench::print_builds(std::cout, results);
+    for (const auto& [kind, traces] : measured.traces) {
+        std::cout << '\n';
+        bench::print_traces(std::cout, results, name_of(kind), traces);
     }
-    upload.submit();
+    append_records(options, base_record(options, *setup.context), results, measured);
+}
 
-    std::cout << "bench " << options.scene.filename().string() << ": " << count_triangles(scene) << " triangles, "
-              << rays.size() << " primary rays, median of " << options.rounds << " interleaved rounds, on "
-              << context->facts().name << '\n';
-    for (Candidate& candidate : candidates) {  // warm up: drivers compile at the first dispatch
-        build_once(candidate, scene);
-        trace_once(candidate, ray_buffer, hit_buffer, rays.size());
-        candidate.hits = download<Hit>(*context, hit_buffer, rays.size());
+void run_growth(const BenchOptions& options) {
+    Setup setup = set_up(options);
+    std::cout << "bench: growth with the number of triangles of displaced spheres, medians of " << options.run.rounds
+              << " interleaved rounds, on " << setup.context->facts().name << '\n';
+    const nlohmann::json base = base_record(options, *setup.context);
+    std::vector<std::vector<bench::GrowthPoint>> points(setup.line_up.size());
+    for (const double size : options.growth) {
+        const BenchScene scene = load(options, text("sphere:", std::llround(size)));
+        const Measured measured = bench::measure(*setup.context, setup.line_up, scene, options.run);
+        append_records(options, base, {scene, setup.line_up, measured.builds}, measured);
+        for (std::size_t i = 0; i < points.size(); ++i) points[i].push_back(bench::growth_point(scene, measured, i));
     }
-    for (std::size_t round = 0; round < options.rounds; ++round)
-        for (Candidate& candidate : candidates) {
-            candidate.build_ms.push_back(build_once(candidate, scene));
-            candidate.trace_ms.push_back(trace_once(candidate, ray_buffer, hit_buffer, rays.size()));
-        }
-    report(options, *context, candidates, scene, rays);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        std::cout << '\n';
+        bench::print_growth(std::cout, setup.line_up[i]->labels().name, points[i]);
+        append_json(options.common.json, bench::growth_record(base, setup.line_up[i]->labels(), points[i]));
+    }
+}
+
+std::map<std::string, RayKind> ray_kinds_by_name() {
+    std::map<std::string, RayKind> kinds;
+    for (const RayKind kind : bench::all_ray_kinds) kinds.emplace(bench::name_of(kind), kind);
+    return kinds;
+}
+
+std::map<std::string, Level> levels_by_name() {
+    std::map<std::string, Level> levels;
+    for (const Level level : {Level::fast, Level::watertight, Level::refined, Level::certified})
+        levels.emplace(bench::level_name(level), level);
+    return levels;
+}
+
+void add_choice_options(CLI::App& command, bench::RunOptions& run) {
+    command.add_option("--levels", run.line_up.levels, "fast, watertight, refined, certified; separated by commas")
+        ->delimiter(',')
+        ->transform(CLI::CheckedTransformer(levels_by_name()));
+    command.add_option("--layouts", run.line_up.layouts, "of SwTlas: compressed4, bvh2; separated by commas")
+        ->delimiter(',')
+        ->transform(CLI::CheckedTransformer(layouts_by_name()));
+    command
+        .add_option("--contestants", run.line_up.only,
+                    "those with one of these parts in their names, as sw,embree8; separated by commas; else all")
+        ->delimiter(',');
+}
+
+void add_size_options(CLI::App& command, bench::RunOptions& run) {
+    command.add_option("--width", run.width, "pixels a side of the square of primary rays, a multiple of 8")
+        ->check(CLI::Range(8, 4096))
+        ->check([](const std::string& width) {
+            return std::stoul(width) % 8 == 0 ? std::string() : width + " is not a multiple of 8";
+        })
+        ->capture_default_str();
+    command.add_option("--rounds", run.rounds)->check(CLI::Range(1, 1000))->capture_default_str();
+    command
+        .add_option("--max-seconds", run.max_seconds,
+                    "of one trace: whoever needs more traces fewer rays, evenly chosen")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+}
+
+void dispatch(BenchOptions& options, bool is_growth) {
+    options.run.seed = options.common.seed;
+    options.run.quiet = options.common.quiet;
+    options.run.times_builds = !options.no_build;
+    options.run.line_up.has_embree = !options.no_embree;
+    if (!options.kinds.empty())
+        options.run.kinds = options.kinds;
+    else if (is_growth)
+        options.run.kinds = {RayKind::primary, RayKind::incoherent};
+    if (options.moves)
+        bench_moves(options.common, options.moves, options.run.rounds);
+    else if (is_growth)
+        run_growth(options);
+    else
+        run(options);
 }
 
 }  // namespace
@@ -180,33 +172,28 @@ void add_bench(CLI::App& app, int&) {
     CLI::App* command = app.add_subcommand("bench", "build and trace rates of both accelerators, with their errors");
     const auto options = std::make_shared<BenchOptions>();
     auto* what = command->add_option_group("what")->require_option(1);
-    what->add_option("--scene", options->scene, ".gltf, .glb, .obj, .ply or .stl");
+    what->add_option("--scene", options->scene,
+                     "a file (.gltf, .glb, .obj, .ply, .stl), or made: sphere:N, soup:N, instances:KxN, with N "
+                     "triangles and K instances");
     what->add_option("--moves", options->moves, "refit of so many instances that move, against a rebuild")
         ->check(CLI::Range(1, 1 << 22));
-    command->add_option("--width", options->width, "pixels a side of the square of primary rays, a multiple of 8")
-        ->check(CLI::Range(8, 4096))
-        ->check([](const std::string& width) {
-            return std::stoul(width) % 8 == 0 ? std::string() : width + " is not a multiple of 8";
-        })
-        ->capture_default_str();
-    const std::map<std::string, Level> levels = {{"fast", Level::fast},
-                                                 {"watertight", Level::watertight},
-                                                 {"refined", Level::refined},
-                                                 {"certified", Level::certified}};
-    command->add_option("--levels", options->levels, "fast, watertight, refined, certified; separated by commas")
+    const CLI::Option* growth =
+        what->add_option("--growth", options->growth, "spheres of so many triangles; separated by commas")
+            ->delimiter(',')
+            ->expected(0, 100)
+            ->check(CLI::Range(20.0, 5e7))
+            ->capture_default_str();
+    command
+        ->add_option("--rays", options->kinds,
+                     "primary, incoherent, occlusion; separated by commas; else all, of growth the first two")
         ->delimiter(',')
-        ->transform(CLI::CheckedTransformer(levels));
-    command->add_option("--layouts", options->layouts, "of SwTlas: compressed4, bvh2; separated by commas")
-        ->delimiter(',')
-        ->transform(CLI::CheckedTransformer(layouts_by_name()));
-    command->add_option("--rounds", options->rounds)->check(CLI::Range(1, 1000))->capture_default_str();
+        ->transform(CLI::CheckedTransformer(ray_kinds_by_name()));
+    add_choice_options(*command, options->run);
+    add_size_options(*command, options->run);
+    command->add_flag("--no-embree", options->no_embree, "leave Embree out");
+    command->add_flag("--no-build", options->no_build, "time traces alone");
     add_common_options(*command, options->common);
-    command->callback([options] {
-        if (options->moves)
-            bench_moves(options->common, options->moves, options->rounds);
-        else
-            run(*options);
-    });
+    command->callback([options, growth] { dispatch(*options, growth->count() > 0); });
 }
 
 }  // namespace twinray::cli

@@ -13,7 +13,7 @@ SEES = {  # besides itself and shaders/shared
     "engine/core": [], "engine/scene": BASE[:1], "engine/accel": BASE[:2], "engine/report": BASE[:1],
     "engine/analysis": BASE, "engine/collide": BASE, "engine/verify": BASE,
     "swtlas": ENGINE, "hwtlas": ENGINE,
-    "cli": PRODUCT + ["shaders/suite"],
+    "cli": PRODUCT + ["shaders/suite", "bench"],
     "samples": PRODUCT + ["shaders/path_tracer", "shaders/embed_renderer"],
     "bench": PRODUCT, "tests": PRODUCT + ["cli", "samples", "bench"],
     "shaders/embed_renderer": ["shaders/path_tracer"],

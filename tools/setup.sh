@@ -16,6 +16,7 @@ packages=(
     libglm-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev libgtest-dev
     libopenexr-dev libassimp-dev zlib1g-dev libgmp-dev assimp-testmodels
 )
+if [[ $(uname -m) == x86_64 ]]; then packages+=(libembree-dev); fi # twinray bench measures it, too
 oldest_mesa=24 # the first whose lavapipe has acceleration structures and ray queries
 
 backports_file=/etc/apt/sources.list.d/twinray-bookworm-backports.sources

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "bench/accel_contestant.h"
+
+#include "bench/stopwatch.h"
+#include "engine/accel/scene_push.h"
+
+namespace twinray::bench {
+namespace {
+
+// Of all passes; what the watch says, once the GPU is done, where its queue has no timestamps.
+double total_ms(const std::vector<PassTiming>& timings, const Stopwatch& watch) {
+    if (timings.empty()) return watch.ms();
+    double sum = 0;
+    for (const PassTiming& timing : timings) sum += timing.ms;
+    return sum;
+}
+
+}  // namespace
+
+BuildFigures AccelContestant::build(const Scene& scene) {
+    accel_.reset();
+    accel_ = make_();
+    accel_->wait_for_gpu();
+    const Stopwatch watch;
+    push_scene(*accel_, scene);
+    const std::uint64_t scratch_bytes = accel_->memory_requirements().scratch;
+    accel_->sync();
+    accel_->wait_for_gpu();
+    const double wall_ms = watch.ms();
+    return {total_ms(accel_->build_timings(), watch), wall_ms, accel_->memory_usage().structures(), scratch_bytes};
+}
+
+double AccelContestant::trace(const RayBatch& batch) {
+    const auto& [rays, hits] = batch.on(accel_->context());
+    Commands commands(accel_->context(), "bench");
+    accel_->trace(commands, accel_->view(),
+                  {.rays = rays.ref<Ray>(),
+                   .hits = hits.ref<Hit>(),
+                   .count = batch.rays().size(),
+                   .query = batch.query(),
+                   .level = level_});
+    const Stopwatch watch;
+    commands.submit();
+    accel_->wait_for_gpu();
+    return total_ms(commands.timings(), watch);
+}
+
+std::vector<Hit> AccelContestant::hits(const RayBatch& batch) const {
+    return download<Hit>(accel_->context(), batch.on(accel_->context()).hits, batch.rays().size());
+}
+
+}  // namespace twinray::bench

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+
+#include "bench/contestant.h"
+#include "engine/accel/abstract_accel.h"
+
+namespace twinray::bench {
+
+// An accelerator of ours. Times are those of the GPU's passes.
+class AccelContestant : public Contestant {
+  public:
+    using Make = std::function<std::unique_ptr<AbstractAccel>()>;
+    AccelContestant(Labels labels, Level level, Make make)
+        : Contestant(std::move(labels)), level_(level), make_(std::move(make)) {}
+
+    BuildFigures build(const Scene& scene) override;
+    double trace(const RayBatch& batch) override;
+    std::vector<Hit> hits(const RayBatch& batch) const override;
+
+  private:
+    Level level_;
+    Make make_;
+    std::unique_ptr<AbstractAccel> accel_;
+};
+
+}  // namespace twinray::bench

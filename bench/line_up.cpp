@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "bench/line_up.h"
+
+#include <algorithm>
+
+#include "bench/accel_contestant.h"
+#include "bench/embree_contestant.h"
+#include "engine/core/error.h"
+#include "hwtlas/hw_tlas.h"
+#include "swtlas/sw_tlas.h"
+
+namespace twinray::bench {
+namespace {
+
+constexpr const char* level_names[] = {"fast", "watertight", "refined", "certified"};
+
+bool is_named(const std::string& name, const std::vector<std::string>& only) {
+    return only.empty() || std::any_of(only.begin(), only.end(),
+                                       [&](const std::string& part) { return name.find(part) != std::string::npos; });
+}
+
+class Maker {
+  public:
+    explicit Maker(const LineUpOptions& options) : options_(options) {}
+
+    void add_software(Context& context, const AccelOptions& accel) {
+        const std::string layout(twinray::name_of(accel.layout));
+        add({.name = text("sw ", layout, ' ', level_name(accel.level)),
+             .backend = "sw",
+             .path = "compute",
+             .order = "",
+             .layout = layout,
+             .builder = "fast",
+             .level = level_name(accel.level)},
+            accel.level, [&context, accel] { return std::make_unique<SwTlas>(context, accel); });
+    }
+
+    // All that the device can do, from the first level on.
+    void add_hardware(Context& context) {
+        if (!missing_for_hardware(context.facts()).empty()) return;
+        for (const Level level : options_.levels) add_hardware(context, BuildOrder::automatic, level);
+        if (context.facts().builds_in_input_order && context.facts().ray_query)
+            add_hardware(context, BuildOrder::input, options_.levels.front());
+    }
+
+    void add_hardware(Context& context, BuildOrder order, Level level) {
+        if (HwTlas::capability_on(context.facts(), feature_of(level)).support == Support::unsupported) return;
+        const HwTlas probe(context, order);
+        const char* path = context.facts().ray_query ? "query" : "pipeline";
+        add({.name = order == BuildOrder::input ? "hw query input order" : text("hw ", path, ' ', level_name(level)),
+             .backend = "hw",
+             .path = probe.trace_path(),
+             .order = probe.reorders() ? "sorted" : "input",
+             .layout = "driver",
+             .builder = "driver",
+             .level = level_name(level)},
+            level, [&context, order, level] { return std::make_unique<HwTlas>(context, order, AccelOptions{level}); });
+    }
+
+    LineUp line_up;
+
+  private:
+    void add(Labels&& labels, Level level, AccelContestant::Make&& make) {
+        if (is_named(labels.name, options_.only))
+            line_up.push_back(std::make_unique<AccelContestant>(std::move(labels), level, std::move(make)));
+    }
+
+    const LineUpOptions& options_;
+};
+
+bool is(Baseline baseline, const Labels& labels) {
+    switch (baseline) {
+        case Baseline::sorted_query: return labels.path == "ray query" && labels.order == "sorted";
+        case Baseline::input_query: return labels.path == "ray query" && labels.order == "input";
+        case Baseline::pipeline: return labels.path == "ray tracing pipeline";
+        case Baseline::embree8: return labels.name == "embree8";
+        case Baseline::software: return labels.backend == "sw";
+    }
+    return false;
+}
+
+}  // namespace
+
+const char* level_name(Level level) { return level_names[static_cast<std::size_t>(level)]; }
+
+LineUp make_line_up(Context& context, Context* pipeline, const LineUpOptions& options) {
+    Maker maker(options);
+    for (const Layout layout : options.layouts)
+        for (const Level level : options.levels) maker.add_software(context, {level, layout});
+    maker.add_hardware(context);
+    if (pipeline) maker.add_hardware(*pipeline, BuildOrder::automatic, options.levels.front());
+    LineUp line_up = std::move(maker.line_up);
+    if (options.has_embree)
+        for (auto& contestant : embree_line_up([&](const std::string& name) { return is_named(name, options.only); }))
+            line_up.push_back(std::move(contestant));
+    if (line_up.empty()) fail("bench: no contestant's name has a part '", joined(options.only), "'");
+    return line_up;
+}
+
+std::optional<std::size_t> find(Baseline baseline, const LineUp& line_up) {
+    for (std::size_t i = 0; i < line_up.size(); ++i)
+        if (is(baseline, line_up[i]->labels())) return i;
+    return std::nullopt;
+}
+
+}  // namespace twinray::bench

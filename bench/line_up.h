@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// Who runs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/contestant.h"
+#include "engine/accel/trace_desc.h"
+#include "engine/core/context.h"
+
+namespace twinray::bench {
+
+struct LineUpOptions {
+    std::vector<Level> levels = {Level::watertight};
+    std::vector<Layout> layouts = {all_layouts.begin(), all_layouts.end()};
+    std::vector<std::string> only = {};  // parts of names: a contestant runs that has one of them; none: all run
+    bool has_embree = true;
+};
+
+// "fast", "watertight", ...
+const char* level_name(Level level);
+
+// SwTlas in each layout at each level; HwTlas at each level it has, and with input in the given order where the driver
+// builds in that order; HwTlas by ray tracing pipeline in `pipeline`, a context in which ray queries are left disabled,
+// unless that is null; Embree. Contexts must outlive it. Throws Error if none is left of `only`.
+LineUp make_line_up(Context& context, Context* pipeline, const LineUpOptions& options);
+
+// Whose times others are given in: the first contestant at the first level by ray query with sorted input, ...
+enum class Baseline : std::uint8_t { sorted_query, input_query, pipeline, embree8, software };
+inline constexpr std::size_t baseline_count = 5;
+// Its place in the line-up; nothing if it does not run.
+std::optional<std::size_t> find(Baseline baseline, const LineUp& line_up);
+
+}  // namespace twinray::bench

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// The three sets of rays that rates are given for. They depend on the scene, the width and the seed alone.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "bench/scenes.h"
+#include "engine/accel/trace_desc.h"
+#include "engine/core/context.h"
+
+namespace twinray::bench {
+
+enum class RayKind : std::uint8_t {
+    primary,     // a camera's
+    incoherent,  // from where those meet the scene, into the hemisphere on their side, uniform over solid angle
+    occlusion,   // from the same points to random points of a light above and beside the scene
+};
+inline constexpr std::array all_ray_kinds = {RayKind::primary, RayKind::incoherent, RayKind::occlusion};
+constexpr std::string_view name_of(RayKind kind) {
+    return kind == RayKind::primary ? "primary" : kind == RayKind::incoherent ? "incoherent" : "occlusion";
+}
+// Any hits for occlusion, else closest hits.
+constexpr Query query_of(RayKind kind) { return kind == RayKind::occlusion ? Query::any : Query::closest; }
+
+// Where a ray met the scene.
+struct Surface {
+    vec3 front, back;  // where rays start that leave to this side of the triangle, clear of it
+    vec3 normal;       // unit, of the front
+    bool is_front;     // the ray came from there
+};
+
+// The points that the hits name, in their order; misses are left out.
+std::vector<Surface> surfaces_of(const Scene& scene, std::span<const Ray> rays, std::span<const Hit> hits);
+
+// `count` rays from the points in their order, each point as often as any other within one. Ray i depends on
+// (seed, i) and its point alone. Directions have length 1. The points must not be none.
+std::vector<Ray> incoherent_rays(std::span<const Surface> points, std::size_t count, std::uint64_t seed);
+// The same; t_max is the last float before the light's point. The light is a cube outside `bounds`.
+std::vector<Ray> occlusion_rays(std::span<const Surface> points, const Bounds& bounds, std::size_t count,
+                                std::uint64_t seed);
+
+// Each `width` * `width` rays, in tiles of 8 x 8 pixels of the picture of primary rays. By RayKind. Surface points are
+// found by SwTlas, refined where the device has float64. `width` is a multiple of 8. Throws Error naming the scene if
+// no primary ray meets it.
+std::array<std::vector<Ray>, all_ray_kinds.size()> make_rays(Context& context, const BenchScene& scene, uint width,
+                                                             std::uint64_t seed);
+
+}  // namespace twinray::bench

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "bench/report.h"
+
+#include <algorithm>
+
+#include "bench/hits_hash.h"
+#include "bench/table.h"
+#include "engine/core/error.h"
+
+namespace twinray::bench {
+namespace {
+
+using Row = std::vector<std::string>;
+
+struct BaselineNames {
+    Baseline baseline;
+    const char* field;
+    const char* heading;
+};
+// The last has no column.
+constexpr BaselineNames baselines[] = {{Baseline::sorted_query, "vs_ray_query_presorted", "vs query sorted"},
+                                       {Baseline::input_query, "vs_ray_query", "vs query input"},
+                                       {Baseline::pipeline, "vs_pipeline", "vs pipeline"},
+                                       {Baseline::embree8, "vs_embree8", "vs embree8"},
+                                       {Baseline::software, "vs_sw", nullptr}};
+static_assert(std::size(baselines) == baseline_count);
+
+std::string range(const Spread& spread) { return number_text(spread.min, 3) + ".." + number_text(spread.max, 3); }
+
+double per_triangle(std::uint64_t amount, const Results& results) {
+    return static_cast<double>(amount) /
+           static_cast<double>(std::max<std::size_t>(count_mesh_triangles(results.scene.scene), 1));
+}
+
+template <class T>
+nlohmann::json or_null(const std::optional<T>& value) {
+    return value ? nlohmann::json(*value) : nlohmann::json();
+}
+
+Row trace_row(const Results& results, std::span<const TraceRounds> traces, std::size_t place) {
+    const TraceRounds& rounds = traces[place];
+    const Spread rate = mrays_per_s(rounds);
+    Row row = {results.line_up[place]->labels().name, number_text(rate.median, 3), range(rate),
+               std::to_string(rounds.n)};
+    for (const BaselineNames& names : baselines) {
+        if (!names.heading || !find(names.baseline, results.line_up)) continue;
+        row.push_back(number_text(*speed_up(results.line_up, traces, place, names.baseline), 3));
+    }
+    const std::optional<Soundness>& soundness = rounds.soundness;
+    row.push_back(soundness ? fixed_text(100 * soundness->sound, 4) : "-");
+    row.push_back(soundness ? std::to_string(soundness->faults) : "-");
+    row.push_back(rounds.hash ? hexadecimal(*rounds.hash) : "-");
+    return row;
+}
+
+void add_build(nlohmann::json& record, const Results& results, const BuildRounds& build) {
+    record["build_ms"] = record["build_wall_ms"] = nullptr;
+    record["bytes_per_triangle"] = per_triangle(build.last.bytes, results);
+    record["scratch_bytes_per_triangle"] = per_triangle(build.last.scratch_bytes, results);
+    if (build.ms.empty()) return;
+    const Spread ms = spread_of(build.ms);
+    record["build_ms"] = ms.median;
+    record["build_ms_min"] = ms.min;
+    record["build_ms_max"] = ms.max;
+    record["build_wall_ms"] = spread_of(build.wall_ms).median;
+}
+
+}  // namespace
+
+void print_builds(std::ostream& out, const Results& results) {
+    std::vector<Row> rows = {
+        {"builds", "ms", "min..max", "wall ms", "ns/triangle", "bytes/triangle", "scratch bytes/triangle"}};
+    const auto triangles = static_cast<double>(std::max<std::size_t>(count_mesh_triangles(results.scene.scene), 1));
+    for (std::size_t i = 0; i < results.builds.size(); ++i) {
+        const BuildRounds& build = results.builds[i];
+        const Spread ms = spread_of(build.ms);
+        rows.push_back({results.line_up[i]->labels().name, number_text(ms.median, 3), range(ms),
+                        number_text(spread_of(build.wall_ms).median, 3), number_text(ms.median * 1e6 / triangles, 3),
+                        number_text(per_triangle(build.last.bytes, results), 3),
+                        number_text(per_triangle(build.last.scratch_bytes, results), 3)});
+    }
+    print_table(out, rows);
+}
+
+void print_traces(std::ostream& out, const Results& results, std::string_view title,
+                  std::span<const TraceRounds> traces) {
+    Row heading = {std::string(title), "Mrays/s", "min..max", "rays"};
+    for (const BaselineNames& names : baselines)
+        if (names.heading && find(names.baseline, results.line_up)) heading.emplace_back(names.heading);
+    heading.insert(heading.end(), {"sound %", "faults", "hash of hits"});
+    std::vector<Row> rows = {heading};
+    for (std::size_t i = 0; i < traces.size(); ++i) rows.push_back(trace_row(results, traces, i));
+    print_table(out, rows);
+}
+
+std::vector<nlohmann::json> records_of(const nlohmann::json& base, const Results& results, RayKind kind,
+                                       std::span<const TraceRounds> traces) {
+    std::vector<nlohmann::json> records;
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+        const Labels& labels = results.line_up[i]->labels();
+        const Spread rate = mrays_per_s(traces[i]);
+        nlohmann::json record = base;
+        record.update({{"schema", record_schema},
+                       {"scene", results.scene.name},
+                       {"triangles", count_triangles(results.scene.scene)},
+                       {"rays", name_of(kind)},
+                       {"n", traces[i].n},
+                       {"rounds", traces[i].ns_per_ray.size()},
+                       {"contestant", labels.name},
+                       {"backend", labels.backend},
+                       {"path", labels.path},
+                       {"order", labels.order},
+                       {"layout", labels.layout},
+                       {"builder", labels.builder},
+                       {"level", labels.level},
+                       {"mrays_per_s", rate.median},
+                       {"mrays_per_s_min", rate.min},
+                       {"mrays_per_s_max", rate.max}});
+        add_build(record, results, results.builds[i]);
+        for (const BaselineNames& names : baselines)
+            record[names.field] = or_null(speed_up(results.line_up, traces, i, names.baseline));
+        const std::optional<Soundness>& soundness = traces[i].soundness;
+        record["agreement"] = soundness ? nlohmann::json(soundness->sound) : nlohmann::json();
+        record["faults"] = soundness ? nlohmann::json(soundness->faults) : nlohmann::json();
+        record["judged"] = soundness ? nlohmann::json(soundness->n) : nlohmann::json();
+        record["hits_hash"] = traces[i].hash ? nlohmann::json(hexadecimal(*traces[i].hash)) : nlohmann::json();
+        records.push_back(std::move(record));
+    }
+    return records;
+}
+
+}  // namespace twinray::bench

@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Runs `twinray bench` and the scripts that keep its history, as a user does. Usage: bench_command_test.py TWINRAY FOLDER,
+the latter with the scripts."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+twinray, scripts, here = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(tempfile.mkdtemp())
+
+
+def call(*command, status=0):
+    run = subprocess.run(command, capture_output=True, text=True)
+    assert run.returncode == status, f"{command}: status {run.returncode}\n{run.stdout}{run.stderr}"
+    assert "VUID" not in run.stderr and "SYNC-HAZARD" not in run.stderr, run.stderr
+    return run.stdout + run.stderr
+
+
+def bench(*arguments, status=0):
+    """What it prints, and its records."""
+    file = here / "records.jsonl"
+    file.unlink(missing_ok=True)
+    said = call(twinray, "bench", "--quiet", "--json", str(file), *arguments, status=status)
+    return said, [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+
+
+KINDS = ["primary", "incoherent", "occlusion"]
+RATIOS = ["vs_ray_query", "vs_ray_query_presorted", "vs_pipeline", "vs_embree8", "vs_sw"]
+FIELDS = {"schema", "device", "started", "git", "width", "seed", "scene", "triangles", "rays", "n", "rounds", "contestant",
+          "backend", "path", "order", "layout", "builder", "level", "mrays_per_s", "mrays_per_s_min", "mrays_per_s_max",
+          "build_ms", "build_ms_min", "build_ms_max", "build_wall_ms", "bytes_per_triangle", "scratch_bytes_per_triangle",
+          "agreement", "faults", "judged", "hits_hash", *RATIOS}
+
+# Everybody, on everything.
+said, records = bench("--validation", "--scene", "sphere:320", "--width", "32", "--rounds", "3")
+names = sorted({r["contestant"] for r in records})
+assert {"sw compressed4 watertight", "sw bvh2 watertight"} <= set(names)
+assert sorted((r["rays"], r["contestant"]) for r in records) == sorted((k, n) for k in KINDS for n in names)
+for r in records:
+    assert set(r) == FIELDS, set(r) ^ FIELDS
+    assert (r["schema"], r["scene"], r["triangles"], r["n"], r["rounds"]) == ("twinray-bench/1", "sphere:320", 320, 1024, 3)
+    assert 0 < r["mrays_per_s_min"] <= r["mrays_per_s"] <= r["mrays_per_s_max"]
+    assert 0 < r["build_ms_min"] <= r["build_ms"] <= r["build_ms_max"] and r["build_wall_ms"] > 0
+    assert r["bytes_per_triangle"] > 0 and r["agreement"] > 0.98 and r["judged"] == 1024
+    assert r["backend"] != "sw" or r["faults"] == 0
+    assert f"{r['hits_hash']}" in said and r["contestant"] in said
+for kind in KINDS:  # layouts give the same bits; a baseline compares with itself as 1
+    of_kind = [r for r in records if r["rays"] == kind]
+    assert len({r["hits_hash"] for r in of_kind if r["backend"] == "sw"}) == 1
+    for ratio in RATIOS:
+        values = [r[ratio] for r in of_kind]
+        assert values == [None] * len(values) or 1 in values, (ratio, values)
+assert all(r["vs_sw"] is not None for r in records)
+
+# Some, on some.
+_, records = bench("--scene", "instances:4x80", "--width", "16", "--rounds", "1", "--rays", "occlusion", "--layouts", "bvh2",
+                   "--levels", "fast,watertight", "--contestants", "sw", "--no-build")
+assert [(r["rays"], r["contestant"]) for r in records] == [("occlusion", "sw bvh2 fast"), ("occlusion", "sw bvh2 watertight")]
+assert all(r["build_ms"] is None and r["vs_embree8"] is None and r["triangles"] == 320 for r in records)
+_, records = bench("--scene", "soup:100", "--width", "16", "--rounds", "1", "--rays", "primary", "--no-embree")
+assert not any(r["backend"] == "embree" for r in records)
+
+# Whoever is too slow traces whole tiles, evenly chosen, and has no hash.
+_, records = bench("--scene", "sphere:80", "--width", "64", "--rounds", "1", "--contestants", "compressed4", "--max-seconds",
+                   "1e-9")
+assert all(r["n"] == 4 * 64 and r["hits_hash"] is None and r["mrays_per_s"] > 0 for r in records)
+
+# How times grow.
+said, records = bench("--growth", "80,320,1280", "--width", "16", "--rounds", "1", "--contestants", "compressed4")
+assert [r["scene"] for r in records[:-1:2]] == ["sphere:80", "sphere:320", "sphere:1280"]
+growth = records[-1]
+assert (growth["triangles_from"], growth["triangles_to"]) == (80, 1280) and " a doubling" in said
+assert set(growth["growth"]) == {"build_ms", "primary_ns_per_ray", "incoherent_ns_per_ray"}
+assert isinstance(growth["growth"]["build_ms"]["power"], float)
+# Each step is two doublings of the triangles.
+times = [1e3 / r["mrays_per_s"] for r in records[:-1] if r["rays"] == "primary"]
+assert abs(growth["growth"]["primary_ns_per_ray"]["per_doubling"] - (times[2] - times[0]) / 4) < 1e-6 * max(times)
+
+_, records = bench("--moves", "20", "--rounds", "1")
+assert records and all(r["refit_ms"] > 0 and r["rebuild_ms"] > 0 for r in records)
+
+# What is wrong is said.
+assert "'abc' is not a whole number" in bench("--scene", "sphere:abc", status=1)[0]
+assert "no contestant's name has a part 'nobody'" in bench("--scene", "sphere:80", "--contestants", "nobody", status=1)[0]
+bench("--scene", "sphere:80", "--rays", "diffuse", status=2)
+bench("--scene", "sphere:80", "--width", "12", status=2)
+bench("--scene", "sphere:80", "--max-seconds", "0", status=2)
+bench("--growth", "1", status=2)
+bench("--rounds", "1", status=2)
+bench("--scene", "sphere:80", "--growth", "80", status=2)
+
+# History: each run is appended, and drawn where matplotlib is.
+options = ["--", "--width", "16", "--rounds", "1", "--contestants", "sw"]
+for runs in (1, 2):
+    call(scripts / "record_history.sh", "-t", twinray, "-o", str(here / "history"), "sphere:80", "soup:80", *options)
+    (history,) = (here / "history").glob("*.jsonl")
+    kept = [json.loads(line) for line in history.read_text().splitlines()]
+    assert len(kept) == runs * 2 * 3 * 2 and {r["scene"] for r in kept} == {"sphere:80", "soup:80"}
+    assert all(r["started"] and r["git"] and r["device"]["driver"] for r in kept)
+call(scripts / "record_history.sh", "-t", twinray, "-o", str(here / "history"), "sphere:80", "sphere:abc", *options, status=1)
+assert len(history.read_text().splitlines()) == len(kept), "a run that failed was recorded"
+call(scripts / "record_history.sh", "--nonsense", status=2)
+has_matplotlib = subprocess.run([sys.executable, "-c", "import matplotlib"], capture_output=True).returncode == 0
+for picture in ("plot.svg", "plot.png"):
+    said = call(sys.executable, scripts / "plot_history.py", str(history), "-o", str(here / picture),
+                status=0 if has_matplotlib else 1)
+    assert (here / picture).exists() if has_matplotlib else "python3-matplotlib" in said, said
+print("bench: the command and its history work")

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "bench/line_up.h"
+
+#include <cmath>
+
+#include "bench/embree_contestant.h"
+#include "bench/hits_hash.h"
+#include "bench/judge.h"
+#include "bench/rays.h"
+#include "tests/scene/temp_dir.h"
+#include "tests/support/device.h"
+
+namespace twinray::bench {
+namespace {
+
+class LineUpTest : public test::VulkanTest {
+  protected:
+    static std::vector<Hit> traced(Contestant& contestant, const RayBatch& rays) {
+        EXPECT_GT(contestant.trace(rays), 0) << contestant.labels().name;
+        return contestant.hits(rays);
+    }
+};
+
+std::vector<std::string> names_of(const LineUp& line_up) {
+    std::vector<std::string> names;
+    for (const auto& contestant : line_up) names.push_back(contestant->labels().name);
+    return names;
+}
+
+TEST_F(LineUpTest, TakesThoseThatAreNamed) {
+    const LineUp software = make_line_up(
+        context(), nullptr,
+        {.levels = {Level::fast, Level::watertight}, .layouts = {Layout::bvh2}, .only = {"sw"}, .has_embree = true});
+    EXPECT_EQ(names_of(software), (std::vector<std::string>{"sw bvh2 fast", "sw bvh2 watertight"}));
+    EXPECT_EQ(find(Baseline::software, software), 0u);
+    EXPECT_FALSE(find(Baseline::embree8, software).has_value());
+    test::expect_contains(test::error_of([&] { make_line_up(context(), nullptr, {.only = {"nobody"}}); }), "'nobody'");
+}
+
+TEST_F(LineUpTest, EveryBaselineIsItself) {
+    const LineUp line_up = make_line_up(context(), nullptr, {});
+    const auto path_at = [&](Baseline baseline) { return line_up[*find(baseline, line_up)]->labels().path; };
+    EXPECT_EQ(path_at(Baseline::software), "compute");
+    if (find(Baseline::sorted_query, line_up)) {
+        EXPECT_EQ(path_at(Baseline::sorted_query), "ray query");
+        EXPECT_NE(find(Baseline::sorted_query, line_up), find(Baseline::input_query, line_up));
+    }
+    EXPECT_EQ(find(Baseline::embree8, line_up).has_value(), why_no_embree().empty());
+}
+
+// The sets of rays, and primary rays whose intervals end before their hits or begin behind them.
+std::vector<RayBatch> batches_of(Context& context, const BenchScene& scene, Contestant& first) {
+    auto sets = make_rays(context, scene, 48, 1);
+    std::vector<Ray> cut = sets[0];
+    std::vector<RayBatch> batches;
+    for (const RayKind kind : all_ray_kinds)
+        batches.emplace_back(std::move(sets[static_cast<std::size_t>(kind)]), query_of(kind), kind == RayKind::primary);
+    first.trace(batches[0]);
+    const std::vector<Hit> hits = first.hits(batches[0]);
+    for (std::size_t i = 0; i < cut.size(); ++i) {
+        if (!hits[i].hit) continue;
+        if (i % 2)
+            cut[i].t_max = 0.99f * hits[i].t;
+        else
+            cut[i].t_min = 1.01f * hits[i].t;
+    }
+    batches.emplace_back(cut, Query::closest, false);
+    batches.emplace_back(std::move(cut), Query::any, false);
+    return batches;
+}
+
+bool are_alike(const Hit& a, const Hit& b, Query query) {
+    if (a.hit != b.hit || query == Query::any) return a.hit == b.hit;
+    return a.primitive_index == b.primitive_index && a.instance_index == b.instance_index &&
+           std::abs(a.t - b.t) <= 1e-3f * std::abs(b.t) + 1e-5f && std::abs(a.u - b.u) < 1e-2f &&
+           std::abs(a.v - b.v) < 1e-2f;
+}
+
+// But for the rounding at edges and of t.
+TEST_F(LineUpTest, AllGiveTheSameHits) {
+    LineUp line_up = make_line_up(context(), nullptr, {});
+    for (const char* name : {"sphere:2000", "instances:20x320"}) {
+        const BenchScene scene = make_scene(name);
+        const Judge judge(scene.scene);
+        for (const auto& contestant : line_up) EXPECT_GT(contestant->build(scene.scene).bytes, 0u);
+        const std::vector<RayBatch> batches = batches_of(context(), scene, *line_up.front());
+        for (std::size_t batch = 0; batch < batches.size(); ++batch) {
+            const RayBatch& rays = batches[batch];
+            const std::vector<Hit> expected = traced(*line_up.front(), rays);
+            for (const auto& contestant : line_up) {
+                SCOPED_TRACE(text(name, ", batch ", batch, ", ", contestant->labels().name));
+                const std::vector<Hit> hits = traced(*contestant, rays);
+                ASSERT_EQ(hits.size(), expected.size());
+                std::size_t others = 0;
+                for (std::size_t i = 0; i < hits.size(); ++i) others += !are_alike(hits[i], expected[i], rays.query());
+                EXPECT_LE(others, hits.size() / 500);
+                const bool is_ours = contestant->labels().backend == "sw";
+                const Soundness soundness = judge.judge(rays.rays(), hits, rays.query(), is_ours);
+                EXPECT_EQ(soundness.n, hits.size());
+                EXPECT_GT(soundness.sound, 0.998);
+                if (!is_ours) continue;
+                EXPECT_EQ(soundness.faults, 0u);
+                EXPECT_EQ(hash_of(hits, rays.query()), hash_of(expected, rays.query()));
+            }
+        }
+    }
+}
+
+// Or they are not what was asked for: in a soup the first hit that is found is seldom the closest.
+TEST_F(LineUpTest, AnyHitsAreNotTheClosest) {
+    const LineUp line_up = make_line_up(context(), nullptr, {.only = {"sw"}});
+    const BenchScene scene = make_scene("soup:2000");
+    const std::vector<Ray> rays = make_rays(context(), scene, 16, 1)[0];
+    const RayBatch closest(rays, Query::closest, true), any(rays, Query::any, true);
+    for (const auto& contestant : line_up) {
+        contestant->build(scene.scene);
+        const std::vector<Hit> near = traced(*contestant, closest), found = traced(*contestant, any);
+        std::size_t farther = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) farther += found[i].t > near[i].t;
+        EXPECT_GT(farther, 0u) << contestant->labels().name;
+    }
+}
+
+TEST_F(LineUpTest, TheJudgeSeesWrongHits) {
+    const BenchScene scene = make_scene("sphere:2000");
+    const std::vector<Ray> rays = make_rays(context(), scene, 16, 1)[0];
+    Hit claimed = miss();
+    claimed.hit = 1;
+    const std::vector<Hit> misses(rays.size(), miss()), claims(rays.size(), claimed);
+    const Judge judge(scene.scene);
+    for (const bool is_ours : {false, true}) {
+        for (const Query query : {Query::closest, Query::any}) {
+            const Soundness soundness = judge.judge(rays, misses, query, is_ours);
+            EXPECT_LT(soundness.sound, 0.9);
+            EXPECT_GT(soundness.faults, rays.size() / 10);
+        }
+        // Either the one or the other is right.
+        EXPECT_NEAR(
+            judge.judge(rays, misses, Query::any, is_ours).sound + judge.judge(rays, claims, Query::any, is_ours).sound,
+            1, 0.02);
+    }
+}
+
+TEST_F(LineUpTest, EmbreeRunsWhereItWasFound) {
+    if (!why_no_embree().empty()) GTEST_SKIP() << why_no_embree();
+    const LineUp line_up = make_line_up(context(), nullptr, {.only = {"embree"}});
+    EXPECT_EQ(names_of(line_up),
+              (std::vector<std::string>{"embree8", "embree8 robust", "embree8 low", "embree8 high", "embree stream"}));
+    EXPECT_TRUE(make_line_up(context(), nullptr, {.has_embree = false}).size() > 0);
+}
+
+}  // namespace
+}  // namespace twinray::bench
