@@ -24,13 +24,14 @@ class Maker {
     explicit Maker(const LineUpOptions& options) : options_(options) {}
 
     void add_software(Context& context, const AccelOptions& accel) {
-        const std::string layout(twinray::name_of(accel.layout));
-        add({.name = text("sw ", layout, ' ', level_name(accel.level)),
+        const std::string layout(twinray::name_of(accel.layout)), quality(twinray::name_of(accel.build_quality));
+        const std::string built = accel.build_quality == BuildQuality::fast ? layout : text(layout, ' ', quality);
+        add({.name = text("sw ", built, ' ', level_name(accel.level)),
              .backend = "sw",
              .path = "compute",
              .order = "",
              .layout = layout,
-             .builder = "fast",
+             .builder = quality,
              .level = level_name(accel.level)},
             accel.level, [&context, accel] { return std::make_unique<SwTlas>(context, accel); });
     }
@@ -86,7 +87,8 @@ const char* level_name(Level level) { return level_names[static_cast<std::size_t
 LineUp make_line_up(Context& context, Context* pipeline, const LineUpOptions& options) {
     Maker maker(options);
     for (const Layout layout : options.layouts)
-        for (const Level level : options.levels) maker.add_software(context, {level, layout});
+        for (const BuildQuality quality : options.build_qualities)
+            for (const Level level : options.levels) maker.add_software(context, {level, layout, quality});
     maker.add_hardware(context);
     if (pipeline) maker.add_hardware(*pipeline, BuildOrder::automatic, options.levels.front());
     LineUp line_up = std::move(maker.line_up);

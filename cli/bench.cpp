@@ -128,6 +128,9 @@ void add_choice_options(CLI::App& command, bench::RunOptions& run) {
     command.add_option("--layouts", run.line_up.layouts, "of SwTlas: compressed4, bvh2; separated by commas")
         ->delimiter(',')
         ->transform(CLI::CheckedTransformer(layouts_by_name()));
+    command.add_option("--build-qualities", run.line_up.build_qualities, "of SwTlas: fast, high; separated by commas")
+        ->delimiter(',')
+        ->transform(CLI::CheckedTransformer(build_qualities_by_name()));
     command
         .add_option("--contestants", run.line_up.only,
                     "those with one of these parts in their names, as sw,embree8; separated by commas; else all")

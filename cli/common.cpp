@@ -31,9 +31,21 @@ std::map<std::string, Layout> layouts_by_name() {
     return layouts;
 }
 
-void add_layout_option(CLI::App& command, Layout& layout) {
-    command.add_option("--layout", layout, "of the software accelerator's trees: compressed4 (the default) or bvh2")
+std::map<std::string, BuildQuality> build_qualities_by_name() {
+    std::map<std::string, BuildQuality> qualities;
+    for (const BuildQuality quality : all_build_qualities) qualities.emplace(name_of(quality), quality);
+    return qualities;
+}
+
+void add_tree_options(CLI::App& command, AccelOptions& options) {
+    command
+        .add_option("--layout", options.layout,
+                    "of the software accelerator's trees: compressed4 (the default) or bvh2")
         ->transform(CLI::CheckedTransformer(layouts_by_name()));
+    command
+        .add_option("--build-quality", options.build_quality,
+                    "of the software accelerator's trees: fast (the default) or high")
+        ->transform(CLI::CheckedTransformer(build_qualities_by_name()));
 }
 
 ContextDesc context_desc(const CommonOptions& options) {

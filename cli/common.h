@@ -26,7 +26,9 @@ struct CommonOptions {
 void add_common_options(CLI::App& command, CommonOptions& options);
 
 std::map<std::string, Layout> layouts_by_name();
-void add_layout_option(CLI::App& command, Layout& layout);
+std::map<std::string, BuildQuality> build_qualities_by_name();
+// --layout and --build-quality
+void add_tree_options(CLI::App& command, AccelOptions& options);
 
 // A context for these options; TWINRAY_DISABLE (a comma-separated list of ray_query, ray_tracing_pipeline) leaves
 // features of the device unused.

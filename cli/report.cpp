@@ -23,7 +23,7 @@ struct ReportOptions {
     std::vector<std::string> only, accels, levels;
     std::vector<std::filesystem::path> scenes;
     std::filesystem::path baseline;
-    Layout layout = AccelOptions{}.layout;
+    AccelOptions trees = {};
 };
 
 constexpr double quick_seconds = 80;  // no case is begun after; the rest is recorded as not run
@@ -121,7 +121,7 @@ int run(const ReportOptions& options) {
     const std::vector<Record> baseline =
         options.baseline.empty() ? std::vector<Record>() : read_json_lines(options.baseline);
     std::filesystem::create_directories(options.folder);
-    suite::Devices devices(context_desc(options.common), options.layout);
+    suite::Devices devices(context_desc(options.common), options.trees);
     Context& context = devices.context(suite::Backend::software);
     Recorder recorder(run_of(context), options.folder / "report.jsonl");
     std::cout << "report, suite " << options.suite << ", on " << context.facts().name << '\n';
@@ -166,7 +166,7 @@ void add_report(CLI::App& app, int& exit_code) {
         ->delimiter(',')
         ->check(CLI::IsMember(names_of(suite::all_backends)));
     command->add_option("--levels", options->levels)->delimiter(',')->check(CLI::IsMember(names_of(suite::all_levels)));
-    add_layout_option(*command, options->layout);
+    add_tree_options(*command, options->trees);
     command->add_option("--baseline", options->baseline, "report.jsonl of an earlier run: says what is worse");
     add_common_options(*command, options->common);
     command->callback([options, &exit_code] { exit_code = run(*options); });

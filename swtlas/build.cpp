@@ -27,10 +27,13 @@ KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv, uint gr
     return {.name = name, .spirv = spirv, .group_size = group_size};
 }
 
-KernelDesc collapse_stage(uint step) {
-    KernelDesc desc = stage("swtlas_collapse", swtlas_collapse_spirv, COLLAPSE_GROUP);
-    desc.constants = {{0, step}};
+KernelDesc specialized(KernelDesc desc, uint value) {
+    desc.constants = {{0, value}};
     return desc;
+}
+
+KernelDesc collapse_stage(uint step) {
+    return specialized(stage("swtlas_collapse", swtlas_collapse_spirv, COLLAPSE_GROUP), step);
 }
 
 }  // namespace
@@ -46,7 +49,7 @@ struct Builder::Batch {
     uint block_count;
 };
 
-Builder::Builder(Context& context)
+Builder::Builder(Context& context, BuildQuality quality)
     : run_(context.facts().kind == DeviceKind::cpu ? BUILD_GROUP : 8),
       sort_(context),
       areas_(context),
@@ -55,7 +58,8 @@ Builder::Builder(Context& context)
       morton_(context, stage("swtlas_morton", swtlas_morton_spirv)),
       node_areas_(context, stage("swtlas_node_areas", swtlas_node_areas_spirv)),
       tree_keys_(context, stage("swtlas_tree_keys", swtlas_tree_keys_spirv)),
-      hierarchy_(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv)),
+      hierarchy_(context, specialized(stage("swtlas_hierarchy", swtlas_hierarchy_spirv),
+                                      quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST)),
       encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv)),
       collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS)),
       collapse_level_(context, collapse_stage(COLLAPSE_LEVEL)),
@@ -120,6 +124,7 @@ void Builder::record_hierarchy(Commands& commands, const Batch& batch, Uints ord
                              batch.codes,
                              order,
                              batch.meeting,
+                             batch.centroids,
                              batch.block_count,
                              leaves_are_sorted ? 1u : 0u,
                              run_,

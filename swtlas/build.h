@@ -15,7 +15,7 @@ namespace twinray {
 // swtlas/reference.h.
 class Builder {
   public:
-    explicit Builder(Context& context);
+    Builder(Context& context, BuildQuality quality);
 
     // trees[i] has leaf_counts[i] triangles; its Bvh must describe an empty tree, and names its node array if it keeps
     // one. `scratch` has plan.scratch.bytes at least.

@@ -31,6 +31,7 @@ class Walk {
     struct Below {
         LeafBox box = empty_box();
         uint leaves = 0;
+        uint height = 0;
     };
 
     Below visit(uint reference, uint depth) {
@@ -62,7 +63,7 @@ class Walk {
         if (leaf >= leaf_boxes_.size()) return violated(text("leaf ", leaf, " of ", leaf_boxes_.size())), Below{};
         if (seen_leaves_[leaf]) violated(text("leaf ", leaf, " is reached twice"));
         seen_leaves_[leaf] = true;
-        return {leaf_boxes_[leaf], 1};
+        return {leaf_boxes_[leaf], 1, 0};
     }
 
     Below visit_node(uint index, uint depth) {
@@ -72,11 +73,13 @@ class Walk {
             violated(text("node ", index, ": box 0 is not the union of what is below"));
         if (!same(b.box.lo, node.lo1) || !same(b.box.hi, node.hi1))
             violated(text("node ", index, ": box 1 is not the union of what is below"));
-        if (a.leaves != node.leaves0 || b.leaves != node.leaves1)
-            violated(text("node ", index, ": ", node.leaves0, " and ", node.leaves1, " leaves, not ", a.leaves, " and ",
-                          b.leaves));
+        for (const auto& [found, told] : {std::pair(a, node.below0), std::pair(b, node.below1)})
+            if (found.leaves != leaves_in(told) || found.height > height_in(told))
+                violated(text("node ", index, ": told of ", leaves_in(told), " leaves in ", height_in(told),
+                              " levels, not ", found.leaves, " in ", found.height));
         area_ += half_area(a.box) + half_area(b.box);
-        return {{min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)}, a.leaves + b.leaves};
+        return {
+            {min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)}, a.leaves + b.leaves, 1 + std::max(a.height, b.height)};
     }
 
     std::span<const BvhNode> nodes_;

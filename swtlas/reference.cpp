@@ -2,6 +2,7 @@
 #include "swtlas/reference.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace twinray::reference {
@@ -11,14 +12,14 @@ BvhTriangle gather(std::span<const vec3> positions, uvec3 corners, uint primitiv
     return {positions[corners.x], positions[corners.y], positions[corners.z], primitive};
 }
 
-LeafBox joined(const LeafBox& a, const LeafBox& b) { return {min(a.lo, b.lo), max(a.hi, b.hi)}; }
-
-// Builds [first, last] and returns its reference and box.
+// Builds [first, last] and returns it as a child.
 struct TopDown {
     std::span<const LeafBox> boxes;
     std::span<const uint> codes;
     std::span<const uint> order;
     bool leaves_are_sorted;
+    BuildQuality quality;
+    float scale;
     std::vector<BvhNode>& nodes;
 
     std::uint64_t split_after(std::size_t position) const {
@@ -33,17 +34,29 @@ struct TopDown {
         return best;
     }
 
-    std::pair<uint, LeafBox> build(std::size_t first, std::size_t last) const {
+    // 24 bits of position come below those of the code.
+    static uint highest_below(std::uint64_t split) {
+        const auto code_bits = static_cast<uint>(std::bit_width(split >> 32));
+        return code_bits ? code_bits + 24 : static_cast<uint>(std::bit_width(split));
+    }
+
+    NodeHalf build(std::size_t first, std::size_t last) const {
         if (first == last) {
             const uint element = order[first];
-            return {LEAF_BIT | (leaves_are_sorted ? static_cast<uint>(first) : element), boxes[element]};
+            return {boxes[element], LEAF_BIT | (leaves_are_sorted ? static_cast<uint>(first) : element),
+                    make_below(1, 0)};
         }
         const std::size_t split = highest_split(first, last);
-        const auto [child0, box0] = build(first, split);
-        const auto [child1, box1] = build(split + 1, last);
-        nodes[split] = {box0.lo, child0, box0.hi, static_cast<uint>(split - first + 1),
-                        box1.lo, child1, box1.hi, static_cast<uint>(last - split)};
-        return {static_cast<uint>(split), joined(box0, box1)};
+        const auto node = static_cast<uint>(split);
+        const NodeHalf left = build(first, split), right = build(split + 1, last);
+        const Words64 words{Ref<BvhNode>::to(nodes.data()).address};
+        put_half(words, node, 0, left);
+        put_half(words, node, 1, right);
+        NodeHalf both = joined_half(left, right, node);
+        if (quality == BuildQuality::high && is_rotated(both))
+            both.below = make_below(leaves_in(both.below),
+                                    rotate(words, node, left, right, highest_below(split_after(split)), scale));
+        return both;
     }
 };
 
@@ -99,7 +112,7 @@ std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, s
             instance.records = geometry.records;
             instance.root = geometry.bvh.root;
             instance.kind = geometry.kind;
-            instance.extent = std::max(largest_entry(geometry.bvh.lo), largest_entry(geometry.bvh.hi));
+            instance.extent = largest_coordinate(geometry.bvh.lo, geometry.bvh.hi);
             box = box_of_instance(record, geometry.bvh.lo, geometry.bvh.hi, to_object);
         }
         instances.push_back(instance);
@@ -136,13 +149,17 @@ std::vector<uint> sort(std::span<const uint> codes) {
 }
 
 Hierarchy hierarchy(std::span<const LeafBox> boxes, std::span<const uint> codes, std::span<const uint> order,
-                    bool leaves_are_sorted) {
+                    bool leaves_are_sorted, BuildQuality quality) {
     Hierarchy tree;
     if (boxes.empty()) return tree;
     tree.nodes.resize(boxes.size() - 1);
-    const auto [root, box] = TopDown{boxes, codes, order, leaves_are_sorted, tree.nodes}.build(0, boxes.size() - 1);
-    tree.root = root;
-    tree.box = box;
+    const CentroidBounds bounds = centroids(boxes);
+    const vec3 lo(from_ordered_bits(bounds.lo.x), from_ordered_bits(bounds.lo.y), from_ordered_bits(bounds.lo.z));
+    const vec3 hi(from_ordered_bits(bounds.hi.x), from_ordered_bits(bounds.hi.y), from_ordered_bits(bounds.hi.z));
+    const TopDown build{boxes, codes, order, leaves_are_sorted, quality, area_scale(lo, hi), tree.nodes};
+    const NodeHalf root = build.build(0, boxes.size() - 1);
+    tree.root = root.child;
+    tree.box = root.box;
     return tree;
 }
 

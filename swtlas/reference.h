@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/accel/trace_desc.h"
 #include "engine/scene/mesh.h"
 #include "swtlas/structures.h"
 
@@ -29,7 +30,7 @@ struct Hierarchy {
 };
 // Top-down: a range is cut at its highest split.
 Hierarchy hierarchy(std::span<const LeafBox> boxes, std::span<const uint> codes, std::span<const uint> order,
-                    bool leaves_are_sorted);
+                    bool leaves_are_sorted, BuildQuality quality = BuildQuality::fast);
 
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
                                           std::span<const uint> order);

@@ -11,7 +11,7 @@ std::size_t Scene::add_geometry(const MeshView& mesh) {
     const std::vector<uint> codes = morton(boxes, centroids(boxes));
     const std::vector<uint> order = sort(codes);
     const bool has_records = layout_ == Layout::compressed4;
-    Hierarchy tree = hierarchy(boxes, codes, order, !has_records);
+    Hierarchy tree = hierarchy(boxes, codes, order, !has_records, quality_);
     std::vector<BvhTriangle> triangles;
     std::vector<CompressedRecord> records;
     if (has_records)
@@ -48,7 +48,7 @@ void Scene::build() {
     const std::vector<InstanceRecord> records = records_in_built_units();
     const std::vector<LeafBox> boxes = leaves_instances(records, instances_);
     const std::vector<uint> codes = morton(boxes, centroids(boxes));
-    top_ = hierarchy(boxes, codes, sort(codes), false);
+    top_ = hierarchy(boxes, codes, sort(codes), false, quality_);
     const auto count = static_cast<uint>(boxes.size());
     if (layout_ == Layout::compressed4) top_records_ = records_of_instances(top_, count);
     header_ = {{top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), top_.root, count},

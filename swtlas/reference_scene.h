@@ -12,7 +12,8 @@ namespace twinray::reference {
 // are those of SwTlas to the last bit, where the device divides and adds as IEEE 754 does.
 class Scene {
   public:
-    explicit Scene(Layout layout = AccelOptions{}.layout) : layout_(layout) {}
+    explicit Scene(Layout layout = AccelOptions{}.layout, BuildQuality quality = AccelOptions{}.build_quality)
+        : layout_(layout), quality_(quality) {}
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
@@ -55,6 +56,7 @@ class Scene {
     void build_refinement(std::span<const InstanceRecord> records);
 
     Layout layout_;
+    BuildQuality quality_;
     std::vector<BuiltGeometry> geometries_;
     std::vector<std::pair<std::size_t, InstanceRecord>> placed_;
     std::vector<SwInstance> instances_;

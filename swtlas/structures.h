@@ -9,10 +9,12 @@
 #include "engine/core/sort_args.h"
 
 namespace twinray {
+using NodeWords = Words64;
 #include "engine/core/bridge_begin.h"
 #include "shaders/shared/build.h"
 #include "shaders/shared/collapse.h"
 #include "shaders/shared/morton.h"
+#include "shaders/shared/rotate.h"
 #include "shaders/shared/traverse.h"
 #include "engine/core/bridge_end.h"
 

@@ -47,7 +47,7 @@ struct SwTlas::SwBuiltScene : BuiltScene {
 };
 
 SwTlas::SwTlas(Context& context, const AccelOptions& options)
-    : AbstractAccel(context, "SwTlas", options), builder_(context) {}
+    : AbstractAccel(context, "SwTlas", options), builder_(context, options.build_quality) {}
 
 Capability SwTlas::capability_on(const DeviceFacts& device, Feature feature) {
     switch (feature) {

@@ -52,7 +52,7 @@ void print_path(std::ostream& out, const char* tree, const std::vector<Box>& pat
         const bool unpadded = enters_unpadded(path[depth], space, t_min, ray.t_max);
         out << "      " << depth + 1 << ": padded " << (padded ? "enters" : "PASSES") << ", unpadded "
             << (unpadded ? "enters" : "PASSES");
-        if (padded) out << ", at t = " << enter;
+        if (padded) out << ", at t = " << enter / space.t_scale;
         out << '\n';
     }
 }
@@ -60,7 +60,7 @@ void print_path(std::ostream& out, const char* tree, const std::vector<Box>& pat
 }  // namespace
 
 Explainer::Explainer(const Scene& scene, const Oracle& oracle, const Ray& ray, Level level)
-    : oracle_(oracle), ray_(ray), twin_(suite::twin_of(scene, Layout::bvh2)) {
+    : oracle_(oracle), ray_(ray), twin_(suite::twin_of(scene, {.layout = Layout::bvh2})) {
     double advance = 0;
     searched_ = twin_->searched_ray(ray, static_cast<uint>(level), advance);
 }
@@ -119,7 +119,8 @@ void Explainer::print_boxes(std::ostream& out, exact::TriangleId triangle) const
     out << "  boxes to triangle " << triangle.primitive << " of instance " << triangle.instance << '\n';
     std::vector<Box> path;
     const Bvh& top = twin_->scene_tree().bvh;
-    const RaySpace world = make_ray_space(searched_.origin, searched_.direction, world_pad(searched_.origin));
+    const RaySpace world = make_ray_space(searched_.origin, searched_.direction,
+                                          world_pad(searched_.origin, largest_coordinate(top.lo, top.hi)));
     find_path(
         top, top.root, [&](uint leaf) { return leaf == triangle.instance; }, path);
     print_path(out, "tree of instances", path, world, searched_);

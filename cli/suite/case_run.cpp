@@ -46,12 +46,25 @@ Record CaseRun::blank() const {
     return record;
 }
 
+namespace {
+
+// How the trees differ from the default ones.
+std::string variant_of(const AccelOptions& trees) {
+    const AccelOptions usual;
+    std::vector<std::string> parts;
+    if (trees.layout != usual.layout) parts.push_back(text("layout ", name_of(trees.layout)));
+    if (trees.build_quality != usual.build_quality)
+        parts.push_back(text("build quality ", name_of(trees.build_quality)));
+    return joined(parts);
+}
+
+}  // namespace
+
 Record CaseRun::record(const Subject& subject) const {
     Record record = blank();
     record.backend = name(subject.backend);
     record.level = name(subject.level);
-    if (is_ours(subject.backend) && devices_.layout() != AccelOptions{}.layout)
-        record.variant = text("layout ", name_of(devices_.layout()));
+    if (is_ours(subject.backend)) record.variant = variant_of(devices_.trees());
     return record;
 }
 

@@ -10,7 +10,7 @@
 
 namespace twinray::suite {
 
-Devices::Devices(ContextDesc desc, Layout layout) : desc_(std::move(desc)), layout_(layout) {
+Devices::Devices(ContextDesc desc, const AccelOptions& trees) : desc_(std::move(desc)), trees_(trees) {
     desc_.log = [this, log = desc_.log, also = desc_.validation](std::string_view message) {
         warnings_.emplace_back(message);
         if (also) log ? log(message) : static_cast<void>(std::cerr << "twinray: " << message << '\n');
@@ -45,7 +45,7 @@ std::string Devices::why_not(const Subject& subject) {
 Level Devices::level_to_make(const Subject& subject) { return std::max(subject.level, Level::watertight); }
 
 std::unique_ptr<AbstractAccel> Devices::make_accel(const Subject& subject, Layout layout) {
-    const AccelOptions options{level_to_make(subject), layout};
+    const AccelOptions options{level_to_make(subject), layout, trees_.build_quality};
     Context& where = context(subject.backend);
     if (is_ours(subject.backend)) return std::make_unique<SwTlas>(where, options);
     return std::make_unique<HwTlas>(where, BuildOrder::automatic, options);

@@ -19,22 +19,23 @@ namespace twinray::suite {
 class Devices {
   public:
     // Warnings go to take_warnings() in place of desc.log, unless desc.validation is set: then to both.
-    explicit Devices(ContextDesc desc, Layout layout = AccelOptions{}.layout);
+    // The software accelerators get the trees of `trees`.
+    explicit Devices(ContextDesc desc, const AccelOptions& trees = {});
     ~Devices();
     Devices(const Devices&) = delete;
     Devices& operator=(const Devices&) = delete;
 
     Context& context(Backend backend);
-    Layout layout() const { return layout_; }  // of the software accelerators
+    const AccelOptions& trees() const { return trees_; }
     // Why it cannot answer here; "" if it can.
     std::string why_not(const Subject& subject);
     // Empty: whatever an earlier case left is erased.
-    AbstractAccel& empty_accel(const Subject& subject) { return empty_accel(subject, layout_); }
+    AbstractAccel& empty_accel(const Subject& subject) { return empty_accel(subject, trees_.layout); }
     AbstractAccel& empty_accel(const Subject& subject, Layout layout);
     // The level of the accelerator that a subject's traces run on: subjects that share it share the accelerator.
     static Level level_to_make(const Subject& subject);
     // One of a case's own.
-    std::unique_ptr<AbstractAccel> make_accel(const Subject& subject) { return make_accel(subject, layout_); }
+    std::unique_ptr<AbstractAccel> make_accel(const Subject& subject) { return make_accel(subject, trees_.layout); }
     std::unique_ptr<AbstractAccel> make_accel(const Subject& subject, Layout layout);
     // Compiled when first needed; not for the pipeline, in which no kernel traces.
     const CrossingCounter& crossing_counter(const Subject& subject);
@@ -46,7 +47,7 @@ class Devices {
   private:
     std::vector<std::string> warnings_;
     ContextDesc desc_;
-    Layout layout_;
+    AccelOptions trees_;
     std::unique_ptr<Context> context_, pipeline_context_;
     std::map<std::tuple<Backend, Level, Layout>, std::unique_ptr<AbstractAccel>> accels_;
     std::map<std::pair<Backend, Level>, std::unique_ptr<CrossingCounter>> counters_;

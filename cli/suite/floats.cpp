@@ -28,7 +28,7 @@ Scene scene_of(const Mesh& mesh, std::vector<Transform> transforms = {Transform{
 Difference compared(CaseRun& run, const Subject& subject, const Scene& scene, std::span<const Ray> rays,
                     const std::optional<Control>& control = {}) {
     const World world = world_of(scene);
-    const std::unique_ptr<reference::Scene> twin = twin_of(scene, run.devices().layout());
+    const std::unique_ptr<reference::Scene> twin = twin_of(scene, run.devices().trees());
     Difference sum;
     for (std::size_t first = 0; first < rays.size(); first += batch_size) {
         const auto batch = rays.subspan(first, std::min(batch_size, rays.size() - first));
@@ -162,7 +162,7 @@ void denormals(CaseRun& run) {
             const std::size_t count = run.amount(2'000, 1'000'000);
             const std::vector<Ray> rays =
                 with_denormals(random_and_aimed(scene, count, count / 4, run.seed()), run.seed());
-            const std::unique_ptr<reference::Scene> twin = twin_of(scene, run.devices().layout());
+            const std::unique_ptr<reference::Scene> twin = twin_of(scene, run.devices().trees());
             const std::vector<Hit> flushed = trace_twin(*twin, rays, subject.level, Denormals::flushed);
             const std::vector<Traced> traced =
                 trace(run.devices(), std::span(&subject, 1), world, {.rays = rays, .reps = 0});

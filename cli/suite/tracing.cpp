@@ -27,7 +27,7 @@ struct Stage {
 Stage make_stage(Devices& devices, const Subject& subject, const World& world, const Tracing& tracing) {
     const std::span<const Ray> rays = tracing.rays;
     const std::optional<Layout> wanted = tracing.control ? tracing.control->layout : std::nullopt;
-    AbstractAccel& accel = devices.empty_accel(subject, wanted.value_or(devices.layout()));
+    AbstractAccel& accel = devices.empty_accel(subject, wanted.value_or(devices.trees().layout));
     world.place(accel);
     accel.sync();
     Context& context = accel.context();

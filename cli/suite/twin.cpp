@@ -22,8 +22,8 @@ double ulps_between(float a, float b) {
 
 }  // namespace
 
-std::unique_ptr<reference::Scene> twin_of(const Scene& scene, Layout layout) {
-    auto twin = std::make_unique<reference::Scene>(layout);
+std::unique_ptr<reference::Scene> twin_of(const Scene& scene, const AccelOptions& trees) {
+    auto twin = std::make_unique<reference::Scene>(trees.layout, trees.build_quality);
     for (const Mesh& mesh : scene.meshes) twin->add_geometry(mesh);
     for (const Instance& instance : scene.instances)
         twin->add_instance(instance.mesh, make_instance_record(instance.transform));

@@ -8,7 +8,7 @@
 namespace twinray::suite {
 
 // The same scene in the order in which push_scene() places it.
-std::unique_ptr<reference::Scene> twin_of(const Scene& scene, Layout layout = AccelOptions{}.layout);
+std::unique_ptr<reference::Scene> twin_of(const Scene& scene, const AccelOptions& trees = {});
 
 enum class Denormals : std::uint8_t { kept, flushed };  // flushed needs FlushDenormals::is_able()
 

@@ -10,4 +10,5 @@
 #define FLOATS(word) floats_of(word)
 #define UINTS(word) uints_of(word)
 #define WORD(low, high) word_of(low, high)
+#define FMA(a, b, c) ((a) * (b) + (c))
 #define UNROLL

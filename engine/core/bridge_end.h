@@ -10,4 +10,5 @@
 #undef FLOATS
 #undef UINTS
 #undef WORD
+#undef FMA
 #undef UNROLL

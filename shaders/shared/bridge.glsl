@@ -23,6 +23,8 @@
 #define FLOATS(word) uintBitsToFloat(unpackUint2x32(word))
 #define UINTS(word) unpackUint2x32(word)
 #define WORD(low, high) packUint2x32(uvec2(low, high))
+// For where either rounding will do.
+#define FMA(a, b, c) fma(a, b, c)
 #define UNROLL [[unroll]]
 
 BUFFER_OF_WORDS(Words64, uint64_t, 8);

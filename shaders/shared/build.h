@@ -93,6 +93,10 @@ struct TreeKeysArgs
     uint reserved;
 };
 
+// Specialisations of the hierarchy kernel.
+const uint HIERARCHY_FAST = 0u;
+const uint HIERARCHY_HIGH = 1u; // with rotations
+
 struct HierarchyArgs
 {
     REF(BuildTree) trees;
@@ -101,6 +105,7 @@ struct HierarchyArgs
     Uints codes;
     Uints order;
     Uints meeting;          // by inner node: the far end of the range that arrived first, NOTHING before
+    REF(CentroidBounds) centroids;
     uint block_count;
     uint leaves_are_sorted; // 1: leaf references count sorted leaves; 0: they are the leaf's own index
     uint run;               // leaves of an invocation, a divisor of BUILD_GROUP

@@ -24,11 +24,11 @@ struct BvhNode
     vec3 lo0;
     uint child0;
     vec3 hi0;
-    uint leaves0; // how many leaves are below child0
+    uint below0; // of child0, see make_below
     vec3 lo1;
     uint child1;
     vec3 hi1;
-    uint leaves1;
+    uint below1;
 };
 BUFFER_OF(BvhNode, 16);
 
@@ -105,6 +105,11 @@ struct SwScene
 };
 BUFFER_OF(SwScene, 8);
 
+// How many leaves are below a child, and of how many nodes, it being the first, no way down from it has more.
+FUNC uint make_below(uint leaves, uint height) { return leaves | height << 25u; }
+FUNC uint leaves_in(uint below) { return below & 0x1ffffffu; }
+FUNC uint height_in(uint below) { return below >> 25u; }
+
 FUNC BvhNode load_node(REF(BvhNode) nodes, uint index)
 {
     // Fetched in 64-bit components: drivers on CPUs pay per component, not per byte.
@@ -115,11 +120,11 @@ FUNC BvhNode load_node(REF(BvhNode) nodes, uint index)
     node.lo0 = vec3(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x);
     node.child0 = UINTS(w1).y;
     node.hi0 = vec3(FLOATS(w2).x, FLOATS(w2).y, FLOATS(w3).x);
-    node.leaves0 = UINTS(w3).y;
+    node.below0 = UINTS(w3).y;
     node.lo1 = vec3(FLOATS(w4).x, FLOATS(w4).y, FLOATS(w5).x);
     node.child1 = UINTS(w5).y;
     node.hi1 = vec3(FLOATS(w6).x, FLOATS(w6).y, FLOATS(w7).x);
-    node.leaves1 = UINTS(w7).y;
+    node.below1 = UINTS(w7).y;
     return node;
 }
 

@@ -60,8 +60,8 @@ FUNC void set_child(INOUT(NodeChildren) children, uint at, uint child, vec3 lo, 
 FUNC void open_child(REF(BvhNode) nodes, uint node, uint i, INOUT(NodeChildren) children)
 {
     BvhNode opened = load_node(nodes, node);
-    set_child(children, i, opened.child0, opened.lo0, opened.hi0, opened.leaves0);
-    set_child(children, children.count, opened.child1, opened.lo1, opened.hi1, opened.leaves1);
+    set_child(children, i, opened.child0, opened.lo0, opened.hi0, leaves_in(opened.below0));
+    set_child(children, children.count, opened.child1, opened.lo1, opened.hi1, leaves_in(opened.below1));
     children.count = children.count + 1u;
 }
 

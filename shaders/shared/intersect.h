@@ -10,6 +10,9 @@
 //  - Boxes: near and far planes use reciprocals padded by a factor 1 -+ 2^-20, which covers the 2.5 ulp that Vulkan
 //    allows a division and the roundings of (plane - origin) * reciprocal (Ize, "Robust BVH Ray Traversal", 2013,
 //    with the constant for Vulkan), and origins shifted by an absolute pad for what an instance transform adds.
+//    Reciprocals have a limit: across the dominant axis a ray counts as moving by 2^-40 of what it moves along it at least,
+//    far less than the pad. So they are finite for directions of any use. Where the distance to what lies in the space is
+//    beyond 2^80 in t, t of boxes is taken times a power of two, so that no product of a box with them overflows.
 //  - Triangles: shear constants of Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", 2013.
 struct RaySpace
 {
@@ -17,8 +20,9 @@ struct RaySpace
     vec3 direction;
     vec3 near_origin;
     vec3 far_origin;
-    vec3 near_inverse;
+    vec3 near_inverse; // times t_scale
     vec3 far_inverse;
+    float t_scale; // of t of boxes
     uint axis; // the dominant axis of the direction
     float shear_x;
     float shear_y;
@@ -42,6 +46,16 @@ FUNC vec3 dominant_last(vec3 v, uint axis)
     return axis == 0u ? vec3(v.y, v.z, v.x) : (axis == 1u ? vec3(v.z, v.x, v.y) : v);
 }
 
+// 1, or the power of two that brings the largest t at which a ray may meet something below 2^80. That is 2^38 pads at most times
+// the reciprocal of the direction's dominant entry.
+FUNC float scale_of_reach(float pad, float along)
+{
+    uint exponent = (floatBitsToUint(pad) >> 23u) + (floatBitsToUint(along) >> 23u);
+    const uint HIGHEST = 80u - 38u + 254u;
+    return uintBitsToFloat((127u - min(max(exponent, HIGHEST) - HIGHEST, 126u)) << 23u);
+}
+
+// pad: see above; 2^-38 of the coordinates of the origin and of all boxes at least.
 FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
 {
 #ifdef TWINRAY_NO_PADDING // a negative control: shows what the padding is for
@@ -52,19 +66,23 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
     const float NEAR_FACTOR = 0.99999904632568359375f; // 1 - 2^-20
     const float FAR_FACTOR = 1.00000095367431640625f;  // 1 + 2^-20
 #endif
-    const vec3 LARGEST_FLOAT = vec3(uintBitsToFloat(0x7f7fffffu));
+    const float LARGEST_FLOAT = uintBitsToFloat(0x7f7fffffu);
+    const float STEEPEST = 1099511627776.0f; // 2^40
     RaySpace space;
     space.origin = origin;
     space.direction = direction;
+    space.axis = dominant_axis(direction);
+    vec3 d = dominant_last(direction, space.axis);
     vec3 inverse = vec3(reciprocal(direction.x), reciprocal(direction.y), reciprocal(direction.z));
-    // The reciprocal of a denormal is infinite, and would put an entry that is near at infinity.
-    space.near_inverse = clamp(inverse, -LARGEST_FLOAT, LARGEST_FLOAT) * NEAR_FACTOR;
+    float along = abs(reciprocal(d.z));
+    vec3 limit = vec3(min(STEEPEST * along, LARGEST_FLOAT));
+    space.t_scale = scale_of_reach(pad, along);
+    inverse = clamp(inverse, -limit, limit) * space.t_scale;
+    space.near_inverse = inverse * NEAR_FACTOR;
     space.far_inverse = inverse * FAR_FACTOR;
     vec3 shift = vec3(inverse.x < 0.0f ? -pad : pad, inverse.y < 0.0f ? -pad : pad, inverse.z < 0.0f ? -pad : pad);
     space.near_origin = origin + shift;
     space.far_origin = origin - shift;
-    space.axis = dominant_axis(direction);
-    vec3 d = dominant_last(direction, space.axis);
     space.shear_x = d.x / d.z;
     space.shear_y = d.y / d.z;
     space.shear_z = 1.0f / d.z;
@@ -75,9 +93,22 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
 // sheared corners say so, and its box must be, too, however near to the ray's origin that is.
 FUNC float corner_pad(vec3 origin, float extent) { return (largest_entry(origin) + extent) * 9.5367431640625e-07f; } // 2^-20
 
-// Whether the ray meets the box within [t_min, t_max], and the distance at which it enters.
-// Compare-and-select instead of min/max: a NaN (0 * infinity: the origin lies on a plane that the ray is parallel to)
-// must leave the interval as it was, which GLSL does not promise of min/max.
+// The interval in which a ray is inside of all three slabs, begun with its own. Compare-and-select instead of min/max: a NaN
+// (products out of range) must leave the interval as it was, which GLSL does not promise of min/max.
+FUNC float latest_of(float enter, float near_x, float near_y, float near_z)
+{
+    enter = near_x > enter ? near_x : enter;
+    enter = near_y > enter ? near_y : enter;
+    return near_z > enter ? near_z : enter;
+}
+FUNC float earliest_of(float leave, float far_x, float far_y, float far_z)
+{
+    leave = far_x < leave ? far_x : leave;
+    leave = far_y < leave ? far_y : leave;
+    return far_z < leave ? far_z : leave;
+}
+
+// Whether the ray meets the box within [t_min, t_max], and where it enters, in t * space.t_scale.
 FUNC bool enter_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, INOUT(float) enter)
 {
     bool flip_x = space.near_inverse.x < 0.0f;
@@ -89,15 +120,8 @@ FUNC bool enter_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, 
     PRECISE float far_x = ((flip_x ? lo.x : hi.x) - space.far_origin.x) * space.far_inverse.x;
     PRECISE float far_y = ((flip_y ? lo.y : hi.y) - space.far_origin.y) * space.far_inverse.y;
     PRECISE float far_z = ((flip_z ? lo.z : hi.z) - space.far_origin.z) * space.far_inverse.z;
-    enter = t_min;
-    enter = near_x > enter ? near_x : enter;
-    enter = near_y > enter ? near_y : enter;
-    enter = near_z > enter ? near_z : enter;
-    float leave = t_max;
-    leave = far_x < leave ? far_x : leave;
-    leave = far_y < leave ? far_y : leave;
-    leave = far_z < leave ? far_z : leave;
-    return enter <= leave;
+    enter = latest_of(t_min * space.t_scale, near_x, near_y, near_z);
+    return enter <= earliest_of(t_max * space.t_scale, far_x, far_y, far_z);
 }
 
 // A corner seen along the ray: x, y sheared so that the ray is the point (0, 0), z along the dominant axis. It depends

@@ -50,8 +50,9 @@ struct NodeAreasArgs
 FUNC float half_area(vec3 lo, vec3 hi, float unit)
 {
     if (!(lo.x <= hi.x) || !(unit > 1e-37f)) return 0.0f;
-    vec3 size = (hi - lo) / unit;
-    return size.x * size.y + size.y * size.z + size.z * size.x;
+    PRECISE vec3 size = (hi - lo) / unit;
+    PRECISE float area = size.x * size.y + size.y * size.z + size.z * size.x;
+    return area;
 }
 
 FUNC float area_unit(vec3 lo, vec3 hi)

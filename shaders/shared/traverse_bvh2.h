@@ -19,7 +19,7 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
     REF(BvhTriangle) triangles = REF(BvhTriangle)(0ul);
     InInstance inside;
     uint cursor = scene.bvh.root;
-    if (has_top) space = world_space(ray);
+    if (has_top) space = world_space(scene, ray);
     else if (cursor != END_OF_STACK)
     {
         SwInstance instance = AT(scene.instances, 0);
@@ -82,7 +82,7 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
             cursor = stack[height];
             if (has_top && cursor == END_OF_INSTANCE)
             {
-                space = world_space(ray);
+                space = world_space(scene, ray);
                 nodes = scene.bvh.nodes;
                 in_instance = false;
                 height = height - 1u;

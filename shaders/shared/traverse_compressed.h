@@ -27,10 +27,11 @@ FUNC uint rest_of(uint group)
     return is_last ? BOTTOM : (group & 0xe1ffffffu) | (group >> 2u & 0x1e000000u);
 }
 
-// The grid of a node as a ray sees it: distances in float32 along each axis are those of planes * cell + base.
+// The grid of a node as a ray sees it: along each axis the distance of a plane is plane * scale + base.
 struct SeenGrid
 {
-    vec3 cell;
+    vec3 near_scale;
+    vec3 far_scale;
     vec3 near_base;
     vec3 far_base;
     uvec3 near_planes; // of the four children, 8 bits each
@@ -41,9 +42,11 @@ FUNC SeenGrid grid_of(CompressedRecord node, RaySpace space)
 {
     SeenGrid grid;
     vec3 origin = grid_origin(node);
-    grid.cell = grid_cell(node);
-    grid.near_base = origin - space.near_origin;
-    grid.far_base = origin - space.far_origin;
+    vec3 cell = grid_cell(node);
+    grid.near_scale = cell * space.near_inverse;
+    grid.far_scale = cell * space.far_inverse;
+    grid.near_base = (origin - space.near_origin) * space.near_inverse;
+    grid.far_base = (origin - space.far_origin) * space.far_inverse;
     bool flip_x = space.near_inverse.x < 0.0f;
     bool flip_y = space.near_inverse.y < 0.0f;
     bool flip_z = space.near_inverse.z < 0.0f;
@@ -52,30 +55,23 @@ FUNC SeenGrid grid_of(CompressedRecord node, RaySpace space)
     return grid;
 }
 
-FUNC float distance_along(uint planes, uint shift, float cell, float base, float inverse)
+FUNC float distance_along(uint planes, uint shift, float scale, float base)
 {
-    return (float(planes >> shift & 0xffu) * cell + base) * inverse;
+    return FMA(float(planes >> shift & 0xffu), scale, base);
 }
 
 // Where the ray enters child `shift / 8` of the node, as the bits of t without the last two, or NO_ENTRY: as enter_box of
 // intersect.h.
-FUNC uint enter_child(SeenGrid grid, uint shift, RaySpace space, float t_min, float t_max)
+FUNC uint enter_child(SeenGrid grid, uint shift, float t_min, float t_max)
 {
-    float near_x = distance_along(grid.near_planes.x, shift, grid.cell.x, grid.near_base.x, space.near_inverse.x);
-    float near_y = distance_along(grid.near_planes.y, shift, grid.cell.y, grid.near_base.y, space.near_inverse.y);
-    float near_z = distance_along(grid.near_planes.z, shift, grid.cell.z, grid.near_base.z, space.near_inverse.z);
-    float far_x = distance_along(grid.far_planes.x, shift, grid.cell.x, grid.far_base.x, space.far_inverse.x);
-    float far_y = distance_along(grid.far_planes.y, shift, grid.cell.y, grid.far_base.y, space.far_inverse.y);
-    float far_z = distance_along(grid.far_planes.z, shift, grid.cell.z, grid.far_base.z, space.far_inverse.z);
-    float enter = t_min;
-    enter = near_x > enter ? near_x : enter;
-    enter = near_y > enter ? near_y : enter;
-    enter = near_z > enter ? near_z : enter;
-    float leave = t_max;
-    leave = far_x < leave ? far_x : leave;
-    leave = far_y < leave ? far_y : leave;
-    leave = far_z < leave ? far_z : leave;
-    return enter <= leave ? floatBitsToUint(enter) & ~3u : NO_ENTRY;
+    float near_x = distance_along(grid.near_planes.x, shift, grid.near_scale.x, grid.near_base.x);
+    float near_y = distance_along(grid.near_planes.y, shift, grid.near_scale.y, grid.near_base.y);
+    float near_z = distance_along(grid.near_planes.z, shift, grid.near_scale.z, grid.near_base.z);
+    float far_x = distance_along(grid.far_planes.x, shift, grid.far_scale.x, grid.far_base.x);
+    float far_y = distance_along(grid.far_planes.y, shift, grid.far_scale.y, grid.far_base.y);
+    float far_z = distance_along(grid.far_planes.z, shift, grid.far_scale.z, grid.far_base.z);
+    float enter = latest_of(t_min, near_x, near_y, near_z);
+    return enter <= earliest_of(t_max, far_x, far_y, far_z) ? floatBitsToUint(enter) & ~3u : NO_ENTRY;
 }
 
 // Less comes first.
@@ -86,17 +82,18 @@ FUNC void sort_pair(INOUT(uint) a, INOUT(uint) b)
     a = less;
 }
 
-// How many children the ray enters, and the first of them; the others become `group`.
+// How many children the ray enters between t_min and t_max, in t * space.t_scale, and the first of them; the others become
+// `group`.
 FUNC uint entered_children(CompressedRecord node, RaySpace space, float t_min, float t_max, INOUT(uint) nearest,
                            INOUT(uint) group)
 {
     SeenGrid grid = grid_of(node, space);
     uint children = children_in(node);
     // The number of the child in the last bits of where it is entered.
-    uint key0 = enter_child(grid, 0u, space, t_min, t_max);
-    uint key1 = enter_child(grid, 8u, space, t_min, t_max) | 1u;
-    uint key2 = children > 2u ? enter_child(grid, 16u, space, t_min, t_max) | 2u : NO_ENTRY;
-    uint key3 = children > 3u ? enter_child(grid, 24u, space, t_min, t_max) | 3u : NO_ENTRY;
+    uint key0 = enter_child(grid, 0u, t_min, t_max);
+    uint key1 = enter_child(grid, 8u, t_min, t_max) | 1u;
+    uint key2 = children > 2u ? enter_child(grid, 16u, t_min, t_max) | 2u : NO_ENTRY;
+    uint key3 = children > 3u ? enter_child(grid, 24u, t_min, t_max) | 3u : NO_ENTRY;
     uint count = (key0 < NO_ENTRY ? 1u : 0u) + (key1 < NO_ENTRY ? 1u : 0u) + (key2 < NO_ENTRY ? 1u : 0u) + (key3 < NO_ENTRY ? 1u : 0u);
     sort_pair(key0, key1);
     sort_pair(key2, key3);
@@ -117,7 +114,7 @@ FUNC Hit traverse_compressed(SwScene scene, Ray ray, TraceOptions options)
     RaySpace space;
     REF(CompressedRecord) records = scene.records;
     InInstance inside;
-    if (has_top) space = world_space(ray);
+    if (has_top) space = world_space(scene, ray);
     else
     {
         SwInstance instance = AT(scene.instances, 0);
@@ -140,7 +137,7 @@ FUNC Hit traverse_compressed(SwScene scene, Ray ray, TraceOptions options)
         if (!is_leaf(record))
         {
             uint others = BOTTOM;
-            uint count = entered_children(record, space, search.t_min, search.t_best, cursor, others);
+            uint count = entered_children(record, space, search.t_min * space.t_scale, search.t_best * space.t_scale, cursor, others);
             if (count > 1u)
             {
                 stack[height] = group;
@@ -179,7 +176,7 @@ FUNC Hit traverse_compressed(SwScene scene, Ray ray, TraceOptions options)
             group = stack[height];
             if (has_top && group == LEAVE_INSTANCE)
             {
-                space = world_space(ray);
+                space = world_space(scene, ray);
                 records = scene.records;
                 in_instance = false;
                 height = height - 1u;

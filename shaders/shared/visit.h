@@ -10,8 +10,12 @@
 #include "shaders/shared/certified.h"
 #endif
 
-// Rounding of the world-to-object transform moves a ray by a few roundings of its origin's size.
-FUNC float world_pad(vec3 origin) { return largest_entry(origin) * 9.5367431640625e-07f; } // 2^-20
+// Rounding of the world-to-object transform moves a ray by a few roundings of its origin's size, and the limit of reciprocals
+// by 2^-40 of the way. `extent`: the largest coordinate of the scene.
+FUNC float world_pad(vec3 origin, float extent)
+{
+    return largest_entry(origin) * 9.5367431640625e-07f + extent * 3.637978807091713e-12f; // 2^-20, 2^-38
+}
 
 // Which side an instance's triangles hide from a ray: CULL_FRONT, CULL_BACK or 0.
 FUNC uint culled_side(uint ray_flags, uint instance_flags)
@@ -165,5 +169,8 @@ FUNC bool is_visible(SwInstance instance, uint mask)
     return (instance.custom_index_mask >> 24u & mask) != 0u && instance.root != NOTHING;
 }
 
-FUNC RaySpace world_space(Ray ray) { return make_ray_space(ray.origin, ray.direction, world_pad(ray.origin)); }
+FUNC RaySpace world_space(SwScene scene, Ray ray)
+{
+    return make_ray_space(ray.origin, ray.direction, world_pad(ray.origin, largest_coordinate(scene.bvh.lo, scene.bvh.hi)));
+}
 #endif

@@ -17,11 +17,14 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
+#include "shaders/shared/morton.h"
 layout(local_size_x = BUILD_GROUP) in;
+layout(constant_id = 0) const uint QUALITY = HIERARCHY_FAST;
 layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
 
 // The nodes as seen by all groups, not through caches of one; eight words each.
-layout(buffer_reference, scalar, buffer_reference_align = 16) coherent buffer SharedNodes { uint64_t words[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) coherent buffer NodeWords { uint64_t items[]; };
+#include "shaders/shared/rotate.h"
 
 const uint64_t TREE_END = ~0ul; // the split beside the first and the last leaf
 
@@ -29,8 +32,7 @@ struct Range
 {
     uint first;
     uint last;
-    LeafBox box;
-    uint self; // reference to it, as a child
+    NodeHalf top; // of its tree
 };
 
 // Larger = separates higher up. Codes decide; positions only between equal codes.
@@ -39,71 +41,53 @@ uint64_t split_of(BuildTree tree, uint position, uint code, uint next_code)
     uint place = position - tree.first;
     return uint64_t(code ^ next_code) << 32 | uint64_t(place ^ (place + 1u));
 }
+// A tree below a split has one node at most on any way down for each lower bit: of the code and of 24 of position.
+uint highest_below(uint64_t split)
+{
+    uint of_code = UINTS(split).y;
+    return of_code != 0u ? uint(findMSB(of_code)) + 25u : uint(findMSB(UINTS(split).x)) + 1u;
+}
 uint64_t split_after(BuildTree tree, uint position)
 {
     return split_of(tree, position, AT(args.codes, AT(args.order, position)), AT(args.codes, AT(args.order, position + 1u)));
 }
 
-// Half 0 of a node is its left one, half 1 its right one.
-void put_half(SharedNodes nodes, uint node, uint side, Range range)
+// The node at a split has both its halves: `range`, which may be the left one, and `other`.
+void join(NodeWords nodes, inout Range range, bool is_left, NodeHalf other, uint node, uint64_t split, float scale)
 {
-    uint at = node * 8u + side * 4u;
-    uvec3 lo = floatBitsToUint(range.box.lo);
-    uvec3 hi = floatBitsToUint(range.box.hi);
-    nodes.words[at] = WORD(lo.x, lo.y);
-    nodes.words[at + 1u] = WORD(lo.z, range.self);
-    nodes.words[at + 2u] = WORD(hi.x, hi.y);
-    nodes.words[at + 3u] = WORD(hi.z, range.last - range.first + 1u);
-}
-
-struct Half
-{
-    LeafBox box;
-    uint self;
-    uint leaves;
-};
-Half get_half(SharedNodes nodes, uint node, uint side)
-{
-    uint at = node * 8u + side * 4u;
-    uint64_t w0 = nodes.words[at], w1 = nodes.words[at + 1u], w2 = nodes.words[at + 2u], w3 = nodes.words[at + 3u];
-    Half found;
-    found.box.lo = vec3(FLOATS(w0), FLOATS(w1).x);
-    found.box.hi = vec3(FLOATS(w2), FLOATS(w3).x);
-    found.self = UINTS(w1).y;
-    found.leaves = UINTS(w3).y;
-    return found;
-}
-
-void join(inout Range range, Half other, uint node)
-{
-    range.box.lo = min(range.box.lo, other.box.lo);
-    range.box.hi = max(range.box.hi, other.box.hi);
-    range.self = node;
+    NodeHalf own = range.top;
+    range.top = joined_half(own, other, node);
+    if (QUALITY == HIERARCHY_HIGH && is_rotated(range.top))
+    {
+        uint height = rotate(nodes, node, is_left ? own : other, is_left ? other : own, highest_below(split), scale);
+        range.top.below = make_below(leaves_in(range.top.below), height);
+    }
 }
 
 void finish(BuildTree tree, Range root)
 {
-    AT(tree.bvh, 0).root = root.self;
+    AT(tree.bvh, 0).root = root.top.child;
     AT(tree.bvh, 0).leaf_count = tree.count;
-    AT(tree.bvh, 0).lo = root.box.lo;
-    AT(tree.bvh, 0).hi = root.box.hi;
+    AT(tree.bvh, 0).lo = root.top.box.lo;
+    AT(tree.bvh, 0).hi = root.top.box.hi;
 }
 
-void climb(BuildTree tree, SharedNodes nodes, Range range)
+void climb(BuildTree tree, NodeWords nodes, float scale, Range range)
 {
     uint tree_last = tree.first + tree.count - 1u;
     while (range.first != tree.first || range.last != tree_last)
     {
         uint64_t left = range.first == tree.first ? TREE_END : split_after(tree, range.first - 1u);
-        bool joins_right = range.last != tree_last && split_after(tree, range.last) < left;
+        uint64_t right = range.last == tree_last ? TREE_END : split_after(tree, range.last);
+        bool joins_right = right < left;
         uint split = joins_right ? range.last : range.first - 1u;
         uint node = split - tree.first;
-        put_half(nodes, node, joins_right ? 0u : 1u, range);
+        put_half(nodes, node, joins_right ? 0u : 1u, range.top);
         memoryBarrierBuffer();
         uint other = atomicExchange(AT(args.meeting, split), joins_right ? range.first : range.last);
         if (other == NOTHING) return;
         memoryBarrierBuffer();
-        join(range, get_half(nodes, node, joins_right ? 1u : 0u), node);
+        join(nodes, range, joins_right, get_half(nodes, node, joins_right ? 1u : 0u), node, min(left, right), scale);
         if (joins_right) range.last = other;
         else range.first = other;
     }
@@ -111,9 +95,9 @@ void climb(BuildTree tree, SharedNodes nodes, Range range)
 }
 
 // The leaves begin .. end - 1.
-void build_run(BuildTree tree, uint begin, uint end)
+void build_run(BuildTree tree, float scale, uint begin, uint end)
 {
-    SharedNodes nodes = SharedNodes(uint64_t(tree.nodes));
+    NodeWords nodes = NodeWords(uint64_t(tree.nodes));
     uint tree_last = tree.first + tree.count - 1u;
     uint base = begin; // ranges before it have left the run
     uint64_t left = begin == tree.first ? TREE_END : split_after(tree, begin - 1u);
@@ -124,8 +108,9 @@ void build_run(BuildTree tree, uint begin, uint end)
     {
         range.first = i;
         range.last = i;
-        range.box = AT(args.boxes, element);
-        range.self = LEAF_BIT | ((args.leaves_are_sorted != 0u ? i : element) - tree.first);
+        range.top.box = AT(args.boxes, element);
+        range.top.child = LEAF_BIT | ((args.leaves_are_sorted != 0u ? i : element) - tree.first);
+        range.top.below = make_below(1u, 0u);
         uint64_t right = TREE_END;
         if (i != tree_last)
         {
@@ -137,21 +122,22 @@ void build_run(BuildTree tree, uint begin, uint end)
         while (range.first != base && left < right)
         {
             uint node = range.first - 1u - tree.first;
-            Half waiting = get_half(nodes, node, 0u);
-            left = nodes.words[node * 8u + 4u];
-            put_half(nodes, node, 1u, range);
-            join(range, waiting, node);
-            range.first = range.first - waiting.leaves;
+            NodeHalf waiting = get_half(nodes, node, 0u);
+            uint64_t split = left;
+            left = AT(nodes, node * 8u + 4u);
+            put_half(nodes, node, 1u, range.top);
+            join(nodes, range, false, waiting, node, split, scale);
+            range.first = range.first - leaves_in(waiting.below);
         }
         if (left <= right)
         {
-            climb(tree, nodes, range);
+            climb(tree, nodes, scale, range);
             base = i + 1u;
         }
         else if (i + 1u != end)
         {
-            put_half(nodes, i - tree.first, 0u, range);
-            nodes.words[(i - tree.first) * 8u + 4u] = left; // in the half that is still free
+            put_half(nodes, i - tree.first, 0u, range.top);
+            AT(nodes, (i - tree.first) * 8u + 4u) = left; // in the half that is still free
         }
         left = right;
     }
@@ -160,13 +146,11 @@ void build_run(BuildTree tree, uint begin, uint end)
     {
         if (first != end)
         {
-            Half waiting = get_half(nodes, first - 1u - tree.first, 0u);
-            range.first = first - waiting.leaves;
+            range.top = get_half(nodes, first - 1u - tree.first, 0u);
+            range.first = first - leaves_in(range.top.below);
             range.last = first - 1u;
-            range.box = waiting.box;
-            range.self = waiting.self;
         }
-        climb(tree, nodes, range);
+        climb(tree, nodes, scale, range);
     }
 }
 
@@ -178,5 +162,9 @@ void main()
     BuildBlock block = AT(args.blocks, index / runs);
     uint begin = index % runs * args.run;
     if (begin >= block.count) return;
-    build_run(AT(args.trees, block.tree), block.first + begin, block.first + min(begin + args.run, block.count));
+    CentroidBounds bounds = AT(args.centroids, block.tree);
+    vec3 lo = vec3(from_ordered_bits(bounds.lo.x), from_ordered_bits(bounds.lo.y), from_ordered_bits(bounds.lo.z));
+    vec3 hi = vec3(from_ordered_bits(bounds.hi.x), from_ordered_bits(bounds.hi.y), from_ordered_bits(bounds.hi.z));
+    build_run(AT(args.trees, block.tree), area_scale(lo, hi), block.first + begin,
+              block.first + min(begin + args.run, block.count));
 }

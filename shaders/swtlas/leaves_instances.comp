@@ -32,7 +32,7 @@ LeafBox place_instance(uint index)
         instance.records = geometry.records;
         instance.root = geometry.bvh.root;
         instance.kind = geometry.kind;
-        instance.extent = max(largest_entry(geometry.bvh.lo), largest_entry(geometry.bvh.hi));
+        instance.extent = largest_coordinate(geometry.bvh.lo, geometry.bvh.hi);
         box = box_of_instance(record, geometry.bvh.lo, geometry.bvh.hi, to_object);
     }
     AT(args.instances, index) = instance;

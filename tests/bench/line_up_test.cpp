@@ -32,6 +32,11 @@ TEST_F(LineUpTest, TakesThoseThatAreNamed) {
         context(), nullptr,
         {.levels = {Level::fast, Level::watertight}, .layouts = {Layout::bvh2}, .only = {"sw"}, .has_embree = true});
     EXPECT_EQ(names_of(software), (std::vector<std::string>{"sw bvh2 fast", "sw bvh2 watertight"}));
+    const LineUp built = make_line_up(
+        context(), nullptr,
+        {.layouts = {Layout::bvh2}, .build_qualities = {BuildQuality::high, BuildQuality::fast}, .only = {"sw"}});
+    EXPECT_EQ(names_of(built), (std::vector<std::string>{"sw bvh2 high watertight", "sw bvh2 watertight"}));
+    EXPECT_EQ(built[0]->labels().builder, "high");
     EXPECT_EQ(find(Baseline::software, software), 0u);
     EXPECT_FALSE(find(Baseline::embree8, software).has_value());
     test::expect_contains(test::error_of([&] { make_line_up(context(), nullptr, {.only = {"nobody"}}); }), "'nobody'");

@@ -144,11 +144,14 @@ TEST(ActiveTriangle, IsDecidedExactlyForCornersOnALine) {
 TEST(EnterBox, ParallelRaysOnAFaceAreKept) {
     for (const float zero : {0.0f, -0.0f}) {
         float enter = 0;
-        const RaySpace lower = make_ray_space(vec3(0, 0.5f, -1), vec3(zero, zero, 1), 0);
+        const auto seen_from = [&](vec3 origin) {
+            return make_ray_space(origin, vec3(zero, zero, 1), corner_pad(origin, 1));
+        };
+        const RaySpace lower = seen_from(vec3(0, 0.5f, -1));
         EXPECT_TRUE(enter_box(vec3(0), vec3(1), lower, 0, INFINITY, enter));
-        const RaySpace upper = make_ray_space(vec3(1, 0.5f, -1), vec3(zero, zero, 1), 0);
+        const RaySpace upper = seen_from(vec3(1, 0.5f, -1));
         EXPECT_TRUE(enter_box(vec3(0), vec3(1), upper, 0, INFINITY, enter));
-        const RaySpace outside = make_ray_space(vec3(1.5f, 0.5f, -1), vec3(zero, zero, 1), 0);
+        const RaySpace outside = seen_from(vec3(1.5f, 0.5f, -1));
         EXPECT_FALSE(enter_box(vec3(0), vec3(1), outside, 0, INFINITY, enter));
     }
 }

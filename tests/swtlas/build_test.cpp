@@ -15,12 +15,19 @@
 namespace twinray {
 namespace {
 
-class SwBuild : public test::VulkanTest, public testing::WithParamInterface<Layout> {
+using How = std::tuple<Layout, BuildQuality>;
+
+class SwBuild : public test::VulkanTest, public testing::WithParamInterface<How> {
   protected:
-    AccelOptions options() const { return {.layout = GetParam()}; }
+    BuildQuality quality() const { return std::get<BuildQuality>(GetParam()); }
+    AccelOptions options() const { return {.layout = std::get<Layout>(GetParam()), .build_quality = quality()}; }
 };
-INSTANTIATE_TEST_SUITE_P(Every, SwBuild, testing::ValuesIn(all_layouts),
-                         [](const auto& layout) { return std::string(name_of(layout.param)); });
+INSTANTIATE_TEST_SUITE_P(Every, SwBuild,
+                         testing::Combine(testing::ValuesIn(all_layouts), testing::ValuesIn(all_build_qualities)),
+                         [](const auto& how) {
+                             return text(name_of(std::get<Layout>(how.param)), '_',
+                                         name_of(std::get<BuildQuality>(how.param)));
+                         });
 
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
@@ -65,11 +72,11 @@ double sah_of(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes) {
                              : check_tree(tree.bvh, tree.nodes, boxes).sah;
 }
 
-void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh) {
+void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh, BuildQuality quality) {
     const std::vector<LeafBox> boxes = reference::leaves_triangles(built(mesh), mesh.triangles);
     const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
-    const reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, !has_records(tree));
+    const reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, !has_records(tree), quality);
     if (has_records(tree)) {
         EXPECT_TRUE(same_bytes(tree.records, reference::records_of_triangles(twin, built(mesh), mesh.triangles)))
             << mesh.name;
@@ -102,7 +109,7 @@ TEST_P(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsTwin) {
     for (std::size_t n = 0; n <= 300; ++n) {
         const SwTlas::Tree tree = accel.download_geometry(handles[n]);
         expect_sound(tree, meshes[n]);
-        expect_twin(tree, meshes[n]);
+        expect_twin(tree, meshes[n], quality());
     }
 }
 
@@ -112,7 +119,8 @@ TEST_P(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
     std::vector<AccelHandle> handles;
     for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
     accel.sync();
-    for (std::size_t i = 0; i < handles.size(); ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i]);
+    for (std::size_t i = 0; i < handles.size(); ++i)
+        expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
 }
 
 TEST_P(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
@@ -124,10 +132,12 @@ TEST_P(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
         std::vector<AccelHandle> handles;
         for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
         accel.sync();
-        for (std::size_t i = 0; i < meshes.size(); ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i]);
+        for (std::size_t i = 0; i < meshes.size(); ++i)
+            expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
         for (std::size_t i = 0; i < meshes.size(); ++i) accel.update_vertices(handles[i], meshes[i].positions);
         accel.sync();
-        for (std::size_t i = 0; i < meshes.size(); ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i]);
+        for (std::size_t i = 0; i < meshes.size(); ++i)
+            expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
     }
 }
 
@@ -139,7 +149,7 @@ TEST_P(SwBuild, LargeMeshesAreSound) {
         accel.sync();
         const SwTlas::Tree tree = accel.download_geometry(handle);
         expect_sound(tree, mesh);
-        if (n == 100'000) expect_twin(tree, mesh);
+        if (n == 100'000) expect_twin(tree, mesh, quality());
     }
 }
 
@@ -150,7 +160,7 @@ TEST_P(SwBuild, EqualCentroidsAreSplitByPosition) {
     accel.sync();
     const SwTlas::Tree tree = accel.download_geometry(handle);
     expect_sound(tree, mesh);
-    expect_twin(tree, mesh);
+    expect_twin(tree, mesh, quality());
     const std::vector<LeafBox> boxes = leaf_boxes(tree, mesh);
     EXPECT_LE(has_records(tree) ? check_compressed(tree.bvh, tree.records, boxes).depth
                                 : check_tree(tree.bvh, tree.nodes, boxes).depth,
@@ -168,7 +178,7 @@ TEST_P(SwBuild, NonFiniteTrianglesAreInactiveAndKeepTheirIndex) {
     accel.sync();
     const SwTlas::Tree tree = accel.download_geometry(handle);
     expect_sound(tree, mesh);
-    expect_twin(tree, mesh);
+    expect_twin(tree, mesh, quality());
     EXPECT_TRUE(std::isfinite(tree.bvh.lo.x) && std::isfinite(tree.bvh.hi.x));
 }
 
@@ -232,7 +242,7 @@ TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
     const std::vector<LeafBox> boxes = instance_boxes(mesh, transforms);
     expect_sound(tree, boxes, "instances");
     const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
-    const reference::Hierarchy twin = reference::hierarchy(boxes, codes, reference::sort(codes), false);
+    const reference::Hierarchy twin = reference::hierarchy(boxes, codes, reference::sort(codes), false, quality());
     if (has_records(tree))
         EXPECT_TRUE(same_bytes(tree.records, reference::records_of_instances(twin, 777)));
     else
@@ -340,6 +350,44 @@ TEST_P(SwBuild, TheCostOnTheDeviceIsThatOfTheChecker) {
             EXPECT_NEAR(*accel.sah(handle), cost, 1e-5 * cost) << n;
             EXPECT_EQ(accel.sah_if_ready(handle), accel.sah(handle));
         }
+    }
+}
+
+// Triangles of many sizes and shapes, as architecture has: long walls, panels, small parts.
+Mesh mixed_triangles(std::size_t count) {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    Mesh mesh;
+    for (uint i = 0; i < count; ++i) {
+        const float size = std::ldexp(1.0f, -static_cast<int>(random() % 10));
+        const vec3 place(unit(random), unit(random), unit(random));
+        for (uint corner = 0; corner < 3; ++corner) {
+            vec3 offset(unit(random), unit(random), unit(random));
+            offset[static_cast<int>(i % 3)] = 0;
+            mesh.positions.push_back(place + size * offset);
+        }
+        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return mesh;
+}
+
+class SwQuality : public test::VulkanTest, public testing::WithParamInterface<Layout> {};
+INSTANTIATE_TEST_SUITE_P(Every, SwQuality, testing::ValuesIn(all_layouts),
+                         [](const auto& layout) { return std::string(name_of(layout.param)); });
+
+TEST_P(SwQuality, HighCostsRaysLess) {
+    for (const Mesh& mesh : {mixed_triangles(20'000), make_icosphere(6)}) {
+        double sah[2];
+        for (const BuildQuality quality : all_build_qualities) {
+            SwTlas accel(context(), {.layout = GetParam(), .build_quality = quality});
+            const AccelHandle handle = accel.push(mesh);
+            accel.sync();
+            const SwTlas::Tree tree = accel.download_geometry(handle);
+            sah[static_cast<std::size_t>(quality)] = sah_of(tree, leaf_boxes(tree, mesh));
+        }
+        std::printf("surface-area cost of %zu triangles: fast %.2f, high %.2f\n", mesh.triangles.size(), sah[0],
+                    sah[1]);
+        EXPECT_LT(sah[1], 0.97 * sah[0]);
     }
 }
 

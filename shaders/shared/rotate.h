@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+// Tree rotations (Kensler, "Tree Rotations for Improving Bounding Volume Hierarchies", 2008): where a child of a node and a
+// grandchild on its other side, or two grandchildren, change places, boxes may become smaller. A node is rotated as soon as it
+// has both children, so that one pass from the leaves to the root rotates all; and what a rotation changed below the node is
+// rotated again, some levels down; after that the node itself once more.
+#ifndef TWINRAY_SHARED_ROTATE_H
+#define TWINRAY_SHARED_ROTATE_H
+#include "shaders/shared/build.h"
+#include "shaders/shared/surface_area.h"
+
+const uint ROTATE_LEVELS = 4u; // that changes are followed down
+
+// A subtree of four leaves becomes one node of four children, whatever its shape.
+const uint FEWEST_ROTATED = 5u;
+
+// One child as its parent, a BvhNode, has it.
+struct NodeHalf
+{
+    LeafBox box;
+    uint child;
+    uint below; // as BvhNode::below0
+};
+
+// The nodes are words: eight each, four a half.
+FUNC NodeHalf get_half(NodeWords nodes, uint node, uint side)
+{
+    uint at = node * 8u + side * 4u;
+    uint64_t w0 = AT(nodes, at), w1 = AT(nodes, at + 1u), w2 = AT(nodes, at + 2u), w3 = AT(nodes, at + 3u);
+    NodeHalf found;
+    found.box.lo = vec3(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x);
+    found.box.hi = vec3(FLOATS(w2).x, FLOATS(w2).y, FLOATS(w3).x);
+    found.child = UINTS(w1).y;
+    found.below = UINTS(w3).y;
+    return found;
+}
+FUNC void put_half(NodeWords nodes, uint node, uint side, NodeHalf half_node)
+{
+    uint at = node * 8u + side * 4u;
+    AT(nodes, at) = WORD(floatBitsToUint(half_node.box.lo.x), floatBitsToUint(half_node.box.lo.y));
+    AT(nodes, at + 1u) = WORD(floatBitsToUint(half_node.box.lo.z), half_node.child);
+    AT(nodes, at + 2u) = WORD(floatBitsToUint(half_node.box.hi.x), floatBitsToUint(half_node.box.hi.y));
+    AT(nodes, at + 3u) = WORD(floatBitsToUint(half_node.box.hi.z), half_node.below);
+}
+
+// `node` with these two children, as a child.
+FUNC NodeHalf joined_half(NodeHalf a, NodeHalf b, uint node)
+{
+    NodeHalf both;
+    both.box.lo = min(a.box.lo, b.box.lo);
+    both.box.hi = max(a.box.hi, b.box.hi);
+    both.child = node;
+    both.below = make_below(leaves_in(a.below) + leaves_in(b.below), 1u + max(height_in(a.below), height_in(b.below)));
+    return both;
+}
+
+// Nodes on the longest way down from a node, itself among them.
+FUNC uint height_of(NodeWords nodes, uint node)
+{
+    uint below0 = UINTS(AT(nodes, node * 8u + 3u)).y;
+    uint below1 = UINTS(AT(nodes, node * 8u + 7u)).y;
+    return 1u + max(height_in(below0), height_in(below1));
+}
+
+FUNC bool is_inner(NodeHalf half_node) { return (half_node.child & LEAF_BIT) == 0u; }
+FUNC bool is_rotated(NodeHalf tree) { return leaves_in(tree.below) >= FEWEST_ROTATED; }
+
+FUNC NodeHalf either(bool is_first, NodeHalf a, NodeHalf b)
+{
+    NodeHalf chosen;
+    chosen.box.lo = is_first ? a.box.lo : b.box.lo;
+    chosen.box.hi = is_first ? a.box.hi : b.box.hi;
+    chosen.child = is_first ? a.child : b.child;
+    chosen.below = is_first ? a.below : b.below;
+    return chosen;
+}
+
+// Half the area of a box in a unit of lengths, of which there are `scale` in one.
+FUNC float area_of(LeafBox box, float scale)
+{
+    if (!is_active(box)) return 0.0f;
+    PRECISE vec3 size = (box.hi - box.lo) * scale;
+    PRECISE float area = size.x * size.y + size.y * size.z + size.z * size.x;
+    return area;
+}
+FUNC float area_around(NodeHalf a, NodeHalf b, float scale)
+{
+    LeafBox box;
+    box.lo = min(a.box.lo, b.box.lo);
+    box.hi = max(a.box.hi, b.box.hi);
+    return area_of(box, scale);
+}
+// For trees with leaf centres from lo to hi: areas are near 1 at most, or 0.
+FUNC float area_scale(vec3 lo, vec3 hi)
+{
+    float unit = area_unit(lo, hi);
+    return unit > 0.0f ? 1.0f / unit : 0.0f;
+}
+
+// The nodes below that a rotation changed; NOTHING where there is none.
+struct Rotated
+{
+    uint node0;
+    uint node1;
+};
+
+FUNC uint height_above(NodeHalf p, NodeHalf q) { return 1u + max(height_in(p.below), height_in(q.below)); }
+
+FUNC void keep_better(INOUT(float) best, INOUT(uint) best_move, float gain, uint move, bool is_allowed)
+{
+    bool is_better = is_allowed && gain > best;
+    best = is_better ? gain : best;
+    best_move = is_better ? move : best_move;
+}
+
+// `up`, the child of `other` on `side`, and `moved`, the sibling of `other` on `moved_side`, change places.
+FUNC Rotated lift(NodeWords nodes, uint node, NodeHalf moved, uint moved_side, NodeHalf up, NodeHalf stays, uint other, uint side)
+{
+    put_half(nodes, node, moved_side, up);
+    put_half(nodes, node, 1u - moved_side, joined_half(moved, stays, other));
+    put_half(nodes, other, side, moved);
+    Rotated done;
+    done.node0 = other;
+    done.node1 = NOTHING;
+    return done;
+}
+
+// The child `p` of a, on `side`, and the first child `q` of b change places.
+FUNC Rotated exchange(NodeWords nodes, uint node, uint a, NodeHalf p, uint side, NodeHalf stays_a, uint b, NodeHalf q, NodeHalf stays_b)
+{
+    put_half(nodes, node, 0u, joined_half(q, stays_a, a));
+    put_half(nodes, node, 1u, joined_half(p, stays_b, b));
+    put_half(nodes, a, side, q);
+    put_half(nodes, b, 0u, p);
+    Rotated done;
+    done.node0 = a;
+    done.node1 = b;
+    return done;
+}
+
+// Rotates a node with children a and b where that gains most, if it gains and leaves the node within `limit` nodes of height.
+FUNC Rotated rotate_once(NodeWords nodes, uint node, NodeHalf a, NodeHalf b, uint limit, float scale)
+{
+    NodeHalf a0 = a, a1 = a, b0 = b, b1 = b;
+    float area_a = area_of(a.box, scale);
+    float area_b = area_of(b.box, scale);
+    float best = 0.0f;
+    uint move = NOTHING;
+    if (is_inner(b))
+    {
+        b0 = get_half(nodes, b.child, 0u);
+        b1 = get_half(nodes, b.child, 1u);
+        keep_better(best, move, area_b - area_around(a, b1, scale), 0u, max(height_in(b0.below), height_above(a, b1)) < limit);
+        keep_better(best, move, area_b - area_around(a, b0, scale), 1u, max(height_in(b1.below), height_above(a, b0)) < limit);
+    }
+    if (is_inner(a))
+    {
+        a0 = get_half(nodes, a.child, 0u);
+        a1 = get_half(nodes, a.child, 1u);
+        keep_better(best, move, area_a - area_around(b, a1, scale), 2u, max(height_in(a0.below), height_above(b, a1)) < limit);
+        keep_better(best, move, area_a - area_around(b, a0, scale), 3u, max(height_in(a1.below), height_above(b, a0)) < limit);
+    }
+    if (is_inner(a) && is_inner(b))
+    {
+        float both = area_a + area_b;
+        keep_better(best, move, both - area_around(a1, b0, scale) - area_around(a0, b1, scale), 4u,
+                    max(height_above(a1, b0), height_above(a0, b1)) < limit);
+        keep_better(best, move, both - area_around(a0, b0, scale) - area_around(a1, b1, scale), 5u,
+                    max(height_above(a0, b0), height_above(a1, b1)) < limit);
+    }
+    uint side = move & 1u;
+    if (move < 4u)
+    {
+        bool is_b = move < 2u;
+        NodeHalf first = either(is_b, b0, a0);
+        NodeHalf second = either(is_b, b1, a1);
+        return lift(nodes, node, either(is_b, a, b), is_b ? 0u : 1u, either(side == 0u, first, second),
+                    either(side == 0u, second, first), is_b ? b.child : a.child, side);
+    }
+    if (move != NOTHING)
+        return exchange(nodes, node, a.child, either(side == 0u, a0, a1), side, either(side == 0u, a1, a0), b.child, b0, b1);
+    Rotated none;
+    none.node0 = NOTHING;
+    none.node1 = NOTHING;
+    return none;
+}
+
+// Rotates a node with children a and b, whose subtrees are finished. Returns its height: `limit` at most, if it was. Below
+// the node no subtree becomes higher; heights told of them are theirs at most.
+FUNC uint rotate(NodeWords nodes, uint node, NodeHalf a, NodeHalf b, uint limit, float scale)
+{
+    uint waiting[ROTATE_LEVELS + 2u]; // node | levels that it may be followed << 28
+    uint count = 0u;
+    uint levels = ROTATE_LEVELS;
+    uint at = node;
+    uint highest = limit;
+    uint turns = 0u; // in which the node itself was rotated
+    for (;;)
+    {
+        Rotated done = rotate_once(nodes, at, a, b, highest, scale);
+        bool has_changed = done.node0 != NOTHING;
+        turns = turns + (has_changed && at == node ? 1u : 0u);
+        if (has_changed && levels > 0u)
+        {
+            waiting[count] = done.node0 | levels << 28u;
+            count = count + 1u;
+            if (done.node1 != NOTHING)
+            {
+                waiting[count] = done.node1 | levels << 28u;
+                count = count + 1u;
+            }
+        }
+        if (count == 0u && (turns != 1u || at == node)) break;
+        if (count == 0u)
+        {
+            at = node;
+            levels = ROTATE_LEVELS;
+            turns = 2u;
+        }
+        else
+        {
+            count = count - 1u;
+            at = waiting[count] & 0xfffffffu;
+            levels = (waiting[count] >> 28u) - 1u;
+        }
+        a = get_half(nodes, at, 0u);
+        b = get_half(nodes, at, 1u);
+        highest = at == node ? limit : height_above(a, b);
+    }
+    return height_of(nodes, node);
+}
+#endif
