@@ -120,8 +120,10 @@ FUNC bool enter_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, 
     PRECISE float far_x = ((flip_x ? lo.x : hi.x) - space.far_origin.x) * space.far_inverse.x;
     PRECISE float far_y = ((flip_y ? lo.y : hi.y) - space.far_origin.y) * space.far_inverse.y;
     PRECISE float far_z = ((flip_z ? lo.z : hi.z) - space.far_origin.z) * space.far_inverse.z;
-    enter = latest_of(t_min * space.t_scale, near_x, near_y, near_z);
-    return enter <= earliest_of(t_max * space.t_scale, far_x, far_y, far_z);
+    PRECISE float first = t_min * space.t_scale;
+    PRECISE float last = t_max * space.t_scale;
+    enter = latest_of(first, near_x, near_y, near_z);
+    return enter <= earliest_of(last, far_x, far_y, far_z);
 }
 
 // A corner seen along the ray: x, y sheared so that the ray is the point (0, 0), z along the dominant axis. It depends
