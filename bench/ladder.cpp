@@ -106,7 +106,7 @@ Ladder measure_ladder(AbstractAccel& accel, RayKind kind, std::vector<Ray>&& ray
     LineUp line_up = line_up_of(accel, options.level, query_of(kind));
     const RayBatch batch(std::move(rays), query_of(kind), kind == RayKind::primary);
     const std::vector<TraceRounds> rounds =
-        measure_traces(line_up, batch, {.rounds = options.rounds, .max_ms = INFINITY}, [] {});
+        measure_traces(line_up, batch, {.rounds = options.rounds, .max_ms = 1e9}, [] {});
     Ladder ladder{.kind = kind, .rungs = {}};
     for (std::size_t i = 0; i < line_up.size(); ++i)
         ladder.rungs.push_back(
