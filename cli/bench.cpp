@@ -27,7 +27,7 @@ struct BenchOptions {
     std::vector<RayKind> kinds;
     std::vector<double> growth = {1e3, 1e4, 1e5, 1e6, 1e7};
     std::size_t moves = 0;
-    bool no_embree = false, no_build = false;
+    bool no_embree = false, no_build = false, is_ladder = false;
 };
 
 // The devices and who runs on them.
@@ -163,6 +163,8 @@ void dispatch(BenchOptions& options, bool is_growth) {
         options.run.kinds = {RayKind::primary, RayKind::incoherent};
     if (options.moves)
         bench_moves(options.common, options.moves, options.run.rounds);
+    else if (options.is_ladder)
+        bench_ladder(options.common, options.scene, options.run);
     else if (is_growth)
         run_growth(options);
     else
@@ -175,9 +177,10 @@ void add_bench(CLI::App& app, int&) {
     CLI::App* command = app.add_subcommand("bench", "build and trace rates of both accelerators, with their errors");
     const auto options = std::make_shared<BenchOptions>();
     auto* what = command->add_option_group("what")->require_option(1);
-    what->add_option("--scene", options->scene,
-                     "a file (.gltf, .glb, .obj, .ply, .stl), or made: sphere:N, soup:N, instances:KxN, with N "
-                     "triangles and K instances");
+    CLI::Option* scene =
+        what->add_option("--scene", options->scene,
+                         "a file (.gltf, .glb, .obj, .ply, .stl), or made: sphere:N, soup:N, instances:KxN, with N "
+                         "triangles and K instances");
     what->add_option("--moves", options->moves, "refit of so many instances that move, against a rebuild")
         ->check(CLI::Range(1, 1 << 22));
     const CLI::Option* growth =
@@ -193,6 +196,10 @@ void add_bench(CLI::App& app, int&) {
         ->transform(CLI::CheckedTransformer(ray_kinds_by_name()));
     add_choice_options(*command, options->run);
     add_size_options(*command, options->run);
+    command
+        ->add_flag("--ladder", options->is_ladder,
+                   "what each feature costs that the scene does not need, on the first layout and level")
+        ->needs(scene);
     command->add_flag("--no-embree", options->no_embree, "leave Embree out");
     command->add_flag("--no-build", options->no_build, "time traces alone");
     add_common_options(*command, options->common);

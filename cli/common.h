@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/run.h"
 #include "engine/accel/abstract_accel.h"
 #include "engine/scene/scene.h"
 
@@ -59,6 +60,7 @@ void add_trace(CLI::App& app, int& exit_code);
 void add_verify(CLI::App& app, int& exit_code);
 void add_leaks(CLI::App& app, int& exit_code);
 void bench_moves(const CommonOptions& options, std::size_t count, std::size_t rounds);
+void bench_ladder(const CommonOptions& options, const std::string& scene, const bench::RunOptions& run);
 void add_bench(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
 

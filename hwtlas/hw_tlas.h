@@ -31,7 +31,7 @@ class HwTlas : public AbstractAccel {
 
     // "ray query" or "ray tracing pipeline".
     const char* trace_path() const;
-    bool reorders() const { return reorder_; }
+    bool reorders() const override { return reorder_; }
 
   protected:
     using Built = std::vector<std::unique_ptr<BuiltGeometry>>;
@@ -45,7 +45,6 @@ class HwTlas : public AbstractAccel {
                                             const BuiltScene* current) override;
     void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
-    uint own_features() const override { return reorder_ ? FEATURE_REMAP : 0; }
 
   private:
     struct HwBuiltGeometry;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "swtlas/reference_scene.h"
 
+#include "engine/accel/features_of.h"
 #include "swtlas/plan.h"
 
 namespace twinray::reference {
@@ -80,8 +81,8 @@ Ray Scene::searched_ray(const Ray& ray, uint level, double& advance) const {
 Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {
     double advance = 0;
     const Ray searched = searched_ray(ray, level, advance);
-    const uint features = (layout_ == Layout::bvh2 ? FEATURE_BVH2 : FEATURE_COMPRESSED) |
-                          (instances_.size() == 1 ? 0 : FEATURE_INSTANCES);
+    const uint features = features_of({.layout = layout_}, {.instances = instances_.size(), .has_transforms = true},
+                                      TraceFacts::of_every_kind());
     const TraceOptions options{
         mask, 0, query, level, features, 0, ray, advance, Ref<RefineInstance>::to(refined_.data())};
     const Hit hit = traverse(header_, searched, options);

@@ -65,8 +65,6 @@ class SwTlas final : public AbstractAccel {
                                             const BuiltScene* current) override;
     void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
     float unit_of(std::span<const vec3> positions) const override { return software_unit(positions); }
-    uint features_of_count(std::size_t instances) const override { return instances == 1 ? 0 : FEATURE_INSTANCES; }
-    uint own_features() const override { return options().layout == Layout::bvh2 ? FEATURE_BVH2 : FEATURE_COMPRESSED; }
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
 
     Builder builder_;

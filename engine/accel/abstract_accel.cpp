@@ -156,17 +156,22 @@ void AbstractAccel::update_vertices(AccelHandle handle, Floats positions, std::s
     mark(Dirty::moves);
 }
 
-uint AbstractAccel::Placement::features() const {
-    if (instances.records.empty()) return 0;
-    const auto is_filtered = [](const InstanceRecord& record) { return (flags_of(record) & INSTANCE_FILTERED) != 0; };
-    const bool any_filtered = std::any_of(instances.records.begin(), instances.records.end(), is_filtered);
-    return (geometry.kind == GEOMETRY_BOXES ? FEATURE_BOXES : 0) | (any_filtered ? FEATURE_FILTERS : 0);
+void AbstractAccel::Placement::add_to(SceneFacts& facts) const {
+    if (instances.records.empty()) return;
+    facts.has_boxes |= geometry.kind == GEOMETRY_BOXES;
+    facts.has_transforms |= geometry.scale != 1;
+    facts.instances += instances.records.size();
+    for (const InstanceRecord& record : instances.records) {
+        facts.has_filters |= (flags_of(record) & INSTANCE_FILTERED) != 0;
+        facts.common_mask &= mask_of(record);
+        facts.has_transforms |= transform_of(record) != Transform{};
+    }
 }
 
-uint AbstractAccel::features_of_placements() const {
-    uint features = own_features() | features_of_count(n_instances());
-    for (const auto& [id, placement] : placements_) features |= placement.features();
-    return features;
+SceneFacts AbstractAccel::facts_of_placements() const {
+    SceneFacts facts{.instances = 0, .has_transforms = options_.can_move};
+    for (const auto& [id, placement] : placements_) placement.add_to(facts);
+    return facts;
 }
 
 InstanceRecord AbstractAccel::checked_record(const Placement& placement, std::size_t index, const Transform& transform,
@@ -202,8 +207,13 @@ void AbstractAccel::update_transform(AccelHandle handle, const Transform& transf
     update_transform_at(handle, 0, transform);
 }
 
+void AbstractAccel::check_movable(const char* action) const {
+    if (!options_.can_move) fail(name_, ": ", action, ": the accelerator was made with AccelOptions::can_move = false");
+}
+
 void AbstractAccel::update_transforms(AccelHandle handle, std::span<const Transform> transforms) {
     Placement& placement = live(handle, "update_transforms");
+    check_movable("update_transforms");
     check_count(handle, placement, transforms.size());
     std::vector<InstanceRecord> records;
     records.reserve(transforms.size());
@@ -215,6 +225,7 @@ void AbstractAccel::update_transforms(AccelHandle handle, std::span<const Transf
 
 void AbstractAccel::update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count) {
     Placement& placement = live(handle, "update_transforms");
+    check_movable("update_transforms");
     check_count(handle, placement, count);
     if (!transforms.address || transforms.address % 4)
         fail(name_, ": update_transforms: device address ", transforms.address, " must be a multiple of 4 and not 0");
@@ -235,6 +246,7 @@ void AbstractAccel::check_index(AccelHandle handle, const Placement& placement, 
 
 void AbstractAccel::update_transform_at(AccelHandle handle, std::size_t index, const Transform& transform) {
     Placement& placement = live(handle, "update_transform_at");
+    check_movable("update_transform_at");
     check_index(handle, placement, index, "update_transform_at");
     const InstanceOptions options = options_of(placement.instances.records[index]);
     placement.instances.edit(index, checked_record(placement, index, transform, options));
@@ -252,6 +264,7 @@ InstanceRange AbstractAccel::instance_buffer(AccelHandle handle) const {
 
 void AbstractAccel::mark_transforms_dirty(AccelHandle handle) {
     Placement& placement = live(handle, "mark_transforms_dirty");
+    check_movable("mark_transforms_dirty");
     if (!placement.instances.first)
         fail(name_, ": mark_transforms_dirty: handle ", handle.id, " is not on the device yet; call sync() first");
     placement.instances.device_wrote = true;

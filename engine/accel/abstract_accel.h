@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "engine/accel/capability.h"
+#include "engine/accel/features_of.h"
 #include "engine/accel/geometry.h"
 #include "engine/accel/instance_array.h"
 #include "engine/accel/memory.h"
+#include "engine/accel/own_programs.h"
 #include "engine/accel/refinement.h"
 #include "engine/accel/trace_desc.h"
 #include "engine/accel/trace_program.h"
@@ -50,7 +52,7 @@ struct AccelView {
     std::uint64_t scene = 0;     // device address of the accelerator's scene block (SwScene or HwScene)
     std::uint64_t accel = 0;     // which accelerator made it
     std::uint64_t revision = 0;  // its revision() then
-    uint features = 0;           // FEATURE_* that its scene has: what kernels may be specialised for
+    uint features = 0;           // FEATURE_* of whatever traces of it may need: what kernels may be specialised for
 };
 
 // The contract that both accelerators fulfil. Edits only note what changes; sync() is the only place that builds, and
@@ -92,6 +94,7 @@ class AbstractAccel {
     // The same from device memory, read by the next sync. Nobody checks what lies there: an instance whose transform is
     // singular or not finite becomes inactive, and the accelerator warns how many.
     void update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count);
+    // AccelOptions::can_move = false forbids them all.
     // The caller's kernels write into instance_buffer(), then mark_transforms_dirty() lets the next sync take it over.
     InstanceRange instance_buffer(AccelHandle handle) const;
     void mark_transforms_dirty(AccelHandle handle);
@@ -155,11 +158,16 @@ class AbstractAccel {
 
     // Records the trace; the hits are visible to later passes. Throws Error on a stale or foreign view.
     void trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const;
-    // Host convenience: syncs, uploads, traces, waits and downloads. Of `desc` all counts but rays, hits, count and
-    // query.
+    // Host convenience: syncs, uploads, traces, waits and downloads. Of `desc` all counts but rays, hits, count, query
+    // and answer_only.
     std::vector<Hit> closest_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
     std::vector<Hit> any_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
-    // A trace program for this accelerator, specialised for scenes that have no more than `features`.
+    // AccelView::features without what traces with this mask, cull and answer_only do not need: as long as revision()
+    // does not change, kernels that ask for nothing else may be specialised for it. Throws Error if edits are pending.
+    uint features_for(const TraceDesc& desc) const;
+    // Until no program is left to compile in the background.
+    void wait_for_programs() const;
+    // A trace program for this accelerator, specialised for traces that need no more than `features`.
     std::unique_ptr<TraceProgram> make_program(const TraceProgramCode& code, uint features = FEATURES_ALL) const;
 
     // What this accelerator can do on its device.
@@ -167,6 +175,8 @@ class AbstractAccel {
     std::vector<Capability> capabilities() const;
     // Which of the two modules of a kernel with twinray/query.glsl fits.
     virtual bool is_software() const = 0;
+    // Whether the driver's ids are mapped back to the user's.
+    virtual bool reorders() const { return false; }
 
     void wait_for_gpu() { context_.wait_for_gpu(); }
     // GPU time per pass of the last sync() that built something into commands of its own; waits for it.
@@ -256,10 +266,6 @@ class AbstractAccel {
 
     // What meshes with these positions are built in units of: a power of two.
     virtual float unit_of(std::span<const vec3> positions) const { return Geometry::near_unit(positions); }
-    // FEATURE_* of whatever the scene holds.
-    virtual uint own_features() const { return 0; }
-    // FEATURE_* of a scene of so many instances.
-    virtual uint features_of_count(std::size_t) const { return 0; }
     // With `code`, or with the accelerator's own code where the scene needs no program.
     virtual std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const = 0;
     std::uint64_t id() const { return id_; }
@@ -279,7 +285,7 @@ class AbstractAccel {
         InstanceSlice instances;
         bool has_source = false;  // the block's GeometrySource is that of `geometry`
 
-        uint features() const;
+        void add_to(SceneFacts& facts) const;
     };
     struct Work;
     // What a sync recorded, to be committed once it is certain to run.
@@ -323,10 +329,12 @@ class AbstractAccel {
     std::optional<double> sah_of(const CostLog& costs, Wait wait) const;
     bool has_degraded(const CostLog& costs) const;
     bool is_compactable(const Placement& placement) const;
-    uint features_of_placements() const;
+    AccelFacts accel_facts() const { return {is_software(), options_.layout, reorders()}; }
+    SceneFacts facts_of_placements() const;
+    void check_movable(const char* action) const;
     void warn_of_unusable_instances();
-    const TraceProgram& own_program(uint features) const;
-    const TraceProgram& program_for(const AccelView& view, const TraceDesc& desc) const;
+    const TraceProgram& own_program(uint features, const TraceDesc& desc) const;
+    const TraceProgram& program_for(const TraceDesc& desc) const;
     void check_desc(const AccelView& view, const TraceDesc& desc) const;
 
     Context& context_;
@@ -344,8 +352,8 @@ class AbstractAccel {
     Dirty dirty_ = Dirty::structure;
     bool has_moved_ = false;  // something has moved after a build, so that builds allow refits
     std::uint64_t revision_ = 0;
-    uint features_ = 0;                                                   // of the scene that was built
-    mutable std::map<uint, std::unique_ptr<TraceProgram>> own_programs_;  // by features, made by the first trace
+    SceneFacts facts_;                                   // of the scene that was built
+    mutable std::unique_ptr<OwnPrograms> own_programs_;  // made by the first trace
     SyncPoint synced_;
     uint warned_unusable_ = 0;
     std::unique_ptr<BuiltScene> scene_;

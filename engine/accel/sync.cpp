@@ -133,7 +133,7 @@ void AbstractAccel::commit(Staged&& staged, SyncPoint done) {
     scene_costs_.commit(staged.is_scene_built, done);
     has_moved_ = staged.has_moved;
     revision_ += dirty_ == Dirty::structure;
-    if (dirty_ == Dirty::structure) features_ = features_of_placements();
+    if (dirty_ == Dirty::structure) facts_ = facts_of_placements();
     if (staged.scene) scene_ = std::move(staged.scene);
     instances_.commit(std::move(staged.instances), staged.slices);
     erased_.clear();

@@ -4,6 +4,19 @@
 #include "engine/core/error.h"
 
 namespace twinray {
+namespace {
+
+// The first of the features, for messages.
+const char* words_for(uint features) {
+    if (features & FEATURE_BOXES) return "boxes";
+    if (features & FEATURE_FILTERS) return "filtered instances";
+    if (features & FEATURE_INSTANCES) return "several instances";
+    if (features & FEATURE_TRANSFORMS) return "instances with transforms";
+    if (features & FEATURE_MASKS) return "instances that the mask may hide";
+    return "sides that are culled";
+}
+
+}  // namespace
 
 void AbstractAccel::check_synced(const char* action) const {
     if (dirty_ != Dirty::no) fail(name_, ": ", action, ": edits are pending; call sync() first");
@@ -11,7 +24,7 @@ void AbstractAccel::check_synced(const char* action) const {
 
 AccelView AbstractAccel::view() const {
     check_synced("view");
-    return {scene_->address, id_, revision_, features_};
+    return {scene_->address, id_, revision_, features_of(accel_facts(), facts_, TraceFacts::of_every_kind())};
 }
 
 void AbstractAccel::trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const {
@@ -21,7 +34,7 @@ void AbstractAccel::trace(Commands& commands, const AccelView& view, const Trace
     const TraceArgs args{view.scene,          desc.rays,           desc.hits,
                          desc.indirect_count, desc.user_data,      static_cast<uint>(desc.count),
                          desc.mask,           flags_of(desc.cull), 0};
-    program_for(view, desc).record(commands, args, desc.query, desc.level);
+    program_for(desc).record(commands, args, desc.query, desc.level);
 }
 
 void AbstractAccel::check_desc(const AccelView& view, const TraceDesc& desc) const {
@@ -39,30 +52,41 @@ void AbstractAccel::check_desc(const AccelView& view, const TraceDesc& desc) con
              name_of(feature_of(options_.level)), "; see AccelOptions");
 }
 
-const TraceProgram& AbstractAccel::own_program(uint features) const {
-    const uint without_program = features & ~(FEATURE_BOXES | FEATURE_FILTERS);
-    std::unique_ptr<TraceProgram>& program = own_programs_[without_program];
-    if (!program) program = create_program(nullptr, without_program);
-    return *program;
+uint AbstractAccel::features_for(const TraceDesc& desc) const {
+    check_synced("features_for");
+    return features_of(accel_facts(), facts_, TraceFacts::of(desc));
+}
+
+const TraceProgram& AbstractAccel::own_program(uint features, const TraceDesc& desc) const {
+    if (!own_programs_) {
+        const uint all = features_of(accel_facts(), SceneFacts::of_every_kind(), TraceFacts::of_every_kind());
+        own_programs_ = std::make_unique<OwnPrograms>([this](uint wanted) { return create_program(nullptr, wanted); },
+                                                      all, is_software() && options_.compiles_in_background);
+    }
+    return own_programs_->get(features, desc.query, desc.level);
+}
+
+void AbstractAccel::wait_for_programs() const {
+    if (own_programs_) own_programs_->wait();
 }
 
 // Boxes that nothing can meet, and hits that nobody judges, are no answer.
-const TraceProgram& AbstractAccel::program_for(const AccelView& view, const TraceDesc& desc) const {
-    const TraceProgram& program = desc.program ? *desc.program : own_program(view.features);
+const TraceProgram& AbstractAccel::program_for(const TraceDesc& desc) const {
+    const uint needed = features_of(accel_facts(), facts_, TraceFacts::of(desc));
+    if (const uint of_user = needed & (FEATURE_BOXES | FEATURE_FILTERS); !desc.program && of_user)
+        fail(name_, ": trace: the scene has ", words_for(of_user), ", and TraceDesc::program is not set");
+    if (!desc.program) return own_program(needed, desc);
+    const TraceProgram& program = *desc.program;
     if (program.accel() != id_) fail(name_, ": trace: program '", program.name(), "' was made by another accelerator");
-    if (const uint missing = view.features & ~program.features(); missing)
-        fail(name_, ": trace: the scene has ",
-             missing & FEATURE_BOXES     ? "boxes"
-             : missing & FEATURE_FILTERS ? "filtered instances"
-                                         : "several instances",
-             ", and ",
-             desc.program ? "program '" + program.name() + "' is not specialised for them"
-                          : std::string("TraceDesc::program is not set"));
+    if (const uint missing = needed & ~program.features())
+        fail(name_, ": trace: the scene has ", words_for(missing), ", and program '", program.name(),
+             "' is not specialised for them");
     return program;
 }
 
 std::unique_ptr<TraceProgram> AbstractAccel::make_program(const TraceProgramCode& code, uint features) const {
-    std::unique_ptr<TraceProgram> program = create_program(&code, features | own_features());
+    const uint of_any_scene = features_of(accel_facts(), {.has_transforms = options_.can_move}, {});
+    std::unique_ptr<TraceProgram> program = create_program(&code, features | of_any_scene);
     program->prepare(Query::closest, Level::watertight);
     return program;
 }
@@ -76,6 +100,7 @@ std::vector<Hit> AbstractAccel::closest_hits(std::span<const Ray> rays, const Tr
 std::vector<Hit> AbstractAccel::any_hits(std::span<const Ray> rays, const TraceDesc& desc) {
     TraceDesc any = desc;
     any.query = Query::any;
+    any.answer_only = false;
     return trace_host(rays, any);
 }
 

@@ -46,6 +46,12 @@ struct AccelOptions {
     Level level = Level::watertight;
     Layout layout = Layout::compressed4;              // of software
     BuildQuality build_quality = BuildQuality::fast;  // of software
+    // False: instances stay where push() puts them, and whatever would move them throws. Where they stand as their
+    // meshes were given, rays of software are then not transformed.
+    bool can_move = true;
+    // Software: programs for other needs than those of the first trace are compiled by a thread of the accelerator's
+    // own, while one that fits all scenes serves. False: traces wait for them.
+    bool compiles_in_background = true;
 };
 
 // Which triangles are not hit: those seen from the back, or from the front. The front is the side that
@@ -62,6 +68,8 @@ struct TraceDesc {
     std::uint8_t mask = 0xff;
     Cull cull = Cull::none;
     Level level = Level::watertight;
+    // Of any hits: of each Hit only `hit` is written for sure; the rest is undefined.
+    bool answer_only = false;
     // Needed where the scene has boxes or filtered instances; made by AbstractAccel::make_program of the same
     // accelerator, and kept alive until the GPU is done.
     const TraceProgram* program = nullptr;

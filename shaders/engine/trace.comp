@@ -16,5 +16,7 @@ void main()
     if (i >= ray_count(args.count, args.indirect_count)) return;
     TraceOptions options = trace_options(args.mask, args.flags, TRACE_QUERY);
     options.user_data = args.user_data;
-    AT(args.hits, i) = trace(args.scene, AT(args.rays, i), options);
+    Hit hit = trace(args.scene, AT(args.rays, i), options);
+    if ((TRACE_FEATURES & FEATURE_HITS) != 0u) AT(args.hits, i) = hit;
+    else AT(args.hits, i).hit = hit.hit;
 }

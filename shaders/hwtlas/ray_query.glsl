@@ -59,12 +59,14 @@ Hit trace_float32(uint64_t accel, Ray ray, TraceOptions options)
     else
         while (rayQueryProceedEXT(query))
         {
-            bool is_triangle = rayQueryGetIntersectionTypeEXT(query, false) == gl_RayQueryCandidateIntersectionTriangleEXT;
+            bool is_triangle = (options.features & FEATURE_BOXES) == 0u ||
+                               rayQueryGetIntersectionTypeEXT(query, false) == gl_RayQueryCandidateIntersectionTriangleEXT;
             if (is_triangle) consider_triangle(scene, query, options);
             else consider_box(scene, query, ray, options, uv);
         }
     if (!has_hit(query)) return miss();
-    bool is_triangle = rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionTriangleEXT;
+    bool is_triangle = (options.features & FEATURE_BOXES) == 0u ||
+                       rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionTriangleEXT;
     if (is_triangle) uv = rayQueryGetIntersectionBarycentricsEXT(query, true);
     return hit_of(candidate_of(scene, rayQueryGetIntersectionInstanceIdEXT(query, true),
                                rayQueryGetIntersectionPrimitiveIndexEXT(query, true),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a scene may have and traversal leaves out where it has not: one bit each of the specialisation constant
-// FEATURES, which AccelView::features gives for a scene. A kernel specialised for more than a scene has is right, too.
+// What a scene or a trace may need and traversal leaves out where it does not: one bit each of the specialisation constant
+// FEATURES, which features_of() of engine/accel/features_of.h chooses. A kernel specialised for more than is needed is right,
+// too, and gives the same hits, bit for bit.
 #ifndef TWINRAY_SHARED_FEATURES_H
 #define TWINRAY_SHARED_FEATURES_H
 
@@ -10,7 +11,11 @@ const uint FEATURE_REMAP = 4u;   // hardware: triangles and instances were reord
 const uint FEATURE_BVH2 = 8u;    // software: layout bvh2
 const uint FEATURE_COMPRESSED = 16u; // software: layout compressed4
 const uint FEATURE_INSTANCES = 32u;  // software: not exactly one instance, so that there is a top level to traverse
-const uint FEATURES_ALL = 63u;
+const uint FEATURE_MASKS = 64u;      // software: an instance that the trace's mask may not see
+const uint FEATURE_CULLING = 128u;   // software: the trace culls
+const uint FEATURE_TRANSFORMS = 256u; // software: an instance that is, or may be moved, elsewhere than its geometry
+const uint FEATURE_HITS = 512u;      // the trace wants all of each hit, not only whether there is one
+const uint FEATURES_ALL = 1023u;
 
 // How a ray is tested against triangles.
 const uint LEVEL_FAST = 0u;       // Moeller-Trumbore: may lose rays at edges

@@ -23,7 +23,7 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
     else if (cursor != END_OF_STACK)
     {
         SwInstance instance = AT(scene.instances, 0);
-        if (!is_visible(instance, options.mask)) return search.best;
+        if (!is_visible(instance, options)) return search.best;
         inside = enter_instance(instance, 0u, options);
         space = space_in(instance, inside, ray, options);
         nodes = instance.nodes;
@@ -63,7 +63,7 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
         {
             uint index = cursor & ~LEAF_BIT;
             SwInstance instance = AT(scene.instances, index);
-            if (is_visible(instance, options.mask))
+            if (is_visible(instance, options))
             {
                 inside = enter_instance(instance, index, options);
                 space = space_in(instance, inside, ray, options);

@@ -118,7 +118,7 @@ FUNC Hit traverse_compressed(SwScene scene, Ray ray, TraceOptions options)
     else
     {
         SwInstance instance = AT(scene.instances, 0);
-        if (!is_visible(instance, options.mask)) return search.best;
+        if (!is_visible(instance, options)) return search.best;
         inside = enter_instance(instance, 0u, options);
         space = space_in(instance, inside, ray, options);
         records = instance.records;
@@ -154,7 +154,7 @@ FUNC Hit traverse_compressed(SwScene scene, Ray ray, TraceOptions options)
         {
             uint index = record.a.w & ~LEAF_BIT;
             SwInstance instance = AT(scene.instances, index);
-            if (is_visible(instance, options.mask))
+            if (is_visible(instance, options))
             {
                 inside = enter_instance(instance, index, options);
                 space = space_in(instance, inside, ray, options);

@@ -25,7 +25,8 @@ FUNC uint culled_side(uint ray_flags, uint instance_flags)
     return (instance_flags & INSTANCE_TURNED) != 0u ? side ^ (CULL_BACK | CULL_FRONT) : side;
 }
 
-// What traversal must know of the instance it is in.
+// What traversal must know of the instance it is in. Features are asked for where these are read, not where they are set:
+// only so compilers see across the loop that what depends on them is never run.
 struct InInstance
 {
     uint index;
@@ -42,10 +43,17 @@ FUNC InInstance enter_instance(SwInstance instance, uint index, TraceOptions opt
     inside.index = index;
     inside.custom_index = instance.custom_index_mask & 0xffffffu;
     inside.culled = culled_side(options.flags, instance.flags);
-    inside.has_boxes = (options.features & FEATURE_BOXES) != 0u && instance.kind == GEOMETRY_BOXES;
+    inside.has_boxes = instance.kind == GEOMETRY_BOXES;
     inside.error = 0.0f;
-    inside.is_filtered = (options.features & FEATURE_FILTERS) != 0u && (instance.flags & INSTANCE_FILTERED) != 0u;
+    inside.is_filtered = (instance.flags & INSTANCE_FILTERED) != 0u;
     return inside;
+}
+
+// Adding 0 takes a zero's sign, which the sums of a transform may change: with the identity, too, both ways give the same bits.
+FUNC vec3 without_negative_zeros(vec3 v)
+{
+    PRECISE vec3 sum = v + vec3(0.0f);
+    return sum;
 }
 
 // The ray in the space of the instance's geometry.
@@ -59,12 +67,19 @@ FUNC RaySpace space_in(SwInstance instance, INOUT(InInstance) inside, Ray ray, T
         return make_ray_space(mapped.origin, mapped.direction, mapped.error);
     }
 #endif
-    Rows to_object;
-    to_object.r0 = instance.world_to_object[0];
-    to_object.r1 = instance.world_to_object[1];
-    to_object.r2 = instance.world_to_object[2];
-    vec3 origin = transform_point(to_object, ray.origin);
-    return make_ray_space(origin, transform_vector(to_object, ray.direction), corner_pad(origin, instance.extent));
+    vec3 origin = ray.origin;
+    vec3 direction = ray.direction;
+    if ((options.features & FEATURE_TRANSFORMS) != 0u)
+    {
+        Rows to_object;
+        to_object.r0 = instance.world_to_object[0];
+        to_object.r1 = instance.world_to_object[1];
+        to_object.r2 = instance.world_to_object[2];
+        origin = transform_point(to_object, origin);
+        direction = transform_vector(to_object, direction);
+    }
+    origin = without_negative_zeros(origin);
+    return make_ray_space(origin, without_negative_zeros(direction), corner_pad(origin, instance.extent));
 }
 
 FUNC Candidate candidate_of(InInstance inside, uint primitive_index, TraceOptions options)
@@ -101,7 +116,7 @@ FUNC bool intersect_box(BvhTriangle box, InInstance inside, RaySpace space, floa
 FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, float t_min, float t_best,
                          TraceOptions options, INOUT(TriangleHit) hit)
 {
-    if (inside.has_boxes) return intersect_box(leaf, inside, space, t_min, t_best, options, hit);
+    if ((options.features & FEATURE_BOXES) != 0u && inside.has_boxes) return intersect_box(leaf, inside, space, t_min, t_best, options, hit);
     bool is_met = false;
 #ifdef TWINRAY_REFINED
     if (options.level == LEVEL_CERTIFIED)
@@ -110,6 +125,7 @@ FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, fl
 #endif
     if (options.level == LEVEL_FAST) is_met = intersect_triangle_fast(leaf.v0, leaf.v1, leaf.v2, space, hit);
     else is_met = intersect_triangle(leaf.v0, leaf.v1, leaf.v2, space, hit);
+    if ((options.features & FEATURE_CULLING) == 0u) return is_met;
     return is_met && (inside.culled == 0u || inside.culled != (hit.along ? CULL_BACK : CULL_FRONT));
 }
 
@@ -148,7 +164,7 @@ FUNC bool visit_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceO
     TriangleHit hit;
     if (!intersect_leaf(leaf, inside, space, search.t_min, search.t_best, options, hit) || !comes_after(hit, search.t_min) ||
         !comes_before(hit, inside.index, leaf.primitive_index, search.t_best, search.t_best_low, search.best) ||
-        (inside.is_filtered &&
+        ((options.features & FEATURE_FILTERS) != 0u && inside.is_filtered &&
          !accept_hit(candidate_of(inside, leaf.primitive_index, options), t_of_given(hit.t, options),
                      vec2(hit.u, hit.v))))
         return false;
@@ -164,9 +180,10 @@ FUNC bool visit_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceO
     return true;
 }
 
-FUNC bool is_visible(SwInstance instance, uint mask)
+FUNC bool is_visible(SwInstance instance, TraceOptions options)
 {
-    return (instance.custom_index_mask >> 24u & mask) != 0u && instance.root != NOTHING;
+    bool is_seen = (options.features & FEATURE_MASKS) == 0u || (instance.custom_index_mask >> 24u & options.mask) != 0u;
+    return is_seen && instance.root != NOTHING;
 }
 
 FUNC RaySpace world_space(SwScene scene, Ray ray)

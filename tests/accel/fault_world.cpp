@@ -24,7 +24,8 @@ std::vector<float> distances(const std::vector<Hit>& hits) {
 }  // namespace
 
 std::unique_ptr<AbstractAccel> make_accel(Context& context, test::Kind kind) {
-    if (kind == test::Kind::software) return std::make_unique<SwTlas>(context);
+    if (kind == test::Kind::software)
+        return std::make_unique<SwTlas>(context, AccelOptions{.compiles_in_background = false});
     return std::make_unique<HwTlas>(context);
 }
 

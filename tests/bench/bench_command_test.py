@@ -81,6 +81,17 @@ assert abs(growth["growth"]["primary_ns_per_ray"]["per_doubling"] - (times[2] - 
 _, records = bench("--moves", "20", "--rounds", "1")
 assert records and all(r["refit_ms"] > 0 and r["rebuild_ms"] > 0 for r in records)
 
+# What features cost: rungs hold more and more, and find the same.
+said, records = bench("--validation", "--ladder", "--scene", "sphere:320", "--width", "16", "--rounds", "5")
+for kind in KINDS:
+    rungs = [r for r in records if r["rays"] == kind]
+    assert [r["rung"] for r in rungs][:2] == ["by hand", "needed"] and len(rungs) == (10 if kind == "occlusion" else 9)
+    assert all(a["features"] & b["features"] == a["features"] for a, b in zip(rungs, rungs[1:]))
+    assert len({r["hits_hash"] for r in rungs}) == 1 and rungs[0]["hits_hash"] in said
+    assert all(r["ns_per_ray"] > 0 and r["rounds"] == 5 for r in rungs) and rungs[1]["of_needed"] == 1
+_, records = bench("--ladder", "--scene", "instances:3x80", "--width", "16", "--layouts", "bvh2", "--rays", "primary")
+assert [r["rung"] for r in records] == ["needed", "+ masks", "+ culling", "+ filters", "+ boxes", "+ other layout"]
+
 # What is wrong is said.
 assert "'abc' is not a whole number" in bench("--scene", "sphere:abc", status=1)[0]
 assert "no contestant's name has a part 'nobody'" in bench("--scene", "sphere:80", "--contestants", "nobody", status=1)[0]
@@ -89,6 +100,7 @@ bench("--scene", "sphere:80", "--width", "12", status=2)
 bench("--scene", "sphere:80", "--max-seconds", "0", status=2)
 bench("--growth", "1", status=2)
 bench("--rounds", "1", status=2)
+bench("--ladder", status=2)
 bench("--scene", "sphere:80", "--growth", "80", status=2)
 
 # History: each run is appended, and drawn where matplotlib is.

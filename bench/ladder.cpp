@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "bench/ladder.h"
+
+#include <algorithm>
+
+#include "bench/figures.h"
+#include "bench/hits_hash.h"
+#include "bench/report.h"
+#include "bench/table.h"
+#include "bench_minimal.spv.h"
+#include "engine/accel/scene_push.h"
+#include "ladder_program.trace_program.h"
+#include "swtlas/sw_tlas.h"
+
+namespace twinray::bench {
+namespace {
+
+struct Addition {
+    const char* name;
+    uint features;
+};
+// From what scenes most often need to what they rarely do.
+constexpr Addition additions[] = {
+    {"+ hits", FEATURE_HITS},           {"+ transforms", FEATURE_TRANSFORMS},
+    {"+ instances", FEATURE_INSTANCES}, {"+ masks", FEATURE_MASKS},
+    {"+ culling", FEATURE_CULLING},     {"+ filters", FEATURE_FILTERS},
+    {"+ boxes", FEATURE_BOXES},         {"+ other layout", FEATURE_BVH2 | FEATURE_COMPRESSED}};
+
+// What minimal.comp can do.
+constexpr uint minimal_features = FEATURE_COMPRESSED;
+
+// A scene, traced by one program.
+class RungContestant : public Contestant {
+  public:
+    RungContestant(AbstractAccel& accel, Level level, std::unique_ptr<TraceProgram> program)
+        : Contestant({.name = program->name(),
+                      .backend = "sw",
+                      .path = "compute",
+                      .order = "",
+                      .layout = std::string(name_of(accel.options().layout)),
+                      .builder = "fast",
+                      .level = level_name(level)}),
+          accel_(accel),
+          level_(level),
+          program_(std::move(program)) {}
+
+    uint features() const { return program_->features(); }
+
+    BuildFigures build(const Scene&) override { return {}; }
+    double trace(const RayBatch& batch) override {
+        const auto& [rays, hits] = batch.on(accel_.context());
+        Commands commands(accel_.context(), "ladder");
+        accel_.trace(commands, accel_.view(),
+                     {.rays = rays.ref<Ray>(),
+                      .hits = hits.ref<Hit>(),
+                      .count = batch.rays().size(),
+                      .query = batch.query(),
+                      .level = level_,
+                      .answer_only = true,
+                      .program = program_.get()});
+        commands.submit();
+        double ms = 0;
+        for (const PassTiming& pass : commands.timings()) ms += pass.ms;
+        return ms;
+    }
+    std::vector<Hit> hits(const RayBatch& batch) const override {
+        return download<Hit>(accel_.context(), batch.on(accel_.context()).hits, batch.rays().size());
+    }
+
+  private:
+    AbstractAccel& accel_;
+    Level level_;
+    std::unique_ptr<TraceProgram> program_;
+};
+
+TraceProgramCode minimal_program() {
+    TraceProgramCode code;
+    code.software = bench_minimal_spirv;
+    return code;
+}
+
+std::unique_ptr<TraceProgram> program_of(const AbstractAccel& accel, const std::string& name, uint features,
+                                         const TraceProgramCode& code) {
+    return std::make_unique<KernelProgram>(accel.context(), accel.view().accel, features, name, code.software,
+                                           code.software_refined);
+}
+
+LineUp line_up_of(AbstractAccel& accel, Level level, Query query) {
+    LineUp line_up;
+    const auto add = [&](const std::string& name, uint features, const TraceProgramCode& code) {
+        line_up.push_back(std::make_unique<RungContestant>(accel, level, program_of(accel, name, features, code)));
+    };
+    uint features = accel.features_for({.query = query, .answer_only = true});
+    if ((features & ~FEATURE_HITS) == minimal_features && level == Level::watertight)
+        add("by hand", features, minimal_program());
+    add("needed", features, ladder_program);
+    for (const Addition& addition : additions) {
+        if ((addition.features & ~features) == 0) continue;
+        features |= addition.features;
+        add(addition.name, features, ladder_program);
+    }
+    return line_up;
+}
+
+Ladder measure_ladder(AbstractAccel& accel, RayKind kind, std::vector<Ray>&& rays, const LadderOptions& options) {
+    LineUp line_up = line_up_of(accel, options.level, query_of(kind));
+    const RayBatch batch(std::move(rays), query_of(kind), kind == RayKind::primary);
+    const std::vector<TraceRounds> rounds =
+        measure_traces(line_up, batch, {.rounds = options.rounds, .max_ms = 1e9}, [] {});
+    Ladder ladder{.kind = kind, .rungs = {}};
+    for (std::size_t i = 0; i < line_up.size(); ++i)
+        ladder.rungs.push_back(
+            {line_up[i]->labels().name, static_cast<const RungContestant&>(*line_up[i]).features(), rounds[i]});
+    ladder.needed = ladder.rungs.front().name == "by hand" ? 1 : 0;
+    return ladder;
+}
+
+}  // namespace
+
+double Ladder::ratio(std::size_t rung) const { return speed_up(rungs[needed].rounds, rungs[rung].rounds); }
+
+bool Ladder::agrees() const {
+    return std::all_of(rungs.begin(), rungs.end(),
+                       [&](const Rung& rung) { return rung.rounds.hash == rungs.front().rounds.hash; });
+}
+
+std::vector<Ladder> measure_ladders(Context& context, const BenchScene& scene, const LadderOptions& options,
+                                    std::span<const RayKind> kinds) {
+    auto rays = make_rays(context, scene, options.width, options.seed);
+    SwTlas accel(context, {.level = options.level, .layout = options.layout, .can_move = false});
+    push_scene(accel, scene.scene);
+    accel.sync();
+    std::vector<Ladder> ladders;
+    for (const RayKind kind : kinds)
+        ladders.push_back(measure_ladder(accel, kind, std::move(rays[static_cast<std::size_t>(kind)]), options));
+    return ladders;
+}
+
+void print_ladder(std::ostream& out, const Ladder& ladder) {
+    std::vector<std::vector<std::string>> rows = {
+        {std::string(name_of(ladder.kind)), "ns/ray", "min", "of needed", "hash of hits"}};
+    for (std::size_t i = 0; i < ladder.rungs.size(); ++i) {
+        const Ladder::Rung& rung = ladder.rungs[i];
+        const Spread ns = spread_of(rung.rounds.ns_per_ray);
+        rows.push_back({rung.name, number_text(ns.median, 4), number_text(ns.min, 4), fixed_text(ladder.ratio(i), 3),
+                        hexadecimal(rung.rounds.hash.value())});
+    }
+    print_table(out, rows);
+}
+
+std::vector<nlohmann::json> records_of(const nlohmann::json& base, const Ladder& ladder) {
+    std::vector<nlohmann::json> records;
+    for (std::size_t i = 0; i < ladder.rungs.size(); ++i) {
+        const Ladder::Rung& rung = ladder.rungs[i];
+        const Spread ns = spread_of(rung.rounds.ns_per_ray);
+        nlohmann::json record = base;
+        record.update({{"schema", record_schema},
+                       {"rays", name_of(ladder.kind)},
+                       {"n", rung.rounds.n},
+                       {"rounds", rung.rounds.ns_per_ray.size()},
+                       {"rung", rung.name},
+                       {"features", rung.features},
+                       {"ns_per_ray", ns.median},
+                       {"ns_per_ray_min", ns.min},
+                       {"ns_per_ray_max", ns.max},
+                       {"of_needed", ladder.ratio(i)},
+                       {"hits_hash", hexadecimal(rung.rounds.hash.value())}});
+        records.push_back(std::move(record));
+    }
+    return records;
+}
+
+}  // namespace twinray::bench

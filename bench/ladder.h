@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// What each feature of shaders/shared/features.h costs a scene that does not need it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <ostream>
+
+#include "bench/run.h"
+
+namespace twinray::bench {
+
+struct LadderOptions {
+    Layout layout = Layout::compressed4;
+    Level level = Level::watertight;
+    std::size_t rounds = 9;  // at least 5
+    std::uint64_t seed = 1;
+    uint width = 256;  // as RunOptions::width
+};
+
+// One set of rays on the rungs of a ladder: programs for the same scene that bits of FEATURES are added to, one after
+// the other. The first has those alone that the trace needs; where a kernel written by hand can trace the scene, it
+// stands below.
+struct Ladder {
+    struct Rung {
+        std::string name;  // "by hand", "needed", "+ masks"
+        uint features = 0;
+        TraceRounds rounds;
+    };
+    RayKind kind;
+    std::vector<Rung> rungs;
+    std::size_t needed = 0;  // which rung has what is needed alone
+
+    // Median over the rounds of its time over that of the rung with what is needed.
+    double ratio(std::size_t rung) const;
+    // Whether all of them found the same.
+    bool agrees() const;
+};
+
+// By SwTlas, of scenes whose instances do not move. Throws Error naming the scene if no primary ray meets it.
+std::vector<Ladder> measure_ladders(Context& context, const BenchScene& scene, const LadderOptions& options,
+                                    std::span<const RayKind> kinds);
+
+void print_ladder(std::ostream& out, const Ladder& ladder);
+// One for each rung, added to the fields of `base`.
+std::vector<nlohmann::json> records_of(const nlohmann::json& base, const Ladder& ladder);
+
+}  // namespace twinray::bench

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// `twinray bench --ladder`: what each feature costs a scene that does not need it.
+#include <iostream>
+
+#include "bench/ladder.h"
+#include "cli/common.h"
+#include "engine/core/error.h"
+#include "engine/report/recorder.h"
+#include "twinray_version.h"
+
+namespace twinray::cli {
+
+void bench_ladder(const CommonOptions& options, const std::string& scene_name, const bench::RunOptions& run) {
+    const bench::BenchScene scene = bench::make_scene(scene_name);
+    const std::unique_ptr<Context> context = make_context(options);
+    const bench::LadderOptions ladder_options{.layout = run.line_up.layouts.front(),
+                                              .level = run.line_up.levels.front(),
+                                              .rounds = std::max<std::size_t>(run.rounds, 5),
+                                              .seed = options.seed,
+                                              .width = run.width};
+    std::cout << "bench " << scene.name << ": features that " << name_of(ladder_options.layout) << ' '
+              << bench::level_name(ladder_options.level) << " does not need, one more on each rung, medians of "
+              << ladder_options.rounds << " interleaved rounds, on " << context->facts().name << '\n';
+    const nlohmann::json base = {{"device", describe(*context)},
+                                 {"started", utc_now()},
+                                 {"git", twinray_version},
+                                 {"width", run.width},
+                                 {"seed", options.seed},
+                                 {"scene", scene.name},
+                                 {"layout", name_of(ladder_options.layout)},
+                                 {"level", bench::level_name(ladder_options.level)}};
+    bool agree = true;
+    for (const bench::Ladder& ladder : measure_ladders(*context, scene, ladder_options, run.kinds)) {
+        std::cout << '\n';
+        print_ladder(std::cout, ladder);
+        for (const nlohmann::json& record : records_of(base, ladder)) append_json(options.json, record);
+        agree = agree && ladder.agrees();
+    }
+    if (!agree) fail("bench: programs with more features than needed found other hits");
+}
+
+}  // namespace twinray::cli

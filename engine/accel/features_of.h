@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// Which features of shaders/shared/features.h a trace needs: a pure function of what is known when it is recorded.
+#pragma once
+
+#include <cstddef>
+
+#include "engine/accel/trace_desc.h"
+
+namespace twinray {
+
+struct AccelFacts {
+    bool is_software = true;
+    Layout layout = Layout::compressed4;  // of software
+    bool reorders = false;                // hardware: see FEATURE_REMAP
+};
+
+struct SceneFacts {
+    bool has_boxes = false;
+    bool has_filters = false;
+    std::size_t instances = 1;
+    uint common_mask = 0xff;      // bits that the masks of all instances share
+    bool has_transforms = false;  // an instance may be, now or later, elsewhere than its geometry as it was built
+
+    // The scene that needs everything that needs no trace program.
+    static constexpr SceneFacts of_every_kind() { return {.instances = 2, .common_mask = 0, .has_transforms = true}; }
+};
+
+struct TraceFacts {
+    uint mask = 0xff;
+    bool culls = false;
+    bool wants_hits = true;  // all of each, not only whether there is one
+
+    static TraceFacts of(const TraceDesc& desc) {
+        return {desc.mask, desc.cull != Cull::none, desc.query == Query::closest || !desc.answer_only};
+    }
+    // A kernel may ask for any mask, and cull.
+    static constexpr TraceFacts of_every_kind() { return {.mask = 0, .culls = true}; }
+};
+
+constexpr uint features_of(const AccelFacts& accel, const SceneFacts& scene, const TraceFacts& trace) {
+    const auto if_needed = [](bool is_needed, uint feature) { return is_needed ? feature : 0; };
+    const uint of_both = if_needed(scene.has_boxes, FEATURE_BOXES) | if_needed(scene.has_filters, FEATURE_FILTERS) |
+                         if_needed(trace.wants_hits, FEATURE_HITS);
+    if (!accel.is_software) return of_both | if_needed(accel.reorders, FEATURE_REMAP);
+    return of_both | (accel.layout == Layout::bvh2 ? FEATURE_BVH2 : FEATURE_COMPRESSED) |
+           if_needed(scene.instances != 1, FEATURE_INSTANCES) |
+           if_needed((trace.mask & scene.common_mask) == 0, FEATURE_MASKS) | if_needed(trace.culls, FEATURE_CULLING) |
+           if_needed(scene.has_transforms, FEATURE_TRANSFORMS);
+}
+
+}  // namespace twinray

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+// Programs that leave out what a trace does not need: the same hits, bit for bit, as the one that leaves out nothing.
+#include <cstring>
+#include <map>
+#include <random>
+
+#include "engine/verify/aimed_rays.h"
+#include "tests/accel/accel_fixture.h"
+#include "test_program.trace_program.h"
+
+namespace twinray {
+namespace {
+
+// Random ones, and others along axes and within planes, with zeros of both signs.
+std::vector<Ray> rays_with_zeros() {
+    std::vector<Ray> rays = random_rays({vec3(-1.5f), vec3(1.5f)}, 6000, 4);
+    std::mt19937 random(5);
+    for (std::size_t i = 0; i < rays.size(); i += 2) {
+        vec3& direction = rays[i].direction;
+        const auto kept = static_cast<int>(random() % 3);
+        for (int axis = 0; axis < 3; ++axis) {
+            const float zero = random() % 2 ? 0.0f : -0.0f;
+            if (axis != kept && random() % 4) direction[axis] = zero;
+            if (random() % 4 == 0) rays[i].origin[axis] = zero;
+        }
+        if (direction[kept] == 0) direction[kept] = -1;
+    }
+    return rays;
+}
+
+class Features : public test::VulkanTest, public ::testing::WithParamInterface<std::tuple<Layout, Level>> {
+  protected:
+    void SetUp() override {
+        VulkanTest::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        if (SwTlas::capability_on(context().facts(), feature_of(level())).support == Support::unsupported)
+            TWINRAY_LACKS("float64", "no float64");
+        accel_ = std::make_unique<SwTlas>(
+            context(),
+            AccelOptions{.level = std::max(level(), Level::watertight), .layout = layout(), .can_move = false});
+    }
+    void TearDown() override {
+        programs_.clear();
+        accel_.reset();
+        VulkanTest::TearDown();
+    }
+    SwTlas& accel() { return *accel_; }
+    static Layout layout() { return std::get<0>(GetParam()); }
+    static Level level() { return std::get<1>(GetParam()); }
+    static uint of_layout() { return layout() == Layout::bvh2 ? FEATURE_BVH2 : FEATURE_COMPRESSED; }
+
+    uint features_for(const TraceDesc& desc) {
+        accel().sync();
+        return accel().features_for(desc);
+    }
+    // Traced by a program with what features_for() says, and by one with all.
+    void expect_equal(TraceDesc desc = {}) {
+        desc.level = level();
+        const uint needed = features_for(desc);
+        const TraceProgram &lean = program(needed), &general = program(FEATURES_ALL);
+        ASSERT_EQ(lean.features(), needed);
+        const std::vector<Ray> rays = rays_with_zeros();
+        std::size_t hits = 0;
+        for (const bool is_any : {false, true}) {
+            const auto trace = [&](const TraceProgram& program) {
+                desc.program = &program;
+                return is_any ? accel().any_hits(rays, desc) : accel().closest_hits(rays, desc);
+            };
+            const std::vector<Hit> leaner = trace(lean), all = trace(general);
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                ASSERT_TRUE(is_same(leaner[i], all[i])) << "ray " << i << ", any " << is_any << ", features " << needed;
+                hits += all[i].hit;
+            }
+        }
+        EXPECT_GT(hits, rays.size() / 50);
+    }
+
+  private:
+    // To the last bit; at level fast, whose arithmetic compilers may rearrange, but for the signs of zeros.
+    static bool is_same(const Hit& a, const Hit& b) {
+        if (level() != Level::fast) return std::memcmp(&a, &b, sizeof(Hit)) == 0;
+        return a.hit == b.hit && a.primitive_index == b.primitive_index && a.instance_index == b.instance_index &&
+               a.t == b.t && a.u == b.u && a.v == b.v;
+    }
+    const TraceProgram& program(uint features) {
+        std::unique_ptr<TraceProgram>& program = programs_[features];
+        if (!program) program = accel().make_program(test_program, features);
+        return *program;
+    }
+
+    std::unique_ptr<SwTlas> accel_;
+    std::map<uint, std::unique_ptr<TraceProgram>> programs_;
+};
+
+std::string name_of_features(const ::testing::TestParamInfo<std::tuple<Layout, Level>>& info) {
+    const char* names[] = {"_fast", "_watertight", "_refined", "_certified"};
+    return std::string(name_of(std::get<0>(info.param))) + names[static_cast<std::size_t>(std::get<1>(info.param))];
+}
+INSTANTIATE_TEST_SUITE_P(Every, Features,
+                         ::testing::Combine(::testing::Values(Layout::compressed4, Layout::bvh2),
+                                            ::testing::Values(Level::fast, Level::watertight, Level::refined,
+                                                              Level::certified)),
+                         name_of_features);
+
+TEST_P(Features, LeanProgramsFindWhatTheGeneralOneFinds) {
+    const uint one = of_layout() | FEATURE_HITS, several = one | FEATURE_INSTANCES;
+    const AccelHandle first = accel().push(make_icosphere(3), Transform{}, {.custom_index = 7, .mask = 6});
+    EXPECT_EQ(features_for({.mask = 2}), one);
+    EXPECT_EQ(features_for({.mask = 1}), one | FEATURE_MASKS);
+    EXPECT_EQ(features_for({.cull = Cull::back}), one | FEATURE_CULLING);
+    EXPECT_EQ(accel().view().features, one | FEATURE_MASKS | FEATURE_CULLING) << "kernels may ask for anything";
+    expect_equal();
+    expect_equal({.mask = 2});
+    expect_equal({.cull = Cull::front});
+
+    accel().push(make_soup(300, 3, 0.3f), Transform{}, {.mask = 3, .turned = true});
+    accel().push(make_grid(8, 8), Transform{}, {.mask = 2, .no_culling = true});
+    EXPECT_EQ(features_for({}), several) << "all have bit 1";
+    EXPECT_EQ(features_for({.mask = 5}), several | FEATURE_MASKS);
+    expect_equal();
+    expect_equal({.mask = 5});
+    expect_equal({.cull = Cull::back});
+
+    accel().erase(first);
+    accel().push(make_icosphere(2), Transform::translation({0.7f, 0, 0.2f}) * Transform::scaling({1, 2, -1}));
+    EXPECT_EQ(features_for({}), several | FEATURE_TRANSFORMS);
+    expect_equal();
+}
+
+class FeaturesOfAccel : public Features {};
+INSTANTIATE_TEST_SUITE_P(Some, FeaturesOfAccel,
+                         ::testing::Values(std::tuple(Layout::compressed4, Level::watertight),
+                                           std::tuple(Layout::bvh2, Level::certified)),
+                         name_of_features);
+
+TEST_P(FeaturesOfAccel, MeshesBuiltInAnotherUnitAreElsewhere) {
+    Mesh tiny = make_icosphere(2);
+    for (vec3& position : tiny.positions) position *= 0x1p-40f;
+    accel().push(tiny);
+    EXPECT_TRUE(features_for({}) & FEATURE_TRANSFORMS);
+    const Ray ray{vec3(0, 0, 0x1p-38f), 0, vec3(0, 0, -1), INFINITY};
+    EXPECT_EQ(accel().closest_hits(std::span(&ray, 1), {.level = level()})[0].hit, 1u);
+}
+
+TEST_P(FeaturesOfAccel, WhatMayMoveIsTransformedWhereverItStands) {
+    SwTlas movable(context(), {.level = std::max(level(), Level::watertight), .layout = layout()});
+    const AccelHandle handle = movable.push(test::square(0));
+    const Ray ray = test::down(10.5f, 0.5f);
+    EXPECT_EQ(movable.closest_hits(std::span(&ray, 1), {.level = level()})[0].hit, 0u);
+    const AccelView view = movable.view();
+    EXPECT_TRUE(view.features & FEATURE_TRANSFORMS);
+    movable.update_transform(handle, Transform::translation({10, 0, 0}));
+    EXPECT_EQ(movable.closest_hits(std::span(&ray, 1), {.level = level()})[0].hit, 1u);
+    EXPECT_EQ(movable.revision(), view.revision) << "the view of before is as good";
+}
+
+TEST_P(FeaturesOfAccel, WhatMayNotMoveDoesNot) {
+    const AccelHandle handle = accel().push(test::square(0));
+    accel().sync();
+    const Transform transform;
+    const auto refused = [](const std::function<void()>& action) {
+        return test::error_of(action).find("can_move = false") != std::string::npos;
+    };
+    EXPECT_TRUE(refused([&] { accel().update_transform(handle, transform); }));
+    EXPECT_TRUE(refused([&] { accel().update_transform_at(handle, 0, transform); }));
+    EXPECT_TRUE(refused([&] { accel().update_transforms(handle, std::span(&transform, 1)); }));
+    EXPECT_TRUE(refused([&] { accel().update_transforms(handle, Ref<Transform>{64}, 1); }));
+    EXPECT_TRUE(refused([&] { accel().mark_transforms_dirty(handle); }));
+    EXPECT_EQ(accel().instance_buffer(handle).count, 1u) << "may be read";
+}
+
+// Whichever program serves, and however many have been compiled by then.
+TEST_P(FeaturesOfAccel, ProgramsChangeInTheBackgroundAndHitsDoNot) {
+    accel().push(make_icosphere(3), Transform{}, {.mask = 1});
+    const std::vector<Ray> rays = rays_with_zeros();
+    const TraceDesc descs[] = {{}, {.cull = Cull::back}, {.mask = 2}, {.mask = 2, .cull = Cull::back}};
+    std::vector<std::vector<Hit>> first;
+    for (int pass = 0; pass < 3; ++pass) {
+        for (std::size_t i = 0; i < std::size(descs); ++i) {
+            TraceDesc desc = descs[i];
+            desc.level = level();
+            const std::vector<Hit> hits = accel().closest_hits(rays, desc);
+            if (pass == 0) first.push_back(hits);
+            ASSERT_EQ(std::memcmp(hits.data(), first[i].data(), hits.size() * sizeof(Hit)), 0);
+        }
+        if (pass == 1) accel().wait_for_programs();
+    }
+}
+
+TEST_P(FeaturesOfAccel, AnAnswerAloneIsThatOfTheWholeHit) {
+    accel().push(make_icosphere(3));
+    accel().sync();
+    const std::vector<Ray> rays = rays_with_zeros();
+    const std::vector<Hit> whole = accel().any_hits(rays, {.level = level()});
+    const Buffer ray_buffer(context(), {.name = "rays", .bytes = std::span(rays).size_bytes()});
+    const Buffer hits(context(), {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
+    for (const bool is_waited_for : {false, true}) {
+        if (is_waited_for) accel().wait_for_programs();
+        Commands commands(context(), "answers");
+        {
+            const auto pass = commands.pass("rays");
+            commands.upload(ray_buffer, std::span<const Ray>(rays));
+        }
+        accel().trace(commands, accel().view(),
+                      {.rays = ray_buffer.ref<Ray>(),
+                       .hits = hits.ref<Hit>(),
+                       .count = rays.size(),
+                       .query = Query::any,
+                       .level = level(),
+                       .answer_only = true});
+        commands.submit();
+        const std::vector<Hit> answers = download<Hit>(context(), hits, rays.size());
+        for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(answers[i].hit, whole[i].hit) << "ray " << i;
+    }
+}
+
+}  // namespace
+}  // namespace twinray

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Which program serves while others are compiled.
+#include "engine/accel/own_programs.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <semaphore>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+constexpr uint all = 7;
+
+class OwnProgramsTest : public ::testing::Test {
+  protected:
+    // Compiles while it holds `gate`; features 4 cannot be compiled.
+    class Program : public TraceProgram {
+      public:
+        Program(OwnProgramsTest& test, uint features) : TraceProgram(1, features, "test"), test_(test) {}
+        void prepare(Query, Level) const override {
+            test_.gate.acquire();
+            test_.gate.release();
+            if (features() == 4) fail("cannot be compiled");
+            ++test_.compiled;
+        }
+        void record(Commands&, const TraceArgs&, Query, Level) const override {}
+
+      private:
+        OwnProgramsTest& test_;
+    };
+
+    std::unique_ptr<OwnPrograms> make(bool in_background) {
+        return std::make_unique<OwnPrograms>(
+            [this](uint features) { return std::make_unique<Program>(*this, features); }, all, in_background);
+    }
+    static uint serving(OwnPrograms& programs, uint features, Query query = Query::closest) {
+        return programs.get(features, query, Level::watertight).features();
+    }
+
+    std::counting_semaphore<> gate{1};
+    std::atomic<int> compiled = 0;
+};
+
+TEST_F(OwnProgramsTest, TheFirstTraceHasTheProgramThatFits) {
+    const auto programs = make(true);
+    EXPECT_EQ(serving(*programs, 1), 1u);
+    programs->wait();
+    EXPECT_EQ(compiled, 2) << "and the general one in the background";
+}
+
+TEST_F(OwnProgramsTest, TheGeneralOneServesUntilTheLeanOneIsThere) {
+    const auto programs = make(true);
+    serving(*programs, 1);
+    programs->wait();
+    gate.acquire();
+    EXPECT_EQ(serving(*programs, 2), all);
+    EXPECT_EQ(serving(*programs, 2), all);
+    EXPECT_EQ(serving(*programs, 1), 1u) << "is there already";
+    gate.release();
+    programs->wait();
+    EXPECT_EQ(serving(*programs, 2), 2u);
+    EXPECT_EQ(compiled, 3);
+    EXPECT_EQ(serving(*programs, 2, Query::any), 2u) << "first of its kind";
+}
+
+TEST_F(OwnProgramsTest, WithoutABackgroundEachTraceWaits) {
+    const auto programs = make(false);
+    for (const uint features : {1u, 2u, all}) EXPECT_EQ(serving(*programs, features), features);
+    EXPECT_EQ(compiled, 3);
+}
+
+TEST_F(OwnProgramsTest, WhatFailsInTheBackgroundIsNeverServed) {
+    const auto programs = make(true);
+    EXPECT_THROW(serving(*programs, 4), Error) << "no other is there";
+    serving(*programs, 1);
+    programs->wait();
+    EXPECT_EQ(serving(*programs, 4), all);
+    programs->wait();
+    EXPECT_EQ(serving(*programs, 4), all);
+}
+
+TEST_F(OwnProgramsTest, TheEndWaitsForTheOneThatIsBeingCompiledAlone) {
+    auto programs = make(true);
+    serving(*programs, 1);
+    programs->wait();
+    gate.acquire();
+    serving(*programs, 2);
+    serving(*programs, 3);
+    std::thread release([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        gate.release();
+    });
+    programs.reset();
+    release.join();
+    EXPECT_LE(compiled, 3);
+}
+
+}  // namespace
+}  // namespace twinray

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Counts the instructions of trace.comp, its specialisation constants frozen and optimised by spirv-opt: each feature that
+is left out must make it smaller, and the leanest variants may not outgrow instruction_counts.txt, which --record writes
+anew. Usage: variants_test.py FEATURES_H COUNTS [--record] BACKEND=MODULE.spv..., BACKEND being sw or hw."""
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+
+QUERY, FEATURES, LEVEL = 0, 100, 101  # ids of the constants
+CLOSEST, ANY, WATERTIGHT = 0, 1, 1
+# What each backend may leave out; of layouts one stays.
+OPTIONAL = {"sw": ["BOXES", "FILTERS", "BVH2", "INSTANCES", "MASKS", "CULLING", "TRANSFORMS", "HITS"],
+            "hw": ["BOXES", "FILTERS", "REMAP", "HITS"]}
+LEAST = {"sw": ["COMPRESSED"], "hw": []}
+
+arguments = [a for a in sys.argv[1:] if a != "--record"]
+header, counts_file = map(pathlib.Path, arguments[:2])
+modules = dict(a.split("=", 1) for a in arguments[2:])
+bits = {name: int(value) for name, value in re.findall(r"^const uint FEATURE_(\w+) = (\d+)u;", header.read_text(), re.M)}
+uncovered = set(bits) - {name for names in [*OPTIONAL.values(), *LEAST.values()] for name in names}
+assert not uncovered, f"no module leaves out {uncovered}: add them to the table"
+folder = pathlib.Path(tempfile.mkdtemp())
+
+
+def count(module, query, features):
+    """Instructions between OpFunction and OpFunctionEnd, without labels and line numbers."""
+    frozen = folder / "frozen.spv"
+    value = sum(bits[name] for name in features)
+    subprocess.run(["spirv-opt", "--scalar-block-layout", "--target-env=vulkan1.2",
+                    f"--set-spec-const-default-value={QUERY}:{query} {FEATURES}:{value} {LEVEL}:{WATERTIGHT}",
+                    "--freeze-spec-const", "--fold-spec-const-op-composite", "-O", module, "-o", str(frozen)], check=True)
+    data = frozen.read_bytes()
+    words, at, inside, found = struct.unpack(f"<{len(data) // 4}I", data), 5, False, 0
+    while at < len(words):
+        opcode = words[at] & 0xFFFF
+        inside = (inside or opcode == 54) and opcode != 56
+        found += inside and opcode not in (8, 248, 317)
+        at += words[at] >> 16
+    return found
+
+
+faults, counts = [], {}
+recorded = {} if "--record" in sys.argv else dict(
+    line.rsplit(" ", 1) for line in counts_file.read_text().splitlines() if line and line[0] != "#")
+for backend, module in modules.items():
+    everything = OPTIONAL[backend] + LEAST[backend]
+    for query, query_name in ((CLOSEST, "closest"), (ANY, "any")):
+        optional = [name for name in OPTIONAL[backend] if name != "HITS" or query == ANY]
+        kept = [name for name in everything if name not in optional]
+        least, most = count(module, query, kept), count(module, query, everything)
+        print(f"{backend} {query_name}: {most} instructions with everything, {least} with {' '.join(kept) or 'nothing'}")
+        for name in optional:
+            without = count(module, query, [n for n in everything if n != name])
+            alone = count(module, query, kept + [name])
+            print(f"    {name:<11} {without - most:+6} left out of everything, {alone - least:+6} added to the least")
+            if without >= most or alone < least:
+                faults.append(f"{backend} {query_name}: leaving {name} out leaves out nothing")
+        key = f"{backend} {query_name} least"
+        counts[key] = least
+        if "--record" not in sys.argv and least > int(recorded.get(key, 0)):
+            faults.append(f"{key}: {least} instructions, recorded are {recorded.get(key)}; --record if it must be so")
+
+if "--record" in sys.argv:
+    counts_file.write_text("# Written by variants_test.py --record: instructions of the leanest variants of trace.comp.\n" +
+                           "".join(f"{key} {value}\n" for key, value in counts.items()))
+print("\n".join(faults))
+sys.exit(1 if faults else 0)
