@@ -87,14 +87,13 @@ class AbstractAccel {
     void update_vertices(AccelHandle handle, Floats positions, std::size_t count);
 
     // Transforms; custom indices, masks and flags stay. update_transform wants a handle with exactly one instance,
-    // update_transforms one transform per instance.
+    // update_transforms one transform per instance. AccelOptions::can_move = false forbids all that moves instances.
     void update_transform(AccelHandle handle, const Transform& transform);
     void update_transforms(AccelHandle handle, std::span<const Transform> transforms);
     void update_transform_at(AccelHandle handle, std::size_t index, const Transform& transform);
     // The same from device memory, read by the next sync. Nobody checks what lies there: an instance whose transform is
     // singular or not finite becomes inactive, and the accelerator warns how many.
     void update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count);
-    // AccelOptions::can_move = false forbids them all.
     // The caller's kernels write into instance_buffer(), then mark_transforms_dirty() lets the next sync take it over.
     InstanceRange instance_buffer(AccelHandle handle) const;
     void mark_transforms_dirty(AccelHandle handle);

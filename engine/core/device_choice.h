@@ -32,11 +32,8 @@ struct DeviceFacts {
 
 // One thing that twinray uses of a device.
 struct Requirement {
-    enum class Of : std::uint8_t {
-        everything,
-        hardware,
-        refinement
-    };  // what does not work without: all, HwTlas, levels
+    // What does not work without: all, HwTlas, or the levels from refined on.
+    enum class Of : std::uint8_t { everything, hardware, refinement };
     const char* what;
     const char* why;  // "because ..."
     Of of;

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// The checkers of trees see what is wrong with one.
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "engine/accel/geometry.h"
+#include "engine/scene/shapes.h"
+#include "swtlas/check.h"
+#include "swtlas/check_compressed.h"
+#include "swtlas/reference.h"
+
+#include <gtest/gtest.h>
+
+namespace twinray {
+namespace {
+
+struct SoupTree {
+    Mesh mesh = make_soup(20, 1);
+    std::vector<LeafBox> boxes = reference::leaves_triangles(mesh.positions, mesh.triangles);
+    reference::Hierarchy tree = {};
+};
+
+SoupTree some_tree() {
+    SoupTree soup;
+    const std::vector<uint> codes = reference::morton(soup.boxes, reference::centroids(soup.boxes));
+    soup.tree = reference::hierarchy(soup.boxes, codes, reference::sort(codes), false);
+    return soup;
+}
+
+TEST(CompressedCheck, NamesWhatIsWrong) {
+    const auto& [mesh, boxes, tree] = some_tree();
+    const std::vector<CompressedRecord> good = reference::records_of_triangles(tree, mesh.positions, mesh.triangles);
+    const Bvh bvh{tree.box.lo, tree.box.hi, {}, 0, 20};
+    EXPECT_TRUE(check_compressed(bvh, good, boxes).violations.empty());
+    EXPECT_FALSE(check_compressed({tree.box.lo, tree.box.hi, {}, 1, 20}, good, boxes).violations.empty());
+    EXPECT_FALSE(check_compressed({tree.box.lo, tree.box.lo, {}, 0, 20}, good, boxes).violations.empty());
+    const auto wrong = [&](const std::function<void(CompressedRecord&)>& spoil) {
+        std::vector<CompressedRecord> bad = good;
+        spoil(bad.front());
+        const CompressedCheck check = check_compressed(bvh, bad, boxes);
+        return check.violations.empty() ? "" : check.violations.front();
+    };
+    EXPECT_NE(wrong([](CompressedRecord& root) { root.b.y -= 1; }).find("lies in planes"), std::string::npos);
+    EXPECT_NE(wrong([](CompressedRecord& root) { root.c.z = 1u << 24; }).find("of 3"), std::string::npos);
+    EXPECT_NE(wrong([](CompressedRecord& root) { root.a.w |= 7u << 24; }).find("has 7 children"), std::string::npos);
+    EXPECT_NE(wrong([](CompressedRecord& root) { root.c.z += 1; }), "");
+}
+
+TEST(Compressed, PlanesLieOutsideAtAnySizeAndPlace) {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    for (int i = 0; i < 20'000; ++i) {
+        const auto power = [&](int range) {
+            return std::ldexp(1.0f, static_cast<int>(random() % (2 * range)) - range);
+        };
+        const vec3 place = vec3(unit(random), unit(random), unit(random)) * power(100);
+        const float size = power(100);
+        NodeChildren children{};
+        std::vector<LeafBox> boxes;
+        children.count = 2 + static_cast<uint>(random() % 3);
+        for (uint child = 0; child < children.count; ++child) {
+            const vec3 a = place + size * vec3(unit(random), unit(random), unit(random));
+            const vec3 b = random() % 4 ? place + size * vec3(unit(random), unit(random), unit(random)) : a;
+            children.box[child] = {min(a, b), max(a, b)};
+            boxes.push_back(children.box[child]);
+        }
+        std::vector<CompressedRecord> records = {encode_node(children, 1)};
+        for (uint child = 0; child < children.count; ++child) records.push_back(encode_instance(child));
+        LeafBox all = empty_box();
+        for (const LeafBox& box : boxes) all = {min(all.lo, box.lo), max(all.hi, box.hi)};
+        const Bvh bvh{all.lo, all.hi, {}, 0, children.count};
+        const CompressedCheck check = check_compressed(bvh, records, boxes);
+        ASSERT_TRUE(check.violations.empty()) << check.violations.front();
+    }
+    EXPECT_LT(record_count(static_cast<uint>(Geometry::max_primitives)), MOST_RECORDS);
+}
+
+TEST(TreeCheck, NamesWhatIsWrong) {
+    const auto& [mesh, boxes, good] = some_tree();
+    const Bvh bvh{good.box.lo, good.box.hi, {}, good.root, 20};
+    EXPECT_TRUE(check_tree(bvh, good.nodes, boxes).violations.empty());
+
+    std::vector<BvhNode> shrunk = good.nodes;
+    shrunk[good.root].lo0.x = std::nextafter(shrunk[good.root].lo0.x, INFINITY);
+    EXPECT_FALSE(check_tree(bvh, shrunk, boxes).violations.empty());
+    std::vector<BvhNode> lost = good.nodes;
+    lost[good.root].child0 = lost[good.root].child1;
+    EXPECT_FALSE(check_tree(bvh, lost, boxes).violations.empty());
+    std::vector<BvhNode> wild = good.nodes;
+    wild[good.root].child1 = 1000;
+    EXPECT_FALSE(check_tree(bvh, wild, boxes).violations.empty());
+}
+
+}  // namespace
+}  // namespace twinray
