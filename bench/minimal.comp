@@ -4,7 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/traverse_compressed.h"
+#include "shaders/shared/traverse_records.h"
 layout(local_size_x = 64) in;
 layout(constant_id = QUERY_CONSTANT) const uint MINIMAL_QUERY = QUERY_CLOSEST;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };
@@ -27,18 +27,28 @@ Hit closest_triangle(SwInstance instance, Ray ray)
     uint height = 1u;
     stack[0] = BOTTOM;
     uint group = BOTTOM;
+    uint before = BOTTOM;
     uint cursor = 0u;
     for (;;)
     {
         CompressedRecord record = load_record(instance.records, cursor);
         if (!is_leaf(record))
         {
+            ChildKeys keys = enter_compressed(record, space, t_min, t_best, MINIMAL_QUERY);
+            uint count = count_entered(keys);
             uint others = BOTTOM;
-            uint count = entered_children(record, space, t_min, t_best, cursor, others);
+            order_children(keys, count, record.c.z, cursor, others);
             if (count > 1u)
             {
-                stack[height] = group;
-                height = height + (is_waiting(group) ? 1u : 0u);
+                if (is_waiting(group))
+                {
+                    if (is_waiting(before))
+                    {
+                        stack[height] = before;
+                        height = height + 1u;
+                    }
+                    before = group;
+                }
                 group = others;
             }
             if (count > 0u) continue;
@@ -59,6 +69,11 @@ Hit closest_triangle(SwInstance instance, Ray ray)
                 best.custom_index = instance.custom_index_mask & 0xffffffu;
                 if (MINIMAL_QUERY == QUERY_ANY) break;
             }
+        }
+        if (!is_waiting(group))
+        {
+            group = before;
+            before = BOTTOM;
         }
         if (!is_waiting(group))
         {

@@ -125,7 +125,7 @@ void add_choice_options(CLI::App& command, bench::RunOptions& run) {
     command.add_option("--levels", run.line_up.levels, "fast, watertight, refined, certified; separated by commas")
         ->delimiter(',')
         ->transform(CLI::CheckedTransformer(levels_by_name()));
-    command.add_option("--layouts", run.line_up.layouts, "of SwTlas: compressed4, bvh2; separated by commas")
+    command.add_option("--layouts", run.line_up.layouts, "of SwTlas: compressed4, bvh2, bvh4; separated by commas")
         ->delimiter(',')
         ->transform(CLI::CheckedTransformer(layouts_by_name()));
     command.add_option("--build-qualities", run.line_up.build_qualities, "of SwTlas: fast, high; separated by commas")

@@ -40,7 +40,7 @@ std::map<std::string, BuildQuality> build_qualities_by_name() {
 void add_tree_options(CLI::App& command, AccelOptions& options) {
     command
         .add_option("--layout", options.layout,
-                    "of the software accelerator's trees: compressed4 (the default) or bvh2")
+                    "of the software accelerator's trees: compressed4 (the default), bvh2 or bvh4")
         ->transform(CLI::CheckedTransformer(layouts_by_name()));
     command
         .add_option("--build-quality", options.build_quality,

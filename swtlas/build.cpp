@@ -79,7 +79,7 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
     const std::vector<CollapseLevel> levels(plan.collapse_levels + 2, {0, 1, 1, 0});
     const std::uint64_t base = scratch.address();
     std::vector<BuildTree> with_nodes(trees.begin(), trees.end());
-    if (plan.layout == Layout::compressed4)
+    if (has_records(plan.layout))
         for (BuildTree& tree : with_nodes) tree.nodes.address = base + at.nodes + tree.first * sizeof(BvhNode);
     {
         const auto pass = commands.pass("swtlas build input");
@@ -139,7 +139,7 @@ void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::s
     leaves_triangles_.dispatch_groups(
         commands, {batch.trees, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0}, batch.block_count);
     const Uints order = record_order(commands, plan, batch);
-    if (plan.layout == Layout::compressed4) {
+    if (has_records(plan.layout)) {
         record_hierarchy(commands, batch, order, false);
         record_collapse(commands, plan, batch);
         return;
@@ -158,7 +158,7 @@ void Builder::record_instances(Commands& commands, const BuildPlan& plan, const 
         commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
         batch.block_count);
     record_hierarchy(commands, batch, record_order(commands, plan, batch), false);
-    if (plan.layout == Layout::compressed4) record_collapse(commands, plan, batch);
+    if (has_records(plan.layout)) record_collapse(commands, plan, batch);
     commands.keep(std::move(scratch));
 }
 
@@ -238,7 +238,7 @@ std::uint64_t area_groups(const Builder::Measured& tree) {
 
 std::uint64_t Builder::cost_bytes(uint leaf_count, Layout layout) {
     // An address stands for any.
-    const Measured tree{{}, {layout == Layout::compressed4 ? 1u : 0u}, leaf_count, {}};
+    const Measured tree{{}, {has_records(layout) ? 1u : 0u}, {}, leaf_count, {}};
     return AreaWork{area_groups(tree), {}, {}, false}.bytes();
 }
 
@@ -249,9 +249,10 @@ void Builder::record_costs(Commands& commands, std::span<const Measured> trees, 
     if (!work.empty()) {
         const auto pass = commands.pass(node_areas_.name());
         for (std::size_t i = 0; i < trees.size(); ++i)
-            node_areas_.dispatch_groups(commands,
-                                        {trees[i].tree, trees[i].records, work[i].items, area_count(trees[i]), 0},
-                                        work[i].item_count);
+            node_areas_.dispatch_groups(
+                commands,
+                {trees[i].tree, trees[i].records, trees[i].record_boxes, work[i].items, area_count(trees[i]), 0},
+                work[i].item_count);
     }
     areas_.record(commands, std::move(work));
 }
@@ -260,7 +261,7 @@ void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, s
                                     const Buffer& scratch) const {
     if (plan.leaf_count == 0) return;
     const Batch batch = begin(commands, plan, trees, scratch);
-    if (plan.layout == Layout::compressed4) return record_records_climb(commands, plan, batch);
+    if (has_records(plan.layout)) return record_records_climb(commands, plan, batch);
     refit_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.boxes, batch.block_count, 0},
                                      batch.block_count);
     record_climb(commands, batch);
@@ -274,7 +275,7 @@ void Builder::record_refit(Commands& commands, const BuildPlan& plan, const Buil
     leaves_instances_.dispatch_groups(
         commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
         batch.block_count);
-    if (plan.layout == Layout::compressed4)
+    if (has_records(plan.layout))
         record_records_climb(commands, plan, batch);
     else
         record_climb(commands, batch);

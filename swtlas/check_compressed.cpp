@@ -38,18 +38,16 @@ class Walk {
           leaf_boxes_(leaf_boxes),
           result_(result),
           seen_records_(records.size()),
-          seen_leaves_(leaf_boxes.size()) {}
+          seen_leaves_(leaf_boxes.size()) {
+        result_.boxes.assign(records.size(), empty_box());
+    }
 
     LeafBox visit(uint index, uint depth) {
         if (index >= records_.size()) return violated(text("record ", index, " of ", records_.size()));
         if (seen_records_[index]) return violated(text("record ", index, " is reached twice"));
         seen_records_[index] = true;
         result_.used.push_back(index);
-        const CompressedRecord& record = records_[index];
-        if (is_leaf(record)) return visit_leaf(record.a.w & ~LEAF_BIT);
-        if (depth >= DEEPEST_TREE) return violated(text("depth exceeds ", DEEPEST_TREE));
-        result_.depth = std::max(result_.depth, depth + 1);
-        return visit_node(index, depth);
+        return result_.boxes[index] = visit_record(index, depth);
     }
 
     void finish(const Bvh& bvh, const LeafBox& all) {
@@ -58,7 +56,10 @@ class Walk {
         for (std::size_t i = 0; i < seen_records_.size(); ++i)
             if (!seen_records_[i] && (is_leaf(records_[i]) || children_in(records_[i]) != 0))
                 violated(text("record ", i, " is not reached, and not none"));
-        if (const double root = half_area(all.lo, all.hi); root > 0) result_.sah = area_ / root;
+        if (const double root = half_area(all.lo, all.hi); root > 0) {
+            result_.sah = area_ / root;
+            result_.full_sah = full_area_ / root;
+        }
         for (std::size_t i = 0; i < seen_leaves_.size(); ++i)
             if (!seen_leaves_[i]) violated(text("leaf ", i, " is not reached"));
     }
@@ -69,6 +70,14 @@ class Walk {
     }
 
   private:
+    LeafBox visit_record(uint index, uint depth) {
+        const CompressedRecord& record = records_[index];
+        if (is_leaf(record)) return visit_leaf(record.a.w & ~LEAF_BIT);
+        if (depth >= DEEPEST_TREE) return violated(text("depth exceeds ", DEEPEST_TREE));
+        result_.depth = std::max(result_.depth, depth + 1);
+        return visit_node(index, depth);
+    }
+
     LeafBox visit_leaf(uint leaf) {
         if (leaf >= leaf_boxes_.size()) return violated(text("leaf ", leaf, " of ", leaf_boxes_.size()));
         if (seen_leaves_[leaf]) violated(text("leaf ", leaf, " is reached twice"));
@@ -85,6 +94,7 @@ class Walk {
             const LeafBox below = visit(node.c.z + child, depth + 1);
             const Planes planes = planes_of(node, child);
             area_ += half_area(planes.lo, planes.hi);
+            full_area_ += half_area(below.lo, below.hi);
             if (!is_active(below)) continue;
             for (int axis = 0; axis < 3; ++axis)
                 if (planes.lo[axis] + least_margin * planes.cell[axis] > double{below.lo[axis]} ||
@@ -100,7 +110,7 @@ class Walk {
     std::span<const LeafBox> leaf_boxes_;
     CompressedCheck& result_;
     std::vector<bool> seen_records_, seen_leaves_;
-    double area_ = 0;
+    double area_ = 0, full_area_ = 0;
 };
 
 }  // namespace

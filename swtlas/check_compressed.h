@@ -12,15 +12,17 @@ namespace twinray {
 struct CompressedCheck {
     std::vector<std::string> violations;  // one sentence each, at most 20
     std::vector<uint> used;               // records that are reached from the root's
+    std::vector<LeafBox> boxes;           // by record: around what is below it, empty where it is not reached
     uint depth = 0;                       // nodes on the longest path
-    double sah = 0;                       // the surface-area cost of the boxes as rays meet them, see surface_area.h
+    double sah = 0;       // the surface-area cost, see surface_area.h, of the boxes as rays meet them in compressed4
+    double full_sah = 0;  // and in bvh4
 };
 
-// Walks a tree of layout compressed4 from records[0] and checks what traversal and refits rely on: `bvh` has the box of
-// all leaves, every leaf is reached exactly once, no record twice, those that are not reached are none, nodes have two
-// to four children, the planes of a child lie outside of what is below it by more than traversal's rounding, and the
-// depth is within what its stack is made for. leaf_boxes[i] is the box of primitive or instance i; one that is empty
-// may lie anywhere.
+// Walks a tree of layout compressed4 or bvh4 from records[0] and checks what traversal and refits rely on: `bvh` has
+// the box of all leaves, every leaf is reached exactly once, no record twice, those that are not reached are none,
+// nodes have two to four children, the planes of a child lie outside of what is below it by more than traversal's
+// rounding, and the depth is within what its stack is made for. leaf_boxes[i] is the box of primitive or instance i;
+// one that is empty may lie anywhere.
 CompressedCheck check_compressed(const Bvh& bvh, std::span<const CompressedRecord> records,
                                  std::span<const LeafBox> leaf_boxes);
 

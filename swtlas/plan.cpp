@@ -40,7 +40,7 @@ BuildScratch layout_scratch(const BuildPlan& plan) {
     }
     scratch.counters = arena.take<std::byte>(RadixSort::counter_bytes(n));
     scratch.levels = arena.take<CollapseLevel>(plan.collapse_levels + 2);
-    if (plan.layout == Layout::bvh2) {
+    if (!has_records(plan.layout)) {
         scratch.bytes = arena.bytes;
         return scratch;
     }
@@ -98,7 +98,7 @@ BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout) {
 
 GeometryLayout layout_geometry(uint triangle_count, Layout layout) {
     GeometryLayout parts;
-    if (layout == Layout::compressed4) {
+    if (has_records(layout)) {
         parts.record_count = record_count(triangle_count);
     } else {
         parts.node_count = inner_count(triangle_count);
@@ -108,20 +108,23 @@ GeometryLayout layout_geometry(uint triangle_count, Layout layout) {
     parts.nodes = arena.take<BvhNode>(parts.node_count);
     parts.triangles = arena.take<BvhTriangle>(parts.triangle_count);
     parts.records = arena.take<CompressedRecord>(parts.record_count);
+    parts.box_count = layout == Layout::bvh4 ? parts.record_count : 0;
+    parts.record_boxes = arena.take<LeafBox>(parts.box_count);
     parts.bytes = arena.bytes;
     return parts;
 }
 
 SceneLayout layout_scene(uint instance_count, Layout layout) {
     SceneLayout parts;
-    const bool has_records = layout == Layout::compressed4;
-    parts.node_count = has_records ? 0 : inner_count(instance_count);
-    parts.record_count = has_records ? record_count(instance_count) : 0;
+    parts.node_count = has_records(layout) ? 0 : inner_count(instance_count);
+    parts.record_count = has_records(layout) ? record_count(instance_count) : 0;
+    parts.box_count = layout == Layout::bvh4 ? parts.record_count : 0;
     Arena arena;
     arena.take<SwScene>(1);
     parts.nodes = arena.take<BvhNode>(parts.node_count);
     parts.instances = arena.take<SwInstance>(instance_count);
     parts.records = arena.take<CompressedRecord>(parts.record_count);
+    parts.record_boxes = arena.take<LeafBox>(parts.box_count);
     parts.bytes = arena.bytes;
     return parts;
 }

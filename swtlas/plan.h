@@ -20,8 +20,8 @@ struct BuildScratch {
     std::uint64_t trees = 0, blocks = 0, boxes = 0, centroids = 0, codes = 0, tree_of = 0, meeting = 0;
     std::uint64_t keys[2] = {}, order[2] = {};
     std::uint64_t counters = 0, levels = 0;
-    std::uint64_t nodes = 0;                                 // of layout compressed4, whose trees do not keep them
-    std::uint64_t slot_boxes = 0, parents = 0, missing = 0;  // of a refit in that layout: in the place of the nodes
+    std::uint64_t nodes = 0;                                 // of layouts with records, whose trees do not keep them
+    std::uint64_t slot_boxes = 0, parents = 0, missing = 0;  // of a refit in those: in the place of the nodes
     std::uint64_t bytes = 0;
 };
 
@@ -45,15 +45,15 @@ uint inner_count(uint leaf_count);
 
 // Where the parts of a built geometry lie in its buffer, and how many there are; its SwGeometry is the geometry block.
 struct GeometryLayout {
-    uint node_count = 0, triangle_count = 0, record_count = 0;
-    std::uint64_t nodes = 0, triangles = 0, records = 0, bytes = 0;
+    uint node_count = 0, triangle_count = 0, record_count = 0, box_count = 0;
+    std::uint64_t nodes = 0, triangles = 0, records = 0, record_boxes = 0, bytes = 0;
 };
 GeometryLayout layout_geometry(uint triangle_count, Layout layout);
 
 // Where the parts of a scene lie in its buffer; its SwScene is at 0.
 struct SceneLayout {
-    uint node_count = 0, record_count = 0;
-    std::uint64_t nodes = 0, instances = 0, records = 0, bytes = 0;
+    uint node_count = 0, record_count = 0, box_count = 0;
+    std::uint64_t nodes = 0, instances = 0, records = 0, record_boxes = 0, bytes = 0;
 };
 SceneLayout layout_scene(uint instance_count, Layout layout);
 

@@ -60,13 +60,15 @@ struct TopDown {
     }
 };
 
-std::vector<CompressedRecord> records_of(const Hierarchy& tree, BuildTree input) {
-    std::vector<CompressedRecord> records(record_count(input.count));
+Records records_of(const Hierarchy& tree, BuildTree input) {
+    Records made{std::vector<CompressedRecord>(record_count(input.count)),
+                 std::vector<LeafBox>(record_count(input.count), empty_box())};
     std::vector<uint> places(input.count);
     Bvh bvh{tree.box.lo, tree.box.hi, {}, tree.root, input.count};
     input.bvh = Ref<Bvh>::to(&bvh);
     input.nodes = Ref<BvhNode>::to(tree.nodes.data());
-    input.records = Ref<CompressedRecord>::to(records.data());
+    input.records = Ref<CompressedRecord>::to(made.records.data());
+    input.record_boxes = Ref<LeafBox>::to(made.boxes.data());
     const Uints places_ref = Uints::to(places.data());
     std::vector<CollapseItem> waiting;
     const auto push = [&](const CollapseStep& step) {
@@ -80,7 +82,7 @@ std::vector<CompressedRecord> records_of(const Hierarchy& tree, BuildTree input)
         push(twinray::collapse(input, places_ref, item));
     }
     for (uint leaf = 0; leaf < input.count; ++leaf) store_record(input.records, places[leaf], encode_leaf(input, leaf));
-    return records;
+    return made;
 }
 
 }  // namespace
@@ -110,6 +112,7 @@ std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, s
             instance.nodes = geometry.bvh.nodes;
             instance.triangles = geometry.triangles;
             instance.records = geometry.records;
+            instance.record_boxes = geometry.record_boxes;
             instance.root = geometry.bvh.root;
             instance.kind = geometry.kind;
             instance.extent = largest_coordinate(geometry.bvh.lo, geometry.bvh.hi);
@@ -171,8 +174,7 @@ std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::
     return encoded;
 }
 
-std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions,
-                                                   std::span<const uvec3> triangles) {
+Records records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions, std::span<const uvec3> triangles) {
     BuildTree input{};
     input.count = static_cast<uint>(triangles.size());
     if (triangles.empty()) return {};
@@ -181,7 +183,7 @@ std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::s
     return records_of(tree, input);
 }
 
-std::vector<CompressedRecord> records_of_instances(const Hierarchy& tree, uint leaf_count) {
+Records records_of_instances(const Hierarchy& tree, uint leaf_count) {
     BuildTree input{};
     input.count = leaf_count;
     return records_of(tree, input);

@@ -35,9 +35,13 @@ Hierarchy hierarchy(std::span<const LeafBox> boxes, std::span<const uint> codes,
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
                                           std::span<const uint> order);
 
-// The records of layout compressed4 for a tree whose references are the leaves' own indices.
-std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions,
-                                                   std::span<const uvec3> triangles);
-std::vector<CompressedRecord> records_of_instances(const Hierarchy& tree, uint leaf_count);
+// The records of layouts compressed4 and bvh4, and the boxes of bvh4, for a tree whose references are the leaves' own
+// indices.
+struct Records {
+    std::vector<CompressedRecord> records;
+    std::vector<LeafBox> boxes;
+};
+Records records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions, std::span<const uvec3> triangles);
+Records records_of_instances(const Hierarchy& tree, uint leaf_count);
 
 }  // namespace twinray::reference

@@ -11,11 +11,10 @@ std::size_t Scene::add_geometry(const MeshView& mesh) {
     const std::vector<LeafBox> boxes = leaves_triangles(geometry.positions, geometry.triangles);
     const std::vector<uint> codes = morton(boxes, centroids(boxes));
     const std::vector<uint> order = sort(codes);
-    const bool has_records = layout_ == Layout::compressed4;
-    Hierarchy tree = hierarchy(boxes, codes, order, !has_records, quality_);
+    Hierarchy tree = hierarchy(boxes, codes, order, !has_records(layout_), quality_);
     std::vector<BvhTriangle> triangles;
-    std::vector<CompressedRecord> records;
-    if (has_records)
+    Records records;
+    if (has_records(layout_))
         records = records_of_triangles(tree, geometry.positions, geometry.triangles);
     else
         triangles = encode_triangles(geometry.positions, geometry.triangles, order);
@@ -25,13 +24,18 @@ std::size_t Scene::add_geometry(const MeshView& mesh) {
 
 void Scene::add_instance(std::size_t geometry, const InstanceRecord& record) { placed_.push_back({geometry, record}); }
 
+Ref<LeafBox> Scene::boxes_of(const Records& records) const {
+    return layout_ == Layout::bvh4 ? Ref<LeafBox>::to(const_cast<LeafBox*>(records.boxes.data())) : Ref<LeafBox>{};
+}
+
 // As the kernels see them, each with the address of its geometry's block.
 std::vector<InstanceRecord> Scene::records_in_built_units() {
     for (BuiltGeometry& built : geometries_) {
         built.block.geometry = {{built.tree.box.lo, built.tree.box.hi, Ref<BvhNode>::to(built.tree.nodes.data()),
                                  built.tree.root, static_cast<uint>(built.mesh.triangles.size())},
                                 Ref<BvhTriangle>::to(built.triangles.data()),
-                                Ref<CompressedRecord>::to(built.records.data()),
+                                Ref<CompressedRecord>::to(built.records.records.data()),
+                                boxes_of(built.records),
                                 GEOMETRY_TRIANGLES,
                                 0};
         built.block.source = {Floats::to(&built.mesh.positions.data()->x), Uints::to(&built.mesh.triangles.data()->x),
@@ -51,9 +55,10 @@ void Scene::build() {
     const std::vector<uint> codes = morton(boxes, centroids(boxes));
     top_ = hierarchy(boxes, codes, sort(codes), false, quality_);
     const auto count = static_cast<uint>(boxes.size());
-    if (layout_ == Layout::compressed4) top_records_ = records_of_instances(top_, count);
+    if (has_records(layout_)) top_records_ = records_of_instances(top_, count);
     header_ = {{top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), top_.root, count},
-               Ref<CompressedRecord>::to(top_records_.data()),
+               Ref<CompressedRecord>::to(top_records_.records.data()),
+               boxes_of(top_records_),
                Ref<SwInstance>::to(instances_.data()),
                instances_.size(),
                0};

@@ -49,7 +49,7 @@ class Scene {
         Geometry mesh;
         Hierarchy tree;
         std::vector<BvhTriangle> triangles;
-        std::vector<CompressedRecord> records;
+        Records records;
         Block block = {};
     };
     std::vector<InstanceRecord> records_in_built_units();
@@ -61,7 +61,9 @@ class Scene {
     std::vector<std::pair<std::size_t, InstanceRecord>> placed_;
     std::vector<SwInstance> instances_;
     Hierarchy top_;
-    std::vector<CompressedRecord> top_records_;
+    Records top_records_;
+    // Null but in layout bvh4.
+    Ref<LeafBox> boxes_of(const Records& records) const;
     SwScene header_{};
     GeometryBox bound_{};  // of the world
     std::vector<RefineInstance> refined_;

@@ -123,11 +123,12 @@ BuildTree source_of(const Geometry& mesh) {
     return source;
 }
 
-void check_records(const SavedGeometry& geometry) {
+// Returns the boxes of the records.
+std::vector<LeafBox> check_records(const SavedGeometry& geometry) {
     const auto primitives = static_cast<uint>(geometry.mesh.primitive_count());
     if (const std::size_t count = record_count(primitives); geometry.records.size() != count)
         fail("a tree of ", geometry.records.size(), " records for ", primitives, " primitives, not ", count);
-    if (primitives == 0) return;
+    if (primitives == 0) return {};
     const BuildTree source = source_of(geometry.mesh);
     for (const CompressedRecord& record : geometry.records) {
         if (!is_leaf(record)) continue;
@@ -140,16 +141,18 @@ void check_records(const SavedGeometry& geometry) {
     std::vector<LeafBox> boxes;
     boxes.reserve(primitives);
     for (uint i = 0; i < primitives; ++i) boxes.push_back(box_of_primitive(source, i));
-    const CompressedCheck check = check_compressed(geometry.bvh, geometry.records, boxes);
+    CompressedCheck check = check_compressed(geometry.bvh, geometry.records, boxes);
     if (!check.violations.empty()) fail("unsound tree: ", check.violations.front());
+    return std::move(check.boxes);
 }
 
-void check_structure(Layout layout, const SavedGeometry& geometry) {
-    const bool has_records = layout == Layout::compressed4;
-    if (has_records ? !geometry.nodes.empty() || !geometry.leaves.empty() : !geometry.records.empty())
+void check_structure(Layout layout, SavedGeometry& geometry) {
+    if (has_records(layout) ? !geometry.nodes.empty() || !geometry.leaves.empty() : !geometry.records.empty())
         fail(geometry.nodes.size(), " nodes, ", geometry.leaves.size(), " leaves and ", geometry.records.size(),
              " records in layout ", name_of(layout));
-    has_records ? check_records(geometry) : check_bvh2(geometry);
+    if (!has_records(layout)) return check_bvh2(geometry);
+    std::vector<LeafBox> boxes = check_records(geometry);
+    if (layout == Layout::bvh4) geometry.record_boxes = std::move(boxes);
 }
 
 Geometry read_mesh(Reader& reader, const SavedEntry& entry) {

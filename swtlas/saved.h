@@ -2,7 +2,7 @@
 // The file of a saved SwTlas: what it holds and what is checked. Pure, tested without a device.
 //
 //   header | one entry per geometry | per geometry: name, positions, triangles, boxes,
-//   nodes and leaves (layout bvh2) or records (layout compressed4), instances
+//   nodes and leaves (layout bvh2) or records (the others), instances
 //
 // Arrays are as in memory, one after the other without padding; trees refer by index, so none of it knows an address.
 // Header, entries and the arrays of each geometry have a CRC-32 each, so every byte of the file is under one.
@@ -52,7 +52,8 @@ struct SavedGeometry {
     std::vector<BvhNode> nodes;
     std::vector<BvhTriangle> leaves;
     std::vector<CompressedRecord> records;
-    std::vector<InstanceRecord> instances;  // geometry: 0
+    std::vector<InstanceRecord> instances;   // geometry: 0
+    std::vector<LeafBox> record_boxes = {};  // of layout bvh4; not in the file, but found by decode_save
 };
 
 // The file in pieces; those of the body lie in what was given.

@@ -18,7 +18,7 @@ using NodeWords = Words64;
 #include "shaders/shared/traverse.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 96 &&
+static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 104 &&
               sizeof(CompressedRecord) == 48);
-static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 64 && sizeof(SwScene) == 72);
+static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 72 && sizeof(SwScene) == 80);
 }  // namespace twinray

@@ -24,8 +24,9 @@ struct SwTlas::Batch {
 
     // Of input i, over a mesh on the device.
     BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const DeviceMesh& mesh) const {
-        return {plan.first[i],  counts[i],          mesh.positions,  mesh.indices, {inputs[i].block->address()},
-                target.nodes(), target.triangles(), target.records()};
+        return {
+            plan.first[i],  counts[i],          mesh.positions,   mesh.indices,         {inputs[i].block->address()},
+            target.nodes(), target.triangles(), target.records(), target.record_boxes()};
     }
 };
 
@@ -39,11 +40,13 @@ struct SwTlas::SwBuiltScene : BuiltScene {
         tree.bvh = {address};
         tree.nodes = nodes();
         tree.records = records();
+        tree.record_boxes = record_boxes();
         return tree;
     }
     Ref<BvhNode> nodes() const { return {layout.node_count ? address + layout.nodes : 0}; }
     Ref<SwInstance> instances() const { return {address + layout.instances}; }
     Ref<CompressedRecord> records() const { return {layout.record_count ? address + layout.records : 0}; }
+    Ref<LeafBox> record_boxes() const { return {layout.box_count ? address + layout.record_boxes : 0}; }
 };
 
 SwTlas::SwTlas(Context& context, const AccelOptions& options)
@@ -90,7 +93,7 @@ std::vector<Builder::Measured> SwTlas::measured(const Batch& batch, std::span<co
     std::vector<Builder::Measured> wanted;
     for (std::size_t i = 0; i < trees.size(); ++i)
         if (const CostTarget& cost = batch.inputs[i].cost; cost.result.address)
-            wanted.push_back({trees[i].bvh, trees[i].records, trees[i].count, cost});
+            wanted.push_back({trees[i].bvh, trees[i].records, trees[i].record_boxes, trees[i].count, cost});
     return wanted;
 }
 
@@ -129,8 +132,12 @@ void SwTlas::record_build(Commands& commands, const Batch& batch, const Buffer& 
             std::unique_ptr<SwBuiltGeometry> made;
             if (!input.current) made = std::make_unique<SwBuiltGeometry>(context(), *input.geometry, options().layout);
             const auto& target = made ? *made : static_cast<const SwBuiltGeometry&>(*input.current);
-            const SwGeometry block{empty_bvh(target.nodes().address), target.triangles(), target.records(),
-                                   input.geometry->kind, 0};
+            const SwGeometry block{empty_bvh(target.nodes().address),
+                                   target.triangles(),
+                                   target.records(),
+                                   target.record_boxes(),
+                                   input.geometry->kind,
+                                   0};
             commands.write(*input.block, block);
             trees.push_back(batch.tree(i, target, meshes[i]));
             built.push_back(std::move(made));
@@ -176,15 +183,17 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
         made->bytes = made->buffer.bytes();
         scene = made.get();
     }
-    const SwScene header{empty_bvh(scene->nodes().address), scene->records(), scene->instances(), input.count,
-                         input.refinement.address};
+    const SwScene header{
+        empty_bvh(scene->nodes().address), scene->records(), scene->record_boxes(), scene->instances(), input.count,
+        input.refinement.address};
     {
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
     }
     builder_.record_instances(commands, plan_build(std::span(&input.count, 1), options().layout),
                               scene->tree(input.count), input.records, scene->instances());
-    const Builder::Measured measured{{scene->address}, scene->records(), input.count, input.cost};
+    const Builder::Measured measured{
+        {scene->address}, scene->records(), scene->record_boxes(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), true);
     return made;
 }
@@ -213,7 +222,7 @@ void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const Buil
     const auto& scene = static_cast<const SwBuiltScene&>(current);
     builder_.record_refit(commands, plan_build(std::span(&input.count, 1), options().layout), scene.tree(input.count),
                           input.records, scene.instances());
-    const Builder::Measured measured{{scene.address}, scene.records(), input.count, input.cost};
+    const Builder::Measured measured{{scene.address}, scene.records(), scene.record_boxes(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), false);
 }
 
@@ -230,7 +239,8 @@ SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {
     const GeometryLayout& layout = built.layout;
     return {bvh, download<BvhNode>(context(), built.buffer, layout.node_count, layout.nodes),
             download<BvhTriangle>(context(), built.buffer, layout.triangle_count, layout.triangles),
-            download<CompressedRecord>(context(), built.buffer, layout.record_count, layout.records)};
+            download<CompressedRecord>(context(), built.buffer, layout.record_count, layout.records),
+            download<LeafBox>(context(), built.buffer, layout.box_count, layout.record_boxes)};
 }
 
 SwTlas::Tree SwTlas::download_scene() const {
@@ -240,7 +250,8 @@ SwTlas::Tree SwTlas::download_scene() const {
     return {bvh,
             download<BvhNode>(context(), built.buffer, of_them.node_count, built.layout.nodes),
             {},
-            download<CompressedRecord>(context(), built.buffer, of_them.record_count, built.layout.records)};
+            download<CompressedRecord>(context(), built.buffer, of_them.record_count, built.layout.records),
+            download<LeafBox>(context(), built.buffer, of_them.box_count, built.layout.record_boxes)};
 }
 
 }  // namespace twinray

@@ -37,13 +37,17 @@ struct TraceFacts {
     static constexpr TraceFacts of_every_kind() { return {.mask = 0, .culls = true}; }
 };
 
+constexpr uint feature_of_layout(Layout layout) {
+    constexpr uint features[] = {FEATURE_COMPRESSED, FEATURE_BVH2, FEATURE_BVH4};
+    return features[static_cast<std::size_t>(layout)];
+}
+
 constexpr uint features_of(const AccelFacts& accel, const SceneFacts& scene, const TraceFacts& trace) {
     const auto if_needed = [](bool is_needed, uint feature) { return is_needed ? feature : 0; };
     const uint of_both = if_needed(scene.has_boxes, FEATURE_BOXES) | if_needed(scene.has_filters, FEATURE_FILTERS) |
                          if_needed(trace.wants_hits, FEATURE_HITS);
     if (!accel.is_software) return of_both | if_needed(accel.reorders, FEATURE_REMAP);
-    return of_both | (accel.layout == Layout::bvh2 ? FEATURE_BVH2 : FEATURE_COMPRESSED) |
-           if_needed(scene.instances != 1, FEATURE_INSTANCES) |
+    return of_both | feature_of_layout(accel.layout) | if_needed(scene.instances != 1, FEATURE_INSTANCES) |
            if_needed((trace.mask & scene.common_mask) == 0, FEATURE_MASKS) | if_needed(trace.culls, FEATURE_CULLING) |
            if_needed(scene.has_transforms, FEATURE_TRANSFORMS);
 }

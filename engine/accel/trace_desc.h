@@ -26,10 +26,15 @@ enum class Level : std::uint8_t {
 enum class Layout : std::uint8_t {
     compressed4,  // four children a node, boxes in 8 bits a plane, primitives among the nodes: the fastest
     bvh2,         // two children a node, boxes in float32
+    bvh4,         // compressed4 with the boxes in float32 as well: half as much memory again
 };
 
-inline constexpr std::array all_layouts = {Layout::compressed4, Layout::bvh2};
-constexpr std::string_view name_of(Layout layout) { return layout == Layout::bvh2 ? "bvh2" : "compressed4"; }
+inline constexpr std::array all_layouts = {Layout::compressed4, Layout::bvh2, Layout::bvh4};
+constexpr std::string_view name_of(Layout layout) {
+    return layout == Layout::bvh2 ? "bvh2" : layout == Layout::bvh4 ? "bvh4" : "compressed4";
+}
+// Whether trees are of records (shaders/shared/compressed.h).
+constexpr bool has_records(Layout layout) { return layout != Layout::bvh2; }
 
 // How the software accelerator builds its trees. The hits are the same, bit for bit.
 enum class BuildQuality : std::uint8_t {

@@ -12,13 +12,6 @@ const uint BUILD_GROUP = 256u;
 const uint LEAVES_GROUP = 32u; // invocations that share a block's leaves where they need each other: few barriers
 const uint INACTIVE_CODE = 0x3fffffffu; // Morton code of leaves without a finite box: last
 
-struct LeafBox
-{
-    vec3 lo;
-    vec3 hi;
-};
-BUFFER_OF(LeafBox, 4);
-
 // Box of a tree's leaf centres, as ordered bits (see ordered_bits).
 struct CentroidBounds
 {
@@ -35,9 +28,10 @@ struct BuildTree
     Floats positions;              // 3 floats a vertex of triangles, 6 a box; null: instances
     Uints indices;                 // 3 a triangle; null: boxes
     REF(Bvh) bvh;
-    REF(BvhNode) nodes;            // in layout compressed4 of the scratch
+    REF(BvhNode) nodes;            // of the scratch where there are records
     REF(BvhTriangle) triangles;    // of layout bvh2
-    REF(CompressedRecord) records; // of layout compressed4
+    REF(CompressedRecord) records; // of layouts compressed4 and bvh4
+    REF(LeafBox) record_boxes;     // of layout bvh4, else null
 };
 BUFFER_OF(BuildTree, 8);
 
@@ -203,6 +197,11 @@ FUNC vec3 center_of(LeafBox box)
     PRECISE vec3 half_hi = box.hi * 0.5f;
     PRECISE vec3 center = half_lo + half_hi;
     return center;
+}
+
+FUNC void keep_box(BuildTree tree, uint record, LeafBox box)
+{
+    if (uint64_t(tree.record_boxes) != 0ul) AT(tree.record_boxes, record) = box;
 }
 
 FUNC bool has_instances(BuildTree tree) { return uint64_t(tree.positions) == 0ul; }

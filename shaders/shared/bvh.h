@@ -3,8 +3,8 @@
 //
 //   SwScene -> top-level Bvh over instances -> SwInstance -> bottom-level Bvh over triangles
 //
-// Trees are built binary, of BvhNodes. In layout bvh2 they stay; in layout compressed4 a tree of CompressedRecords takes
-// their place.
+// Trees are built binary, of BvhNodes. In layout bvh2 they stay; in layouts compressed4 and bvh4 a tree of
+// CompressedRecords takes their place, in bvh4 beside the boxes of all records in full precision.
 //
 // A reference to a child is the index of an inner node, or LEAF_BIT with the index of a leaf. n leaves have n - 1
 // inner nodes; with one leaf the root is that leaf, with none it is NOTHING. Records have their root at 0.
@@ -17,6 +17,13 @@ const uint NOTHING = 0xffffffffu;
 
 // Inner nodes on a path split on ever lower bits of (30-bit Morton code, 24-bit position).
 const uint DEEPEST_TREE = 54u;
+
+struct LeafBox
+{
+    vec3 lo; // lo > hi: empty
+    vec3 hi;
+};
+BUFFER_OF(LeafBox, 4);
 
 // 64 bytes. Child boxes lie in the parent, so that one fetch decides both. A box is empty where lo > hi.
 struct BvhNode
@@ -62,7 +69,7 @@ struct Bvh
 {
     vec3 lo; // around all active leaves; lo > hi: there are none
     vec3 hi;
-    REF(BvhNode) nodes; // null in layout compressed4
+    REF(BvhNode) nodes; // of layout bvh2, else null
     uint root;
     uint leaf_count;
 };
@@ -72,8 +79,9 @@ BUFFER_OF(Bvh, 8);
 struct SwGeometry
 {
     Bvh bvh;
-    REF(BvhTriangle) triangles;    // null in layout compressed4
-    REF(CompressedRecord) records; // null in layout bvh2
+    REF(BvhTriangle) triangles;    // of layout bvh2, else null
+    REF(CompressedRecord) records; // of layouts compressed4 and bvh4, else null
+    REF(LeafBox) record_boxes;     // by record, of layout bvh4, else null
     uint kind; // GEOMETRY_*
     uint reserved;
 };
@@ -86,6 +94,7 @@ struct SwInstance
     REF(BvhNode) nodes;
     REF(BvhTriangle) triangles;
     REF(CompressedRecord) records;
+    REF(LeafBox) record_boxes;
     uint root;
     uint custom_index_mask;
     uint flags; // of the instance: INSTANCE_*
@@ -99,6 +108,7 @@ struct SwScene
 {
     Bvh bvh;
     REF(CompressedRecord) records; // as in SwGeometry
+    REF(LeafBox) record_boxes;
     REF(SwInstance) instances;
     uint64_t instance_count;
     uint64_t refinement; // address of a RefineScene, or 0
@@ -126,6 +136,16 @@ FUNC BvhNode load_node(REF(BvhNode) nodes, uint index)
     node.hi1 = vec3(FLOATS(w6).x, FLOATS(w6).y, FLOATS(w7).x);
     node.below1 = UINTS(w7).y;
     return node;
+}
+
+FUNC LeafBox load_box(REF(LeafBox) boxes, uint index)
+{
+    Words64 words = Words64(uint64_t(boxes) + uint64_t(index) * 24ul);
+    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2);
+    LeafBox box;
+    box.lo = vec3(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x);
+    box.hi = vec3(FLOATS(w1).y, FLOATS(w2).x, FLOATS(w2).y);
+    return box;
 }
 
 FUNC BvhTriangle load_triangle(REF(BvhTriangle) triangles, uint index)

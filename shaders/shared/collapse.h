@@ -126,6 +126,7 @@ FUNC CollapseStep collapse(BuildTree tree, Uints places, CollapseItem item)
     {
         if (i >= children.count) continue;
         leaves = leaves + children.leaves[i];
+        keep_box(tree, item.below + i, children.box[i]);
         uint child = children.child[i];
         step.is_inner[i] = (child & LEAF_BIT) == 0u;
         if (!step.is_inner[i])

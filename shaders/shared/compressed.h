@@ -178,6 +178,19 @@ FUNC float areas_in(CompressedRecord node, float unit)
     return sum;
 }
 
+// The same in layout bvh4.
+FUNC float areas_of_boxes(CompressedRecord node, REF(LeafBox) boxes, float unit)
+{
+    if (is_leaf(node)) return 0.0f;
+    float sum = 0.0f;
+    for (uint i = 0u; i < children_in(node); i = i + 1u)
+    {
+        LeafBox box = load_box(boxes, node.c.z + i);
+        sum = sum + half_area(box.lo, box.hi, unit);
+    }
+    return sum;
+}
+
 FUNC BvhTriangle primitive_of(CompressedRecord record)
 {
     BvhTriangle t;

@@ -108,8 +108,9 @@ FUNC float earliest_of(float leave, float far_x, float far_y, float far_z)
     return far_z < leave ? far_z : leave;
 }
 
-// Whether the ray meets the box within [t_min, t_max], and where it enters, in t * space.t_scale.
-FUNC bool enter_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, INOUT(float) enter)
+// Where the ray enters the box and where it leaves it within [t_min, t_max], in t * space.t_scale: enter > leave where it does
+// not meet it.
+FUNC void cross_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, INOUT(float) enter, INOUT(float) leave)
 {
     bool flip_x = space.near_inverse.x < 0.0f;
     bool flip_y = space.near_inverse.y < 0.0f;
@@ -123,7 +124,14 @@ FUNC bool enter_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, 
     PRECISE float first = t_min * space.t_scale;
     PRECISE float last = t_max * space.t_scale;
     enter = latest_of(first, near_x, near_y, near_z);
-    return enter <= earliest_of(last, far_x, far_y, far_z);
+    leave = earliest_of(last, far_x, far_y, far_z);
+}
+
+FUNC bool enter_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, INOUT(float) enter)
+{
+    float leave = 0.0f;
+    cross_box(lo, hi, space, t_min, t_max, enter, leave);
+    return enter <= leave;
 }
 
 // A corner seen along the ray: x, y sheared so that the ray is the point (0, 0), z along the dominant axis. It depends

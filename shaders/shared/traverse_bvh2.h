@@ -10,6 +10,14 @@ const uint STACK_SIZE = 2u * DEEPEST_TREE + 4u;
 const uint END_OF_STACK = 0xffffffffu;   // == NOTHING: an empty scene ends at once
 const uint END_OF_INSTANCE = 0xfffffffeu;
 
+FUNC uint place_of(vec3 lo, vec3 hi, RaySpace space, Search search, uint query)
+{
+    float enter = 0.0f;
+    float leave = 0.0f;
+    cross_box(lo, hi, space, search.t_min, search.t_best, enter, leave);
+    return place_in_order(enter, leave, query);
+}
+
 FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
 {
     Search search = begin_search(ray);
@@ -41,11 +49,11 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
         if ((cursor & LEAF_BIT) == 0u)
         {
             BvhNode node = load_node(nodes, cursor);
-            float enter0 = 0.0f;
-            float enter1 = 0.0f;
-            bool hit0 = enter_box(node.lo0, node.hi0, space, search.t_min, search.t_best, enter0);
-            bool hit1 = enter_box(node.lo1, node.hi1, space, search.t_min, search.t_best, enter1);
-            bool first_is_0 = hit0 && (!hit1 || enter0 <= enter1);
+            uint place0 = place_of(node.lo0, node.hi0, space, search, options.query);
+            uint place1 = place_of(node.lo1, node.hi1, space, search, options.query);
+            bool hit0 = place0 < NO_ENTRY;
+            bool hit1 = place1 < NO_ENTRY;
+            bool first_is_0 = place0 <= place1;
             cursor = first_is_0 ? node.child0 : node.child1;
             if (hit0 && hit1)
             {

@@ -139,6 +139,18 @@ FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_inde
 }
 FUNC bool comes_after(TriangleHit hit, float t_min) { return hit.t > t_min || (hit.t == t_min && hit.t_low > 0.0f); }
 
+const uint NO_ENTRY = 0x7f800000u; // infinity, and what is larger: no hit is reported there
+
+// Where among its siblings a box comes that the ray crosses from `enter` to `leave`, the least first; the last two bits are free.
+// The nearest is first; where any hit will do, that in which the ray is longest, as most may be hit there. (Larger boxes
+// first, for rays unknown: Nah, Manocha, "SATO: Surface Area Traversal Order for Shadow Ray Tracing", 2014.)
+FUNC uint place_in_order(float enter, float leave, uint query)
+{
+    uint longest_first = 0x7f000000u - min(floatBitsToUint(leave - enter), 0x7e000000u);
+    uint place = query == QUERY_ANY ? longest_first : floatBitsToUint(enter);
+    return enter <= leave ? place & ~3u : NO_ENTRY;
+}
+
 // What has been found so far, and where there is more to find.
 struct Search
 {

@@ -30,6 +30,7 @@ LeafBox place_instance(uint index)
         instance.nodes = geometry.bvh.nodes;
         instance.triangles = geometry.triangles;
         instance.records = geometry.records;
+        instance.record_boxes = geometry.record_boxes;
         instance.root = geometry.bvh.root;
         instance.kind = geometry.kind;
         instance.extent = largest_coordinate(geometry.bvh.lo, geometry.bvh.hi);

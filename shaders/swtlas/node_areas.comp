@@ -13,6 +13,7 @@ shared float sums[AREA_GROUP];
 float area_of(Bvh tree, uint index)
 {
     float unit = area_unit(tree.lo, tree.hi);
+    if (uint64_t(args.record_boxes) != 0ul) return areas_of_boxes(load_record(args.records, index), args.record_boxes, unit);
     if (uint64_t(args.records) != 0ul) return areas_in(load_record(args.records, index), unit);
     BvhNode node = AT(tree.nodes, index);
     return half_area(node.lo0, node.hi0, unit) + half_area(node.lo1, node.hi1, unit);

@@ -40,6 +40,7 @@ void climb(BuildTree tree, uint slot, LeafBox box)
     for (uint parent = AT(args.parents, base + slot); parent != NOTHING; parent = AT(args.parents, base + slot))
     {
         boxes.items[base + slot] = box;
+        keep_box(tree, slot, box);
         memoryBarrierBuffer();
         if (atomicAdd(AT(args.missing, base + parent), 0xffffffffu) != 1u) return;
         memoryBarrierBuffer();

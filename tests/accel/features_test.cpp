@@ -47,7 +47,7 @@ class Features : public test::VulkanTest, public ::testing::WithParamInterface<s
     SwTlas& accel() { return *accel_; }
     static Layout layout() { return std::get<0>(GetParam()); }
     static Level level() { return std::get<1>(GetParam()); }
-    static uint of_layout() { return layout() == Layout::bvh2 ? FEATURE_BVH2 : FEATURE_COMPRESSED; }
+    static uint of_layout() { return feature_of_layout(layout()); }
 
     uint features_for(const TraceDesc& desc) {
         accel().sync();
@@ -97,7 +97,7 @@ std::string name_of_features(const ::testing::TestParamInfo<std::tuple<Layout, L
     return std::string(name_of(std::get<0>(info.param))) + names[static_cast<std::size_t>(std::get<1>(info.param))];
 }
 INSTANTIATE_TEST_SUITE_P(Every, Features,
-                         ::testing::Combine(::testing::Values(Layout::compressed4, Layout::bvh2),
+                         ::testing::Combine(::testing::ValuesIn(all_layouts),
                                             ::testing::Values(Level::fast, Level::watertight, Level::refined,
                                                               Level::certified)),
                          name_of_features);
@@ -130,6 +130,7 @@ TEST_P(Features, LeanProgramsFindWhatTheGeneralOneFinds) {
 class FeaturesOfAccel : public Features {};
 INSTANTIATE_TEST_SUITE_P(Some, FeaturesOfAccel,
                          ::testing::Values(std::tuple(Layout::compressed4, Level::watertight),
+                                           std::tuple(Layout::bvh4, Level::watertight),
                                            std::tuple(Layout::bvh2, Level::certified)),
                          name_of_features);
 

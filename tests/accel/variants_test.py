@@ -13,7 +13,7 @@ import tempfile
 QUERY, FEATURES, LEVEL = 0, 100, 101  # ids of the constants
 CLOSEST, ANY, WATERTIGHT = 0, 1, 1
 # What each backend may leave out; of layouts one stays.
-OPTIONAL = {"sw": ["BOXES", "FILTERS", "BVH2", "INSTANCES", "MASKS", "CULLING", "TRANSFORMS", "HITS"],
+OPTIONAL = {"sw": ["BOXES", "FILTERS", "BVH2", "BVH4", "INSTANCES", "MASKS", "CULLING", "TRANSFORMS", "HITS"],
             "hw": ["BOXES", "FILTERS", "REMAP", "HITS"]}
 LEAST = {"sw": ["COMPRESSED"], "hw": []}
 

@@ -29,13 +29,13 @@ SavedGeometry saved(Layout layout, const Mesh& mesh, std::size_t instances) {
         placed.push_back(make_instance_record(Transform::translation({static_cast<float>(i), 0, 0}),
                                               {.custom_index = i, .mask = 0x55, .turned = i % 2 == 1}));
     const auto count = static_cast<uint>(boxes.size());
-    if (layout == Layout::compressed4) {
+    if (has_records(layout)) {
         const reference::Hierarchy tree = reference::hierarchy(boxes, codes, order, false);
         return {geometry,
                 {tree.box.lo, tree.box.hi, {}, count ? 0 : NOTHING, count},
                 {},
                 {},
-                reference::records_of_triangles(tree, geometry.positions, mesh.triangles),
+                reference::records_of_triangles(tree, geometry.positions, mesh.triangles).records,
                 placed};
     }
     const reference::Hierarchy tree = reference::hierarchy(boxes, codes, order, true);
@@ -170,7 +170,7 @@ TEST_P(SavedFile, OtherFormatsAreNamed) {
     expect_contains(edited([](SavedHeader& h) { h.leaf_bytes = 48; }), "its leaf has 48 bytes; this library's has 40");
     expect_contains(edited([](SavedHeader& h) { h.header_bytes = 64; }), "its header has 64 bytes");
     expect_contains(edited([](SavedHeader& h) { h.instance_bytes = 72; }), "its instance has 72 bytes");
-    expect_contains(edited([](SavedHeader& h) { h.layout = 2; }), "unknown layout 2");
+    expect_contains(edited([](SavedHeader& h) { h.layout = 3; }), "unknown layout 3");
     expect_contains(edited([](SavedHeader& h) { h.entry_bytes = 80; }), "its entry has 80 bytes");
     expect_contains(edited([](SavedHeader& h) { h.record_bytes = 0; }), "its record has 0 bytes");
 }

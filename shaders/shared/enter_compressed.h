@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Where a ray enters the children of a node of layout compressed4.
+#ifndef TWINRAY_SHARED_ENTER_COMPRESSED_H
+#define TWINRAY_SHARED_ENTER_COMPRESSED_H
+#include "shaders/shared/compressed.h"
+#include "shaders/shared/group.h"
+
+// The grid of a node as a ray sees it: along each axis the distance of a plane is plane * scale + base.
+struct SeenGrid
+{
+    vec3 near_scale;
+    vec3 far_scale;
+    vec3 near_base;
+    vec3 far_base;
+    uvec3 near_planes; // of the four children, 8 bits each
+    uvec3 far_planes;
+};
+
+FUNC SeenGrid grid_of(CompressedRecord node, RaySpace space)
+{
+    SeenGrid grid;
+    vec3 origin = grid_origin(node);
+    vec3 cell = grid_cell(node);
+    grid.near_scale = cell * space.near_inverse;
+    grid.far_scale = cell * space.far_inverse;
+    grid.near_base = (origin - space.near_origin) * space.near_inverse;
+    grid.far_base = (origin - space.far_origin) * space.far_inverse;
+    bool flip_x = space.near_inverse.x < 0.0f;
+    bool flip_y = space.near_inverse.y < 0.0f;
+    bool flip_z = space.near_inverse.z < 0.0f;
+    grid.near_planes = uvec3(flip_x ? node.b.y : node.b.x, flip_y ? node.b.w : node.b.z, flip_z ? node.c.y : node.c.x);
+    grid.far_planes = uvec3(flip_x ? node.b.x : node.b.y, flip_y ? node.b.z : node.b.w, flip_z ? node.c.x : node.c.y);
+    return grid;
+}
+
+FUNC float distance_along(uint planes, uint shift, float scale, float base)
+{
+    return FMA(float(planes >> shift & 0xffu), scale, base);
+}
+
+// The place of child `shift / 8` of the node in order, between t_min and t_max in t * space.t_scale: as cross_box of intersect.h.
+FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, uint query)
+{
+    float near_x = distance_along(grid.near_planes.x, shift, grid.near_scale.x, grid.near_base.x);
+    float near_y = distance_along(grid.near_planes.y, shift, grid.near_scale.y, grid.near_base.y);
+    float near_z = distance_along(grid.near_planes.z, shift, grid.near_scale.z, grid.near_base.z);
+    float far_x = distance_along(grid.far_planes.x, shift, grid.far_scale.x, grid.far_base.x);
+    float far_y = distance_along(grid.far_planes.y, shift, grid.far_scale.y, grid.far_base.y);
+    float far_z = distance_along(grid.far_planes.z, shift, grid.far_scale.z, grid.far_base.z);
+    return place_in_order(latest_of(t_min, near_x, near_y, near_z), earliest_of(t_max, far_x, far_y, far_z), query);
+}
+
+FUNC ChildKeys enter_compressed(CompressedRecord node, RaySpace space, float t_min, float t_max, uint query)
+{
+    SeenGrid grid = grid_of(node, space);
+    PRECISE float first = t_min * space.t_scale;
+    PRECISE float last = t_max * space.t_scale;
+    // All four are computed, then chosen: branches cost more.
+    ChildKeys keys;
+    keys.key0 = enter_planes(grid, 0u, first, last, query);
+    keys.key1 = enter_planes(grid, 8u, first, last, query) | 1u;
+    keys.key2 = enter_planes(grid, 16u, first, last, query) | 2u;
+    keys.key3 = enter_planes(grid, 24u, first, last, query) | 3u;
+    uint children = children_in(node);
+    keys.key2 = children > 2u ? keys.key2 : NO_ENTRY;
+    keys.key3 = children > 3u ? keys.key3 : NO_ENTRY;
+    return keys;
+}
+#endif

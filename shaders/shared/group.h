@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// The children of a node of four that a ray has still to visit, as one word: where they lie, and in which order.
+#ifndef TWINRAY_SHARED_GROUP_H
+#define TWINRAY_SHARED_GROUP_H
+#include "shaders/shared/visit.h"
+
+// A group: where the siblings begin (25 bits), up to three of them to visit, in order (2 bits each, the last one repeated),
+// and 1 at the top. Else there is none:
+const uint BOTTOM = 0u;
+const uint LEAVE_INSTANCE = 1u;
+FUNC bool is_waiting(uint group) { return group >= 0x80000000u; }
+FUNC uint make_group(uint siblings, uint second, uint third, uint fourth)
+{
+    return 0x80000000u | fourth << 29u | third << 27u | second << 25u | siblings;
+}
+FUNC uint next_of(uint group) { return (group & 0x1ffffffu) + (group >> 25u & 3u); }
+// Without the next one.
+FUNC uint rest_of(uint group)
+{
+    bool is_last = ((group >> 25u ^ group >> 27u) & 3u) == 0u;
+    return is_last ? BOTTOM : (group & 0xe1ffffffu) | (group >> 2u & 0x1e000000u);
+}
+
+
+// Where the children of a node come in order, the least first (see place_in_order), each with its number in the last two bits;
+// NO_ENTRY or more: the ray does not enter it.
+struct ChildKeys
+{
+    uint key0;
+    uint key1;
+    uint key2;
+    uint key3;
+};
+
+FUNC void sort_pair(INOUT(uint) a, INOUT(uint) b)
+{
+    uint less = min(a, b);
+    b = max(a, b);
+    a = less;
+}
+
+FUNC uint count_entered(ChildKeys keys)
+{
+    return (keys.key0 < NO_ENTRY ? 1u : 0u) + (keys.key1 < NO_ENTRY ? 1u : 0u) + (keys.key2 < NO_ENTRY ? 1u : 0u) +
+           (keys.key3 < NO_ENTRY ? 1u : 0u);
+}
+
+// The first of `count` children that are entered, and the others as a group. `siblings`: where the children begin.
+FUNC void order_children(ChildKeys keys, uint count, uint siblings, INOUT(uint) nearest, INOUT(uint) group)
+{
+    sort_pair(keys.key0, keys.key1);
+    sort_pair(keys.key2, keys.key3);
+    sort_pair(keys.key0, keys.key2);
+    sort_pair(keys.key1, keys.key3);
+    sort_pair(keys.key1, keys.key2);
+    nearest = siblings + (keys.key0 & 3u);
+    keys.key2 = count > 2u ? keys.key2 : keys.key1;
+    group = make_group(siblings, keys.key1 & 3u, keys.key2 & 3u, (count > 3u ? keys.key3 : keys.key2) & 3u);
+}
+#endif

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// Traversal of a SwScene of layout compressed4 or bvh4: one loop over nodes, primitives and instances, one record an
+// iteration.
+#ifndef TWINRAY_SHARED_TRAVERSE_RECORDS_H
+#define TWINRAY_SHARED_TRAVERSE_RECORDS_H
+#include "shaders/shared/enter_compressed.h"
+#include "shaders/shared/enter_full.h"
+
+// A node leaves one group at most, so the deepest path of each level, the mark between them and the bottom.
+const uint GROUP_STACK_SIZE = 2u * DEEPEST_TREE + 4u;
+
+FUNC ChildKeys enter_children(CompressedRecord node, REF(LeafBox) boxes, RaySpace space, Search search, TraceOptions options)
+{
+    bool may_be_full = (options.features & FEATURE_BVH4) != 0u;
+    bool may_be_compressed = (options.features & FEATURE_COMPRESSED) != 0u;
+    if (may_be_full && (!may_be_compressed || uint64_t(boxes) != 0ul))
+        return enter_full(boxes, node, space, search.t_min, search.t_best, options.query);
+    return enter_compressed(node, space, search.t_min, search.t_best, options.query);
+}
+
+FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
+{
+    Search search = begin_search(ray);
+    if (scene.bvh.root == NOTHING) return search.best;
+    bool has_top = (options.features & FEATURE_INSTANCES) != 0u;
+    RaySpace space;
+    REF(CompressedRecord) records = scene.records;
+    REF(LeafBox) boxes = scene.record_boxes;
+    InInstance inside;
+    if (has_top) space = world_space(scene, ray);
+    else
+    {
+        SwInstance instance = AT(scene.instances, 0);
+        if (!is_visible(instance, options)) return search.best;
+        inside = enter_instance(instance, 0u, options);
+        space = space_in(instance, inside, ray, options);
+        records = instance.records;
+        boxes = instance.record_boxes;
+    }
+    bool in_instance = !has_top;
+
+    uint stack[GROUP_STACK_SIZE];
+    uint height = 1u;
+    stack[0] = BOTTOM;
+    // The last two groups, if they are waiting: most come and go without a trip to memory.
+    uint group = BOTTOM;
+    uint before = BOTTOM;
+    uint cursor = 0u;
+    for (;;)
+    {
+        CompressedRecord record = load_record(records, cursor);
+        bool descend = false;
+        if (!is_leaf(record))
+        {
+            ChildKeys keys = enter_children(record, boxes, space, search, options);
+            uint count = count_entered(keys);
+            uint others = BOTTOM;
+            order_children(keys, count, record.c.z, cursor, others);
+            if (count > 1u)
+            {
+                if (is_waiting(group))
+                {
+                    if (is_waiting(before))
+                    {
+                        stack[height] = before;
+                        height = height + 1u;
+                    }
+                    before = group;
+                }
+                group = others;
+            }
+            descend = count > 0u;
+        }
+        else if (!has_top || in_instance)
+        {
+            if (visit_leaf(primitive_of(record), inside, space, options, search) && options.query == QUERY_ANY) break;
+        }
+        else
+        {
+            uint index = record.a.w & ~LEAF_BIT;
+            SwInstance instance = AT(scene.instances, index);
+            if (is_visible(instance, options))
+            {
+                inside = enter_instance(instance, index, options);
+                space = space_in(instance, inside, ray, options);
+                records = instance.records;
+                boxes = instance.record_boxes;
+                stack[height] = before;
+                height = height + (is_waiting(before) ? 1u : 0u);
+                stack[height] = group;
+                height = height + (is_waiting(group) ? 1u : 0u);
+                stack[height] = LEAVE_INSTANCE;
+                height = height + 1u;
+                group = BOTTOM;
+                before = BOTTOM;
+                in_instance = true;
+                cursor = 0u;
+                descend = true;
+            }
+        }
+        if (descend) continue;
+        if (!is_waiting(group))
+        {
+            group = before;
+            before = BOTTOM;
+        }
+        if (!is_waiting(group))
+        {
+            height = height - 1u;
+            group = stack[height];
+            if (has_top && group == LEAVE_INSTANCE)
+            {
+                space = world_space(scene, ray);
+                records = scene.records;
+                boxes = scene.record_boxes;
+                in_instance = false;
+                height = height - 1u;
+                group = stack[height];
+            }
+            if (group == BOTTOM) break;
+        }
+        cursor = next_of(group);
+        group = rest_of(group);
+    }
+    return search.best;
+}
+#endif
