@@ -23,6 +23,9 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_option("--json", options.json, "append results to FILE, one JSON object a line");
     command.add_flag("--quiet", options.quiet, "no progress, no warnings");
     command.add_flag("--validation", options.validation, "run under the Vulkan validation layer");
+    command
+        .add_option("--pipelines", options.pipelines, "folder that keeps compiled pipelines between runs; \"\": none")
+        ->capture_default_str();
 }
 
 std::map<std::string, Layout> layouts_by_name() {
@@ -49,7 +52,7 @@ void add_tree_options(CLI::App& command, AccelOptions& options) {
 }
 
 ContextDesc context_desc(const CommonOptions& options) {
-    ContextDesc desc{.device = options.device, .validation = options.validation};
+    ContextDesc desc{.device = options.device, .validation = options.validation, .pipeline_folder = options.pipelines};
     if (options.quiet && !options.validation) desc.log = [](std::string_view) {};
     if (const char* disabled = std::getenv("TWINRAY_DISABLE")) disable_features(desc, disabled);
     return desc;

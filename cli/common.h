@@ -23,6 +23,7 @@ struct CommonOptions {
     std::filesystem::path json;
     bool quiet = false;
     bool validation = false;
+    std::filesystem::path pipelines = user_pipeline_folder();
 };
 void add_common_options(CLI::App& command, CommonOptions& options);
 

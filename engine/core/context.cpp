@@ -81,7 +81,7 @@ Context::Context(const ContextDesc& desc) : log_(desc.log) {
     try {
         create_instance(desc);
         create_device(desc);
-        create_own_objects({});
+        create_own_objects({}, desc.pipeline_folder);
     } catch (...) {
         destroy_everything();
         throw;
@@ -108,7 +108,7 @@ Context::Context(const AdoptedDevice& adopted)
     vk_.load_device(device_);
     facts_ = check_adoption(adopted, vk_);
     try {
-        create_own_objects(adopted.allocator);
+        create_own_objects(adopted.allocator, {});
     } catch (...) {
         destroy_everything();
         throw;
@@ -117,6 +117,7 @@ Context::Context(const AdoptedDevice& adopted)
 
 Context::~Context() {
     finish();
+    keep_pipelines();
     destroy_everything();
 }
 
@@ -166,7 +167,7 @@ void Context::create_device(const ContextDesc& desc) {
     vk_.vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
 }
 
-void Context::create_own_objects(const AllocatorHooks& allocator) {
+void Context::create_own_objects(const AllocatorHooks& allocator, const std::filesystem::path& pipeline_folder) {
     VkPhysicalDeviceProperties2 properties{};
     properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
     vk_.vkGetPhysicalDeviceProperties2(physical_device_, &properties);
@@ -185,11 +186,34 @@ void Context::create_own_objects(const AllocatorHooks& allocator) {
     vk_check(vk_.vkCreateSemaphore(device_, &semaphore, nullptr, &timeline_), "create the timeline semaphore");
     set_name(VK_OBJECT_TYPE_SEMAPHORE, reinterpret_cast<std::uint64_t>(timeline_), "twinray timeline");
 
-    if (pipeline_cache_) return;
+    if (!pipeline_cache_) create_pipeline_cache(PipelineStore(pipeline_folder, properties.properties));
+}
+
+void Context::create_pipeline_cache(const PipelineStore& store) {
+    const Bytes kept = store.load([&](std::string_view sentence) { warn(sentence); });
     VkPipelineCacheCreateInfo cache{};
     cache.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
+    cache.initialDataSize = kept.size();
+    cache.pInitialData = kept.data();
     vk_check(vk_.vkCreatePipelineCache(device_, &cache, nullptr, &pipeline_cache_), "create the pipeline cache");
     owns_pipeline_cache_ = true;
+    pipelines_ = store;
+    kept_pipeline_bytes_ = kept.size();
+}
+
+// Caches only grow: as many bytes are the same.
+void Context::keep_pipelines() noexcept {
+    std::size_t size = 0;
+    if (pipelines_.file().empty() || !owns_pipeline_cache_ || is_lost_) return;
+    if (vk_.vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS) return;
+    if (size == kept_pipeline_bytes_) return;
+    try {
+        std::vector<std::byte> data(size);
+        vk_check(vk_.vkGetPipelineCacheData(device_, pipeline_cache_, &size, data.data()), "read the pipeline cache");
+        pipelines_.save(std::span(data).first(size), [&](std::string_view sentence) { warn(sentence); });
+    } catch (const std::exception& failure) {
+        warn(failure.what());
+    }
 }
 
 void Context::destroy_everything() noexcept {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/core/adopted_device.h"
+#include "engine/core/pipeline_store.h"
 
 namespace twinray {
 
@@ -27,7 +28,9 @@ struct ContextDesc {
     bool use_ray_query = true;             // false: leave the extension disabled although the device has it
     bool use_ray_tracing_pipeline = true;  // likewise
     PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;  // null: open the system's loader
-    Log log = {};                                                // warnings and validation messages; empty = stderr
+    std::filesystem::path pipeline_folder =
+        {};        // keeps compiled pipelines between runs, see PipelineStore; empty: none does
+    Log log = {};  // warnings and validation messages; empty = stderr
 };
 
 // Leaves features of the device unused: `list` holds ray_query and ray_tracing_pipeline, separated by commas. For
@@ -102,7 +105,9 @@ class Context {
                                          const VkDebugUtilsMessengerCallbackDataEXT*, void*);
     void create_instance(const ContextDesc& desc);
     void create_device(const ContextDesc& desc);
-    void create_own_objects(const AllocatorHooks& allocator);
+    void create_own_objects(const AllocatorHooks& allocator, const std::filesystem::path& pipeline_folder);
+    void create_pipeline_cache(const PipelineStore& store);
+    void keep_pipelines() noexcept;
     VkResult submit_signalling(VkCommandBuffer commands, std::uint64_t value) const;
     void finish() noexcept;
     std::uint64_t reached(VkSemaphore semaphore) const noexcept;  // 0 when it cannot be read
@@ -124,6 +129,8 @@ class Context {
     std::unique_ptr<Allocator> allocator_;
     VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
     bool owns_pipeline_cache_ = false;
+    PipelineStore pipelines_;
+    std::size_t kept_pipeline_bytes_ = 0;
     VkSemaphore timeline_ = VK_NULL_HANDLE;
     std::uint64_t submitted_ = 0;
     std::vector<Wait> awaited_;  // by the next submission

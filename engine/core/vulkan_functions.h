@@ -51,6 +51,7 @@
     F(vkCreateShaderModule)         \
     F(vkDestroyShaderModule)        \
     F(vkCreatePipelineCache)        \
+    F(vkGetPipelineCacheData)       \
     F(vkDestroyPipelineCache)       \
     F(vkCreatePipelineLayout)       \
     F(vkDestroyPipelineLayout)      \

@@ -4,10 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
-#include <fstream>
-#include <random>
-#include <system_error>
 
 #include <zlib.h>
 
@@ -45,40 +41,6 @@ int hex_digit(char c) {
 }
 
 }  // namespace
-
-Bytes read_file(const std::filesystem::path& file) {
-    std::error_code error;
-    const auto status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status)) fail("'", file.string(), "': file not found");
-    if (!std::filesystem::is_regular_file(status)) fail("'", file.string(), "': not a regular file");
-    std::ifstream in(file, std::ios::binary | std::ios::ate);
-    const std::streamoff size = in ? std::streamoff(in.tellg()) : -1;
-    if (size < 0) fail("'", file.string(), "': cannot be opened; check its permissions");
-    Bytes bytes(static_cast<std::size_t>(size));
-    in.seekg(0);
-    in.read(reinterpret_cast<char*>(bytes.data()), size);
-    if (in.gcount() != size) fail("'", file.string(), "': read ", in.gcount(), " of ", size, " bytes");
-    return bytes;
-}
-
-void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> pieces) {
-    std::filesystem::path partial = file;
-    partial += text(".partial-", std::hex, std::random_device{}());
-    const auto give_up = [&](const std::string& reason) {
-        std::error_code ignored;
-        std::filesystem::remove(partial, ignored);
-        fail("'", file.string(), "': cannot be written: ", reason);
-    };
-    errno = 0;
-    std::ofstream out(partial, std::ios::binary);
-    for (const std::span<const std::byte> piece : pieces)
-        out.write(reinterpret_cast<const char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
-    out.close();
-    if (!out) give_up(std::generic_category().message(errno));
-    std::error_code error;
-    std::filesystem::rename(partial, file, error);
-    if (error) give_up(error.message());
-}
 
 std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t start) {
     if (bytes.empty()) return start;  // zlib would start anew at null

@@ -1,25 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Files, compressed files and text encodings as bytes.
+// Compressed files and text encodings as bytes.
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "engine/core/files.h"
 
 namespace twinray {
-
-using Bytes = std::vector<std::uint8_t>;
-
-// The whole file. Throws Error naming it when it is missing, not a regular file or cannot be read.
-Bytes read_file(const std::filesystem::path& file);
-
-// Writes the pieces, one after the other, whole or not at all: under another name in the same folder, renamed at the
-// end. Throws Error naming the file; what was there before is then still there.
-void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> pieces);
 
 // The CRC-32 of zlib, PNG and gzip; finds every error within 32 neighbouring bits. `start`: of what comes before.
 std::uint32_t crc32_of(std::span<const std::byte> bytes, std::uint32_t start = 0);

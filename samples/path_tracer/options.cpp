@@ -82,6 +82,7 @@ ContextDesc context_desc(const Options& options) {
     desc.name = "path_tracer";
     desc.device = options.device;
     desc.validation = options.validation;
+    desc.pipeline_folder = user_pipeline_folder();
     desc.log = [is_silent = options.quiet && !options.validation](std::string_view message) {
         if (!is_silent) std::fprintf(stderr, "path_tracer: %.*s\n", static_cast<int>(message.size()), message.data());
     };

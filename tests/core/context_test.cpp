@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/context.h"
 
+#include <filesystem>
+#include <fstream>
+
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
+#include "engine/core/radix_sort.h"
 #include "engine/core/vma.h"
 #include "tests/support/device.h"
 
@@ -23,6 +27,27 @@ TEST(ContextErrors, AnUnknownDeviceIsNamedWithTheReasons) {
 }
 
 TEST(ContextErrors, AnIncompleteAdoptionIsRefused) { EXPECT_THROW(Context(AdoptedDevice{}), Error); }
+
+TEST(ContextPipelines, AreKeptBetweenRuns) {
+    if (!test::make_context()) return;
+    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "twinray_context_pipelines";
+    std::filesystem::remove_all(folder);
+    std::string said;
+    const ContextDesc desc{.pipeline_folder = folder, .log = [&](std::string_view line) { said += line; }};
+    for (int run = 0; run < 2; ++run) {
+        Context context(desc);
+        const RadixSort some_kernels(context);
+    }
+    const auto files = std::filesystem::directory_iterator(folder);
+    ASSERT_EQ(std::distance(begin(files), end(files)), 1);
+    EXPECT_EQ(said, "") << "what the first run wrote is of the driver of the second";
+    const std::filesystem::path file = std::filesystem::directory_iterator(folder)->path();
+    std::ofstream(file) << "damaged";
+    { const Context context(desc); }
+    EXPECT_NE(said.find("not pipelines of this driver"), std::string::npos) << said;
+    EXPECT_GE(std::filesystem::file_size(file), sizeof(VkPipelineCacheHeaderVersionOne)) << "written anew";
+    std::filesystem::remove_all(folder);
+}
 
 TEST_F(ContextTest, UploadsAndDownloads) {
     std::vector<uint> values(1000);

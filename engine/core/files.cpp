@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/files.h"
+
+#include <cerrno>
+#include <fstream>
+#include <random>
+#include <system_error>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+
+Bytes read_file(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status)) fail("'", file.string(), "': file not found");
+    if (!std::filesystem::is_regular_file(status)) fail("'", file.string(), "': not a regular file");
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    const std::streamoff size = in ? std::streamoff(in.tellg()) : -1;
+    if (size < 0) fail("'", file.string(), "': cannot be opened; check its permissions");
+    Bytes bytes(static_cast<std::size_t>(size));
+    in.seekg(0);
+    in.read(reinterpret_cast<char*>(bytes.data()), size);
+    if (in.gcount() != size) fail("'", file.string(), "': read ", in.gcount(), " of ", size, " bytes");
+    return bytes;
+}
+
+void write_file(const std::filesystem::path& file, std::span<const std::span<const std::byte>> pieces) {
+    std::filesystem::path partial = file;
+    partial += text(".partial-", std::hex, std::random_device{}());
+    const auto give_up = [&](const std::string& reason) {
+        std::error_code ignored;
+        std::filesystem::remove(partial, ignored);
+        fail("'", file.string(), "': cannot be written: ", reason);
+    };
+    errno = 0;
+    std::ofstream out(partial, std::ios::binary);
+    for (const std::span<const std::byte> piece : pieces)
+        out.write(reinterpret_cast<const char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
+    out.close();
+    if (!out) give_up(std::generic_category().message(errno));
+    std::error_code error;
+    std::filesystem::rename(partial, file, error);
+    if (error) give_up(error.message());
+}
+
+}  // namespace twinray
