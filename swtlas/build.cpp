@@ -23,8 +23,10 @@ namespace {
 
 constexpr uint morton_bits = 30;
 
-KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv, uint group_size = BUILD_GROUP) {
-    return {.name = name, .spirv = spirv, .group_size = group_size};
+// `is_needed`: else it is compiled only should it be used after all.
+KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv, bool is_needed,
+                 uint group_size = BUILD_GROUP) {
+    return {.name = name, .spirv = spirv, .group_size = group_size, .compiles_when_used = !is_needed};
 }
 
 KernelDesc specialized(KernelDesc desc, uint value) {
@@ -32,11 +34,18 @@ KernelDesc specialized(KernelDesc desc, uint value) {
     return desc;
 }
 
-KernelDesc collapse_stage(uint step) {
-    return specialized(stage("swtlas_collapse", swtlas_collapse_spirv, COLLAPSE_GROUP), step);
+KernelDesc collapse_stage(uint step, bool is_needed) {
+    return specialized(stage("swtlas_collapse", swtlas_collapse_spirv, is_needed, COLLAPSE_GROUP), step);
 }
 
 }  // namespace
+
+// Which kernels an accelerator is made for.
+struct Builder::Needs {
+    explicit Needs(const AccelOptions& options)
+        : records(has_records(options.layout)), binary(!records), moves(options.can_move) {}
+    bool records, binary, moves;
+};
 
 struct Builder::Batch {
     const Buffer& scratch;
@@ -49,27 +58,31 @@ struct Builder::Batch {
     uint block_count;
 };
 
-Builder::Builder(Context& context, BuildQuality quality)
+Builder::Builder(Context& context, const AccelOptions& options) : Builder(context, options, Needs(options)) {}
+
+Builder::Builder(Context& context, const AccelOptions& options, const Needs& needs)
     : run_(context.facts().kind == DeviceKind::cpu ? BUILD_GROUP : 8),
       sort_(context),
       areas_(context),
-      leaves_triangles_(context, stage("swtlas_leaves_triangles", swtlas_leaves_triangles_spirv, LEAVES_GROUP)),
-      leaves_instances_(context, stage("swtlas_leaves_instances", swtlas_leaves_instances_spirv, LEAVES_GROUP)),
-      morton_(context, stage("swtlas_morton", swtlas_morton_spirv)),
-      node_areas_(context, stage("swtlas_node_areas", swtlas_node_areas_spirv)),
-      tree_keys_(context, stage("swtlas_tree_keys", swtlas_tree_keys_spirv)),
-      hierarchy_(context, specialized(stage("swtlas_hierarchy", swtlas_hierarchy_spirv),
-                                      quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST)),
-      encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv)),
-      collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS)),
-      collapse_level_(context, collapse_stage(COLLAPSE_LEVEL)),
-      collapse_rest_(context, collapse_stage(COLLAPSE_REST)),
-      encode_records_(context, stage("swtlas_encode_records", swtlas_encode_records_spirv)),
-      record_parents_(context, stage("swtlas_record_parents", swtlas_record_parents_spirv)),
-      refit_records_(context, stage("swtlas_refit_records", swtlas_refit_records_spirv)),
-      parents_(context, stage("swtlas_parents", swtlas_parents_spirv)),
-      refit_(context, stage("swtlas_refit", swtlas_refit_spirv)),
-      refit_triangles_(context, stage("swtlas_refit_triangles", swtlas_refit_triangles_spirv)) {}
+      leaves_triangles_(context, stage("swtlas_leaves_triangles", swtlas_leaves_triangles_spirv, true, LEAVES_GROUP)),
+      leaves_instances_(context, stage("swtlas_leaves_instances", swtlas_leaves_instances_spirv, true, LEAVES_GROUP)),
+      morton_(context, stage("swtlas_morton", swtlas_morton_spirv, true)),
+      node_areas_(context, stage("swtlas_node_areas", swtlas_node_areas_spirv, needs.moves)),
+      tree_keys_(context, stage("swtlas_tree_keys", swtlas_tree_keys_spirv, true)),
+      hierarchy_(context, specialized(stage("swtlas_hierarchy", swtlas_hierarchy_spirv, true),
+                                      options.build_quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST)),
+      encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv, needs.binary)),
+      collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS, needs.records)),
+      collapse_level_(context, collapse_stage(COLLAPSE_LEVEL, needs.records)),
+      collapse_rest_(context, collapse_stage(COLLAPSE_REST, needs.records)),
+      encode_records_(context, stage("swtlas_encode_records", swtlas_encode_records_spirv, needs.records)),
+      record_parents_(context,
+                      stage("swtlas_record_parents", swtlas_record_parents_spirv, needs.records && needs.moves)),
+      refit_records_(context, stage("swtlas_refit_records", swtlas_refit_records_spirv, needs.records && needs.moves)),
+      parents_(context, stage("swtlas_parents", swtlas_parents_spirv, needs.binary && needs.moves)),
+      refit_(context, stage("swtlas_refit", swtlas_refit_spirv, needs.binary && needs.moves)),
+      refit_triangles_(context,
+                       stage("swtlas_refit_triangles", swtlas_refit_triangles_spirv, needs.binary && needs.moves)) {}
 
 Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                               const Buffer& scratch) const {

@@ -15,7 +15,8 @@ namespace twinray {
 // swtlas/reference.h.
 class Builder {
   public:
-    Builder(Context& context, BuildQuality quality);
+    // Compiles what accelerators with these options use.
+    Builder(Context& context, const AccelOptions& options);
 
     // trees[i] has leaf_counts[i] triangles; its Bvh must describe an empty tree, and names its node array if it keeps
     // one. `scratch` has plan.scratch.bytes at least.
@@ -43,6 +44,8 @@ class Builder {
     void record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const;
 
   private:
+    struct Needs;
+    Builder(Context& context, const AccelOptions& options, const Needs& needs);
     // The addresses of a batch's scratch regions.
     struct Batch;
     Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,

@@ -13,6 +13,7 @@ using NodeWords = Words64;
 #include "engine/core/bridge_begin.h"
 #include "shaders/shared/build.h"
 #include "shaders/shared/collapse.h"
+#include "shaders/shared/end_point_overlap.h"
 #include "shaders/shared/morton.h"
 #include "shaders/shared/rotate.h"
 #include "shaders/shared/traverse.h"
@@ -20,5 +21,6 @@ using NodeWords = Words64;
 
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 104 &&
               sizeof(CompressedRecord) == 48);
+static_assert(sizeof(OverlapSum) == 8);
 static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 72 && sizeof(SwScene) == 80);
 }  // namespace twinray

@@ -50,7 +50,7 @@ struct SwTlas::SwBuiltScene : BuiltScene {
 };
 
 SwTlas::SwTlas(Context& context, const AccelOptions& options)
-    : AbstractAccel(context, "SwTlas", options), builder_(context, options.build_quality) {}
+    : AbstractAccel(context, "SwTlas", options), builder_(context, options) {}
 
 Capability SwTlas::capability_on(const DeviceFacts& device, Feature feature) {
     switch (feature) {

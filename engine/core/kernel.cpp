@@ -65,15 +65,21 @@ VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlag
 }
 
 ComputePipeline::ComputePipeline(Context& context, const KernelDesc& desc, std::uint32_t args_bytes)
-    : context_(context), name_(desc.name), group_size_(desc.group_size), args_bytes_(args_bytes) {
+    : context_(context), desc_(desc), args_bytes_(args_bytes) {
     layout_ = create_push_constant_layout(context, VK_SHADER_STAGE_COMPUTE_BIT, args_bytes);
+    if (desc.compiles_when_used) return;
     try {
-        pipeline_ = new_pipeline(context, desc, layout_);
+        compile();
     } catch (...) {
         context.vk().vkDestroyPipelineLayout(context.device(), layout_, nullptr);
         throw;
     }
-    context.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), name_);
+    desc_.spirv = {};
+}
+
+void ComputePipeline::compile() const {
+    pipeline_ = new_pipeline(context_, desc_, layout_);
+    context_.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), desc_.name);
 }
 
 ComputePipeline::~ComputePipeline() {
@@ -84,6 +90,7 @@ ComputePipeline::~ComputePipeline() {
 }
 
 void ComputePipeline::bind(Commands& commands, const void* args) const {
+    if (!pipeline_) compile();
     const VulkanFunctions& vk = context_.vk();
     vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
     vk.vkCmdPushConstants(commands.handle(), layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, args_bytes_, args);
@@ -92,7 +99,7 @@ void ComputePipeline::bind(Commands& commands, const void* args) const {
 void ComputePipeline::dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count) const {
     if (group_count == 0) return;
     std::optional<Commands::Pass> own_pass;
-    if (!commands.in_pass()) own_pass.emplace(commands, name_);
+    if (!commands.in_pass()) own_pass.emplace(commands, desc_.name);
     bind(commands, args);
     const std::uint64_t rows = (group_count + groups_per_row - 1) / groups_per_row;
     context_.vk().vkCmdDispatch(commands.handle(), static_cast<std::uint32_t>(std::min(group_count, groups_per_row)),
@@ -102,7 +109,7 @@ void ComputePipeline::dispatch_groups(Commands& commands, const void* args, std:
 void ComputePipeline::dispatch_indirect(Commands& commands, const void* args, const Buffer& counts,
                                         std::uint64_t offset) const {
     std::optional<Commands::Pass> own_pass;
-    if (!commands.in_pass()) own_pass.emplace(commands, name_);
+    if (!commands.in_pass()) own_pass.emplace(commands, desc_.name);
     bind(commands, args);
     context_.vk().vkCmdDispatchIndirect(commands.handle(), counts.handle(), offset);
 }

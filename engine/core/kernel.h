@@ -19,6 +19,8 @@ struct KernelDesc {
     std::span<const std::uint32_t> spirv;  // embedded at build time
     std::uint32_t group_size = 64;         // local_size_x of the shader
     std::vector<SpecializationConstant> constants = {};
+    bool compiles_when_used =
+        false;  // by the first dispatch, which then throws what the constructor would; spirv stays valid
 };
 
 // A compute pipeline whose only input is one push-constant block. Use Kernel<Args>.
@@ -33,18 +35,18 @@ class ComputePipeline {
     // As many groups as the VkDispatchIndirectCommand at `offset` of `counts` says.
     void dispatch_indirect(Commands& commands, const void* args, const Buffer& counts, std::uint64_t offset) const;
 
-    const std::string& name() const { return name_; }
-    std::uint32_t group_size() const { return group_size_; }
+    const std::string& name() const { return desc_.name; }
+    std::uint32_t group_size() const { return desc_.group_size; }
 
   private:
+    void compile() const;
     void bind(Commands& commands, const void* args) const;
 
     Context& context_;
-    std::string name_;
-    std::uint32_t group_size_;
+    KernelDesc desc_;
     std::uint32_t args_bytes_;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
-    VkPipeline pipeline_ = VK_NULL_HANDLE;
+    mutable VkPipeline pipeline_ = VK_NULL_HANDLE;  // null: not compiled yet
 };
 
 // A compute kernel that takes one Args struct, shared with its GLSL, as push constants (128 bytes are guaranteed).

@@ -162,18 +162,27 @@ FUNC vec3 grid_cell(CompressedRecord node)
     return vec3(cell_size(node.a.w & 0xffu), cell_size(node.a.w >> 8u & 0xffu), cell_size(node.a.w >> 16u & 0xffu));
 }
 
+// The box of a node's child as rays meet it.
+FUNC LeafBox box_in_planes(CompressedRecord node, uint child)
+{
+    uvec3 below = uvec3(node.b.x, node.b.z, node.c.x) >> 8u * child & 0xffu;
+    uvec3 above = uvec3(node.b.y, node.b.w, node.c.y) >> 8u * child & 0xffu;
+    if (below.x > above.x) return empty_box();
+    LeafBox box;
+    box.lo = grid_origin(node) + grid_cell(node) * vec3(below);
+    box.hi = grid_origin(node) + grid_cell(node) * vec3(above);
+    return box;
+}
+
 // Half the areas of the boxes of a node's children, as rays meet them; 0 of other records.
 FUNC float areas_in(CompressedRecord node, float unit)
 {
     if (is_leaf(node)) return 0.0f;
-    vec3 origin = grid_origin(node);
-    vec3 cell = grid_cell(node);
     float sum = 0.0f;
     for (uint i = 0u; i < children_in(node); i = i + 1u)
     {
-        uvec3 below = uvec3(node.b.x, node.b.z, node.c.x) >> 8u * i & 0xffu;
-        uvec3 above = uvec3(node.b.y, node.b.w, node.c.y) >> 8u * i & 0xffu;
-        if (below.x <= above.x) sum = sum + half_area(origin + cell * vec3(below), origin + cell * vec3(above), unit);
+        LeafBox box = box_in_planes(node, i);
+        sum = sum + half_area(box.lo, box.hi, unit);
     }
     return sum;
 }

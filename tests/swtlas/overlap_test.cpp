@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// SwTlas::end_point_overlap against its definition in float64.
+#include <array>
+#include <set>
+
+#include "engine/core/error.h"
+#include "engine/scene/shapes.h"
+#include "swtlas/sw_tlas.h"
+#include "tests/support/device.h"
+
+namespace twinray {
+namespace {
+
+using Corners = std::vector<glm::dvec3>;
+
+Corners cut(const Corners& whole, int axis, double plane, double side) {
+    Corners part;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        const glm::dvec3 &from = whole[i], &to = whole[(i + 1) % whole.size()];
+        const double a = (from[axis] - plane) * side, b = (to[axis] - plane) * side;
+        if (a >= 0) part.push_back(from);
+        if ((a < 0) != (b < 0)) part.push_back(from + (to - from) * (a / (a - b)));
+    }
+    return part;
+}
+
+double area_of(const Corners& corners) {
+    glm::dvec3 twice(0);
+    for (std::size_t i = 2; i < corners.size(); ++i)
+        twice += cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
+    return length(twice) / 2;
+}
+
+double area_in(Corners corners, const LeafBox& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+        corners = cut(corners, axis, double{box.lo[axis]}, 1);
+        corners = cut(corners, axis, double{box.hi[axis]}, -1);
+    }
+    return area_of(corners);
+}
+
+// Every box below the root's, with the primitives below it.
+struct Box {
+    LeafBox box;
+    std::set<uint> below;
+};
+
+std::set<uint> collect(const SwTlas::Tree& tree, uint reference, std::vector<Box>& boxes) {
+    std::vector<std::pair<LeafBox, uint>> children;
+    if (tree.records.empty()) {
+        if (reference & LEAF_BIT) return {tree.triangles[reference & ~LEAF_BIT].primitive_index};
+        const BvhNode& node = tree.nodes[reference];
+        children = {{{node.lo0, node.hi0}, node.child0}, {{node.lo1, node.hi1}, node.child1}};
+    } else {
+        const CompressedRecord& record = tree.records[reference];
+        if (is_leaf(record)) return {record.a.w & ~LEAF_BIT};
+        for (uint i = 0; i < children_in(record); ++i) {
+            const uint child = record.c.z + i;
+            children.emplace_back(tree.record_boxes.empty() ? box_in_planes(record, i) : tree.record_boxes[child],
+                                  child);
+        }
+    }
+    std::set<uint> all;
+    for (const auto& [box, child] : children) {
+        std::set<uint> below = collect(tree, child, boxes);
+        all.insert(below.begin(), below.end());
+        boxes.push_back({box, std::move(below)});
+    }
+    return all;
+}
+
+double overlap_of(const SwTlas::Tree& tree, const Mesh& mesh) {
+    std::vector<Box> boxes;
+    collect(tree, tree.bvh.root, boxes);
+    double overlap = 0, area = 0;
+    for (uint i = 0; i < mesh.triangles.size(); ++i) {
+        const uvec3 t = mesh.triangles[i];
+        const Corners corners = {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
+        area += area_of(corners);
+        for (const Box& box : boxes)
+            if (!box.below.contains(i)) overlap += area_in(corners, box.box);
+    }
+    return overlap / area;
+}
+
+class SwOverlap : public test::VulkanTest, public testing::WithParamInterface<Layout> {};
+INSTANTIATE_TEST_SUITE_P(Every, SwOverlap, testing::ValuesIn(all_layouts),
+                         [](const auto& layout) { return std::string(name_of(layout.param)); });
+
+TEST_P(SwOverlap, IsThatOfItsDefinition) {
+    SwTlas accel(context(), {.layout = GetParam()});
+    Mesh far = make_soup(200, 2, 0.3f);
+    for (vec3& position : far.positions) position = (position + 3.0f) * 0x1p55f;
+    for (const Mesh& mesh : {make_soup(300, 1, 0.5f), make_icosphere(2), far}) {
+        const AccelHandle handle = accel.push(mesh);
+        accel.sync();
+        const double expected = overlap_of(accel.download_geometry(handle), mesh);
+        EXPECT_NEAR(accel.end_point_overlap(handle), expected, 1e-4 * expected + 1e-5);
+        EXPECT_GT(expected, 0.01) << "the test would see nothing";
+    }
+}
+
+TEST_P(SwOverlap, IsNothingWhereBoxesHoldTheirOwnAlone) {
+    SwTlas accel(context(), {.layout = GetParam()});
+    Mesh apart;
+    for (uint i = 0; i < 9; ++i) {
+        const vec3 at(static_cast<float>(10 * i), 0, 0);
+        for (const vec3& corner : {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0.5f)}) apart.positions.push_back(at + corner);
+        apart.triangles.push_back(uvec3(3 * i) + uvec3(0, 1, 2));
+    }
+    Mesh one = apart;
+    one.triangles.resize(1);
+    for (const Mesh& mesh : {apart, one, Mesh{}}) {
+        const AccelHandle handle = accel.push(mesh);
+        accel.sync();
+        EXPECT_NEAR(accel.end_point_overlap(handle), 0, 1e-5);
+    }
+    const std::vector<Bounds> boxes = {{vec3(0), vec3(1)}};
+    const AccelHandle of_boxes = accel.push(BoxesView{"boxes", boxes});
+    accel.sync();
+    EXPECT_THROW(accel.end_point_overlap(of_boxes), Error);
+}
+
+}  // namespace
+}  // namespace twinray
