@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "swtlas/build.h"
+#include "swtlas/build_batch.h"
 
 #include <algorithm>
 
 #include "swtlas_collapse.spv.h"
+#include "swtlas_crowding.spv.h"
 #include "swtlas_encode_records.spv.h"
 #include "swtlas_encode_triangles.spv.h"
+#include "swtlas_fine_codes.spv.h"
+#include "swtlas_gather_keys.spv.h"
 #include "swtlas_hierarchy.spv.h"
 #include "swtlas_leaves_instances.spv.h"
 #include "swtlas_leaves_triangles.spv.h"
@@ -16,7 +19,6 @@
 #include "swtlas_refit.spv.h"
 #include "swtlas_refit_records.spv.h"
 #include "swtlas_refit_triangles.spv.h"
-#include "swtlas_tree_keys.spv.h"
 
 namespace twinray {
 namespace {
@@ -47,17 +49,6 @@ struct Builder::Needs {
     bool records, binary, moves;
 };
 
-struct Builder::Batch {
-    const Buffer& scratch;
-    Ref<BuildTree> trees;
-    Ref<BuildBlock> blocks;
-    Ref<LeafBox> boxes;
-    Ref<CentroidBounds> centroids;
-    Uints codes, tree_of, meeting, counters;
-    RadixSort::Pairs pairs, spare;
-    uint block_count;
-};
-
 Builder::Builder(Context& context, const AccelOptions& options) : Builder(context, options, Needs(options)) {}
 
 Builder::Builder(Context& context, const AccelOptions& options, const Needs& needs)
@@ -68,7 +59,9 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       leaves_instances_(context, stage("swtlas_leaves_instances", swtlas_leaves_instances_spirv, true, LEAVES_GROUP)),
       morton_(context, stage("swtlas_morton", swtlas_morton_spirv, true)),
       node_areas_(context, stage("swtlas_node_areas", swtlas_node_areas_spirv, needs.moves)),
-      tree_keys_(context, stage("swtlas_tree_keys", swtlas_tree_keys_spirv, true)),
+      crowding_(context, stage("swtlas_crowding", swtlas_crowding_spirv, true, LEAVES_GROUP)),
+      fine_codes_(context, stage("swtlas_fine_codes", swtlas_fine_codes_spirv, true)),
+      gather_keys_(context, stage("swtlas_gather_keys", swtlas_gather_keys_spirv, true)),
       hierarchy_(context, specialized(stage("swtlas_hierarchy", swtlas_hierarchy_spirv, true),
                                       options.build_quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST)),
       encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv, needs.binary)),
@@ -89,6 +82,7 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
     const BuildScratch& at = plan.scratch;
     const uint none = ordered_bits(-INFINITY), all = ordered_bits(INFINITY);
     const std::vector<CentroidBounds> empty(trees.size(), {uvec3(all), uvec3(none)});
+    const Crowding crowding{0, 0, 0, 0, {0, 1, 1}, {0, 1, 1}, {0, 1, 1}};
     const std::vector<CollapseLevel> levels(plan.collapse_levels + 2, {0, 1, 1, 0});
     const std::uint64_t base = scratch.address();
     std::vector<BuildTree> with_nodes(trees.begin(), trees.end());
@@ -99,6 +93,7 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
         const Commands::Piece pieces[] = {{at.trees, std::as_bytes(std::span(with_nodes))},
                                           {at.blocks, std::as_bytes(std::span(plan.blocks))},
                                           {at.centroids, std::as_bytes(std::span(empty))},
+                                          {at.crowding, std::as_bytes(std::span(&crowding, 1))},
                                           {at.levels, std::as_bytes(std::span(levels))}};
         commands.upload_pieces(scratch, pieces);
         commands.fill(scratch, at.meeting, std::uint64_t{plan.leaf_count} * sizeof(uint), NOTHING);
@@ -109,9 +104,11 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
             {base + at.boxes},
             {base + at.centroids},
             {base + at.codes},
+            {base + at.fine_codes},
             {plan.tree_bits ? base + at.tree_of : 0},
             {base + at.meeting},
             {base + at.counters},
+            {base + at.crowding},
             {{base + at.keys[0]}, {base + at.order[0]}},
             {{base + at.keys[1]}, {base + at.order[1]}},
             static_cast<uint>(plan.blocks.size())};
@@ -124,10 +121,47 @@ Uints Builder::record_order(Commands& commands, const BuildPlan& plan, const Bat
     morton_.dispatch_groups(commands, args, batch.block_count);
     RadixSort::Pairs sorted =
         sort_.record(commands, batch.pairs, batch.spare, batch.counters, plan.leaf_count, morton_bits);
-    if (plan.tree_bits == 0) return sorted.values;
-    const RadixSort::Pairs other = sorted.keys.address == batch.pairs.keys.address ? batch.spare : batch.pairs;
-    tree_keys_.dispatch(commands, {batch.tree_of, sorted.values, sorted.keys, plan.leaf_count, 0}, plan.leaf_count);
-    return sort_.record(commands, sorted, other, batch.counters, plan.leaf_count, plan.tree_bits).values;
+    if (plan.tree_bits != 0) {
+        gather_keys_.dispatch(commands, {batch.tree_of, sorted.values, sorted.keys, plan.leaf_count, 0},
+                              plan.leaf_count);
+        sorted = sort_.record(commands, sorted, batch.other(sorted), batch.counters, plan.leaf_count, plan.tree_bits);
+    }
+    if (plan.leaf_count > CROWD) record_fine_order(commands, plan, batch, sorted);
+    return sorted.values;
+}
+
+// Where crowding_ finds that it is needed, and else nothing: sorts by fine code, by code and by tree. Begins in that
+// half of the ping-pong from which it ends in `sorted`, after two passes by code.
+void Builder::record_fine_order(Commands& commands, const BuildPlan& plan, const Batch& batch,
+                                const RadixSort::Pairs& sorted) const {
+    const uint count = plan.leaf_count;
+    const std::uint64_t at = plan.scratch.crowding;
+    const std::uint64_t of_leaves = at + offsetof(Crowding, leaf_groups);
+    const RadixSort::Counts counts{batch.scratch, at + offsetof(Crowding, sort_groups),
+                                   at + offsetof(Crowding, scan_groups)};
+    const auto sort = [&](const RadixSort::Pairs& pairs, uint bits) {
+        return sort_.record(commands, pairs, batch.other(pairs), batch.counters, count, bits, &counts);
+    };
+    const auto gather = [&](Uints values, const RadixSort::Pairs& pairs) {
+        gather_keys_.dispatch_indirect(commands, {values, pairs.values, pairs.keys, count, 0}, batch.scratch,
+                                       of_leaves);
+    };
+    crowding_.dispatch_groups(
+        commands,
+        {batch.codes, sorted.values, batch.tree_of, batch.crowding, count,
+         std::max(batch.block_count, (count + BUILD_GROUP - 1) / BUILD_GROUP), sort_.sort_groups(count), 0},
+        (count + BUILD_GROUP - 1) / BUILD_GROUP);
+    const RadixSort::Pairs& begin = batch.spare;
+    fine_codes_.dispatch_indirect(
+        commands,
+        {batch.blocks, batch.boxes, batch.centroids, batch.fine_codes, begin.keys, begin.values, batch.block_count, 0},
+        batch.scratch, of_leaves);
+    RadixSort::Pairs fine = sort(begin, morton_bits);
+    gather(batch.codes, fine);
+    fine = sort(fine, morton_bits);
+    if (plan.tree_bits == 0) return;
+    gather(batch.tree_of, fine);
+    sort(fine, plan.tree_bits);
 }
 
 void Builder::record_hierarchy(Commands& commands, const Batch& batch, Uints order, bool leaves_are_sorted) const {
@@ -135,6 +169,8 @@ void Builder::record_hierarchy(Commands& commands, const Batch& batch, Uints ord
                              batch.blocks,
                              batch.boxes,
                              batch.codes,
+                             batch.fine_codes,
+                             batch.crowding,
                              order,
                              batch.meeting,
                              batch.centroids,
@@ -205,94 +241,6 @@ void Builder::record_levels(Commands& commands, const BuildPlan& plan, const Bat
     commands.barrier();
     const uint last = plan.collapse_levels + 1;
     collapse_rest_.dispatch_indirect(commands, args(last), batch.scratch, level_at(last));
-}
-
-// The boxes of all inner nodes, and the records, from the boxes of the leaves.
-void Builder::record_records_climb(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
-    const std::uint64_t base = batch.scratch.address();
-    const Uints parents{base + plan.scratch.parents}, missing{base + plan.scratch.missing};
-    record_parents_.dispatch_groups(commands, {batch.trees, batch.blocks, parents, missing, batch.block_count, 0},
-                                    batch.block_count);
-    refit_records_.dispatch_groups(commands,
-                                   {batch.trees,
-                                    batch.blocks,
-                                    batch.boxes,
-                                    {base + plan.scratch.slot_boxes},
-                                    parents,
-                                    missing,
-                                    batch.block_count,
-                                    0},
-                                   batch.block_count);
-}
-
-void Builder::record_climb(Commands& commands, const Batch& batch) const {
-    // Nothing is sorted in a refit: that scratch holds the parents.
-    const Uints node_parents = batch.pairs.keys, leaf_parents = batch.pairs.values;
-    parents_.dispatch_groups(commands, {batch.trees, batch.blocks, node_parents, leaf_parents, batch.block_count, 0},
-                             batch.block_count);
-    refit_.dispatch_groups(
-        commands,
-        {batch.trees, batch.blocks, batch.boxes, node_parents, leaf_parents, batch.meeting, batch.block_count, 0},
-        batch.block_count);
-}
-
-namespace {
-
-// The nodes, or the records, among which areas are summed.
-uint area_count(const Builder::Measured& tree) {
-    return tree.records.address ? record_count(tree.leaf_count) : inner_count(tree.leaf_count);
-}
-
-std::uint64_t area_groups(const Builder::Measured& tree) {
-    return (std::uint64_t{area_count(tree)} + AREA_GROUP - 1) / AREA_GROUP;
-}
-
-}  // namespace
-
-std::uint64_t Builder::cost_bytes(uint leaf_count, Layout layout) {
-    // An address stands for any.
-    const Measured tree{{}, {has_records(layout) ? 1u : 0u}, {}, leaf_count, {}};
-    return AreaWork{area_groups(tree), {}, {}, false}.bytes();
-}
-
-void Builder::record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const {
-    std::vector<AreaWork> work;
-    for (const Measured& tree : trees) work.push_back({area_groups(tree), {tree.tree.address}, tree.target, is_build});
-    SurfaceArea::place(commands, work);
-    if (!work.empty()) {
-        const auto pass = commands.pass(node_areas_.name());
-        for (std::size_t i = 0; i < trees.size(); ++i)
-            node_areas_.dispatch_groups(
-                commands,
-                {trees[i].tree, trees[i].records, trees[i].record_boxes, work[i].items, area_count(trees[i]), 0},
-                work[i].item_count);
-    }
-    areas_.record(commands, std::move(work));
-}
-
-void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
-                                    const Buffer& scratch) const {
-    if (plan.leaf_count == 0) return;
-    const Batch batch = begin(commands, plan, trees, scratch);
-    if (has_records(plan.layout)) return record_records_climb(commands, plan, batch);
-    refit_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.boxes, batch.block_count, 0},
-                                     batch.block_count);
-    record_climb(commands, batch);
-}
-
-void Builder::record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
-                           Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
-    if (plan.leaf_count == 0) return;
-    Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = plan.scratch.bytes});
-    const Batch batch = begin(commands, plan, std::span(&tree, 1), scratch);
-    leaves_instances_.dispatch_groups(
-        commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
-        batch.block_count);
-    if (has_records(plan.layout))
-        record_records_climb(commands, plan, batch);
-    else
-        record_climb(commands, batch);
-    commands.keep(std::move(scratch));
 }
 
 }  // namespace twinray

@@ -8,7 +8,8 @@ namespace twinray {
 
 // Records the build of a batch of trees on the GPU, the same stages for triangles and for instances:
 //
-//     leaves -> morton -> sort by code (-> sort by tree) -> hierarchy -> encode triangles, or
+//     leaves -> morton -> sort by code (-> sort by tree) (-> sort again, by fine codes too) -> hierarchy -> encode
+//     triangles, or
 //                                                                     -> collapse -> encode records
 //
 // Each stage is one kernel over all trees of the batch; what it computes has a serial twin of the same name in
@@ -46,11 +47,12 @@ class Builder {
   private:
     struct Needs;
     Builder(Context& context, const AccelOptions& options, const Needs& needs);
-    // The addresses of a batch's scratch regions.
     struct Batch;
     Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                 const Buffer& scratch) const;
     Uints record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
+    void record_fine_order(Commands& commands, const BuildPlan& plan, const Batch& batch,
+                           const RadixSort::Pairs& sorted) const;
     void record_hierarchy(Commands& commands, const Batch& batch, Uints order, bool leaves_are_sorted) const;
     void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_levels(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
@@ -64,7 +66,9 @@ class Builder {
     Kernel<InstanceLeavesArgs> leaves_instances_;
     Kernel<MortonArgs> morton_;
     Kernel<NodeAreasArgs> node_areas_;
-    Kernel<TreeKeysArgs> tree_keys_;
+    Kernel<CrowdingArgs> crowding_;
+    Kernel<FineCodesArgs> fine_codes_;
+    Kernel<GatherKeysArgs> gather_keys_;
     Kernel<HierarchyArgs> hierarchy_;
     Kernel<EncodeTrianglesArgs> encode_triangles_;
     Kernel<CollapseArgs> collapse_roots_, collapse_level_, collapse_rest_;

@@ -32,6 +32,8 @@ BuildScratch layout_scratch(const BuildPlan& plan) {
     scratch.boxes = arena.take<LeafBox>(n);
     scratch.centroids = arena.take<CentroidBounds>(plan.first.size());
     scratch.codes = arena.take<uint>(n);
+    scratch.fine_codes = arena.take<uint>(n);
+    scratch.crowding = arena.take<Crowding>(1);
     scratch.tree_of = arena.take<uint>(plan.tree_bits ? n : 0);
     scratch.meeting = arena.take<uint>(n);
     for (int i = 0; i < 2; ++i) {

@@ -17,7 +17,8 @@ float software_unit(std::span<const vec3> positions);
 
 // Byte offsets into one scratch buffer.
 struct BuildScratch {
-    std::uint64_t trees = 0, blocks = 0, boxes = 0, centroids = 0, codes = 0, tree_of = 0, meeting = 0;
+    std::uint64_t trees = 0, blocks = 0, boxes = 0, centroids = 0, codes = 0, fine_codes = 0, crowding = 0;
+    std::uint64_t tree_of = 0, meeting = 0;
     std::uint64_t keys[2] = {}, order[2] = {};
     std::uint64_t counters = 0, levels = 0;
     std::uint64_t nodes = 0;                                 // of layouts with records, whose trees do not keep them

@@ -15,7 +15,7 @@ BvhTriangle gather(std::span<const vec3> positions, uvec3 corners, uint primitiv
 // Builds [first, last] and returns it as a child.
 struct TopDown {
     std::span<const LeafBox> boxes;
-    std::span<const uint> codes;
+    const Codes& codes;
     std::span<const uint> order;
     bool leaves_are_sorted;
     BuildQuality quality;
@@ -23,8 +23,9 @@ struct TopDown {
     std::vector<BvhNode>& nodes;
 
     std::uint64_t split_after(std::size_t position) const {
-        const uint difference = codes[order[position]] ^ codes[order[position + 1]];
-        return (std::uint64_t{difference} << 32) | (position ^ (position + 1));
+        const uint left = order[position], right = order[position + 1];
+        const uint fine = codes.fine.empty() ? 0 : codes.fine[left] ^ codes.fine[right];
+        return make_split(codes.coarse[left] ^ codes.coarse[right], fine, static_cast<uint>(position));
     }
 
     std::size_t highest_split(std::size_t first, std::size_t last) const {
@@ -32,12 +33,6 @@ struct TopDown {
         for (std::size_t i = first + 1; i < last; ++i)
             if (split_after(i) > split_after(best)) best = i;
         return best;
-    }
-
-    // 24 bits of position come below those of the code.
-    static uint highest_below(std::uint64_t split) {
-        const auto code_bits = static_cast<uint>(std::bit_width(split >> 32));
-        return code_bits ? code_bits + 24 : static_cast<uint>(std::bit_width(split));
     }
 
     NodeHalf build(std::size_t first, std::size_t last) const {
@@ -59,6 +54,14 @@ struct TopDown {
         return both;
     }
 };
+
+bool is_crowded(std::vector<uint> codes) {
+    std::sort(codes.begin(), codes.end());
+    uint crowded = 0;
+    for (std::size_t i = 0; i + CROWD < codes.size(); ++i)
+        crowded += codes[i] != INACTIVE_CODE && codes[i] == codes[i + CROWD] ? 1 : 0;
+    return codes.size() > CROWD && needs_fine_codes(crowded, static_cast<uint>(codes.size()));
+}
 
 Records records_of(const Hierarchy& tree, BuildTree input) {
     Records made{std::vector<CompressedRecord>(record_count(input.count)),
@@ -135,31 +138,34 @@ CentroidBounds centroids(std::span<const LeafBox> boxes) {
     return bounds;
 }
 
-std::vector<uint> morton(std::span<const LeafBox> boxes, const CentroidBounds& bounds) {
-    const vec3 lo(from_ordered_bits(bounds.lo.x), from_ordered_bits(bounds.lo.y), from_ordered_bits(bounds.lo.z));
-    const vec3 hi(from_ordered_bits(bounds.hi.x), from_ordered_bits(bounds.hi.y), from_ordered_bits(bounds.hi.z));
-    std::vector<uint> codes;
+Codes morton(std::span<const LeafBox> boxes, const CentroidBounds& bounds) {
+    const LeafBox all = bounds_of(bounds);
+    Codes codes;
     for (const LeafBox& box : boxes)
-        codes.push_back(is_active(box) ? morton_code(center_of(box), lo, hi) : INACTIVE_CODE);
+        codes.coarse.push_back(is_active(box) ? morton_code(center_of(box), all.lo, all.hi) : INACTIVE_CODE);
+    if (!is_crowded(codes.coarse)) return codes;
+    for (const LeafBox& box : boxes)
+        codes.fine.push_back(is_active(box) ? fine_code(center_of(box), all.lo, all.hi) : INACTIVE_CODE);
     return codes;
 }
 
-std::vector<uint> sort(std::span<const uint> codes) {
-    std::vector<uint> order(codes.size());
+std::vector<uint> sort(const Codes& codes) {
+    std::vector<uint> order(codes.coarse.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](uint a, uint b) { return codes[a] < codes[b]; });
+    const auto key = [&](uint leaf) {
+        return std::pair(codes.coarse[leaf], codes.fine.empty() ? 0 : codes.fine[leaf]);
+    };
+    std::stable_sort(order.begin(), order.end(), [&](uint a, uint b) { return key(a) < key(b); });
     return order;
 }
 
-Hierarchy hierarchy(std::span<const LeafBox> boxes, std::span<const uint> codes, std::span<const uint> order,
+Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order,
                     bool leaves_are_sorted, BuildQuality quality) {
     Hierarchy tree;
     if (boxes.empty()) return tree;
     tree.nodes.resize(boxes.size() - 1);
-    const CentroidBounds bounds = centroids(boxes);
-    const vec3 lo(from_ordered_bits(bounds.lo.x), from_ordered_bits(bounds.lo.y), from_ordered_bits(bounds.lo.z));
-    const vec3 hi(from_ordered_bits(bounds.hi.x), from_ordered_bits(bounds.hi.y), from_ordered_bits(bounds.hi.z));
-    const TopDown build{boxes, codes, order, leaves_are_sorted, quality, area_scale(lo, hi), tree.nodes};
+    const LeafBox bounds = bounds_of(centroids(boxes));
+    const TopDown build{boxes, codes, order, leaves_are_sorted, quality, area_scale(bounds.lo, bounds.hi), tree.nodes};
     const NodeHalf root = build.build(0, boxes.size() - 1);
     tree.root = root.child;
     tree.box = root.box;

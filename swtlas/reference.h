@@ -18,10 +18,14 @@ std::vector<LeafBox> leaves_triangles(std::span<const vec3> positions, std::span
 std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, std::vector<SwInstance>& instances);
 
 CentroidBounds centroids(std::span<const LeafBox> boxes);
-std::vector<uint> morton(std::span<const LeafBox> boxes, const CentroidBounds& bounds);
+// By leaf. Fine codes are there only where a tree is sorted by them, too.
+struct Codes {
+    std::vector<uint> coarse, fine;
+};
+Codes morton(std::span<const LeafBox> boxes, const CentroidBounds& bounds);
 
 // Leaf indices by code, equal codes in order.
-std::vector<uint> sort(std::span<const uint> codes);
+std::vector<uint> sort(const Codes& codes);
 
 struct Hierarchy {
     std::vector<BvhNode> nodes;
@@ -29,7 +33,7 @@ struct Hierarchy {
     LeafBox box = empty_box();
 };
 // Top-down: a range is cut at its highest split.
-Hierarchy hierarchy(std::span<const LeafBox> boxes, std::span<const uint> codes, std::span<const uint> order,
+Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order,
                     bool leaves_are_sorted, BuildQuality quality = BuildQuality::fast);
 
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,

@@ -9,7 +9,7 @@ namespace twinray::reference {
 std::size_t Scene::add_geometry(const MeshView& mesh) {
     Geometry geometry(mesh, software_unit(mesh.positions));
     const std::vector<LeafBox> boxes = leaves_triangles(geometry.positions, geometry.triangles);
-    const std::vector<uint> codes = morton(boxes, centroids(boxes));
+    const Codes codes = morton(boxes, centroids(boxes));
     const std::vector<uint> order = sort(codes);
     Hierarchy tree = hierarchy(boxes, codes, order, !has_records(layout_), quality_);
     std::vector<BvhTriangle> triangles;
@@ -52,7 +52,7 @@ std::vector<InstanceRecord> Scene::records_in_built_units() {
 void Scene::build() {
     const std::vector<InstanceRecord> records = records_in_built_units();
     const std::vector<LeafBox> boxes = leaves_instances(records, instances_);
-    const std::vector<uint> codes = morton(boxes, centroids(boxes));
+    const Codes codes = morton(boxes, centroids(boxes));
     top_ = hierarchy(boxes, codes, sort(codes), false, quality_);
     const auto count = static_cast<uint>(boxes.size());
     if (has_records(layout_)) top_records_ = records_of_instances(top_, count);

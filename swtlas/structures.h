@@ -9,6 +9,7 @@
 #include "engine/core/sort_args.h"
 
 namespace twinray {
+using glm::findMSB;
 using NodeWords = Words64;
 #include "engine/core/bridge_begin.h"
 #include "shaders/shared/build.h"
@@ -16,6 +17,7 @@ using NodeWords = Words64;
 #include "shaders/shared/end_point_overlap.h"
 #include "shaders/shared/morton.h"
 #include "shaders/shared/rotate.h"
+#include "shaders/shared/splits.h"
 #include "shaders/shared/traverse.h"
 #include "engine/core/bridge_end.h"
 

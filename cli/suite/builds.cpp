@@ -18,8 +18,8 @@
 namespace twinray::suite {
 namespace {
 
-// As the traversal's stack is made for: 30 bits of a Morton code, then the position among equal codes.
-uint depth_limit(std::size_t leaves) { return 30 + static_cast<uint>(std::bit_width(leaves)); }
+// As the traversal's stack is made for: 60 bits of Morton codes, then the position among equal codes.
+uint depth_limit(std::size_t leaves) { return 60 + static_cast<uint>(std::bit_width(leaves)); }
 
 TreeCheck check(const SwTlas::Tree& tree, const Mesh& mesh) {
     const std::vector<LeafBox> by_primitive =

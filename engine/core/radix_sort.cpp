@@ -36,16 +36,27 @@ uint RadixSort::run_of(std::uint64_t count, bool is_on_cpu) {
     return static_cast<uint>(std::clamp<std::uint64_t>(run, SORT_SHORTEST_RUN, SORT_LONGEST_RUN));
 }
 
+uint RadixSort::sort_groups(std::uint64_t count) const {
+    return static_cast<uint>(block_count(count, run_of(count, is_on_cpu_)));
+}
+
 RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
-                                   std::uint32_t bits) const {
+                                   std::uint32_t bits, const Counts* if_counts) const {
     if (count < 2) return pairs;
-    const uint run = run_of(count, is_on_cpu_);
-    const auto blocks = static_cast<uint>(block_count(count, run));
+    const uint blocks = sort_groups(count);
+    const auto dispatch = [&](const auto& kernel, const auto& args, uint groups, std::uint64_t Counts::*offset) {
+        if (if_counts)
+            kernel.dispatch_indirect(commands, args, if_counts->buffer, if_counts->*offset);
+        else
+            kernel.dispatch_groups(commands, args, groups);
+    };
     for (uint shift = 0; shift < bits; shift += SORT_DIGIT_BITS) {
-        const SortArgs args{pairs.keys, pairs.values, spare.keys, spare.values, counters, count, shift, blocks, run};
-        histogram_.dispatch_groups(commands, args, blocks);
-        scan_.dispatch_groups(commands, {counters, blocks * SORT_DIGITS, 0}, 1);
-        scatter_.dispatch_groups(commands, args, blocks);
+        const SortArgs args{pairs.keys,   pairs.values, spare.keys,
+                            spare.values, counters,     count,
+                            shift,        blocks,       run_of(count, is_on_cpu_)};
+        dispatch(histogram_, args, blocks, &Counts::sort);
+        dispatch(scan_, ScanArgs{counters, blocks * SORT_DIGITS, 0}, 1, &Counts::scan);
+        dispatch(scatter_, args, blocks, &Counts::sort);
         std::swap(pairs, spare);
     }
     return pairs;

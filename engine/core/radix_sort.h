@@ -19,9 +19,15 @@ class RadixSort {
     static std::uint64_t counter_bytes(std::uint64_t count);
 
     // Sorts `pairs` by the lowest `bits` bits of the key, using `spare` as the other half of the ping-pong; returns
-    // which of the two holds the result.
-    Pairs record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
-                 std::uint32_t bits) const;
+    // which of the two holds the result. `if_counts`: dispatches as many groups as it says, see below.
+    struct Counts {
+        const Buffer& buffer;
+        std::uint64_t sort,
+            scan;  // offsets of VkDispatchIndirectCommands: of sort_groups(count) groups, and of 1, or of 0
+    };
+    Pairs record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count, std::uint32_t bits,
+                 const Counts* if_counts = nullptr) const;
+    uint sort_groups(std::uint64_t count) const;
 
     // How many items a thread sorts: few on a GPU, which wants many threads; on a CPU so many that the counters of a
     // thread, which do not depend on it, cost little.

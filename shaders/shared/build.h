@@ -77,10 +77,54 @@ struct MortonArgs
     uint reserved;
 };
 
-// keys[i] = tree_of[order[i]]
-struct TreeKeysArgs
+// Where Morton codes collide, as in a mesh with parts that are far smaller than the whole, leaves are sorted again, by fine
+// codes too: else their order would mean nothing there.
+const uint CROWD = 16u; // leaves that follow one of the same code, in order: a crowd
+
+// Written on the device, which dispatches the second sort, or nothing.
+struct Crowding
 {
-    Uints tree_of;
+    uint crowded; // leaves that begin a crowd
+    uint groups_done;
+    uint is_fine; // 1: leaves are sorted by fine codes, too
+    uint reserved;
+    uint leaf_groups[3]; // of a dispatch over all leaves
+    uint sort_groups[3]; // of a pass of the sort
+    uint scan_groups[3];
+};
+BUFFER_OF(Crowding, 4);
+
+FUNC bool needs_fine_codes(uint crowded, uint leaf_count) { return crowded > leaf_count / 8u; }
+
+// In sorted order.
+struct CrowdingArgs
+{
+    Uints codes;   // by leaf
+    Uints order;
+    Uints tree_of; // by leaf; 0: a single tree
+    REF(Crowding) crowding;
+    uint count;
+    uint leaf_groups;
+    uint sort_groups;
+    uint reserved;
+};
+
+struct FineCodesArgs
+{
+    REF(BuildBlock) blocks;
+    REF(LeafBox) boxes;
+    REF(CentroidBounds) centroids;
+    Uints fine_codes; // by leaf
+    Uints keys;       // the same, to be sorted
+    Uints order;      // 0, 1, 2, ...
+    uint block_count;
+    uint reserved;
+};
+
+// keys[i] = values[order[i]]
+struct GatherKeysArgs
+{
+    Uints values;
     Uints order;
     Uints keys;
     uint count;
@@ -97,6 +141,8 @@ struct HierarchyArgs
     REF(BuildBlock) blocks;
     REF(LeafBox) boxes;
     Uints codes;
+    Uints fine_codes;
+    REF(Crowding) crowding;
     Uints order;
     Uints meeting;          // by inner node: the far end of the range that arrived first, NOTHING before
     REF(CentroidBounds) centroids;

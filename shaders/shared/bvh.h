@@ -15,8 +15,8 @@
 const uint LEAF_BIT = 0x80000000u;
 const uint NOTHING = 0xffffffffu;
 
-// Inner nodes on a path split on ever lower bits of (30-bit Morton code, 24-bit position).
-const uint DEEPEST_TREE = 54u;
+// Inner nodes on a path split on ever lower bits of (30-bit Morton code, 30-bit fine code, 25-bit position).
+const uint DEEPEST_TREE = 85u;
 
 struct LeafBox
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// 30-bit Morton codes: 10 bits an axis, x in the highest bit of each triple.
+// 30-bit Morton codes: 10 bits an axis, x in the highest bit of each triple. A fine code is that of the next 10 bits an axis.
 #ifndef TWINRAY_SHARED_MORTON_H
 #define TWINRAY_SHARED_MORTON_H
 
@@ -13,23 +13,29 @@ FUNC uint spread_bits(uint x)
     return x;
 }
 
-// The cell of a coordinate in [lo, hi] cut into 1024; 0 where the interval has no length. The clamp comes before the
+// The cell of a coordinate in [lo, hi] cut into 2^20; 0 where the interval has no length. The clamp comes before the
 // conversion to integer, which is undefined out of range.
 FUNC uint cell_of(float x, float lo, float hi)
 {
     PRECISE float extent = hi - lo;
     if (!(extent > 0.0f)) return 0u;
     PRECISE float offset = x - lo;
-    PRECISE float scaled = offset / extent * 1024.0f;
+    PRECISE float scaled = offset / extent * 1048576.0f;
     scaled = scaled > 0.0f ? scaled : 0.0f;
-    scaled = scaled < 1023.0f ? scaled : 1023.0f;
+    scaled = scaled < 1048575.0f ? scaled : 1048575.0f;
     return uint(scaled);
 }
 
 FUNC uint morton_code(vec3 point, vec3 lo, vec3 hi)
 {
-    return (spread_bits(cell_of(point.x, lo.x, hi.x)) << 2u) | (spread_bits(cell_of(point.y, lo.y, hi.y)) << 1u) |
-           spread_bits(cell_of(point.z, lo.z, hi.z));
+    return (spread_bits(cell_of(point.x, lo.x, hi.x) >> 10u) << 2u) | (spread_bits(cell_of(point.y, lo.y, hi.y) >> 10u) << 1u) |
+           spread_bits(cell_of(point.z, lo.z, hi.z) >> 10u);
+}
+
+FUNC uint fine_code(vec3 point, vec3 lo, vec3 hi)
+{
+    return (spread_bits(cell_of(point.x, lo.x, hi.x) & 1023u) << 2u) | (spread_bits(cell_of(point.y, lo.y, hi.y) & 1023u) << 1u) |
+           spread_bits(cell_of(point.z, lo.z, hi.z) & 1023u);
 }
 
 // A map from floats (NaN excepted) to uints that keeps order, for atomic min and max.

@@ -2,7 +2,7 @@
 // Topology and boxes in one bottom-up pass: after Apetrei, "Fast and Simple Agglomerative LBVH Construction", 2014.
 //
 // Sorted leaves i and i + 1 are separated by their split: the highest bit in which their codes differ, or, where the
-// codes are equal, their positions. A finished range [first, last] is joined with the neighbour across the lower of
+// codes are equal, their fine codes, if they are sorted by those, or their positions. A finished range [first, last] is joined with the neighbour across the lower of
 // the splits at its ends, and the inner node is named after that split:
 //
 //     leaf    0    1    2    3            split 1 is the highest: node 1 is the root.
@@ -17,7 +17,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
-#include "shaders/shared/morton.h"
+#include "shaders/shared/splits.h"
 layout(local_size_x = BUILD_GROUP) in;
 layout(constant_id = 0) const uint QUALITY = HIERARCHY_FAST;
 layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
@@ -35,21 +35,20 @@ struct Range
     NodeHalf top; // of its tree
 };
 
-// Larger = separates higher up. Codes decide; positions only between equal codes.
-uint64_t split_of(BuildTree tree, uint position, uint code, uint next_code)
+bool is_fine; // leaves are sorted by fine codes, too
+
+uint64_t split_of(BuildTree tree, uint position, uint element, uint code, uint next_element, uint next_code)
 {
     uint place = position - tree.first;
-    return uint64_t(code ^ next_code) << 32 | uint64_t(place ^ (place + 1u));
-}
-// A tree below a split has one node at most on any way down for each lower bit: of the code and of 24 of position.
-uint highest_below(uint64_t split)
-{
-    uint of_code = UINTS(split).y;
-    return of_code != 0u ? uint(findMSB(of_code)) + 25u : uint(findMSB(UINTS(split).x)) + 1u;
+    uint difference = 0u;
+    if (is_fine && code == next_code) difference = AT(args.fine_codes, element) ^ AT(args.fine_codes, next_element);
+    return make_split(code ^ next_code, difference, place);
 }
 uint64_t split_after(BuildTree tree, uint position)
 {
-    return split_of(tree, position, AT(args.codes, AT(args.order, position)), AT(args.codes, AT(args.order, position + 1u)));
+    uint element = AT(args.order, position);
+    uint next = AT(args.order, position + 1u);
+    return split_of(tree, position, element, AT(args.codes, element), next, AT(args.codes, next));
 }
 
 // The node at a split has both its halves: `range`, which may be the left one, and `other`.
@@ -114,10 +113,11 @@ void build_run(BuildTree tree, float scale, uint begin, uint end)
         uint64_t right = TREE_END;
         if (i != tree_last)
         {
+            uint last = element;
             uint last_code = code;
             element = AT(args.order, i + 1u);
             code = AT(args.codes, element);
-            right = split_of(tree, i, last_code, code);
+            right = split_of(tree, i, last, last_code, element, code);
         }
         while (range.first != base && left < right)
         {
@@ -162,9 +162,8 @@ void main()
     BuildBlock block = AT(args.blocks, index / runs);
     uint begin = index % runs * args.run;
     if (begin >= block.count) return;
-    CentroidBounds bounds = AT(args.centroids, block.tree);
-    vec3 lo = vec3(from_ordered_bits(bounds.lo.x), from_ordered_bits(bounds.lo.y), from_ordered_bits(bounds.lo.z));
-    vec3 hi = vec3(from_ordered_bits(bounds.hi.x), from_ordered_bits(bounds.hi.y), from_ordered_bits(bounds.hi.z));
-    build_run(AT(args.trees, block.tree), area_scale(lo, hi), block.first + begin,
+    LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
+    is_fine = AT(args.crowding, 0).is_fine != 0u;
+    build_run(AT(args.trees, block.tree), area_scale(bounds.lo, bounds.hi), block.first + begin,
               block.first + min(begin + args.run, block.count));
 }

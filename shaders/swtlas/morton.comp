@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
-#include "shaders/shared/morton.h"
+#include "shaders/shared/splits.h"
 layout(local_size_x = BUILD_GROUP) in;
 layout(push_constant, scalar) uniform Push { MortonArgs args; };
 
@@ -18,10 +18,8 @@ void main()
     uint code = INACTIVE_CODE;
     if (is_active(box))
     {
-        CentroidBounds bounds = AT(args.centroids, block.tree);
-        vec3 lo = vec3(from_ordered_bits(bounds.lo.x), from_ordered_bits(bounds.lo.y), from_ordered_bits(bounds.lo.z));
-        vec3 hi = vec3(from_ordered_bits(bounds.hi.x), from_ordered_bits(bounds.hi.y), from_ordered_bits(bounds.hi.z));
-        code = morton_code(center_of(box), lo, hi);
+        LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
+        code = morton_code(center_of(box), bounds.lo, bounds.hi);
     }
     AT(args.codes, leaf) = code;
     AT(args.keys, leaf) = code;

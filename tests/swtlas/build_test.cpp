@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -85,7 +86,7 @@ double sah_of(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes) {
 
 void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh, BuildQuality quality) {
     const std::vector<LeafBox> boxes = reference::leaves_triangles(built(mesh), mesh.triangles);
-    const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
+    const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
     const reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, !has_records(tree), quality);
     if (has_records(tree)) {
@@ -254,7 +255,7 @@ TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
     const SwTlas::Tree tree = accel.download_scene();
     const std::vector<LeafBox> boxes = instance_boxes(mesh, transforms);
     expect_sound(tree, boxes, "instances");
-    const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
+    const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     const reference::Hierarchy twin = reference::hierarchy(boxes, codes, reference::sort(codes), false, quality());
     if (has_records(tree))
         EXPECT_TRUE(same_bytes(tree.records, reference::records_of_instances(twin, 777).records));
@@ -340,6 +341,45 @@ TEST_P(SwBuild, ARefittedGeometryIsSoundAndKeepsItsTopology) {
         for (const BvhTriangle& triangle : before[i].triangles) order.push_back(triangle.primitive_index);
         EXPECT_TRUE(same_bytes(after.triangles, reference::encode_triangles(positions, meshes[i].triangles, order)));
     }
+}
+
+// The area of all boxes, but for the root's: what a stray triangle must not change.
+double area_below_root(const SwTlas::Tree& tree, const Mesh& mesh) {
+    const vec3 size = tree.bvh.hi - tree.bvh.lo;
+    const double root =
+        double{size.x} * double{size.y} + double{size.y} * double{size.z} + double{size.z} * double{size.x};
+    return sah_of(tree, leaf_boxes(tree, mesh)) * root;
+}
+
+TEST_P(SwBuild, AStrayTriangleDoesNotSpoilTheOrderOfTheOthers) {
+    Mesh mesh = make_icosphere(4);
+    std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), std::mt19937(1));
+    SwTlas accel(context(), options());
+    const AccelHandle alone = accel.push(mesh);
+    accel.sync();
+    const double area = area_below_root(accel.download_geometry(alone), mesh);
+    const auto first = static_cast<uint>(mesh.positions.size());
+    for (const vec3& corner : {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)}) mesh.positions.push_back(vec3(3000) + corner);
+    mesh.triangles.push_back(uvec3(first, first + 1, first + 2));
+    const AccelHandle handle = accel.push(mesh);
+    accel.sync();
+    const SwTlas::Tree tree = accel.download_geometry(handle);
+    expect_sound(tree, mesh);
+    expect_twin(tree, mesh, quality());
+    // In compressed4 the planes of its topmost boxes lie far apart.
+    const bool is_exact = std::get<Layout>(GetParam()) != Layout::compressed4;
+    EXPECT_LT(area_below_root(tree, mesh), is_exact ? 1.2 * area : INFINITY);
+
+    // Beside others in a batch, which has one order for all.
+    SwTlas of_many(context(), options());
+    const Mesh soup = make_soup(100, 1);
+    std::vector<AccelHandle> handles;
+    for (const Mesh& each : {soup, mesh, soup}) handles.push_back(of_many.push(each));
+    of_many.sync();
+    expect_sound(of_many.download_geometry(handles[0]), soup);
+    expect_sound(of_many.download_geometry(handles[2]), soup);
+    EXPECT_TRUE(same_bytes(of_many.download_geometry(handles[1]).records, tree.records));
+    EXPECT_TRUE(same_bytes(of_many.download_geometry(handles[1]).nodes, tree.nodes));
 }
 
 TEST_P(SwBuild, TheCostOnTheDeviceIsThatOfTheChecker) {

@@ -23,7 +23,7 @@ struct SoupTree {
 
 SoupTree some_tree() {
     SoupTree soup;
-    const std::vector<uint> codes = reference::morton(soup.boxes, reference::centroids(soup.boxes));
+    const reference::Codes codes = reference::morton(soup.boxes, reference::centroids(soup.boxes));
     soup.tree = reference::hierarchy(soup.boxes, codes, reference::sort(codes), false);
     return soup;
 }

@@ -22,7 +22,7 @@ using test::expect_contains;
 SavedGeometry saved(Layout layout, const Mesh& mesh, std::size_t instances) {
     const Geometry geometry(mesh);
     const std::vector<LeafBox> boxes = reference::leaves_triangles(geometry.positions, mesh.triangles);
-    const std::vector<uint> codes = reference::morton(boxes, reference::centroids(boxes));
+    const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
     std::vector<InstanceRecord> placed;
     for (uint i = 0; i < instances; ++i)
@@ -51,7 +51,7 @@ SavedGeometry saved_boxes() {
         boxes.push_back({vec3(static_cast<float>(i)), vec3(static_cast<float>(i) + 2)});
         leaf_boxes.push_back({boxes.back().lo, boxes.back().hi});
     }
-    const std::vector<uint> codes = reference::morton(leaf_boxes, reference::centroids(leaf_boxes));
+    const reference::Codes codes = reference::morton(leaf_boxes, reference::centroids(leaf_boxes));
     const std::vector<uint> order = reference::sort(codes);
     const reference::Hierarchy tree = reference::hierarchy(leaf_boxes, codes, order, true);
     std::vector<BvhTriangle> leaves;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Keys for sorting leaves by tree, after they are sorted by code.
+// Keys for sorting leaves once more, in the order that they have.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
 layout(local_size_x = BUILD_GROUP) in;
-layout(push_constant, scalar) uniform Push { TreeKeysArgs args; };
+layout(push_constant, scalar) uniform Push { GatherKeysArgs args; };
 
 void main()
 {
     uint i = global_index();
     if (i >= args.count) return;
-    AT(args.keys, i) = AT(args.tree_of, AT(args.order, i));
+    AT(args.keys, i) = AT(args.values, AT(args.order, i));
 }

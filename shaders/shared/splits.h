@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// How the sorted leaves of a tree are split.
+#ifndef TWINRAY_SHARED_SPLITS_H
+#define TWINRAY_SHARED_SPLITS_H
+#include "shaders/shared/build.h"
+#include "shaders/shared/morton.h"
+
+FUNC LeafBox bounds_of(CentroidBounds bits)
+{
+    LeafBox bounds;
+    bounds.lo = vec3(from_ordered_bits(bits.lo.x), from_ordered_bits(bits.lo.y), from_ordered_bits(bits.lo.z));
+    bounds.hi = vec3(from_ordered_bits(bits.hi.x), from_ordered_bits(bits.hi.y), from_ordered_bits(bits.hi.z));
+    return bounds;
+}
+
+// What separates neighbours in sorted order, larger = higher up: the highest bit in which their codes differ, between equal codes
+// the highest in which fine codes do, between equal ones of both the highest in which their places do. Only the highest
+// bit counts, and that of two neighbours of a range of leaves is never the same.
+FUNC uint64_t make_split(uint of_code, uint of_fine_code, uint place)
+{
+    uint of_place = place ^ (place + 1u); // 25 bits
+    uint lower = of_fine_code != 0u ? (uint(findMSB(of_fine_code)) + 1u) << 25u : of_place;
+    return uint64_t(of_code) << 32u | uint64_t(lower);
+}
+// A tree below a split has one node at most on any way down for each lower bit.
+FUNC uint highest_below(uint64_t split)
+{
+    uint of_code = UINTS(split).y;
+    uint lower = UINTS(split).x;
+    if (of_code != 0u) return uint(findMSB(of_code)) + 56u;
+    return lower >> 25u != 0u ? (lower >> 25u) + 25u : uint(findMSB(lower)) + 1u;
+}
+#endif

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// The fine code of each leaf's centre within its tree's centroids.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/build.h"
+#include "shaders/shared/splits.h"
+layout(local_size_x = BUILD_GROUP) in;
+layout(push_constant, scalar) uniform Push { FineCodesArgs args; };
+
+void main()
+{
+    if (group_index() >= args.block_count) return;
+    BuildBlock block = AT(args.blocks, group_index());
+    if (gl_LocalInvocationIndex >= block.count) return;
+    uint leaf = block.first + gl_LocalInvocationIndex;
+    LeafBox box = AT(args.boxes, leaf);
+    LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
+    uint code = is_active(box) ? fine_code(center_of(box), bounds.lo, bounds.hi) : INACTIVE_CODE;
+    AT(args.fine_codes, leaf) = code;
+    AT(args.keys, leaf) = code;
+    AT(args.order, leaf) = leaf;
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "swtlas/build.h"
+
+namespace twinray {
+
+// The addresses of a batch's scratch regions.
+struct Builder::Batch {
+    const Buffer& scratch;
+    Ref<BuildTree> trees;
+    Ref<BuildBlock> blocks;
+    Ref<LeafBox> boxes;
+    Ref<CentroidBounds> centroids;
+    Uints codes, fine_codes, tree_of, meeting, counters;
+    Ref<Crowding> crowding;
+    RadixSort::Pairs pairs, spare;
+    uint block_count;
+
+    const RadixSort::Pairs& other(const RadixSort::Pairs& of) const {
+        return of.keys.address == pairs.keys.address ? spare : pairs;
+    }
+};
+
+}  // namespace twinray

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// Refits of built trees, and what their boxes cost.
+#include "swtlas/build_batch.h"
+
+namespace twinray {
+
+// The boxes of all inner nodes, and the records, from the boxes of the leaves.
+void Builder::record_records_climb(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+    const std::uint64_t base = batch.scratch.address();
+    const Uints parents{base + plan.scratch.parents}, missing{base + plan.scratch.missing};
+    record_parents_.dispatch_groups(commands, {batch.trees, batch.blocks, parents, missing, batch.block_count, 0},
+                                    batch.block_count);
+    refit_records_.dispatch_groups(commands,
+                                   {batch.trees,
+                                    batch.blocks,
+                                    batch.boxes,
+                                    {base + plan.scratch.slot_boxes},
+                                    parents,
+                                    missing,
+                                    batch.block_count,
+                                    0},
+                                   batch.block_count);
+}
+
+void Builder::record_climb(Commands& commands, const Batch& batch) const {
+    // Nothing is sorted in a refit: that scratch holds the parents.
+    const Uints node_parents = batch.pairs.keys, leaf_parents = batch.pairs.values;
+    parents_.dispatch_groups(commands, {batch.trees, batch.blocks, node_parents, leaf_parents, batch.block_count, 0},
+                             batch.block_count);
+    refit_.dispatch_groups(
+        commands,
+        {batch.trees, batch.blocks, batch.boxes, node_parents, leaf_parents, batch.meeting, batch.block_count, 0},
+        batch.block_count);
+}
+
+namespace {
+
+// The nodes, or the records, among which areas are summed.
+uint area_count(const Builder::Measured& tree) {
+    return tree.records.address ? record_count(tree.leaf_count) : inner_count(tree.leaf_count);
+}
+
+std::uint64_t area_groups(const Builder::Measured& tree) {
+    return (std::uint64_t{area_count(tree)} + AREA_GROUP - 1) / AREA_GROUP;
+}
+
+}  // namespace
+
+std::uint64_t Builder::cost_bytes(uint leaf_count, Layout layout) {
+    // An address stands for any.
+    const Measured tree{{}, {has_records(layout) ? 1u : 0u}, {}, leaf_count, {}};
+    return AreaWork{area_groups(tree), {}, {}, false}.bytes();
+}
+
+void Builder::record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const {
+    std::vector<AreaWork> work;
+    for (const Measured& tree : trees) work.push_back({area_groups(tree), {tree.tree.address}, tree.target, is_build});
+    SurfaceArea::place(commands, work);
+    if (!work.empty()) {
+        const auto pass = commands.pass(node_areas_.name());
+        for (std::size_t i = 0; i < trees.size(); ++i)
+            node_areas_.dispatch_groups(
+                commands,
+                {trees[i].tree, trees[i].records, trees[i].record_boxes, work[i].items, area_count(trees[i]), 0},
+                work[i].item_count);
+    }
+    areas_.record(commands, std::move(work));
+}
+
+void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
+                                    const Buffer& scratch) const {
+    if (plan.leaf_count == 0) return;
+    const Batch batch = begin(commands, plan, trees, scratch);
+    if (has_records(plan.layout)) return record_records_climb(commands, plan, batch);
+    refit_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.boxes, batch.block_count, 0},
+                                     batch.block_count);
+    record_climb(commands, batch);
+}
+
+void Builder::record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
+                           Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
+    if (plan.leaf_count == 0) return;
+    Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = plan.scratch.bytes});
+    const Batch batch = begin(commands, plan, std::span(&tree, 1), scratch);
+    leaves_instances_.dispatch_groups(
+        commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
+        batch.block_count);
+    if (has_records(plan.layout))
+        record_records_climb(commands, plan, batch);
+    else
+        record_climb(commands, batch);
+    commands.keep(std::move(scratch));
+}
+
+}  // namespace twinray
