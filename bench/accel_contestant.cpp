@@ -38,7 +38,8 @@ double AccelContestant::trace(const RayBatch& batch) {
                    .hits = hits.ref<Hit>(),
                    .count = batch.rays().size(),
                    .query = batch.query(),
-                   .level = level_});
+                   .level = level_,
+                   .order = order_});
     const Stopwatch watch;
     commands.submit();
     accel_->wait_for_gpu();

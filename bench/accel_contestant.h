@@ -12,8 +12,8 @@ namespace twinray::bench {
 class AccelContestant : public Contestant {
   public:
     using Make = std::function<std::unique_ptr<AbstractAccel>()>;
-    AccelContestant(Labels labels, Level level, Make make)
-        : Contestant(std::move(labels)), level_(level), make_(std::move(make)) {}
+    AccelContestant(Labels labels, Level level, RayOrder order, Make make)
+        : Contestant(std::move(labels)), level_(level), order_(order), make_(std::move(make)) {}
 
     BuildFigures build(const Scene& scene) override;
     double trace(const RayBatch& batch) override;
@@ -21,6 +21,7 @@ class AccelContestant : public Contestant {
 
   private:
     Level level_;
+    RayOrder order_;
     Make make_;
     std::unique_ptr<AbstractAccel> accel_;
 };

@@ -21,6 +21,7 @@ struct Labels {
     std::string layout;
     std::string builder;
     std::string level;
+    std::string ray_order = {};  // in which it traces rays: "given", "sorted"
 };
 
 struct BuildFigures {

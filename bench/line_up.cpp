@@ -61,9 +61,14 @@ class Maker {
     LineUp line_up;
 
   private:
-    void add(Labels&& labels, Level level, AccelContestant::Make&& make) {
-        if (is_named(labels.name, options_.only))
-            line_up.push_back(std::make_unique<AccelContestant>(std::move(labels), level, std::move(make)));
+    void add(const Labels& labels, Level level, const AccelContestant::Make& make) {
+        for (const RayOrder order : options_.ray_orders) {
+            Labels ordered = labels;
+            ordered.ray_order = twinray::name_of(order);
+            if (order == RayOrder::sorted) ordered.name += " sorted";
+            if (is_named(ordered.name, options_.only))
+                line_up.push_back(std::make_unique<AccelContestant>(std::move(ordered), level, order, make));
+        }
     }
 
     const LineUpOptions& options_;

@@ -16,6 +16,7 @@ struct LineUpOptions {
     std::vector<Level> levels = {Level::watertight};
     std::vector<Layout> layouts = {all_layouts.begin(), all_layouts.end()};
     std::vector<BuildQuality> build_qualities = {BuildQuality::fast};
+    std::vector<RayOrder> ray_orders = {RayOrder::given};
     std::vector<std::string> only = {};  // parts of names: a contestant runs that has one of them; none: all run
     bool has_embree = true;
 };
@@ -25,7 +26,8 @@ const char* level_name(Level level);
 
 // SwTlas in each layout and build quality at each level; HwTlas at each level it has, and with input in the given order
 // where the driver builds in that order; HwTlas by ray tracing pipeline in `pipeline`, a context in which ray queries
-// are left disabled, unless that is null; Embree. Contexts must outlive it. Throws Error if none is left of `only`.
+// are left disabled, unless that is null; each of them in each order of rays; Embree. Contexts must outlive it. Throws
+// Error if none is left of `only`.
 LineUp make_line_up(Context& context, Context* pipeline, const LineUpOptions& options);
 
 // Whose times others are given in: the first contestant at the first level by ray query with sorted input, ...

@@ -86,13 +86,20 @@ std::vector<Ray> occlusion_rays(std::span<const Surface> points, const Bounds& b
     return rays;
 }
 
+std::vector<Ray> shuffled_rays(std::vector<Ray> rays, std::uint64_t seed) {
+    for (std::size_t left = rays.size(); left > 1; --left)
+        std::swap(rays[left - 1], rays[Draws(seed, left).below(left)]);
+    return rays;
+}
+
 std::array<std::vector<Ray>, all_ray_kinds.size()> make_rays(Context& context, const BenchScene& scene, uint width,
                                                              std::uint64_t seed) {
     const std::vector<Ray> primary = primary_rays(scene.framed, width);
     const std::vector<Surface> points = surfaces_of(scene.scene, primary, primary_hits(context, scene.scene, primary));
     if (points.empty()) fail("scene '", scene.name, "': none of ", primary.size(), " primary rays meets it");
-    return {primary, incoherent_rays(points, primary.size(), seed),
-            occlusion_rays(points, bounds_of(scene.scene), primary.size(), seed)};
+    const std::vector<Ray> incoherent = incoherent_rays(points, primary.size(), seed);
+    return {primary, incoherent, occlusion_rays(points, bounds_of(scene.scene), primary.size(), seed),
+            shuffled_rays(incoherent, seed)};
 }
 
 }  // namespace twinray::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The three sets of rays that rates are given for. They depend on the scene, the width and the seed alone.
+// The sets of rays that rates are given for. They depend on the scene, the width and the seed alone.
 #pragma once
 
 #include <array>
@@ -17,10 +17,15 @@ enum class RayKind : std::uint8_t {
     primary,     // a camera's
     incoherent,  // from where those meet the scene, into the hemisphere on their side, uniform over solid angle
     occlusion,   // from the same points to random points of a light above and beside the scene
+    shuffled,    // the incoherent ones in random order
 };
-inline constexpr std::array all_ray_kinds = {RayKind::primary, RayKind::incoherent, RayKind::occlusion};
+inline constexpr std::array all_ray_kinds = {RayKind::primary, RayKind::incoherent, RayKind::occlusion,
+                                             RayKind::shuffled};
+// As a renderer traces them.
+inline constexpr std::array usual_ray_kinds = {RayKind::primary, RayKind::incoherent, RayKind::occlusion};
 constexpr std::string_view name_of(RayKind kind) {
-    return kind == RayKind::primary ? "primary" : kind == RayKind::incoherent ? "incoherent" : "occlusion";
+    constexpr std::string_view names[] = {"primary", "incoherent", "occlusion", "shuffled"};
+    return names[static_cast<std::size_t>(kind)];
 }
 // Any hits for occlusion, else closest hits.
 constexpr Query query_of(RayKind kind) { return kind == RayKind::occlusion ? Query::any : Query::closest; }
@@ -42,9 +47,12 @@ std::vector<Ray> incoherent_rays(std::span<const Surface> points, std::size_t co
 std::vector<Ray> occlusion_rays(std::span<const Surface> points, const Bounds& bounds, std::size_t count,
                                 std::uint64_t seed);
 
-// Each `width` * `width` rays, in tiles of 8 x 8 pixels of the picture of primary rays. By RayKind. Surface points are
-// found by SwTlas, refined where the device has float64. `width` is a multiple of 8. Throws Error naming the scene if
-// no primary ray meets it.
+// The same rays in an order that depends on their number and the seed alone.
+std::vector<Ray> shuffled_rays(std::vector<Ray> rays, std::uint64_t seed);
+
+// Each `width` * `width` rays, but for shuffled ones in tiles of 8 x 8 pixels of the picture of primary rays. By
+// RayKind. Surface points are found by SwTlas, refined where the device has float64. `width` is a multiple of 8. Throws
+// Error naming the scene if no primary ray meets it.
 std::array<std::vector<Ray>, all_ray_kinds.size()> make_rays(Context& context, const BenchScene& scene, uint width,
                                                              std::uint64_t seed);
 

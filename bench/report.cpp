@@ -113,6 +113,7 @@ std::vector<nlohmann::json> records_of(const nlohmann::json& base, const Results
                        {"layout", labels.layout},
                        {"builder", labels.builder},
                        {"level", labels.level},
+                       {"ray_order", labels.ray_order},
                        {"mrays_per_s", rate.median},
                        {"mrays_per_s_min", rate.min},
                        {"mrays_per_s_max", rate.max}});

@@ -12,7 +12,7 @@ namespace twinray::bench {
 
 struct RunOptions {
     LineUpOptions line_up;
-    std::vector<RayKind> kinds = {all_ray_kinds.begin(), all_ray_kinds.end()};
+    std::vector<RayKind> kinds = {usual_ray_kinds.begin(), usual_ray_kinds.end()};
     uint width = 1024;  // pixels a side, a multiple of 8: each set has width * width rays
     std::size_t rounds = 5;
     bool times_builds = true;  // else each is built once, and no time is given

@@ -121,6 +121,12 @@ std::map<std::string, Level> levels_by_name() {
     return levels;
 }
 
+std::map<std::string, RayOrder> ray_orders_by_name() {
+    std::map<std::string, RayOrder> orders;
+    for (const RayOrder order : all_ray_orders) orders.emplace(name_of(order), order);
+    return orders;
+}
+
 void add_choice_options(CLI::App& command, bench::RunOptions& run) {
     command.add_option("--levels", run.line_up.levels, "fast, watertight, refined, certified; separated by commas")
         ->delimiter(',')
@@ -131,6 +137,11 @@ void add_choice_options(CLI::App& command, bench::RunOptions& run) {
     command.add_option("--build-qualities", run.line_up.build_qualities, "of SwTlas: fast, high; separated by commas")
         ->delimiter(',')
         ->transform(CLI::CheckedTransformer(build_qualities_by_name()));
+    command
+        .add_option("--ray-orders", run.line_up.ray_orders,
+                    "in which accelerators trace: given, sorted; separated by commas")
+        ->delimiter(',')
+        ->transform(CLI::CheckedTransformer(ray_orders_by_name()));
     command
         .add_option("--contestants", run.line_up.only,
                     "those with one of these parts in their names, as sw,embree8; separated by commas; else all")
@@ -191,7 +202,8 @@ void add_bench(CLI::App& app, int&) {
             ->capture_default_str();
     command
         ->add_option("--rays", options->kinds,
-                     "primary, incoherent, occlusion; separated by commas; else all, of growth the first two")
+                     "primary, incoherent, occlusion, shuffled; separated by commas; else the first three, of growth "
+                     "the first two")
         ->delimiter(',')
         ->transform(CLI::CheckedTransformer(ray_kinds_by_name()));
     add_choice_options(*command, options->run);

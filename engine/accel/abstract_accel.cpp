@@ -5,6 +5,7 @@
 #include <atomic>
 #include <utility>
 
+#include "engine/accel/ray_sort.h"
 #include "engine/core/error.h"
 
 namespace twinray {

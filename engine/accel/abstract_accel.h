@@ -25,6 +25,8 @@
 
 namespace twinray {
 
+class RaySort;
+
 // Names what one push placed. Never reused; a handle of another accelerator or of something erased is dead.
 struct AccelHandle {
     std::uint64_t id = 0;  // 0 = invalid
@@ -335,6 +337,7 @@ class AbstractAccel {
     const TraceProgram& own_program(uint features, const TraceDesc& desc) const;
     const TraceProgram& program_for(const TraceDesc& desc) const;
     void check_desc(const AccelView& view, const TraceDesc& desc) const;
+    Uints record_order(Commands& commands, const TraceDesc& desc) const;
 
     Context& context_;
     std::string name_;
@@ -353,6 +356,7 @@ class AbstractAccel {
     std::uint64_t revision_ = 0;
     SceneFacts facts_;                                   // of the scene that was built
     mutable std::unique_ptr<OwnPrograms> own_programs_;  // made by the first trace
+    mutable std::unique_ptr<RaySort> ray_sort_;          // made by the first that sorts
     SyncPoint synced_;
     uint warned_unusable_ = 0;
     std::unique_ptr<BuiltScene> scene_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tracing through AbstractAccel: what every accelerator checks, and the host's convenience.
 #include "engine/accel/abstract_accel.h"
+#include "engine/accel/ray_sort.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -31,10 +32,29 @@ void AbstractAccel::trace(Commands& commands, const AccelView& view, const Trace
     check_desc(view, desc);
     if (desc.count == 0) return;
     if (!desc.rays.address || !desc.hits.address) fail(name_, ": trace: the address of rays or hits is 0");
-    const TraceArgs args{view.scene,          desc.rays,           desc.hits,
-                         desc.indirect_count, desc.user_data,      static_cast<uint>(desc.count),
-                         desc.mask,           flags_of(desc.cull), 0};
-    program_for(desc).record(commands, args, desc.query, desc.level);
+    const TraceProgram& program = program_for(desc);
+    const TraceArgs args{.scene = view.scene,
+                         .rays = desc.rays,
+                         .hits = desc.hits,
+                         .indirect_count = desc.indirect_count,
+                         .user_data = desc.user_data,
+                         .order = record_order(commands, desc),
+                         .count = static_cast<uint>(desc.count),
+                         .mask = desc.mask,
+                         .flags = flags_of(desc.cull),
+                         .first = 0};
+    program.record(commands, args, desc.query, desc.level);
+}
+
+// As TraceArgs::order.
+Uints AbstractAccel::record_order(Commands& commands, const TraceDesc& desc) const {
+    if (desc.order == RayOrder::given || !works_on_device()) return {};
+    if (!ray_sort_) ray_sort_ = std::make_unique<RaySort>(context_);
+    const auto count = static_cast<uint>(desc.count);
+    Buffer scratch(context_, {.name = "ray sort scratch", .bytes = RaySort::scratch_bytes(count)});
+    const Uints order = ray_sort_->record(commands, scratch, desc.rays, count, desc.indirect_count).values;
+    commands.keep(std::move(scratch));
+    return order;
 }
 
 void AbstractAccel::check_desc(const AccelView& view, const TraceDesc& desc) const {

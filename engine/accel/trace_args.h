@@ -9,5 +9,5 @@ namespace twinray {
 #include "shaders/shared/trace.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(TraceArgs) == 56);
+static_assert(sizeof(TraceArgs) == 64);
 }  // namespace twinray

@@ -13,6 +13,19 @@ class TraceProgram;
 
 enum class Query : std::uint8_t { closest, any };
 
+// In which order rays are traced. Each hit is written where its ray asks for it, and is the same bits.
+enum class RayOrder : std::uint8_t {
+    given,
+    // By the cell, of a coarse grid in the box of all origins, in which a ray begins, then by the octant of its
+    // direction. Pays for many rays in random order on large scenes: docs/bench.md says where. A single ray that begins
+    // far away from the others makes the cells coarse. Takes some 16 bytes of device memory a ray for as long as the
+    // commands run, and records passes of its own.
+    sorted,
+};
+
+inline constexpr std::array all_ray_orders = {RayOrder::given, RayOrder::sorted};
+constexpr std::string_view name_of(RayOrder order) { return order == RayOrder::sorted ? "sorted" : "given"; }
+
 // How a ray is tested against triangles, from the fastest to the surest. The hardware accelerator always uses the
 // driver's own test: AbstractAccel::capability says what a level is there.
 enum class Level : std::uint8_t {
@@ -75,6 +88,7 @@ struct TraceDesc {
     Level level = Level::watertight;
     // Of any hits: of each Hit only `hit` is written for sure; the rest is undefined.
     bool answer_only = false;
+    RayOrder order = RayOrder::given;
     // Needed where the scene has boxes or filtered instances; made by AbstractAccel::make_program of the same
     // accelerator, and kept alive until the GPU is done.
     const TraceProgram* program = nullptr;

@@ -12,8 +12,8 @@ layout(push_constant, scalar) uniform Push { TraceArgs args; };
 
 void main()
 {
-    uint i = global_index();
-    if (i >= ray_count(args.count, args.indirect_count)) return;
+    if (global_index() >= ray_count(args.count, args.indirect_count)) return;
+    uint i = ray_at(args.order, global_index());
     TraceOptions options = trace_options(args.mask, args.flags, TRACE_QUERY);
     options.user_data = args.user_data;
     Hit hit = trace(args.scene, AT(args.rays, i), options);

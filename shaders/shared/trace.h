@@ -42,9 +42,12 @@ struct TraceArgs
     REF(Hit) hits;
     Uints indirect_count; // null, or where a smaller count may stand
     uint64_t user_data;
+    Uints order; // null, or which ray each invocation traces
     uint count; // where the rays of this launch end
     uint mask;
     uint flags;
     uint first; // ray that the launch begins with
 };
+
+FUNC uint ray_at(Uints order, uint place) { return uint64_t(order) == 0ul ? place : AT(order, place); }
 #endif

@@ -29,7 +29,7 @@ def bench(*arguments, status=0):
 KINDS = ["primary", "incoherent", "occlusion"]
 RATIOS = ["vs_ray_query", "vs_ray_query_presorted", "vs_pipeline", "vs_embree8", "vs_sw"]
 FIELDS = {"schema", "device", "started", "git", "width", "seed", "scene", "triangles", "rays", "n", "rounds", "contestant",
-          "backend", "path", "order", "layout", "builder", "level", "mrays_per_s", "mrays_per_s_min", "mrays_per_s_max",
+          "backend", "path", "order", "layout", "builder", "level", "ray_order", "mrays_per_s", "mrays_per_s_min", "mrays_per_s_max",
           "build_ms", "build_ms_min", "build_ms_max", "build_wall_ms", "bytes_per_triangle", "scratch_bytes_per_triangle",
           "agreement", "faults", "judged", "hits_hash", *RATIOS}
 
@@ -62,6 +62,17 @@ assert all(r["build_ms"] is None and r["vs_embree8"] is None and r["triangles"] 
 _, records = bench("--scene", "soup:100", "--width", "16", "--rounds", "1", "--rays", "primary", "--no-embree")
 assert not any(r["backend"] == "embree" for r in records)
 
+# Rays in random order, and who sorts them.
+said, records = bench("--scene", "sphere:320", "--width", "32", "--rounds", "1", "--rays", "incoherent,shuffled", "--layouts",
+                      "bvh2", "--contestants", "sw,embree8 low", "--ray-orders", "given,sorted", "--no-build")
+ours = [r for r in records if r["backend"] == "sw"]
+assert [(r["rays"], r["contestant"], r["ray_order"]) for r in ours] == [
+    (kind, "sw bvh2 watertight" + suffix, order) for kind in ("incoherent", "shuffled")
+    for suffix, order in (("", "given"), (" sorted", "sorted"))]
+assert len({(r["rays"], r["hits_hash"]) for r in ours}) == 2, "hits depend on the order"
+assert len({r["hits_hash"] for r in ours}) == 2, "shuffled rays are not"
+assert all(r["ray_order"] == "" for r in records if r["backend"] == "embree")
+
 # Whoever is too slow traces whole tiles, evenly chosen, and has no hash.
 _, records = bench("--scene", "sphere:80", "--width", "64", "--rounds", "1", "--contestants", "compressed4", "--max-seconds",
                    "1e-9")
@@ -90,12 +101,13 @@ for kind in KINDS:
     assert len({r["hits_hash"] for r in rungs}) == 1 and rungs[0]["hits_hash"] in said
     assert all(r["ns_per_ray"] > 0 and r["rounds"] == 5 for r in rungs) and rungs[1]["of_needed"] == 1
 _, records = bench("--ladder", "--scene", "instances:3x80", "--width", "16", "--layouts", "bvh2", "--rays", "primary")
-assert [r["rung"] for r in records] == ["needed", "+ masks", "+ culling", "+ filters", "+ boxes", "+ other layout"]
+assert [r["rung"] for r in records] == ["needed", "+ masks", "+ culling", "+ filters", "+ boxes", "+ other layouts"]
 
 # What is wrong is said.
 assert "'abc' is not a whole number" in bench("--scene", "sphere:abc", status=1)[0]
 assert "no contestant's name has a part 'nobody'" in bench("--scene", "sphere:80", "--contestants", "nobody", status=1)[0]
 bench("--scene", "sphere:80", "--rays", "diffuse", status=2)
+bench("--scene", "sphere:80", "--ray-orders", "random", status=2)
 bench("--scene", "sphere:80", "--width", "12", status=2)
 bench("--scene", "sphere:80", "--max-seconds", "0", status=2)
 bench("--growth", "1", status=2)
@@ -109,7 +121,7 @@ for runs in (1, 2):
     call(scripts / "record_history.sh", "-t", twinray, "-o", str(here / "history"), "sphere:80", "soup:80", *options)
     (history,) = (here / "history").glob("*.jsonl")
     kept = [json.loads(line) for line in history.read_text().splitlines()]
-    assert len(kept) == runs * 2 * 3 * 2 and {r["scene"] for r in kept} == {"sphere:80", "soup:80"}
+    assert len(kept) == runs * 2 * 3 * 3 and {r["scene"] for r in kept} == {"sphere:80", "soup:80"}
     assert all(r["started"] and r["git"] and r["device"]["driver"] for r in kept)
 call(scripts / "record_history.sh", "-t", twinray, "-o", str(here / "history"), "sphere:80", "sphere:abc", *options, status=1)
 assert len(history.read_text().splitlines()) == len(kept), "a run that failed was recorded"

@@ -42,6 +42,23 @@ TEST_F(LineUpTest, TakesThoseThatAreNamed) {
     test::expect_contains(test::error_of([&] { make_line_up(context(), nullptr, {.only = {"nobody"}}); }), "'nobody'");
 }
 
+TEST_F(LineUpTest, TracesInEachOrderThatIsAskedFor) {
+    LineUp line_up =
+        make_line_up(context(), nullptr,
+                     {.layouts = {Layout::bvh2}, .ray_orders = {RayOrder::given, RayOrder::sorted}, .only = {"sw"}});
+    EXPECT_EQ(names_of(line_up), (std::vector<std::string>{"sw bvh2 watertight", "sw bvh2 watertight sorted"}));
+    const BenchScene scene = make_scene("sphere:500");
+    const RayBatch rays(make_rays(context(), scene, 16, 1)[0], Query::closest, true);
+    std::vector<std::uint64_t> hashes;
+    for (const auto& contestant : line_up) {
+        contestant->build(scene.scene);
+        hashes.push_back(hash_of(traced(*contestant, rays), rays.query()));
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+    EXPECT_EQ(line_up[0]->labels().ray_order, "given");
+    EXPECT_EQ(line_up[1]->labels().ray_order, "sorted");
+}
+
 TEST_F(LineUpTest, EveryBaselineIsItself) {
     const LineUp line_up = make_line_up(context(), nullptr, {});
     const auto path_at = [&](Baseline baseline) { return line_up[*find(baseline, line_up)]->labels().path; };

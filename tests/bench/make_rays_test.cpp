@@ -29,6 +29,12 @@ TEST_F(MakeRays, GivesSetsOfTheSameSizeThatAreTheSameAgain) {
     }
 }
 
+TEST_F(MakeRays, ShufflesTheIncoherentOnes) {
+    const auto sets = make_rays(context(), make_scene("sphere:500"), 32, 1);
+    const std::vector<Ray>& incoherent = sets[static_cast<std::size_t>(RayKind::incoherent)];
+    EXPECT_TRUE(are_equal(sets[static_cast<std::size_t>(RayKind::shuffled)], shuffled_rays(incoherent, 1)));
+}
+
 TEST_F(MakeRays, SaysWhenNoneMeetsTheScene) {
     BenchScene scene = make_scene("sphere:20");
     scene.framed = {vec3(100), vec3(101)};

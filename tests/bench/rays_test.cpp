@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/oracle.h"
@@ -122,6 +125,27 @@ TEST(BenchRays, OcclusionRaysEndJustBeforeALightOutside) {
     EXPECT_LT(length(ends.size()), length(bounds.size()));
     EXPECT_GT(lit, 500u);
     EXPECT_LT(lit, 4500u);
+}
+
+TEST(BenchRays, ShuffledRaysAreTheSameInEveryOrder) {
+    std::vector<Ray> rays(5);
+    for (std::size_t i = 0; i < rays.size(); ++i) rays[i].t_max = static_cast<float>(i);
+    const auto order = [&](std::uint64_t seed) {
+        std::vector<float> numbers;
+        for (const Ray& ray : shuffled_rays(rays, seed)) numbers.push_back(ray.t_max);
+        return numbers;
+    };
+    std::map<std::vector<float>, int> orders;
+    for (std::uint64_t seed = 0; seed < 12'000; ++seed) ++orders[order(seed)];
+    EXPECT_EQ(orders.size(), 120u);
+    for (const auto& [numbers, count] : orders) {
+        EXPECT_NEAR(count, 100, 50);
+        std::vector<float> back = numbers;
+        std::sort(back.begin(), back.end());
+        ASSERT_EQ(back, (std::vector<float>{0, 1, 2, 3, 4}));
+    }
+    EXPECT_EQ(order(7), order(7));
+    EXPECT_TRUE(shuffled_rays({}, 1).empty());
 }
 
 TEST(BenchRays, DependOnTheSeedAlone) {

@@ -29,7 +29,7 @@ TEST_P(PipelineLaunch, SeveralLaunchesGiveWhatOneGives) {
                                                   .launch_limit = 40'000});
     const Buffer source = device_copy(rays), hits(context(), {.name = "hits", .bytes = rays.size() * sizeof(Hit)});
     Commands commands(context(), "limited");
-    pipeline.trace(commands, {view.scene, source.ref<Ray>(), hits.ref<Hit>(), {}, 0, 100'001, 0xff, 0, 0});
+    pipeline.trace(commands, {view.scene, source.ref<Ray>(), hits.ref<Hit>(), {}, 0, {}, 100'001, 0xff, 0, 0});
     commands.submit();
     const std::vector<Hit> found = download<Hit>(context(), hits, rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i)

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The box of the origins of those rays that are traced.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/ray_order.h"
+#include "shaders/engine/group_box.glsl"
+layout(local_size_x = WORLD_BOUND_GROUP) in;
+layout(push_constant, scalar) uniform Push { RayOrderArgs args; };
+
+void main()
+{
+    if (group_index() >= args.group_count) return;
+    GeometryBox box = no_box();
+    uint count = ray_count(args.count, args.indirect_count);
+    uint stride = args.group_count * WORLD_BOUND_GROUP;
+    for (uint i = global_index(), left = RAYS_IN_BOX; left > 0u && i < count; i += stride, left--)
+    {
+        Ray ray = AT(args.rays, i);
+        if (!is_traceable(ray)) continue;
+        box.lo = min(box.lo, ray.origin);
+        box.hi = max(box.hi, ray.origin);
+    }
+    add_box(args.box, args.group_count, box);
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The order in which rays that come at random are traced: by where they begin, then by where they go.
+#ifndef TWINRAY_SHARED_RAY_ORDER_H
+#define TWINRAY_SHARED_RAY_ORDER_H
+#include "shaders/shared/morton.h"
+#include "shaders/shared/ray.h"
+#include "shaders/shared/world_bound.h"
+
+const uint RAY_CELL_BITS = 3u; // of each axis of the grid
+const uint RAY_KEY_BITS = 3u * RAY_CELL_BITS + 3u;
+const uint LAST_RAY_KEY = (1u << RAY_KEY_BITS) - 1u;
+
+const uint RAYS_IN_BOX = 16u; // of an invocation: processors pay dearly for the barriers of a group
+
+struct RayOrderArgs
+{
+    REF(Ray) rays;
+    Uints indirect_count; // see TraceArgs
+    REF(WorldBoundBits) box; // around the origins
+    Uints keys;
+    Uints order;
+    uint count;
+    uint group_count; // of the kernel that finds the box
+};
+
+FUNC GeometryBox box_of(WorldBoundBits bits)
+{
+    GeometryBox box;
+    box.lo = vec3(from_ordered_bits(bits.lo.x), from_ordered_bits(bits.lo.y), from_ordered_bits(bits.lo.z));
+    box.hi = vec3(from_ordered_bits(bits.hi.x), from_ordered_bits(bits.hi.y), from_ordered_bits(bits.hi.z));
+    return box;
+}
+
+// Which components are negative: x in the highest bit.
+FUNC uint octant_of(vec3 direction)
+{
+    return (direction.x < 0.0f ? 4u : 0u) | (direction.y < 0.0f ? 2u : 0u) | (direction.z < 0.0f ? 1u : 0u);
+}
+
+// Rays that are sorted by it follow the Morton curve through a grid of the box, and within a cell the octants. Those
+// that are not traced come last.
+FUNC uint ray_key(Ray ray, GeometryBox box)
+{
+    if (!is_traceable(ray)) return LAST_RAY_KEY;
+    uint cell = morton_code(ray.origin, box.lo, box.hi) >> (30u - 3u * RAY_CELL_BITS);
+    return cell << 3u | octant_of(ray.direction);
+}
+#endif
