@@ -114,6 +114,16 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
             static_cast<uint>(plan.blocks.size())};
 }
 
+Builder::Batch Builder::begin_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
+                                        Ref<InstanceRecord> records, Ref<SwInstance> instances,
+                                        const Buffer& scratch) const {
+    const Batch batch = begin(commands, plan, std::span(&tree, 1), scratch);
+    leaves_instances_.dispatch_groups(
+        commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
+        batch.block_count);
+    return batch;
+}
+
 Uints Builder::record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
     const MortonArgs args{batch.blocks,  batch.boxes,       batch.centroids,
                           batch.codes,   batch.pairs.keys,  batch.pairs.values,
@@ -202,10 +212,7 @@ void Builder::record_instances(Commands& commands, const BuildPlan& plan, const 
                                Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
     if (plan.leaf_count == 0) return;
     Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = plan.scratch.bytes});
-    const Batch batch = begin(commands, plan, std::span(&tree, 1), scratch);
-    leaves_instances_.dispatch_groups(
-        commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
-        batch.block_count);
+    const Batch batch = begin_instances(commands, plan, tree, records, instances, scratch);
     record_hierarchy(commands, batch, record_order(commands, plan, batch), false);
     if (has_records(plan.layout)) record_collapse(commands, plan, batch);
     commands.keep(std::move(scratch));

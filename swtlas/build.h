@@ -50,6 +50,9 @@ class Builder {
     struct Batch;
     Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                 const Buffer& scratch) const;
+    // With the leaves of one tree over the records.
+    Batch begin_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
+                          Ref<SwInstance> instances, const Buffer& scratch) const;
     Uints record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_fine_order(Commands& commands, const BuildPlan& plan, const Batch& batch,
                            const RadixSort::Pairs& sorted) const;

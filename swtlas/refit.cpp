@@ -81,10 +81,7 @@ void Builder::record_refit(Commands& commands, const BuildPlan& plan, const Buil
                            Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
     if (plan.leaf_count == 0) return;
     Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = plan.scratch.bytes});
-    const Batch batch = begin(commands, plan, std::span(&tree, 1), scratch);
-    leaves_instances_.dispatch_groups(
-        commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
-        batch.block_count);
+    const Batch batch = begin_instances(commands, plan, tree, records, instances, scratch);
     if (has_records(plan.layout))
         record_records_climb(commands, plan, batch);
     else

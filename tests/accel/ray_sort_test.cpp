@@ -159,7 +159,7 @@ TEST_P(SortedRaysOfAccels, AreSortedOnlyWhereThatIsAskedFor) {
                       {.rays = input.ref<Ray>(), .hits = hits.ref<Hit>(), .count = rays.size(), .order = order});
         commands.submit();
         const std::vector<PassTiming> passes = commands.timings();
-        if (passes.empty()) GTEST_SKIP() << "no timestamps";
+        ASSERT_FALSE(passes.empty()) << "the device has no timestamps, which tell of passes";
         const bool is_sorted = std::any_of(passes.begin(), passes.end(),
                                            [](const PassTiming& pass) { return pass.name == "engine_ray_keys"; });
         EXPECT_EQ(is_sorted, order == RayOrder::sorted);
