@@ -197,20 +197,20 @@ void Context::create_pipeline_cache(const PipelineStore& store) {
     cache.pInitialData = kept.data();
     vk_check(vk_.vkCreatePipelineCache(device_, &cache, nullptr, &pipeline_cache_), "create the pipeline cache");
     owns_pipeline_cache_ = true;
-    pipelines_ = store;
+    pipeline_store_ = store;
     kept_pipeline_bytes_ = kept.size();
 }
 
 // Caches only grow: as many bytes are the same.
 void Context::keep_pipelines() noexcept {
     std::size_t size = 0;
-    if (pipelines_.file().empty() || !owns_pipeline_cache_ || is_lost_) return;
+    if (pipeline_store_.file().empty() || !owns_pipeline_cache_ || is_lost_) return;
     if (vk_.vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS) return;
     if (size == kept_pipeline_bytes_) return;
     try {
         std::vector<std::byte> data(size);
         vk_check(vk_.vkGetPipelineCacheData(device_, pipeline_cache_, &size, data.data()), "read the pipeline cache");
-        pipelines_.save(std::span(data).first(size), [&](std::string_view sentence) { warn(sentence); });
+        pipeline_store_.save(std::span(data).first(size), [&](std::string_view sentence) { warn(sentence); });
     } catch (const std::exception& failure) {
         warn(failure.what());
     }
@@ -219,6 +219,7 @@ void Context::keep_pipelines() noexcept {
 void Context::destroy_everything() noexcept {
     for (Retired& retired : retired_) retired.destroy();
     retired_.clear();
+    pipelines_.clear();
     if (owns_pipeline_cache_) vk_.vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
     if (timeline_) vk_.vkDestroySemaphore(device_, timeline_, nullptr);
     allocator_.reset();

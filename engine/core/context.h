@@ -12,6 +12,7 @@
 
 #include "engine/core/adopted_device.h"
 #include "engine/core/pipeline_store.h"
+#include "engine/core/pipeline_table.h"
 
 namespace twinray {
 
@@ -53,6 +54,7 @@ class Context {
     VkPhysicalDevice physical_device() const { return physical_device_; }
     Allocator& allocator() const { return *allocator_; }
     VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
+    PipelineTable& pipelines() { return pipelines_; }
     std::uint32_t queue_family() const { return queue_family_; }
     const DeviceFacts& facts() const { return facts_; }                 // what is enabled, not merely supported
     float timestamp_period_ns() const { return timestamp_period_ns_; }  // 0: the queue has no timestamps
@@ -129,7 +131,8 @@ class Context {
     std::unique_ptr<Allocator> allocator_;
     VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
     bool owns_pipeline_cache_ = false;
-    PipelineStore pipelines_;
+    PipelineTable pipelines_;
+    PipelineStore pipeline_store_;
     std::size_t kept_pipeline_bytes_ = 0;
     VkSemaphore timeline_ = VK_NULL_HANDLE;
     std::uint64_t submitted_ = 0;

@@ -12,32 +12,6 @@ namespace {
 // vkCmdDispatch guarantees 65535 groups per dimension; larger counts spread over y (global_index() undoes it).
 constexpr std::uint64_t groups_per_row = 32768;
 
-VkPipeline new_pipeline(Context& context, const KernelDesc& desc, VkPipelineLayout layout) {
-    std::vector<VkSpecializationMapEntry> entries;
-    std::vector<std::uint32_t> values;
-    for (const SpecializationConstant& constant : desc.constants) {
-        entries.push_back({constant.id, static_cast<std::uint32_t>(values.size() * 4), 4});
-        values.push_back(constant.value);
-    }
-    const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
-                                              values.size() * 4, values.data()};
-    const VkShaderModule module = create_shader_module(context, desc.spirv, desc.name);
-    VkComputePipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = module;
-    info.stage.pName = "main";
-    info.stage.pSpecializationInfo = &specialization;
-    info.layout = layout;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkResult result =
-        context.vk().vkCreateComputePipelines(context.device(), context.pipeline_cache(), 1, &info, nullptr, &pipeline);
-    context.vk().vkDestroyShaderModule(context.device(), module, nullptr);
-    if (result != VK_SUCCESS) fail("kernel '", desc.name, "': create the pipeline: ", name_of(result));
-    return pipeline;
-}
-
 }  // namespace
 
 VkShaderModule create_shader_module(Context& context, std::span<const std::uint32_t> spirv, const std::string& name) {
@@ -66,34 +40,20 @@ VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlag
 
 ComputePipeline::ComputePipeline(Context& context, const KernelDesc& desc, std::uint32_t args_bytes)
     : context_(context), desc_(desc), args_bytes_(args_bytes) {
-    layout_ = create_push_constant_layout(context, VK_SHADER_STAGE_COMPUTE_BIT, args_bytes);
     if (desc.compiles_when_used) return;
-    try {
-        compile();
-    } catch (...) {
-        context.vk().vkDestroyPipelineLayout(context.device(), layout_, nullptr);
-        throw;
-    }
+    compiled_ = context.pipelines().get(context, desc, args_bytes);
     desc_.spirv = {};
 }
 
-void ComputePipeline::compile() const {
-    pipeline_ = new_pipeline(context_, desc_, layout_);
-    context_.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), desc_.name);
-}
-
 ComputePipeline::~ComputePipeline() {
-    context_.retire([&vk = context_.vk(), device = context_.device(), layout = layout_, pipeline = pipeline_] {
-        vk.vkDestroyPipeline(device, pipeline, nullptr);
-        vk.vkDestroyPipelineLayout(device, layout, nullptr);
-    });
+    if (compiled_) context_.pipelines().give_back(context_, std::move(compiled_));
 }
 
 void ComputePipeline::bind(Commands& commands, const void* args) const {
-    if (!pipeline_) compile();
+    if (!compiled_) compiled_ = context_.pipelines().get(context_, desc_, args_bytes_);
     const VulkanFunctions& vk = context_.vk();
-    vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
-    vk.vkCmdPushConstants(commands.handle(), layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, args_bytes_, args);
+    vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, compiled_->pipeline);
+    vk.vkCmdPushConstants(commands.handle(), compiled_->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, args_bytes_, args);
 }
 
 void ComputePipeline::dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count) const {

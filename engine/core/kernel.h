@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,7 +24,8 @@ struct KernelDesc {
         false;  // by the first dispatch, which then throws what the constructor would; spirv stays valid
 };
 
-// A compute pipeline whose only input is one push-constant block. Use Kernel<Args>.
+// A compute pipeline whose only input is one push-constant block, shared with all others of the context that are made
+// from the same. Use Kernel<Args>.
 class ComputePipeline {
   public:
     ComputePipeline(Context& context, const KernelDesc& desc, std::uint32_t args_bytes);
@@ -39,14 +41,12 @@ class ComputePipeline {
     std::uint32_t group_size() const { return desc_.group_size; }
 
   private:
-    void compile() const;
     void bind(Commands& commands, const void* args) const;
 
     Context& context_;
     KernelDesc desc_;
     std::uint32_t args_bytes_;
-    VkPipelineLayout layout_ = VK_NULL_HANDLE;
-    mutable VkPipeline pipeline_ = VK_NULL_HANDLE;  // null: not compiled yet
+    mutable std::shared_ptr<CompiledKernel> compiled_;  // null: not compiled yet
 };
 
 // A compute kernel that takes one Args struct, shared with its GLSL, as push constants (128 bytes are guaranteed).

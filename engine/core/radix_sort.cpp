@@ -2,7 +2,7 @@
 #include "engine/core/radix_sort.h"
 
 #include <algorithm>
-#include <bit>
+#include <thread>
 #include <utility>
 
 #include "engine_sort_histogram.spv.h"
@@ -20,7 +20,7 @@ std::uint64_t block_count(std::uint64_t count, uint run) {
 }  // namespace
 
 RadixSort::RadixSort(Context& context)
-    : is_on_cpu_(context.facts().kind == DeviceKind::cpu),
+    : cpu_threads_(context.facts().kind == DeviceKind::cpu ? std::max(1u, std::thread::hardware_concurrency()) : 0),
       histogram_(context, {.name = "sort_histogram", .spirv = engine_sort_histogram_spirv, .group_size = SORT_DIGITS}),
       scan_(context, {.name = "sort_scan", .spirv = engine_sort_scan_spirv, .group_size = SCAN_GROUP}),
       scatter_(context, {.name = "sort_scatter", .spirv = engine_sort_scatter_spirv, .group_size = SORT_DIGITS}) {}
@@ -29,15 +29,14 @@ std::uint64_t RadixSort::counter_bytes(std::uint64_t count) {
     return block_count(count, SORT_SHORTEST_RUN) * SORT_DIGITS * sizeof(uint);
 }
 
-uint RadixSort::run_of(std::uint64_t count, bool is_on_cpu) {
-    constexpr uint blocks_that_keep_a_cpu_busy = 64;
-    if (!is_on_cpu) return SORT_SHORTEST_RUN;
-    const std::uint64_t run = std::bit_ceil(count / (SORT_DIGITS * blocks_that_keep_a_cpu_busy) + 1);
+uint RadixSort::run_of(std::uint64_t count, uint cpu_threads) {
+    if (cpu_threads == 0) return SORT_SHORTEST_RUN;
+    const std::uint64_t run = (count + SORT_DIGITS * cpu_threads - 1) / (SORT_DIGITS * cpu_threads);
     return static_cast<uint>(std::clamp<std::uint64_t>(run, SORT_SHORTEST_RUN, SORT_LONGEST_RUN));
 }
 
 uint RadixSort::sort_groups(std::uint64_t count) const {
-    return static_cast<uint>(block_count(count, run_of(count, is_on_cpu_)));
+    return static_cast<uint>(block_count(count, run_of(count, cpu_threads_)));
 }
 
 RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
@@ -53,7 +52,7 @@ RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare,
     for (uint shift = 0; shift < bits; shift += SORT_DIGIT_BITS) {
         const SortArgs args{pairs.keys,   pairs.values, spare.keys,
                             spare.values, counters,     count,
-                            shift,        blocks,       run_of(count, is_on_cpu_)};
+                            shift,        blocks,       run_of(count, cpu_threads_)};
         dispatch(histogram_, args, blocks, &Counts::sort);
         dispatch(scan_, ScanArgs{counters, blocks * SORT_DIGITS, 0}, 1, &Counts::scan);
         dispatch(scatter_, args, blocks, &Counts::sort);

@@ -29,12 +29,12 @@ class RadixSort {
                  const Counts* if_counts = nullptr) const;
     uint sort_groups(std::uint64_t count) const;
 
-    // How many items a thread sorts: few on a GPU, which wants many threads; on a CPU so many that the counters of a
-    // thread, which do not depend on it, cost little.
-    static uint run_of(std::uint64_t count, bool is_on_cpu);
+    // How many items an invocation sorts: few on a GPU, which wants many of them; on a CPU so many that each thread has
+    // one group, because counters cost a group the same whatever it sorts, but no more than caches hold.
+    static uint run_of(std::uint64_t count, uint cpu_threads);
 
   private:
-    bool is_on_cpu_;
+    uint cpu_threads_;  // 0: a GPU
     Kernel<SortArgs> histogram_;
     Kernel<ScanArgs> scan_;
     Kernel<SortArgs> scatter_;

@@ -63,10 +63,10 @@ TEST_F(RadixSortTest, EqualKeysKeepTheirOrder) {
 }
 
 TEST(RadixSortRun, IsLongWhereAProcessorRunsTheThreads) {
-    EXPECT_EQ(RadixSort::run_of(100'000'000, false), SORT_SHORTEST_RUN);
-    EXPECT_EQ(RadixSort::run_of(0, true), SORT_SHORTEST_RUN);
-    EXPECT_EQ(RadixSort::run_of(1'000'000, true), 256u);
-    EXPECT_EQ(RadixSort::run_of(100'000'000, true), SORT_LONGEST_RUN);
+    EXPECT_EQ(RadixSort::run_of(100'000'000, 0), SORT_SHORTEST_RUN);
+    EXPECT_EQ(RadixSort::run_of(0, 2), SORT_SHORTEST_RUN);
+    EXPECT_EQ(RadixSort::run_of(40'000, 2), 313u);
+    EXPECT_EQ(RadixSort::run_of(100'000'000, 2), SORT_LONGEST_RUN);
 }
 
 }  // namespace

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/pipeline_table.h"
+
+#include "engine/core/error.h"
+#include "engine/core/kernel.h"
+
+namespace twinray {
+namespace {
+
+std::string key_of(const KernelDesc& desc, std::uint32_t args_bytes) {
+    std::string key;
+    const auto add = [&](const void* data, std::size_t bytes) { key.append(static_cast<const char*>(data), bytes); };
+    add(&args_bytes, sizeof(args_bytes));
+    const std::size_t constants = desc.constants.size();
+    add(&constants, sizeof(constants));
+    add(desc.constants.data(), constants * sizeof(SpecializationConstant));
+    add(desc.spirv.data(), desc.spirv.size_bytes());
+    return key;
+}
+
+VkPipeline new_pipeline(Context& context, const KernelDesc& desc, VkPipelineLayout layout) {
+    std::vector<VkSpecializationMapEntry> entries;
+    std::vector<std::uint32_t> values;
+    for (const SpecializationConstant& constant : desc.constants) {
+        entries.push_back({constant.id, static_cast<std::uint32_t>(values.size() * 4), 4});
+        values.push_back(constant.value);
+    }
+    const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                              values.size() * 4, values.data()};
+    const VkShaderModule module = create_shader_module(context, desc.spirv, desc.name);
+    VkComputePipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+    info.stage.module = module;
+    info.stage.pName = "main";
+    info.stage.pSpecializationInfo = &specialization;
+    info.layout = layout;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    const VkResult result =
+        context.vk().vkCreateComputePipelines(context.device(), context.pipeline_cache(), 1, &info, nullptr, &pipeline);
+    context.vk().vkDestroyShaderModule(context.device(), module, nullptr);
+    if (result != VK_SUCCESS) fail("kernel '", desc.name, "': create the pipeline: ", name_of(result));
+    context.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), desc.name);
+    return pipeline;
+}
+
+}  // namespace
+
+CompiledKernel::~CompiledKernel() {
+    vk.vkDestroyPipeline(device, pipeline, nullptr);
+    vk.vkDestroyPipelineLayout(device, layout, nullptr);
+}
+
+// Compiles unlocked: if two threads compile the same, the first one's is taken.
+std::shared_ptr<CompiledKernel> PipelineTable::get(Context& context, const KernelDesc& desc, std::uint32_t args_bytes) {
+    std::string key = key_of(desc, args_bytes);
+    if (std::shared_ptr<CompiledKernel> kernel = find(key)) return kernel;
+    auto kernel = std::make_shared<CompiledKernel>(context.vk(), context.device());
+    kernel->layout = create_push_constant_layout(context, VK_SHADER_STAGE_COMPUTE_BIT, args_bytes);
+    kernel->pipeline = new_pipeline(context, desc, kernel->layout);
+    const std::lock_guard lock(mutex_);
+    return entries_.try_emplace(std::move(key), Entry{std::move(kernel)}).first->second.kernel;
+}
+
+std::shared_ptr<CompiledKernel> PipelineTable::find(const std::string& key) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = entries_.find(key);
+    return found == entries_.end() ? nullptr : found->second.kernel;
+}
+
+void PipelineTable::give_back(Context& context, std::shared_ptr<CompiledKernel> kernel) {
+    std::shared_ptr<CompiledKernel> gone;
+    {
+        const std::lock_guard lock(mutex_);
+        for (auto& [key, entry] : entries_)
+            if (entry.kernel == kernel) entry.given_back = ++given_back_;
+        kernel.reset();
+        gone = take_oldest_unused();
+    }
+    if (gone) context.retire([gone] {});
+}
+
+// Null while there are not too many.
+std::shared_ptr<CompiledKernel> PipelineTable::take_oldest_unused() {
+    std::size_t unused = 0;
+    auto oldest = entries_.end();
+    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+        if (entry->second.kernel.use_count() > 1) continue;
+        ++unused;
+        if (oldest == entries_.end() || entry->second.given_back < oldest->second.given_back) oldest = entry;
+    }
+    if (unused <= most_unused) return nullptr;
+    return std::move(entries_.extract(oldest).mapped().kernel);
+}
+
+std::size_t PipelineTable::size() const {
+    const std::lock_guard lock(mutex_);
+    return entries_.size();
+}
+
+void PipelineTable::clear() {
+    const std::lock_guard lock(mutex_);
+    entries_.clear();
+}
+
+}  // namespace twinray

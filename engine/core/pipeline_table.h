@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// The compute pipelines of a device: whoever runs the same kernel shares one.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "engine/core/vulkan_functions.h"
+
+namespace twinray {
+
+class Context;
+struct KernelDesc;
+
+// Destroys what it holds when the last who shares it lets go: not before the GPU is done with it.
+struct CompiledKernel {
+    CompiledKernel(const VulkanFunctions& functions, VkDevice owner) : vk(functions), device(owner) {}
+    ~CompiledKernel();
+    CompiledKernel(const CompiledKernel&) = delete;
+    CompiledKernel& operator=(const CompiledKernel&) = delete;
+
+    const VulkanFunctions& vk;
+    VkDevice device;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+};
+
+// Keeps pipelines beyond the kernels that were made with them, so that the next accelerator, say, compiles nothing. A
+// driver may also compile a part at the first dispatch (lavapipe does, about 1 ms a kernel), which no pipeline cache
+// spares.
+class PipelineTable {
+  public:
+    static constexpr std::size_t most_unused = 256;
+
+    // The pipeline for this SPIR-V, these constants and this size of push constants; compiled if it is the first.
+    // Throws Error naming the kernel where it cannot be. Any thread.
+    std::shared_ptr<CompiledKernel> get(Context& context, const KernelDesc& desc, std::uint32_t args_bytes);
+    // What a kernel had that is no more. Those that have been unused for longest go where they are more than
+    // most_unused. By the thread that uses the context.
+    void give_back(Context& context, std::shared_ptr<CompiledKernel> kernel);
+    std::size_t size() const;
+    void clear();
+
+  private:
+    struct Entry {
+        std::shared_ptr<CompiledKernel> kernel;
+        std::uint64_t given_back = 0;  // how many were before it
+    };
+    std::shared_ptr<CompiledKernel> find(const std::string& key) const;
+    std::shared_ptr<CompiledKernel> take_oldest_unused();
+
+    mutable std::mutex mutex_;
+    std::map<std::string, Entry> entries_;  // by the bytes of what is compiled
+    std::uint64_t given_back_ = 0;
+};
+
+}  // namespace twinray

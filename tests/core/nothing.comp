@@ -1,0 +1,4 @@
+// SPDX-License-Identifier: MIT
+#version 460
+layout(local_size_x = 64) in;
+void main() {}
