@@ -8,7 +8,7 @@
 #include "bench/embree_trace.h"
 #include "bench/stopwatch.h"
 #include "bench/tiles.h"
-#include "engine/verify/parallel.h"
+#include "engine/core/parallel.h"
 
 namespace twinray::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "engine/verify/classify.h"
-#include "engine/verify/parallel.h"
+#include "engine/core/parallel.h"
 
 namespace twinray::bench {
 namespace {

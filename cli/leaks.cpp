@@ -12,7 +12,7 @@
 #include "engine/core/progress.h"
 #include "engine/report/statistics.h"
 #include "engine/verify/inside_rays.h"
-#include "engine/verify/parallel.h"
+#include "engine/core/parallel.h"
 #include "hwtlas/hw_tlas.h"
 #include "swtlas/sw_tlas.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <sstream>
 
-#include "engine/verify/parallel.h"
+#include "engine/core/parallel.h"
 
 namespace twinray::suite {
 namespace {

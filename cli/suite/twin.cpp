@@ -6,7 +6,7 @@
 
 #include "cli/suite/flush.h"
 #include "cli/suite/judging.h"
-#include "engine/verify/parallel.h"
+#include "engine/core/parallel.h"
 
 namespace twinray::suite {
 namespace {

@@ -7,7 +7,7 @@
 #include "engine/core/error.h"
 #include "engine/verify/certainty.h"
 #include "engine/verify/coverage.h"
-#include "engine/verify/parallel.h"
+#include "engine/core/parallel.h"
 
 namespace twinray {
 namespace {

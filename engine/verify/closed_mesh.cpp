@@ -6,7 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/verify/draws.h"
-#include "engine/verify/parallel.h"
+#include "engine/core/parallel.h"
 #include "engine/verify/segment.h"
 
 namespace twinray {

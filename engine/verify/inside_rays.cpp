@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "engine/verify/draws.h"
-#include "engine/verify/parallel.h"
+#include "engine/core/parallel.h"
 #include "engine/verify/tube.h"
 
 namespace twinray {

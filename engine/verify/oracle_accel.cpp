@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
-#include "engine/verify/parallel.h"
+#include "engine/core/parallel.h"
 #include "engine_copy_items.spv.h"
 
 namespace twinray {

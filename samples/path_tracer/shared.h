@@ -14,8 +14,9 @@ using glm::sqrt;
 #include "engine/core/bridge_begin.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
-#include "shaders/path_tracer/random.h"
-#include "shaders/path_tracer/sampling.h"
+#include "shaders/shared/random.h"
+#include "shaders/path_tracer/weights.h"
+#include "shaders/shared/sampling.h"
 #include "shaders/path_tracer/bsdf.h"
 #include "engine/core/bridge_end.h"
 

@@ -6,8 +6,9 @@
 #include "shaders/shared/spawn.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
-#include "shaders/path_tracer/random.h"
-#include "shaders/path_tracer/sampling.h"
+#include "shaders/shared/random.h"
+#include "shaders/path_tracer/weights.h"
+#include "shaders/shared/sampling.h"
 #include "shaders/path_tracer/texture.glsl"
 #include "shaders/embed_renderer/frame.h"
 

@@ -6,7 +6,7 @@
 #include "shaders/shared/ray.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
-#include "shaders/path_tracer/random.h"
+#include "shaders/shared/random.h"
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { GenerateArgs args; };
 

@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/path_tracer/includes.glsl"
-#include "shaders/path_tracer/random.h"
+#include "shaders/shared/random.h"
 #include "shaders/path_tracer/lights.glsl"
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };

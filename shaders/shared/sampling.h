@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Warps from the unit square, local frames, weights.
-#ifndef TWINRAY_PATH_TRACER_SAMPLING_H
-#define TWINRAY_PATH_TRACER_SAMPLING_H
+// Warps from the unit square, and local frames.
+#ifndef TWINRAY_SHARED_SAMPLING_H
+#define TWINRAY_SHARED_SAMPLING_H
 
 const float PI = 3.14159265358979f;
 
@@ -57,14 +57,4 @@ FUNC Frame frame_about(vec3 z)
 FUNC vec3 to_local(Frame frame, vec3 v) { return vec3(dot(frame.x, v), dot(frame.y, v), dot(frame.z, v)); }
 FUNC vec3 to_world(Frame frame, vec3 v) { return frame.x * v.x + frame.y * v.y + frame.z * v.z; }
 
-// Veach's power heuristic with exponent 2, without overflow. Density 0 of `own` means that it needs no partner.
-FUNC float mis_weight(float own, float other)
-{
-    if (own <= 0.0f) return 1.0f;
-    float ratio = other / own;
-    return 1.0f / (1.0f + ratio * ratio);
-}
-
-FUNC float luminance(vec3 color) { return dot(color, vec3(0.2126f, 0.7152f, 0.0722f)); }
-FUNC float largest(vec3 color) { return max(color.x, max(color.y, color.z)); }
 #endif

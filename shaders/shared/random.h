@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Random numbers as a pure function of (pixel, sample, dimension, seed): integers only, so every device and the host
 // get the same ones.
-#ifndef TWINRAY_PATH_TRACER_RANDOM_H
-#define TWINRAY_PATH_TRACER_RANDOM_H
+#ifndef TWINRAY_SHARED_RANDOM_H
+#define TWINRAY_SHARED_RANDOM_H
 
 // pcg4d of Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020.
 FUNC uvec4 random_words(uvec4 key)

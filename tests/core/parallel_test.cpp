@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/verify/parallel.h"
+#include "engine/core/parallel.h"
 
 #include <gtest/gtest.h>
 

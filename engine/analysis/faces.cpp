@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/faces.h"
+
+#include <numeric>
+
+#include "engine/core/commands.h"
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+#include "engine/core/triangle.h"
+
+namespace twinray {
+namespace {
+
+dvec3 in_world(const Transform& transform, vec3 point) {
+    const dvec4 p(point, 1.0);
+    return {dot(dvec4(transform.rows[0]), p), dot(dvec4(transform.rows[1]), p), dot(dvec4(transform.rows[2]), p)};
+}
+
+double world_area(const Mesh& mesh, const Transform& transform, uvec3 triangle) {
+    const vec3 a = mesh.positions[triangle.x], b = mesh.positions[triangle.y], c = mesh.positions[triangle.z];
+    if (!is_active_triangle(a, b, c)) return 0;
+    const dvec3 origin = in_world(transform, a);
+    return glm::length(cross(in_world(transform, b) - origin, in_world(transform, c) - origin)) / 2;
+}
+
+std::uint64_t count_faces(const Scene& scene) {
+    std::uint64_t count = 0;
+    for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangles.size();
+    if (count > Faces::most) fail("faces: the scene has ", count, " with its instances; at most ", Faces::most, " fit");
+    return count;
+}
+
+}  // namespace
+
+std::string_view name_of(FaceGrouping grouping) {
+    constexpr std::array names = {"face", "mesh", "instance", "material"};
+    return names[static_cast<std::size_t>(grouping)];
+}
+
+Faces::Faces(Context& context, const Scene& scene)
+    : mesh_count_(scene.meshes.size()), material_count_(scene.materials.size()) {
+    const std::uint64_t count = count_faces(scene);
+    Commands commands(context, "faces");
+    std::vector<FacesOfInstance> instances;
+    {
+        const auto pass = commands.pass("faces upload");
+        for (const Mesh& mesh : scene.meshes) {
+            materials_.push_back(mesh.materials);
+            const std::uint64_t bytes = std::span(mesh.positions).size_bytes();
+            meshes_.emplace_back(context, BufferDesc{.name = "faces of mesh '" + mesh.name + "'",
+                                                     .bytes = bytes + std::span(mesh.triangles).size_bytes()});
+            commands.upload(meshes_.back(), std::span<const vec3>(mesh.positions));
+            commands.upload(meshes_.back(), std::span<const uvec3>(mesh.triangles), bytes);
+        }
+        faces_.reserve(count);
+        for (uint i = 0; i < scene.instances.size(); ++i) {
+            const Instance& instance = scene.instances[i];
+            const Mesh& mesh = scene.meshes[instance.mesh];
+            const auto& rows = instance.transform.rows;
+            const auto triangles = static_cast<uint>(mesh.triangles.size());
+            const Buffer& buffer = meshes_[instance.mesh];
+            instances.push_back({{rows[0], rows[1], rows[2]},
+                                 buffer.ref<float>(),
+                                 buffer.ref<uint>(std::span(mesh.positions).size_bytes()),
+                                 static_cast<uint>(faces_.size()),
+                                 triangles});
+            mesh_of_instance_.push_back(instance.mesh);
+            for (uint primitive = 0; primitive < triangles; ++primitive) faces_.push_back({i, primitive});
+        }
+        instance_buffer_ = Buffer(context, {.name = "faces of instances", .bytes = std::span(instances).size_bytes()});
+        face_buffer_ = Buffer(context, {.name = "faces", .bytes = std::span(faces_).size_bytes()});
+        commands.upload(instance_buffer_, std::span<const FacesOfInstance>(instances));
+        commands.upload(face_buffer_, std::span<const Face>(faces_));
+    }
+    commands.submit();
+    table_ = {instance_buffer_.ref<FacesOfInstance>(), face_buffer_.ref<Face>()};
+    areas_.resize(count);
+    parallel_for(count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t face = begin; face < end; ++face) {
+            const Instance& instance = scene.instances[faces_[face].instance];
+            const Mesh& mesh = scene.meshes[instance.mesh];
+            areas_[face] = world_area(mesh, instance.transform, mesh.triangles[faces_[face].primitive]);
+        }
+    });
+}
+
+std::vector<uint> Faces::groups(FaceGrouping grouping) const {
+    std::vector<uint> groups(count());
+    const auto group = [&](const Face& face) {
+        const uint mesh = mesh_of_instance_[face.instance];
+        switch (grouping) {
+            case FaceGrouping::mesh: return mesh;
+            case FaceGrouping::instance: return face.instance;
+            default: return materials_[mesh].empty() ? 0 : materials_[mesh][face.primitive];
+        }
+    };
+    if (grouping == FaceGrouping::face)
+        std::iota(groups.begin(), groups.end(), 0u);
+    else
+        std::transform(faces_.begin(), faces_.end(), groups.begin(), group);
+    return groups;
+}
+
+std::size_t Faces::group_count(FaceGrouping grouping) const {
+    switch (grouping) {
+        case FaceGrouping::face: return count();
+        case FaceGrouping::mesh: return mesh_count_;
+        case FaceGrouping::instance: return mesh_of_instance_.size();
+        default: return material_count_;
+    }
+}
+
+std::uint64_t Faces::bytes() const {
+    std::uint64_t sum = instance_buffer_.bytes() + face_buffer_.bytes();
+    for (const Buffer& mesh : meshes_) sum += mesh.bytes();
+    return sum;
+}
+
+}  // namespace twinray

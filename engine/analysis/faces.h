@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// The faces of a scene, on the device and with what the host computes of them.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/accel/spawn.h"
+#include "engine/core/buffer.h"
+#include "engine/scene/scene.h"
+
+namespace twinray {
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/faces.h"
+#include "engine/core/bridge_end.h"
+
+// By what faces are put together.
+enum class FaceGrouping : std::uint8_t { face, mesh, instance, material };
+inline constexpr std::array all_face_groupings = {FaceGrouping::face, FaceGrouping::mesh, FaceGrouping::instance,
+                                                  FaceGrouping::material};
+std::string_view name_of(FaceGrouping grouping);
+
+// A copy of the scene's triangles on the device, as they were when it was made. Instances come in the order of the
+// scene, which is that of an accelerator into which push_scene() put it: hits of that tell faces.
+class Faces {
+  public:
+    static constexpr std::uint64_t most = 0xffff'fff0;  // numbers above mean something else to kernels
+
+    // Throws Error where there are more than `most`.
+    Faces(Context& context, const Scene& scene);
+
+    FaceTable table() const { return table_; }
+    std::size_t count() const { return areas_.size(); }
+    // In world space, in float64 from float32 vertices and transforms; 0 of triangles that are not active, which no ray
+    // meets.
+    const std::vector<double>& areas() const { return areas_; }
+    Face operator[](std::size_t face) const { return faces_[face]; }
+
+    // The group of each face: that of a face is its number, of others their place in Scene::meshes, instances or
+    // materials.
+    std::vector<uint> groups(FaceGrouping grouping) const;
+    // How many groups there are; some may have no face.
+    std::size_t group_count(FaceGrouping grouping) const;
+    std::uint64_t bytes() const;  // on the device
+
+  private:
+    std::vector<double> areas_;
+    std::vector<Face> faces_;
+    std::vector<uint> mesh_of_instance_;
+    std::vector<std::vector<uint>> materials_;  // by mesh; empty: all 0
+    std::size_t mesh_count_ = 0, material_count_ = 0;
+    std::vector<Buffer> meshes_;
+    Buffer instance_buffer_, face_buffer_;
+    FaceTable table_;
+};
+
+}  // namespace twinray
