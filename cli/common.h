@@ -64,5 +64,6 @@ void bench_moves(const CommonOptions& options, std::size_t count, std::size_t ro
 void bench_ladder(const CommonOptions& options, const std::string& scene, const bench::RunOptions& run);
 void add_bench(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
+void add_viewfactors(CLI::App& app, int& exit_code);
 
 }  // namespace twinray::cli

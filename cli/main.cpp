@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     twinray::cli::add_leaks(app, exit_code);
     twinray::cli::add_bench(app, exit_code);
     twinray::cli::add_report(app, exit_code);
+    twinray::cli::add_viewfactors(app, exit_code);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

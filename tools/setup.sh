@@ -14,7 +14,7 @@ packages=(
     libvulkan-dev libvulkan-volk-dev libvulkan-memory-allocator-dev
     mesa-vulkan-drivers vulkan-tools vulkan-validationlayers glslang-tools spirv-tools
     libglm-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev libgtest-dev
-    libopenexr-dev libassimp-dev zlib1g-dev libgmp-dev assimp-testmodels
+    libopenexr-dev libassimp-dev zlib1g-dev libgmp-dev libeigen3-dev assimp-testmodels
 )
 if [[ $(uname -m) == x86_64 ]]; then packages+=(libembree-dev); fi # twinray bench measures it, too
 oldest_mesa=24 # the first whose lavapipe has acceleration structures and ray queries

@@ -2,21 +2,16 @@
 // The structs and the mathematics that the path tracer shares with its kernels, for C++.
 #pragma once
 
-#include <glm/integer.hpp>
-
 #include "engine/accel/spawn.h"
+#include "engine/core/sampling.h"
 
 namespace twinray::path_tracer {
-using glm::bitfieldReverse;
 using glm::clamp;
-using glm::sqrt;
 
 #include "engine/core/bridge_begin.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
-#include "shaders/shared/random.h"
 #include "shaders/path_tracer/weights.h"
-#include "shaders/shared/sampling.h"
 #include "shaders/path_tracer/bsdf.h"
 #include "engine/core/bridge_end.h"
 

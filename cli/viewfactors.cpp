@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// `twinray viewfactors`: the view factors of a scene with their errors.
+#include <chrono>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+
+#include "cli/common.h"
+#include "cli/npz.h"
+#include "engine/accel/scene_push.h"
+#include "engine/analysis/reciprocity.h"
+#include "engine/analysis/row_file.h"
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+#include "engine/core/progress.h"
+
+namespace twinray::cli {
+namespace {
+
+struct Options {
+    CommonOptions common;
+    std::filesystem::path scene, output;
+    std::string accel = "sw";
+    ViewFactorOptions factors;
+    bool resumes = false;
+    bool projects = false;
+};
+
+// Of what the rows depend on.
+std::string configuration_of(const Options& options, const Faces& faces) {
+    const ViewFactorOptions& of = options.factors;
+    double area = 0;
+    for (const double one : faces.areas()) area += one;
+    std::ostringstream out;
+    out << std::hexfloat << faces.count() << " faces " << area << ", by " << name_of(of.grouping) << ", "
+        << name_of(of.sides) << ", " << name_of(of.sequence) << ", " << of.rays << " rays, error "
+        << of.target_error.value_or(0) << ", seed " << of.seed << ", " << options.accel;
+    return out.str();
+}
+
+std::filesystem::path rows_file(const std::filesystem::path& output) { return output.string() + ".rows"; }
+
+std::vector<ViewFactorRow> compute(const Options& options, ViewFactors& factors, const Faces& faces) {
+    std::vector<ViewFactorRow> rows;
+    std::optional<RowFile> file;
+    if (!options.output.empty()) {
+        file.emplace(rows_file(options.output), configuration_of(options, faces));
+        if (options.resumes)
+            rows = file->load();
+        else
+            file->create();
+        if (!rows.empty() && !options.common.quiet)
+            std::cout << "resumed after " << rows.size() << " of " << factors.row_count() << " rows\n";
+    }
+    Progress progress("view factors", factors.row_count(), options.common.quiet);
+    progress.advance(rows.size());
+    while (rows.size() < factors.row_count()) {
+        const std::size_t last = std::min(rows.size() + factors.block(), factors.row_count());
+        const std::vector<ViewFactorRow> block = factors.rows(rows.size(), last);
+        if (file) file->append(block);
+        rows.insert(rows.end(), block.begin(), block.end());
+        progress.advance(block.size());
+    }
+    return rows;
+}
+
+void write_csv(const std::filesystem::path& file, const std::vector<ViewFactorRow>& rows) {
+    std::ostringstream out;
+    out << "i,j,F,ci_low,ci_high\n" << std::setprecision(9);
+    for (const ViewFactorRow& row : rows)
+        for (const ViewFactor& factor : row.factors)
+            out << row.group << ',' << factor.target << ',' << factor.value << ',' << factor.low << ',' << factor.high
+                << '\n';
+    const std::string text = out.str();
+    const std::span<const std::byte> piece = std::as_bytes(std::span(text));
+    write_file(file, std::span(&piece, 1));
+}
+
+// As scipy.sparse.save_npz writes a csr_matrix, and beside it what else is known.
+void write_npz(const std::filesystem::path& file, const std::vector<ViewFactorRow>& rows,
+               const std::vector<double>& areas) {
+    std::vector<std::int64_t> columns, starts = {0};
+    std::vector<float> values, low, high;
+    std::vector<double> open, back;
+    std::vector<std::uint64_t> rays;
+    for (const ViewFactorRow& row : rows) {
+        for (const ViewFactor& factor : row.factors) {
+            columns.push_back(factor.target);
+            values.push_back(factor.value);
+            low.push_back(factor.low);
+            high.push_back(factor.high);
+        }
+        starts.push_back(static_cast<std::int64_t>(columns.size()));
+        open.push_back(row.open.value);
+        back.push_back(row.back.value);
+        rays.push_back(row.rays);
+    }
+    const auto n = static_cast<std::int64_t>(rows.size());
+    const std::vector<std::int64_t> shape = {n, n};
+    Npz npz;
+    npz.add("indices", std::span<const std::int64_t>(columns));
+    npz.add("indptr", std::span<const std::int64_t>(starts));
+    npz.add_text("format", "csr");
+    npz.add("shape", std::span<const std::int64_t>(shape));
+    npz.add("data", std::span<const float>(values));
+    npz.add("ci_low", std::span<const float>(low));
+    npz.add("ci_high", std::span<const float>(high));
+    npz.add("area", std::span<const double>(areas));
+    npz.add("open", std::span<const double>(open));
+    npz.add("back", std::span<const double>(back));
+    npz.add("rays", std::span<const std::uint64_t>(rays));
+    npz.write(file);
+}
+
+struct Totals {
+    std::uint64_t rays = 0, hits = 0, entries = 0;
+    double widest = 0;  // half interval
+};
+Totals totals_of(const std::vector<ViewFactorRow>& rows) {
+    Totals totals;
+    for (const ViewFactorRow& row : rows) {
+        totals.rays += row.rays;
+        totals.hits += row.hits;
+        totals.entries += row.factors.size();
+        for (const ViewFactor& factor : row.factors)
+            totals.widest = std::max(totals.widest, static_cast<double>(factor.high - factor.low) / 2);
+    }
+    return totals;
+}
+
+void print_residuals(const char* when, const ViewFactorResiduals& residuals) {
+    std::cout << when << ": reciprocity " << residuals.reciprocity << " of the largest area ("
+              << residuals.reciprocity_sigma << " standard errors at most), closure " << residuals.closure << '\n';
+}
+
+nlohmann::json json_of(const ViewFactorResiduals& residuals) {
+    return {{"reciprocity", residuals.reciprocity},
+            {"reciprocity_sigma", residuals.reciprocity_sigma},
+            {"closure", residuals.closure}};
+}
+
+void run(const Options& options) {
+    const std::string suffix = options.output.extension().string();
+    if (!options.output.empty() && suffix != ".npz" && suffix != ".csv")
+        fail("'", options.output.string(), "': the matrix goes into .npz or .csv");
+    if (options.resumes && options.output.empty()) fail("--resume needs -o: unfinished rows lie beside the output");
+    if (!options.output.empty()) check_writable(options.output);
+    const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
+    const std::unique_ptr<Context> context = make_context(options.common);
+    const std::unique_ptr<AbstractAccel> accel = make_accel(*context, options.accel);
+    push_scene(*accel, scene);
+    context->wait(accel->sync());
+    const Faces faces(*context, scene);
+    ViewFactors factors(*accel, faces, options.factors);
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<ViewFactorRow> rows = compute(options, factors, faces);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const Totals totals = totals_of(rows);
+    const ViewFactorResiduals before = residuals_of(rows, factors.areas());
+    std::vector<ViewFactorRow> projected = rows;
+    project(projected, factors.areas());
+    const ViewFactorResiduals after = residuals_of(projected, factors.areas());
+    if (options.projects) rows = std::move(projected);
+    if (suffix == ".csv") write_csv(options.output, rows);
+    if (suffix == ".npz") write_npz(options.output, rows, factors.areas());
+    if (!options.output.empty()) RowFile(rows_file(options.output), {}).remove();
+    if (!options.common.quiet) {
+        std::cout << rows.size() << ' ' << name_of(options.factors.grouping) << " rows, " << totals.entries
+                  << " entries, " << totals.rays << " rays in " << seconds << " s ("
+                  << static_cast<double>(totals.rays) / seconds / 1e6 << " million a second), " << totals.hits
+                  << " met a face\nwidest 95 % interval: +- " << totals.widest << '\n';
+        print_residuals("as counted", before);
+        print_residuals("projected", after);
+    }
+    append_json(options.common.json, {{"schema", "twinray-viewfactors/1"},
+                                      {"device", describe(*context)},
+                                      {"scene", options.scene.string()},
+                                      {"backend", options.accel},
+                                      {"by", name_of(options.factors.grouping)},
+                                      {"sequence", name_of(options.factors.sequence)},
+                                      {"sides", name_of(options.factors.sides)},
+                                      {"seed", options.factors.seed},
+                                      {"rows", rows.size()},
+                                      {"entries", totals.entries},
+                                      {"rays", totals.rays},
+                                      {"hits", totals.hits},
+                                      {"seconds", seconds},
+                                      {"widest_half_interval", totals.widest},
+                                      {"as_counted", json_of(before)},
+                                      {"projected", json_of(after)}});
+}
+
+}  // namespace
+
+void add_viewfactors(CLI::App& app, int&) {
+    CLI::App* command = app.add_subcommand("viewfactors", "view factors between faces or groups of them, with errors");
+    const auto options = std::make_shared<Options>();
+    command->add_option("scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
+    command->add_option("-o,--output", options->output, ".npz (a SciPy CSR matrix with intervals) or .csv");
+    std::map<std::string, FaceGrouping> groupings;
+    for (const FaceGrouping grouping : all_face_groupings) groupings.emplace(name_of(grouping), grouping);
+    command->add_option("--by", options->factors.grouping, "what a row is: face, mesh, instance, material")
+        ->transform(CLI::CheckedTransformer(groupings));
+    command->add_option("--rays", options->factors.rays, "of a row; with --target-error the most")
+        ->capture_default_str();
+    command->add_option("--target-error", options->factors.target_error,
+                        "a row ends when the 95 % interval of each entry is within +- this");
+    command->add_option("--sides", options->factors.sides, "that radiate: front, both")
+        ->transform(
+            CLI::CheckedTransformer(std::map<std::string, Sides>{{"front", Sides::front}, {"both", Sides::both}}));
+    command->add_option("--sequence", options->factors.sequence, "of samples: sobol, random")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, Sequence>{{"sobol", Sequence::sobol}, {"random", Sequence::random}}));
+    command->add_option("--accel", options->accel)->check(CLI::IsMember({"sw", "hw"}))->capture_default_str();
+    command->add_flag("--project", options->projects,
+                      "write the nearest matrix that fulfils reciprocity and closure instead of the counted one");
+    command->add_flag("--resume", options->resumes, "go on with the rows that an earlier run left beside the output");
+    add_common_options(*command, options->common);
+    command->callback([options] {
+        options->factors.seed = static_cast<uint>(options->common.seed);
+        run(*options);
+    });
+}
+
+}  // namespace twinray::cli

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// What each ray has met.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/view_factors.h"
+layout(local_size_x = CHUNK) in;
+layout(push_constant, scalar) uniform Push { FaceTargetsArgs args; };
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.count) return;
+    AT(args.targets, i) = target_of(args, AT(args.rays, i), AT(args.hits, i));
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Scenes whose view factors are known in closed form.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/scene/shapes.h"
+
+namespace twinray::test {
+
+// Each mesh with one instance.
+inline Scene scene_of(std::vector<Mesh> meshes) {
+    Scene scene;
+    scene.materials.resize(1);
+    for (uint i = 0; i < meshes.size(); ++i) {
+        meshes[i].name = "mesh " + std::to_string(i);
+        scene.instances.push_back({meshes[i].name, i, {}});
+    }
+    scene.meshes = std::move(meshes);
+    return scene;
+}
+
+// Squares with sides of 1 that face each other at this distance.
+inline Scene parallel_squares(float distance) {
+    return scene_of({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
+                     make_quad(vec3(0, 0, distance), vec3(0, 1, 0), vec3(1, 0, 0))});
+}
+
+// Rectangles with an edge of 1 in common: the first w wide in the plane z = 0, the second h high.
+inline Scene perpendicular_rectangles(float w, float h) {
+    return scene_of({make_quad(vec3(0), vec3(w, 0, 0), vec3(0, 1, 0)),
+                     make_quad(vec3(0), vec3(0, 1, 0), vec3(0, 0, h))});
+}
+
+// Seen from inside.
+inline Mesh turned(Mesh mesh) {
+    for (uvec3& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
+    return mesh;
+}
+
+}  // namespace twinray::test
