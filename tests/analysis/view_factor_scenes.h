@@ -29,8 +29,8 @@ inline Scene parallel_squares(float distance) {
 
 // Rectangles with an edge of 1 in common: the first w wide in the plane z = 0, the second h high.
 inline Scene perpendicular_rectangles(float w, float h) {
-    return scene_of({make_quad(vec3(0), vec3(w, 0, 0), vec3(0, 1, 0)),
-                     make_quad(vec3(0), vec3(0, 1, 0), vec3(0, 0, h))});
+    return scene_of(
+        {make_quad(vec3(0), vec3(w, 0, 0), vec3(0, 1, 0)), make_quad(vec3(0), vec3(0, 1, 0), vec3(0, 0, h))});
 }
 
 // Seen from inside.

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/analysis/row_sums.h"
+#include "engine/core/sampling.h"
+
+namespace twinray {
+namespace {
+
+TEST(Estimator, OfManyEventsIsStudentsInterval) {
+    Replicates fractions;
+    for (std::size_t i = 0; i < replicate_count; ++i) fractions[i] = i % 2 ? 0.3 : 0.2;
+    const Estimate estimate = Estimator()(fractions, 4000, 16000);
+    EXPECT_DOUBLE_EQ(estimate.value, 0.25);
+    // Standard error 0.05 sqrt(16 / 15) / 4; Student's quantile for 15 degrees of freedom is 2.13145.
+    EXPECT_NEAR(estimate.half_width(), 2.13145 * 0.05 * std::sqrt(16.0 / 15) / 4, 1e-6);
+    EXPECT_NEAR(estimate.interval_95.low + estimate.interval_95.high, 0.5, 1e-15);
+}
+
+TEST(Estimator, OfFewEventsIsThatOfCounts) {
+    Estimator estimate;
+    const Estimate never = estimate({}, 0, 16000), always = estimate(Replicates{}, 16000, 16000);
+    EXPECT_EQ(never.interval_95, rate_interval_95(0, 16000));
+    EXPECT_GT(never.interval_95.high, 2e-4);
+    EXPECT_EQ(always.interval_95, rate_interval_95(16000, 16000));
+    Replicates few{};
+    few[3] = 3.0 / 1000;
+    const Estimate three = estimate(few, 3, 16000);
+    EXPECT_EQ(three.interval_95, rate_interval_95(3, 16000));
+    EXPECT_EQ(estimate(few, 3, 16000).interval_95, three.interval_95) << "the second time, too";
+}
+
+TEST(RowSums, CountsByTargetAndReplicate) {
+    RowSums sums;
+    std::vector<uint> targets(64, 7);  // 4 of each replicate
+    targets[0] = targets[5] = 3;       // of replicates 0 and 1
+    sums.add(targets, 1);
+    sums.settle();
+    sums.add(std::vector<uint>(64, 3), 0.5);
+    sums.settle();
+    EXPECT_EQ(sums.rays(), 128u);
+    ASSERT_EQ(sums.entries().size(), 2u);
+    const RowSums::Entry &three = sums.entries()[0], &seven = sums.entries()[1];
+    EXPECT_EQ(three.target, 3u);
+    EXPECT_EQ(three.hits, 66u);
+    EXPECT_EQ(three.sums[0], 1 + 4 * 0.5);
+    EXPECT_EQ(three.sums[1], 1 + 4 * 0.5);
+    EXPECT_EQ(three.sums[2], 4 * 0.5);
+    EXPECT_EQ(seven.hits, 62u);
+    EXPECT_EQ(seven.sums[0], 3);
+    EXPECT_EQ(seven.sums[15], 4);
+    Estimator estimator;
+    EXPECT_NEAR(sums.estimate(three, 6, estimator).value, (2 * 3.0 + 14 * 2.0) / 16 / 6, 1e-15);
+}
+
+// The points of scipy.stats.qmc.Sobol(4, scramble=False), which come in another order.
+TEST(Sobol, HasTheDirectionNumbersOfJoeAndKuo) {
+    const auto half = [](double x) { return static_cast<uint>(std::ldexp(x, 32)); };
+    EXPECT_EQ(sobol_third_and_fourth(0), uvec2(0));
+    EXPECT_EQ(sobol_third_and_fourth(1), uvec2(half(0.5), half(0.5)));
+    EXPECT_EQ(sobol_third_and_fourth(3), uvec2(half(0.25), half(0.25)));
+    EXPECT_EQ(sobol_third_and_fourth(2), uvec2(half(0.75), half(0.75)));
+    EXPECT_EQ(sobol_third_and_fourth(6), uvec2(half(0.625), half(0.875)));
+    EXPECT_EQ(sobol_third_and_fourth(7), uvec2(half(0.125), half(0.375)));
+    EXPECT_EQ(sobol_third_and_fourth(5), uvec2(half(0.875), half(0.625)));
+    EXPECT_EQ(sobol_third_and_fourth(4), uvec2(half(0.375), half(0.125)));
+}
+
+TEST(Sobol, EachDimensionOfAScrambledSequenceIsStratified) {
+    constexpr uint bits = 10;
+    for (uint key = 0; key < 8; ++key) {
+        std::vector<int> seen(4 << bits);
+        for (uint i = 0; i < 1u << bits; ++i) {
+            const uvec4 point = sobol_point(uvec4(key, 2, 3, 4), i);
+            for (uint d = 0; d < 4; ++d) seen[d << bits | point[static_cast<int>(d)] >> (32 - bits)] += 1;
+        }
+        EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<long>(seen.size())) << "key " << key;
+    }
+}
+
+TEST(Sobol, KeysAreIndependent) {
+    double product = 0;
+    constexpr uint keys = 4096;
+    for (uint key = 0; key < keys; ++key)
+        product += (unit_float(sobol_point(uvec4(key, 0, 0, 0), 5).x) - 0.5) *
+                   (unit_float(sobol_point(uvec4(key, 1, 0, 0), 5).x) - 0.5);
+    EXPECT_LT(std::abs(product / keys), 4.0 / 12 / std::sqrt(keys));
+}
+
+}  // namespace
+}  // namespace twinray

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/reciprocity.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace twinray {
+namespace {
+
+constexpr std::uint64_t rays = 10'000;
+constexpr double parallel = 0.199824895698387383, perpendicular = 0.200043776075403154;
+
+Estimate fraction(double value) { return {value, {value, value}}; }
+
+// Symmetric flows at random, and areas that they and what is open add up to; and what rays would count of them.
+struct Made {
+    std::vector<ViewFactorRow> exact, counted;
+    std::vector<double> areas;
+};
+Made made_matrix(uint n, bool is_closed, std::mt19937& random) {
+    std::uniform_real_distribution<double> uniform(0.1, 1);
+    std::vector<std::vector<double>> flows(n, std::vector<double>(n));
+    for (uint i = 0; i < n; ++i)
+        for (uint j = 0; j < i; ++j) flows[i][j] = flows[j][i] = uniform(random);
+    Made made;
+    for (uint i = 0; i < n; ++i) {
+        const double open = is_closed ? 0 : uniform(random);
+        double area = open;
+        for (uint j = 0; j < n; ++j) area += flows[i][j];
+        made.areas.push_back(area);
+        ViewFactorRow exact{i, rays, {}, rays, fraction(open / area), fraction(0)}, counted = exact;
+        std::vector<double> shares = {open / area};
+        for (uint j = 0; j < n; ++j) shares.push_back(flows[i][j] / area);
+        std::discrete_distribution<uint> targets(shares.begin(), shares.end());
+        std::vector<std::uint64_t> hits(n + 1);
+        for (std::uint64_t ray = 0; ray < rays; ++ray) ++hits[targets(random)];
+        counted.open = fraction(static_cast<double>(hits[0]) / rays);
+        for (uint j = 0; j < n; ++j) {
+            const auto found = static_cast<float>(static_cast<double>(hits[j + 1]) / rays);
+            if (i != j) exact.factors.push_back({j, static_cast<float>(shares[j + 1]), 0, 1});
+            if (i != j) counted.factors.push_back({j, found, found - 0.01f, found + 0.01f});
+        }
+        made.exact.push_back(exact);
+        made.counted.push_back(counted);
+    }
+    return made;
+}
+
+double squared_error(const std::vector<ViewFactorRow>& rows, const std::vector<ViewFactorRow>& exact) {
+    double sum = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        for (std::size_t k = 0; k < rows[i].factors.size(); ++k)
+            sum += std::pow(rows[i].factors[k].value - exact[i].factors[k].value, 2);
+    return sum;
+}
+
+TEST(Reciprocity, ResidualsOfAnExactMatrixAreRounding) {
+    std::mt19937 random(1);
+    const Made made = made_matrix(10, false, random);
+    const ViewFactorResiduals residuals = residuals_of(made.exact, made.areas);
+    EXPECT_LT(residuals.reciprocity, 1e-7);
+    EXPECT_LT(residuals.closure, 1e-6);
+}
+
+TEST(Reciprocity, ResidualsAreThoseOfTheFormula) {
+    std::vector<ViewFactorRow> rows(2);
+    rows[0] = {0, rays, {{1, 0.5f, 0, 1}}, rays, fraction(0.25), fraction(0)};
+    rows[1] = {1, rays, {{0, 0.2f, 0, 1}}, rays, fraction(0.75), fraction(0)};
+    const ViewFactorResiduals residuals = residuals_of(rows, {1, 2});
+    EXPECT_NEAR(residuals.reciprocity, 0.1 / 2, 1e-7);  // |1 * 0.5 - 2 * 0.2| over an area of 2
+    EXPECT_NEAR(residuals.closure, 0.25, 1e-7);
+    EXPECT_GT(residuals.reciprocity_sigma, 5);
+}
+
+TEST(Projection, FulfilsBothAndComesNearerToTheTruth) {
+    std::mt19937 random(2);
+    double before = 0, after = 0;
+    for (int trial = 0; trial < 20; ++trial) {
+        const Made made = made_matrix(12, trial % 2 == 0, random);
+        std::vector<ViewFactorRow> projected = made.counted;
+        EXPECT_GT(residuals_of(projected, made.areas).reciprocity, 1e-4);
+        project(projected, made.areas);
+        const ViewFactorResiduals residuals = residuals_of(projected, made.areas);
+        EXPECT_LT(residuals.reciprocity, 1e-6);
+        EXPECT_LT(residuals.closure, 1e-6);
+        before += squared_error(made.counted, made.exact);
+        after += squared_error(projected, made.exact);
+        for (const ViewFactorRow& row : projected)
+            for (const ViewFactor& factor : row.factors) {
+                EXPECT_GE(factor.value, 0);
+                EXPECT_LE(factor.low, factor.value);
+                EXPECT_GE(factor.high, factor.value);
+            }
+    }
+    EXPECT_LT(after, 0.6 * before) << "two directions tell more than one, and sums more still";
+}
+
+TEST(Projection, LeavesWhatFulfilsBothAlready) {
+    std::vector<ViewFactorRow> rows;
+    for (uint i = 0; i < 6; ++i) {
+        ViewFactorRow row{i, rays, {}, rays, fraction(0), fraction(0)};
+        for (uint j = 0; j < 6; ++j)
+            if (j != i) row.factors.push_back({j, static_cast<float>(j == (i ^ 1) ? parallel : perpendicular), 0, 1});
+        rows.push_back(row);
+    }
+    const std::vector<ViewFactorRow> exact = rows;
+    project(rows, std::vector<double>(6, 1));
+    EXPECT_LT(squared_error(rows, exact), 1e-13);
+}
+
+TEST(Projection, CompletesWhatOneDirectionSawAndKeepsRowsWithoutRays) {
+    std::vector<ViewFactorRow> rows(3);
+    rows[0] = {0, rays, {{1, 0.001f, 0, 0.01f}}, 10, fraction(0.999), fraction(0)};
+    rows[1] = {1, rays, {}, 0, fraction(1), fraction(0)};
+    rows[2] = {2, 0, {}, 0, fraction(0), fraction(0)};
+    project(rows, {1, 1, 0});
+    ASSERT_EQ(rows[1].factors.size(), 1u);
+    EXPECT_EQ(rows[1].factors[0].target, 0u);
+    EXPECT_FLOAT_EQ(rows[1].factors[0].value, rows[0].factors[0].value);
+    EXPECT_NEAR(rows[0].factors[0].value, 0.0005, 0.0001);
+    EXPECT_TRUE(rows[2].factors.empty());
+}
+
+}  // namespace
+}  // namespace twinray
