@@ -72,7 +72,9 @@ Trial estimates(AbstractAccel& accel, const Faces& faces, const Known& known, Se
         ViewFactors factors(
             accel, faces,
             {.grouping = FaceGrouping::mesh, .sequence = sequence, .rays = rays, .seed = first_seed + seed});
-        const ViewFactor estimate = factors.rows(0, 1).front().factors.front();
+        const ViewFactorRow row = factors.rows(0, 1).front();
+        if (row.factors.size() != 1) return {};
+        const ViewFactor estimate = row.factors.front();
         const double error = static_cast<double>(estimate.value) - known.value;
         trial.inside +=
             static_cast<double>(estimate.low) <= known.value && known.value <= static_cast<double>(estimate.high);
@@ -119,7 +121,7 @@ TEST_P(ViewFactorsTest, ErrorsFallAsTheyShouldWithTheRays) {
                     estimates(*accel, faces, known, sequence, static_cast<std::uint64_t>(n), seeds, seed).rms);
                 seed += seeds;
             }
-            slopes += fit_power_law(rays, errors)->slope / static_cast<double>(all.size());
+            slopes += fit_power_law(rays, errors).value().slope / static_cast<double>(all.size());
         }
         if (sequence == Sequence::random) {
             EXPECT_NEAR(slopes, -0.5, 0.05);

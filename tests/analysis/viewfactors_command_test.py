@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Runs `twinray viewfactors` as a user does. Usage: viewfactors_command_test.py TWINRAY"""
+import ast
+import csv
+import json
+import os
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import zipfile
+
+twinray = sys.argv[1]
+
+
+def run(*arguments, fails=False):
+    done = subprocess.run([twinray, "viewfactors", *arguments], capture_output=True, text=True)
+    if (done.returncode != 0) != fails:
+        sys.exit(f"{' '.join(arguments)}: exit {done.returncode}\n{done.stdout}{done.stderr}")
+    return done.stderr if fails else done.stdout
+
+
+def expect(condition, what):
+    if not condition:
+        sys.exit(f"not so: {what}")
+
+
+def array(archive, name):
+    """A one-dimensional .npy as a list: NumPy may not be installed."""
+    data = archive.read(name + ".npy")
+    expect(data[:8] == b"\x93NUMPY\x01\x00", name)
+    size = struct.unpack("<H", data[8:10])[0]
+    expect((10 + size) % 64 == 0, "headers are aligned")
+    header = ast.literal_eval(data[10:10 + size].decode())
+    kind = {"<f4": "f", "<f8": "d", "<i8": "q", "<u8": "Q"}[header["descr"]]
+    return list(struct.unpack(f"<{header['shape'][0]}{kind}", data[10 + size:]))
+
+
+def write_grid_box(path, n):
+    """A box of n x n quads a side that looks inwards."""
+    lines, count = [], 0
+    for axis in range(3):
+        for side in (0, 1):
+            for i in range(n):
+                for j in range(n):
+                    for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                        point = [0.0, 0.0, 0.0]
+                        point[axis], point[(axis + 1) % 3], point[(axis + 2) % 3] = side, (i + di) / n, (j + dj) / n
+                        lines.append("v {} {} {}".format(*point))
+                    corners = [count + 1, count + 2, count + 3, count + 4]
+                    lines.append("f {} {} {} {}".format(*(corners if side == 0 else corners[::-1])))
+                    count += 4
+    with open(path, "w", encoding="utf-8") as out:
+        out.write("\n".join(lines) + "\n")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    box, csv_file, npz_file = (os.path.join(folder, name) for name in ("box.obj", "f.csv", "f.npz"))
+    write_grid_box(box, 6)
+
+    text = run(box, "-o", csv_file, "--rays", "1024", "--json", os.path.join(folder, "f.json"))
+    expect("432 face rows" in text and "closure 0\n" in text, text)
+    with open(csv_file, encoding="utf-8") as rows:
+        table = [(int(r["i"]), int(r["j"]), float(r["F"]), float(r["ci_low"]), float(r["ci_high"]))
+                 for r in csv.DictReader(rows)]
+    sums = {}
+    for i, j, factor, low, high in table:
+        sums[i] = sums.get(i, 0) + factor
+        expect(0 <= low <= factor <= high <= 1, f"interval of {i}, {j}")
+    expect(len(sums) == 432 and all(abs(s - 1) < 1e-6 for s in sums.values()), "rows of a closed box add up to 1")
+    with open(os.path.join(folder, "f.json"), encoding="utf-8") as lines:
+        record = json.loads(lines.readline())
+    expect(record["hits"] == record["rays"] == 432 * 1024 and record["projected"]["reciprocity"] < 1e-6, record)
+
+    run(box, "-o", npz_file, "--rays", "1024", "--quiet")
+    with zipfile.ZipFile(npz_file) as archive:
+        expect(archive.testzip() is None, "checksums")
+        starts, columns, values = array(archive, "indptr"), array(archive, "indices"), array(archive, "data")
+        expect(array(archive, "shape") == [432, 432] and b"csr" in archive.read("format.npy"), "a CSR matrix")
+        low, areas = array(archive, "ci_low"), array(archive, "area")
+    flat = [(i, columns[k], values[k], low[k]) for i in range(432) for k in range(starts[i], starts[i + 1])]
+    expect(len(flat) == len(table), "as many entries")
+    expect(all(a[:2] == b[:2] and abs(a[2] - b[2]) < 1e-8 and abs(a[3] - b[3]) < 1e-8 for a, b in zip(flat, table)),
+           "both formats hold the same")
+    expect(abs(sum(areas) - 6) < 1e-6, "areas of the box")
+
+    by_mesh = run(box, "--by", "mesh", "--rays", "65536")
+    expect("1 mesh rows, 1 entries" in by_mesh, by_mesh)
+
+    # Killed in the middle and resumed: the same file, byte for byte.
+    whole, killed = os.path.join(folder, "whole.npz"), os.path.join(folder, "killed.npz")
+    options = ["--rays", "16384", "--quiet"]
+    run(box, "-o", whole, *options)
+    process = subprocess.Popen([twinray, "viewfactors", box, "-o", killed, *options])
+    unfinished = killed + ".rows"
+    while process.poll() is None and not (os.path.exists(unfinished) and os.path.getsize(unfinished) > 200_000):
+        time.sleep(0.005)
+    expect(process.poll() is None, "it is still at work")
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    expect(os.path.exists(unfinished) and not os.path.exists(killed), "unfinished rows are left")
+    refused = run(box, "-o", killed, "--resume", "--rays", "4096", fails=True)
+    expect("of another scene or of other options" in refused, refused)
+    resumed = run(box, "-o", killed, "--resume", "--rays", "16384")
+    expect("resumed after" in resumed, resumed)
+    with open(whole, "rb") as a, open(killed, "rb") as b:
+        expect(a.read() == b.read(), "resuming gives the same file")
+    expect(not os.path.exists(unfinished), "nothing is left behind")
+
+    for arguments, message in ((["-o", os.path.join(folder, "f.txt")], ".npz or .csv"),
+                               (["--resume"], "--resume needs -o"), (["--rays", "0"], "0 rays a row"),
+                               (["--target-error", "0"], "target error of 0"),
+                               (["-o", os.path.join(folder, "none", "f.csv")], "there is no folder")):
+        expect(message in run(box, *arguments, fails=True), message)
+print("viewfactors_command_test: passed")
