@@ -36,10 +36,13 @@ class Record {
 constexpr std::uint64_t dos_date = 0x21;  // 1980-01-01: the same bytes whenever they are written
 
 // What the local header and the directory both say of a member.
-void add_common(Record& record, const std::string& name, std::span<const std::byte> data) {
-    const auto sum = crc32_z(crc32(0, nullptr, 0), reinterpret_cast<const Bytef*>(data.data()), data.size());
+void add_common(Record& record, const std::string& name, std::uint64_t sum, std::uint64_t bytes) {
     record.u16(20).u16(0).u16(0).u16(0).u16(dos_date);
-    record.u32(sum).u32(data.size()).u32(data.size()).u16(name.size()).u16(0);
+    record.u32(sum).u32(bytes).u32(bytes).u16(name.size()).u16(0);
+}
+
+std::uint64_t checksum(std::uint64_t before, std::span<const std::byte> data) {
+    return crc32_z(before, reinterpret_cast<const Bytef*>(data.data()), data.size());
 }
 
 std::string shape_text(const std::vector<std::size_t>& shape) {
@@ -57,7 +60,9 @@ void Npz::add(const std::string& name, const std::string& type, std::size_t coun
 }
 
 void Npz::add_text(const std::string& name, const std::string& ascii) {
-    add_member(name, "|S" + std::to_string(ascii.size()), "()", std::as_bytes(std::span(ascii)));
+    add_member(name, "|S" + std::to_string(ascii.size()), "()", {});
+    const auto bytes = std::as_bytes(std::span(ascii));
+    members_.back().header.insert(members_.back().header.end(), bytes.begin(), bytes.end());
 }
 
 void Npz::add_member(const std::string& name, const std::string& type, const std::string& shape,
@@ -70,9 +75,7 @@ void Npz::add_member(const std::string& name, const std::string& type, const std
     header += '\n';
     Record npy;
     npy.name("\x93NUMPY").u16(1).u16(header.size()).name(header);
-    Member member{name + ".npy", npy.bytes()};
-    member.data.insert(member.data.end(), data.begin(), data.end());
-    members_.push_back(std::move(member));
+    members_.push_back({name + ".npy", npy.bytes(), data});
 }
 
 void Npz::write(const std::filesystem::path& file) const {
@@ -80,14 +83,16 @@ void Npz::write(const std::filesystem::path& file) const {
     Record directory;
     std::uint64_t at = 0;
     for (const Member& member : members_) {
+        const std::uint64_t bytes = member.header.size() + member.data.size();
+        const std::uint64_t sum = checksum(checksum(crc32(0, nullptr, 0), member.header), member.data);
         Record& header = headers.emplace_back();
         header.u32(0x04034b50);
-        add_common(header, member.name, member.data);
+        add_common(header, member.name, sum, bytes);
         header.name(member.name);
         directory.u32(0x02014b50).u16(20);
-        add_common(directory, member.name, member.data);
+        add_common(directory, member.name, sum, bytes);
         directory.u16(0).u16(0).u16(0).u32(0).u32(at).name(member.name);
-        at += header.bytes().size() + member.data.size();
+        at += header.bytes().size() + bytes;
         if (at > most_bytes) fail("'", file.string(), "': ", at, " bytes; at most ", most_bytes, " fit, use .csv");
     }
     Record end;
@@ -96,6 +101,7 @@ void Npz::write(const std::filesystem::path& file) const {
     std::vector<std::span<const std::byte>> pieces;
     for (std::size_t i = 0; i < members_.size(); ++i) {
         pieces.emplace_back(headers[i].bytes());
+        pieces.emplace_back(members_[i].header);
         pieces.emplace_back(members_[i].data);
     }
     pieces.emplace_back(directory.bytes());

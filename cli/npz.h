@@ -14,7 +14,8 @@ namespace twinray::cli {
 // endian.
 class Npz {
   public:
-    // `shape` empty: one dimension. Throws Error for more than 4 GiB of one array, which wants another format.
+    // `shape` empty: one dimension. The values must live until write(). Throws Error for more than 4 GiB of one array,
+    // which wants another format.
     template <class T>
     void add(const std::string& name, std::span<const T> values, std::vector<std::size_t> shape = {}) {
         add(name, type_of(T{}), values.size(), std::as_bytes(values), std::move(shape));
@@ -26,7 +27,8 @@ class Npz {
   private:
     struct Member {
         std::string name;
-        std::vector<std::byte> data;
+        std::vector<std::byte> header;  // of the .npy, and the value of a text
+        std::span<const std::byte> data;
     };
     static const char* type_of(float) { return "<f4"; }
     static const char* type_of(double) { return "<f8"; }

@@ -79,7 +79,8 @@ void write_csv(const std::filesystem::path& file, const std::vector<ViewFactorRo
 // As scipy.sparse.save_npz writes a csr_matrix, and beside it what else is known.
 void write_npz(const std::filesystem::path& file, const std::vector<ViewFactorRow>& rows,
                const std::vector<double>& areas) {
-    std::vector<std::int64_t> columns, starts = {0};
+    std::vector<std::int64_t> starts = {0};
+    std::vector<std::uint32_t> columns;
     std::vector<float> values, low, high;
     std::vector<double> open, back;
     std::vector<std::uint64_t> rays;
@@ -98,7 +99,7 @@ void write_npz(const std::filesystem::path& file, const std::vector<ViewFactorRo
     const auto n = static_cast<std::int64_t>(rows.size());
     const std::vector<std::int64_t> shape = {n, n};
     Npz npz;
-    npz.add("indices", std::span<const std::int64_t>(columns));
+    npz.add("indices", std::span<const std::uint32_t>(columns));
     npz.add("indptr", std::span<const std::int64_t>(starts));
     npz.add_text("format", "csr");
     npz.add("shape", std::span<const std::int64_t>(shape));
@@ -157,10 +158,11 @@ void run(const Options& options) {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const Totals totals = totals_of(rows);
     const ViewFactorResiduals before = residuals_of(rows, factors.areas());
-    std::vector<ViewFactorRow> projected = rows;
-    project(projected, factors.areas());
-    const ViewFactorResiduals after = residuals_of(projected, factors.areas());
-    if (options.projects) rows = std::move(projected);
+    std::optional<ViewFactorResiduals> after;
+    if (options.projects) {
+        project(rows, factors.areas());
+        after = residuals_of(rows, factors.areas());
+    }
     if (suffix == ".csv") write_csv(options.output, rows);
     if (suffix == ".npz") write_npz(options.output, rows, factors.areas());
     if (!options.output.empty()) RowFile(rows_file(options.output), {}).remove();
@@ -170,7 +172,7 @@ void run(const Options& options) {
                   << static_cast<double>(totals.rays) / seconds / 1e6 << " million a second), " << totals.hits
                   << " met a face\nwidest 95 % interval: +- " << totals.widest << '\n';
         print_residuals("as counted", before);
-        print_residuals("projected", after);
+        if (after) print_residuals("projected", *after);
     }
     append_json(options.common.json, {{"schema", "twinray-viewfactors/1"},
                                       {"device", describe(*context)},
@@ -187,7 +189,7 @@ void run(const Options& options) {
                                       {"seconds", seconds},
                                       {"widest_half_interval", totals.widest},
                                       {"as_counted", json_of(before)},
-                                      {"projected", json_of(after)}});
+                                      {"projected", after ? json_of(*after) : nlohmann::json()}});
 }
 
 }  // namespace

@@ -13,14 +13,18 @@
 namespace twinray {
 namespace {
 
-// A_i F_ij and A_j F_ji, of i <= j; 0 where no ray told.
+// What i and j exchange, i <= j: at first A_i F_ij and A_j F_ji, 0 where no ray told.
 struct Exchange {
     uint i, j;
     double of_i = 0, of_j = 0;
 };
 
+// Ascending by i and j.
 std::vector<Exchange> exchanges_of(const std::vector<ViewFactorRow>& rows, const std::vector<double>& areas) {
+    std::size_t count = 0;
+    for (const ViewFactorRow& row : rows) count += row.factors.size();
     std::vector<Exchange> all;
+    all.reserve(count);
     for (const ViewFactorRow& row : rows)
         for (const ViewFactor& factor : row.factors) {
             const double flow = areas[row.group] * static_cast<double>(factor.value);
@@ -31,13 +35,23 @@ std::vector<Exchange> exchanges_of(const std::vector<ViewFactorRow>& rows, const
         }
     std::sort(all.begin(), all.end(),
               [](const Exchange& a, const Exchange& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
-    std::vector<Exchange> joined;
+    auto last = all.begin();
     for (const Exchange& one : all) {
-        if (joined.empty() || joined.back().i != one.i || joined.back().j != one.j) joined.push_back({one.i, one.j});
-        joined.back().of_i += one.of_i;
-        joined.back().of_j += one.of_j;
+        if (last == all.begin() || last[-1].i != one.i || last[-1].j != one.j) {
+            *last++ = one;
+        } else {
+            last[-1].of_i += one.of_i;
+            last[-1].of_j += one.of_j;
+        }
     }
-    return joined;
+    all.erase(last, all.end());
+    return all;
+}
+
+const ViewFactor* find(const ViewFactorRow& row, uint target) {
+    const auto found = std::lower_bound(row.factors.begin(), row.factors.end(), target,
+                                        [](const ViewFactor& factor, uint wanted) { return factor.target < wanted; });
+    return found != row.factors.end() && found->target == target ? &*found : nullptr;
 }
 
 // Of A F, where that many rays found the fraction F; of the fraction that a row has in truth, not of the one it found,
@@ -67,13 +81,16 @@ Joint joint(const Exchange& exchange, const std::vector<ViewFactorRow>& rows, co
 // which rows add up to their areas.
 class Projection {
   public:
-    Projection(const std::vector<ViewFactorRow>& rows, const std::vector<double>& areas)
-        : rows_(rows), areas_(areas), exchanges_(exchanges_of(rows, areas)) {
+    Projection(const std::vector<ViewFactorRow>& rows, const std::vector<double>& areas) : rows_(rows), areas_(areas) {
         std::vector<double> left = areas;  // by both directions
-        for (const Exchange& exchange : exchanges_) {
-            joints_.push_back(joint(exchange, rows, areas));
-            left[exchange.i] -= joints_.back().flow;
-            if (exchange.i != exchange.j) left[exchange.j] -= joints_.back().flow;
+        std::vector<Exchange> exchanges = exchanges_of(rows, areas);
+        pairs_.reserve(exchanges.size());
+        for (const Exchange& exchange : exchanges) {
+            const auto [i, j, of_i, of_j] = exchange;
+            const Joint both = joint(exchange, rows, areas);
+            pairs_.push_back({i, j, both});
+            left[i] -= both.flow;
+            if (i != j) left[j] -= both.flow;
         }
         for (const ViewFactorRow& row : rows)
             for (const Estimate* lost : {&row.open, &row.back}) lost_.push_back(joint_of(row, *lost, left[row.group]));
@@ -91,10 +108,8 @@ class Projection {
                 one = {0, 0};
                 is_done = false;
             };
-            for (std::size_t k = 0; k < joints_.size(); ++k) {
-                const auto [i, j, of_i, of_j] = exchanges_[k];
-                move(joints_[k], i == j ? lambda[i] : lambda[i] + lambda[j]);
-            }
+            for (Pair& pair : pairs_)
+                move(pair.both, pair.i == pair.j ? lambda[pair.i] : lambda[pair.i] + lambda[pair.j]);
             for (std::size_t k = 0; k < lost_.size(); ++k) move(lost_[k], lambda[static_cast<Eigen::Index>(k / 2)]);
         }
     }
@@ -104,16 +119,17 @@ class Projection {
         const auto add = [&](uint from, uint to, double flow) {
             if (flow > 0) projected[from].push_back({to, static_cast<float>(flow / areas_[from]), 0, 0});
         };
-        for (std::size_t k = 0; k < joints_.size(); ++k) {
-            add(exchanges_[k].i, exchanges_[k].j, joints_[k].flow);
-            if (exchanges_[k].i != exchanges_[k].j) add(exchanges_[k].j, exchanges_[k].i, joints_[k].flow);
+        for (const Pair& pair : pairs_) {
+            add(pair.i, pair.j, pair.both.flow);
+            if (pair.i != pair.j) add(pair.j, pair.i, pair.both.flow);
         }
         for (std::size_t i = 0; i < rows.size(); ++i) {
             ViewFactorRow& row = rows[i];
             if (row.rays == 0) continue;
             std::sort(projected[i].begin(), projected[i].end(),
                       [](const ViewFactor& a, const ViewFactor& b) { return a.target < b.target; });
-            for (ViewFactor& factor : projected[i]) carry_interval(row, factor);
+            const auto unseen = static_cast<float>(rate_interval_95(0, row.rays).high);
+            for (ViewFactor& factor : projected[i]) carry_interval(find(row, factor.target), unseen, factor);
             row.factors = std::move(projected[i]);
             shift(row.open, lost_[2 * i].flow / areas_[i]);
             shift(row.back, lost_[2 * i + 1].flow / areas_[i]);
@@ -121,6 +137,11 @@ class Projection {
     }
 
   private:
+    struct Pair {
+        uint i, j;  // i <= j
+        Joint both;
+    };
+
     // A row all of whose rays were lost may still exchange what others saw: its variance is of what that leaves.
     Joint joint_of(const ViewFactorRow& row, const Estimate& lost, double left) const {
         if (row.rays == 0) return {};
@@ -133,44 +154,49 @@ class Projection {
         Eigen::VectorXd missing = Eigen::VectorXd::Zero(n), diagonal = Eigen::VectorXd::Zero(n);
         for (Eigen::Index i = 0; i < n; ++i)
             if (rows_[static_cast<std::size_t>(i)].rays) missing[i] = areas_[static_cast<std::size_t>(i)];
-        std::vector<Eigen::Triplet<double>> entries;
         const auto one_row = [&](Eigen::Index i, const Joint& joint) {
             missing[i] -= joint.flow;
             diagonal[i] += joint.variance;
         };
-        for (std::size_t k = 0; k < joints_.size(); ++k) {
-            const Eigen::Index i = exchanges_[k].i, j = exchanges_[k].j;
-            one_row(i, joints_[k]);
-            if (i == j) continue;
-            one_row(j, joints_[k]);
-            entries.emplace_back(i, j, joints_[k].variance);
-            entries.emplace_back(j, i, joints_[k].variance);
+        for (const Pair& pair : pairs_) {
+            one_row(pair.i, pair.both);
+            if (pair.i != pair.j) one_row(pair.j, pair.both);
         }
         for (std::size_t k = 0; k < lost_.size(); ++k) one_row(static_cast<Eigen::Index>(k / 2), lost_[k]);
-        for (Eigen::Index i = 0; i < n; ++i) entries.emplace_back(i, i, diagonal[i] > 0 ? diagonal[i] : 1.0);
         for (Eigen::Index i = 0; i < n; ++i)
             if (!(diagonal[i] > 0)) missing[i] = 0;  // nothing there can change
-        Eigen::SparseMatrix<double> matrix(n, n);
-        matrix.setFromTriplets(entries.begin(), entries.end());
-        Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver(matrix);
+        const Matrix matrix = upper_matrix(diagonal);
+        Eigen::ConjugateGradient<Matrix, Eigen::Upper> solver(matrix);
         solver.setTolerance(std::numeric_limits<double>::epsilon());
         solver.setMaxIterations(10 * n + 100);
         const Eigen::VectorXd lambda = solver.solve(missing);
-        const double residual = (matrix * lambda - missing).cwiseAbs().maxCoeff();
+        const double residual = (matrix.selfadjointView<Eigen::Upper>() * lambda - missing).lpNorm<Eigen::Infinity>();
         const double largest = *std::max_element(areas_.begin(), areas_.end());
         if (!(residual <= 1e-9 * largest))
             fail("view factors: the projection leaves ", residual / largest, " of the largest area; at most 1e-9");
         return lambda;
     }
 
-    static void carry_interval(const ViewFactorRow& row, ViewFactor& factor) {
-        const auto old = std::lower_bound(row.factors.begin(), row.factors.end(), factor.target,
-                                          [](const ViewFactor& a, uint target) { return a.target < target; });
-        const bool is_known = old != row.factors.end() && old->target == factor.target;
-        const Interval none = rate_interval_95(0, row.rays);
-        factor.low = std::max(0.0f, factor.value - (is_known ? old->value - old->low : factor.value));
-        factor.high =
-            std::min(1.0f, factor.value + (is_known ? old->high - old->value : static_cast<float>(none.high)));
+    // Entry by entry in order, without a copy of them all.
+    using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+    Matrix upper_matrix(const Eigen::VectorXd& diagonal) const {
+        Matrix matrix(diagonal.size(), diagonal.size());
+        matrix.reserve(static_cast<Eigen::Index>(pairs_.size()) + diagonal.size());
+        auto pair = pairs_.begin();
+        for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
+            matrix.startVec(i);
+            matrix.insertBack(i, i) = diagonal[i] > 0 ? diagonal[i] : 1.0;
+            for (; pair != pairs_.end() && pair->i == i; ++pair)
+                if (pair->j != i) matrix.insertBack(i, pair->j) = pair->both.variance;
+        }
+        matrix.finalize();
+        return matrix;
+    }
+
+    // `old`: what was counted; null where no ray told, which leaves up to `unseen`.
+    static void carry_interval(const ViewFactor* old, float unseen, ViewFactor& factor) {
+        factor.low = std::max(0.0f, factor.value - (old ? old->value - old->low : factor.value));
+        factor.high = std::min(1.0f, factor.value + (old ? old->high - old->value : unseen));
     }
 
     static void shift(Estimate& estimate, double value) {
@@ -181,9 +207,8 @@ class Projection {
 
     const std::vector<ViewFactorRow>& rows_;
     const std::vector<double>& areas_;
-    std::vector<Exchange> exchanges_;
-    std::vector<Joint> joints_;  // of exchanges
-    std::vector<Joint> lost_;    // open and back of each row
+    std::vector<Pair> pairs_;  // ascending
+    std::vector<Joint> lost_;  // open and back of each row
 };
 
 }  // namespace
@@ -191,18 +216,25 @@ class Projection {
 ViewFactorResiduals residuals_of(const std::vector<ViewFactorRow>& rows, const std::vector<double>& areas) {
     ViewFactorResiduals residuals;
     const double largest = areas.empty() ? 0 : *std::max_element(areas.begin(), areas.end());
-    for (const Exchange& exchange : exchanges_of(rows, areas)) {
-        const double difference = std::abs(exchange.of_i - exchange.of_j);
-        if (exchange.i == exchange.j || rows[exchange.i].rays == 0 || rows[exchange.j].rays == 0) continue;
+    const auto compare = [&](const Exchange& exchange) {
+        const auto [i, j, of_i, of_j] = exchange;
+        if (i == j || rows[i].rays == 0 || rows[j].rays == 0) return;
+        const double difference = std::abs(of_i - of_j), flow = joint(exchange, rows, areas).flow;
         residuals.reciprocity = std::max(residuals.reciprocity, difference / largest);
-        const double flow = joint(exchange, rows, areas).flow;
         const auto expected = [&](uint group) { return flow / areas[group] * static_cast<double>(rows[group].rays); };
-        if (std::min(expected(exchange.i), expected(exchange.j)) < 10) continue;
-        const double squares = variance(flow, areas[exchange.i], rows[exchange.i].rays) +
-                               variance(flow, areas[exchange.j], rows[exchange.j].rays);
+        if (std::min(expected(i), expected(j)) < 10) return;
+        const double squares = variance(flow, areas[i], rows[i].rays) + variance(flow, areas[j], rows[j].rays);
         if (squares > 0)
             residuals.reciprocity_sigma = std::max(residuals.reciprocity_sigma, difference / std::sqrt(squares));
-    }
+    };
+    for (const ViewFactorRow& row : rows)
+        for (const ViewFactor& factor : row.factors) {
+            const ViewFactor* back = find(rows[factor.target], row.group);
+            if (back && row.group > factor.target) continue;  // compared from there
+            const double there = areas[row.group] * static_cast<double>(factor.value);
+            compare(
+                {row.group, factor.target, there, back ? areas[factor.target] * static_cast<double>(back->value) : 0});
+        }
     for (const ViewFactorRow& row : rows) {
         if (row.rays == 0) continue;
         double sum = row.open.value + row.back.value;

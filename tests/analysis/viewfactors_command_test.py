@@ -35,7 +35,7 @@ def array(archive, name):
     size = struct.unpack("<H", data[8:10])[0]
     expect((10 + size) % 64 == 0, "headers are aligned")
     header = ast.literal_eval(data[10:10 + size].decode())
-    kind = {"<f4": "f", "<f8": "d", "<i8": "q", "<u8": "Q"}[header["descr"]]
+    kind = {"<f4": "f", "<f8": "d", "<u4": "I", "<i8": "q", "<u8": "Q"}[header["descr"]]
     return list(struct.unpack(f"<{header['shape'][0]}{kind}", data[10 + size:]))
 
 
@@ -61,7 +61,8 @@ with tempfile.TemporaryDirectory() as folder:
     box, csv_file, npz_file = (os.path.join(folder, name) for name in ("box.obj", "f.csv", "f.npz"))
     write_grid_box(box, 6)
 
-    text = run(box, "-o", csv_file, "--rays", "1024", "--json", os.path.join(folder, "f.json"))
+    text = run(box, "-o", csv_file, "--rays", "1024", "--project", "--json",
+               os.path.join(folder, "f.json"))
     expect("432 face rows" in text and "closure 0\n" in text, text)
     with open(csv_file, encoding="utf-8") as rows:
         table = [(int(r["i"]), int(r["j"]), float(r["F"]), float(r["ci_low"]), float(r["ci_high"]))
@@ -75,7 +76,7 @@ with tempfile.TemporaryDirectory() as folder:
         record = json.loads(lines.readline())
     expect(record["hits"] == record["rays"] == 432 * 1024 and record["projected"]["reciprocity"] < 1e-6, record)
 
-    run(box, "-o", npz_file, "--rays", "1024", "--quiet")
+    run(box, "-o", npz_file, "--rays", "1024", "--project", "--quiet")
     with zipfile.ZipFile(npz_file) as archive:
         expect(archive.testzip() is None, "checksums")
         starts, columns, values = array(archive, "indptr"), array(archive, "indices"), array(archive, "data")
