@@ -63,6 +63,8 @@ void add_leaks(CLI::App& app, int& exit_code);
 void bench_moves(const CommonOptions& options, std::size_t count, std::size_t rounds);
 void bench_ladder(const CommonOptions& options, const std::string& scene, const bench::RunOptions& run);
 void add_bench(CLI::App& app, int& exit_code);
+void add_illumination(CLI::App& app, int& exit_code);
+void add_centroid(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
 void add_viewfactors(CLI::App& app, int& exit_code);
 

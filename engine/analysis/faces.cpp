@@ -11,18 +11,6 @@
 namespace twinray {
 namespace {
 
-dvec3 in_world(const Transform& transform, vec3 point) {
-    const dvec4 p(point, 1.0);
-    return {dot(dvec4(transform.rows[0]), p), dot(dvec4(transform.rows[1]), p), dot(dvec4(transform.rows[2]), p)};
-}
-
-double world_area(const Mesh& mesh, const Transform& transform, uvec3 triangle) {
-    const vec3 a = mesh.positions[triangle.x], b = mesh.positions[triangle.y], c = mesh.positions[triangle.z];
-    if (!is_active_triangle(a, b, c)) return 0;
-    const dvec3 origin = in_world(transform, a);
-    return glm::length(cross(in_world(transform, b) - origin, in_world(transform, c) - origin)) / 2;
-}
-
 std::uint64_t count_faces(const Scene& scene) {
     std::uint64_t count = 0;
     for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangles.size();
@@ -35,6 +23,22 @@ std::uint64_t count_faces(const Scene& scene) {
 std::string_view name_of(FaceGrouping grouping) {
     constexpr std::array names = {"face", "mesh", "instance", "material"};
     return names[static_cast<std::size_t>(grouping)];
+}
+
+dvec3 in_world(const Transform& transform, vec3 point) {
+    const dvec4 p(point, 1.0);
+    return {dot(dvec4(transform.rows[0]), p), dot(dvec4(transform.rows[1]), p), dot(dvec4(transform.rows[2]), p)};
+}
+
+dvec3 area_vector(const Scene& scene, Face face) {
+    const Instance& instance = scene.instances[face.instance];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const uvec3 triangle = mesh.triangles[face.primitive];
+    const vec3 a = mesh.positions[triangle.x], b = mesh.positions[triangle.y], c = mesh.positions[triangle.z];
+    if (!is_active_triangle(a, b, c)) return dvec3(0);
+    const dvec3 origin = in_world(instance.transform, a);
+    const dvec3 twice = cross(in_world(instance.transform, b) - origin, in_world(instance.transform, c) - origin);
+    return twice * (determinant(instance.transform) < 0 ? -0.5 : 0.5);
 }
 
 Faces::Faces(Context& context, const Scene& scene)
@@ -76,11 +80,7 @@ Faces::Faces(Context& context, const Scene& scene)
     table_ = {instance_buffer_.ref<FacesOfInstance>(), face_buffer_.ref<Face>()};
     areas_.resize(count);
     parallel_for(count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t face = begin; face < end; ++face) {
-            const Instance& instance = scene.instances[faces_[face].instance];
-            const Mesh& mesh = scene.meshes[instance.mesh];
-            areas_[face] = world_area(mesh, instance.transform, mesh.triangles[faces_[face].primitive]);
-        }
+        for (std::size_t face = begin; face < end; ++face) areas_[face] = glm::length(area_vector(scene, faces_[face]));
     });
 }
 

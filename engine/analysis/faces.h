@@ -21,6 +21,12 @@ inline constexpr std::array all_face_groupings = {FaceGrouping::face, FaceGroupi
                                                   FaceGrouping::material};
 std::string_view name_of(FaceGrouping grouping);
 
+// In float64, as everything that the host computes of faces.
+dvec3 in_world(const Transform& transform, vec3 point);
+// As long as the face's area in world space, on the side on which its corners turn counter-clockwise in object space;
+// 0 of triangles that are not active, which no ray meets.
+dvec3 area_vector(const Scene& scene, Face face);
+
 // A copy of the scene's triangles on the device, as they were when it was made. Instances come in the order of the
 // scene, which is that of an accelerator into which push_scene() put it: hits of that tell faces.
 class Faces {

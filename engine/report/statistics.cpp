@@ -123,9 +123,28 @@ Interval quantile_interval_95(std::span<const double> sorted, double p) {
 
 double upper_bound_95(std::uint64_t count, std::uint64_t trials) { return upper_bound(count, trials, 0.95); }
 
-Interval rate_interval_95(std::uint64_t count, std::uint64_t trials) {
+Interval rate_interval(std::uint64_t count, std::uint64_t trials, double miss) {
     if (trials == 0) return {0, 1};
-    return {1 - upper_bound(trials - count, trials, 0.975), upper_bound(count, trials, 0.975)};
+    const double chance = 1 - miss / 2;
+    return {1 - upper_bound(trials - count, trials, chance), upper_bound(count, trials, chance)};
+}
+
+double paired_margin(double squared_differences, double most, double miss) {
+    // A fifth of the chance is for the variance: a sum of independent numbers within [0, m] falls to Y from a mean of
+    // at least (sqrt(Y + m L / 2) + sqrt(m L / 2))^2 with a chance of exp(-L) at most (Chernoff). The rest is for both
+    // sides of the sum itself.
+    const double of_variance = most * most * std::log(5 / miss) / 2;
+    const double variance = std::pow(std::sqrt(squared_differences + of_variance) + std::sqrt(of_variance), 2);
+    const double of_sum = std::log(2.5 / miss);
+    const double linear = of_sum * most / 3;
+    return linear + std::sqrt(linear * linear + 2 * of_sum * variance);
+}
+
+Interval paired_count_interval_95(std::uint64_t count, std::uint64_t odd, std::uint64_t trials) {
+    const double n = static_cast<double>(trials), sum = static_cast<double>(count);
+    const Interval rate = rate_interval(count, trials, 0.025);
+    const double margin = paired_margin(static_cast<double>(odd), 1, 0.025);
+    return {std::max({rate.low * n, sum - margin, 0.0}), std::min({rate.high * n, sum + margin, n})};
 }
 
 std::optional<PowerLaw> fit_power_law(std::span<const double> x, std::span<const double> y) {

@@ -32,8 +32,22 @@ Interval quantile_interval_95(std::span<const double> sorted, double p);
 // 1934): the p for which `count` or fewer events have a chance of 5 %. About 3 / trials for no event; 1 when
 // count >= trials.
 double upper_bound_95(std::uint64_t count, std::uint64_t trials);
-// The two-sided 95 % interval; [0, 1] for no trial.
-Interval rate_interval_95(std::uint64_t count, std::uint64_t trials);
+// The two-sided interval that misses the probability with the chance `miss`; [0, 1] for no trial. It also holds, for
+// the mean probability, where the trials are independent but not equally likely (Hoeffding 1956).
+Interval rate_interval(std::uint64_t count, std::uint64_t trials, double miss);
+// The 95 % interval.
+inline Interval rate_interval_95(std::uint64_t count, std::uint64_t trials) {
+    return rate_interval(count, trials, 0.05);
+}
+
+// How far a sum of independent numbers within [0, most] is from its expectation, but for the chance `miss`: Bernstein's
+// inequality (1924) with a variance that is bounded by what was seen of it. `squared_differences`: the numbers are put
+// into pairs, in an order that does not depend on them, and the squares of their differences are summed; one without
+// a partner is compared with 0. Where partners have like expectations that is little more than the variance.
+double paired_margin(double squared_differences, double most, double miss);
+// The 95 % interval of the expected count of independent trials of any probabilities, `odd` of whose pairs (as above)
+// have exactly one event: what both paired_margin and rate_interval allow, each with half of the chance to miss.
+Interval paired_count_interval_95(std::uint64_t count, std::uint64_t odd, std::uint64_t trials);
 
 // y = scale * x^slope, by least squares of log y over log x, with the 95 % interval of the slope that Student's
 // distribution gives for scatter about the line.

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// `twinray illumination`: what parallel light reaches of each face.
+#include <algorithm>
+#include <iostream>
+
+#include "cli/ray_grid_options.h"
+#include "engine/analysis/illumination.h"
+#include "engine/core/error.h"
+
+namespace twinray::cli {
+namespace {
+
+enum class Measure : std::uint8_t { area, fraction, irradiance };
+
+struct IlluminationOptions {
+    AnalysisOptions analysis;
+    RayGridOptions grid;
+    Sides sides = Sides::both;
+    FaceGrouping by = FaceGrouping::face;
+    Measure measure = Measure::area;
+};
+
+const std::map<std::string, Measure> measures = {
+    {"area", Measure::area}, {"fraction", Measure::fraction}, {"irradiance", Measure::irradiance}};
+const std::map<std::string, Sides> sides_by_name = {{"front", Sides::front}, {"both", Sides::both}};
+
+std::map<std::string, FaceGrouping> groupings() {
+    std::map<std::string, FaceGrouping> by_name;
+    for (const FaceGrouping grouping : all_face_groupings) by_name.emplace(name_of(grouping), grouping);
+    return by_name;
+}
+
+template <class T>
+std::string name_in(const std::map<std::string, T>& values, T wanted) {
+    return std::find_if(values.begin(), values.end(), [&](const auto& entry) { return entry.second == wanted; })->first;
+}
+
+// What areas are divided by; 0: nothing is there to be divided.
+double unit_of(const LitArea& lit, Measure measure) {
+    switch (measure) {
+        case Measure::fraction: return lit.unobstructed;
+        case Measure::irradiance: return lit.surface;
+        default: return 1;
+    }
+}
+
+void write(const IlluminationOptions& options, const Illumination& result) {
+    const std::string what = name_in(measures, options.measure);
+    CsvFile csv(options.analysis.output, text(name_of(options.by), ",hits,", what, ",ci_low,ci_high"));
+    const bool has_interval = options.grid.points == GridPoints::random;
+    for (std::size_t group = 0; group < result.groups.size(); ++group) {
+        const LitArea& lit = result.groups[group];
+        const double unit = unit_of(lit, options.measure);
+        const auto share = [&](double area) { return unit > 0 ? area / unit : 0; };
+        std::optional<double> low, high;
+        if (has_interval) low = share(lit.interval.low), high = share(lit.interval.high);
+        csv.row({group, lit.hits}, {share(lit.area), low, high});
+    }
+    csv.close();
+}
+
+void print(const IlluminationOptions& options, const Analysed& analysed, const Illumination& result, double seconds) {
+    const LitArea& total = result.total;
+    const auto lit =
+        std::count_if(result.groups.begin(), result.groups.end(), [](const LitArea& g) { return g.hits > 0; });
+    std::cout << "illumination " << options.analysis.scene.filename().string() << ": "
+              << count_triangles(analysed.scene) << " faces, " << analysed.accel->name() << " on "
+              << analysed.context->facts().name << "\n  " << speed_text(result.ray_count, seconds) << "\n  lit: " << lit
+              << " of " << result.groups.size() << " by " << name_of(options.by) << "; area across the light "
+              << total.area;
+    if (options.grid.points == GridPoints::random)
+        std::cout << " [" << total.interval.low << ", " << total.interval.high << "]";
+    std::cout << ", without shadows " << total.unobstructed << '\n';
+}
+
+void run(const IlluminationOptions& options) {
+    const Analysed analysed(options.analysis);
+    const Faces faces(*analysed.context, analysed.scene);
+    const RayGridDesc grid = options.grid.desc(options.analysis.common);
+    Illumination result;
+    const double seconds = seconds_of([&] {
+        Progress progress("illumination", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
+        result = illuminate(*analysed.accel, analysed.scene, faces,
+                            {.grid = grid, .sides = options.sides, .by = options.by, .progress = &progress});
+    });
+    if (!options.analysis.output.empty()) write(options, result);
+    if (!options.analysis.common.quiet) print(options, analysed, result, seconds);
+    nlohmann::json record = {{"schema", "twinray-illumination/1"}, {"sides", name_in(sides_by_name, options.sides)},
+                             {"by", name_of(options.by)},          {"n", result.ray_count},
+                             {"hits", result.total.hits},          {"cell_area", result.cell_area},
+                             {"area", result.total.area},          {"unobstructed", result.total.unobstructed},
+                             {"surface", result.total.surface},    {"seconds", seconds}};
+    record.update(options.grid.record());
+    record.update(analysed.record(options.analysis));
+    if (options.grid.points == GridPoints::random)
+        record.update({{"ci_low", result.total.interval.low}, {"ci_high", result.total.interval.high}});
+    append_json(options.analysis.common.json, record);
+}
+
+}  // namespace
+
+void add_illumination(CLI::App& app, int&) {
+    CLI::App* command = app.add_subcommand("illumination", "what parallel light reaches of each face");
+    const auto options = std::make_shared<IlluminationOptions>();
+    add_analysis_options(*command, options->analysis, "CSV, one line a face: face,hits,area,ci_low,ci_high");
+    add_ray_grid_options(*command, options->grid)->required();
+    command->add_option("--sides", options->sides, "which sides receive light: both (the default), or front")
+        ->transform(CLI::CheckedTransformer(sides_by_name).description("front|both"));
+    command
+        ->add_option("--by", options->by, "what a line of the CSV is: face (the default), mesh, instance or material")
+        ->transform(CLI::CheckedTransformer(groupings()).description("face|mesh|instance|material"));
+    command
+        ->add_option("--measure", options->measure,
+                     "third column of the CSV: area across the light (the default), fraction of what is turned to the "
+                     "light, or irradiance: area across the light a unit of surface")
+        ->transform(CLI::CheckedTransformer(measures).description("area|fraction|irradiance"));
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace twinray::cli

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/illumination.h"
+
+#include "analysis_count_faces.spv.h"
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+
+namespace twinray {
+namespace {
+
+void check_faces(const Scene& scene, const Faces& faces) {
+    if (count_triangles(scene) != faces.count() || faces.group_count(FaceGrouping::instance) != scene.instances.size())
+        fail("illumination: the scene has ", count_triangles(scene), " faces in ", scene.instances.size(),
+             " instances, and Faces ", faces.count(), " in ", faces.group_count(FaceGrouping::instance));
+}
+
+// What the direction shows of each face; 0 where the side that it meets receives nothing.
+std::vector<double> unobstructed_areas(const Scene& scene, const Faces& faces, const RayGridPlan& plan, Sides sides) {
+    std::vector<double> areas(faces.count());
+    if (plan.ray_count == 0) return areas;
+    const dvec3 along = glm::normalize(dvec3(plan.grid.direction));
+    parallel_for(areas.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t face = begin; face < end; ++face) {
+            const double towards = -dot(area_vector(scene, faces[face]), along);
+            areas[face] = sides == Sides::both ? std::abs(towards) : std::max(towards, 0.0);
+        }
+    });
+    return areas;
+}
+
+// Counts the hits of a grid by groups of faces.
+class GroupCounts {
+  public:
+    GroupCounts(Context& context, const Faces& faces, std::span<const uint> groups, std::size_t group_count)
+        : context_(context),
+          kernel_(context, {.name = "analysis_count_faces", .spirv = analysis_count_faces_spirv}),
+          groups_(context, {.name = "groups of faces", .bytes = groups.size_bytes()}),
+          counts_(context, {.name = "hits of faces", .bytes = (group_count + 1) * sizeof(GroupCount)}),
+          args_{.table = faces.table(),
+                .hits = {},
+                .groups = groups_.ref<uint>(),
+                .counts = counts_.ref<GroupCount>(),
+                .ray_count = 0,
+                .group_count = static_cast<uint>(group_count)} {
+        Commands commands(context, "illumination start");
+        {
+            const auto pass = commands.pass("illumination start");
+            commands.fill(counts_, 0, counts_.bytes(), 0);
+            commands.upload(groups_, groups);
+        }
+        commands.submit();
+    }
+
+    void record(Commands& commands, const Buffer& hits, RayBatch batch) const {
+        CountFacesArgs args = args_;
+        args.hits = hits.ref<Hit>();
+        args.ray_count = batch.count;
+        kernel_.dispatch(commands, args, (batch.count + 1) / 2);
+    }
+    // One more than groups: see CountFacesArgs.
+    std::vector<GroupCount> read() const {
+        return download<GroupCount>(context_, counts_, std::size_t{args_.group_count} + 1);
+    }
+
+  private:
+    Context& context_;
+    Kernel<CountFacesArgs> kernel_;
+    Buffer groups_, counts_;
+    CountFacesArgs args_;
+};
+
+std::vector<uint> groups_that_count(const Faces& faces, FaceGrouping by, std::span<const double> unobstructed) {
+    std::vector<uint> groups = faces.groups(by);
+    for (std::size_t face = 0; face < groups.size(); ++face)
+        if (unobstructed[face] == 0) groups[face] = NO_GROUP;
+    return groups;
+}
+
+std::vector<GroupCount> count_hits(AbstractAccel& accel, const RayGridPlan& plan, const GroupCounts& counts,
+                                   Progress* progress) {
+    const RayGridTrace trace(accel, plan);
+    for (const RayBatch batch : ray_batches(plan.ray_count)) {
+        Commands commands(accel.context(), "illumination");
+        trace.record(commands, batch);
+        counts.record(commands, trace.hits(), batch);
+        accel.context().wait(commands.submit());
+        if (progress) progress->advance(batch.count);
+    }
+    return counts.read();
+}
+
+void estimate(LitArea& lit, const GroupCount& count, const RayGridPlan& plan) {
+    lit.area = static_cast<double>(lit.hits) * plan.cell_area;
+    lit.interval = {0, lit.unobstructed};
+    if (plan.grid.points != GRID_AT_RANDOM) return;
+    const Interval hits = paired_count_interval_95(lit.hits, count.odd, plan.ray_count);
+    lit.interval.high = std::min(hits.high * plan.cell_area, lit.unobstructed);
+    lit.interval.low = std::min(hits.low * plan.cell_area, lit.interval.high);
+}
+
+}  // namespace
+
+Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& faces, const IlluminationDesc& desc) {
+    check_faces(scene, faces);
+    check_filled_from(accel, scene, "illumination");
+    const RayGridPlan plan = plan_ray_grid(scene, desc.grid);
+    const std::vector<double> unobstructed = unobstructed_areas(scene, faces, plan, desc.sides);
+    Illumination result{.groups = std::vector<LitArea>(faces.group_count(desc.by)),
+                        .total = {},
+                        .ray_count = plan.ray_count,
+                        .cell_area = plan.cell_area};
+    const std::vector<uint> groups = faces.groups(desc.by);
+    for (std::size_t face = 0; face < faces.count(); ++face) {
+        for (LitArea* lit : {&result.groups[groups[face]], &result.total}) {
+            lit->unobstructed += unobstructed[face];
+            lit->surface += faces.areas()[face];
+        }
+    }
+    if (plan.ray_count == 0) return result;
+
+    const std::vector<uint> counted = groups_that_count(faces, desc.by, unobstructed);
+    const GroupCounts counts(accel.context(), faces, counted, result.groups.size());
+    const std::vector<GroupCount> hits = count_hits(accel, plan, counts, desc.progress);
+    if (hits.back().hits != 0)
+        fail(accel.name(), ": illumination: ", hits.back().hits,
+             " hits are on triangles that the scene has not; fill it ", "by push_scene() from the same scene");
+    for (std::size_t group = 0; group < result.groups.size(); ++group) {
+        result.groups[group].hits = hits[group].hits;
+        result.total.hits += hits[group].hits;
+        estimate(result.groups[group], hits[group], plan);
+    }
+    estimate(result.total, hits.back(), plan);
+    return result;
+}
+
+}  // namespace twinray

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/ray_grid.h"
+
+#include <cfloat>
+#include <mutex>
+
+#include "analysis_grid_rays.spv.h"
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+
+namespace twinray {
+namespace {
+
+constexpr std::uint64_t batch_size = 1 << 20;
+constexpr uint largest_side = 65535;
+
+// Axes of the plane, and the way of the rays.
+struct Axes {
+    dvec3 across, up, along;
+};
+
+// Of unit length, though squares of components may leave float64.
+dvec3 unit(dvec3 direction) {
+    const double largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+    if (!(largest > 0) || !std::isfinite(direction.x + direction.y + direction.z))
+        fail("ray grid: the direction (", direction.x, ", ", direction.y, ", ", direction.z,
+             ") must be finite and not 0");
+    return glm::normalize(direction / largest);
+}
+
+Axes axes_of(dvec3 direction) {
+    const dvec3 along = unit(dvec3(vec3(unit(direction))));
+    const dvec3 other = std::abs(along.x) < 0.9 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
+    const dvec3 across = glm::normalize(cross(along, other));
+    return {across, glm::normalize(cross(along, across)), along};
+}
+
+// What lies between the least and the largest coordinates on the axes.
+struct Extent {
+    dvec3 lo = dvec3(INFINITY), hi = dvec3(-INFINITY);  // across, up, along
+    double largest = 0;                                 // coordinate in world space
+
+    void include(const Axes& axes, dvec3 p) {
+        const dvec3 place(dot(axes.across, p), dot(axes.up, p), dot(axes.along, p));
+        lo = min(lo, place), hi = max(hi, place);
+        largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    }
+    void include(const Extent& other) {
+        lo = min(lo, other.lo), hi = max(hi, other.hi);
+        largest = std::max(largest, other.largest);
+    }
+    bool is_empty() const { return !(lo.x <= hi.x); }
+};
+
+Extent extent_of(const Scene& scene, const Axes& axes) {
+    Extent all;
+    std::mutex mutex;
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        parallel_for(mesh.triangles.size(), [&](std::size_t begin, std::size_t end) {
+            Extent some;
+            for (std::size_t i = begin; i < end; ++i) {
+                const uvec3 t = mesh.triangles[i];
+                const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+                if (!is_finite_triangle(a, b, c)) continue;
+                for (const vec3 corner : {a, b, c}) some.include(axes, in_world(instance.transform, corner));
+            }
+            const std::lock_guard lock(mutex);
+            all.include(some);
+        });
+    }
+    return all;
+}
+
+void check_range(dvec3 point) {
+    if (std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)}) > FLT_MAX)
+        fail("ray grid: rays would begin at (", point.x, ", ", point.y, ", ", point.z, "); float32 ends at ", FLT_MAX);
+}
+
+}  // namespace
+
+RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc) {
+    if (desc.side < 1 || desc.side > largest_side)
+        fail("ray grid: ", desc.side, " cells a side; 1 to ", largest_side, " can be");
+    const Axes axes = axes_of(desc.direction);
+    const Extent extent = extent_of(scene, axes);
+    if (extent.is_empty()) return {};
+    const dvec3 size = extent.hi - extent.lo;
+    // A twentieth of the scene stays between it and the plane. Origins and what an accelerator makes of them are off by
+    // some roundings of coordinates.
+    const double gap = 0.05 * std::max({size.x, size.y, size.z});
+    const double rounding = 0x1p-21 * (extent.largest + gap);
+    const double depth = extent.lo.z - gap - rounding;
+    const dvec3 corner =
+        axes.across * (extent.lo.x - rounding) + axes.up * (extent.lo.y - rounding) + axes.along * depth;
+    const dvec3 across = axes.across * ((size.x + 2 * rounding) / desc.side);
+    const dvec3 up = axes.up * ((size.y + 2 * rounding) / desc.side);
+    for (const double a : {0.0, 1.0})
+        for (const double b : {0.0, 1.0}) check_range(corner + (across * a + up * b) * static_cast<double>(desc.side));
+
+    RayGridPlan plan;
+    plan.grid = {.corner = vec3(corner),
+                 .across = vec3(across),
+                 .up = vec3(up),
+                 .direction = vec3(axes.along),
+                 .side = desc.side,
+                 .points = desc.points == GridPoints::random ? GRID_AT_RANDOM : GRID_AT_CENTERS,
+                 .seed_low = static_cast<uint>(desc.seed),
+                 .seed_high = static_cast<uint>(desc.seed >> 32)};
+    plan.ray_count = std::uint64_t{desc.side} * desc.side;
+    plan.cell_area = std::abs(dot(cross(dvec3(plan.grid.across), dvec3(plan.grid.up)), axes.along));
+    plan.center = corner + (across + up) * (desc.side / 2.0);
+    return plan;
+}
+
+std::vector<RayBatch> ray_batches(std::uint64_t ray_count) {
+    std::vector<RayBatch> batches;
+    for (std::uint64_t first = 0; first < ray_count; first += batch_size)
+        batches.push_back({static_cast<uint>(first), static_cast<uint>(std::min(batch_size, ray_count - first))});
+    return batches;
+}
+
+void check_filled_from(const AbstractAccel& accel, const Scene& scene, const char* action) {
+    if (accel.n_instances() != scene.instances.size())
+        fail(accel.name(), ": ", action, ": it has ", accel.n_instances(), " instances and the scene ",
+             scene.instances.size(), "; fill it by push_scene() from the same scene");
+}
+
+RayGridTrace::RayGridTrace(AbstractAccel& accel, const RayGridPlan& plan)
+    : accel_(accel),
+      grid_(plan.grid),
+      kernel_(accel.context(), {.name = "analysis_grid_rays", .spirv = analysis_grid_rays_spirv}) {
+    const std::uint64_t most = std::min(batch_size, plan.ray_count);
+    rays_ = Buffer(accel.context(), {.name = "grid rays", .bytes = most * sizeof(Ray)});
+    hits_ = Buffer(accel.context(), {.name = "grid hits", .bytes = most * sizeof(Hit)});
+    accel.sync();
+}
+
+void RayGridTrace::record(Commands& commands, RayBatch batch) const {
+    const Ref<Ray> rays = rays_.ref<Ray>();
+    kernel_.dispatch(commands, {grid_, rays, batch.first, batch.count}, batch.count);
+    accel_.trace(commands, accel_.view(), {.rays = rays, .hits = hits_.ref<Hit>(), .count = batch.count});
+}
+
+}  // namespace twinray

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Parallel rays onto a scene, and their hits in batches on the device.
+#pragma once
+
+#include <glm/integer.hpp>
+
+#include "engine/accel/abstract_accel.h"
+#include "engine/analysis/faces.h"
+
+namespace twinray {
+using glm::bitfieldReverse;
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/ray_grid.h"
+#include "engine/core/bridge_end.h"
+
+static_assert(sizeof(RayGrid) == 64);
+
+enum class GridPoints : std::uint8_t {
+    random,   // one in each cell, uniform and independent: means are unbiased and have intervals
+    centers,  // of the cells: the same rays for every seed
+};
+
+struct RayGridDesc {
+    dvec3 direction = dvec3(0, 0, -1);  // of the rays, in world space; of any length but 0
+    uint side = 1000;                   // side * side rays; 1 to 65535
+    GridPoints points = GridPoints::random;
+    std::uint64_t seed = 1;
+};
+
+struct RayGridPlan {
+    RayGrid grid;
+    std::uint64_t ray_count = 0;  // 0 for a scene without finite triangles
+    double cell_area = 0;         // across the rays
+    dvec3 center = dvec3(0);      // of the grid
+};
+
+// Cells of a rectangle across the direction in front of all finite triangles, that covers what they look like from
+// there, with a margin of some roundings of their coordinates. Throws Error for a direction that is 0 or not finite,
+// for `side`, and for scenes that rays in float32 cannot start in front of.
+RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc);
+
+// A run of rays of a plan. It begins with an even number.
+struct RayBatch {
+    uint first = 0, count = 0;
+};
+// Of at most 2^20 rays, which take 64 MiB on the device with their hits.
+std::vector<RayBatch> ray_batches(std::uint64_t ray_count);
+
+// Throws Error unless the accelerator has as many instances as the scene: push_scene() must have filled it.
+void check_filled_from(const AbstractAccel& accel, const Scene& scene, const char* action);
+
+// Makes the rays of batches and traces them.
+class RayGridTrace {
+  public:
+    // Syncs the accelerator, which must not change until the last batch is done.
+    RayGridTrace(AbstractAccel& accel, const RayGridPlan& plan);
+
+    void record(Commands& commands, RayBatch batch) const;
+    // Of the last batch; the first one is that of its first ray.
+    const Buffer& hits() const { return hits_; }
+
+  private:
+    AbstractAccel& accel_;
+    RayGrid grid_;
+    Kernel<GridRaysArgs> kernel_;
+    Buffer rays_, hits_;
+};
+
+}  // namespace twinray

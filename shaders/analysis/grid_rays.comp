@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// The rays of a run of cells.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/ray_grid.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { GridRaysArgs args; };
+
+void main()
+{
+    uint i = global_index();
+    if (i < args.count) AT(args.rays, i) = grid_ray(args.grid, args.first + i);
+}

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/illumination.h"
+
+#include "tests/analysis/scenes.h"
+
+namespace twinray::test {
+namespace {
+
+class IlluminationTest : public AnalysisTest {
+  protected:
+    Illumination lit(const Scene& scene, const IlluminationDesc& desc) {
+        fill(scene);
+        return illuminate(accel(), scene, Faces(context(), scene), desc);
+    }
+    // The area of one instance of a scene of several.
+    static double area_of(const Illumination& result, uint first, uint count = 2) {
+        double area = 0;
+        for (uint face = first; face < first + count; ++face) area += result.groups[face].area;
+        return area;
+    }
+};
+TWINRAY_OVER_EVERY_ACCEL(IlluminationTest);
+
+// What does not depend on the accelerator.
+class IlluminationRulesTest : public IlluminationTest {};
+TWINRAY_OVER_SOFTWARE(IlluminationRulesTest);
+
+IlluminationDesc along(dvec3 direction, uint side = 200) { return {.grid = {.direction = direction, .side = side}}; }
+
+// The upper one hides half of the lower one. The one in between them is a unit square as well, turned away by 60
+// degrees.
+Scene squares() {
+    Mesh tilted = make_quad(vec3(3, 0, 0), vec3(0.5f, 0, 0.8660254f), vec3(0, 1, 0));
+    return scene_of({square(0), make_quad(vec3(0.5f, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0)), tilted});
+}
+
+TEST_P(IlluminationTest, areas_of_squares_are_what_is_seen_of_them) {
+    const Illumination result = lit(squares(), along({0, 0, -3}));
+    EXPECT_EQ(result.ray_count, 200u * 200);
+    const std::array exact = {0.125, 0.375, 0.5, 0.5, 0.25, 0.25};
+    for (uint face = 0; face < 6; ++face) {
+        const LitArea& seen = result.groups[face];
+        EXPECT_NEAR(seen.area, exact[face], 0.01) << face;
+        EXPECT_EQ(seen.area, static_cast<double>(seen.hits) * result.cell_area);
+        EXPECT_LE(seen.interval.low, exact[face] * (1 + 1e-6)) << face;
+        EXPECT_GE(seen.interval.high, exact[face] * (1 - 1e-6)) << face;
+        EXPECT_LT(seen.interval.high - seen.interval.low, 0.05) << face;
+        EXPECT_NEAR(seen.unobstructed, face < 4 ? 0.5 : 0.25, 1e-7);
+        EXPECT_NEAR(seen.surface, 0.5, 1e-7);
+    }
+    EXPECT_NEAR(result.groups[4].irradiance(), 0.5, 0.02);
+    EXPECT_NEAR(result.groups[4].fraction(), 1, 0.04);
+    EXPECT_NEAR(result.total.area, 2, 0.02);
+    EXPECT_LE(result.total.interval.low, 2);
+    EXPECT_GE(result.total.interval.high, 2);
+    EXPECT_LT(result.total.interval.high - result.total.interval.low, 0.05);
+}
+
+TEST_P(IlluminationTest, of_a_box_three_sides_are_seen_whatever_moves_it) {
+    const dvec3 direction(-0.3, -0.5, -1);
+    for (const Transform& transform : {skewed(), mirrored()}) {
+        const Scene scene = scene_of({make_box(vec3(-1, -2, 0), vec3(1, 0, 1))}, {transform});
+        for (const Sides sides : {Sides::both, Sides::front}) {
+            IlluminationDesc desc = along(direction);
+            desc.sides = sides;
+            const Illumination result = lit(scene, desc);
+            uint seen = 0;
+            for (uint face = 0; face < 12; ++face) {
+                const double towards = -dot(area_vector(scene, {0, face}), glm::normalize(direction));
+                const double exact = std::max(towards, 0.0);  // a box is convex
+                seen += exact > 0;
+                EXPECT_NEAR(result.groups[face].area, exact, 0.15) << face;
+                EXPECT_LE(result.groups[face].interval.low, exact) << face;
+                EXPECT_GE(result.groups[face].interval.high, exact * (1 - 1e-6)) << face;
+                EXPECT_EQ(result.groups[face].hits != 0, exact > 0) << face;
+                EXPECT_NEAR(result.groups[face].unobstructed, sides == Sides::both ? std::abs(towards) : exact, 1e-6);
+            }
+            EXPECT_EQ(seen, 6u);
+        }
+    }
+}
+
+TEST_P(IlluminationTest, light_on_a_side_that_does_not_count_is_stopped_all_the_same) {
+    const Scene scene = scene_of({square(0), make_quad(vec3(0, 0, 1), vec3(0, 1, 0), vec3(0.5f, 0, 0))});
+    IlluminationDesc desc = along({0, 0, -1});
+    desc.sides = Sides::front;
+    const Illumination front = lit(scene, desc);
+    EXPECT_NEAR(area_of(front, 0), 0.5, 0.01);
+    EXPECT_EQ(area_of(front, 2), 0);
+    EXPECT_NEAR(front.total.area, 0.5, 0.01);
+    EXPECT_LT(front.total.interval.high, 0.6);
+    desc.sides = Sides::both;
+    EXPECT_NEAR(area_of(lit(scene, desc), 2), 0.5, 0.01);
+}
+
+TEST_P(IlluminationTest, groups_are_sums_of_faces_with_intervals_of_their_own) {
+    Scene scene = squares();
+    const Illumination faces = lit(scene, along({0, 0, -1}));
+    IlluminationDesc desc = along({0, 0, -1});
+    desc.by = FaceGrouping::instance;
+    const Illumination instances = lit(scene, desc);
+    ASSERT_EQ(instances.groups.size(), 3u);
+    for (uint i = 0; i < 3; ++i) {
+        const LitArea& group = instances.groups[i];
+        EXPECT_EQ(group.hits, faces.groups[2 * i].hits + faces.groups[2 * i + 1].hits);
+        EXPECT_NEAR(group.area, i == 1 ? 1 : 0.5, 0.01);
+        EXPECT_LT(group.interval.high - group.interval.low, 0.05);
+    }
+    desc.by = FaceGrouping::material;
+    EXPECT_EQ(lit(scene, desc).groups.at(0).hits, faces.total.hits);
+}
+
+TEST_P(IlluminationTest, every_accelerator_counts_the_same_hits) {
+    Scene scene = scene_of({make_icosphere(3)}, {{}, Transform::translation({1.5f, 0.25f, -2}), skewed()});
+    SwTlas software(context());
+    push_scene(software, scene);
+    const Illumination expected = illuminate(software, scene, Faces(context(), scene), along({-0.25, -1, -0.5}, 300));
+    const Illumination result = lit(scene, along({-0.25, -1, -0.5}, 300));
+    ASSERT_EQ(result.groups.size(), expected.groups.size());
+    for (std::size_t face = 0; face < result.groups.size(); ++face) {
+        EXPECT_EQ(result.groups[face].hits, expected.groups[face].hits) << face;
+        EXPECT_EQ(result.groups[face].interval, expected.groups[face].interval) << face;
+    }
+    EXPECT_GT(expected.total.hits, 10000u);
+}
+
+// 150 squares at random places behind a plate that hides some of them, small and large against the cells.
+TEST_P(IlluminationRulesTest, intervals_cover_and_estimates_have_no_bias) {
+    const Scene scene = scene_of({square(0), make_quad(vec3(0.3125f, 0.1875f, 1), vec3(1, 0, 0), vec3(0, 0.45f, 0)),
+                                  make_quad(vec3(1.4f, 0.75f, 0), vec3(0.08f, 0, 0), vec3(0, 0.06f, 0))});
+    fill(scene);
+    const Faces faces(context(), scene);
+    const std::array exact = {1 - 0.6875 * 0.45, 0.45, 0.08 * 0.06};
+    std::array<double, 3> sum{}, width{};
+    std::array<int, 3> missed{};
+    constexpr int runs = 100;
+    for (int run = 0; run < runs; ++run) {
+        IlluminationDesc desc = along({0, 0, -1}, 37);
+        desc.grid.seed = 1000 + run;
+        desc.by = FaceGrouping::mesh;
+        const Illumination result = illuminate(accel(), scene, faces, desc);
+        for (int i = 0; i < 3; ++i) {
+            const LitArea& seen = result.groups[i];
+            sum[i] += seen.area;
+            width[i] += (seen.interval.high - seen.interval.low) / runs;
+            missed[i] += seen.interval.low > exact[i] * (1 + 1e-6) || seen.interval.high < exact[i] * (1 - 1e-6);
+        }
+    }
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_LE(missed[i], 5) << i;
+        EXPECT_NEAR(sum[i] / runs, exact[i], width[i] / 10) << i;  // a tenth: of the mean of 100
+    }
+    const double cells = 1.5 / (37 * 37);  // area of one
+    EXPECT_LT(width[0], 90 * cells);
+    EXPECT_LT(width[2], 12 * cells);
+}
+
+TEST_P(IlluminationTest, counts_are_those_of_the_rays_as_the_host_makes_them) {
+    const Scene scene = scene_of({make_icosphere(1)}, {skewed(), Transform::translation({0, 3, 0})});
+    for (const GridPoints points : {GridPoints::random, GridPoints::centers}) {
+        IlluminationDesc desc = along({1, -2, 0.5}, 99);
+        desc.grid.points = points;
+        desc.grid.seed = 0x1'0000'0001;
+        const Illumination result = lit(scene, desc);
+        const RayGridPlan plan = plan_ray_grid(scene, desc.grid);
+        std::vector<Ray> rays;
+        for (uint i = 0; i < plan.ray_count; ++i) rays.push_back(grid_ray(plan.grid, i));
+        std::vector<std::uint64_t> hits(result.groups.size());
+        for (const Hit& hit : accel().closest_hits(rays))
+            if (hit.hit) ++hits[hit.instance_index * 80 + hit.primitive_index];
+        for (std::size_t face = 0; face < hits.size(); ++face) EXPECT_EQ(result.groups[face].hits, hits[face]) << face;
+    }
+}
+
+TEST_P(IlluminationRulesTest, seeds_of_64_bits_differ_and_repeat) {
+    const auto hits = [&](std::uint64_t seed) {
+        IlluminationDesc desc = along({0.25, 0.5, -1}, 31);
+        desc.grid.seed = seed;
+        return lit(squares(), desc).groups[0].hits + lit(squares(), desc).groups[2].hits * 1000;
+    };
+    EXPECT_EQ(hits(1), hits(1));
+    EXPECT_NE(hits(1), hits(2));
+    EXPECT_NE(hits(1), hits(0x1'0000'0001));
+}
+
+TEST_P(IlluminationTest, nothing_to_see_is_no_light) {
+    for (Scene scene : {Scene(), scene_of({Mesh()}), scene_of({make_quad(vec3(0), vec3(NAN), vec3(1))})}) {
+        const Illumination result = lit(scene, along({0, 0, -1}));
+        EXPECT_EQ(result.ray_count, 0u);
+        EXPECT_EQ(result.total.area, 0);
+        EXPECT_EQ(result.total.fraction(), 0);
+        EXPECT_EQ(result.groups.size(), count_triangles(scene));
+    }
+    // Seen from its edge, and all at one point.
+    EXPECT_EQ(lit(scene_of({square(0)}), along({0, 1, 0})).total.area, 0);
+    EXPECT_EQ(lit(scene_of({make_quad(vec3(0), vec3(0), vec3(0))}), along({0, 1, 0})).total.hits, 0u);
+}
+
+TEST_P(IlluminationRulesTest, wrong_use_says_what_is_wrong) {
+    const Scene scene = squares(), other = scene_of({make_icosphere(0), square(0), square(1)});
+    const Faces faces(context(), scene);
+    fill(scene);
+    const auto error = [&](const Scene& of, const IlluminationDesc& desc) {
+        return error_of([&] { illuminate(accel(), of, faces, desc); });
+    };
+    EXPECT_NE(error(scene, along({0, 0, 0})).find("direction (0, 0, 0) must be"), std::string::npos);
+    EXPECT_NE(error(scene, along({0, NAN, 0})).find("must be finite"), std::string::npos);
+    EXPECT_NE(error(scene, along({0, 0, 1}, 0)).find("0 cells a side"), std::string::npos);
+    EXPECT_NE(error(scene, along({0, 0, 1}, 65536)).find("65536 cells a side; 1 to 65535"), std::string::npos);
+    EXPECT_NE(error(other, along({0, 0, 1})).find("Faces 6 in 3"), std::string::npos);
+    EXPECT_EQ(error(scene, along({0, 0, 1e-300}, 1)), "");
+    fill(scene_of({square(0)}));
+    EXPECT_NE(error(scene, along({0, 0, 1})).find("it has 1 instances and the scene 3"), std::string::npos);
+    fill(other);
+    EXPECT_NE(error(scene, along({0, 0, 1})).find("on triangles that the scene has not"), std::string::npos);
+    const Scene vast = scene_of({make_quad(vec3(-3.4e38f, 0, 0), vec3(3.4e38f, 0, 0), vec3(0, 3e38f, 0))});
+    fill(vast);
+    const std::string far = error_of([&] { illuminate(accel(), vast, Faces(context(), vast), along({1, 0, 0.1})); });
+    EXPECT_NE(far.find("float32 ends"), std::string::npos) << far;
+}
+
+}  // namespace
+}  // namespace twinray::test
