@@ -64,7 +64,7 @@ void add_centroid(CLI::App& app, int&) {
     CLI::App* command = app.add_subcommand("centroid", "the mean of what is seen along a direction");
     const auto options = std::make_shared<CentroidOptions>();
     add_analysis_options(*command, options->analysis, "CSV of the points: x,y,z");
-    add_ray_grid_options(*command, options->grid)->required();
+    add_ray_grid_options(*command, *command, options->grid)->required();
     command->callback([options] { run(*options); });
 }
 

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <iostream>
 
-#include "cli/ray_grid_options.h"
-#include "engine/analysis/illumination.h"
+#include "cli/sky_light.h"
 #include "engine/core/error.h"
 
 namespace twinray::cli {
@@ -15,6 +14,7 @@ enum class Measure : std::uint8_t { area, fraction, irradiance };
 struct IlluminationOptions {
     AnalysisOptions analysis;
     RayGridOptions grid;
+    SkyOptions sky;
     Sides sides = Sides::both;
     FaceGrouping by = FaceGrouping::face;
     Measure measure = Measure::area;
@@ -100,21 +100,33 @@ void run(const IlluminationOptions& options) {
 }  // namespace
 
 void add_illumination(CLI::App& app, int&) {
-    CLI::App* command = app.add_subcommand("illumination", "what parallel light reaches of each face");
+    CLI::App* command =
+        app.add_subcommand("illumination", "what parallel light, the sky or the sun bring to each face");
     const auto options = std::make_shared<IlluminationOptions>();
     add_analysis_options(*command, options->analysis, "CSV, one line a face: face,hits,area,ci_low,ci_high");
-    add_ray_grid_options(*command, options->grid)->required();
+    CLI::Option_group* source = command->add_option_group("light", "exactly one of them");
+    CLI::Option* direction = add_ray_grid_options(*command, *source, options->grid);
+    add_sky_options(*command, *source, options->sky);
+    source->require_option(1);
     command->add_option("--sides", options->sides, "which sides receive light: both (the default), or front")
         ->transform(CLI::CheckedTransformer(sides_by_name).description("front|both"));
     command
         ->add_option("--by", options->by, "what a line of the CSV is: face (the default), mesh, instance or material")
+        ->needs(direction)
         ->transform(CLI::CheckedTransformer(groupings()).description("face|mesh|instance|material"));
     command
         ->add_option("--measure", options->measure,
                      "third column of the CSV: area across the light (the default), fraction of what is turned to the "
                      "light, or irradiance: area across the light a unit of surface")
+        ->needs(direction)
         ->transform(CLI::CheckedTransformer(measures).description("area|fraction|irradiance"));
-    command->callback([options] { run(*options); });
+    command->callback([options] {
+        if (options->grid.direction.empty()) {
+            run_sky(options->analysis, options->sky, options->sides);
+        } else {
+            run(*options);
+        }
+    });
 }
 
 }  // namespace twinray::cli

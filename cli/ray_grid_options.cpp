@@ -26,24 +26,26 @@ void add_analysis_options(CLI::App& command, AnalysisOptions& options, const std
     add_common_options(command, options.common);
 }
 
-CLI::Option* add_ray_grid_options(CLI::App& command, RayGridOptions& options) {
+CLI::Option* add_ray_grid_options(CLI::App& command, CLI::App& source, RayGridOptions& options) {
     static const std::map<std::string, GridPoints> points = {{"random", GridPoints::random},
                                                              {"centers", GridPoints::centers}};
+    CLI::Option* direction =
+        source.add_option("--direction", options.direction, "X Y Z: of the rays, in world space; of any length but 0")
+            ->expected(3);
     command.add_option("--grid", options.side, "N: one ray in each of N x N cells across the direction, 1 to 65535")
+        ->needs(direction)
         ->capture_default_str();
     command
         .add_option("--points", options.points,
                     "where rays go through their cells: random (the default), which gives intervals, or centers")
+        ->needs(direction)
         ->transform(CLI::CheckedTransformer(points).description("random|centers"));
-    return command
-        .add_option("--direction", options.direction, "X Y Z: of the rays, in world space; of any length but 0")
-        ->expected(3);
+    return direction;
 }
 
 RayGridDesc RayGridOptions::desc(const CommonOptions& common) const {
-    const uint cells = static_cast<uint>(std::min<std::uint64_t>(side, UINT32_MAX));  // too many for a grid, either way
     return {
-        .direction = {direction[0], direction[1], direction[2]}, .side = cells, .points = points, .seed = common.seed};
+        .direction = {direction[0], direction[1], direction[2]}, .side = side, .points = points, .seed = common.seed};
 }
 
 nlohmann::json RayGridOptions::record() const {

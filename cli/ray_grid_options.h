@@ -21,13 +21,14 @@ void add_analysis_options(CLI::App& command, AnalysisOptions& options, const std
 
 struct RayGridOptions {
     std::vector<double> direction;
-    std::uint64_t side = 1000;
+    uint side = 1000;
     GridPoints points = GridPoints::random;
 
     RayGridDesc desc(const CommonOptions& common) const;
     nlohmann::json record() const;
 };
-CLI::Option* add_ray_grid_options(CLI::App& command, RayGridOptions& options);
+// Returns --direction, which goes into `source`: the command or a group of its options. The others need it.
+CLI::Option* add_ray_grid_options(CLI::App& command, CLI::App& source, RayGridOptions& options);
 
 // A scene in an accelerator.
 struct Analysed {

@@ -8,12 +8,6 @@
 namespace twinray {
 namespace {
 
-void check_faces(const Scene& scene, const Faces& faces) {
-    if (count_triangles(scene) != faces.count() || faces.group_count(FaceGrouping::instance) != scene.instances.size())
-        fail("illumination: the scene has ", count_triangles(scene), " faces in ", scene.instances.size(),
-             " instances, and Faces ", faces.count(), " in ", faces.group_count(FaceGrouping::instance));
-}
-
 // What the direction shows of each face; 0 where the side that it meets receives nothing.
 std::vector<double> unobstructed_areas(const Scene& scene, const Faces& faces, const RayGridPlan& plan, Sides sides) {
     std::vector<double> areas(faces.count());
@@ -100,9 +94,15 @@ void estimate(LitArea& lit, const GroupCount& count, const RayGridPlan& plan) {
 
 }  // namespace
 
+void check_faces(const Scene& scene, const Faces& faces) {
+    if (count_triangles(scene) != faces.count() || faces.group_count(FaceGrouping::instance) != scene.instances.size())
+        fail("the scene has ", count_triangles(scene), " faces in ", scene.instances.size(), " instances, and Faces ",
+             faces.count(), " in ", faces.group_count(FaceGrouping::instance));
+}
+
 Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& faces, const IlluminationDesc& desc) {
     check_faces(scene, faces);
-    check_filled_from(accel, scene, "illumination");
+    check_filled(accel, scene.instances.size(), "illumination");
     const RayGridPlan plan = plan_ray_grid(scene, desc.grid);
     const std::vector<double> unobstructed = unobstructed_areas(scene, faces, plan, desc.sides);
     Illumination result{.groups = std::vector<LitArea>(faces.group_count(desc.by)),

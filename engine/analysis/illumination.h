@@ -48,6 +48,9 @@ struct Illumination {
     double cell_area = 0;
 };
 
+// Throws Error where the numbers of faces and instances are not the same.
+void check_faces(const Scene& scene, const Faces& faces);
+
 // Traces the rays of the grid through an accelerator that push_scene() has filled from `scene`, of which `faces` are.
 // Intervals hold whatever the scene: each cell has a random point of its own, so hits are independent, and how often
 // neighbours differ bounds their variance (paired_count_interval_95). The same desc gives the same result on one

@@ -14,22 +14,15 @@ namespace {
 constexpr std::uint64_t batch_size = 1 << 20;
 constexpr uint largest_side = 65535;
 
+std::string text_of(dvec3 v) { return text("(", v.x, ", ", v.y, ", ", v.z, ")"); }
+
 // Axes of the plane, and the way of the rays.
 struct Axes {
     dvec3 across, up, along;
 };
 
-// Of unit length, though squares of components may leave float64.
-dvec3 unit(dvec3 direction) {
-    const double largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
-    if (!(largest > 0) || !std::isfinite(direction.x + direction.y + direction.z))
-        fail("ray grid: the direction (", direction.x, ", ", direction.y, ", ", direction.z,
-             ") must be finite and not 0");
-    return glm::normalize(direction / largest);
-}
-
 Axes axes_of(dvec3 direction) {
-    const dvec3 along = unit(dvec3(vec3(unit(direction))));
+    const dvec3 along = unit_direction(dvec3(vec3(unit_direction(direction))));
     const dvec3 other = std::abs(along.x) < 0.9 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
     const dvec3 across = glm::normalize(cross(along, other));
     return {across, glm::normalize(cross(along, across)), along};
@@ -74,10 +67,18 @@ Extent extent_of(const Scene& scene, const Axes& axes) {
 
 void check_range(dvec3 point) {
     if (std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)}) > FLT_MAX)
-        fail("ray grid: rays would begin at (", point.x, ", ", point.y, ", ", point.z, "); float32 ends at ", FLT_MAX);
+        fail("ray grid: rays would begin at ", text_of(point), "; float32 ends at ", FLT_MAX);
 }
 
 }  // namespace
+
+dvec3 unit_direction(dvec3 direction) {
+    // Squares of components may leave float64.
+    const double largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+    if (!(largest > 0) || glm::any(glm::isnan(direction)) || glm::any(glm::isinf(direction)))
+        fail("the direction ", text_of(direction), " must be finite and not 0");
+    return glm::normalize(direction / largest);
+}
 
 RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc) {
     if (desc.side < 1 || desc.side > largest_side)
@@ -120,10 +121,10 @@ std::vector<RayBatch> ray_batches(std::uint64_t ray_count) {
     return batches;
 }
 
-void check_filled_from(const AbstractAccel& accel, const Scene& scene, const char* action) {
-    if (accel.n_instances() != scene.instances.size())
-        fail(accel.name(), ": ", action, ": it has ", accel.n_instances(), " instances and the scene ",
-             scene.instances.size(), "; fill it by push_scene() from the same scene");
+void check_filled(const AbstractAccel& accel, std::size_t instance_count, const char* action) {
+    if (accel.n_instances() != instance_count)
+        fail(accel.name(), ": ", action, ": it has ", accel.n_instances(), " instances and the scene ", instance_count,
+             "; fill it by push_scene() from the same scene");
 }
 
 RayGridTrace::RayGridTrace(AbstractAccel& accel, const RayGridPlan& plan)

@@ -25,7 +25,7 @@ void expect_near(dvec3 a, dvec3 b, dvec3 error) {
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(a[axis], b[axis], error[axis]) << axis;
 }
 
-TEST_P(CentroidTest, of_a_square_is_its_middle_in_world_space) {
+TEST_P(CentroidTest, OfASquareIsItsMiddleInWorldSpace) {
     for (const Transform& transform : {Transform(), skewed(), mirrored()}) {
         const Scene scene = scene_of({square(2)}, {transform});
         const Centroid result = seen(scene, along({0.5, 0.25, -1}, 100));
@@ -37,20 +37,20 @@ TEST_P(CentroidTest, of_a_square_is_its_middle_in_world_space) {
     }
 }
 
-TEST_P(CentroidTest, of_a_sphere_is_two_thirds_of_the_radius_in_front) {
+TEST_P(CentroidRulesTest, OfASphereIsTwoThirdsOfTheRadiusInFront) {
     const Scene scene = scene_of({make_icosphere(5, 3)}, {Transform::translation({100, -200, 300})});
     const Centroid result = seen(scene, along({0, 1e-3, 0}, 300));
     ASSERT_TRUE(result.mean);
     expect_near(*result.mean, {100, -202, 300}, *result.standard_error * 4.0 + 0.004);  // facets
 }
 
-TEST_P(CentroidTest, only_the_closest_points_count) {
+TEST_P(CentroidRulesTest, OnlyTheClosestPointsCount) {
     const Scene scene = scene_of({square(0), square(1), make_quad(vec3(0, 0, -1), vec3(0.5f, 0, 0), vec3(0, 1, 0))});
     EXPECT_NEAR(seen(scene, along({0, 0, -1}, 50)).mean->z, 1, 1e-6);
     EXPECT_NEAR(seen(scene, along({0, 0, 1}, 50)).mean->z, -0.5, 0.02);
 }
 
-TEST_P(CentroidRulesTest, standard_errors_are_those_of_many_seeds) {
+TEST_P(CentroidRulesTest, StandardErrorsAreThoseOfManySeeds) {
     const Scene scene = scene_of({make_icosphere(2)}, {skewed()});
     fill(scene);
     constexpr int runs = 100;
@@ -71,7 +71,7 @@ TEST_P(CentroidRulesTest, standard_errors_are_those_of_many_seeds) {
     }
 }
 
-TEST_P(CentroidTest, points_are_kept_where_asked_and_mean_what_they_say) {
+TEST_P(CentroidRulesTest, PointsAreKeptWhereAskedAndMeanWhatTheySay) {
     CentroidDesc desc = along({0, -1, 0}, 1025);  // more than one batch
     desc.keeps_points = true;
     const Scene scene = scene_of({make_icosphere(1)}, {Transform::translation({0, 7, 0})});
@@ -90,7 +90,7 @@ TEST_P(CentroidTest, points_are_kept_where_asked_and_mean_what_they_say) {
     EXPECT_EQ(*again.standard_error, *result.standard_error);
 }
 
-TEST_P(CentroidRulesTest, centers_give_a_mean_for_every_seed_and_no_error) {
+TEST_P(CentroidRulesTest, CentersGiveAMeanForEverySeedAndNoError) {
     CentroidDesc desc = along({0, 0, -1}, 32);
     desc.grid.points = GridPoints::centers;
     const Centroid result = seen(scene_of({square(0)}), desc);
@@ -100,7 +100,7 @@ TEST_P(CentroidRulesTest, centers_give_a_mean_for_every_seed_and_no_error) {
     EXPECT_EQ(*seen(scene_of({square(0)}), desc).mean, *result.mean);
 }
 
-TEST_P(CentroidTest, nothing_hit_is_no_mean) {
+TEST_P(CentroidRulesTest, NothingHitIsNoMean) {
     for (const Scene& scene : {Scene(), scene_of({Mesh()}), scene_of({make_quad(vec3(1), vec3(0), vec3(0))})}) {
         const Centroid result = seen(scene, along({0, 0, -1}, 10));
         EXPECT_FALSE(result.mean || result.standard_error);
@@ -108,7 +108,7 @@ TEST_P(CentroidTest, nothing_hit_is_no_mean) {
     }
 }
 
-TEST_P(CentroidRulesTest, wrong_use_says_what_is_wrong) {
+TEST_P(CentroidRulesTest, WrongUseSaysWhatIsWrong) {
     fill(scene_of({make_icosphere(0)}));
     EXPECT_NE(error_of([&] {
                   centroid(accel(), scene_of({square(0)}), along({0, 0, -1}, 9));

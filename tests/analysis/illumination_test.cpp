@@ -34,7 +34,7 @@ Scene squares() {
     return scene_of({square(0), make_quad(vec3(0.5f, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0)), tilted});
 }
 
-TEST_P(IlluminationTest, areas_of_squares_are_what_is_seen_of_them) {
+TEST_P(IlluminationTest, AreasOfSquaresAreWhatIsSeenOfThem) {
     const Illumination result = lit(squares(), along({0, 0, -3}));
     EXPECT_EQ(result.ray_count, 200u * 200);
     const std::array exact = {0.125, 0.375, 0.5, 0.5, 0.25, 0.25};
@@ -56,7 +56,7 @@ TEST_P(IlluminationTest, areas_of_squares_are_what_is_seen_of_them) {
     EXPECT_LT(result.total.interval.high - result.total.interval.low, 0.05);
 }
 
-TEST_P(IlluminationTest, of_a_box_three_sides_are_seen_whatever_moves_it) {
+TEST_P(IlluminationTest, OfABoxThreeSidesAreSeenWhateverMovesIt) {
     const dvec3 direction(-0.3, -0.5, -1);
     for (const Transform& transform : {skewed(), mirrored()}) {
         const Scene scene = scene_of({make_box(vec3(-1, -2, 0), vec3(1, 0, 1))}, {transform});
@@ -80,7 +80,7 @@ TEST_P(IlluminationTest, of_a_box_three_sides_are_seen_whatever_moves_it) {
     }
 }
 
-TEST_P(IlluminationTest, light_on_a_side_that_does_not_count_is_stopped_all_the_same) {
+TEST_P(IlluminationRulesTest, LightOnASideThatDoesNotCountIsStoppedAllTheSame) {
     const Scene scene = scene_of({square(0), make_quad(vec3(0, 0, 1), vec3(0, 1, 0), vec3(0.5f, 0, 0))});
     IlluminationDesc desc = along({0, 0, -1});
     desc.sides = Sides::front;
@@ -93,7 +93,7 @@ TEST_P(IlluminationTest, light_on_a_side_that_does_not_count_is_stopped_all_the_
     EXPECT_NEAR(area_of(lit(scene, desc), 2), 0.5, 0.01);
 }
 
-TEST_P(IlluminationTest, groups_are_sums_of_faces_with_intervals_of_their_own) {
+TEST_P(IlluminationRulesTest, GroupsAreSumsOfFacesWithIntervalsOfTheirOwn) {
     Scene scene = squares();
     const Illumination faces = lit(scene, along({0, 0, -1}));
     IlluminationDesc desc = along({0, 0, -1});
@@ -110,7 +110,7 @@ TEST_P(IlluminationTest, groups_are_sums_of_faces_with_intervals_of_their_own) {
     EXPECT_EQ(lit(scene, desc).groups.at(0).hits, faces.total.hits);
 }
 
-TEST_P(IlluminationTest, every_accelerator_counts_the_same_hits) {
+TEST_P(IlluminationTest, EveryAcceleratorCountsTheSameHits) {
     Scene scene = scene_of({make_icosphere(3)}, {{}, Transform::translation({1.5f, 0.25f, -2}), skewed()});
     SwTlas software(context());
     push_scene(software, scene);
@@ -125,7 +125,7 @@ TEST_P(IlluminationTest, every_accelerator_counts_the_same_hits) {
 }
 
 // 150 squares at random places behind a plate that hides some of them, small and large against the cells.
-TEST_P(IlluminationRulesTest, intervals_cover_and_estimates_have_no_bias) {
+TEST_P(IlluminationRulesTest, IntervalsCoverAndEstimatesHaveNoBias) {
     const Scene scene = scene_of({square(0), make_quad(vec3(0.3125f, 0.1875f, 1), vec3(1, 0, 0), vec3(0, 0.45f, 0)),
                                   make_quad(vec3(1.4f, 0.75f, 0), vec3(0.08f, 0, 0), vec3(0, 0.06f, 0))});
     fill(scene);
@@ -155,7 +155,7 @@ TEST_P(IlluminationRulesTest, intervals_cover_and_estimates_have_no_bias) {
     EXPECT_LT(width[2], 12 * cells);
 }
 
-TEST_P(IlluminationTest, counts_are_those_of_the_rays_as_the_host_makes_them) {
+TEST_P(IlluminationTest, CountsAreThoseOfTheRaysAsTheHostMakesThem) {
     const Scene scene = scene_of({make_icosphere(1)}, {skewed(), Transform::translation({0, 3, 0})});
     for (const GridPoints points : {GridPoints::random, GridPoints::centers}) {
         IlluminationDesc desc = along({1, -2, 0.5}, 99);
@@ -172,7 +172,7 @@ TEST_P(IlluminationTest, counts_are_those_of_the_rays_as_the_host_makes_them) {
     }
 }
 
-TEST_P(IlluminationRulesTest, seeds_of_64_bits_differ_and_repeat) {
+TEST_P(IlluminationRulesTest, SeedsOf64BitsDifferAndRepeat) {
     const auto hits = [&](std::uint64_t seed) {
         IlluminationDesc desc = along({0.25, 0.5, -1}, 31);
         desc.grid.seed = seed;
@@ -183,7 +183,7 @@ TEST_P(IlluminationRulesTest, seeds_of_64_bits_differ_and_repeat) {
     EXPECT_NE(hits(1), hits(0x1'0000'0001));
 }
 
-TEST_P(IlluminationTest, nothing_to_see_is_no_light) {
+TEST_P(IlluminationRulesTest, NothingToSeeIsNoLight) {
     for (Scene scene : {Scene(), scene_of({Mesh()}), scene_of({make_quad(vec3(0), vec3(NAN), vec3(1))})}) {
         const Illumination result = lit(scene, along({0, 0, -1}));
         EXPECT_EQ(result.ray_count, 0u);
@@ -196,7 +196,7 @@ TEST_P(IlluminationTest, nothing_to_see_is_no_light) {
     EXPECT_EQ(lit(scene_of({make_quad(vec3(0), vec3(0), vec3(0))}), along({0, 1, 0})).total.hits, 0u);
 }
 
-TEST_P(IlluminationRulesTest, wrong_use_says_what_is_wrong) {
+TEST_P(IlluminationRulesTest, WrongUseSaysWhatIsWrong) {
     const Scene scene = squares(), other = scene_of({make_icosphere(0), square(0), square(1)});
     const Faces faces(context(), scene);
     fill(scene);

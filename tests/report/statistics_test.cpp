@@ -137,5 +137,68 @@ TEST(UpperBound95, GrowsWithTheCount) {
     }
 }
 
+// Events of chances that differ: what is seen of a face through cells that it covers wholly, in part and not at all.
+TEST(PairedCount, IntervalCoversTheMeanCountOfUnlikeTrials) {
+    std::mt19937 random(11);
+    const auto unit = [&] { return static_cast<double>(random()) / 4294967296.0; };
+    for (const std::size_t partly : {0, 2, 40, 400}) {
+        for (const std::size_t wholly : {0, 1000}) {
+            std::vector<double> chances(2001, 0);
+            std::fill_n(chances.begin(), wholly, 1);
+            for (std::size_t i = 0; i < partly; ++i) chances[wholly + i] = 0.05 + 0.9 * unit();
+            double mean = 0, width = 0;
+            for (const double chance : chances) mean += chance;
+            int missed = 0;
+            constexpr int trials = 1000;
+            for (int trial = 0; trial < trials; ++trial) {
+                std::uint64_t count = 0, odd = 0;
+                for (std::size_t i = 0; i < chances.size(); i += 2) {
+                    const bool first = unit() < chances[i];
+                    const bool second = i + 1 < chances.size() && unit() < chances[i + 1];
+                    count += first + second;
+                    odd += first != second;
+                }
+                const Interval interval = paired_count_interval_95(count, odd, chances.size());
+                missed += mean < interval.low || mean > interval.high;
+                width += (interval.high - interval.low) / trials;
+            }
+            EXPECT_LE(missed, trials * 0.05) << partly << " of " << wholly;
+            const double expected = 24 + 8 * std::sqrt(static_cast<double>(partly));
+            EXPECT_LT(width, expected) << partly << " of " << wholly;
+        }
+    }
+}
+
+TEST(PairedCount, IntervalIsWithinWhatCanBe) {
+    EXPECT_EQ(paired_count_interval_95(0, 0, 0), (Interval{0, 0}));
+    EXPECT_EQ(paired_count_interval_95(0, 0, 10).low, 0);
+    EXPECT_EQ(paired_count_interval_95(10, 0, 10).high, 10);
+    EXPECT_LE(paired_count_interval_95(0, 0, 1000).high, rate_interval(0, 1000, 0.025).high * 1000);
+    EXPECT_EQ(rate_interval(3, 70, 0.05), rate_interval_95(3, 70));
+    EXPECT_LT(rate_interval(3, 70, 0.01).low, rate_interval_95(3, 70).low);
+}
+
+// Sums of weights that occur or not, such as hours of sun.
+TEST(PairedMargin, CoversWeightedSums) {
+    std::mt19937 random(13);
+    const auto unit = [&] { return static_cast<double>(random()) / 4294967296.0; };
+    int missed = 0;
+    constexpr int trials = 2000;
+    for (int trial = 0; trial < trials; ++trial) {
+        double sum = 0, mean = 0, squares = 0;
+        for (int pair = 0; pair < 100; ++pair) {
+            const double weight = pair % 5 + 1, chance = pair % 10 < 3 ? 0.5 : pair % 10 < 6 ? 1 : 0.02;
+            const bool first = unit() < chance, second = unit() < chance;
+            mean += 2 * weight * chance;
+            sum += weight * (first + second);
+            squares += weight * weight * (first != second);
+        }
+        missed += std::abs(sum - mean) > paired_margin(squares, 5, 0.05);
+    }
+    EXPECT_LE(missed, trials * 0.05);
+    EXPECT_LT(paired_margin(200, 5, 0.05), 2 * 2.5 * std::sqrt(200 + 25 * 12));
+    EXPECT_GT(paired_margin(200, 5, 0.01), paired_margin(200, 5, 0.05));
+}
+
 }  // namespace
 }  // namespace twinray

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "cli/sky_light.h"
+
+#include <algorithm>
+#include <iostream>
+#include <sstream>
+
+#include "engine/core/error.h"
+
+namespace twinray::cli {
+namespace {
+
+// "x,y,z,hours" a line. The first line may be a header; empty lines and those that begin with # are left out.
+std::vector<SunPosition> read_sun(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    if (!in || std::filesystem::is_directory(file)) fail("sun file '", file.string(), "' cannot be opened");
+    std::vector<SunPosition> positions;
+    std::string line;
+    for (std::size_t number = 1; std::getline(in, line); ++number) {
+        if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
+        std::string numbers = line;
+        std::replace(numbers.begin(), numbers.end(), ',', ' ');
+        std::istringstream fields(numbers);
+        SunPosition at;
+        std::string rest;
+        if ((fields >> at.direction.x >> at.direction.y >> at.direction.z >> at.hours) && !(fields >> rest)) {
+            positions.push_back(at);
+        } else if (number > 1) {
+            fail("sun file '", file.string(), "', line ", number, ": '", line, "' is not x,y,z,hours");
+        }
+    }
+    if (positions.empty()) fail("sun file '", file.string(), "' has no line x,y,z,hours");
+    return positions;
+}
+
+void write(const std::filesystem::path& file, const std::string& what, const SkyLight& light) {
+    CsvFile csv(file, "face,free_rays," + what + ",ci_low,ci_high");
+    for (std::size_t face = 0; face < light.faces.size(); ++face) {
+        const Received& received = light.faces[face];
+        csv.row({face, received.free_rays}, {received.value, received.interval.low, received.interval.high});
+    }
+    csv.close();
+}
+
+// By area.
+double mean_of(const SkyLight& light, const std::vector<double>& areas) {
+    double sum = 0, area = 0;
+    for (std::size_t face = 0; face < areas.size(); ++face) {
+        sum += areas[face] * light.faces[face].value;
+        area += areas[face];
+    }
+    return area > 0 ? sum / area : 0;
+}
+
+}  // namespace
+
+void add_sky_options(CLI::App& command, CLI::App& source, SkyOptions& options) {
+    CLI::Option* sky = source.add_option(
+        "--sky", options.sky, "N: what a uniform sky above the horizon brings, by N rays a face, 1 to 1048576");
+    CLI::Option* sun = source.add_option("--sun", options.sun,
+                                         "hours of sun, from a CSV of x,y,z,hours: in which directions its rays go");
+    sky->check(CLI::Range(1u, 1u << 20));
+    command.add_option("--up", options.up, "X Y Z: where the zenith is")
+        ->needs(sky)
+        ->expected(3)
+        ->capture_default_str();
+    command.add_option("--samples", options.samples, "points of each face for each position of the sun, 1 to 1048576")
+        ->needs(sun)
+        ->check(CLI::Range(1u, 1u << 20))
+        ->capture_default_str();
+}
+
+void run_sky(const AnalysisOptions& analysis, const SkyOptions& options, Sides sides) {
+    const std::vector<SunPosition> sun = options.sky ? std::vector<SunPosition>() : read_sun(options.sun);
+    const Analysed analysed(analysis);
+    const Faces faces(*analysed.context, analysed.scene);
+    const uint samples = options.sky ? options.sky : options.samples;
+    const std::string what = options.sky ? "sky" : "hours";
+    SkyLight light;
+    const double seconds = seconds_of([&] {
+        Progress progress(what, faces.count() * samples * std::max<std::size_t>(sun.size(), 1), analysis.common.quiet);
+        const FaceRaysDesc desc{
+            .samples = samples, .sides = sides, .seed = analysis.common.seed, .progress = &progress};
+        light = options.sky ? sky_light(*analysed.accel, faces, {options.up[0], options.up[1], options.up[2]}, desc)
+                            : sun_hours(*analysed.accel, analysed.scene, faces, sun, desc);
+    });
+    if (!analysis.output.empty()) write(analysis.output, what, light);
+    const double mean = mean_of(light, faces.areas());
+    if (!analysis.common.quiet)
+        std::cout << "illumination " << analysis.scene.filename().string() << ": " << faces.count() << " faces, "
+                  << analysed.accel->name() << " on " << analysed.context->facts().name << "\n  "
+                  << speed_text(light.ray_count, seconds) << "\n  "
+                  << (options.sky ? "light of the sky" : "hours of sun") << ", mean over the surface: " << mean << '\n';
+    nlohmann::json record = {{"schema", "twinray-sky/1"},
+                             {"what", what},
+                             {"sides", sides == Sides::front ? "front" : "both"},
+                             {"samples", samples},
+                             {"positions", sun.size()},
+                             {"n", light.ray_count},
+                             {"mean", mean},
+                             {"seconds", seconds}};
+    record.update(analysed.record(analysis));
+    append_json(analysis.common.json, record);
+}
+
+}  // namespace twinray::cli

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// `twinray illumination --sky` and `--sun`.
+#pragma once
+
+#include "cli/ray_grid_options.h"
+#include "engine/analysis/sky.h"
+
+namespace twinray::cli {
+
+struct SkyOptions {
+    uint sky = 0;  // rays a face; 0: the sun
+    std::vector<double> up = {0, 1, 0};
+    std::filesystem::path sun;
+    uint samples = 16;
+};
+// --sky and --sun go into `source`.
+void add_sky_options(CLI::App& command, CLI::App& source, SkyOptions& options);
+void run_sky(const AnalysisOptions& analysis, const SkyOptions& options, Sides sides);
+
+}  // namespace twinray::cli

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/face_rays.h"
+
+#include "analysis_count_free.spv.h"
+#include "analysis_face_rays.spv.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+constexpr uint batch_size = 1 << 20;
+
+uint faces_of_batch(uint samples, std::size_t faces) {
+    if (samples < 1 || samples > batch_size)
+        fail("rays from faces: ", samples, " of each; 1 to ", batch_size, " can be");
+    return static_cast<uint>(std::min<std::size_t>(batch_size / samples, faces));
+}
+
+}  // namespace
+
+FaceRays::FaceRays(AbstractAccel& accel, const Faces& faces, const FaceRaysDesc& desc)
+    : accel_(accel),
+      faces_(faces),
+      desc_(desc),
+      faces_of_batch_(faces_of_batch(desc.samples, faces.count())),
+      rays_kernel_(accel.context(), {.name = "analysis_face_rays", .spirv = analysis_face_rays_spirv}),
+      count_kernel_(accel.context(), {.name = "analysis_count_free", .spirv = analysis_count_free_spirv}) {
+    check_filled(accel, faces.group_count(FaceGrouping::instance), "rays from faces");
+    const std::uint64_t rays = std::uint64_t{faces_of_batch_} * desc.samples;
+    rays_ = Buffer(accel.context(), {.name = "face rays", .bytes = rays * sizeof(Ray)});
+    hits_ = Buffer(accel.context(), {.name = "face hits", .bytes = rays * sizeof(Hit)});
+    counts_ = Buffer(accel.context(), {.name = "free rays of faces", .bytes = faces.count() * sizeof(GroupCount)});
+    accel.sync();
+}
+
+std::vector<GroupCount> FaceRays::trace(dvec3 towards, bool to_sun, uint stream) const {
+    if (faces_.count() == 0) return {};
+    FaceRaysArgs args{.table = faces_.table(),
+                      .rays = rays_.ref<Ray>(),
+                      .towards = vec3(unit_direction(towards)),
+                      .to_sun = to_sun,
+                      .front_only = desc_.sides == Sides::front,
+                      .first_face = 0,
+                      .ray_count = 0,
+                      .samples = desc_.samples,
+                      .rows = static_cast<uint>(std::sqrt(desc_.samples)),
+                      .stream = stream,
+                      .seed_low = static_cast<uint>(desc_.seed),
+                      .seed_high = static_cast<uint>(desc_.seed >> 32)};
+    for (std::uint64_t first = 0; first < faces_.count(); first += faces_of_batch_) {
+        args.first_face = static_cast<uint>(first);
+        args.ray_count =
+            desc_.samples * static_cast<uint>(std::min<std::uint64_t>(faces_of_batch_, faces_.count() - first));
+        Commands commands(accel_.context(), "rays from faces");
+        if (first == 0) {
+            const auto pass = commands.pass("rays from faces start");
+            commands.fill(counts_, 0, counts_.bytes(), 0);
+        }
+        record(commands, args);
+        accel_.context().wait(commands.submit());
+        if (desc_.progress) desc_.progress->advance(args.ray_count);
+    }
+    return download<GroupCount>(accel_.context(), counts_, faces_.count());
+}
+
+void FaceRays::record(Commands& commands, FaceRaysArgs args) const {
+    rays_kernel_.dispatch(commands, args, args.ray_count);
+    accel_.trace(commands, accel_.view(),
+                 {.rays = args.rays,
+                  .hits = hits_.ref<Hit>(),
+                  .count = args.ray_count,
+                  .query = Query::any,
+                  .answer_only = true});
+    const uint pairs = args.ray_count / args.samples * ((args.samples + 1) / 2);
+    count_kernel_.dispatch(
+        commands, {args.rays, hits_.ref<Hit>(), counts_.ref<GroupCount>(), args.first_face, args.samples, pairs, 0},
+        pairs);
+}
+
+}  // namespace twinray

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// How many rays from the faces of a scene get out of it, counted on the device.
+#pragma once
+
+#include <glm/integer.hpp>
+
+#include "engine/analysis/illumination.h"
+
+namespace twinray {
+using glm::sqrt;
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/face_rays.h"
+#include "engine/core/bridge_end.h"
+
+static_assert(sizeof(FaceRaysArgs) == 72 && sizeof(CountFreeArgs) == 40);
+
+struct FaceRaysDesc {
+    uint samples = 256;  // rays of each face; 1 to 2^20
+    Sides sides = Sides::both;
+    std::uint64_t seed = 1;
+    Progress* progress = nullptr;  // told of rays
+};
+
+// Traces in batches of at most 2^20 rays.
+class FaceRays {
+  public:
+    // Syncs the accelerator, which push_scene() must have filled from the scene of `faces`, and which must not change
+    // meanwhile. Throws Error for `samples` and for an accelerator with other instances.
+    FaceRays(AbstractAccel& accel, const Faces& faces, const FaceRaysDesc& desc);
+
+    // By face: rays from points all over it that meet nothing. To the sky they go by what uniform light from above the
+    // horizon would bring through either side. Rays are independent of each other and of those of other streams.
+    std::vector<GroupCount> free_to_sky(dvec3 zenith) const { return trace(zenith, false, 0); }
+    std::vector<GroupCount> free_to_sun(dvec3 sun, uint stream) const { return trace(sun, true, stream); }
+
+  private:
+    std::vector<GroupCount> trace(dvec3 towards, bool to_sun, uint stream) const;
+    void record(Commands& commands, FaceRaysArgs args) const;
+
+    AbstractAccel& accel_;
+    const Faces& faces_;
+    FaceRaysDesc desc_;
+    uint faces_of_batch_;
+    Kernel<FaceRaysArgs> rays_kernel_;
+    Kernel<CountFreeArgs> count_kernel_;
+    Buffer rays_, hits_, counts_;
+};
+
+}  // namespace twinray

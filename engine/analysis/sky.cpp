@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/sky.h"
+
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+
+namespace twinray {
+namespace {
+
+void check_positions(std::span<const SunPosition> positions) {
+    for (const SunPosition& position : positions) {
+        unit_direction(position.direction);
+        if (!(position.hours >= 0) || !std::isfinite(position.hours))
+            fail("sun hours: a position has ", position.hours, " hours; they must be finite and not negative");
+    }
+    if (positions.size() > UINT32_MAX) fail("sun hours: ", positions.size(), " positions; at most ", UINT32_MAX);
+}
+
+// Sums over the positions, by face.
+struct HoursOfFace {
+    double hours = 0;
+    double squared_differences = 0;  // of pairs of rays, in squares of hours
+    double possible = 0;             // while the sides that count were turned to the sun
+    std::uint64_t free_rays = 0;
+};
+
+void add_position(std::vector<HoursOfFace>& sums, std::span<const GroupCount> counts, double hours_of_ray) {
+    for (std::size_t face = 0; face < sums.size(); ++face) {
+        sums[face].hours += counts[face].hits * hours_of_ray;
+        sums[face].squared_differences += counts[face].odd * hours_of_ray * hours_of_ray;
+        sums[face].free_rays += counts[face].hits;
+    }
+}
+
+void add_possible(std::vector<HoursOfFace>& sums, const Scene& scene, const Faces& faces, const SunPosition& position,
+                  Sides sides) {
+    const dvec3 towards = -unit_direction(position.direction);
+    parallel_for(sums.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t face = begin; face < end; ++face) {
+            const double turned = dot(area_vector(scene, faces[face]), towards);
+            if (sides == Sides::both ? turned != 0 : turned > 0) sums[face].possible += position.hours;
+        }
+    });
+}
+
+}  // namespace
+
+SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const FaceRaysDesc& desc) {
+    const FaceRays rays(accel, faces, desc);
+    SkyLight light{.faces = std::vector<Received>(faces.count()), .ray_count = faces.count() * desc.samples};
+    const std::vector<GroupCount> counts = rays.free_to_sky(unit_direction(zenith));
+    for (std::size_t face = 0; face < counts.size(); ++face) {
+        if (faces.areas()[face] == 0) continue;
+        const double samples = desc.samples;
+        const Interval free = paired_count_interval_95(counts[face].hits, counts[face].odd, desc.samples);
+        light.faces[face] = {counts[face].hits, counts[face].hits / samples, {free.low / samples, free.high / samples}};
+    }
+    return light;
+}
+
+SkyLight sun_hours(AbstractAccel& accel, const Scene& scene, const Faces& faces, std::span<const SunPosition> positions,
+                   const FaceRaysDesc& desc) {
+    check_faces(scene, faces);
+    check_positions(positions);
+    const FaceRays rays(accel, faces, desc);
+    std::vector<HoursOfFace> sums(faces.count());
+    double most = 0;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const double hours_of_ray = positions[i].hours / desc.samples;
+        most = std::max(most, hours_of_ray);
+        add_position(sums, rays.free_to_sun(-positions[i].direction, static_cast<uint>(i)), hours_of_ray);
+        add_possible(sums, scene, faces, positions[i], desc.sides);
+    }
+    SkyLight light{.faces = std::vector<Received>(faces.count()),
+                   .ray_count = faces.count() * desc.samples * positions.size()};
+    for (std::size_t face = 0; face < sums.size(); ++face) {
+        if (faces.areas()[face] == 0) continue;
+        const HoursOfFace& sum = sums[face];
+        const double margin = paired_margin(sum.squared_differences, most, 0.05);
+        const double high = std::min(sum.hours + margin, sum.possible);
+        light.faces[face] = {sum.free_rays, sum.hours, {std::clamp(sum.hours - margin, 0.0, high), high}};
+    }
+    return light;
+}
+
+}  // namespace twinray

@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Runs `twinray illumination` and `twinray centroid`. Usage: illumination_command_test.py TWINRAY"""
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+
+
+def run(*arguments, status=0):
+    done = subprocess.run([twinray, *arguments], capture_output=True, text=True, cwd=here)
+    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout + done.stderr
+
+
+def table(name, header):
+    rows = list(csv.reader((here / name).read_text().splitlines()))
+    assert rows[0] == header.split(","), rows[0]
+    return rows[1:]
+
+
+def near(value, exact, error):
+    assert abs(float(value) - exact) <= error, f"{value} is not {exact}"
+
+
+# Two unit squares of two triangles each; the upper one hides half of the lower one.
+corners = [(x + shift, y, z) for shift, z in [(0, 0), (0.5, 1)] for x, y in [(0, 0), (1, 0), (1, 1), (0, 1)]]
+(here / "squares.ply").write_text(
+    "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
+    "property list uchar int vertex_indices\nend_header\n" + "".join(f"{x} {y} {z}\n" for x, y, z in corners)
+    + "3 0 1 2\n3 0 2 3\n3 4 5 6\n3 4 6 7\n")
+light = ["illumination", "squares.ply", "--direction", "0", "0", "-.5"]
+for accel in ["sw", "hw"]:
+    shown = run(*light, "--accel", accel, "-o", f"{accel}.csv", "--json", "all.jsonl")
+    assert "1000000 rays" in shown and "lit: 4 of 4 by face" in shown, shown
+    for row, exact in zip(table(f"{accel}.csv", "face,hits,area,ci_low,ci_high"), [0.125, 0.375, 0.5, 0.5], strict=True):
+        near(row[2], exact, 0.001)
+        assert row[1].isdigit() and float(row[3]) <= exact <= float(row[4]) + 1e-9, row
+assert (here / "sw.csv").read_text() == (here / "hw.csv").read_text()
+records = [json.loads(line) for line in (here / "all.jsonl").read_text().splitlines()]
+assert [r["backend"] for r in records] == ["sw", "hw"] and records[0]["n"] == 1000000, records
+near(records[0]["area"], 1.5, 0.001)
+
+assert run(*light, "--quiet", "--grid", "30", "--by", "mesh", "--measure", "fraction", "-o", "mesh.csv") == ""
+near(table("mesh.csv", "mesh,hits,fraction,ci_low,ci_high")[0][2], 0.75, 0.02)
+run(*light, "--grid", "30", "--sides", "front", "--measure", "irradiance", "--points", "centers", "-o", "centers.csv")
+assert [row[3:] for row in table("centers.csv", "face,hits,irradiance,ci_low,ci_high")] == [["", ""]] * 4
+
+run("illumination", "squares.ply", "--sky", "500", "--up", "0", "0", "1", "-o", "sky.csv")
+near(table("sky.csv", "face,free_rays,sky,ci_low,ci_high")[2][2], 1, 0)
+(here / "sun.csv").write_text("x,y,z,hours\n0,0,-1,2\n\n# noon\n-1,0,-1,3\n")
+run("illumination", "squares.ply", "--sun", "sun.csv", "--samples", "100", "-o", "hours.csv")
+near(table("hours.csv", "face,free_rays,hours,ci_low,ci_high")[0][2], 2.75, 0.3)
+
+shown = run("centroid", "squares.ply", "--direction", "0", "0", "1", "-o", "points.csv", "--json", "mean.jsonl")
+record = json.loads((here / "mean.jsonl").read_text())
+assert "standard error" in shown and record["points_hit"] == len(table("points.csv", "x,y,z")), shown
+for value, exact in zip(record["mean"], [0.75, 0.5, 1 / 3], strict=True):
+    near(value, exact, 0.001)
+(here / "nothing.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                                  "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 1 1\n2 2 2\n3 0 1 2\n")
+assert "there is no mean" in run("centroid", "nothing.ply", "--direction", "0", "0", "1", "--grid", "9")
+
+for arguments, status, words in [
+        (["--direction", "0", "0", "0"], 1, "must be finite and not 0"),
+        (["--direction", "0", "0", "1", "--grid", "70000"], 1, "70000 cells a side; 1 to 65535"),
+        (["--direction", "0", "0", "1", "-o", "none/a.csv"], 1, "there is no folder 'none'"),
+        (["--direction", "0", "0", "1", "--sky", "9"], 2, "Exactly 1 option"), ([], 2, "Exactly 1 option"),
+        (["--sky", "9", "--grid", "5"], 2, "--grid requires --direction"), (["--sky", "0"], 2, "not in range"),
+        (["--sun", "none.csv"], 1, "sun file 'none.csv' cannot be opened"),
+        (["--sun", "squares.ply"], 1, "'format ascii 1.0' is not x,y,z,hours")]:
+    shown = run("illumination", "squares.ply", *arguments, status=status)
+    assert words in shown, shown
+assert "--direction is required" in run("centroid", "squares.ply", status=2)
+print("illumination: areas, shares, sky, hours and centroid are those of two squares")

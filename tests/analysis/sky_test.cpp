@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/sky.h"
+
+#include "tests/analysis/scenes.h"
+
+namespace twinray::test {
+namespace {
+
+constexpr dvec3 zenith(0, 0, 2);
+
+class SkyTest : public AnalysisTest {
+  protected:
+    SkyLight sky(const Scene& scene, const FaceRaysDesc& desc) {
+        fill(scene);
+        return sky_light(accel(), Faces(context(), scene), zenith, desc);
+    }
+    SkyLight hours(const Scene& scene, const std::vector<SunPosition>& positions, const FaceRaysDesc& desc) {
+        fill(scene);
+        return sun_hours(accel(), scene, Faces(context(), scene), positions, desc);
+    }
+};
+TWINRAY_OVER_EVERY_ACCEL(SkyTest);
+
+// What does not depend on the accelerator.
+class SkyRulesTest : public SkyTest {};
+TWINRAY_OVER_SOFTWARE(SkyRulesTest);
+
+void expect_covers(const Received& received, double exact, double width) {
+    EXPECT_LE(received.interval.low, exact * (1 + 1e-6));
+    EXPECT_GE(received.interval.high, exact * (1 - 1e-6));
+    EXPECT_LT(received.interval.high - received.interval.low, width);
+    EXPECT_LE(received.interval.low, received.value);
+    EXPECT_GE(received.interval.high, received.value);
+}
+
+TEST_P(SkyRulesTest, UnobstructedFacesSeeWhatTheirTiltLets) {
+    for (const double cosine : {1.0, 0.5, 0.0, -0.6}) {
+        const auto sine = static_cast<float>(std::sqrt(1 - cosine * cosine));
+        const vec3 u(static_cast<float>(cosine), 0, sine);
+        const Scene scene = scene_of({make_quad(vec3(5, 6, 7), u * 0.01f, vec3(0, 3, 0))});
+        const SkyLight front = sky(scene, {.samples = 1500, .sides = Sides::front});
+        EXPECT_EQ(front.ray_count, 3000u);
+        const SkyLight both = sky(scene, {.samples = 1500, .sides = Sides::both});
+        for (const Received& face : front.faces) expect_covers(face, (1 + cosine) / 2, 0.05);
+        for (const Received& face : both.faces) EXPECT_EQ(face.value, 1);
+    }
+}
+
+// Between long walls as high as the street is wide, the floor sees sqrt(2) - 1 of the sky (crossed strings: Hottel
+// 1954).
+TEST_P(SkyRulesTest, AStreetSeesWhatItsWallsLeave) {
+    const Scene scene = scene_of({make_quad(vec3(0, -1, 0), vec3(1, 0, 0), vec3(0, 2, 0)),
+                                  make_quad(vec3(0, -1000, 0), vec3(0, 2000, 0), vec3(0, 0, 1)),
+                                  make_quad(vec3(1, -1000, 0), vec3(0, 0, 1), vec3(0, 2000, 0))});
+    const SkyLight light = sky(scene, {.samples = 20000, .sides = Sides::front});
+    // Each of the floor's triangles has points of all distances from the walls alike in the mean of both.
+    const double floor = (light.faces[0].value + light.faces[1].value) / 2;
+    EXPECT_NEAR(floor, std::sqrt(2.0) - 1, 0.01);
+    EXPECT_LT(light.faces[0].interval.high - light.faces[0].interval.low, 0.04);
+}
+
+TEST_P(SkyTest, NothingGetsOutOfABoxAndNothingIsLostOutsideOfIt) {
+    for (const Transform& transform : {skewed(), mirrored()}) {
+        const Scene scene = scene_of({make_box(vec3(-1), vec3(1))}, {transform});
+        const SkyLight front = sky(scene, {.samples = 500, .sides = Sides::front});
+        const SkyLight both = sky(scene, {.samples = 500, .sides = Sides::both});
+        for (uint face = 0; face < 12; ++face) {
+            const double cosine = glm::normalize(area_vector(scene, {0, face})).z;
+            expect_covers(front.faces[face], (1 + cosine) / 2, 0.12);
+            EXPECT_EQ(both.faces[face].free_rays, front.faces[face].free_rays) << "by the inside";
+        }
+    }
+}
+
+// Half of the lower square lies in the shadow of the upper one, of the sun from above and from the side.
+TEST_P(SkyTest, HoursOfSunAreThoseOfTheShadows) {
+    const Scene scene = scene_of({square(0), make_quad(vec3(0.5f, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0))});
+    const std::vector<SunPosition> positions = {{{0, 0, -1}, 2}, {{-7, 0, -7}, 3}, {{0, 0, 0.1}, 0.5}};
+    const std::array front = {0.25 * 2 + 0.75 * 3, 0.75 * 2 + 0.25 * 3, 5.0, 5.0};
+    const std::array back = {0.5, 0.5, 0.375, 0.125};
+    const SkyLight of_front = hours(scene, positions, {.samples = 400, .sides = Sides::front});
+    const SkyLight of_both = hours(scene, positions, {.samples = 400, .sides = Sides::both});
+    EXPECT_EQ(of_both.ray_count, 4u * 3 * 400);
+    for (uint face = 0; face < 4; ++face) {
+        expect_covers(of_front.faces[face], front[face], 0.4);
+        expect_covers(of_both.faces[face], front[face] + back[face], 0.4);
+    }
+    EXPECT_EQ(of_front.faces[2].interval.high, 5);
+}
+
+TEST_P(SkyTest, EveryAcceleratorCountsTheSame) {
+    const Scene scene = scene_of({make_icosphere(2)}, {skewed(), Transform::translation({3, 0, 6})});
+    SwTlas software(context());
+    push_scene(software, scene);
+    const FaceRaysDesc desc{.samples = 33, .sides = Sides::front};
+    const SkyLight expected = sky_light(software, Faces(context(), scene), zenith, desc), result = sky(scene, desc);
+    ASSERT_EQ(result.faces.size(), 640u);
+    for (std::size_t face = 0; face < 640; ++face)
+        EXPECT_EQ(result.faces[face].free_rays, expected.faces[face].free_rays) << face;
+}
+
+TEST_P(SkyRulesTest, IntervalsCoverAndEstimatesHaveNoBias) {
+    const Scene scene = scene_of({square(0), make_quad(vec3(0.5f, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0))});
+    fill(scene);
+    const Faces faces(context(), scene);
+    const double exact = sky_light(accel(), faces, zenith, {.samples = 1u << 18, .seed = 9}).faces[0].value;
+    const std::vector<SunPosition> positions = {{{0, 0, -1}, 2}, {{-1, 0, -1}, 3}};
+    double sky_sum = 0, hours_sum = 0;
+    int missed = 0;
+    constexpr int runs = 100;
+    for (int run = 0; run < runs; ++run) {
+        const FaceRaysDesc desc{.samples = 101, .sides = Sides::front, .seed = 100u + run};
+        const Received of_sky = sky_light(accel(), faces, zenith, desc).faces[0];
+        const Received of_sun = sun_hours(accel(), scene, faces, positions, desc).faces[0];
+        sky_sum += of_sky.value, hours_sum += of_sun.value;
+        missed += of_sky.interval.low > exact || of_sky.interval.high < exact;
+        missed += of_sun.interval.low > 2.75 || of_sun.interval.high < 2.75;
+    }
+    EXPECT_LE(missed, 10);
+    EXPECT_NEAR(sky_sum / runs, exact, 0.012);
+    EXPECT_NEAR(hours_sum / runs, 2.75, 0.03);
+}
+
+TEST_P(SkyRulesTest, BatchesAreOfWholeFaces) {
+    const Scene scene = scene_of({make_icosphere(0)});
+    for (const uint samples : {1u, 3u, 120'000u}) {
+        const SkyLight light = sky(scene, {.samples = samples, .sides = Sides::front, .seed = 0x3'0000'0001});
+        for (std::size_t face = 0; face < 20; ++face) {
+            const double cosine = glm::normalize(area_vector(scene, {0, static_cast<uint>(face)})).z;
+            EXPECT_LE(light.faces[face].interval.low, (1 + cosine) / 2 + 1e-6) << samples;
+            EXPECT_GE(light.faces[face].interval.high, (1 + cosine) / 2 - 1e-6) << samples;
+            EXPECT_LE(light.faces[face].free_rays, samples);
+        }
+    }
+}
+
+TEST_P(SkyRulesTest, FacesWithoutAreaReceiveNothing) {
+    Mesh mesh = make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0));
+    mesh.positions.push_back(vec3(NAN));
+    mesh.triangles = {{0, 1, 2}, {0, 1, 4}, {0, 1, 1}};
+    const SkyLight light = sky(scene_of({mesh}), {.samples = 10});
+    EXPECT_EQ(light.faces[0].value, 1);
+    for (const uint face : {1u, 2u}) EXPECT_EQ(light.faces[face].interval, (Interval{0, 0}));
+    EXPECT_EQ(hours(scene_of({mesh}), {{{0, 0, -1}, 2}}, {.samples = 10}).faces[2].value, 0);
+    EXPECT_TRUE(sky(Scene(), {}).faces.empty());
+    EXPECT_TRUE(hours(Scene(), {{{0, 0, -1}, 2}}, {}).faces.empty());
+}
+
+TEST_P(SkyRulesTest, WrongUseSaysWhatIsWrong) {
+    const Scene scene = scene_of({square(0)});
+    const auto error = [&](const SunPosition& position, uint samples) {
+        return error_of([&] { hours(scene, {position}, {.samples = samples}); });
+    };
+    EXPECT_NE(error({{0, 0, 0}, 1}, 5).find("direction (0, 0, 0) must be"), std::string::npos);
+    EXPECT_NE(error({{0, 0, 1}, -1}, 5).find("-1 hours"), std::string::npos);
+    EXPECT_NE(error({{0, 0, 1}, NAN}, 5).find("nan hours"), std::string::npos);
+    EXPECT_NE(error({{0, 0, 1}, 1}, 0).find("0 of each; 1 to 1048576"), std::string::npos);
+    EXPECT_NE(error({{0, 0, 1}, 1}, 1048577).find("1048577 of each"), std::string::npos);
+    EXPECT_EQ(error({{0, 0, 1e-200}, 0}, 1), "");
+    const Faces faces(context(), scene);
+    EXPECT_NE(error_of([&] { sky_light(accel(), faces, dvec3(0), {}); }).find("must be finite"), std::string::npos);
+    fill(scene_of({square(0), square(1)}));
+    EXPECT_NE(error_of([&] { sky_light(accel(), faces, zenith, {}); }).find("it has 2 instances"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace twinray::test
