@@ -121,6 +121,15 @@ TEST_P(SkyRulesTest, IntervalsCoverAndEstimatesHaveNoBias) {
     EXPECT_NEAR(hours_sum / runs, 2.75, 0.03);
 }
 
+TEST_P(SkyRulesTest, PositionsOfTheSunHavePointsOfTheirOwn) {
+    const Scene scene = scene_of({square(0), make_quad(vec3(0.5f, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0))});
+    bool differs = false;  // else the hits of two alike are even
+    for (uint seed = 0; seed < 10; ++seed)
+        differs |=
+            hours(scene, {{{0, 0, -1}, 1}, {{0, 0, -1}, 1}}, {.samples = 51, .seed = seed}).faces[0].free_rays % 2;
+    EXPECT_TRUE(differs);
+}
+
 TEST_P(SkyRulesTest, BatchesAreOfWholeFaces) {
     const Scene scene = scene_of({make_icosphere(0)});
     for (const uint samples : {1u, 3u, 120'000u}) {

@@ -196,7 +196,9 @@ TEST(PairedMargin, CoversWeightedSums) {
         missed += std::abs(sum - mean) > paired_margin(squares, 5, 0.05);
     }
     EXPECT_LE(missed, trials * 0.05);
-    EXPECT_LT(paired_margin(200, 5, 0.05), 2 * 2.5 * std::sqrt(200 + 25 * 12));
+    EXPECT_NEAR(paired_margin(0, 1, 0.05), 9.89, 0.01);  // of a variance of up to 9.2
+    EXPECT_NEAR(paired_margin(100, 1, 0.05), 33.86, 0.01);
+    EXPECT_NEAR(paired_margin(2500, 5, 0.05), 5 * 33.86, 0.05);
     EXPECT_GT(paired_margin(200, 5, 0.01), paired_margin(200, 5, 0.05));
 }
 
