@@ -7,7 +7,8 @@
 
 namespace {
 
-// The arguments from the last to the first, as the parser wants them. It takes "-.5" for an option, "-0.5" for a number.
+// The arguments from the last to the first, as the parser wants them. It takes "-.5" for an option, "-0.5" for a
+// number.
 std::vector<std::string> reversed(int argc, char** argv) {
     std::vector<std::string> all;
     for (int i = argc; i-- > 1;) {

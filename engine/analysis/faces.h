@@ -15,6 +15,13 @@ namespace twinray {
 #include "shaders/shared/faces.h"
 #include "engine/core/bridge_end.h"
 
+// Which sides of faces radiate or receive; either one stops rays.
+enum class Sides : std::uint8_t {
+    front,  // on which the corners turn counter-clockwise in object space
+    both,
+};
+constexpr std::string_view name_of(Sides sides) { return sides == Sides::front ? "front" : "both"; }
+
 // By what faces are put together.
 enum class FaceGrouping : std::uint8_t { face, mesh, instance, material };
 inline constexpr std::array all_face_groupings = {FaceGrouping::face, FaceGrouping::mesh, FaceGrouping::instance,

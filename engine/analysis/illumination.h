@@ -13,12 +13,6 @@ namespace twinray {
 
 static_assert(sizeof(GroupCount) == 8 && sizeof(CountFacesArgs) == 48);
 
-// Which sides of faces receive light; either one stops it.
-enum class Sides : std::uint8_t {
-    front,  // on which the corners turn counter-clockwise in object space
-    both,
-};
-
 struct IlluminationDesc {
     RayGridDesc grid;
     Sides sides = Sides::both;

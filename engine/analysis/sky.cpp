@@ -45,8 +45,8 @@ void add_possible(std::vector<HoursOfFace>& sums, const Scene& scene, const Face
 
 }  // namespace
 
-SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const FaceRaysDesc& desc) {
-    const FaceRays rays(accel, faces, desc);
+SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc) {
+    const SkyRays rays(accel, faces, desc);
     SkyLight light{.faces = std::vector<Received>(faces.count()), .ray_count = faces.count() * desc.samples};
     const std::vector<GroupCount> counts = rays.free_to_sky(unit_direction(zenith));
     for (std::size_t face = 0; face < counts.size(); ++face) {
@@ -59,10 +59,10 @@ SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const
 }
 
 SkyLight sun_hours(AbstractAccel& accel, const Scene& scene, const Faces& faces, std::span<const SunPosition> positions,
-                   const FaceRaysDesc& desc) {
+                   const SkyRaysDesc& desc) {
     check_faces(scene, faces);
     check_positions(positions);
-    const FaceRays rays(accel, faces, desc);
+    const SkyRays rays(accel, faces, desc);
     std::vector<HoursOfFace> sums(faces.count());
     double most = 0;
     for (std::size_t i = 0; i < positions.size(); ++i) {

@@ -2,7 +2,7 @@
 // What the sky and the sun over many hours bring to the faces of a scene.
 #pragma once
 
-#include "engine/analysis/face_rays.h"
+#include "engine/analysis/sky_rays.h"
 
 namespace twinray {
 
@@ -21,8 +21,8 @@ struct SkyLight {
 // What light of the same radiance from everywhere above the horizon brings to each face, mean over its points, in
 // units of what it brings to an unobstructed horizontal plane: of its front the sky view factor, which is (1 + cos) / 2
 // for an unobstructed face tilted by an angle; of both sides together 1 for any such face. `desc.samples` rays a face,
-// stratified by direction. Throws Error for a zenith that is 0 or not finite, and where FaceRays does.
-SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const FaceRaysDesc& desc);
+// stratified by direction. Throws Error for a zenith that is 0 or not finite, and where SkyRays does.
+SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc);
 
 // Light for so many hours.
 struct SunPosition {
@@ -32,8 +32,8 @@ struct SunPosition {
 
 // Hours for which a point of a face is lit, mean over the face: for each position `desc.samples` rays a face, from
 // stratified points. A side lit at a grazing angle counts like any other. Throws Error for a position with a direction
-// that is 0 or not finite, or hours that are negative or not finite, and where FaceRays does.
+// that is 0 or not finite, or hours that are negative or not finite, and where SkyRays does.
 SkyLight sun_hours(AbstractAccel& accel, const Scene& scene, const Faces& faces, std::span<const SunPosition> positions,
-                   const FaceRaysDesc& desc);
+                   const SkyRaysDesc& desc);
 
 }  // namespace twinray

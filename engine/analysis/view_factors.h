@@ -16,12 +16,7 @@ namespace twinray {
 #include "engine/core/bridge_end.h"
 static_assert(REPLICATES == replicate_count && CHUNK == REPLICATES * SAMPLES_OF_CHUNK);
 
-enum class Sides : std::uint8_t {
-    front,
-    both
-};  // the front is where the corners turn counter-clockwise, in object space
 enum class Sequence : std::uint8_t { sobol, random };
-constexpr std::string_view name_of(Sides sides) { return sides == Sides::front ? "front" : "both"; }
 constexpr std::string_view name_of(Sequence sequence) { return sequence == Sequence::sobol ? "sobol" : "random"; }
 
 struct ViewFactorOptions {

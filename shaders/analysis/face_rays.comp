@@ -5,12 +5,6 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/view_factors.h"
 layout(local_size_x = CHUNK) in;
-// The rays of a run of faces.
-#version 460
-#extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
-#include "shaders/shared/face_rays.h"
-layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { FaceRaysArgs args; };
 
 void main()
@@ -19,6 +13,4 @@ void main()
     RayChunk chunk = AT(args.chunks, group_index());
     vec4 u = sample_of(args, chunk.face, i / SAMPLES_OF_CHUNK, chunk.first + i % SAMPLES_OF_CHUNK);
     AT(args.rays, global_index()) = diffuse_ray(args.table, chunk.face, u, args.is_two_sided != 0u);
-    uint i = global_index();
-    if (i < args.ray_count) AT(args.rays, i) = face_ray(args, i);
 }

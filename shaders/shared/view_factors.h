@@ -11,6 +11,9 @@ const uint REPLICATES = 16u;
 const uint SAMPLES_OF_CHUNK = 4u; // of each replicate
 const uint CHUNK = 64u;           // rays, one invocation each: REPLICATES * SAMPLES_OF_CHUNK
 
+// How far from its edges a face radiates, in offsets of its spawn points: enough for walls that meet it at 8 degrees.
+const float EDGE_OFFSETS = 8.0f;
+
 // Rays from one face: samples `first` to `first + SAMPLES_OF_CHUNK - 1` of each replicate. Ray i of it is of replicate
 // i / SAMPLES_OF_CHUNK.
 struct RayChunk
@@ -59,13 +62,25 @@ FUNC vec4 sample_of(FaceRaysArgs args, uint face, uint replicate, uint index)
     return vec4(unit_floats(uvec2(words.x, words.y)), unit_floats(uvec2(words.z, words.w)));
 }
 
+// A point of the face, with barycentric coordinates u, v. One that lies nearer to an edge than some offsets is moved away
+// from it: there it may round to beyond a wall that meets the face at the edge, or start beyond it.
+FUNC SurfacePoint inner_point(FaceTable table, uint face, vec2 uv)
+{
+    SurfacePoint point = point_on_face(table, face, uv);
+    float margin = min(EDGE_OFFSETS * point.offset / point.feature, 1.0f / 3.0f);
+    vec3 inside = max(vec3(1.0f - uv.x - uv.y, uv.x, uv.y), vec3(margin));
+    if (inside.x > margin && inside.y > margin && inside.z > margin) return point;
+    inside = inside / (inside.x + inside.y + inside.z);
+    return point_on_face(table, face, vec2(inside.y, inside.z));
+}
+
 // A ray from a face, uniform by area and by the cosine of its angle with the normal. Of two sides, half the rays leave
 // each.
 FUNC Ray diffuse_ray(FaceTable table, uint face, vec4 u, bool is_two_sided)
 {
     bool is_front = !is_two_sided || u.z < 0.5f;
     if (is_two_sided) u.z = is_front ? u.z * 2.0f : u.z * 2.0f - 1.0f;
-    SurfacePoint point = point_on_face(table, face, sample_triangle(vec2(u.x, u.y)));
+    SurfacePoint point = inner_point(table, face, sample_triangle(vec2(u.x, u.y)));
     vec3 axis = is_front ? point.normal : -point.normal;
     Ray ray;
     ray.origin = spawn_position(point, is_front);

@@ -2,24 +2,9 @@
 // Scenes whose view factors are known in closed form.
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include "engine/scene/shapes.h"
+#include "tests/analysis/scenes.h"
 
 namespace twinray::test {
-
-// Each mesh with one instance.
-inline Scene scene_of(std::vector<Mesh> meshes) {
-    Scene scene;
-    scene.materials.resize(1);
-    for (uint i = 0; i < meshes.size(); ++i) {
-        meshes[i].name = "mesh " + std::to_string(i);
-        scene.instances.push_back({meshes[i].name, i, {}});
-    }
-    scene.meshes = std::move(meshes);
-    return scene;
-}
 
 // Squares with sides of 1 that face each other at this distance.
 inline Scene parallel_squares(float distance) {

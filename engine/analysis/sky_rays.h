@@ -9,12 +9,12 @@
 namespace twinray {
 using glm::sqrt;
 #include "engine/core/bridge_begin.h"
-#include "shaders/shared/face_rays.h"
+#include "shaders/shared/sky_rays.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(FaceRaysArgs) == 72 && sizeof(CountFreeArgs) == 40);
+static_assert(sizeof(SkyRaysArgs) == 72 && sizeof(CountFreeArgs) == 40);
 
-struct FaceRaysDesc {
+struct SkyRaysDesc {
     uint samples = 256;  // rays of each face; 1 to 2^20
     Sides sides = Sides::both;
     std::uint64_t seed = 1;
@@ -22,11 +22,11 @@ struct FaceRaysDesc {
 };
 
 // Traces in batches of at most 2^20 rays.
-class FaceRays {
+class SkyRays {
   public:
     // Syncs the accelerator, which push_scene() must have filled from the scene of `faces`, and which must not change
     // meanwhile. Throws Error for `samples` and for an accelerator with other instances.
-    FaceRays(AbstractAccel& accel, const Faces& faces, const FaceRaysDesc& desc);
+    SkyRays(AbstractAccel& accel, const Faces& faces, const SkyRaysDesc& desc);
 
     // By face: rays from points all over it that meet nothing. To the sky they go by what uniform light from above the
     // horizon would bring through either side. Rays are independent of each other and of those of other streams.
@@ -35,13 +35,13 @@ class FaceRays {
 
   private:
     std::vector<GroupCount> trace(dvec3 towards, bool to_sun, uint stream) const;
-    void record(Commands& commands, FaceRaysArgs args) const;
+    void record(Commands& commands, SkyRaysArgs args) const;
 
     AbstractAccel& accel_;
     const Faces& faces_;
-    FaceRaysDesc desc_;
+    SkyRaysDesc desc_;
     uint faces_of_batch_;
-    Kernel<FaceRaysArgs> rays_kernel_;
+    Kernel<SkyRaysArgs> rays_kernel_;
     Kernel<CountFreeArgs> count_kernel_;
     Buffer rays_, hits_, counts_;
 };

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Rays from points of faces to the sky or the sun.
-#ifndef TWINRAY_SHARED_FACE_RAYS_H
-#define TWINRAY_SHARED_FACE_RAYS_H
+#ifndef TWINRAY_SHARED_SKY_RAYS_H
+#define TWINRAY_SHARED_SKY_RAYS_H
 #include "shaders/shared/count_faces.h"
 #include "shaders/shared/random.h"
 #include "shaders/shared/sampling.h"
 
 const uint FACE_STREAM = 0x66616365u;
 
-struct FaceRaysArgs
+struct SkyRaysArgs
 {
     FaceTable table;
     REF(Ray) rays; // `samples` of each face; one that leaves a side that does not count ends before it begins
@@ -45,7 +45,7 @@ FUNC vec2 in_stratum(uint index, uint count, uint rows, vec2 place)
     return vec2((float(index - first) + place.x) / columns, (float(first) + place.y * columns) / float(count));
 }
 
-FUNC Ray face_ray(FaceRaysArgs args, uint index)
+FUNC Ray sky_ray(SkyRaysArgs args, uint index)
 {
     uint face = args.first_face + index / args.samples;
     uint number = index % args.samples;

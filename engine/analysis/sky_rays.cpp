@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/face_rays.h"
+#include "engine/analysis/sky_rays.h"
 
 #include "analysis_count_free.spv.h"
-#include "analysis_face_rays.spv.h"
+#include "analysis_sky_rays.spv.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -18,12 +18,12 @@ uint faces_of_batch(uint samples, std::size_t faces) {
 
 }  // namespace
 
-FaceRays::FaceRays(AbstractAccel& accel, const Faces& faces, const FaceRaysDesc& desc)
+SkyRays::SkyRays(AbstractAccel& accel, const Faces& faces, const SkyRaysDesc& desc)
     : accel_(accel),
       faces_(faces),
       desc_(desc),
       faces_of_batch_(faces_of_batch(desc.samples, faces.count())),
-      rays_kernel_(accel.context(), {.name = "analysis_face_rays", .spirv = analysis_face_rays_spirv}),
+      rays_kernel_(accel.context(), {.name = "analysis_sky_rays", .spirv = analysis_sky_rays_spirv}),
       count_kernel_(accel.context(), {.name = "analysis_count_free", .spirv = analysis_count_free_spirv}) {
     check_filled(accel, faces.group_count(FaceGrouping::instance), "rays from faces");
     const std::uint64_t rays = std::uint64_t{faces_of_batch_} * desc.samples;
@@ -33,20 +33,20 @@ FaceRays::FaceRays(AbstractAccel& accel, const Faces& faces, const FaceRaysDesc&
     accel.sync();
 }
 
-std::vector<GroupCount> FaceRays::trace(dvec3 towards, bool to_sun, uint stream) const {
+std::vector<GroupCount> SkyRays::trace(dvec3 towards, bool to_sun, uint stream) const {
     if (faces_.count() == 0) return {};
-    FaceRaysArgs args{.table = faces_.table(),
-                      .rays = rays_.ref<Ray>(),
-                      .towards = vec3(unit_direction(towards)),
-                      .to_sun = to_sun,
-                      .front_only = desc_.sides == Sides::front,
-                      .first_face = 0,
-                      .ray_count = 0,
-                      .samples = desc_.samples,
-                      .rows = static_cast<uint>(std::sqrt(desc_.samples)),
-                      .stream = stream,
-                      .seed_low = static_cast<uint>(desc_.seed),
-                      .seed_high = static_cast<uint>(desc_.seed >> 32)};
+    SkyRaysArgs args{.table = faces_.table(),
+                     .rays = rays_.ref<Ray>(),
+                     .towards = vec3(unit_direction(towards)),
+                     .to_sun = to_sun,
+                     .front_only = desc_.sides == Sides::front,
+                     .first_face = 0,
+                     .ray_count = 0,
+                     .samples = desc_.samples,
+                     .rows = static_cast<uint>(std::sqrt(desc_.samples)),
+                     .stream = stream,
+                     .seed_low = static_cast<uint>(desc_.seed),
+                     .seed_high = static_cast<uint>(desc_.seed >> 32)};
     for (std::uint64_t first = 0; first < faces_.count(); first += faces_of_batch_) {
         args.first_face = static_cast<uint>(first);
         args.ray_count =
@@ -63,7 +63,7 @@ std::vector<GroupCount> FaceRays::trace(dvec3 towards, bool to_sun, uint stream)
     return download<GroupCount>(accel_.context(), counts_, faces_.count());
 }
 
-void FaceRays::record(Commands& commands, FaceRaysArgs args) const {
+void SkyRays::record(Commands& commands, SkyRaysArgs args) const {
     rays_kernel_.dispatch(commands, args, args.ray_count);
     accel_.trace(commands, accel_.view(),
                  {.rays = args.rays,

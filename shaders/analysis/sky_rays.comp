@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// The rays of a run of faces.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/sky_rays.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { SkyRaysArgs args; };
+
+void main()
+{
+    uint i = global_index();
+    if (i < args.ray_count) AT(args.rays, i) = sky_ray(args, i);
+}
