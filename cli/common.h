@@ -56,6 +56,7 @@ void append_json(const std::filesystem::path& file, const nlohmann::json& record
 nlohmann::json describe(const Context& context);
 
 // Each adds its subcommand; the callback sets `exit_code`.
+void add_collide(CLI::App& app, int& exit_code);
 void add_devices(CLI::App& app, int& exit_code);
 void add_trace(CLI::App& app, int& exit_code);
 void add_verify(CLI::App& app, int& exit_code);

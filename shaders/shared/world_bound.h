@@ -75,4 +75,22 @@ FUNC GeometryBox box_in_world(GeometryBox box, Rows m)
                      reach_below(-m.r2, box.lo, box.hi));
     return world;
 }
+
+// The box of an instance in world space; lo > hi where nothing of it can be hit. `is_unusable`: because of its transform.
+FUNC GeometryBox instance_box(InstanceRecord given, INOUT(bool) is_unusable)
+{
+    const float infinity = uintBitsToFloat(0x7f800000u);
+    GeometryBox none;
+    none.lo = vec3(infinity);
+    none.hi = vec3(-infinity);
+    is_unusable = false;
+    InstanceRecord record = in_built_units(given);
+    if (record.geometry == 0ul) return none;
+    Rows to_world = to_world_of(record);
+    is_unusable = !is_usable(to_world, inverse_of(to_world));
+    if (is_unusable) return none;
+    GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);
+    if (!(box.lo.x <= box.hi.x)) return none;
+    return box_in_world(box, to_world);
+}
 #endif

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "engine/collide/pair_search.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <utility>
+
+#include "collide_pairs.spv.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+
+std::vector<uint> download(Context& context, const DevicePairs& pairs, Uints DevicePairs::*column) {
+    if (pairs.count == 0) return {};
+    return download<uint>(context, *pairs.buffer, pairs.count, (pairs.*column).address - pairs.buffer->address());
+}
+
+PairSearch::PairSearch(Context& context)
+    : context_(context),
+      kernel_(context, {.name = "collide_pairs", .spirv = collide_pairs_spirv}),
+      sort_(context),
+      total_(context, {.name = "collide total", .bytes = sizeof(PairTotal)}),
+      readback_(context, {.name = "collide total readback", .bytes = sizeof(PairTotal), .memory = Memory::readback}) {}
+
+void PairSearch::set_max_pairs(std::uint64_t count) {
+    if (count > most_pairs) fail("set_max_pairs: ", count, " pairs; at most ", most_pairs, " can be told apart");
+    max_pairs_ = count;
+}
+
+RadixSort::Pairs PairSearch::columns(const Buffer& buffer, std::uint64_t count) {
+    return {buffer.ref<uint>(), buffer.ref<uint>(count * sizeof(uint))};
+}
+
+void PairSearch::reserve(std::uint64_t count) {
+    if (capacity() >= count) return;
+    pairs_ = {};  // both at once might not fit
+    pairs_ = Buffer(context_, {.name = "collide pairs", .bytes = count * 2 * sizeof(uint)});
+}
+
+std::uint64_t PairSearch::run(const Query& query, std::uint64_t capacity, uint flags) {
+    const bool is_within = query.boxes.address == 0;
+    const uint queries = is_within ? query.tree.count : query.box_count;
+    if (queries == 0 || query.tree.count == 0) return 0;
+    const RadixSort::Pairs out = columns(pairs_, capacity);
+    const PairSearchArgs args{
+        .nodes = query.tree.nodes,
+        .queries = is_within ? query.tree.leaves() : query.boxes,
+        .first = out.keys,
+        .second = out.values,
+        .total = total_.ref<PairTotal>(),
+        .query_count = queries,
+        .leaf_begin = query.tree.leaf_begin,
+        .leaf_count = query.tree.count,
+        .capacity = static_cast<uint>(capacity),
+        .flags = flags | (is_within ? SEARCH_WITHIN : 0) | (query.other_groups ? SEARCH_OTHER_GROUPS : 0),
+        .reserved = 0};
+    Commands commands(context_, "collide search");
+    {
+        const auto pass = commands.pass("collide search start");
+        commands.write(total_, PairTotal{0, 0});
+    }
+    kernel_.dispatch(commands, args, queries);
+    {
+        const auto pass = commands.pass("collide search readback");
+        commands.copy(total_, 0, readback_, 0, sizeof(PairTotal));
+    }
+    context_.wait(commands.submit());
+    PairTotal total;
+    std::memcpy(&total, readback_.mapped(), sizeof total);
+    return std::uint64_t{total.high} << 32 | total.low;
+}
+
+DevicePairs PairSearch::find(const Query& query, const std::string& action) {
+    const std::uint64_t guess = std::max<std::uint64_t>(1024, 4 * std::uint64_t{query.tree.count});
+    reserve(std::min(max_pairs_, guess));
+    std::uint64_t room = std::min(capacity(), max_pairs_);
+    const std::uint64_t total = run(query, room, 0);
+    if (total > max_pairs_)
+        fail(action, ": ", total, " pairs of boxes overlap; at most ", max_pairs_,
+             " are allowed, see set_max_pairs(): a pair takes up to 16 bytes of device memory");
+    if (total > room) {
+        reserve(total);
+        room = total;
+        run(query, room, 0);
+    }
+    const RadixSort::Pairs found = columns(pairs_, room);
+    return {found.keys, found.values, total, &pairs_};
+}
+
+DevicePairs PairSearch::find_sorted(const Query& query, uint largest_item, const std::string& action) {
+    const DevicePairs found = find(query, action);
+    if (found.count < 2) return found;
+    if (spare_.bytes() < found.count * 2 * sizeof(uint)) {
+        spare_ = {};
+        spare_ = Buffer(context_, {.name = "collide pairs sorting", .bytes = found.count * 2 * sizeof(uint)});
+    }
+    if (counters_.bytes() < RadixSort::counter_bytes(found.count))
+        counters_ = Buffer(context_, {.name = "collide counters", .bytes = RadixSort::counter_bytes(found.count)});
+    const auto bits = static_cast<uint>(std::bit_width(largest_item));
+    Commands commands(context_, "collide sort");
+    // The sort is stable: first by the second items, then by the first ones.
+    RadixSort::Pairs pairs{found.second, found.first}, spare = columns(spare_, found.count);
+    for (int column = 0; column < 2; ++column) {
+        const RadixSort::Pairs sorted =
+            sort_.record(commands, pairs, spare, counters_.ref<uint>(), static_cast<uint>(found.count), bits);
+        if (sorted.keys.address != pairs.keys.address) std::swap(pairs, spare);
+        std::swap(pairs.keys, pairs.values);
+    }
+    commands.submit();
+    const bool is_in_spare = pairs.keys.address - spare_.address() < spare_.bytes();
+    return {pairs.values, pairs.keys, found.count, is_in_spare ? &spare_ : &pairs_};
+}
+
+}  // namespace twinray

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Morton codes of the boxes' centres: the finer 30 bits of the boxes in the order given, then the coarser of those in the
+// order that sorting by the former made.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/box_tree.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { BoxTreeArgs args; };
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.count) return;
+    uint index = i;
+    if (args.is_coarse == 0u) AT(args.order, i) = i;
+    else index = AT(args.order, i);
+    WorldBoundBits bits = AT(args.bits, 0);
+    vec3 lo = vec3(from_ordered_bits(bits.lo.x), from_ordered_bits(bits.lo.y), from_ordered_bits(bits.lo.z));
+    vec3 hi = vec3(from_ordered_bits(bits.hi.x), from_ordered_bits(bits.hi.y), from_ordered_bits(bits.hi.z));
+    TreeBox box = AT(args.boxes, index);
+    uint code = 0u;
+    if (!is_empty(box))
+        code = args.is_coarse == 0u ? fine_code(center_of(box), lo, hi) : morton_code(center_of(box), lo, hi);
+    AT(args.keys, i) = code;
+}

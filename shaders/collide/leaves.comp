@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// The leaves: boxes in sorted order.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/box_tree.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { BoxTreeArgs args; };
+
+void main()
+{
+    uint i = global_index();
+    if (i < args.count) AT(args.nodes, args.leaf_begin + i) = AT(args.boxes, AT(args.order, i));
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// The leaves that overlap each query. Within one tree a query begins right of its own leaf, so that each pair is met once.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/box_tree.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { PairSearchArgs args; };
+
+const uint BATCH = 16u; // pairs for which room is asked at once
+uint batch[BATCH];
+uint batch_count = 0u;
+
+bool has(uint flag) { return (args.flags & flag) != 0u; }
+
+// Counts them; gives how many there were before, without the high word.
+uint count(uint pairs)
+{
+    uint before = atomicAdd(AT(args.total, 0).low, pairs);
+    if (before + pairs < before) atomicAdd(AT(args.total, 0).high, 1u);
+    return before;
+}
+
+void flush(uint item)
+{
+    uint at = count(batch_count);
+    for (uint i = 0u; i < batch_count; i++)
+    {
+        uint slot = at + i;
+        if (slot < at || slot >= args.capacity) break;
+        bool is_turned = has(SEARCH_WITHIN) && batch[i] < item;
+        AT(args.first, slot) = is_turned ? batch[i] : item;
+        AT(args.second, slot) = is_turned ? item : batch[i];
+    }
+    batch_count = 0u;
+}
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.query_count) return;
+    TreeBox query = AT(args.queries, i);
+    if (is_empty(query)) return;
+    if (has(SEARCH_ANY) && atomicAdd(AT(args.total, 0).low, 0u) != 0u) return;
+    uint end = args.leaf_begin + args.leaf_count;
+    uint node = has(SEARCH_WITHIN) ? next_subtree(args.leaf_begin + i) : 1u;
+    while (node != 0u && node < end)
+    {
+        TreeBox other = AT(args.nodes, node);
+        bool meets = overlap(query, other) && !(has(SEARCH_OTHER_GROUPS) && other.group == query.group);
+        if (has(SEARCH_COUNT) && meets && node < args.leaf_begin && contains(query, other))
+        {
+            count(other.item);
+        }
+        else if (meets && node < args.leaf_begin)
+        {
+            node = 2u * node;
+            continue;
+        }
+        else if (meets && !is_empty(other))
+        {
+            batch[batch_count++] = other.item;
+            if (batch_count == BATCH || has(SEARCH_ANY)) flush(query.item);
+            if (has(SEARCH_ANY)) return;
+        }
+        node = next_subtree(node);
+    }
+    if (batch_count != 0u) flush(query.item);
+}
