@@ -31,6 +31,7 @@ class BoxTree {
     // Makes room for `count` boxes of which a tree is to be made and gives where to write them, in any order; empty
     // ones (lo > hi) are never found. Throws Error above max_count.
     Ref<TreeBox> prepare(std::size_t count);
+    const Buffer& boxes() const { return boxes_; }  // where they are written
     // Sorts the boxes that earlier passes have written and builds the tree. Depends on the boxes alone.
     void record(Commands& commands) const;
     BoxTreeView view() const;

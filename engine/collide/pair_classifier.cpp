@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "engine/collide/pair_classifier.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "collide_classify.spv.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+constexpr std::uint64_t chunk = 1 << 20;  // pairs of which the results are downloaded at once: 16 MiB
+
+Context& with_float64(Context& context) {
+    if (!context.facts().shader_float64)
+        fail("collide: classes of triangles need float64 (shaderFloat64), which device '", context.facts().name,
+             "' has not enabled");
+    return context;
+}
+
+void check(double coordinate, std::size_t pair) {
+    const double size = std::abs(coordinate);
+    if (size == 0 || (size >= 0x1p-245 && size <= 0x1p259)) return;
+    fail("classify: pair ", pair, " has a coordinate of ", coordinate,
+         "; exact are 0 and magnitudes from 2^-245 to 2^259");
+}
+
+void check(const Corners64& t, std::size_t pair) {
+    for (const dvec3& corner : {t.a, t.b, t.c})
+        for (int axis = 0; axis < 3; ++axis) check(corner[axis], pair);
+}
+
+template <class T>
+std::uint64_t offset_after(std::uint64_t offset, std::uint64_t count) {
+    return (offset + count * sizeof(T) + 15) / 16 * 16;
+}
+
+}  // namespace
+
+PairClassifier::PairClassifier(Context& context)
+    : context_(with_float64(context)),
+      kernel_(context, {.name = "collide_classify", .spirv = collide_classify_spirv}),
+      total_(context, {.name = "collide contact total", .bytes = sizeof(PairTotal)}) {}
+
+std::vector<ClassifiedPair> PairClassifier::classify(const DevicePairs& pairs, const Items& items) {
+    host_count_ = 0;
+    host_seconds_ = 0;
+    std::vector<ClassifiedPair> classified;
+    for (std::uint64_t begin = 0; begin < pairs.count; begin += chunk) {
+        const std::uint64_t found = run(pairs, begin, static_cast<uint>(std::min(chunk, pairs.count - begin)), items);
+        std::vector<PairContact> contacts = download<PairContact>(context_, contacts_, found);
+        decide(contacts, items);
+        for (const PairContact& contact : contacts)
+            if (const auto pair_class = static_cast<PairClass>(contact.class_of_pair);
+                pair_class != PairClass::separate)
+                classified.push_back({contact.first, contact.second, pair_class});
+    }
+    return classified;
+}
+
+std::uint64_t PairClassifier::run(const DevicePairs& pairs, std::uint64_t begin, uint count, const Items& items) {
+    if (contacts_.bytes() < count * sizeof(PairContact))
+        contacts_ = Buffer(context_, {.name = "collide contacts", .bytes = count * sizeof(PairContact)});
+    const ClassifyArgs args{.corners = items.corners,
+                            .names = items.names,
+                            .first = {pairs.first.address + begin * sizeof(uint)},
+                            .second = {pairs.second.address + begin * sizeof(uint)},
+                            .contacts = contacts_.ref<PairContact>(),
+                            .total = total_.ref<PairTotal>(),
+                            .count = count,
+                            .reserved = 0};
+    Commands commands(context_, "collide classify");
+    {
+        const auto pass = commands.pass("collide classify start");
+        commands.write(total_, PairTotal{0, 0});
+    }
+    kernel_.dispatch(commands, args, count);
+    commands.submit();
+    return download<PairTotal>(context_, total_, 1).front().low;
+}
+
+void PairClassifier::decide(std::vector<PairContact>& contacts, const Items& items) {
+    const auto start = std::chrono::steady_clock::now();
+    for (PairContact& contact : contacts) {
+        if (contact.class_of_pair != PAIR_UNDECIDED) continue;
+        ++host_count_;
+        contact.class_of_pair =
+            static_cast<uint>(exact_class(items.host_corners(contact.first), items.host_name(contact.first),
+                                          items.host_corners(contact.second), items.host_name(contact.second)));
+    }
+    host_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::vector<PairClass> PairClassifier::classify(std::span<const TrianglePair> pairs) {
+    std::vector<PairClass> classes(pairs.size(), PairClass::separate);
+    if (pairs.empty()) return classes;
+    if (pairs.size() > PairSearch::most_pairs / 2)
+        fail("classify: ", pairs.size(), " pairs; at most ", PairSearch::most_pairs / 2, " at once");
+    std::vector<TriangleName> names;
+    std::vector<uint> items;
+    for (uint column = 0; column < 2; ++column)
+        for (uint i = 0; i < pairs.size(); ++i) items.push_back(2 * i + column);
+    for (uint i = 0; i < 2 * pairs.size(); ++i) names.push_back({uvec3(0, 1, 2), i});
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        check(pairs[i].a, i);
+        check(pairs[i].b, i);
+    }
+    const std::uint64_t names_at = offset_after<TrianglePair>(0, pairs.size());
+    const std::uint64_t items_at = offset_after<TriangleName>(names_at, names.size());
+    const Buffer data(context_, {.name = "collide given pairs", .bytes = items_at + items.size() * sizeof(uint)});
+    Commands commands(context_, "collide given pairs");
+    {
+        const auto pass = commands.pass("collide given pairs");
+        commands.upload(data, pairs);
+        commands.upload(data, std::span<const TriangleName>(names), names_at);
+        commands.upload(data, std::span<const uint>(items), items_at);
+    }
+    commands.submit();
+    const DevicePairs listed{data.ref<uint>(items_at), data.ref<uint>(items_at + pairs.size() * sizeof(uint)),
+                             pairs.size(), &data};
+    const auto corners_of = [&](uint item) { return item % 2 ? pairs[item / 2].b : pairs[item / 2].a; };
+    const auto name_of_item = [&](uint item) { return names[item]; };
+    for (const ClassifiedPair& pair :
+         classify(listed, {data.ref<Corners64>(), data.ref<TriangleName>(names_at), corners_of, name_of_item}))
+        classes[pair.first / 2] = pair.pair_class;
+    return classes;
+}
+
+}  // namespace twinray

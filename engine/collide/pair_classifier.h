@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "engine/collide/exact_class.h"
+#include "engine/collide/pair_search.h"
+
+namespace twinray {
+
+struct TrianglePair {
+    Corners64 a, b;
+};
+
+// Two items and their class, which is not separate.
+struct ClassifiedPair {
+    uint first = 0;
+    uint second = 0;
+    PairClass pair_class = PairClass::separate;
+};
+
+// Classes of pairs of triangles: the GPU decides where float64 is certain, the host the others, without error.
+class PairClassifier {
+  public:
+    // Throws Error where the device has no float64.
+    explicit PairClassifier(Context& context);
+
+    // The triangles that items name: on the device, and the same on the host.
+    struct Items {
+        Ref<Corners64> corners;
+        Ref<TriangleName> names;
+        std::function<Corners64(uint)> host_corners;
+        std::function<TriangleName(uint)> host_name;
+    };
+    // Those of the pairs that are not separate, in no order. Submits and waits.
+    std::vector<ClassifiedPair> classify(const DevicePairs& pairs, const Items& items);
+    // Of each pair. Throws Error for a corner that is not finite or out of the range of exact_class().
+    std::vector<PairClass> classify(std::span<const TrianglePair> pairs);
+
+    // Of the last call: how many the host decided, and what it took.
+    std::uint64_t host_count() const { return host_count_; }
+    double host_seconds() const { return host_seconds_; }
+
+  private:
+    std::uint64_t run(const DevicePairs& pairs, std::uint64_t begin, uint count, const Items& items);
+    void decide(std::vector<PairContact>& contacts, const Items& items);
+
+    Context& context_;
+    Kernel<ClassifyArgs> kernel_;
+    Buffer contacts_, total_;
+    std::uint64_t host_count_ = 0;
+    double host_seconds_ = 0;
+};
+
+}  // namespace twinray

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "engine/collide/triangle_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "collide_world_triangles.spv.h"
+#include "engine/collide/box_tree.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/world_corner.h"
+#include "engine/core/bridge_end.h"
+
+// The least coordinate of the box under a row, lower by more than float64 rounds.
+double least_coordinate(const vec4& row, const Bounds& box) {
+    double sum = row.w, size = std::abs(double{row.w});
+    for (int axis = 0; axis < 3; ++axis) {
+        const double factor = row[axis];
+        sum += std::min(factor * box.lo[axis], factor * box.hi[axis]);
+        size += std::max(std::abs(factor * box.lo[axis]), std::abs(factor * box.hi[axis]));
+    }
+    return sum - size * 0x1p-48;
+}
+
+// For each vertex the first one at its position.
+std::vector<uint> ids_by_position(std::span<const vec3> positions) {
+    const auto is_before = [&](uint a, uint b) {
+        const vec3 p = positions[a], q = positions[b];
+        if (p.x != q.x) return p.x < q.x;
+        if (p.y != q.y) return p.y < q.y;
+        return p.z != q.z ? p.z < q.z : a < b;
+    };
+    std::vector<uint> order, ids(positions.size());
+    std::iota(ids.begin(), ids.end(), 0u);
+    for (const uint i : ids)
+        if (is_finite(positions[i])) order.push_back(i);
+    std::sort(order.begin(), order.end(), is_before);
+    for (std::size_t i = 1; i < order.size(); ++i)
+        if (positions[order[i]] == positions[order[i - 1]]) ids[order[i]] = ids[order[i - 1]];
+    return ids;
+}
+
+// What a mesh brings to the device, one after the other.
+struct Upload {
+    std::vector<Commands::Piece> pieces;
+    std::uint64_t bytes = 0;
+
+    template <class T>
+    std::uint64_t add(std::span<const T> values) {
+        const std::uint64_t at = bytes;
+        if (!values.empty()) pieces.push_back({at, std::as_bytes(values)});
+        bytes += values.size_bytes();
+        return at;
+    }
+};
+
+}  // namespace
+
+TreeBox box_of_instance(const Bounds& mesh, const Transform& transform, uint item) {
+    TreeBox box = empty_tree_box();
+    if (mesh.is_empty()) return box;
+    for (int axis = 0; axis < 3; ++axis) {
+        const vec4 row = transform.rows[static_cast<std::size_t>(axis)];
+        box.lo[axis] = float_below(least_coordinate(row, mesh));
+        box.hi[axis] = -float_below(least_coordinate(-row, mesh));
+    }
+    box.item = box.group = item;
+    return box;
+}
+
+TriangleSet::TriangleSet(Context& context)
+    : context_(context),
+      kernel_(context, {.name = "collide_world_triangles", .spirv = collide_world_triangles_spirv}) {}
+
+void TriangleSet::set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances,
+                      std::span<const uint> chosen, Shared shared) {
+    placed_.clear();
+    vertex_ids_.assign(meshes.size(), {});
+    chosen_.assign(chosen.begin(), chosen.end());
+    count_ = 0;
+    Upload upload;
+    std::vector<PlacedMesh> table, of_mesh(meshes.size());
+    std::vector<bool> is_added(meshes.size(), false);
+    for (const uint index : chosen) {
+        const MeshInstance& instance = instances[index];
+        const MeshView& mesh = meshes[instance.mesh];
+        if (!is_added[instance.mesh]) {
+            is_added[instance.mesh] = true;
+            if (shared == Shared::by_position) vertex_ids_[instance.mesh] = ids_by_position(mesh.positions);
+            PlacedMesh& added = of_mesh[instance.mesh];
+            added.positions.address = upload.add(mesh.positions);
+            added.indices.address = upload.add(mesh.triangles);
+            added.vertex_ids.address = upload.add(std::span<const uint>(vertex_ids_[instance.mesh]));
+        }
+        PlacedMesh placed = of_mesh[instance.mesh];
+        for (std::size_t row = 0; row < 3; ++row) placed.object_to_world[row] = instance.transform.rows[row];
+        placed.first_triangle = static_cast<uint>(count_);
+        table.push_back(placed);
+        placed.positions = {reinterpret_cast<std::uint64_t>(mesh.positions.data())};
+        placed.indices = {reinterpret_cast<std::uint64_t>(mesh.triangles.data())};
+        placed.vertex_ids = {reinterpret_cast<std::uint64_t>(vertex_ids_[instance.mesh].data())};
+        placed_.push_back(placed);
+        count_ += mesh.triangles.size();
+        if (count_ > BoxTree::max_count)
+            fail("collide: the instances that may touch have more than ", BoxTree::max_count, " triangles");
+    }
+    if (count_ == 0) return;
+    data_ = Buffer(context_, {.name = "collide meshes", .bytes = upload.bytes});
+    table_ = Buffer(context_, {.name = "collide placed meshes", .bytes = table.size() * sizeof(PlacedMesh)});
+    corners_ = Buffer(context_, {.name = "collide corners", .bytes = count_ * sizeof(Corners64)});
+    names_ = Buffer(context_, {.name = "collide names", .bytes = count_ * sizeof(TriangleName)});
+    for (PlacedMesh& placed : table) {
+        placed.positions.address += data_.address();
+        placed.indices.address += data_.address();
+        placed.vertex_ids.address = shared == Shared::by_index ? 0 : placed.vertex_ids.address + data_.address();
+    }
+    Commands commands(context_, "collide meshes");
+    {
+        const auto pass = commands.pass("collide meshes");
+        commands.upload_pieces(data_, upload.pieces);
+        commands.upload(table_, std::span<const PlacedMesh>(table));
+    }
+    commands.submit();
+}
+
+void TriangleSet::record(Commands& commands, Ref<TreeBox> boxes) const {
+    if (count_ == 0) return;
+    const WorldTrianglesArgs args{table_.ref<PlacedMesh>(),          boxes,
+                                  corners_.ref<Corners64>(),         names_.ref<TriangleName>(),
+                                  static_cast<uint>(placed_.size()), static_cast<uint>(count_)};
+    kernel_.dispatch(commands, args, count_);
+}
+
+std::size_t TriangleSet::mesh_of(uint item) const {
+    const auto after = std::upper_bound(placed_.begin(), placed_.end(), item,
+                                        [](uint i, const PlacedMesh& placed) { return i < placed.first_triangle; });
+    return static_cast<std::size_t>(after - placed_.begin()) - 1;
+}
+
+Corners64 TriangleSet::corners(uint item) const {
+    return world_corners(placed_[mesh_of(item)], vertices_of(placed_[mesh_of(item)], primitive(item)));
+}
+
+TriangleName TriangleSet::name(uint item) const {
+    const std::size_t index = mesh_of(item);
+    const PlacedMesh& placed = placed_[index];
+    uvec3 ids = vertices_of(placed, primitive(item));
+    if (placed.vertex_ids.address) ids = {placed.vertex_ids[ids.x], placed.vertex_ids[ids.y], placed.vertex_ids[ids.z]};
+    return {ids, static_cast<uint>(index)};
+}
+
+}  // namespace twinray

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/collide/pair_class.h"
+#include "engine/core/kernel.h"
+#include "engine/core/transform.h"
+#include "engine/scene/mesh.h"
+
+namespace twinray {
+
+// One placement of a mesh.
+struct MeshInstance {
+    uint mesh = 0;  // index among the meshes
+    Transform transform;
+};
+
+// Which vertices of a mesh are one, so that triangles that have them are neighbours.
+enum class Shared : std::uint8_t { by_index, by_position };
+
+// A box around what an instance covers in world space, corners as in world_corner.h, and a little more. Empty for a
+// mesh without a finite triangle.
+TreeBox box_of_instance(const Bounds& mesh, const Transform& transform, uint item);
+
+// The triangles of instances in world space, on the device: item i counts them instance by instance.
+class TriangleSet {
+  public:
+    explicit TriangleSet(Context& context);
+
+    // Uploads the meshes. `chosen`: indices of the instances that take part, ascending. The spans, and what they refer
+    // to, must outlive the use of this.
+    void set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, std::span<const uint> chosen,
+             Shared shared);
+    std::size_t count() const { return count_; }
+    // Writes boxes, corners and names of all; items are grouped by instance.
+    void record(Commands& commands, Ref<TreeBox> boxes) const;
+    Ref<Corners64> corners_on_device() const { return corners_.ref<Corners64>(); }
+    Ref<TriangleName> names_on_device() const { return names_.ref<TriangleName>(); }
+
+    // Of one item, computed on the host: the same bits.
+    Corners64 corners(uint item) const;
+    TriangleName name(uint item) const;
+    uint instance(uint item) const { return chosen_[mesh_of(item)]; }
+    uint primitive(uint item) const { return item - placed_[mesh_of(item)].first_triangle; }
+    std::uint64_t bytes() const { return data_.bytes() + table_.bytes() + corners_.bytes() + names_.bytes(); }
+
+  private:
+    std::size_t mesh_of(uint item) const;
+
+    Context& context_;
+    Kernel<WorldTrianglesArgs> kernel_;
+    std::vector<PlacedMesh> placed_;             // with addresses of the host
+    std::vector<std::vector<uint>> vertex_ids_;  // by mesh, where they are not the indices
+    std::vector<uint> chosen_;
+    std::size_t count_ = 0;
+    Buffer data_, table_, corners_, names_;
+};
+
+}  // namespace twinray
