@@ -7,7 +7,7 @@
 #include <string>
 
 #include "engine/collide/exact_class.h"
-#include "engine/verify/parallel.h"
+#include "engine/core/parallel.h"
 #include "tests/collide/triangle_pairs.h"
 #include "tests/exact/pair_referee.h"
 
