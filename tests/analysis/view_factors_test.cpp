@@ -205,6 +205,39 @@ TEST_P(ViewFactorsTest, WhatIsHiddenOrTurnedAwayHasNoFactor) {
     EXPECT_TRUE(all[0].factors.empty() && all[1].factors.empty());
 }
 
+TEST_P(ViewFactorsTest, NarrowGapsAndPanelsAreAsAccurateAsWideOnes) {
+    struct Case {
+        Scene scene;
+        uint from;
+        double value;
+    };
+    // The panel's factor is that of the rectangle, by reciprocity.
+    const std::vector<Case> cases = {{test::parallel_squares(1e-3f), 0, 0.998005631907579727},
+                                     {test::parallel_squares(1e-6f), 0, 0.9999980000100295},
+                                     {test::perpendicular_rectangles(1, 0.01f), 1, 0.489584926850668304},
+                                     {test::perpendicular_rectangles(1, 1e-6f), 1, 0.499997492619688762}};
+    for (const Case& one : cases) {
+        const ViewFactorRow row = rows(one.scene, {.grouping = FaceGrouping::mesh, .rays = 1 << 18})[one.from];
+        ASSERT_EQ(row.factors.size(), 1u) << one.value;
+        EXPECT_LE(static_cast<double>(row.factors[0].low), one.value) << one.value;
+        EXPECT_GE(static_cast<double>(row.factors[0].high), one.value) << one.value;
+        EXPECT_LT(row.factors[0].high - row.factors[0].low, 0.002f) << one.value;
+        EXPECT_EQ(row.back.value, 0) << one.value;
+    }
+}
+
+TEST_P(ViewFactorsOfAccels, OfConcentricSpheresTheInnerSeesTheOuterAlone) {
+    const Scene spheres = scene_of({make_icosphere(3, 1), turned(make_icosphere(3, 2))});
+    const std::vector<ViewFactorRow> all = rows(spheres, {.grouping = FaceGrouping::mesh, .rays = 1 << 17});
+    EXPECT_EQ(factor(all[0], 1), 1) << "every ray, to the last";
+    EXPECT_EQ(all[1].hits, all[1].rays);
+    const ViewFactor& inward = all[1].factors.front();
+    EXPECT_EQ(inward.target, 0u);
+    EXPECT_LE(inward.low, 0.25f) << "the spheres are similar";
+    EXPECT_GE(inward.high, 0.25f);
+    EXPECT_LT(inward.high - inward.low, 0.006f);
+}
+
 TEST_P(ViewFactorsTest, InstancesStandWhereTheirTransformsPutThem) {
     Scene scene = test::parallel_squares(1);
     const Transform in_half = Transform::scaling(vec3(0.5f, 0.25f, 8));
