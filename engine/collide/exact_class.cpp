@@ -64,7 +64,7 @@ int area_sign(const dvec3& a, const dvec3& b, const dvec3& c, uint axis) {
     return sign == UNKNOWN_SIGN ? exact_area_sign(a, b, c, axis) : sign;
 }
 
-#include "shaders/shared/triangle_pair.h"
+#include "shaders/shared/neighbours.h"
 #include "engine/core/bridge_end.h"
 
 // Where a line through corners meets the plane of another triangle.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "collide_world_triangles.spv.h"
 #include "engine/collide/box_tree.h"
@@ -58,6 +59,35 @@ struct Upload {
     }
 };
 
+// Addresses are offsets in what is uploaded.
+PlacedMesh added_to(Upload& upload, const MeshView& mesh, std::span<const uint> ids) {
+    PlacedMesh added{};
+    added.positions.address = upload.add(mesh.positions);
+    added.indices.address = upload.add(mesh.triangles);
+    added.vertex_ids.address = upload.add(ids);
+    return added;
+}
+
+void move_to(std::uint64_t address, PlacedMesh& mesh, Shared shared) {
+    mesh.positions.address += address;
+    mesh.indices.address += address;
+    mesh.vertex_ids.address = shared == Shared::by_index ? 0 : mesh.vertex_ids.address + address;
+}
+
+PlacedMesh on_host(const MeshView& mesh, std::span<const uint> ids) {
+    PlacedMesh host{};
+    host.positions = {reinterpret_cast<std::uint64_t>(mesh.positions.data())};
+    host.indices = {reinterpret_cast<std::uint64_t>(mesh.triangles.data())};
+    host.vertex_ids = {reinterpret_cast<std::uint64_t>(ids.data())};
+    return host;
+}
+
+PlacedMesh placed(PlacedMesh mesh, const Transform& transform, std::size_t first_triangle) {
+    std::copy(transform.rows.begin(), transform.rows.end(), mesh.object_to_world);
+    mesh.first_triangle = static_cast<uint>(first_triangle);
+    return mesh;
+}
+
 }  // namespace
 
 TreeBox box_of_instance(const Bounds& mesh, const Transform& transform, uint item) {
@@ -83,41 +113,26 @@ void TriangleSet::set(std::span<const MeshView> meshes, std::span<const MeshInst
     chosen_.assign(chosen.begin(), chosen.end());
     count_ = 0;
     Upload upload;
-    std::vector<PlacedMesh> table, of_mesh(meshes.size());
-    std::vector<bool> is_added(meshes.size(), false);
+    std::vector<std::optional<PlacedMesh>> uploaded(meshes.size());
+    std::vector<PlacedMesh> table;
     for (const uint index : chosen) {
         const MeshInstance& instance = instances[index];
         const MeshView& mesh = meshes[instance.mesh];
-        if (!is_added[instance.mesh]) {
-            is_added[instance.mesh] = true;
-            if (shared == Shared::by_position) vertex_ids_[instance.mesh] = ids_by_position(mesh.positions);
-            PlacedMesh& added = of_mesh[instance.mesh];
-            added.positions.address = upload.add(mesh.positions);
-            added.indices.address = upload.add(mesh.triangles);
-            added.vertex_ids.address = upload.add(std::span<const uint>(vertex_ids_[instance.mesh]));
+        std::vector<uint>& ids = vertex_ids_[instance.mesh];
+        std::optional<PlacedMesh>& of_mesh = uploaded[instance.mesh];
+        if (!of_mesh) {
+            if (shared == Shared::by_position) ids = ids_by_position(mesh.positions);
+            of_mesh = added_to(upload, mesh, ids);
         }
-        PlacedMesh placed = of_mesh[instance.mesh];
-        for (std::size_t row = 0; row < 3; ++row) placed.object_to_world[row] = instance.transform.rows[row];
-        placed.first_triangle = static_cast<uint>(count_);
-        table.push_back(placed);
-        placed.positions = {reinterpret_cast<std::uint64_t>(mesh.positions.data())};
-        placed.indices = {reinterpret_cast<std::uint64_t>(mesh.triangles.data())};
-        placed.vertex_ids = {reinterpret_cast<std::uint64_t>(vertex_ids_[instance.mesh].data())};
-        placed_.push_back(placed);
+        table.push_back(placed(*of_mesh, instance.transform, count_));
+        placed_.push_back(placed(on_host(mesh, ids), instance.transform, count_));
         count_ += mesh.triangles.size();
         if (count_ > BoxTree::max_count)
             fail("collide: the instances that may touch have more than ", BoxTree::max_count, " triangles");
     }
     if (count_ == 0) return;
-    data_ = Buffer(context_, {.name = "collide meshes", .bytes = upload.bytes});
-    table_ = Buffer(context_, {.name = "collide placed meshes", .bytes = table.size() * sizeof(PlacedMesh)});
-    corners_ = Buffer(context_, {.name = "collide corners", .bytes = count_ * sizeof(Corners64)});
-    names_ = Buffer(context_, {.name = "collide names", .bytes = count_ * sizeof(TriangleName)});
-    for (PlacedMesh& placed : table) {
-        placed.positions.address += data_.address();
-        placed.indices.address += data_.address();
-        placed.vertex_ids.address = shared == Shared::by_index ? 0 : placed.vertex_ids.address + data_.address();
-    }
+    allocate(upload.bytes);
+    for (PlacedMesh& mesh : table) move_to(data_.address(), mesh, shared);
     Commands commands(context_, "collide meshes");
     {
         const auto pass = commands.pass("collide meshes");
@@ -125,6 +140,13 @@ void TriangleSet::set(std::span<const MeshView> meshes, std::span<const MeshInst
         commands.upload(table_, std::span<const PlacedMesh>(table));
     }
     commands.submit();
+}
+
+void TriangleSet::allocate(std::uint64_t mesh_bytes) {
+    data_ = Buffer(context_, {.name = "collide meshes", .bytes = mesh_bytes});
+    table_ = Buffer(context_, {.name = "collide placed meshes", .bytes = placed_.size() * sizeof(PlacedMesh)});
+    corners_ = Buffer(context_, {.name = "collide corners", .bytes = count_ * sizeof(Corners64)});
+    names_ = Buffer(context_, {.name = "collide names", .bytes = count_ * sizeof(TriangleName)});
 }
 
 void TriangleSet::record(Commands& commands, Ref<TreeBox> boxes) const {

@@ -47,6 +47,7 @@ class TriangleSet {
     std::uint64_t bytes() const { return data_.bytes() + table_.bytes() + corners_.bytes() + names_.bytes(); }
 
   private:
+    void allocate(std::uint64_t mesh_bytes);
     std::size_t mesh_of(uint item) const;
 
     Context& context_;

@@ -7,7 +7,7 @@
 #include "shaders/shared/orient.h"
 int volume_sign(dvec3 a, dvec3 b, dvec3 c, dvec3 d) { return filtered_volume_sign(a, b, c, d); }
 int area_sign(dvec3 a, dvec3 b, dvec3 c, uint axis) { return filtered_area_sign(a, b, c, axis); }
-#include "shaders/shared/triangle_pair.h"
+#include "shaders/shared/neighbours.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { ClassifyArgs args; };
 
