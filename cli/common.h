@@ -58,6 +58,7 @@ nlohmann::json describe(const Context& context);
 // Each adds its subcommand; the callback sets `exit_code`.
 void add_collide(CLI::App& app, int& exit_code);
 void add_devices(CLI::App& app, int& exit_code);
+void add_distance(CLI::App& app, int& exit_code);
 void add_trace(CLI::App& app, int& exit_code);
 void add_verify(CLI::App& app, int& exit_code);
 void add_leaks(CLI::App& app, int& exit_code);

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
     twinray::cli::add_trace(app, exit_code);
     twinray::cli::add_verify(app, exit_code);
     twinray::cli::add_collide(app, exit_code);
+    twinray::cli::add_distance(app, exit_code);
     twinray::cli::add_leaks(app, exit_code);
     twinray::cli::add_illumination(app, exit_code);
     twinray::cli::add_centroid(app, exit_code);

@@ -6,12 +6,13 @@ import re
 import sys
 
 BASE = ["engine/core", "engine/scene", "engine/accel", "engine/report"]
-ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/verify"]
+ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/points", "engine/verify"]
 PRODUCT = ENGINE + ["swtlas", "hwtlas"]
 SEES = {  # besides itself and shaders/shared
     "engine": ENGINE,  # headers that gather the others
     "engine/core": [], "engine/scene": BASE[:1], "engine/accel": BASE[:2], "engine/report": BASE[:1],
     "engine/analysis": BASE, "engine/collide": BASE, "engine/verify": BASE,
+    "engine/points": BASE + ["engine/collide"],
     "swtlas": ENGINE, "hwtlas": ENGINE,
     "cli": PRODUCT + ["shaders/suite", "bench"],
     "samples": PRODUCT + ["shaders/path_tracer", "shaders/embed_renderer"],

@@ -2,15 +2,9 @@
 // A tree of boxes, built on the GPU: see shaders/shared/box_tree.h.
 #pragma once
 
-#include "engine/accel/world_bound.h"
-#include "engine/core/radix_sort.h"
+#include "engine/collide/hilbert_order.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
-#include "shaders/shared/box_tree.h"
-#include "engine/core/bridge_end.h"
-
-static_assert(sizeof(TreeBox) == 32);
 
 // What kernels need to search a tree: valid until the next prepare().
 struct BoxTreeView {
@@ -38,12 +32,10 @@ class BoxTree {
     std::uint64_t bytes() const;
 
   private:
-    Uints record_order(Commands& commands, BoxTreeArgs args) const;
-
     Context& context_;
-    Kernel<BoxTreeArgs> centers_, codes_, leaves_, level_;
-    RadixSort sort_;
-    Buffer boxes_, nodes_, scratch_, bits_;
+    Kernel<BoxTreeArgs> leaves_, level_;
+    HilbertOrder order_;
+    Buffer boxes_, nodes_;
     uint count_ = 0;
 };
 

@@ -5,21 +5,12 @@
 #include <chrono>
 #include <numeric>
 
-#include "engine/core/error.h"
-
 namespace twinray {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-void check(std::span<const MeshView> meshes, std::span<const MeshInstance> instances) {
-    for (const MeshView& mesh : meshes) check_indices(mesh);
-    for (std::size_t i = 0; i < instances.size(); ++i)
-        if (instances[i].mesh >= meshes.size())
-            fail("collide: instance ", i, " is of mesh ", instances[i].mesh, " of ", meshes.size());
-}
 
 }  // namespace
 
@@ -40,7 +31,7 @@ Contacts ContactFinder::find(const Scene& scene, const ContactOptions& options) 
 
 Contacts ContactFinder::find(std::span<const MeshView> meshes, std::span<const MeshInstance> instances,
                              const ContactOptions& options) {
-    check(meshes, instances);
+    check_placed(meshes, instances, "collide");
     Contacts contacts;
     const Clock::time_point search_start = Clock::now();
     const std::vector<uint> chosen = taking_part(meshes, instances, options.self);

@@ -1,69 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "engine/collide/exact_class.h"
 
-#include "engine/collide/expansion.h"
+#include "engine/collide/exact_sign.h"
 
 namespace twinray {
 namespace {
 
-// A difference of doubles without rounding.
-struct Difference {
-    double high, low;
-
-    Difference(double a, double b) : high(a - b) {
-        const double b_virtual = a - high;
-        const double a_virtual = high + b_virtual;
-        low = (a - a_virtual) + (b_virtual - b);
-    }
-};
-
-struct Differences {
-    Difference x, y, z;
-
-    Differences(const dvec3& a, const dvec3& b) : x(a.x, b.x), y(a.y, b.y), z(a.z, b.z) {}
-};
-
-void add_product(Expansion& sum, const Difference& a, const Difference& b, const Difference& c, double sign) {
-    for (const double x : {a.high, a.low})
-        for (const double y : {b.high, b.low})
-            for (const double z : {c.high, c.low})
-                if (x != 0 && y != 0 && z != 0) sum.add_product(sign * x, y, z);
-}
-
-Expansion volume_of(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
-    const Differences ad(a, d), bd(b, d), cd(c, d);
-    Expansion volume;
-    add_product(volume, ad.z, bd.x, cd.y, 1);
-    add_product(volume, ad.z, cd.x, bd.y, -1);
-    add_product(volume, bd.z, cd.x, ad.y, 1);
-    add_product(volume, bd.z, ad.x, cd.y, -1);
-    add_product(volume, cd.z, ad.x, bd.y, 1);
-    add_product(volume, cd.z, bd.x, ad.y, -1);
-    return volume;
-}
-
-int exact_area_sign(const dvec3& a, const dvec3& b, const dvec3& c, uint axis) {
-    const int u = static_cast<int>(axis + 1) % 3, v = static_cast<int>(axis + 2) % 3;
-    const Difference one(1, 0);
-    Expansion area;
-    add_product(area, Difference(a[u], c[u]), Difference(b[v], c[v]), one, 1);
-    add_product(area, Difference(a[v], c[v]), Difference(b[u], c[u]), one, -1);
-    return area.sign();
-}
-
 #include "engine/core/bridge_begin.h"
-#include "shaders/shared/orient.h"
-
-int volume_sign(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
-    const int sign = filtered_volume_sign(a, b, c, d);
-    return sign == UNKNOWN_SIGN ? volume_of(a, b, c, d).sign() : sign;
-}
-
-int area_sign(const dvec3& a, const dvec3& b, const dvec3& c, uint axis) {
-    const int sign = filtered_area_sign(a, b, c, axis);
-    return sign == UNKNOWN_SIGN ? exact_area_sign(a, b, c, axis) : sign;
-}
-
 #include "shaders/shared/neighbours.h"
 #include "engine/core/bridge_end.h"
 

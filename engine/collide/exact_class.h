@@ -6,8 +6,7 @@
 
 namespace twinray {
 
-// Coordinates must be 0 or of a magnitude from 2^-245 to 2^259, as those of world_corner.h are: then no operation over-
-// or underflows, and the class is exact.
+// Exact for coordinates in the range of exact_sign.h.
 PairClass exact_class(const Corners64& a, const Corners64& b);
 
 // The same for triangles of meshes: those of one placed mesh that share vertices are separate unless they have more in

@@ -3,33 +3,21 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "collide_classify.spv.h"
+#include "engine/collide/exact_sign.h"
 #include "engine/core/error.h"
+#include "engine/core/float64.h"
 
 namespace twinray {
 namespace {
 
 constexpr std::uint64_t chunk = 1 << 20;  // pairs of which the results are downloaded at once: 16 MiB
 
-Context& with_float64(Context& context) {
-    if (!context.facts().shader_float64)
-        fail("collide: classes of triangles need float64 (shaderFloat64), which device '", context.facts().name,
-             "' has not enabled");
-    return context;
-}
-
-void check(double coordinate, std::size_t pair) {
-    const double size = std::abs(coordinate);
-    if (size == 0 || (size >= 0x1p-245 && size <= 0x1p259)) return;
-    fail("classify: pair ", pair, " has a coordinate of ", coordinate,
-         "; exact are 0 and magnitudes from 2^-245 to 2^259");
-}
-
 void check(const Corners64& t, std::size_t pair) {
     for (const dvec3& corner : {t.a, t.b, t.c})
-        for (int axis = 0; axis < 3; ++axis) check(corner[axis], pair);
+        if (const std::string fault = sign_fault_of(corner); !fault.empty())
+            fail("classify: pair ", pair, " has ", fault);
 }
 
 template <class T>
@@ -40,9 +28,9 @@ std::uint64_t offset_after(std::uint64_t offset, std::uint64_t count) {
 }  // namespace
 
 PairClassifier::PairClassifier(Context& context)
-    : context_(with_float64(context)),
+    : context_(with_float64(context, "collide: classes of triangles")),
       kernel_(context, {.name = "collide_classify", .spirv = collide_classify_spirv}),
-      total_(context, {.name = "collide contact total", .bytes = sizeof(PairTotal)}) {}
+      total_(context, {.name = "collide contact total", .bytes = sizeof(ListTotal)}) {}
 
 std::vector<ClassifiedPair> PairClassifier::classify(const DevicePairs& pairs, const Items& items) {
     host_count_ = 0;
@@ -68,17 +56,17 @@ std::uint64_t PairClassifier::run(const DevicePairs& pairs, std::uint64_t begin,
                             .first = {pairs.first.address + begin * sizeof(uint)},
                             .second = {pairs.second.address + begin * sizeof(uint)},
                             .contacts = contacts_.ref<PairContact>(),
-                            .total = total_.ref<PairTotal>(),
+                            .total = total_.ref<ListTotal>(),
                             .count = count,
                             .reserved = 0};
     Commands commands(context_, "collide classify");
     {
         const auto pass = commands.pass("collide classify start");
-        commands.write(total_, PairTotal{0, 0});
+        commands.write(total_, ListTotal{0, 0});
     }
     kernel_.dispatch(commands, args, count);
     commands.submit();
-    return download<PairTotal>(context_, total_, 1).front().low;
+    return download<ListTotal>(context_, total_, 1).front().low;
 }
 
 void PairClassifier::decide(std::vector<PairContact>& contacts, const Items& items) {

@@ -20,8 +20,8 @@ PairSearch::PairSearch(Context& context)
     : context_(context),
       kernel_(context, {.name = "collide_pairs", .spirv = collide_pairs_spirv}),
       sort_(context),
-      total_(context, {.name = "collide total", .bytes = sizeof(PairTotal)}),
-      readback_(context, {.name = "collide total readback", .bytes = sizeof(PairTotal), .memory = Memory::readback}) {}
+      total_(context, {.name = "collide total", .bytes = sizeof(ListTotal)}),
+      readback_(context, {.name = "collide total readback", .bytes = sizeof(ListTotal), .memory = Memory::readback}) {}
 
 void PairSearch::set_max_pairs(std::uint64_t count) {
     if (count > most_pairs) fail("set_max_pairs: ", count, " pairs; at most ", most_pairs, " can be told apart");
@@ -48,7 +48,7 @@ std::uint64_t PairSearch::run(const Query& query, std::uint64_t capacity, uint f
         .queries = is_within ? query.tree.leaves() : query.boxes,
         .first = out.keys,
         .second = out.values,
-        .total = total_.ref<PairTotal>(),
+        .total = total_.ref<ListTotal>(),
         .query_count = queries,
         .leaf_begin = query.tree.leaf_begin,
         .leaf_count = query.tree.count,
@@ -58,15 +58,15 @@ std::uint64_t PairSearch::run(const Query& query, std::uint64_t capacity, uint f
     Commands commands(context_, "collide search");
     {
         const auto pass = commands.pass("collide search start");
-        commands.write(total_, PairTotal{0, 0});
+        commands.write(total_, ListTotal{0, 0});
     }
     kernel_.dispatch(commands, args, queries);
     {
         const auto pass = commands.pass("collide search readback");
-        commands.copy(total_, 0, readback_, 0, sizeof(PairTotal));
+        commands.copy(total_, 0, readback_, 0, sizeof(ListTotal));
     }
     context_.wait(commands.submit());
-    PairTotal total;
+    ListTotal total;
     std::memcpy(&total, readback_.mapped(), sizeof total);
     return std::uint64_t{total.high} << 32 | total.low;
 }

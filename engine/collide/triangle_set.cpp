@@ -85,10 +85,18 @@ PlacedMesh on_host(const MeshView& mesh, std::span<const uint> ids) {
 PlacedMesh placed(PlacedMesh mesh, const Transform& transform, std::size_t first_triangle) {
     std::copy(transform.rows.begin(), transform.rows.end(), mesh.object_to_world);
     mesh.first_triangle = static_cast<uint>(first_triangle);
+    mesh.is_mirrored = determinant(transform) < 0 ? 1 : 0;
     return mesh;
 }
 
 }  // namespace
+
+void check_placed(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, const char* action) {
+    for (const MeshView& mesh : meshes) check_indices(mesh);
+    for (std::size_t i = 0; i < instances.size(); ++i)
+        if (instances[i].mesh >= meshes.size())
+            fail(action, ": instance ", i, " is of mesh ", instances[i].mesh, " of ", meshes.size());
+}
 
 TreeBox box_of_instance(const Bounds& mesh, const Transform& transform, uint item) {
     TreeBox box = empty_tree_box();

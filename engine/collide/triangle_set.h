@@ -17,6 +17,9 @@ struct MeshInstance {
     Transform transform;
 };
 
+// Throws Error, beginning with `action`, that names the mesh or the instance with an index out of range.
+void check_placed(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, const char* action);
+
 // Which vertices of a mesh are one, so that triangles that have them are neighbours.
 enum class Shared : std::uint8_t { by_index, by_position };
 
@@ -38,12 +41,14 @@ class TriangleSet {
     void record(Commands& commands, Ref<TreeBox> boxes) const;
     Ref<Corners64> corners_on_device() const { return corners_.ref<Corners64>(); }
     Ref<TriangleName> names_on_device() const { return names_.ref<TriangleName>(); }
+    Ref<PlacedMesh> meshes_on_device() const { return table_.ref<PlacedMesh>(); }  // by group of the boxes
 
     // Of one item, computed on the host: the same bits.
     Corners64 corners(uint item) const;
     TriangleName name(uint item) const;
     uint instance(uint item) const { return chosen_[mesh_of(item)]; }
     uint primitive(uint item) const { return item - placed_[mesh_of(item)].first_triangle; }
+    bool is_mirrored(uint item) const { return placed_[mesh_of(item)].is_mirrored != 0; }
     std::uint64_t bytes() const { return data_.bytes() + table_.bytes() + corners_.bytes() + names_.bytes(); }
 
   private:

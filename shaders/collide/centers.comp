@@ -6,7 +6,7 @@
 #include "shaders/shared/box_tree.h"
 #include "shaders/engine/group_box.glsl"
 layout(local_size_x = WORLD_BOUND_GROUP) in;
-layout(push_constant, scalar) uniform Push { BoxTreeArgs args; };
+layout(push_constant, scalar) uniform Push { HilbertOrderArgs args; };
 
 void main()
 {

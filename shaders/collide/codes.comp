@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Morton codes of the boxes' centres: the finer 30 bits of the boxes in the order given, then the coarser of those in the
-// order that sorting by the former made.
+// Where the boxes' centres lie along a Hilbert curve: the lower 30 bits of the boxes in the order given, then the higher of
+// those in the order that sorting by the former made.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/box_tree.h"
+#include "shaders/shared/hilbert.h"
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform Push { BoxTreeArgs args; };
+layout(push_constant, scalar) uniform Push { HilbertOrderArgs args; };
 
 void main()
 {
@@ -19,8 +20,8 @@ void main()
     vec3 lo = vec3(from_ordered_bits(bits.lo.x), from_ordered_bits(bits.lo.y), from_ordered_bits(bits.lo.z));
     vec3 hi = vec3(from_ordered_bits(bits.hi.x), from_ordered_bits(bits.hi.y), from_ordered_bits(bits.hi.z));
     TreeBox box = AT(args.boxes, index);
+    vec3 size = hi - lo;
     uint code = 0u;
-    if (!is_empty(box))
-        code = args.is_coarse == 0u ? fine_code(center_of(box), lo, hi) : morton_code(center_of(box), lo, hi);
+    if (!is_empty(box)) code = hilbert_code(center_of(box), lo, max(size.x, max(size.y, size.z)), args.is_coarse != 0u);
     AT(args.keys, i) = code;
 }

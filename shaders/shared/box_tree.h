@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A tree of boxes for finding those that overlap: the complete binary tree over the boxes in Morton order. Node 1 is the
+// A tree of boxes for finding those that overlap: the complete binary tree over the boxes in Hilbert order. Node 1 is the
 // root, nodes 2 n and 2 n + 1 are the children of n, and leaf i is node leaf_begin + i, leaf_begin being the least power of
 // two that is not below the count. No links, no stack: what comes next follows from a node's number.
 #ifndef TWINRAY_SHARED_BOX_TREE_H
 #define TWINRAY_SHARED_BOX_TREE_H
+#include "shaders/shared/list.h"
 #include "shaders/shared/world_bound.h"
 
 struct TreeBox
@@ -16,18 +17,26 @@ struct TreeBox
 BUFFER_OF(TreeBox, 16);
 const uint MIXED_GROUPS = 0xffffffffu;
 
-struct BoxTreeArgs
+struct HilbertOrderArgs
 {
     REF(TreeBox) boxes;
     REF(WorldBoundBits) bits; // around the centres
     Uints keys;
     Uints order;
-    REF(TreeBox) nodes;
     uint count;
     uint group_count; // of the kernel that finds the box of the centres
+    uint is_coarse;   // codes: 0 of the finer 30 bits, 1 of the others
+    uint reserved;
+};
+
+struct BoxTreeArgs
+{
+    REF(TreeBox) boxes;
+    Uints order;
+    REF(TreeBox) nodes;
+    uint count;
     uint first;       // of the nodes of a level, which has as many
     uint leaf_begin;
-    uint is_coarse;   // codes: 0 of the finer 30 bits, 1 of the others
     uint reserved;
 };
 
@@ -38,14 +47,6 @@ struct InstanceBoxesArgs
     uint count;
     uint first_item;
 };
-
-// How many pairs were found. Two words, since 64-bit atomics are not everywhere.
-struct PairTotal
-{
-    uint low;
-    uint high;
-};
-BUFFER_OF(PairTotal, 8);
 
 const uint SEARCH_WITHIN = 1u;       // queries are the leaves of the tree: each pair once, the lower item first
 const uint SEARCH_OTHER_GROUPS = 2u; // no pairs within a group
@@ -58,7 +59,7 @@ struct PairSearchArgs
     REF(TreeBox) queries;
     Uints first;  // written: the item of the query,
     Uints second; // and that of the leaf
-    REF(PairTotal) total;
+    REF(ListTotal) total;
     uint query_count;
     uint leaf_begin;
     uint leaf_count;

@@ -32,7 +32,7 @@ struct PlacedMesh
     Uints indices;
     Uints vertex_ids;    // of each vertex: those with one id are one; null: each is its own
     uint first_triangle; // ascending from one placed mesh to the next
-    uint reserved;
+    uint is_mirrored;    // 1 where the map turns triangles round
 };
 BUFFER_OF(PlacedMesh, 8);
 
@@ -69,7 +69,7 @@ struct ClassifyArgs
     Uints first;
     Uints second;
     REF(PairContact) contacts; // written: all pairs that are not separate, with room for `count`
-    REF(PairTotal) total;
+    REF(ListTotal) total;
     uint count;
     uint reserved;
 };

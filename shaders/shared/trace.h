@@ -9,10 +9,13 @@
 #include "shaders/shared/refine_scene.h"
 #endif
 
+// Every instance is treated as filtered, in kernels that have FEATURE_FILTERS. The value is that of SPIR-V's ray flag NoOpaque.
+const uint ALL_FILTERED = 2u;
+
 struct TraceOptions
 {
     uint mask;  // sees the instances that share a bit of its low 8
-    uint flags; // CULL_BACK, CULL_FRONT or 0
+    uint flags; // CULL_BACK, CULL_FRONT, ALL_FILTERED
     // The rest is constant in a kernel, so that it is compiled for it.
     uint query;    // QUERY_*
     uint level;    // LEVEL_*

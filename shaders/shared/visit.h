@@ -45,7 +45,7 @@ FUNC InInstance enter_instance(SwInstance instance, uint index, TraceOptions opt
     inside.culled = culled_side(options.flags, instance.flags);
     inside.has_boxes = instance.kind == GEOMETRY_BOXES;
     inside.error = 0.0f;
-    inside.is_filtered = (instance.flags & INSTANCE_FILTERED) != 0u;
+    inside.is_filtered = (instance.flags & INSTANCE_FILTERED) != 0u || (options.flags & ALL_FILTERED) != 0u;
     return inside;
 }
 

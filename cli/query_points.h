@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// The points about which `twinray distance` asks: of a file, at random, or of a grid.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "cli/common.h"
+
+namespace twinray::cli {
+
+struct QueryPointOptions {
+    std::filesystem::path file;
+    std::uint64_t random = 0;
+    std::uint64_t grid = 0;  // points along each side
+
+    // The last two in the box of the scene grown by a tenth of its largest side on all sides: of a grid, the centres of
+    // its cells, x fastest. Throws Error naming the file and the line.
+    std::vector<glm::dvec3> make(const Scene& scene, std::uint64_t seed) const;
+};
+// Exactly one of --points, --random, --grid.
+void add_query_point_options(CLI::App& command, QueryPointOptions& options);
+
+// x,y,z a line; a first line that begins with a letter is passed over.
+std::vector<glm::dvec3> read_points(const std::filesystem::path& file);
+
+}  // namespace twinray::cli

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "engine/accel/all_hits.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "all_hits_hw.spv.h"
+#include "all_hits_sw.spv.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+constexpr std::size_t batch = 1 << 20;  // rays
+
+AbstractAccel& checked(AbstractAccel& accel) {
+    if (const Capability queries = accel.capability(Feature::kernel_queries); queries.support == Support::unsupported)
+        fail(accel.name(), ": all hits: ", name_of(queries.feature), " is unsupported: ", queries.note);
+    return accel;
+}
+
+KernelDesc kernel_for(const AbstractAccel& accel) {
+    KernelDesc desc{.name = "all_hits",
+                    .spirv = all_hits_hw_spirv,
+                    .constants = {{FEATURES_CONSTANT, FEATURES_ALL & ~FEATURE_BOXES},
+                                  {LEVEL_CONSTANT, static_cast<std::uint32_t>(Level::watertight)}}};
+    if (accel.is_software()) desc.spirv = all_hits_sw_spirv;
+    return desc;
+}
+
+bool is_same(const RayHit& a, const RayHit& b) {
+    return a.ray == b.ray && a.hit.instance_index == b.hit.instance_index &&
+           a.hit.primitive_index == b.hit.primitive_index;
+}
+
+// Sorted, and without what was listed twice.
+void tidy(std::vector<RayHit>& found) {
+    const auto key = [](const RayHit& of) {
+        return std::tuple(of.ray, of.hit.t, of.hit.instance_index, of.hit.primitive_index);
+    };
+    std::sort(found.begin(), found.end(), [&](const RayHit& a, const RayHit& b) { return key(a) < key(b); });
+    found.erase(std::unique(found.begin(), found.end(), is_same), found.end());
+}
+
+}  // namespace
+
+AllHits::AllHits(AbstractAccel& accel)
+    : accel_(checked(accel)),
+      kernel_(accel.context(), kernel_for(accel)),
+      found_(accel.context(), "hits", sizeof(RayHit)) {}
+
+HitsOfRays AllHits::operator()(std::span<const Ray> rays, const TraceDesc& desc) {
+    Context& context = accel_.context();
+    accel_.sync();
+    const AccelView view = accel_.view();
+    if (view.features & FEATURE_BOXES) fail(accel_.name(), ": all hits: the scene has boxes, which need a program");
+    HitsOfRays result{.first = {0}, .hits = {}};
+    for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
+        const std::span<const Ray> some = rays.subspan(begin, std::min(batch, rays.size() - begin));
+        grow(context, rays_, "rays", some.size_bytes());
+        const auto record = [&](Commands& commands, const DeviceList::View& list) {
+            {
+                const auto pass = commands.pass("upload rays");
+                commands.upload(rays_, some);
+            }
+            kernel_.dispatch(commands,
+                             {view.scene,
+                              rays_.ref<Ray>(),
+                              {list.address},
+                              list.total,
+                              static_cast<uint>(some.size()),
+                              list.capacity,
+                              desc.mask,
+                              flags_of(desc.cull)},
+                             some.size());
+        };
+        const std::uint64_t count = found_.fill(record, 2 * some.size(), accel_.name() + ": all hits");
+        std::vector<RayHit> found = download<RayHit>(context, found_.buffer(), count);
+        tidy(found);
+        auto next = found.begin();
+        for (std::size_t ray = 0; ray < some.size(); ++ray) {
+            for (; next != found.end() && next->ray == ray; ++next) result.hits.push_back(next->hit);
+            result.first.push_back(result.hits.size());
+        }
+    }
+    return result;
+}
+
+}  // namespace twinray

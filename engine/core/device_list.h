@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "engine/core/commands.h"
+
+namespace twinray {
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/list.h"
+#include "engine/core/bridge_end.h"
+
+// A buffer of at least so many bytes; what it held is lost where it grows.
+void grow(Context& context, Buffer& buffer, const char* name, std::uint64_t bytes);
+
+// A list in device memory to which kernels append (shaders/shared/list.h), with room for the most so far.
+class DeviceList {
+  public:
+    static constexpr std::uint64_t default_limit = 1u << 27;
+
+    DeviceList(Context& context, const char* name, std::uint64_t element_bytes);
+
+    struct View {
+        std::uint64_t address;
+        Ref<ListTotal> total;
+        uint capacity;
+    };
+    // Has `record` append, submits and waits: again with room for all where there was too little. Returns how many
+    // elements there are. Throws Error, beginning with `action`, that says so where they are more than the limit.
+    std::uint64_t fill(const std::function<void(Commands&, const View&)>& record, std::uint64_t expected,
+                       const std::string& action);
+    const Buffer& buffer() const { return elements_; }
+
+    std::uint64_t limit() const { return limit_; }
+    // Throws Error above 2^32 - 1.
+    void set_limit(std::uint64_t count);
+    std::uint64_t bytes() const { return elements_.bytes() + total_.bytes(); }
+
+  private:
+    Context& context_;
+    const char* name_;
+    std::uint64_t element_bytes_;
+    std::uint64_t limit_ = default_limit;
+    Buffer elements_, total_;
+};
+
+}  // namespace twinray

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string_view>
+
+#include "engine/core/context.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+
+// The context. Throws Error, beginning with `what` needs it, where the device has no float64.
+inline Context& with_float64(Context& context, std::string_view what) {
+    if (!context.facts().shader_float64)
+        fail(what, " need float64 (shaderFloat64), which device '", context.facts().name, "' has not enabled");
+    return context;
+}
+
+}  // namespace twinray

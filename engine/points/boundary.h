@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Whether a mesh has an inside.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "engine/scene/mesh.h"
+
+namespace twinray {
+
+// An edge that triangles pass more often from one end to the other than back.
+struct BoundaryEdge {
+    std::array<vec3, 2> ends;
+    uint triangle = 0;  // the lowest that has it
+};
+
+// The boundary edge of the lowest triangle; nothing if there is none: then a point that is not on the mesh has a
+// winding number. Corners are one if their positions are. Triangles with a corner that is not finite do not count.
+std::optional<BoundaryEdge> find_boundary_edge(const MeshView& mesh);
+
+// Why points have no side to a mesh, naming an edge; "" if they have.
+std::string side_fault_of(const MeshView& mesh);
+
+}  // namespace twinray

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Every triangle is offered as if its instance were filtered, listed and refused, so that nothing ends the ray.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define TWINRAY_PROGRAM
+#include "twinray/query.glsl"
+#include "shaders/shared/all_hits.h"
+#include "shaders/engine/list.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { AllHitsArgs args; };
+
+bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv) { return false; }
+
+// Filters of users may not write (see program.h): this kernel asks how often it is called.
+bool accept_hit(Candidate candidate, float t, vec2 uv)
+{
+    uint slot = append_to(args.total);
+    if (slot >= args.capacity) return false;
+    Hit hit;
+    hit.hit = 1u;
+    hit.t = t;
+    hit.primitive_index = candidate.primitive_index;
+    hit.custom_index = candidate.custom_index;
+    hit.u = uv.x;
+    hit.v = uv.y;
+    hit.instance_index = candidate.instance_index;
+    hit.flags = 0u;
+    AT(args.found, slot).ray = global_index();
+    AT(args.found, slot).hit = hit;
+    return false;
+}
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.count) return;
+    trace(args.scene, AT(args.rays, i), trace_options(args.mask, args.flags | ALL_FILTERED, QUERY_CLOSEST));
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Every hit of a ray, not only the closest.
+#ifndef TWINRAY_SHARED_ALL_HITS_H
+#define TWINRAY_SHARED_ALL_HITS_H
+#include "shaders/shared/list.h"
+#include "shaders/shared/ray.h"
+
+struct RayHit
+{
+    uint ray;
+    Hit hit;
+};
+BUFFER_OF(RayHit, 4);
+
+struct AllHitsArgs
+{
+    uint64_t scene; // AccelView::scene
+    REF(Ray) rays;
+    REF(RayHit) found; // written, with room for `capacity`; hardware may list a hit more than once
+    REF(ListTotal) total;
+    uint count;
+    uint capacity;
+    uint mask;
+    uint flags;
+};
+#endif

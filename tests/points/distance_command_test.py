@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Runs `twinray distance` as a user does. Usage: distance_command_test.py TWINRAY"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import zipfile
+
+twinray, here = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(tempfile.mkdtemp())
+
+
+def run(*arguments, status=0):
+    done = subprocess.run([twinray, "distance", *arguments], capture_output=True, text=True, cwd=here)
+    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
+    assert "VUID" not in done.stderr and "SYNC-HAZARD" not in done.stderr, done.stderr
+    return done.stdout + done.stderr
+
+
+def lines(name):
+    return (here / name).read_text().splitlines()
+
+
+# A tetrahedron with its fronts outward, and the same without its last face.
+def ply(name, faces):
+    (here / name).write_text("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                             f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+                             "0 0 0\n4 0 0\n0 4 0\n0 0 4\n" + "".join(f"3 {face}\n" for face in faces))
+
+
+ply("solid.ply", ["0 2 1", "0 1 3", "0 3 2", "1 2 3"])
+ply("open.ply", ["0 2 1", "0 1 3", "0 3 2"])
+(here / "points.csv").write_text("x,y,z\n1,1,-2\n0.5, 0.75 ,0.25\n\n-3,0,4\n")
+
+run("solid.ply", "--points", "points.csv", "--validation", "--quiet", "-o", "out.csv", "--json", "all.jsonl")
+assert lines("out.csv") == ["point,distance,x,y,z,instance,triangle", "0,2,1,1,0,0,0", "1,0.25,0.5,0.75,0,0,0",
+                            "2,3,0,0,4,0,1"], lines("out.csv")
+said = run("solid.ply", "--points", "points.csv", "--signed", "--validation", "-o", "out.csv", "--json", "all.jsonl")
+assert [line.split(",")[1] for line in lines("out.csv")[1:]] == ["2", "-0.25", "3"] and "1 are inside" in said, said
+run("solid.ply", "--points", "points.csv", "--max-distance", "2", "--quiet", "-o", "out.csv")
+assert lines("out.csv")[3] == "2,inf,,,,,"
+run("solid.ply", "--points", "points.csv", "--within", "0.5", "--validation", "--quiet", "-o", "out.csv", "--json", "all.jsonl")
+assert lines("out.csv") == ["point,instance,triangle,distance", "1,0,0,0.25", "1,0,2,0.5"], lines("out.csv")
+records = [json.loads(line) for line in lines("all.jsonl")]
+assert [(r["schema"], r["query"], r["n"], r["found"]) for r in records] == [
+    ("twinray-distance/1", "closest", 3, 3), ("twinray-distance/1", "signed", 3, 3), ("twinray-distance/1", "within", 3, 2)]
+
+run("solid.ply", "--grid", "3", "--signed", "--quiet", "-o", "out.npz")
+with zipfile.ZipFile(here / "out.npz") as archive:
+    assert b"'shape': (3, 3, 3, )" in archive.read("distance.npy")[:128], archive.read("distance.npy")[:128]
+run("open.ply", "--random", "5", "--quiet", "-o", "out.csv")
+assert len(lines("out.csv")) == 6
+
+assert "is not closed" in run("open.ply", "--random", "5", "--signed", status=1)
+(here / "bad.csv").write_text("1,2,3\n1,2\n")
+assert "line 2: '1,2' is not three numbers" in run("solid.ply", "--points", "bad.csv", status=1)
+assert "points file 'none.csv'" in run("solid.ply", "--points", "none.csv", status=1)
+assert ".csv or .npz" in run("solid.ply", "--random", "5", "-o", "out.txt", status=1)
+run("solid.ply", status=2)
+run("solid.ply", "--random", "5", "--grid", "2", status=2)
+run("solid.ply", "--random", "5", "--within", "-1", status=2)

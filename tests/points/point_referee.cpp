@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "tests/points/point_referee.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace twinray::test {
+namespace {
+
+using Vector = glm::vec<3, long double>;
+using glm::dot;
+
+long double distance_to_segment(const Vector& p, const Vector& a, const Vector& b) {
+    const Vector ab = b - a;
+    const long double squared = dot(ab, ab);
+    const long double along = squared > 0 ? std::clamp(dot(p - a, ab) / squared, 0.0L, 1.0L) : 0;
+    return glm::length(p - (a + along * ab));
+}
+
+dvec3 placed(const Transform& m, vec3 p) {
+    const auto row = [&](std::size_t i) {
+        const glm::dvec4 r(m.rows[i]);
+        return ((r.x * p.x + r.y * p.y) + r.z * p.z) + r.w;
+    };
+    return {row(0), row(1), row(2)};
+}
+
+}  // namespace
+
+std::vector<PlacedTriangle> placed_triangles(std::span<const MeshView> meshes,
+                                             std::span<const MeshInstance> instances) {
+    std::vector<PlacedTriangle> all;
+    for (uint i = 0; i < instances.size(); ++i) {
+        const MeshView& mesh = meshes[instances[i].mesh];
+        const Transform& m = instances[i].transform;
+        for (uint t = 0; t < mesh.triangles.size(); ++t) {
+            const uvec3 of = mesh.triangles[t];
+            const auto corner = [&](uint vertex) { return placed(m, mesh.positions[vertex]); };
+            all.push_back({{corner(of.x), corner(of.y), corner(of.z)}, i, t, determinant(m) < 0});
+        }
+    }
+    return all;
+}
+
+long double distance(const dvec3& point, const Corners64& triangle) {
+    const Vector p(point), a(triangle.a), b(triangle.b), c(triangle.c);
+    const Vector ab = b - a, ac = c - a, normal = glm::cross(ab, ac);
+    const long double d1 = dot(ab, p - a), d2 = dot(ac, p - a), d3 = dot(ab, p - b), d4 = dot(ac, p - b);
+    const long double d5 = dot(ab, p - c), d6 = dot(ac, p - c);
+    const long double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    if (dot(normal, normal) > 0 && va > 0 && vb > 0 && vc > 0)
+        return std::abs(dot(normal, p - a)) / glm::length(normal);
+    return std::min({distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
+}
+
+double solid_winding(const dvec3& point, std::span<const PlacedTriangle> triangles) {
+    double sum = 0;
+    for (const PlacedTriangle& each : triangles) {
+        const dvec3 a = each.corners.a - point, b = each.corners.b - point, c = each.corners.c - point;
+        const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+        const double angle =
+            2 * std::atan2(dot(a, glm::cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+        sum += each.is_mirrored ? -angle : angle;
+    }
+    return sum / (4 * std::numbers::pi);
+}
+
+}  // namespace twinray::test

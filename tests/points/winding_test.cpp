@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// Inside and outside, against sums of solid angles and what is known.
+#include <cmath>
+
+#include "engine/points/boundary.h"
+#include "engine/points/point_finder.h"
+#include "tests/accel/accel_fixture.h"
+#include "tests/points/point_referee.h"
+#include "tests/verify/meshes.h"
+
+namespace twinray {
+namespace {
+
+class WindingTest : public test::VulkanTest {
+  protected:
+    void SetUp() override {
+        VulkanTest::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        if (!context().facts().shader_float64) GTEST_SKIP() << "no float64";
+    }
+    std::vector<int> windings(const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& instances,
+                              const std::vector<dvec3>& points) {
+        PointFinder finder(context());
+        finder.set(meshes, instances);
+        const std::vector<int> found = finder.winding_numbers(points);
+        host_decided = finder.host_decided();
+        return found;
+    }
+    std::uint64_t host_decided = 0;
+};
+
+// A torus of 2 n m triangles with shared vertices, its fronts outward.
+Mesh torus(uint n, uint m, float radius, float tube) {
+    Mesh mesh{
+        .name = "torus", .positions = {}, .triangles = {}, .normals = {}, .tangents = {}, .uvs = {}, .materials = {}};
+    constexpr float turn = 6.2831853f;
+    for (uint i = 0; i < n; ++i)
+        for (uint j = 0; j < m; ++j) {
+            const float u = turn * static_cast<float>(i) / static_cast<float>(n);
+            const float v = turn * static_cast<float>(j) / static_cast<float>(m);
+            const float r = radius + tube * std::cos(v);
+            mesh.positions.push_back({r * std::cos(u), r * std::sin(u), tube * std::sin(v)});
+            const auto at = [&](uint a, uint b) { return a % n * m + b % m; };
+            mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    return mesh;
+}
+
+TEST_F(WindingTest, EqualsTheSolidAngleOverTheSphere) {
+    const Mesh ball = make_icosphere(3), ring = torus(40, 20, 1, 0.6f);
+    std::mt19937 random(2);
+    const Transform mirrored = Transform::scaling(vec3(1, -1, 1.5f));
+    const std::vector<MeshView> meshes = {ball, ring};
+    const std::vector<MeshInstance> instances = {{0, {}}, {1, {}}, {1, mirrored}};
+    const auto placed = test::placed_triangles(meshes, instances);
+    std::vector<dvec3> points(3000);
+    for (dvec3& p : points) p = dvec3(testing::uniform3(random, -1.8f, 1.8f));
+    const std::vector<int> found = windings(meshes, instances, points);
+    std::array<int, 4> seen{};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_EQ(found[i], std::lround(test::solid_winding(points[i], placed))) << i;
+        ++seen.at(static_cast<std::size_t>(found[i]));
+    }
+    for (const int count : seen) EXPECT_GT(count, 20);
+}
+
+// The line from a lattice point meets edges, corners and faces exactly; sides are those of exact arithmetic.
+TEST_F(WindingTest, OfLatticePointsInLatticeBoxes) {
+    const Mesh box = make_box(vec3(-2), vec3(2));
+    const Mesh ball = make_icosphere(1, 2);
+    std::vector<dvec3> points;
+    for (int x = -3; x <= 3; ++x)
+        for (int y = -3; y <= 3; ++y)
+            for (int z = -3; z <= 3; ++z) points.emplace_back(x, y, z);
+    const std::vector<int> in_box = windings({box}, {{0, {}}}, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const dvec3 size = abs(points[i]);
+        const double largest = std::max({size.x, size.y, size.z});
+        if (largest == 2) continue;  // on it
+        EXPECT_EQ(in_box[i], largest < 2 ? 1 : 0) << points[i].x << ' ' << points[i].y << ' ' << points[i].z;
+    }
+    // Behind its own vertices, and near them by as much as float64 can tell.
+    std::vector<dvec3> behind, before;
+    for (const vec3 p : ball.positions) {
+        behind.push_back(dvec3(p) * (1 + 0x1p-50));
+        before.push_back(dvec3(p) * (1 - 0x1p-50));
+    }
+    const std::vector<MeshView> meshes = {ball};
+    for (const int winding : windings(meshes, {{0, {}}}, behind)) EXPECT_EQ(winding, 0);
+    for (const int winding : windings(meshes, {{0, {}}}, before)) EXPECT_EQ(winding, 1);
+    // Seen along the line, on edges: float64 cannot tell on which side.
+    std::vector<dvec3> far;
+    for (const uvec3& t : ball.triangles) {
+        far.push_back((dvec3(ball.positions[t.x]) + dvec3(ball.positions[t.y])) * 0.5);
+        far.back().x = -7;
+    }
+    for (const int winding : windings(meshes, {{0, {}}}, far)) EXPECT_EQ(winding, 0);
+    EXPECT_GT(host_decided, 0u);
+}
+
+TEST_F(WindingTest, DistancesAreNegativeInside) {
+    PointFinder finder(context());
+    const Mesh box = make_box(vec3(-1), vec3(1)), hole = make_box(vec3(-0.5f), vec3(0.5f));
+    const std::vector points = {dvec3(0), dvec3(0.75, 0, 0), dvec3(3, 0, 0), dvec3(1, 0.5, 0.25)};
+    const auto distances = [&](const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& instances) {
+        finder.set(meshes, instances);
+        return finder.signed_distances(points);
+    };
+    EXPECT_EQ(distances({box}, {{0, {}}}), (std::vector<double>{-1, -0.25, 2, 0}));
+    Mesh inward = hole;
+    for (uvec3& t : inward.triangles) std::swap(t.x, t.y);
+    EXPECT_EQ(distances({box, inward}, {{0, {}}, {1, {}}}), (std::vector<double>{0.5, -0.25, 2, 0}));
+}
+
+TEST_F(WindingTest, OpenMeshesAndPointsOutOfRangeAreRefused) {
+    PointFinder finder(context());
+    Mesh open = make_box(vec3(-1), vec3(1));
+    open.name = "open box";
+    open.triangles.pop_back();
+    const std::vector points = {dvec3(0)};
+    const std::vector<MeshView> meshes = {open};
+    const std::vector<MeshInstance> instances = {{0, {}}};
+    finder.set(meshes, instances);
+    EXPECT_FALSE(finder.closest(points).empty());  // needs no inside
+    try {
+        finder.signed_distances(points);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("'open box' is not closed"), std::string::npos) << error.what();
+    }
+    const Mesh box = make_box(vec3(-1), vec3(1));
+    finder.set(std::vector<MeshView>{box}, instances);
+    for (const double bad : {double(NAN), double(INFINITY), 1e300, 1e-200})
+        EXPECT_THROW(finder.winding_numbers(std::vector{dvec3(bad, 0, 0)}), Error);
+}
+
+TEST(Boundary, EdgesMustBePassedBothWays) {
+    Mesh box = make_box(vec3(-1), vec3(1));  // vertices of their own for each face
+    EXPECT_FALSE(find_boundary_edge(box));
+    EXPECT_EQ(side_fault_of(box), "");
+    box.triangles.push_back({0, 0, 1});  // nothing
+    EXPECT_FALSE(find_boundary_edge(box));
+    std::swap(box.triangles[5].x, box.triangles[5].y);
+    ASSERT_TRUE(find_boundary_edge(box));
+    Mesh twice = make_icosphere(1);
+    twice.triangles.insert(twice.triangles.end(), twice.triangles.begin(), twice.triangles.end());
+    EXPECT_FALSE(find_boundary_edge(twice));
+    twice.triangles.erase(twice.triangles.begin() + 7);
+    EXPECT_EQ(find_boundary_edge(twice)->triangle, 4u);
+}
+
+}  // namespace
+}  // namespace twinray
