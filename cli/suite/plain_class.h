@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Classes of triangles by signs as plain arithmetic gives them: what exactness is measured against.
+#pragma once
+
+#include "engine/collide/pair_class.h"
+
+namespace twinray::suite {
+
+PairClass class_by_float32(const Corners64& a, const Corners64& b);
+PairClass class_by_float64(const Corners64& a, const Corners64& b);
+
+// Of det(a - d, b - d, c - d).
+template <class Real>
+int plain_volume_sign(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
+    using Vector = glm::vec<3, Real>;
+    const Vector from(d);
+    const Real volume = glm::dot(Vector(a) - from, glm::cross(Vector(b) - from, Vector(c) - from));
+    return (volume > 0) - (volume < 0);
+}
+
+// Of det(a - c, b - c) as seen along an axis.
+template <class Real>
+int plain_area_sign(const dvec3& a, const dvec3& b, const dvec3& c, uint axis) {
+    using Vector = glm::vec<3, Real>;
+    const Vector from(c);
+    const Real area = glm::cross(Vector(a) - from, Vector(b) - from)[static_cast<int>(axis)];
+    return (area > 0) - (area < 0);
+}
+
+}  // namespace twinray::suite
