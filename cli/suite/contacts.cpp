@@ -2,7 +2,6 @@
 #include "cli/suite/contacts.h"
 
 #include <algorithm>
-#include <chrono>
 #include <random>
 
 #include "cli/suite/plain_class.h"
@@ -12,28 +11,6 @@
 
 namespace twinray::suite {
 namespace {
-
-constexpr Subject on_gpu{Backend::software, Level::watertight};
-
-Record record_of(CaseRun& run, const std::string& variant, const std::string& reference) {
-    Record record = run.record(on_gpu);
-    record.backend = "";
-    record.level = "";
-    record.variant = variant;
-    record.reference = reference;
-    return record;
-}
-
-void add_judged(CaseRun& run, Record record, std::uint64_t faults, const std::string& what) {
-    record.faults = faults;
-    record.bound95 = upper_bound_95(faults, record.n);
-    record.pass = faults == 0;
-    if (faults > 0) {
-        record.reason = what;
-        record.fault_of = "twinray";
-    }
-    run.add(record);
-}
 
 template <class ClassOf>
 void measure_host(CaseRun& run, const std::string& lattice, const std::vector<TrianglePair>& pairs,
@@ -47,7 +24,7 @@ void measure_host(CaseRun& run, const std::string& lattice, const std::vector<Tr
                                 wrong += class_of(pairs[i].a, pairs[i].b) != known[i];
                         }) *
                         1e9 / static_cast<double>(pairs.size()));
-    Record record = record_of(run, variant, "exact");
+    Record record = query_record(run, "exact", variant);
     record.params = {{"lattice", lattice}};
     record.backend = "cpu";
     record.n = pairs.size();
@@ -66,12 +43,6 @@ std::string told(const ContactCounts& counts) {
 }
 
 }  // namespace
-
-double seconds_of(const std::function<void()>& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 std::vector<TrianglePair> lattice_pairs(std::size_t count, std::uint64_t seed) {
     std::mt19937 random(static_cast<std::uint32_t>(seed));
@@ -97,7 +68,7 @@ std::vector<Corners64> permutations(const Corners64& t) {
 void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::string& reference) {
     std::vector<TrianglePair> asked;
     for (const KnownPair& pair : pairs) asked.push_back({pair.a, pair.b});
-    ContactFinder finder(run.devices().context(on_gpu.backend));
+    ContactFinder finder(run.devices().context(query_backend));
     const std::vector<PairClass> found = finder.classify(asked);
     std::uint64_t wrong = 0;
     std::string first;
@@ -105,7 +76,7 @@ void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::s
         if (found[i] == pairs[i].known) continue;
         if (wrong++ == 0) first = text("pair ", i, " is ", name_of(found[i]), ", not ", name_of(pairs[i].known));
     }
-    Record record = record_of(run, "", reference);
+    Record record = query_record(run, reference);
     record.n = pairs.size();
     add_judged(run, record, wrong, first);
 }
@@ -113,14 +84,14 @@ void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::s
 void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector<TrianglePair>& pairs) {
     std::vector<PairClass> known;
     for (const TrianglePair& pair : pairs) known.push_back(exact_class(pair.a, pair.b));
-    ContactFinder finder(run.devices().context(on_gpu.backend));
+    ContactFinder finder(run.devices().context(query_backend));
     std::vector<double> times;
     std::vector<PairClass> found;
     for (int rep = 0; rep < 5; ++rep)
         times.push_back(seconds_of([&] { found = finder.classify(pairs); }) * 1e9 / static_cast<double>(pairs.size()));
     std::uint64_t wrong = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) wrong += found[i] != known[i];
-    Record record = record_of(run, "", "exact");
+    Record record = query_record(run, "exact");
     record.params = {{"lattice", lattice}};
     record.n = pairs.size();
     record.time = time_figures("ns_per_pair", times);
@@ -133,11 +104,11 @@ void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector
 
 void ask_contacts(CaseRun& run, const std::string& what, const std::vector<MeshView>& meshes,
                   const std::vector<MeshInstance>& instances, const ContactCounts& known, bool self) {
-    ContactFinder finder(run.devices().context(on_gpu.backend));
+    ContactFinder finder(run.devices().context(query_backend));
     const Contacts contacts = finder.find(meshes, instances, {.self = self});
     ContactCounts found;
     for (const TriangleContact& contact : contacts.list) ++found[contact.pair_class];
-    Record record = record_of(run, "", "analytic");
+    Record record = query_record(run, "analytic");
     record.params = {{"scene", what}};
     record.n = std::max<std::uint64_t>(1, contacts.candidates);
     for (const auto& [pair_class, count] : found) record.counts[std::string(name_of(pair_class))] = count;
@@ -161,11 +132,11 @@ ContactCounts wall_to_wall() {
 
 void ask_same_contacts(CaseRun& run, const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& some,
                        const std::vector<MeshInstance>& others) {
-    ContactFinder finder(run.devices().context(on_gpu.backend));
+    ContactFinder finder(run.devices().context(query_backend));
     const std::vector<TriangleContact> a = finder.find(meshes, some).list, b = finder.find(meshes, others).list;
     std::vector<TriangleContact> only;
     std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(only));
-    Record record = record_of(run, "", "invariance");
+    Record record = query_record(run, "invariance");
     record.n = std::max<std::uint64_t>(1, a.size());
     record.results = {{"contacts", a.size()}};
     add_judged(run, record, a.empty() ? 1 : only.size(), a.empty() ? "no contact" : "contacts of only one of them");

@@ -3,10 +3,9 @@
 // accelerator takes part but for the boxes of instances.
 #pragma once
 
-#include <functional>
 #include <map>
 
-#include "cli/suite/case_run.h"
+#include "cli/suite/queries.h"
 #include "engine/collide/contact_finder.h"
 
 namespace twinray::suite {
@@ -34,7 +33,5 @@ void ask_contacts(CaseRun& run, const std::string& what, const std::vector<MeshV
 ContactCounts wall_to_wall();
 void ask_same_contacts(CaseRun& run, const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& some,
                        const std::vector<MeshInstance>& others);
-
-double seconds_of(const std::function<void()>& work);
 
 }  // namespace twinray::suite

@@ -53,7 +53,7 @@ std::string_view name(Level level) {
 std::vector<SuiteCase> catalogue() {
     std::vector<SuiteCase> all;
     for (const auto& section : {edge_cases, scale_cases, shape_cases, input_cases, instance_cases, build_cases,
-                                arithmetic_cases, price_cases, collision_cases}) {
+                                arithmetic_cases, price_cases, collision_cases, distance_cases}) {
         const std::vector<SuiteCase> cases = section();
         all.insert(all.end(), cases.begin(), cases.end());
     }
@@ -71,6 +71,7 @@ std::string_view section_of(std::string_view id) {
         case 'F': return "self-intersection and arithmetic";
         case 'L': return "what each level costs";
         case 'C': return "collisions";
+        case 'D': return "distances";
         default: return "";
     }
 }

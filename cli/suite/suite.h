@@ -66,6 +66,7 @@ std::vector<SuiteCase> build_cases();       // B: structure, build and refit
 std::vector<SuiteCase> arithmetic_cases();  // F: self-intersection, arithmetic
 std::vector<SuiteCase> price_cases();       // L: what levels cost
 std::vector<SuiteCase> collision_cases();   // C: collisions
+std::vector<SuiteCase> distance_cases();    // D: distances
 std::vector<SuiteCase> catalogue();         // all of them
 // The same as L for scenes of the user's, from L11 on.
 std::vector<SuiteCase> scene_cases(std::span<const std::filesystem::path> files);

@@ -7,7 +7,7 @@
 #include "engine/core/error.h"
 #include "engine/verify/draws.h"
 #include "engine/core/parallel.h"
-#include "engine/verify/segment.h"
+#include "engine/verify/point_distance.h"
 
 namespace twinray {
 namespace {
@@ -39,18 +39,6 @@ std::vector<Edge> sorted_edges(const Geometry64& geometry) {
         }
     std::sort(edges.begin(), edges.end());
     return edges;
-}
-
-double distance_to_triangle(const Triangle64& corners, const dvec3& point) {
-    const dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-    bool is_above = true;  // the triangle, along its normal
-    double nearest = unlimited;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const dvec3 &a = corners[i], &b = corners[(i + 1) % 3];
-        is_above = is_above && glm::dot(glm::cross(b - a, point - a), normal) >= 0;
-        nearest = std::min(nearest, distance_to_segment(a, b, point));
-    }
-    return is_above ? std::abs(glm::dot(point - corners[0], glm::normalize(normal))) : nearest;
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/verify/segment.h"
+#include "engine/verify/point_distance.h"
 
 namespace twinray {
 namespace {

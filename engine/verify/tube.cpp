@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "engine/verify/segment.h"
+#include "engine/verify/point_distance.h"
 
 namespace twinray {
 namespace {
