@@ -12,14 +12,19 @@ constexpr double student_975 = 2.131449545559323;  // quantile of Student's dist
 constexpr std::uint64_t fewest_events = 10;
 static_assert(replicate_count == 16);
 
-Interval scattered(const Replicates& fractions, double mean) {
-    double squares = 0;
-    for (const double fraction : fractions) squares += (fraction - mean) * (fraction - mean);
-    const double half = student_975 * std::sqrt(squares / (replicate_count * (replicate_count - 1)));
-    return {std::max(0.0, mean - half), std::min(1.0, mean + half)};
+double mean_of(const Replicates& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / replicate_count;
 }
 
 }  // namespace
+
+Estimate scattered(const Replicates& values) {
+    const double mean = mean_of(values);
+    double squares = 0;
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    const double half = student_975 * std::sqrt(squares / (replicate_count * (replicate_count - 1)));
+    return {mean, {mean - half, mean + half}};
+}
 
 const Interval& Estimator::rate(std::uint64_t events, std::uint64_t rays) {
     constexpr std::size_t most_kept = 1 << 14;
@@ -38,9 +43,14 @@ Interval Estimator::counted(double value, std::uint64_t events, std::uint64_t ra
 }
 
 Estimate Estimator::operator()(const Replicates& fractions, std::uint64_t events, std::uint64_t rays) {
-    const double mean = std::accumulate(fractions.begin(), fractions.end(), 0.0) / replicate_count;
-    const bool is_rare = events < fewest_events || rays - events < fewest_events;
-    return {mean, is_rare ? counted(mean, events, rays) : scattered(fractions, mean)};
+    if (events < fewest_events || rays - events < fewest_events) {
+        const double mean = mean_of(fractions);
+        return {mean, counted(mean, events, rays)};
+    }
+    Estimate estimate = scattered(fractions);
+    Interval& interval = estimate.interval_95;
+    interval = {std::max(0.0, interval.low), std::min(1.0, interval.high)};
+    return estimate;
 }
 
 }  // namespace twinray

@@ -22,6 +22,9 @@ struct Estimate {
     double half_width() const { return (interval_95.high - interval_95.low) / 2; }
 };
 
+// The mean of replicates, with Student's 95 % interval for their scatter.
+Estimate scattered(const Replicates& values);
+
 // Fractions in [0, 1] as the means of their replicates, `events` rays of `rays` in all. The interval is Student's for
 // the scatter of the replicates, within [0, 1]; where fewer than 10 rays, or all but as many, had the event, replicates
 // are too few to scatter as they should, and it is that of Clopper and Pearson (1934), which is never too short for

@@ -110,6 +110,24 @@ std::size_t Faces::group_count(FaceGrouping grouping) const {
     }
 }
 
+std::vector<std::vector<uint>> Faces::members(FaceGrouping grouping) const {
+    std::vector<std::vector<uint>> members(group_count(grouping));
+    const std::vector<uint> of = groups(grouping);
+    for (uint face = 0; face < of.size(); ++face)
+        if (areas_[face] > 0) members[of[face]].push_back(face);
+    return members;
+}
+
+std::vector<double> Faces::areas_of(const std::vector<std::vector<uint>>& groups) const {
+    std::vector<double> areas;
+    for (const std::vector<uint>& group : groups) {
+        double area = 0;
+        for (const uint face : group) area += areas_[face];
+        areas.push_back(area);
+    }
+    return areas;
+}
+
 std::uint64_t Faces::bytes() const {
     std::uint64_t sum = instance_buffer_.bytes() + face_buffer_.bytes();
     for (const Buffer& mesh : meshes_) sum += mesh.bytes();

@@ -55,6 +55,9 @@ class Faces {
     std::vector<uint> groups(FaceGrouping grouping) const;
     // How many groups there are; some may have no face.
     std::size_t group_count(FaceGrouping grouping) const;
+    // The faces with an area of each group, ascending.
+    std::vector<std::vector<uint>> members(FaceGrouping grouping) const;
+    std::vector<double> areas_of(const std::vector<std::vector<uint>>& groups) const;
     std::uint64_t bytes() const;  // on the device
 
   private:

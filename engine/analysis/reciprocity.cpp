@@ -17,7 +17,11 @@ namespace {
 struct Exchange {
     uint i, j;
     double of_i = 0, of_j = 0;
+    double known_deviation = 0;  // of what is known otherwise: both directions are then the same estimate
 };
+
+// A 95 % interval is about two standard deviations long either way.
+double deviation(const ViewFactor& factor) { return static_cast<double>(factor.high - factor.low) / 4; }
 
 // Ascending by i and j.
 std::vector<Exchange> exchanges_of(const std::vector<ViewFactorRow>& rows, const std::vector<double>& areas) {
@@ -28,10 +32,11 @@ std::vector<Exchange> exchanges_of(const std::vector<ViewFactorRow>& rows, const
     for (const ViewFactorRow& row : rows)
         for (const ViewFactor& factor : row.factors) {
             const double flow = areas[row.group] * static_cast<double>(factor.value);
+            const double known = factor.by == PairEstimator::hits ? 0 : areas[row.group] * deviation(factor);
             if (row.group <= factor.target)
-                all.push_back({row.group, factor.target, flow, 0});
+                all.push_back({row.group, factor.target, flow, 0, known});
             else
-                all.push_back({factor.target, row.group, 0, flow});
+                all.push_back({factor.target, row.group, 0, flow, known});
         }
     std::sort(all.begin(), all.end(),
               [](const Exchange& a, const Exchange& b) { return std::pair(a.i, a.j) < std::pair(b.i, b.j); });
@@ -42,6 +47,7 @@ std::vector<Exchange> exchanges_of(const std::vector<ViewFactorRow>& rows, const
         } else {
             last[-1].of_i += one.of_i;
             last[-1].of_j += one.of_j;
+            last[-1].known_deviation = std::max(last[-1].known_deviation, one.known_deviation);
         }
     }
     all.erase(last, all.end());
@@ -66,6 +72,8 @@ struct Joint {
     double flow = 0, variance = 0;
 };
 Joint joint(const Exchange& exchange, const std::vector<ViewFactorRow>& rows, const std::vector<double>& areas) {
+    if (exchange.known_deviation > 0)
+        return {std::max(exchange.of_i, exchange.of_j), exchange.known_deviation * exchange.known_deviation};
     const auto precision = [&](uint group) { return static_cast<double>(rows[group].rays) / areas[group]; };
     if (exchange.i == exchange.j)
         return {exchange.of_i, variance(exchange.of_i, areas[exchange.i], rows[exchange.i].rays)};
@@ -86,7 +94,7 @@ class Projection {
         std::vector<Exchange> exchanges = exchanges_of(rows, areas);
         pairs_.reserve(exchanges.size());
         for (const Exchange& exchange : exchanges) {
-            const auto [i, j, of_i, of_j] = exchange;
+            const auto [i, j, of_i, of_j, known] = exchange;
             const Joint both = joint(exchange, rows, areas);
             pairs_.push_back({i, j, both});
             left[i] -= both.flow;
@@ -117,7 +125,7 @@ class Projection {
     void write(std::vector<ViewFactorRow>& rows) const {
         std::vector<std::vector<ViewFactor>> projected(rows.size());
         const auto add = [&](uint from, uint to, double flow) {
-            if (flow > 0) projected[from].push_back({to, static_cast<float>(flow / areas_[from]), 0, 0});
+            if (flow > 0) projected[from].push_back({.target = to, .value = static_cast<float>(flow / areas_[from])});
         };
         for (const Pair& pair : pairs_) {
             add(pair.i, pair.j, pair.both.flow);
@@ -197,6 +205,7 @@ class Projection {
     static void carry_interval(const ViewFactor* old, float unseen, ViewFactor& factor) {
         factor.low = std::max(0.0f, factor.value - (old ? old->value - old->low : factor.value));
         factor.high = std::min(1.0f, factor.value + (old ? old->high - old->value : unseen));
+        if (old) factor.by = old->by;
     }
 
     static void shift(Estimate& estimate, double value) {
@@ -217,10 +226,11 @@ ViewFactorResiduals residuals_of(const std::vector<ViewFactorRow>& rows, const s
     ViewFactorResiduals residuals;
     const double largest = areas.empty() ? 0 : *std::max_element(areas.begin(), areas.end());
     const auto compare = [&](const Exchange& exchange) {
-        const auto [i, j, of_i, of_j] = exchange;
+        const auto [i, j, of_i, of_j, known] = exchange;
         if (i == j || rows[i].rays == 0 || rows[j].rays == 0) return;
         const double difference = std::abs(of_i - of_j), flow = joint(exchange, rows, areas).flow;
         residuals.reciprocity = std::max(residuals.reciprocity, difference / largest);
+        if (known > 0) return;
         const auto expected = [&](uint group) { return flow / areas[group] * static_cast<double>(rows[group].rays); };
         if (std::min(expected(i), expected(j)) < 10) return;
         const double squares = variance(flow, areas[i], rows[i].rays) + variance(flow, areas[j], rows[j].rays);
@@ -232,8 +242,9 @@ ViewFactorResiduals residuals_of(const std::vector<ViewFactorRow>& rows, const s
             const ViewFactor* back = find(rows[factor.target], row.group);
             if (back && row.group > factor.target) continue;  // compared from there
             const double there = areas[row.group] * static_cast<double>(factor.value);
-            compare(
-                {row.group, factor.target, there, back ? areas[factor.target] * static_cast<double>(back->value) : 0});
+            const double here = back ? areas[factor.target] * static_cast<double>(back->value) : 0;
+            const double known = factor.by == PairEstimator::hits ? 0 : areas[row.group] * deviation(factor);
+            compare({row.group, factor.target, there, here, known});
         }
     for (const ViewFactorRow& row : rows) {
         if (row.rays == 0) continue;

@@ -12,7 +12,7 @@
 namespace twinray {
 namespace {
 
-constexpr std::string_view magic = "twinray view-factor rows 1\n";
+constexpr std::string_view magic = "twinray view-factor rows 2\n";
 
 struct RowHeader {
     uint group;

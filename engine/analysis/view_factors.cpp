@@ -26,15 +26,21 @@ void check(const ViewFactorOptions& options) {
         fail("view factors: a target error of ", error, "; it must be above 0");
 }
 
-std::vector<std::vector<uint>> members_of(const Faces& faces, FaceGrouping grouping) {
-    std::vector<std::vector<uint>> members(faces.group_count(grouping));
-    const std::vector<uint> groups = faces.groups(grouping);
-    for (uint face = 0; face < groups.size(); ++face)
-        if (faces.areas()[face] > 0) members[groups[face]].push_back(face);
-    return members;
+std::uint64_t chunks_of(std::uint64_t rays) { return (rays + CHUNK - 1) / CHUNK; }
+
+bool is_before(const ViewFactor& a, const ViewFactor& b) { return a.target < b.target; }
+
+bool has(const std::vector<ViewFactor>& factors, uint target) {
+    return std::binary_search(factors.begin(), factors.end(), ViewFactor{.target = target}, is_before);
 }
 
-std::uint64_t chunks_of(std::uint64_t rays) { return (rays + CHUNK - 1) / CHUNK; }
+// Its interval has room for the roundings to float32.
+ViewFactor factor_of(const KnownExchange& exchange, uint target, double area) {
+    const auto low = static_cast<float>(exchange.low / area), high = static_cast<float>(exchange.high / area);
+    const float value = std::min(1.0f, static_cast<float>(exchange.flow / area));
+    return {target, value, std::nextafter(std::min(low, value), 0.0f), std::min(1.0f, std::nextafter(high, 2.0f)),
+            exchange.by};
+}
 
 }  // namespace
 
@@ -55,26 +61,29 @@ struct ViewFactors::Row {
         for (const Member& member : members) sum += member.weight * member.chunks;
         return sum * SAMPLES_OF_CHUNK * static_cast<double>(rounds);
     }
-    bool is_within(double error, Estimator& estimator) const {
+    bool is_within(double error, const std::vector<ViewFactor>& known, Estimator& estimator) const {
         const double total = total_weight();
         return std::all_of(sums.entries().begin(), sums.entries().end(), [&](const RowSums::Entry& entry) {
-            return sums.estimate(entry, total, estimator).half_width() <= error;
+            return has(known, entry.target) || sums.estimate(entry, total, estimator).half_width() <= error;
         });
     }
 };
 
-ViewFactors::ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options)
+ViewFactors::ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
+                         std::span<const KnownExchange> known)
     : accel_(accel),
       faces_(faces),
       options_((check(options), options)),
       make_rays_(accel.context(), {.name = "analysis_face_rays", .spirv = analysis_face_rays_spirv}),
       find_targets_(accel.context(), {.name = "analysis_face_targets", .spirv = analysis_face_targets_spirv}),
-      members_(members_of(faces, options.grouping)) {
-    for (const std::vector<uint>& members : members_) {
-        double area = 0;
-        for (const uint face : members) area += faces.areas()[face];
-        areas_.push_back(area);
+      members_(faces.members(options.grouping)),
+      areas_(faces.areas_of(members_)),
+      known_(members_.size()) {
+    for (const KnownExchange& exchange : known) {
+        known_[exchange.i].push_back(factor_of(exchange, exchange.j, areas_[exchange.i]));
+        if (exchange.i != exchange.j) known_[exchange.j].push_back(factor_of(exchange, exchange.i, areas_[exchange.j]));
     }
+    for (std::vector<ViewFactor>& row : known_) std::sort(row.begin(), row.end(), is_before);
     Context& context = accel.context();
     if (options.grouping != FaceGrouping::face) {
         const std::vector<uint> groups = faces.groups(options.grouping);
@@ -104,7 +113,7 @@ std::size_t ViewFactors::block() const {
 std::uint64_t ViewFactors::rounds_of(const Row& row) {
     if (row.rounds == 0) return row.members.empty() ? 0 : 1;
     if (!options_.target_error || row.sums.rays() * 2 > options_.rays) return row.rounds;
-    return row.is_within(*options_.target_error, estimator_) ? row.rounds : row.rounds * 2;
+    return row.is_within(*options_.target_error, known_[row.group], estimator_) ? row.rounds : row.rounds * 2;
 }
 
 std::vector<ViewFactorRow> ViewFactors::rows(std::size_t first, std::size_t last) {
@@ -189,22 +198,27 @@ void ViewFactors::trace_batch(std::span<const RayChunk> chunks) {
 std::vector<ViewFactorRow> ViewFactors::results(const std::vector<Row>& rows) {
     std::vector<ViewFactorRow> results;
     for (const Row& row : rows) {
+        const std::vector<ViewFactor>& known = known_[row.group];
         ViewFactorRow result;
         result.group = row.group;
         result.rays = result.hits = row.sums.rays();
         const double total = row.total_weight();
         result.open = result.back = estimator_({}, 0, result.rays);
+        std::vector<ViewFactor> counted;
         for (const RowSums::Entry& entry : row.sums.entries()) {
             const Estimate estimate = row.sums.estimate(entry, total, estimator_);
             if (entry.target == TARGET_OPEN || entry.target == TARGET_BACK) {
                 (entry.target == TARGET_OPEN ? result.open : result.back) = estimate;
                 result.hits -= entry.hits;
-                continue;
+            } else if (!has(known, entry.target)) {
+                counted.push_back({entry.target, static_cast<float>(estimate.value),
+                                   static_cast<float>(estimate.interval_95.low),
+                                   static_cast<float>(estimate.interval_95.high), PairEstimator::hits});
             }
-            result.factors.push_back({entry.target, static_cast<float>(estimate.value),
-                                      static_cast<float>(estimate.interval_95.low),
-                                      static_cast<float>(estimate.interval_95.high)});
         }
+        std::merge(counted.begin(), counted.end(), known.begin(), known.end(), std::back_inserter(result.factors),
+                   is_before);
+        std::erase_if(result.factors, [](const ViewFactor& factor) { return factor.value == 0; });
         results.push_back(std::move(result));
     }
     return results;

@@ -7,6 +7,7 @@
 
 #include "engine/accel/abstract_accel.h"
 #include "engine/analysis/estimate.h"
+#include "engine/analysis/exchange.h"
 #include "engine/analysis/faces.h"
 #include "engine/core/sampling.h"
 
@@ -33,8 +34,9 @@ struct ViewFactorOptions {
 };
 
 struct ViewFactor {
-    uint target;
-    float value, low, high;  // and its 95 % interval
+    uint target = 0;
+    float value = 0, low = 0, high = 0;  // and its 95 % interval
+    PairEstimator by = PairEstimator::hits;
 };
 
 struct ViewFactorRow {
@@ -47,9 +49,10 @@ struct ViewFactorRow {
 
 class ViewFactors {
   public:
-    // `accel` holds the scene of `faces`, put there by push_scene(). All must outlive this. Throws Error for options
-    // out of range.
-    ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options);
+    // `accel` holds the scene of `faces`, put there by push_scene(). All must outlive this. What is `known` (see
+    // pair_exchanges.h) stands in place of what rays met. Throws Error for options out of range.
+    ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
+                std::span<const KnownExchange> known = {});
 
     std::size_t row_count() const { return members_.size(); }
     const std::vector<double>& areas() const { return areas_; }  // of groups
@@ -72,6 +75,7 @@ class ViewFactors {
     Kernel<FaceTargetsArgs> find_targets_;
     std::vector<std::vector<uint>> members_;  // faces with an area, by group
     std::vector<double> areas_;
+    std::vector<std::vector<ViewFactor>> known_;  // of each row, ascending by target
     Estimator estimator_;
     Buffer groups_, chunks_, rays_, hits_, targets_;
 };

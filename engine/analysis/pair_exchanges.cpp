@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/pair_exchanges.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "engine/analysis/pair_sampler.h"
+
+namespace twinray {
+namespace {
+
+constexpr std::uint64_t first_rays = 1024;  // before the first look at errors
+
+// The rays of a pair of groups so far.
+struct Sampling {
+    const PlannedPair* pair;
+    bool may_be_blocked;
+    std::uint64_t most_rounds;  // of 64 rays for each two faces; a power of two
+    double target;              // half of the interval's length; 0: all rounds at once
+    std::uint64_t rounds = 0;
+    PairSums sums = {};
+
+    std::uint64_t next_rounds() const {
+        if (rounds == most_rounds) return rounds;
+        if (target == 0) return most_rounds;
+        if (rounds == 0) {
+            const std::uint64_t first = std::bit_floor(first_rays / (CHUNK * pair->sampled.size()));
+            return std::clamp<std::uint64_t>(first, 1, most_rounds);
+        }
+        return sums.exchange(may_be_blocked).half_width() <= target ? rounds : rounds * 2;
+    }
+};
+
+// How many pairs of each group are sampled.
+std::vector<std::uint64_t> sampled_pairs_of(const PairPlan& plan, std::size_t groups) {
+    std::vector<std::uint64_t> counts(groups);
+    for (const PlannedPair& pair : plan.pairs) {
+        if (pair.sampled.empty()) continue;
+        ++counts[pair.i];
+        if (pair.i != pair.j) ++counts[pair.j];
+    }
+    return counts;
+}
+
+std::vector<Sampling> samplings_of(const PairPlan& plan, const std::vector<double>& areas,
+                                   const ViewFactorOptions& options) {
+    const std::vector<std::uint64_t> counts = sampled_pairs_of(plan, areas.size());
+    std::vector<Sampling> samplings;
+    for (const PlannedPair& pair : plan.pairs) {
+        if (pair.sampled.empty()) continue;
+        const std::uint64_t rays = options.rays / std::max(counts[pair.i], counts[pair.j]);
+        const std::uint64_t rounds = std::bit_floor(rays / (CHUNK * pair.sampled.size()));
+        const bool may_be_blocked = std::any_of(pair.sampled.begin(), pair.sampled.end(),
+                                                [](const SampledPair& faces) { return faces.may_be_blocked; });
+        samplings.push_back({&pair, may_be_blocked, std::max<std::uint64_t>(rounds, 1),
+                             options.target_error.value_or(0) * std::min(areas[pair.i], areas[pair.j])});
+    }
+    return samplings;
+}
+
+void sample(std::vector<Sampling>& samplings, PairSampler& sampler) {
+    for (;;) {
+        std::vector<PairSampler::Pair> pairs;
+        for (Sampling& sampling : samplings) {
+            const std::uint64_t next = sampling.next_rounds();
+            if (next == sampling.rounds) continue;
+            const PlannedPair& pair = *sampling.pair;
+            const double share = static_cast<double>(pair.sampled.size()) * (pair.i == pair.j ? 2 : 1);
+            for (const SampledPair& faces : pair.sampled)
+                pairs.push_back({faces.a, faces.b, faces.distance, share, sampling.rounds, next, &sampling.sums});
+            sampling.rounds = next;
+        }
+        if (pairs.empty()) return;
+        sampler.sample(pairs);
+    }
+}
+
+KnownExchange exchange_of(const PlannedPair& pair, const Estimate& sampled) {
+    const auto [flow, error] = pair.contour;
+    return {pair.i,
+            pair.j,
+            flow + sampled.value,
+            std::max(0.0, flow - error + sampled.interval_95.low),
+            flow + error + sampled.interval_95.high,
+            pair.sampled.empty() ? PairEstimator::contour : PairEstimator::area};
+}
+
+}  // namespace
+
+PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Scene& scene, const Faces& faces,
+                                 const ViewFactorOptions& options, PairEstimator estimator, Progress* progress) {
+    const std::vector<std::vector<uint>> members = faces.members(options.grouping);
+    const PairPlan plan = plan_pairs(FacePolygons(scene), members, {estimator, options.sides, options.rays}, progress);
+    std::vector<Sampling> samplings = samplings_of(plan, faces.areas_of(members), options);
+    if (!samplings.empty()) {
+        accel.sync();
+        PairSampler sampler(accel, faces, options.sides, options.sequence, options.seed);
+        sample(samplings, sampler);
+    }
+    PairExchanges result;
+    result.left_to_hits = plan.left_to_hits;
+    auto sampling = samplings.begin();
+    for (const PlannedPair& pair : plan.pairs) {
+        Estimate sampled;
+        if (!pair.sampled.empty()) {
+            sampled = sampling->sums.exchange(sampling->may_be_blocked);
+            result.rays += sampling->sums.rays();
+            ++sampling;
+        }
+        result.known.push_back(exchange_of(pair, sampled));
+    }
+    return result;
+}
+
+}  // namespace twinray

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/pair_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/analysis/shaft.h"
+#include "engine/analysis/view_factors.h"
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+#include "engine/core/transform.h"
+
+namespace twinray {
+namespace {
+
+Polygon64 polygon_of(const Scene& scene, uint instance, const Mesh& mesh, uvec3 triangle) {
+    const Transform& transform = scene.instances[instance].transform;
+    const auto corner = [&](uint vertex) { return in_world(transform, mesh.positions[vertex]); };
+    const Polygon64 polygon(corner(triangle.x), corner(triangle.y), corner(triangle.z));
+    return determinant(transform) < 0 ? polygon.turned() : polygon;
+}
+
+// What is known of two faces.
+struct FacePair {
+    uint a, b;
+    std::vector<FacingPair> parts;   // that see each other, of each pair of sides
+    std::optional<uint> in_between;  // a face that may be
+    double gap_over_size;
+};
+
+class Planner {
+  public:
+    Planner(const FacePolygons& polygons, std::span<const std::vector<uint>> members, const PairPlanOptions& options)
+        : polygons_(polygons), members_(members), options_(options) {}
+
+    struct Row {
+        std::vector<PlannedPair> pairs;
+        std::uint64_t left_to_hits = 0;
+        std::string refusal;  // why the estimator that is asked for does not fit
+    };
+    Row row(uint i) const {
+        Row row;
+        for (uint j = i; j < members_.size() && row.refusal.empty(); ++j) {
+            PlannedPair pair{i, j, {}, {}};
+            if (plan(pair, row.refusal)) {
+                if (pair.contour.flow > 0 || !pair.sampled.empty()) row.pairs.push_back(std::move(pair));
+            } else {
+                ++row.left_to_hits;
+            }
+        }
+        return row;
+    }
+
+  private:
+    // False where hits are to tell.
+    bool plan(PlannedPair& pair, std::string& refusal) const {
+        for (const uint a : members_[pair.i])
+            for (const uint b : members_[pair.j]) {
+                if (a == b || (pair.i == pair.j && a > b)) continue;
+                const std::optional<FacePair> faces = look_at(a, b);
+                if (!faces) continue;
+                if (!take(*faces, pair, refusal) || is_too_much(pair)) return false;
+            }
+        if (pair.i == pair.j) {  // each saw the other once
+            pair.contour.flow *= 2;
+            pair.contour.error *= 2;
+        }
+        return true;
+    }
+
+    // Whether a row's rays do not suffice for all faces of the pair.
+    bool is_too_much(const PlannedPair& pair) const {
+        return options_.estimator == PairEstimator::automatic && pair.sampled.size() * CHUNK > options_.rays;
+    }
+
+    // Nothing where they do not see each other.
+    std::optional<FacePair> look_at(uint a, uint b) const {
+        const Polygon64 &of_a = polygons_.faces[a], &of_b = polygons_.faces[b];
+        FacePair pair{a, b, {}, {}, gap_over_size(of_a, of_b)};
+        const auto add = [&](const Polygon64& side_a, const Polygon64& side_b) {
+            const FacingPair parts = facing_parts(side_a, side_b, polygons_.rounding);
+            if (!parts.is_empty()) pair.parts.push_back(parts);
+        };
+        add(of_a, of_b);
+        if (options_.sides == Sides::both) {
+            add(of_a.turned(), of_b);
+            add(of_a, of_b.turned());
+            add(of_a.turned(), of_b.turned());
+        }
+        if (pair.parts.empty()) return std::nullopt;
+        for (const FacingPair& parts : pair.parts)
+            if (!pair.in_between) pair.in_between = first_between(Shaft(parts, polygons_.rounding), a, b);
+        return pair;
+    }
+
+    std::optional<uint> first_between(const Shaft& shaft, uint a, uint b) const {
+        for (uint face = 0; face < polygons_.faces.size(); ++face)
+            if (face != a && face != b && polygons_.faces[face].count &&
+                shaft.may_be_blocked_by(polygons_.faces[face], polygons_.boxes[face]))
+                return face;
+        return std::nullopt;
+    }
+
+    bool take(const FacePair& faces, PlannedPair& pair, std::string& refusal) const {
+        switch (options_.estimator) {
+            case PairEstimator::hits: return false;
+            case PairEstimator::contour:
+                if (faces.in_between)
+                    refusal = text("view factors: face ", *faces.in_between, " may come between faces ", faces.a,
+                                   " and ", faces.b, "; contours are for pairs that nothing can come between");
+                else
+                    add(contour_of(faces), pair);
+                return !faces.in_between;
+            case PairEstimator::area:
+                if (faces.gap_over_size < least_gap_asked_for)
+                    refusal = text("view factors: the gap between faces ", faces.a, " and ", faces.b, " is ",
+                                   faces.gap_over_size, " of their longest edge; areas are sampled from ",
+                                   least_gap_asked_for, " on");
+                else
+                    pair.sampled.push_back(sampled(faces));
+                return refusal.empty();
+            case PairEstimator::automatic: break;
+        }
+        return choose(faces, pair);
+    }
+
+    // Contours are kept where they err by less than float32 does, or where nothing better is left.
+    bool choose(const FacePair& faces, PlannedPair& pair) const {
+        const bool is_far = faces.gap_over_size >= least_gap_for_area;
+        if (!faces.in_between) {
+            constexpr double rounding = 0x1p-24;
+            const ContourExchange contour = contour_of(faces);
+            if (contour.error <= rounding * contour.flow || !is_far) {
+                add(contour, pair);
+                return true;
+            }
+        }
+        if (!is_far) return false;
+        pair.sampled.push_back(sampled(faces));
+        return true;
+    }
+
+    ContourExchange contour_of(const FacePair& faces) const {
+        ContourExchange sum;
+        for (const FacingPair& parts : faces.parts) {
+            const ContourExchange part = contour_exchange(parts.a, parts.b);
+            sum.flow += part.flow;
+            sum.error += part.error;
+        }
+        const double share = options_.sides == Sides::both ? 0.5 : 1;
+        return {std::max(0.0, share * sum.flow), share * sum.error};
+    }
+
+    static void add(const ContourExchange& contour, PlannedPair& pair) {
+        pair.contour.flow += contour.flow;
+        pair.contour.error += contour.error;
+    }
+
+    SampledPair sampled(const FacePair& faces) const {
+        const double distance = glm::length(polygons_.faces[faces.a].middle() - polygons_.faces[faces.b].middle());
+        return {faces.a, faces.b, distance, faces.in_between.has_value()};
+    }
+
+    const FacePolygons& polygons_;
+    std::span<const std::vector<uint>> members_;
+    PairPlanOptions options_;
+};
+
+}  // namespace
+
+FacePolygons::FacePolygons(const Scene& scene) {
+    double largest = 0;
+    for (uint i = 0; i < scene.instances.size(); ++i) {
+        const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+        for (uint primitive = 0; primitive < mesh.triangles.size(); ++primitive) {
+            const bool has_area = area_vector(scene, {i, primitive}) != dvec3(0);
+            faces.push_back(has_area ? polygon_of(scene, i, mesh, mesh.triangles[primitive]) : Polygon64());
+            boxes.push_back(box_of(faces.back()));
+            for (const dvec3& point : faces.back().points())
+                largest = std::max({largest, std::abs(point.x), std::abs(point.y), std::abs(point.z)});
+        }
+    }
+    rounding = rounding_of(largest);
+}
+
+PairPlan plan_pairs(const FacePolygons& polygons, std::span<const std::vector<uint>> members,
+                    const PairPlanOptions& options, Progress* progress) {
+    if (options.estimator == PairEstimator::hits) return {};
+    std::size_t faces = 0;
+    for (const std::vector<uint>& group : members) faces += group.size();
+    if (faces > most_paired_faces)
+        fail("view factors: ", faces, " faces; pairs are looked at one by one up to ", most_paired_faces,
+             ", beyond that hits alone can tell");
+    const Planner planner(polygons, members, options);
+    std::vector<Planner::Row> rows(members.size());
+    constexpr std::size_t block = 64;
+    for (std::size_t first = 0; first < rows.size(); first += block) {
+        const std::size_t count = std::min(block, rows.size() - first);
+        parallel_for(count, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = first + begin; i < first + end; ++i) rows[i] = planner.row(static_cast<uint>(i));
+        });
+        if (progress) progress->advance(count);
+    }
+    PairPlan plan;
+    for (Planner::Row& row : rows) {
+        if (!row.refusal.empty()) fail(row.refusal);
+        plan.left_to_hits += row.left_to_hits;
+        std::move(row.pairs.begin(), row.pairs.end(), std::back_inserter(plan.pairs));
+    }
+    return plan;
+}
+
+}  // namespace twinray

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// By which estimator each pair of groups of faces is to be told: pure functions.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/analysis/contour.h"
+#include "engine/analysis/exchange.h"
+#include "engine/analysis/faces.h"
+#include "engine/core/progress.h"
+
+namespace twinray {
+
+// All faces of a scene, in its order; those without an area have no corners.
+struct FacePolygons {
+    std::vector<Polygon64> faces;
+    std::vector<PolygonBox> boxes;
+    double rounding = 0;  // of their corners
+
+    FacePolygons() = default;
+    explicit FacePolygons(const Scene& scene);
+};
+
+// Faces of which areas are sampled.
+struct SampledPair {
+    uint a, b;
+    double distance;  // of their middles
+    bool may_be_blocked;
+};
+
+// What groups i and j exchange, i <= j: A_i F_ij, of which contours tell `contour` and areas the rest.
+struct PlannedPair {
+    uint i, j;
+    ContourExchange contour;
+    std::vector<SampledPair> sampled;
+};
+
+struct PairPlan {
+    std::vector<PlannedPair> pairs;  // ascending
+    std::uint64_t left_to_hits = 0;  // how many more see each other
+};
+
+struct PairPlanOptions {
+    PairEstimator estimator = PairEstimator::automatic;
+    Sides sides = Sides::front;
+    std::uint64_t rays = 1 << 14;  // of a row: what areas may take in `automatic`
+};
+
+// Areas have less variance than hits where the gap is at least this part of the longest edge: at 0.2 both have as much,
+// for parallel squares as for perpendicular ones (docs/view-factors.md).
+inline constexpr double least_gap_for_area = 0.25;
+// Below this, a few samples in narrow places decide, and intervals of areas do not hold.
+inline constexpr double least_gap_asked_for = 1.0 / 16;
+// Of faces with an area: their pairs are few enough to be looked at one by one.
+inline constexpr std::size_t most_paired_faces = 1024;
+
+// `members`: the faces of each group, those with an area. Throws Error naming faces and limit where the estimator that
+// is asked for does not fit a pair, or where there are more than most_paired_faces.
+// `progress` is told of groups.
+PairPlan plan_pairs(const FacePolygons& polygons, std::span<const std::vector<uint>> members,
+                    const PairPlanOptions& options, Progress* progress = nullptr);
+
+}  // namespace twinray

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Area-to-area sampling: the exchange of two faces from points all over both and rays between them.
+#pragma once
+
+#include <glm/integer.hpp>
+
+#include "engine/accel/abstract_accel.h"
+#include "engine/analysis/faces.h"
+#include "engine/analysis/pair_sums.h"
+#include "engine/analysis/view_factors.h"
+
+namespace twinray {
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/pair_rays.h"
+#include "engine/core/bridge_end.h"
+static_assert(sizeof(PairChunk) == 16 && sizeof(PairRaysArgs) == 56 && sizeof(PairWeightsArgs) == 24);
+
+class PairSampler {
+  public:
+    // Two faces that are sampled, and where what is found is added.
+    struct Pair {
+        uint a, b;
+        double distance;            // about, above 0; in which weights are counted
+        double share;               // by what the exchange of these faces is multiplied
+        std::uint64_t first, last;  // chunks of rays
+        PairSums* sums;
+    };
+
+    // `accel` holds the scene of `faces`, put there by push_scene(), and is in sync. All must outlive this.
+    PairSampler(AbstractAccel& accel, const Faces& faces, Sides sides, Sequence sequence, uint seed);
+
+    // Adds chunks [first, last) of each pair's rays. What they are depends on its faces, their order and the seed
+    // alone.
+    void sample(std::span<const Pair> pairs);
+
+  private:
+    void trace(std::span<const PairChunk> chunks);
+
+    AbstractAccel& accel_;
+    const Faces& faces_;
+    Sides sides_;
+    Sequence sequence_;
+    uint seed_;
+    Kernel<PairRaysArgs> make_rays_;
+    Kernel<PairWeightsArgs> mark_blocked_;
+    Buffer chunks_, rays_, hits_, weights_;
+};
+
+}  // namespace twinray

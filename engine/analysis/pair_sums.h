@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// What rays between points of faces have told of their exchange so far: pure functions.
+#pragma once
+
+#include <span>
+
+#include "engine/analysis/estimate.h"
+
+namespace twinray {
+
+class PairSums {
+  public:
+    // Of a chunk of rays (see shaders/shared/pair_rays.h): what each would add to the exchange if it were all of them,
+    // before `unit`; negative where it is blocked.
+    void add(std::span<const float> weights, double unit);
+
+    std::uint64_t rays() const { return rays_; }
+    // The mean, with the 95 % interval of Student's distribution for the scatter of the replicates. Where something may
+    // be in the way, but fewer than 10 rays are blocked, or fewer than 10 free, replicates are too few to tell: the
+    // interval then has room for the rate of Clopper and Pearson, of rays as heavy as the heaviest.
+    Estimate exchange(bool may_be_blocked) const;
+
+  private:
+    Estimate scattered_of(Replicates sums) const;
+
+    Replicates all_ = {}, free_ = {};
+    std::uint64_t rays_ = 0, free_count_ = 0, blocked_count_ = 0;
+    double lightest_free_ = 0, heaviest_ = 0;
+};
+
+}  // namespace twinray

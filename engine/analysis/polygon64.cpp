@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/polygon64.h"
+
+#include <cmath>
+
+namespace twinray {
+
+dvec3 Polygon64::area_vector() const {
+    dvec3 twice(0);
+    for (std::size_t i = 2; i < count; ++i)
+        twice += cross(corners[i - 1] - corners.front(), corners[i] - corners.front());
+    return twice * 0.5;
+}
+
+double Polygon64::longest_edge() const {
+    double longest = 0;
+    for (std::size_t i = 0; i < count; ++i) longest = std::max(longest, glm::length(after(i) - corners[i]));
+    return longest;
+}
+
+dvec3 Polygon64::middle() const {
+    dvec3 sum(0);
+    for (const dvec3& point : points()) sum += point;
+    return sum / static_cast<double>(count);
+}
+
+Polygon64 Polygon64::turned() const {
+    Polygon64 other = *this;
+    std::reverse(other.corners.begin(), other.corners.begin() + static_cast<std::ptrdiff_t>(count));
+    return other;
+}
+
+Extent extent_of(const Polygon64& polygon, const dvec3& axis) {
+    Extent extent;
+    for (const dvec3& point : polygon.points()) {
+        const double along = dot(axis, point);
+        extent = extent.with({along, along});
+    }
+    return extent;
+}
+
+PolygonBox box_of(const Polygon64& polygon) {
+    PolygonBox box{polygon.corners.front(), polygon.corners.front()};
+    for (const dvec3& point : polygon.points()) box = {glm::min(box.low, point), glm::max(box.high, point)};
+    return box;
+}
+
+double rounding_of(double size) { return 16 * std::numeric_limits<double>::epsilon() * size; }
+
+Polygon64 before(const Polygon64& polygon, const Polygon64& triangle, double rounding) {
+    const dvec3 normal = glm::normalize(triangle.area_vector());
+    std::array<double, 4> distances = {};
+    double highest = 0;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const double distance = dot(normal, polygon.corners[i] - triangle.corners.front());
+        distances[i] = std::abs(distance) <= rounding ? 0 : distance;
+        highest = std::max(highest, distances[i]);
+    }
+    if (highest == 0) return {};
+    Polygon64 left;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const double here = distances[i], next = distances[(i + 1) % polygon.count];
+        if (here >= 0) left.add(polygon.corners[i]);
+        if ((here > 0 && next < 0) || (here < 0 && next > 0))
+            left.add(glm::mix(polygon.corners[i], polygon.after(i), here / (here - next)));
+    }
+    return left;
+}
+
+FacingPair facing_parts(const Polygon64& a, const Polygon64& b, double rounding) {
+    return {before(a, b, rounding), before(b, a, rounding)};
+}
+
+double gap_over_size(const Polygon64& a, const Polygon64& b) {
+    double gap = 0;
+    for (const dvec3& axis : {a.area_vector(), b.area_vector(), b.middle() - a.middle()}) {
+        const double length = glm::length(axis);
+        if (length == 0) continue;
+        gap = std::max(gap, extent_of(a, axis / length).gap_to(extent_of(b, axis / length)));
+    }
+    return gap / std::max(a.longest_edge(), b.longest_edge());
+}
+
+}  // namespace twinray

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// Faces as convex polygons in float64, and what of one lies before the plane of another: pure functions.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "engine/core/shader_bridge.h"
+
+namespace twinray {
+
+// A triangle, or what a plane has left of it. The corners turn counter-clockwise seen from the side that counts.
+struct Polygon64 {
+    std::array<dvec3, 4> corners = {};
+    std::size_t count = 0;
+
+    Polygon64() = default;
+    Polygon64(const dvec3& a, const dvec3& b, const dvec3& c) : corners{a, b, c}, count(3) {}
+    void add(const dvec3& corner) { corners[count++] = corner; }
+    std::span<const dvec3> points() const { return {corners.data(), count}; }
+    const dvec3& after(std::size_t i) const { return corners[(i + 1) % count]; }
+    // As long as the area.
+    dvec3 area_vector() const;
+    double longest_edge() const;
+    dvec3 middle() const;  // of the corners
+    // Seen from the other side.
+    Polygon64 turned() const;
+};
+
+// Where the points lie along an axis.
+struct Extent {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+
+    Extent with(const Extent& other) const { return {std::min(low, other.low), std::max(high, other.high)}; }
+    double length() const { return high - low; }
+    double gap_to(const Extent& other) const { return std::max(low - other.high, other.low - high); }  // or below 0
+};
+Extent extent_of(const Polygon64& polygon, const dvec3& axis);
+
+struct PolygonBox {
+    dvec3 low, high;
+};
+PolygonBox box_of(const Polygon64& polygon);  // which has corners
+
+// How far a coordinate may be off that a few operations have made from numbers as large as `size`.
+double rounding_of(double size);
+
+// What of `polygon` lies on the side of the plane of `triangle` from which that turns counter-clockwise; nothing where
+// that is an edge, or less. Corners within `rounding` of the plane lie in it.
+Polygon64 before(const Polygon64& polygon, const Polygon64& triangle, double rounding);
+
+// What of two triangles sees the other, each on the side from which it turns counter-clockwise; empty where none does.
+struct FacingPair {
+    Polygon64 a, b;
+    bool is_empty() const { return a.count == 0 || b.count == 0; }
+};
+FacingPair facing_parts(const Polygon64& a, const Polygon64& b, double rounding);
+
+// A lower bound of their distance over the longest edge of both.
+double gap_over_size(const Polygon64& a, const Polygon64& b);
+
+}  // namespace twinray

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// Marks the weights of rays that something blocks.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/pair_rays.h"
+layout(local_size_x = CHUNK) in;
+layout(push_constant, scalar) uniform Push { PairWeightsArgs args; };
+
+void main()
+{
+    uint i = global_index();
+    if (i < args.count && AT(args.hits, i).hit != 0u) AT(args.weights, i) = -AT(args.weights, i);
+}
