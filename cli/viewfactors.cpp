@@ -8,6 +8,7 @@
 #include "cli/common.h"
 #include "cli/npz.h"
 #include "engine/accel/scene_push.h"
+#include "engine/analysis/pair_exchanges.h"
 #include "engine/analysis/reciprocity.h"
 #include "engine/analysis/row_file.h"
 #include "engine/core/error.h"
@@ -22,6 +23,7 @@ struct Options {
     std::filesystem::path scene, output;
     std::string accel = "sw";
     ViewFactorOptions factors;
+    PairEstimator estimator = PairEstimator::automatic;
     bool resumes = false;
     bool projects = false;
 };
@@ -34,8 +36,23 @@ std::string configuration_of(const Options& options, const Faces& faces) {
     std::ostringstream out;
     out << std::hexfloat << faces.count() << " faces " << area << ", by " << name_of(of.grouping) << ", "
         << name_of(of.sides) << ", " << name_of(of.sequence) << ", " << of.rays << " rays, error "
-        << of.target_error.value_or(0) << ", seed " << of.seed << ", " << options.accel;
+        << of.target_error.value_or(0) << ", seed " << of.seed << ", " << options.accel << ", estimator "
+        << name_of(options.estimator);
     return out.str();
+}
+
+// Empty where hits are to tell all, as they are in scenes of too many faces unless another estimator is asked for.
+PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const Scene& scene, const Faces& faces) {
+    const auto count = static_cast<std::size_t>(
+        std::count_if(faces.areas().begin(), faces.areas().end(), [](double area) { return area > 0; }));
+    if (options.estimator == PairEstimator::automatic && count > most_paired_faces) {
+        if (!options.common.quiet)
+            std::cout << count << " faces: pairs are looked at one by one up to " << most_paired_faces
+                      << ", here hits tell them all\n";
+        return {};
+    }
+    Progress progress("pairs", faces.group_count(options.factors.grouping), options.common.quiet);
+    return exchanges_of_pairs(accel, scene, faces, options.factors, options.estimator, &progress);
 }
 
 std::filesystem::path rows_file(const std::filesystem::path& output) { return output.string() + ".rows"; }
@@ -82,6 +99,7 @@ void write_npz(const std::filesystem::path& file, const std::vector<ViewFactorRo
     std::vector<std::int64_t> starts = {0};
     std::vector<std::uint32_t> columns;
     std::vector<float> values, low, high;
+    std::vector<std::uint32_t> by;
     std::vector<double> open, back;
     std::vector<std::uint64_t> rays;
     for (const ViewFactorRow& row : rows) {
@@ -90,6 +108,7 @@ void write_npz(const std::filesystem::path& file, const std::vector<ViewFactorRo
             values.push_back(factor.value);
             low.push_back(factor.low);
             high.push_back(factor.high);
+            by.push_back(static_cast<std::uint32_t>(factor.by));
         }
         starts.push_back(static_cast<std::int64_t>(columns.size()));
         open.push_back(row.open.value);
@@ -106,6 +125,7 @@ void write_npz(const std::filesystem::path& file, const std::vector<ViewFactorRo
     npz.add("data", std::span<const float>(values));
     npz.add("ci_low", std::span<const float>(low));
     npz.add("ci_high", std::span<const float>(high));
+    npz.add("estimator", std::span<const std::uint32_t>(by));
     npz.add("area", std::span<const double>(areas));
     npz.add("open", std::span<const double>(open));
     npz.add("back", std::span<const double>(back));
@@ -115,16 +135,21 @@ void write_npz(const std::filesystem::path& file, const std::vector<ViewFactorRo
 
 struct Totals {
     std::uint64_t rays = 0, hits = 0, entries = 0;
-    double widest = 0;  // half interval
+    std::map<std::string_view, std::uint64_t> entries_by;  // estimator
+    double widest = 0;                                     // half interval
 };
 Totals totals_of(const std::vector<ViewFactorRow>& rows) {
     Totals totals;
+    for (const PairEstimator by : {PairEstimator::hits, PairEstimator::area, PairEstimator::contour})
+        totals.entries_by[name_of(by)] = 0;
     for (const ViewFactorRow& row : rows) {
         totals.rays += row.rays;
         totals.hits += row.hits;
         totals.entries += row.factors.size();
-        for (const ViewFactor& factor : row.factors)
+        for (const ViewFactor& factor : row.factors) {
+            ++totals.entries_by[name_of(factor.by)];
             totals.widest = std::max(totals.widest, static_cast<double>(factor.high - factor.low) / 2);
+        }
     }
     return totals;
 }
@@ -140,6 +165,10 @@ nlohmann::json json_of(const ViewFactorResiduals& residuals) {
             {"closure", residuals.closure}};
 }
 
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 void run(const Options& options) {
     const std::string suffix = options.output.extension().string();
     if (!options.output.empty() && suffix != ".npz" && suffix != ".csv")
@@ -152,10 +181,12 @@ void run(const Options& options) {
     push_scene(*accel, scene);
     context->wait(accel->sync());
     const Faces faces(*context, scene);
-    ViewFactors factors(*accel, faces, options.factors);
     const auto start = std::chrono::steady_clock::now();
+    const PairExchanges pairs = compute_pairs(options, *accel, scene, faces);
+    const double seconds_of_pairs = seconds_since(start);
+    ViewFactors factors(*accel, faces, options.factors, pairs.known);
     std::vector<ViewFactorRow> rows = compute(options, factors, faces);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = seconds_since(start);
     const Totals totals = totals_of(rows);
     const ViewFactorResiduals before = residuals_of(rows, factors.areas());
     std::optional<ViewFactorResiduals> after;
@@ -170,7 +201,10 @@ void run(const Options& options) {
         std::cout << rows.size() << ' ' << name_of(options.factors.grouping) << " rows, " << totals.entries
                   << " entries, " << totals.rays << " rays in " << seconds << " s ("
                   << static_cast<double>(totals.rays) / seconds / 1e6 << " million a second), " << totals.hits
-                  << " met a face\nwidest 95 % interval: +- " << totals.widest << '\n';
+                  << " met a face\nentries by estimator: " << totals.entries_by.at("contour") << " contour, "
+                  << totals.entries_by.at("area") << " area, " << totals.entries_by.at("hits") << " hits; "
+                  << pairs.rays << " rays between points of faces, " << seconds_of_pairs
+                  << " s\nwidest 95 % interval: +- " << totals.widest << '\n';
         print_residuals("as counted", before);
         if (after) print_residuals("projected", *after);
     }
@@ -181,6 +215,10 @@ void run(const Options& options) {
                                       {"by", name_of(options.factors.grouping)},
                                       {"sequence", name_of(options.factors.sequence)},
                                       {"sides", name_of(options.factors.sides)},
+                                      {"estimator", name_of(options.estimator)},
+                                      {"entries_by_estimator", totals.entries_by},
+                                      {"rays_between_faces", pairs.rays},
+                                      {"seconds_of_pairs", seconds_of_pairs},
                                       {"seed", options.factors.seed},
                                       {"rows", rows.size()},
                                       {"entries", totals.entries},
@@ -213,6 +251,13 @@ void add_viewfactors(CLI::App& app, int&) {
     command->add_option("--sequence", options->factors.sequence, "of samples: sobol, random")
         ->transform(CLI::CheckedTransformer(
             std::map<std::string, Sequence>{{"sobol", Sequence::sobol}, {"random", Sequence::random}}));
+    std::map<std::string, PairEstimator> estimators;
+    for (const PairEstimator estimator : all_pair_estimators) estimators.emplace(name_of(estimator), estimator);
+    command
+        ->add_option("--estimator", options->estimator,
+                     "auto: contour integrals for pairs that nothing can come between, rays between points of both for "
+                     "those far apart, else rays that hit; or one of hits, area, contour for all")
+        ->transform(CLI::CheckedTransformer(estimators));
     command->add_option("--accel", options->accel)->check(CLI::IsMember({"sw", "hw"}))->capture_default_str();
     command->add_flag("--project", options->projects,
                       "write the nearest matrix that fulfils reciprocity and closure instead of the counted one");
