@@ -2,6 +2,11 @@
 // Scenes whose view factors are known in closed form.
 #pragma once
 
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "engine/analysis/pair_plan.h"
 #include "tests/analysis/scenes.h"
 
 namespace twinray::test {
@@ -22,6 +27,36 @@ inline Scene perpendicular_rectangles(float w, float h) {
 inline Mesh turned(Mesh mesh) {
     for (uvec3& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
     return mesh;
+}
+
+// A regular polygon of n corners on a circle about the z axis, which looks up.
+inline Mesh make_disc(int n, float radius) {
+    Mesh mesh;
+    mesh.positions.push_back(vec3(0));
+    for (int i = 0; i < n; ++i) {
+        const double angle = 2 * std::numbers::pi * i / n;
+        mesh.positions.push_back(radius * vec3(std::cos(angle), std::sin(angle), 0));
+        const auto first = static_cast<uint>(i + 1);
+        mesh.triangles.push_back({0, first, i + 1 == n ? 1 : first + 1});
+    }
+    return mesh;
+}
+
+// A F from mesh 0 to mesh 1, between which nothing is, in float64.
+inline double contour_flow(const Scene& scene) {
+    const FacePolygons polygons(scene);
+    const auto first = static_cast<uint>(scene.meshes[0].triangles.size());
+    std::vector<std::vector<uint>> meshes(2);
+    for (uint face = 0; face < polygons.faces.size(); ++face) meshes[face < first ? 0 : 1].push_back(face);
+    for (const PlannedPair& pair : plan_pairs(polygons, meshes, {}).pairs)
+        if (pair.i == 0 && pair.j == 1) return pair.contour.flow;
+    return 0;
+}
+
+// A long run takes more than CI has time for: TWINRAY_SEEDS=1000.
+inline uint seeds() {
+    const char* asked = std::getenv("TWINRAY_SEEDS");
+    return asked ? static_cast<uint>(std::atoi(asked)) : 20;
 }
 
 }  // namespace twinray::test

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/pair_exchanges.h"
+
+#include <cmath>
+
+#include "engine/analysis/reciprocity.h"
+#include "tests/analysis/view_factor_scenes.h"
+
+namespace twinray {
+namespace {
+
+using test::scene_of;
+using test::turned;
+
+class PairExchangesOfAccels : public test::AnalysisTest {
+  protected:
+    PairExchanges exchanges(const Scene& scene, const ViewFactorOptions& options, PairEstimator estimator) {
+        const Faces faces(context(), scene);
+        return exchanges_of_pairs(accel(), scene, faces, options, estimator);
+    }
+    std::vector<ViewFactorRow> rows(const Scene& scene, const ViewFactorOptions& options, PairEstimator estimator) {
+        fill(scene);
+        const Faces faces(context(), scene);
+        const PairExchanges pairs = exchanges_of_pairs(accel(), scene, faces, options, estimator);
+        ViewFactors factors(accel(), faces, options, pairs.known);
+        return factors.rows(0, factors.row_count());
+    }
+};
+TWINRAY_OVER_EVERY_ACCEL(PairExchangesOfAccels);
+
+class PairExchangesTest : public PairExchangesOfAccels {};
+TWINRAY_OVER_SOFTWARE(PairExchangesTest);
+
+// A square below another, and a plate between them.
+Scene plate_between(float distance) {
+    Scene scene = test::parallel_squares(distance);
+    scene.meshes.push_back(make_quad(vec3(0.2f, 0.2f, distance / 2), vec3(0, 0.6f, 0), vec3(0.6f, 0, 0)));
+    scene.instances.push_back({"plate", 2, {}});
+    return scene;
+}
+
+// The edge in common taken apart.
+Scene perpendicular_apart(float gap) {
+    Scene scene = test::perpendicular_rectangles(1, 1);
+    scene.instances[0].transform = Transform::translation(vec3(gap, 0, 0));
+    return scene;
+}
+
+TEST_P(PairExchangesTest, IntervalsOfAreasHoldTheTruthAsOftenAsTheyShould) {
+    const std::vector<Scene> scenes = {test::parallel_squares(0.1f), test::parallel_squares(0.5f),
+                                       test::parallel_squares(2),    test::parallel_squares(10),
+                                       perpendicular_apart(0.1f),    perpendicular_apart(1)};
+    for (const Sequence sequence : {Sequence::sobol, Sequence::random}) {
+        uint inside = 0;
+        for (const Scene& scene : scenes) {
+            fill(scene);
+            const double truth = test::contour_flow(scene);
+            uint here = 0;
+            for (uint seed = 1; seed <= test::seeds(); ++seed) {
+                const PairExchanges pairs =
+                    exchanges(scene, {.grouping = FaceGrouping::mesh, .sequence = sequence, .rays = 1024, .seed = seed},
+                              PairEstimator::area);
+                const KnownExchange& exchange = pairs.known.at(0);
+                here += exchange.low <= truth && truth <= exchange.high;
+            }
+            EXPECT_GE(here, 0.8 * test::seeds()) << name_of(sequence) << ' ' << truth;
+            inside += here;
+        }
+        const double percent = 100.0 * inside / static_cast<double>(scenes.size() * test::seeds());
+        EXPECT_GE(percent, 88) << name_of(sequence);
+        EXPECT_LE(percent, 99) << name_of(sequence) << ": intervals are longer than they need to be";
+    }
+}
+
+const ViewFactor& factor(const ViewFactorRow& row, uint target) {
+    static const ViewFactor none;
+    for (const ViewFactor& entry : row.factors)
+        if (entry.target == target) return entry;
+    return none;
+}
+
+bool overlap(const ViewFactor& a, const ViewFactor& b) { return a.low <= b.high && b.low <= a.high; }
+
+TEST_P(PairExchangesTest, AllEstimatorsAndSequencesAgree) {
+    for (const Scene& scene : {test::parallel_squares(1), plate_between(2)}) {
+        std::vector<ViewFactorRow> all;
+        for (const PairEstimator estimator : {PairEstimator::automatic, PairEstimator::hits, PairEstimator::area})
+            for (const Sequence sequence : {Sequence::sobol, Sequence::random})
+                all.push_back(
+                    rows(scene, {.grouping = FaceGrouping::mesh, .sequence = sequence, .rays = 1 << 15}, estimator)[0]);
+        for (const ViewFactorRow& row : all) {
+            ASSERT_EQ(row.factors.size(), all[0].factors.size());
+            for (const ViewFactor& entry : row.factors) {
+                EXPECT_TRUE(overlap(entry, factor(all[0], entry.target)))
+                    << entry.value << " +- " << entry.high - entry.value;
+                EXPECT_LT(entry.high - entry.low, 0.2f * entry.value);
+            }
+        }
+        EXPECT_EQ(factor(all[0], 1).by, scene.meshes.size() == 2 ? PairEstimator::contour : PairEstimator::area);
+        EXPECT_EQ(factor(all[2], 1).by, PairEstimator::hits);
+        EXPECT_EQ(factor(all[4], 1).by, PairEstimator::area);
+    }
+}
+
+TEST_P(PairExchangesTest, WhatIsHiddenHasNoFactor) {
+    Scene scene = plate_between(2);
+    scene.meshes[2] = make_quad(vec3(-0.5f, -0.5f, 1), vec3(2, 0, 0), vec3(0, 2, 0));
+    for (const PairEstimator estimator : {PairEstimator::automatic, PairEstimator::area}) {
+        const std::vector<ViewFactorRow> all = rows(scene, {.grouping = FaceGrouping::mesh}, estimator);
+        EXPECT_EQ(factor(all[0], 1).value, 0) << "a plate is in between";
+        EXPECT_GT(factor(all[1], 2).value, 0.5f) << "and looks up";
+    }
+}
+
+// The inner sphere hides some of the outer one from itself.
+TEST_P(PairExchangesOfAccels, OfConcentricSpheresContoursTellWhatIsNotHidden) {
+    const Scene spheres = scene_of({make_icosphere(1, 1), turned(make_icosphere(1, 2))});
+    const std::vector<ViewFactorRow> all = rows(spheres, {.grouping = FaceGrouping::mesh}, PairEstimator::automatic);
+    ASSERT_EQ(all[0].factors.size(), 1u);
+    EXPECT_FLOAT_EQ(factor(all[0], 1).value, 1) << "the inner one sees the outer one alone";
+    EXPECT_EQ(factor(all[0], 1).by, PairEstimator::contour);
+    EXPECT_FLOAT_EQ(factor(all[1], 0).value, 0.25f) << "the spheres are similar";
+    const ViewFactor& itself = factor(all[1], 1);
+    EXPECT_EQ(itself.by, PairEstimator::hits);
+    EXPECT_TRUE(itself.low <= 0.75f && 0.75f <= itself.high);
+
+    const Scene alone = scene_of({turned(make_icosphere(1, 2))});
+    const std::vector<ViewFactorRow> hollow = rows(alone, {.grouping = FaceGrouping::mesh}, PairEstimator::automatic);
+    EXPECT_FLOAT_EQ(factor(hollow[0], 0).value, 1);
+    EXPECT_EQ(factor(hollow[0], 0).by, PairEstimator::contour);
+}
+
+TEST_P(PairExchangesTest, ProjectionKeepsWhatIsKnownBest) {
+    Scene room = scene_of({turned(make_box(vec3(-2), vec3(2))), make_box(vec3(-0.5f), vec3(0.5f))});
+    fill(room);
+    const Faces faces(context(), room);
+    const ViewFactorOptions options{.rays = 4096};
+    const PairExchanges pairs = exchanges_of_pairs(accel(), room, faces, options, PairEstimator::automatic);
+    EXPECT_GT(pairs.left_to_hits, 0u);
+    ViewFactors factors(accel(), faces, options, pairs.known);
+    std::vector<ViewFactorRow> all = factors.rows(0, factors.row_count());
+    EXPECT_GT(residuals_of(all, factors.areas()).closure, 1e-4) << "not of one set of rays any more";
+    const std::vector<ViewFactorRow> before = all;
+    project(all, factors.areas());
+    const ViewFactorResiduals after = residuals_of(all, factors.areas());
+    EXPECT_LT(after.closure, 1e-6);
+    EXPECT_LT(after.reciprocity, 1e-6);
+    int contours = 0;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (const ViewFactor& entry : before[i].factors) {
+            if (entry.by != PairEstimator::contour) continue;
+            ++contours;
+            EXPECT_NEAR(factor(all[i], entry.target).value, entry.value, 1e-6f);
+            EXPECT_EQ(factor(all[i], entry.target).by, PairEstimator::contour);
+        }
+    EXPECT_GT(contours, 24);
+}
+
+TEST_P(PairExchangesTest, AreasEndWhenTheirErrorIsSmallEnough) {
+    const auto rays_for = [&](std::optional<double> error) {
+        fill(plate_between(2));
+        const PairExchanges pairs =
+            exchanges(plate_between(2), {.grouping = FaceGrouping::mesh, .rays = 1 << 16, .target_error = error},
+                      PairEstimator::automatic);
+        for (const KnownExchange& exchange : pairs.known)
+            EXPECT_LE(exchange.high - exchange.low, 2 * error.value_or(1));
+        return pairs.rays;
+    };
+    EXPECT_EQ(rays_for(std::nullopt), 1u << 16);
+    EXPECT_EQ(rays_for(0.01), 1024u);
+    EXPECT_GT(rays_for(0.0003), 2048u);
+    EXPECT_LT(rays_for(0.0003), 1u << 16);
+}
+
+TEST_P(PairExchangesOfAccels, AllAcceleratorsTellTheSame) {
+    fill(plate_between(2));
+    const PairExchanges ours = exchanges(plate_between(2), {.rays = 4096}, PairEstimator::area);
+    SwTlas software(context());
+    const Scene scene = plate_between(2);
+    push_scene(software, scene);
+    const Faces faces(context(), scene);
+    const PairExchanges theirs = exchanges_of_pairs(software, scene, faces, {.rays = 4096}, PairEstimator::area);
+    ASSERT_EQ(ours.known.size(), theirs.known.size());
+    for (std::size_t i = 0; i < ours.known.size(); ++i) EXPECT_EQ(ours.known[i].flow, theirs.known[i].flow);
+}
+
+TEST_P(PairExchangesTest, TinyFacesAreAsAccurateAsLargeOnes) {
+    constexpr float side = 0x1p-20f;  // areas of 1 and 10^-12
+    Scene scene = scene_of({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
+                            make_quad(vec3(0.5f, 0.5f, 1), vec3(0, side, 0), vec3(side, 0, 0))});
+    // From the tiny square to the corners of four quarters: Howell B-4.
+    const double x = 0.5, root = std::sqrt(1 + x * x);
+    const double known = 4 / (2 * 3.14159265358979) * 2 * x / root * std::atan(x / root);
+    for (const PairEstimator estimator : {PairEstimator::automatic, PairEstimator::area}) {
+        const std::vector<ViewFactorRow> all =
+            rows(scene, {.grouping = FaceGrouping::mesh, .rays = 1 << 14}, estimator);
+        const double error = estimator == PairEstimator::area ? 1e-3 : 1e-6;
+        EXPECT_NEAR(static_cast<double>(factor(all[1], 0).value) / known, 1, error) << name_of(estimator);
+        EXPECT_NEAR(static_cast<double>(factor(all[0], 1).value) / known * 0x1p40, 1, error) << name_of(estimator);
+        EXPECT_LE(static_cast<double>(factor(all[1], 0).low), known * (1 + 1e-6));
+        EXPECT_GE(static_cast<double>(factor(all[1], 0).high), known * (1 - 1e-6));
+    }
+}
+
+}  // namespace
+}  // namespace twinray
