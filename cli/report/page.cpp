@@ -144,7 +144,8 @@ void write_row(std::ostream& out, const Record& record) {
         << "</td><td class=\"n\">" << record.faults << "</td><td class=\"n\">"
         << (record.bound95 ? number(*record.bound95, 2) : "") << "</td><td class=\"n\">";
     if (const auto& error = record.error)
-        out << number(error->median) << " / " << number(error->p99) << " / " << number(error->max);
+        out << number(error->median) << " / " << number(error->p99) << " / " << number(error->max)
+            << (error->metric == "t_ulp" ? "" : ' ' + escaped(error->metric));
     out << "</td><td class=\"n\">";
     if (const auto& time = record.time) {
         out << number(time->median, 4) << " &#177; " << number(time->mad, 2);
@@ -168,7 +169,7 @@ void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vecto
     for (const Record* record : records) write_row(out, *record);
     out << "</table>\n";
     for (const Plot& plot : plots)
-        if (plot.id == row.id + "-t" || plot.id == row.id + "-faults") out << svg(plot);
+        if (plot.id.starts_with(row.id + '-')) out << svg(plot);
 }
 
 void write_cases(std::ostream& out, const PageInput& input, std::span<const Plot> plots) {

@@ -23,7 +23,7 @@ std::string label_of(const Record& record) {
 
 // A kernel of its own is a curve of its own; that fast is a control in some case makes no other kernel of it.
 std::string curve_of(const Record& record) {
-    const std::string subject = record.backend + ' ' + record.level;
+    const std::string subject = record.level.empty() ? record.backend : record.backend + ' ' + record.level;
     return is_users_kernel(record) ? subject : subject + ", " + record.variant;
 }
 
@@ -51,6 +51,16 @@ std::optional<PlotPoint> t_error(const Record& record) {
     PlotPoint point = timed_point(record);
     point.error = record.error->p99;
     point.error_95 = record.error->p99_95;
+    return point;
+}
+
+// Of estimates whose truth is known, over their seeds. An error below that of the number's type is none.
+std::optional<PlotPoint> estimate_error(const Record& record) {
+    if (!record.time || !record.error || record.error->metric != "relative") return std::nullopt;
+    PlotPoint point = timed_point(record);
+    point.is_zero = record.error->median < record.error->floor;
+    point.error = std::max(record.error->median, record.error->floor);
+    point.error_95 = {point.error, point.error};
     return point;
 }
 
@@ -103,6 +113,28 @@ std::optional<double> floor_of(std::span<const Record* const> records) {
 Plot t_plot(const std::string& id, const std::string& title, std::span<const Record* const> records, bool with_fit) {
     return {id + "-t",    title + ": error of t", "99th percentile of the error of t, units in the last place",
             "ns per ray", floor_of(records),      curves_of(records, t_error, with_fit)};
+}
+
+// For each setting of a case but for the number of rays, over which its curves go.
+std::vector<Plot> estimate_plots(const std::string& id, std::span<const Record* const> records) {
+    std::vector<std::string> settings;
+    std::map<std::string, std::vector<const Record*>> by_setting;
+    for (const Record* record : records) {
+        if (!estimate_error(*record)) continue;
+        std::string setting;
+        for (const auto& [name, value] : record->params)
+            if (name != "rays") setting += (setting.empty() ? "" : ", ") + name + ' ' + value.text();
+        std::vector<const Record*>& same = by_setting[setting];
+        if (same.empty()) settings.push_back(setting);
+        same.push_back(record);
+    }
+    std::vector<Plot> plots;
+    for (const std::string& setting : settings)
+        plots.push_back({id + "-error-" + std::to_string(plots.size() + 1),
+                         id + (setting.empty() ? "" : ", " + setting) + ": error of estimates", "median relative error",
+                         "ms per estimate", floor_of(by_setting[setting]),
+                         curves_of(by_setting[setting], estimate_error, true)});
+    return plots;
 }
 
 Plot fault_plot(const std::string& id, const std::string& title, std::span<const Record* const> records,
@@ -158,9 +190,13 @@ std::vector<Plot> plots_of(std::span<const Record> records) {
         add_plot(plots, fault_plot(id, title, sections[letter], false));
         add_plot(plots, t_plot(id, title, sections[letter], false));
     }
-    for (const std::string& id : case_order)
-        for (Plot& plot : std::array{fault_plot(id, id, cases[id], true), t_plot(id, id, cases[id], true)})
+    for (const std::string& id : case_order) {
+        std::vector<Plot> of_case = estimate_plots(id, cases[id]);
+        of_case.push_back(fault_plot(id, id, cases[id], true));
+        of_case.push_back(t_plot(id, id, cases[id], true));
+        for (Plot& plot : of_case)
             if (is_swept(plot)) plots.push_back(std::move(plot));
+    }
     set_styles(plots);
     return plots;
 }

@@ -52,8 +52,9 @@ std::string_view name(Level level) {
 
 std::vector<SuiteCase> catalogue() {
     std::vector<SuiteCase> all;
-    for (const auto& section : {edge_cases, scale_cases, shape_cases, input_cases, instance_cases, build_cases,
-                                arithmetic_cases, price_cases, collision_cases, distance_cases}) {
+    for (const auto& section :
+         {edge_cases, scale_cases, shape_cases, input_cases, instance_cases, build_cases, arithmetic_cases, price_cases,
+          view_factor_cases, radiosity_cases, collision_cases, distance_cases}) {
         const std::vector<SuiteCase> cases = section();
         all.insert(all.end(), cases.begin(), cases.end());
     }
@@ -70,6 +71,8 @@ std::string_view section_of(std::string_view id) {
         case 'B': return "structure, build and refit";
         case 'F': return "self-intersection and arithmetic";
         case 'L': return "what each level costs";
+        case 'V': return "view factors";
+        case 'R': return "radiosity";
         case 'C': return "collisions";
         case 'D': return "distances";
         default: return "";

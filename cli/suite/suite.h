@@ -57,17 +57,19 @@ struct SuiteCase {
 };
 
 // The catalogue, a function and a file for each section.
-std::vector<SuiteCase> edge_cases();        // W: edges, vertices, watertightness
-std::vector<SuiteCase> scale_cases();       // S: scale and position
-std::vector<SuiteCase> shape_cases();       // T: triangle shape
-std::vector<SuiteCase> input_cases();       // N: invalid and special input
-std::vector<SuiteCase> instance_cases();    // I: instances
-std::vector<SuiteCase> build_cases();       // B: structure, build and refit
-std::vector<SuiteCase> arithmetic_cases();  // F: self-intersection, arithmetic
-std::vector<SuiteCase> price_cases();       // L: what levels cost
-std::vector<SuiteCase> collision_cases();   // C: collisions
-std::vector<SuiteCase> distance_cases();    // D: distances
-std::vector<SuiteCase> catalogue();         // all of them
+std::vector<SuiteCase> edge_cases();         // W: edges, vertices, watertightness
+std::vector<SuiteCase> scale_cases();        // S: scale and position
+std::vector<SuiteCase> shape_cases();        // T: triangle shape
+std::vector<SuiteCase> input_cases();        // N: invalid and special input
+std::vector<SuiteCase> instance_cases();     // I: instances
+std::vector<SuiteCase> build_cases();        // B: structure, build and refit
+std::vector<SuiteCase> arithmetic_cases();   // F: self-intersection, arithmetic
+std::vector<SuiteCase> price_cases();        // L: what levels cost
+std::vector<SuiteCase> view_factor_cases();  // V: view factors
+std::vector<SuiteCase> radiosity_cases();    // R: radiosity
+std::vector<SuiteCase> collision_cases();    // C: collisions
+std::vector<SuiteCase> distance_cases();     // D: distances
+std::vector<SuiteCase> catalogue();          // all of them
 // The same as L for scenes of the user's, from L11 on.
 std::vector<SuiteCase> scene_cases(std::span<const std::filesystem::path> files);
 // The section of a case id, by its letter: "edges, vertices, watertightness".

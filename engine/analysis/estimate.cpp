@@ -49,7 +49,9 @@ Estimate Estimator::operator()(const Replicates& fractions, std::uint64_t events
     }
     Estimate estimate = scattered(fractions);
     Interval& interval = estimate.interval_95;
-    interval = {std::max(0.0, interval.low), std::min(1.0, interval.high)};
+    const double unseen = rate(0, rays).high;
+    interval = {std::max(0.0, std::min(interval.low, estimate.value - unseen)),
+                std::min(1.0, std::max(interval.high, estimate.value + unseen))};
     return estimate;
 }
 

@@ -28,8 +28,9 @@ Estimate scattered(const Replicates& values);
 // Fractions in [0, 1] as the means of their replicates, `events` rays of `rays` in all. The interval is Student's for
 // the scatter of the replicates, within [0, 1]; where fewer than 10 rays, or all but as many, had the event, replicates
 // are too few to scatter as they should, and it is that of Clopper and Pearson (1934), which is never too short for
-// independent rays, nor for stratified ones. Those take long to compute and are the same again and again: they are
-// kept.
+// independent rays, nor for stratified ones. No interval is shorter than what no ray may have seen, some 3.7 / rays
+// either way: replicates of stratified rays can all agree. Those of counts take long to compute and are the same again
+// and again: they are kept.
 class Estimator {
   public:
     Estimate operator()(const Replicates& fractions, std::uint64_t events, std::uint64_t rays);

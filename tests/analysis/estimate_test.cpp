@@ -22,6 +22,15 @@ TEST(Estimator, OfManyEventsIsStudentsInterval) {
     EXPECT_NEAR(estimate.interval_95.low + estimate.interval_95.high, 0.5, 1e-15);
 }
 
+// Stratified rays from a panel beside a wide floor, of which every replicate sees exactly half.
+TEST(Estimator, OfReplicatesThatAgreeLeavesRoomForWhatNoRaySaw) {
+    Replicates fractions;
+    fractions.fill(0.5);
+    const Estimate estimate = Estimator()(fractions, 512, 1024);
+    EXPECT_EQ(estimate.value, 0.5);
+    EXPECT_NEAR(estimate.half_width(), 3.7 / 1024, 0.1 / 1024);
+}
+
 TEST(Estimator, OfFewEventsIsThatOfCounts) {
     Estimator estimate;
     const Estimate never = estimate({}, 0, 16000), always = estimate(Replicates{}, 16000, 16000);

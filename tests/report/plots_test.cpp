@@ -52,6 +52,32 @@ TEST(Plots, ASweepHasItsSlopeAndASectionHasNone) {
     EXPECT_FALSE(find(plots, "S-t")->curves[0].fit);
 }
 
+TEST(Plots, EstimatesHaveAPlotForEachSettingOverTheirRays) {
+    std::vector<Record> records;
+    for (const double distance : {1.0, 2.0})
+        for (const double rays : {100.0, 1000.0, 10000.0, 0.0}) {
+            Record record = point("V01", "", 0, rays ? rays / 10 : 1, 0);
+            record.params = {{"distance", distance}};
+            if (rays) record.params.emplace("rays", rays);
+            record.variant = rays ? "hits" : "contour";
+            const double error = rays ? distance / std::sqrt(rays) : 1e-15;
+            record.error = ErrorFigures{"relative", error, error, {error, error}, error, 1e-8};
+            record.time->metric = "ms_per_estimate";
+            records.push_back(record);
+        }
+    const std::vector<Plot> plots = plots_of(records);
+    ASSERT_EQ(plots.size(), 2u);
+    EXPECT_EQ(plots[1].id, "V01-error-2");
+    EXPECT_EQ(plots[1].title, "V01, distance 2: error of estimates");
+    ASSERT_EQ(plots[1].curves.size(), 2u);
+    EXPECT_EQ(plots[1].curves[0].name, "sw, hits");
+    ASSERT_TRUE(plots[1].curves[0].fit);
+    EXPECT_NEAR(plots[1].curves[0].fit->slope, -2, 1e-9);
+    const PlotPoint& contour = plots[1].curves[1].points.at(0);
+    EXPECT_TRUE(contour.is_zero) << "below what the number's type rounds";
+    EXPECT_EQ(contour.error, 1e-8);
+}
+
 TEST(Plots, ZeroStandsAtItsBound) {
     const std::vector<Plot> plots = plots_of(sweep());
     const Plot* faults = find(plots, "S-faults");
