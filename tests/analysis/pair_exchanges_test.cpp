@@ -172,6 +172,24 @@ TEST_P(PairExchangesTest, AreasEndWhenTheirErrorIsSmallEnough) {
     EXPECT_LT(rays_for(0.0003), 1u << 16);
 }
 
+TEST_P(PairExchangesTest, RowsWhoseEntriesAreKnownNeedNoMoreRays) {
+    const Scene room = scene_of({turned(make_box(vec3(-1), vec3(1)))});
+    for (const ViewFactorRow& row : rows(room, {.rays = 1 << 16, .target_error = 1e-4}, PairEstimator::automatic)) {
+        EXPECT_EQ(row.rays, 1024u);
+        EXPECT_EQ(row.factors.size(), 10u);
+        for (const ViewFactor& entry : row.factors) EXPECT_LT(entry.high - entry.low, 1e-6f);
+    }
+}
+
+TEST_P(PairExchangesTest, AGroupSeesItselfByEveryEstimator) {
+    for (const PairEstimator estimator : {PairEstimator::contour, PairEstimator::area, PairEstimator::hits}) {
+        const std::vector<ViewFactorRow> all =
+            rows(test::parallel_squares(1), {.grouping = FaceGrouping::material, .rays = 1 << 15}, estimator);
+        EXPECT_NEAR(factor(all[0], 0).value, 0.199824895698387383, 0.004) << name_of(estimator);
+        EXPECT_EQ(factor(all[0], 0).by, estimator);
+    }
+}
+
 TEST_P(PairExchangesOfAccels, AllAcceleratorsTellTheSame) {
     fill(plate_between(2));
     const PairExchanges ours = exchanges(plate_between(2), {.rays = 4096}, PairEstimator::area);

@@ -39,8 +39,8 @@ def array(archive, name):
     return list(struct.unpack(f"<{header['shape'][0]}{kind}", data[10 + size:]))
 
 
-def write_grid_box(path, n):
-    """A box of n x n quads a side that looks inwards."""
+def write_grid_box(path, n, with_plate=False):
+    """A box of n x n quads a side that looks inwards; with a plate above the floor, if wanted."""
     lines, count = [], 0
     for axis in range(3):
         for side in (0, 1):
@@ -53,6 +53,9 @@ def write_grid_box(path, n):
                     corners = [count + 1, count + 2, count + 3, count + 4]
                     lines.append("f {} {} {} {}".format(*(corners if side == 0 else corners[::-1])))
                     count += 4
+    if with_plate:
+        lines += [f"v {x} {y} 0.1" for x, y in ((0.1, 0.1), (0.6, 0.1), (0.6, 0.6), (0.1, 0.6))]
+        lines.append("f {} {} {} {}".format(*range(count + 1, count + 5)))
     with open(path, "w", encoding="utf-8") as out:
         out.write("\n".join(lines) + "\n")
 
@@ -61,7 +64,7 @@ with tempfile.TemporaryDirectory() as folder:
     box, csv_file, npz_file = (os.path.join(folder, name) for name in ("box.obj", "f.csv", "f.npz"))
     write_grid_box(box, 6)
 
-    text = run(box, "-o", csv_file, "--rays", "1024", "--project", "--json",
+    text = run(box, "-o", csv_file, "--rays", "1024", "--estimator", "hits", "--project", "--json",
                os.path.join(folder, "f.json"))
     expect("432 face rows" in text and "closure 0\n" in text, text)
     with open(csv_file, encoding="utf-8") as rows:
@@ -76,36 +79,52 @@ with tempfile.TemporaryDirectory() as folder:
         record = json.loads(lines.readline())
     expect(record["hits"] == record["rays"] == 432 * 1024 and record["projected"]["reciprocity"] < 1e-6, record)
 
-    run(box, "-o", npz_file, "--rays", "1024", "--project", "--quiet")
+    run(box, "-o", npz_file, "--rays", "1024", "--estimator", "hits", "--project", "--quiet")
     with zipfile.ZipFile(npz_file) as archive:
         expect(archive.testzip() is None, "checksums")
         starts, columns, values = array(archive, "indptr"), array(archive, "indices"), array(archive, "data")
         expect(array(archive, "shape") == [432, 432] and b"csr" in archive.read("format.npy"), "a CSR matrix")
         low, areas = array(archive, "ci_low"), array(archive, "area")
+        expect(set(array(archive, "estimator")) == {1}, "all entries by hits")
     flat = [(i, columns[k], values[k], low[k]) for i in range(432) for k in range(starts[i], starts[i + 1])]
     expect(len(flat) == len(table), "as many entries")
     expect(all(a[:2] == b[:2] and abs(a[2] - b[2]) < 1e-8 and abs(a[3] - b[3]) < 1e-8 for a, b in zip(flat, table)),
            "both formats hold the same")
     expect(abs(sum(areas) - 6) < 1e-6, "areas of the box")
 
-    by_mesh = run(box, "--by", "mesh", "--rays", "65536")
+    by_mesh = run(box, "--by", "mesh", "--rays", "65536", "--estimator", "hits")
     expect("1 mesh rows, 1 entries" in by_mesh, by_mesh)
+
+    # Contours are exact but for float32; with a plate in the way, areas and hits have their part.
+    small, plate, json_file = (os.path.join(folder, name) for name in ("small.obj", "plate.obj", "s.json"))
+    write_grid_box(small, 2)
+    write_grid_box(plate, 4, with_plate=True)
+    for scene in (small, plate):
+        run(scene, "--rays", "1024", "--json", json_file)
+    with open(json_file, encoding="utf-8") as lines:
+        exact, mixed = (json.loads(line) for line in lines)
+    expect(exact["entries_by_estimator"] == {"area": 0, "contour": 48 * 40, "hits": 0}, exact)
+    expect(exact["as_counted"]["closure"] < 1e-6 and exact["widest_half_interval"] < 1e-6, exact)
+    expect(all(count > 0 for count in mixed["entries_by_estimator"].values()) and mixed["rays_between_faces"] > 0, mixed)
+    expect("may come between" in run(plate, "--estimator", "contour", fails=True), "contours are refused")
+    expect("of their longest edge" in run(plate, "--estimator", "area", fails=True), "areas are refused")
 
     # Killed in the middle and resumed: the same file, byte for byte.
     whole, killed = os.path.join(folder, "whole.npz"), os.path.join(folder, "killed.npz")
     options = ["--rays", "16384", "--quiet"]
-    run(box, "-o", whole, *options)
-    process = subprocess.Popen([twinray, "viewfactors", box, "-o", killed, *options])
+    run(plate, "-o", whole, *options)
+    process = subprocess.Popen([twinray, "viewfactors", plate, "-o", killed, *options])
     unfinished = killed + ".rows"
-    while process.poll() is None and not (os.path.exists(unfinished) and os.path.getsize(unfinished) > 200_000):
+    while process.poll() is None and not (os.path.exists(unfinished) and os.path.getsize(unfinished) > 100_000):
         time.sleep(0.005)
     expect(process.poll() is None, "it is still at work")
     process.send_signal(signal.SIGKILL)
     process.wait()
     expect(os.path.exists(unfinished) and not os.path.exists(killed), "unfinished rows are left")
-    refused = run(box, "-o", killed, "--resume", "--rays", "4096", fails=True)
-    expect("of another scene or of other options" in refused, refused)
-    resumed = run(box, "-o", killed, "--resume", "--rays", "16384")
+    for other in (["--rays", "4096"], ["--rays", "16384", "--estimator", "hits"]):
+        refused = run(plate, "-o", killed, "--resume", *other, fails=True)
+        expect("of another scene or of other options" in refused, refused)
+    resumed = run(plate, "-o", killed, "--resume", "--rays", "16384")
     expect("resumed after" in resumed, resumed)
     with open(whole, "rb") as a, open(killed, "rb") as b:
         expect(a.read() == b.read(), "resuming gives the same file")
