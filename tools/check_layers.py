@@ -6,12 +6,12 @@ import re
 import sys
 
 BASE = ["engine/core", "engine/scene", "engine/accel", "engine/report"]
-ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/points", "engine/verify"]
+ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/picture", "engine/points", "engine/verify"]
 PRODUCT = ENGINE + ["swtlas", "hwtlas"]
 SEES = {  # besides itself and shaders/shared
     "engine": ENGINE,  # headers that gather the others
     "engine/core": [], "engine/scene": BASE[:1], "engine/accel": BASE[:2], "engine/report": BASE[:1],
-    "engine/analysis": BASE, "engine/collide": BASE, "engine/verify": BASE,
+    "engine/analysis": BASE, "engine/collide": BASE, "engine/picture": BASE, "engine/verify": BASE,
     "engine/points": BASE + ["engine/collide"],
     "swtlas": ENGINE, "hwtlas": ENGINE,
     "cli": PRODUCT + ["shaders/suite", "bench"],

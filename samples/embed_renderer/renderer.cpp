@@ -47,7 +47,7 @@ Camera chosen_camera(const Stage& stage, const Options& options) {
                         max(stage.bounds.hi, stage.center + vec3(stage.orbit, 0, stage.orbit)));
     around.meshes.push_back(std::move(box));
     around.instances.push_back({"box", 0, Transform{}});
-    return path_tracer::frame_scene(around, aspect);
+    return frame_scene(around, aspect);
 }
 
 void barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags written, VkPipelineStageFlags to,

@@ -8,14 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
-
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STB_IMAGE_WRITE_STATIC
-#include <stb_image_write.h>
+#include "engine/scene/png.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -32,26 +28,12 @@ vec3 tone_mapped(vec3 color) {
     return glm::mix(color * (compressed / peak), vec3(compressed), 1 - 1 / (desaturation * (peak - compressed) + 1));
 }
 
-std::uint8_t srgb_byte(float linear) {
-    const float c = linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-    return static_cast<std::uint8_t>(std::lround(std::clamp(c, 0.0f, 1.0f) * 255));
-}
-
-void write_png(const std::filesystem::path& file, const Picture& picture, float exposure) {
+void write_exposed(const std::filesystem::path& file, const Picture& picture, float exposure) {
     const float scale = std::exp2(exposure);
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(picture.rgb.size() * 3);
-    for (const vec3& pixel : picture.rgb) {
-        const vec3 color = tone_mapped(pixel * scale);
-        for (int i = 0; i < 3; ++i) bytes.push_back(srgb_byte(color[i]));
-    }
-    const int width = static_cast<int>(picture.width), height = static_cast<int>(picture.height);
-    std::ofstream out(file, std::ios::binary);
-    const auto write = [](void* stream, void* data, int size) {
-        static_cast<std::ofstream*>(stream)->write(static_cast<const char*>(data), size);
-    };
-    const bool encoded = stbi_write_png_to_func(write, &out, width, height, 3, bytes.data(), 3 * width) != 0;
-    if (!encoded || !out.flush()) fail("'", file.string(), "': cannot write the picture");
+    std::vector<Rgb> pixels;
+    pixels.reserve(picture.rgb.size());
+    for (const vec3& pixel : picture.rgb) pixels.push_back(rgb_of_linear(tone_mapped(pixel * scale)));
+    write_png(file, picture.width, picture.height, pixels);
 }
 
 void write_exr(const std::filesystem::path& file, const Picture& picture) {
@@ -94,7 +76,7 @@ void write_picture(const std::filesystem::path& file, const Picture& picture, fl
     if (lower_suffix(file) == ".exr")
         write_exr(file, picture);
     else
-        write_png(file, picture, exposure);
+        write_exposed(file, picture, exposure);
 }
 
 }  // namespace twinray::path_tracer

@@ -5,15 +5,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/scene/rgb.h"
 #include "samples/path_tracer/alias_table.h"
 
 namespace twinray::path_tracer {
 namespace {
-
-float linear_of(std::uint8_t srgb) {
-    const float c = static_cast<float>(srgb) / 255;
-    return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-}
 
 // Nearest texel; wrapping other than repeat matters little for an estimate.
 float texel_luminance(const Image& image, vec2 uv) {
@@ -22,7 +18,7 @@ float texel_luminance(const Image& image, vec2 uv) {
     const uint x = std::min(static_cast<uint>(at.x * static_cast<float>(image.width)), image.width - 1);
     const uint y = std::min(static_cast<uint>(at.y * static_cast<float>(image.height)), image.height - 1);
     const std::uint8_t* texel = &image.rgba[(std::size_t{y} * image.width + x) * 4];
-    return luminance({linear_of(texel[0]), linear_of(texel[1]), linear_of(texel[2])});
+    return luminance(linear_of(Rgb{texel[0], texel[1], texel[2]}));
 }
 
 // Mean of the emission texture over a triangle, estimated; never 0, so that every emissive triangle can be chosen.

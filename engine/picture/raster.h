@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Pictures in memory, and drawing into them.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "engine/scene/rgb.h"
+
+namespace twinray {
+
+inline constexpr Rgb paper = {255, 255, 255}, ink = {30, 30, 30}, faint_ink = {110, 110, 110};
+
+// Row 0 on top. What is drawn outside is cut off.
+struct Raster {
+    uint width = 0, height = 0;
+    std::vector<Rgb> pixels;
+
+    Raster(uint columns, uint rows, Rgb color = paper)
+        : width(columns), height(rows), pixels(std::size_t{columns} * rows, color) {}
+
+    Rgb& at(uint x, uint y) { return pixels[std::size_t{y} * width + x]; }
+    Rgb at(uint x, uint y) const { return pixels[std::size_t{y} * width + x]; }
+};
+
+struct Rect {
+    int x = 0, y = 0;  // of the upper left pixel
+    int width = 0, height = 0;
+};
+
+// Mixes `color` over what is there, in linear light.
+void blend(Rgb& under, Rgb color, float opacity);
+void fill(Raster& raster, Rect rect, Rgb color);
+// One pixel wide, inside the rectangle.
+void outline(Raster& raster, Rect rect, Rgb color);
+// The upper left corner of `part` comes to lie at (x, y).
+void paste(Raster& raster, const Raster& part, int x, int y);
+
+}  // namespace twinray

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+#include "engine/scene/glb.h"
+
+#include <map>
+#include <sstream>
+
+#include <tiny_gltf.h>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+
+namespace twinray {
+namespace {
+
+using ChannelTable = std::array<std::uint16_t, 256>;
+
+// sRGB to linear light in 16 bits.
+ChannelTable linear_table() {
+    ChannelTable table{};
+    for (std::size_t i = 0; i < table.size(); ++i)
+        table[i] = static_cast<std::uint16_t>(std::lround(linear_of_srgb(static_cast<float>(i) / 255) * 65535));
+    return table;
+}
+
+bool is_finite(vec3 point) { return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z); }
+
+// glTF wants nodes that are made of a rotation and scales along the axes: columns that are perpendicular, but for
+// rounding.
+bool is_decomposable(const Transform& transform) {
+    const auto column = [&](int i) { return dvec3(transform.rows[0][i], transform.rows[1][i], transform.rows[2][i]); };
+    const auto perpendicular = [&](int i, int j) {
+        return std::abs(dot(column(i), column(j))) <= 0x1p-20 * glm::length(column(i)) * glm::length(column(j));
+    };
+    return perpendicular(0, 1) && perpendicular(1, 2) && perpendicular(0, 2);
+}
+
+class GlbModel {
+  public:
+    explicit GlbModel(const Scene& scene) : scene_(scene) {
+        model_.asset.version = "2.0";
+        model_.asset.generator = "twinray";
+        model_.buffers.emplace_back();
+        tinygltf::Material material;
+        material.doubleSided = true;
+        material.pbrMetallicRoughness.metallicFactor = 0;
+        model_.materials.push_back(std::move(material));
+        model_.scenes.emplace_back();
+        model_.defaultScene = 0;
+    }
+
+    void add(const Instance& instance, std::span<const Rgb> colors) {
+        const bool is_node = is_decomposable(instance.transform);
+        const int mesh = mesh_of(instance, colors, is_node);
+        if (mesh < 0) return;
+        tinygltf::Node node;
+        node.name = instance.name;
+        node.mesh = mesh;
+        if (is_node && instance.transform != Transform{}) {
+            const auto& rows = instance.transform.rows;
+            for (int i = 0; i < 4; ++i)
+                for (const float entry : {rows[0][i], rows[1][i], rows[2][i], i == 3 ? 1.0f : 0.0f})
+                    node.matrix.push_back(static_cast<double>(entry));
+        }
+        model_.scenes[0].nodes.push_back(static_cast<int>(model_.nodes.size()));
+        model_.nodes.push_back(std::move(node));
+    }
+
+    std::size_t bytes() const { return model_.buffers[0].data.size(); }
+    // glTF knows neither buffers nor scenes with nothing in them.
+    tinygltf::Model finished() && {
+        if (model_.nodes.empty()) {
+            model_.buffers.clear();
+            model_.scenes.clear();
+            model_.defaultScene = -1;
+        }
+        return std::move(model_);
+    }
+
+  private:
+    // -1: nothing of it can be written.
+    int mesh_of(const Instance& instance, std::span<const Rgb> colors, bool is_node) {
+        const Transform placed = is_node ? Transform{} : instance.transform;
+        if (!is_node) return make_mesh(scene_.meshes[instance.mesh], placed, colors);
+        const auto [found, is_new] = meshes_.try_emplace({instance.mesh, {colors.begin(), colors.end()}}, -1);
+        if (is_new) found->second = make_mesh(scene_.meshes[instance.mesh], placed, colors);
+        return found->second;
+    }
+
+    int make_mesh(const Mesh& mesh, const Transform& placed, std::span<const Rgb> colors) {
+        std::vector<vec3> positions;
+        std::vector<std::array<std::uint16_t, 4>> channels;
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+            std::array<vec3, 3> corners;
+            for (int k = 0; k < 3; ++k)
+                corners[static_cast<std::size_t>(k)] = transform_point(placed, mesh.positions[mesh.triangles[i][k]]);
+            if (!std::all_of(corners.begin(), corners.end(), is_finite)) continue;
+            positions.insert(positions.end(), corners.begin(), corners.end());
+            channels.insert(channels.end(), 3, {table_[colors[i].r], table_[colors[i].g], table_[colors[i].b], 65535});
+        }
+        if (positions.empty()) return -1;
+        tinygltf::Primitive primitive;
+        primitive.mode = TINYGLTF_MODE_TRIANGLES;
+        primitive.material = 0;
+        primitive.attributes["POSITION"] = add_positions(positions);
+        primitive.attributes["COLOR_0"] = add_accessor(std::as_bytes(std::span(channels)), channels.size(),
+                                                       TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4);
+        model_.accessors.back().normalized = true;
+        tinygltf::Mesh written;
+        written.name = mesh.name;
+        written.primitives.push_back(std::move(primitive));
+        model_.meshes.push_back(std::move(written));
+        return static_cast<int>(model_.meshes.size()) - 1;
+    }
+
+    int add_positions(const std::vector<vec3>& positions) {
+        const int accessor = add_accessor(std::as_bytes(std::span(positions)), positions.size(),
+                                          TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
+        Bounds bounds;
+        for (const vec3& position : positions) bounds.include(position);
+        for (int i = 0; i < 3; ++i) {
+            model_.accessors.back().minValues.push_back(static_cast<double>(bounds.lo[i]));
+            model_.accessors.back().maxValues.push_back(static_cast<double>(bounds.hi[i]));
+        }
+        return accessor;
+    }
+
+    int add_accessor(std::span<const std::byte> bytes, std::size_t count, int component_type, int type) {
+        std::vector<unsigned char>& data = model_.buffers[0].data;
+        tinygltf::BufferView view;
+        view.buffer = 0;
+        view.byteOffset = data.size();
+        view.byteLength = bytes.size();
+        view.target = TINYGLTF_TARGET_ARRAY_BUFFER;
+        const auto* first = reinterpret_cast<const unsigned char*>(bytes.data());
+        data.insert(data.end(), first, first + bytes.size());
+        tinygltf::Accessor accessor;
+        accessor.bufferView = static_cast<int>(model_.bufferViews.size());
+        accessor.componentType = component_type;
+        accessor.type = type;
+        accessor.count = count;
+        model_.bufferViews.push_back(std::move(view));
+        model_.accessors.push_back(std::move(accessor));
+        return static_cast<int>(model_.accessors.size()) - 1;
+    }
+
+    const Scene& scene_;
+    const ChannelTable table_ = linear_table();
+    tinygltf::Model model_;
+    std::map<std::pair<uint, std::vector<Rgb>>, int> meshes_;  // by mesh and colours
+};
+
+}  // namespace
+
+void write_glb(const std::filesystem::path& file, const Scene& scene, std::span<const Rgb> colors) {
+    constexpr std::size_t most_bytes = UINT32_MAX, bytes_a_face = 3 * (sizeof(vec3) + 8), bytes_for_json = 1 << 28;
+    const std::size_t count = count_triangles(scene);
+    if (colors.size() != count) fail("'", file.string(), "': ", colors.size(), " colours for ", count, " faces");
+    GlbModel maker(scene);
+    std::size_t first = 0;
+    for (const Instance& instance : scene.instances) {
+        const std::size_t faces = scene.meshes[instance.mesh].triangles.size();
+        maker.add(instance, colors.subspan(first, faces));
+        first += faces;
+    }
+    if (maker.bytes() > most_bytes - bytes_for_json)
+        fail("'", file.string(), "': ", count, " faces of ", bytes_a_face, " bytes are more than the 4 GiB of a .glb");
+    const tinygltf::Model model = std::move(maker).finished();
+    std::ostringstream out(std::ios::binary);
+    if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, out, false, true))
+        fail("'", file.string(), "': the scene cannot be written as glTF");
+    const std::string bytes = out.str();
+    const std::span<const std::byte> piece = std::as_bytes(std::span(bytes));
+    write_file(file, std::span(&piece, 1));
+}
+
+}  // namespace twinray

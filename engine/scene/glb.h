@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "engine/scene/rgb.h"
+#include "engine/scene/scene.h"
+
+namespace twinray {
+
+// The scene as glTF 2.0 in one file, each face in its colour (COLOR_0, linear light): `colors` by instance, then by
+// triangle. Instances are nodes; those of one mesh that have the same colours share it. Faces keep their order; each
+// has corners of its own, and those with a corner that is not finite, which glTF does not allow, are left out. Of
+// materials, textures, cameras and lights nothing is written. Throws Error naming the file, and for a wrong number of
+// colours.
+void write_glb(const std::filesystem::path& file, const Scene& scene, std::span<const Rgb> colors);
+
+}  // namespace twinray
