@@ -4,6 +4,7 @@
 
 #include "cli/ray_grid_options.h"
 #include "engine/analysis/centroid.h"
+#include "engine/core/error.h"
 
 namespace twinray::cli {
 namespace {
@@ -32,20 +33,47 @@ void print(const CentroidOptions& options, const Analysed& analysed, const Centr
     }
 }
 
+// Some of the points, evenly chosen, and their mean, which most often lies inside of what they are on.
+ScenePicture picture_of(const CentroidOptions& options, const Analysed& analysed, const Centroid& result) {
+    constexpr std::size_t most_points = 4000;
+    constexpr float radius = 7;
+    ScenePicture picture;
+    picture.page.title = options.analysis.scene.filename().string() + ": centroid";
+    picture.page.subtitle = "no ray hits anything";
+    if (result.mean) picture.page.subtitle = text("mean of ", result.point_count, " points: ", text_of(*result.mean));
+    picture.page.legend.entries = {{categorical::vermillion, "mean"}, {categorical::blue, "points"}};
+    picture.colors.assign(count_triangles(analysed.scene), plain_color);
+    const std::size_t count = std::min(result.points.size(), most_points);
+    for (std::size_t i = 0; i < count; ++i)
+        picture.dots.push_back(
+            {.position = result.points[i * result.points.size() / count], .radius = 1.2f, .color = categorical::blue});
+    if (result.mean) {
+        picture.dots.push_back({.position = *result.mean, .radius = radius + 2, .color = paper, .is_on_top = true});
+        picture.dots.push_back(
+            {.position = *result.mean, .radius = radius, .color = categorical::vermillion, .is_on_top = true});
+    }
+    return picture;
+}
+
 nlohmann::json list_of(const std::optional<dvec3>& v) {
     return v ? nlohmann::json{v->x, v->y, v->z} : nlohmann::json(nullptr);
 }
 
 void run(const CentroidOptions& options) {
     const Analysed analysed(options.analysis);
+    const PictureOptions& pictures = options.analysis.pictures;
     const RayGridDesc grid = options.grid.desc(options.analysis.common);
     Centroid result;
     const double seconds = seconds_of([&] {
         Progress progress("centroid", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
         result = centroid(*analysed.accel, analysed.scene,
-                          {.grid = grid, .keeps_points = !options.analysis.output.empty(), .progress = &progress});
+                          {.grid = grid,
+                           .keeps_points = !options.analysis.output.empty() || !pictures.files.empty(),
+                           .progress = &progress});
     });
     if (!options.analysis.output.empty()) write(options.analysis.output, result);
+    if (!pictures.files.empty())
+        write_pictures(pictures, *analysed.accel, analysed.scene, picture_of(options, analysed, result));
     if (!options.analysis.common.quiet) print(options, analysed, result, seconds);
     nlohmann::json record = {{"schema", "twinray-centroid/1"},
                              {"n", result.ray_count},
@@ -63,7 +91,8 @@ void run(const CentroidOptions& options) {
 void add_centroid(CLI::App& app, int&) {
     CLI::App* command = app.add_subcommand("centroid", "the mean of what is seen along a direction");
     const auto options = std::make_shared<CentroidOptions>();
-    add_analysis_options(*command, options->analysis, "CSV of the points: x,y,z");
+    add_analysis_options(*command, options->analysis, "CSV of the points: x,y,z",
+                         "none; points that rays hit and their mean are marked in the .png");
     add_ray_grid_options(*command, *command, options->grid)->required();
     command->callback([options] { run(*options); });
 }

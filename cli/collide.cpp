@@ -4,10 +4,8 @@
 #include <fstream>
 #include <iostream>
 
-#include "cli/common.h"
+#include "cli/collide_picture.h"
 #include "engine/accel/scene_push.h"
-#include "engine/collide/collision_finder.h"
-#include "engine/collide/contact_finder.h"
 #include "engine/core/error.h"
 
 namespace twinray::cli {
@@ -20,6 +18,7 @@ struct CollideOptions {
     bool is_broad = false;
     ContactOptions contacts;
     std::uint64_t max_pairs = PairSearch::default_max_pairs;
+    PictureOptions pictures;
 };
 
 using Clock = std::chrono::steady_clock;
@@ -36,12 +35,25 @@ void write_table(const std::filesystem::path& file, const char* header, const st
     if (!out.flush()) fail("CSV file '", file.string(), "' cannot be written");
 }
 
+std::unique_ptr<AbstractAccel> filled_accel(const CollideOptions& options, Context& context, const Scene& scene) {
+    std::unique_ptr<AbstractAccel> accel = make_accel(context, options.accel);
+    push_scene(*accel, scene);
+    context.wait(accel->sync());
+    return accel;
+}
+
+// The title goes onto the picture here.
+void draw(const CollideOptions& options, AbstractAccel& accel, const Scene& scene, ScenePicture picture,
+          const std::string& found) {
+    picture.page.title = options.scene.filename().string() + ": collisions";
+    picture.page.subtitle = found;
+    write_pictures(options.pictures, accel, scene, picture);
+}
+
 void run_broad(const CollideOptions& options) {
     const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
     const std::unique_ptr<Context> context = make_context(options.common);
-    const std::unique_ptr<AbstractAccel> accel = make_accel(*context, options.accel);
-    push_scene(*accel, scene);
-    context->wait(accel->sync());
+    const std::unique_ptr<AbstractAccel> accel = filled_accel(options, *context, scene);
     CollisionFinder finder(*context);
     finder.set_max_pairs(options.max_pairs);
     const Clock::time_point start = Clock::now();
@@ -49,6 +61,9 @@ void run_broad(const CollideOptions& options) {
     const double seconds = seconds_since(start);
     write_table(options.output, "instance_a,instance_b", pairs,
                 [](std::ostream& out, const InstancePair& pair) { out << pair.a << ',' << pair.b << '\n'; });
+    if (!options.pictures.files.empty())
+        draw(options, *accel, scene, picture_of_pairs(options.pictures, scene, pairs),
+             text(pairs.size(), " pairs of boxes overlap"));
     if (!options.common.quiet)
         std::cout << scene.instances.size() << " instances, " << pairs.size() << " pairs of boxes overlap, " << seconds
                   << " s with copies\n";
@@ -84,12 +99,17 @@ void run_exact(const CollideOptions& options) {
     const std::unique_ptr<Context> context = make_context(options.common);
     ContactFinder finder(*context);
     finder.set_max_pairs(options.max_pairs);
-    const Contacts contacts = finder.find(scene, options.contacts);
+    ContactOptions wanted = options.contacts;
+    wanted.segments = !options.pictures.files.empty();
+    const Contacts contacts = finder.find(scene, wanted);
     write_table(options.output, "instance_a,instance_b,triangle_a,triangle_b,class", contacts.list,
                 [](std::ostream& out, const TriangleContact& c) {
                     out << c.instance_a << ',' << c.instance_b << ',' << c.triangle_a << ',' << c.triangle_b << ','
                         << name_of(c.pair_class) << '\n';
                 });
+    if (!options.pictures.files.empty())
+        draw(options, *filled_accel(options, *context, scene), scene, picture_of_contacts(scene, contacts),
+             text(contacts.list.size(), " pairs of triangles touch or intersect"));
     const nlohmann::json counts = counts_of(contacts);
     if (!options.common.quiet) print(scene, contacts, counts);
     append_json(options.common.json, {{"schema", "twinray-collide/1"},
@@ -112,6 +132,7 @@ void run_exact(const CollideOptions& options) {
 
 void run(const CollideOptions& options) {
     if (!options.output.empty()) check_writable(options.output);
+    check_pictures(options.pictures);
     if (options.is_broad && options.contacts.self) fail("collide: --broad knows instances; --self is about triangles");
     if (options.is_broad)
         run_broad(options);
@@ -127,7 +148,9 @@ void add_collide(CLI::App& app, int&) {
     command->add_option("scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
     command->add_flag("--broad", options->is_broad, "pairs of instances whose boxes overlap, instead of triangles");
     command->add_option("-o,--output", options->output, "written: the pairs as CSV");
-    command->add_option("--accel", options->accel, "whose boxes --broad takes; they are the same")
+    command
+        ->add_option("--accel", options->accel,
+                     "whose boxes --broad takes, and what pictures are traced with; answers are the same")
         ->check(CLI::IsMember({"sw", "hw"}))
         ->capture_default_str();
     command->add_flag("--self", options->contacts.self,
@@ -138,6 +161,8 @@ void add_collide(CLI::App& app, int&) {
     command->add_option("--max-pairs", options->max_pairs, "of boxes that overlap: 16 bytes of device memory each")
         ->check(CLI::Range(std::uint64_t{1}, PairSearch::most_pairs))
         ->capture_default_str();
+    add_picture_options(*command, options->pictures,
+                        "the worst contact of each face, or with --broad how many boxes that of its instance overlaps");
     add_common_options(*command, options->common);
     command->callback([options] { run(*options); });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `twinray illumination`: what parallel light reaches of each face.
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include "cli/sky_light.h"
@@ -59,6 +60,23 @@ void write(const IlluminationOptions& options, const Illumination& result) {
     csv.close();
 }
 
+// Of each face the value of its group. Estimated shares of small faces may exceed 1, which colours do not.
+ScenePicture picture_of(const IlluminationOptions& options, const Faces& faces, const Illumination& result) {
+    const std::string what = name_in(measures, options.measure);
+    std::vector<double> values;
+    for (const uint group : faces.groups(options.by)) {
+        const LitArea& lit = result.groups[group];
+        const double unit = unit_of(lit, options.measure), value = unit > 0 ? lit.area / unit : NAN;
+        values.push_back(options.measure == Measure::area ? value : std::min(value, 1.0));
+    }
+    ScenePicture picture = picture_of_values(options.analysis.pictures, values, what);
+    const std::vector<double>& d = options.grid.direction;
+    picture.page.title = options.analysis.scene.filename().string() + ": light of one direction";
+    picture.page.subtitle = text(what, " by ", name_of(options.by), ", direction ", text_of({d[0], d[1], d[2]}), ", ",
+                                 result.ray_count, " rays");
+    return picture;
+}
+
 void print(const IlluminationOptions& options, const Analysed& analysed, const Illumination& result, double seconds) {
     const LitArea& total = result.total;
     const auto lit =
@@ -84,6 +102,8 @@ void run(const IlluminationOptions& options) {
                             {.grid = grid, .sides = options.sides, .by = options.by, .progress = &progress});
     });
     if (!options.analysis.output.empty()) write(options, result);
+    if (!options.analysis.pictures.files.empty())
+        write_pictures(options.analysis.pictures, *analysed.accel, analysed.scene, picture_of(options, faces, result));
     if (!options.analysis.common.quiet) print(options, analysed, result, seconds);
     nlohmann::json record = {{"schema", "twinray-illumination/1"}, {"sides", name_in(sides_by_name, options.sides)},
                              {"by", name_of(options.by)},          {"n", result.ray_count},
@@ -103,7 +123,8 @@ void add_illumination(CLI::App& app, int&) {
     CLI::App* command =
         app.add_subcommand("illumination", "what parallel light, the sky or the sun bring to each face");
     const auto options = std::make_shared<IlluminationOptions>();
-    add_analysis_options(*command, options->analysis, "CSV, one line a face: face,hits,area,ci_low,ci_high");
+    add_analysis_options(*command, options->analysis, "CSV, one line a face: face,hits,area,ci_low,ci_high",
+                         "what the third column of the CSV holds");
     CLI::Option_group* source = command->add_option_group("light", "exactly one of them");
     CLI::Option* direction = add_ray_grid_options(*command, *source, options->grid);
     add_sky_options(*command, *source, options->sky);

@@ -19,10 +19,12 @@ std::string digits_of(double value) {
 
 }  // namespace
 
-void add_analysis_options(CLI::App& command, AnalysisOptions& options, const std::string& output) {
+void add_analysis_options(CLI::App& command, AnalysisOptions& options, const std::string& output,
+                          const std::string& shows) {
     command.add_option("scene", options.scene, ".gltf, .glb, .obj, .ply or .stl")->required();
     command.add_option("--accel", options.accel)->check(CLI::IsMember({"sw", "hw"}))->capture_default_str();
     command.add_option("-o,--output", options.output, "written: " + output);
+    add_picture_options(command, options.pictures, shows);
     add_common_options(command, options.common);
 }
 
@@ -54,6 +56,7 @@ nlohmann::json RayGridOptions::record() const {
 
 Analysed::Analysed(const AnalysisOptions& options) {
     if (!options.output.empty()) check_writable(options.output);
+    check_pictures(options.pictures);
     scene = load_scene_with_warnings(options.scene, options.common.quiet);
     context = make_context(options.common);
     accel = make_accel(*context, options.accel);

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "cli/common.h"
+#include "cli/picture_options.h"
 #include "engine/analysis/ray_grid.h"
 
 namespace twinray::cli {
@@ -16,8 +16,11 @@ struct AnalysisOptions {
     CommonOptions common;
     std::filesystem::path scene, output;
     std::string accel = "hw";
+    PictureOptions pictures;
 };
-void add_analysis_options(CLI::App& command, AnalysisOptions& options, const std::string& output);
+// `output` and `shows`: what -o writes, and what colours of pictures tell.
+void add_analysis_options(CLI::App& command, AnalysisOptions& options, const std::string& output,
+                          const std::string& shows);
 
 struct RayGridOptions {
     std::vector<double> direction;

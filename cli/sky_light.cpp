@@ -2,6 +2,7 @@
 #include "cli/sky_light.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <sstream>
 
@@ -52,6 +53,18 @@ double mean_of(const SkyLight& light, const std::vector<double>& areas) {
     return area > 0 ? sum / area : 0;
 }
 
+ScenePicture picture_of(const AnalysisOptions& analysis, const SkyOptions& options, const SkyLight& light,
+                        const std::vector<double>& areas) {
+    std::vector<double> values;
+    for (std::size_t face = 0; face < areas.size(); ++face)
+        values.push_back(areas[face] > 0 ? light.faces[face].value : NAN);
+    const bool is_sky = options.sky > 0;
+    ScenePicture picture = picture_of_values(analysis.pictures, values, is_sky ? "sky" : "hours");
+    picture.page.title = analysis.scene.filename().string() + (is_sky ? ": light of the sky" : ": hours of sun");
+    picture.page.subtitle = text("mean over the surface ", mean_of(light, areas), ", ", light.ray_count, " rays");
+    return picture;
+}
+
 }  // namespace
 
 void add_sky_options(CLI::App& command, CLI::App& source, SkyOptions& options) {
@@ -84,6 +97,9 @@ void run_sky(const AnalysisOptions& analysis, const SkyOptions& options, Sides s
                             : sun_hours(*analysed.accel, analysed.scene, faces, sun, desc);
     });
     if (!analysis.output.empty()) write(analysis.output, what, light);
+    if (!analysis.pictures.files.empty())
+        write_pictures(analysis.pictures, *analysed.accel, analysed.scene,
+                       picture_of(analysis, options, light, faces.areas()));
     const double mean = mean_of(light, faces.areas());
     if (!analysis.common.quiet)
         std::cout << "illumination " << analysis.scene.filename().string() << ": " << faces.count() << " faces, "

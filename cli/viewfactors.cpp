@@ -5,8 +5,8 @@
 #include <iomanip>
 #include <iostream>
 
-#include "cli/common.h"
 #include "cli/npz.h"
+#include "cli/view_factor_picture.h"
 #include "engine/accel/scene_push.h"
 #include "engine/analysis/pair_exchanges.h"
 #include "engine/analysis/reciprocity.h"
@@ -26,6 +26,8 @@ struct Options {
     PairEstimator estimator = PairEstimator::automatic;
     bool resumes = false;
     bool projects = false;
+    PictureOptions pictures;
+    ViewFactorPictureOptions shown;
 };
 
 // Of what the rows depend on.
@@ -175,12 +177,15 @@ void run(const Options& options) {
         fail("'", options.output.string(), "': the matrix goes into .npz or .csv");
     if (options.resumes && options.output.empty()) fail("--resume needs -o: unfinished rows lie beside the output");
     if (!options.output.empty()) check_writable(options.output);
+    check_pictures(options.pictures);
+    check_png(options.shown.matrix);
     const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
     const std::unique_ptr<Context> context = make_context(options.common);
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, options.accel);
     push_scene(*accel, scene);
     context->wait(accel->sync());
     const Faces faces(*context, scene);
+    check_shown(options.shown, faces.group_count(options.factors.grouping));
     const auto start = std::chrono::steady_clock::now();
     const PairExchanges pairs = compute_pairs(options, *accel, scene, faces);
     const double seconds_of_pairs = seconds_since(start);
@@ -196,6 +201,12 @@ void run(const Options& options) {
     }
     if (suffix == ".csv") write_csv(options.output, rows);
     if (suffix == ".npz") write_npz(options.output, rows, factors.areas());
+    const std::string name = options.scene.filename().string();
+    if (!options.shown.matrix.empty()) write_matrix(options.shown.matrix, name, options.factors.grouping, rows);
+    if (!options.pictures.files.empty())
+        write_pictures(options.pictures, *accel, scene,
+                       picture_of_view_factors(options.pictures, options.shown, name,
+                                               faces.groups(options.factors.grouping), rows));
     if (!options.output.empty()) RowFile(rows_file(options.output), {}).remove();
     if (!options.common.quiet) {
         std::cout << rows.size() << ' ' << name_of(options.factors.grouping) << " rows, " << totals.entries
@@ -262,6 +273,9 @@ void add_viewfactors(CLI::App& app, int&) {
     command->add_flag("--project", options->projects,
                       "write the nearest matrix that fulfils reciprocity and closure instead of the counted one");
     command->add_flag("--resume", options->resumes, "go on with the rows that an earlier run left beside the output");
+    CLI::Option* picture = add_picture_options(*command, options->pictures,
+                                               "the open fraction, or with --from the view factors of one row");
+    add_view_factor_picture_options(*command, picture, options->shown);
     add_common_options(*command, options->common);
     command->callback([options] {
         options->factors.seed = static_cast<uint>(options->common.seed);
