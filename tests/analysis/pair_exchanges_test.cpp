@@ -157,17 +157,19 @@ TEST_P(PairExchangesTest, ProjectionKeepsWhatIsKnownBest) {
 }
 
 TEST_P(PairExchangesTest, AreasEndWhenTheirErrorIsSmallEnough) {
-    const auto rays_for = [&](std::optional<double> error) {
-        fill(plate_between(2));
-        const PairExchanges pairs =
-            exchanges(plate_between(2), {.grouping = FaceGrouping::mesh, .rays = 1 << 16, .target_error = error},
-                      PairEstimator::automatic);
+    const auto rays_for = [&](std::optional<double> error, float scale = 1) {
+        Scene scene = plate_between(2);
+        for (Instance& instance : scene.instances) instance.transform = Transform::scaling(vec3(scale));
+        fill(scene);
+        const PairExchanges pairs = exchanges(
+            scene, {.grouping = FaceGrouping::mesh, .rays = 1 << 16, .target_error = error}, PairEstimator::automatic);
         for (const KnownExchange& exchange : pairs.known)
-            EXPECT_LE(exchange.high - exchange.low, 2 * error.value_or(1));
+            EXPECT_LE(exchange.high - exchange.low, 2 * error.value_or(1) * static_cast<double>(scale * scale));
         return pairs.rays;
     };
     EXPECT_EQ(rays_for(std::nullopt), 1u << 16);
     EXPECT_EQ(rays_for(0.01), 1024u);
+    EXPECT_EQ(rays_for(0.01, 16), 1024u) << "of view factors, not of exchanges";
     EXPECT_GT(rays_for(0.0003), 2048u);
     EXPECT_LT(rays_for(0.0003), 1u << 16);
 }

@@ -10,15 +10,15 @@ namespace {
 
 constexpr std::size_t chunk = 64;
 
-// Rays of weights 0.5 to 1.5, of which a part is blocked.
-PairSums sums_of(std::size_t chunks, double blocked, uint seed) {
+// Rays of weights 1 +- `scatter`, of which a part is blocked.
+PairSums sums_of(std::size_t chunks, double blocked, uint seed, float scatter = 0.5f) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> uniform(0, 1);
     PairSums sums;
     for (std::size_t i = 0; i < chunks; ++i) {
         std::vector<float> weights(chunk);
         for (float& weight : weights) {
-            weight = 0.5f + uniform(random);
+            weight = 1 + scatter * (2 * uniform(random) - 1);
             if (static_cast<double>(uniform(random)) < blocked) weight = -weight;
         }
         sums.add(weights, 2);
@@ -39,16 +39,18 @@ TEST(PairSums, IsTheMeanOfFreeRays) {
 }
 
 TEST(PairSums, IntervalsHoldHoweverFewRaysAreBlockedOrFree) {
-    for (const double blocked : {0.0, 0.001, 0.02, 0.5, 0.98, 0.999}) {
-        int inside = 0;
-        constexpr uint trials = 400;
-        const double truth = 2 * (1 - blocked);
-        for (uint seed = 1; seed <= trials; ++seed) {
-            const Interval interval = sums_of(8, blocked, seed).exchange(true).interval_95;
-            inside += interval.low <= truth && truth <= interval.high;
+    // Without scatter the blocked rays alone tell: points of Sobol's come near that.
+    for (const float scatter : {0.5f, 0.0f})
+        for (const double blocked : {0.0, 0.001, 0.02, 0.5, 0.98, 0.999}) {
+            int inside = 0;
+            constexpr uint trials = 400;
+            const double truth = 2 * (1 - blocked);
+            for (uint seed = 1; seed <= trials; ++seed) {
+                const Interval interval = sums_of(8, blocked, seed, scatter).exchange(true).interval_95;
+                inside += interval.low <= truth && truth <= interval.high;
+            }
+            EXPECT_GE(inside, 0.92 * trials) << blocked << ", scatter " << scatter;
         }
-        EXPECT_GE(inside, 0.93 * trials) << blocked;
-    }
 }
 
 TEST(PairSums, WhereAllIsBlockedTheIntervalTellsHowMuchMayBeFree) {

@@ -36,6 +36,23 @@ TEST(Shaft, IsNotBlockedByWhatTouchesItFromOutside) {
     EXPECT_FALSE(is_blocked({dvec3(0.3, 0.9, 0.1), dvec3(0.4, 0.9, 0.1), dvec3(0.3, 0.9, 0.9)})) << "within its box";
 }
 
+// Each is parted by planes of one kind alone.
+TEST(Shaft, TriesAllPlanesThatMayPart) {
+    // Through the edge of the shaft from (0, 0, 0) to (0, 0, 1) and the nearest one of the face.
+    const dvec3 near(-0.01, -0.004, 0.5), along(-0.15, 0.37, 0.2), away(-0.28, -0.11, 0.3);
+    EXPECT_FALSE(is_blocked({near - along, near + along, near + away}));
+    EXPECT_TRUE(is_blocked({near - along + dvec3(0.1, 0.04, 0), near + along + dvec3(0.1, 0.04, 0), near + away}));
+
+    // A wall beyond the rest of the floor sees the floor's other half across a tip that lies in its plane.
+    const double rounding = rounding_of(1);
+    const Polygon64 wall(dvec3(0, 0, 0), dvec3(0, 1, 0), dvec3(0, 1, 1));
+    const Shaft shaft(facing_parts(bottom, wall, rounding), rounding);
+    const Polygon64 tile(dvec3(0.4, 0.5, 0), dvec3(0.3, 0.95, 0), dvec3(0.1, 0.95, 0));
+    EXPECT_FALSE(shaft.may_be_blocked_by(tile, box_of(tile)));
+    const Polygon64 over(dvec3(0.5, 0.4, 0), dvec3(0.3, 0.95, 0), dvec3(0.1, 0.95, 0));
+    EXPECT_TRUE(shaft.may_be_blocked_by(over, box_of(over)));
+}
+
 TEST(Shaft, IsBlockedByWhatLiesOnAFace) {
     EXPECT_TRUE(is_blocked(bottom)) << "as another face in the same place";
     EXPECT_TRUE(is_blocked({dvec3(0.5, 0.1, 0), dvec3(0.6, 0.1, 0), dvec3(0.6, 0.2, 0)}));

@@ -79,7 +79,7 @@ TEST_P(ViewFactorCoverage, OfDiscsAndSpheres) {
 TEST_P(ViewFactorCoverage, OfWhatLeavesNarrowGaps) {
     const std::vector<std::pair<float, double>> gaps = {
         {1e-1f, 1 - 0.826994522397256578}, {1e-2f, 1 - 0.9804166029259733}, {1e-3f, 1 - 0.998005631907579727},
-        {1e-4f, 1.99929022211512853e-4},         {1e-5f, 1.99991436349952814e-5},       {1e-6f, 1.99998997047875505e-6}};
+        {1e-4f, 1.99929022211512853e-4},   {1e-5f, 1.99991436349952814e-5}, {1e-6f, 1.99998997047875505e-6}};
     for (const auto& [gap, open] : gaps) {
         const Scene scene = test::parallel_squares(gap);
         fill(scene);
