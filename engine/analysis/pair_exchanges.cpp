@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "engine/analysis/pair_sampler.h"
 
@@ -42,6 +43,17 @@ std::vector<std::uint64_t> sampled_pairs_of(const PairPlan& plan, std::size_t gr
     return counts;
 }
 
+// With M rays of which hardly one is blocked the interval reaches some 4 / M of F times what the heaviest ray is above
+// the mean, which is 4 at most where faces are a quarter of their size apart; that of hits 2 sqrt(F / N). This many
+// keep it below that. A row's pairs need no more than 8 sqrt(pairs * N) together.
+std::uint64_t least_rounds(const PlannedPair& pair, double area, std::uint64_t rays_of_row) {
+    double flow = 0;
+    for (const SampledPair& faces : pair.sampled) flow += faces.unblocked;
+    const double least = 8 * std::sqrt(flow / area * static_cast<double>(rays_of_row));
+    const auto chunks = static_cast<std::uint64_t>(least / static_cast<double>(CHUNK * pair.sampled.size()));
+    return std::bit_ceil(chunks + 1);
+}
+
 std::vector<Sampling> samplings_of(const PairPlan& plan, const std::vector<double>& areas,
                                    const ViewFactorOptions& options) {
     const std::vector<std::uint64_t> counts = sampled_pairs_of(plan, areas.size());
@@ -49,11 +61,12 @@ std::vector<Sampling> samplings_of(const PairPlan& plan, const std::vector<doubl
     for (const PlannedPair& pair : plan.pairs) {
         if (pair.sampled.empty()) continue;
         const std::uint64_t rays = options.rays / std::max(counts[pair.i], counts[pair.j]);
-        const std::uint64_t rounds = std::bit_floor(rays / (CHUNK * pair.sampled.size()));
+        const double area = std::min(areas[pair.i], areas[pair.j]);
+        const std::uint64_t rounds =
+            std::max(std::bit_floor(rays / (CHUNK * pair.sampled.size())), least_rounds(pair, area, options.rays));
         const bool may_be_blocked = std::any_of(pair.sampled.begin(), pair.sampled.end(),
                                                 [](const SampledPair& faces) { return faces.may_be_blocked; });
-        samplings.push_back({&pair, may_be_blocked, std::max<std::uint64_t>(rounds, 1),
-                             options.target_error.value_or(0) * std::min(areas[pair.i], areas[pair.j])});
+        samplings.push_back({&pair, may_be_blocked, rounds, options.target_error.value_or(0) * area});
     }
     return samplings;
 }

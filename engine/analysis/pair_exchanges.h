@@ -13,7 +13,8 @@ struct PairExchanges {
     std::uint64_t rays = 0;            // between points of faces
 };
 
-// The pairs of areas share as many rays as a row has, but at least 64 for two faces; with options.target_error, their
+// The pairs of areas share as many rays as a row has, but get at least 64 for two faces, and more where their intervals
+// would be wider than those of hits; with options.target_error, their
 // rays are doubled until the interval of both view factors is short enough. The same exchanges come of the same scene
 // and options, on any number of threads. `faces` are those of `scene`, which push_scene() put into `accel`. Throws
 // Error as plan_pairs() does. `progress` is told of groups.

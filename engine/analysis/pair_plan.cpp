@@ -159,7 +159,7 @@ class Planner {
 
     SampledPair sampled(const FacePair& faces) const {
         const double distance = glm::length(polygons_.faces[faces.a].middle() - polygons_.faces[faces.b].middle());
-        return {faces.a, faces.b, distance, faces.in_between.has_value()};
+        return {faces.a, faces.b, distance, contour_of(faces).flow, faces.in_between.has_value()};
     }
 
     const FacePolygons& polygons_;

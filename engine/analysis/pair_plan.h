@@ -25,7 +25,8 @@ struct FacePolygons {
 // Faces of which areas are sampled.
 struct SampledPair {
     uint a, b;
-    double distance;  // of their middles
+    double distance;   // of their middles
+    double unblocked;  // A F if nothing were in between
     bool may_be_blocked;
 };
 
