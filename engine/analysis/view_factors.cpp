@@ -34,6 +34,13 @@ bool has(const std::vector<ViewFactor>& factors, uint target) {
     return std::binary_search(factors.begin(), factors.end(), ViewFactor{.target = target}, is_before);
 }
 
+// Whether contours add up to 1, as far as they are known: rays then meet nothing else.
+bool is_full(const std::vector<ViewFactor>& known) {
+    double left = 1;
+    for (const ViewFactor& factor : known) left -= factor.by == PairEstimator::contour ? factor.high : 0;
+    return left <= 0;
+}
+
 // Its interval has room for the roundings to float32.
 ViewFactor factor_of(const KnownExchange& exchange, uint target, double area) {
     const auto low = static_cast<float>(exchange.low / area), high = static_cast<float>(exchange.high / area);
@@ -119,8 +126,9 @@ std::uint64_t ViewFactors::rounds_of(const Row& row) {
 std::vector<ViewFactorRow> ViewFactors::rows(std::size_t first, std::size_t last) {
     accel_.sync();
     std::vector<Row> rows(last - first);
-    const std::uint64_t chunks = chunks_of(options_.target_error ? std::min(first_rays, options_.rays) : options_.rays);
     for (std::size_t i = first; i < last; ++i) {
+        const bool is_short = options_.target_error || is_full(known_[i]);
+        const std::uint64_t chunks = chunks_of(is_short ? std::min(first_rays, options_.rays) : options_.rays);
         Row& row = rows[i - first];
         row.group = static_cast<uint>(i);
         for (const uint face : members_[i]) {

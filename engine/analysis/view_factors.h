@@ -50,7 +50,8 @@ struct ViewFactorRow {
 class ViewFactors {
   public:
     // `accel` holds the scene of `faces`, put there by push_scene(). All must outlive this. What is `known` (see
-    // pair_exchanges.h) stands in place of what rays met. Throws Error for options out of range.
+    // pair_exchanges.h) stands in place of what rays met; rows that contours fill get 1024 rays
+    // at most. Throws Error for options out of range.
     ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
                 std::span<const KnownExchange> known = {});
 

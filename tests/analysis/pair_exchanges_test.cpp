@@ -102,6 +102,23 @@ TEST_P(PairExchangesTest, AllEstimatorsAndSequencesAgree) {
     }
 }
 
+TEST_P(PairExchangesTest, RowsThatContoursFillNeedFewRays) {
+    Scene room;
+    room.materials.resize(1);
+    room.meshes = {make_box(vec3(-1), vec3(1))};
+    for (uvec3& t : room.meshes[0].triangles) std::swap(t.y, t.z);
+    room.instances = {{"", 0, Transform{}}};
+    for (const ViewFactorRow& row : rows(room, {.rays = 1 << 15}, PairEstimator::automatic)) {
+        EXPECT_EQ(row.rays, 1024u);
+        double sum = 0;
+        for (const ViewFactor& entry : row.factors) sum += entry.value;
+        EXPECT_NEAR(sum, 1, 1e-6);
+    }
+    room.meshes[0].triangles.pop_back();  // a hole: what is open is told by rays
+    for (const ViewFactorRow& row : rows(room, {.rays = 1 << 15}, PairEstimator::automatic))
+        EXPECT_EQ(row.rays, row.open.value > 0 ? 1u << 15 : 1024u);
+}
+
 TEST_P(PairExchangesTest, WhatIsHiddenHasNoFactor) {
     Scene scene = plate_between(2);
     scene.meshes[2] = make_quad(vec3(-0.5f, -0.5f, 1), vec3(2, 0, 0), vec3(0, 2, 0));
