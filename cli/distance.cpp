@@ -5,7 +5,9 @@
 #include <fstream>
 #include <iostream>
 
+#include "cli/distance_slice.h"
 #include "cli/npz.h"
+#include "cli/picture_options.h"
 #include "cli/query_points.h"
 #include "engine/core/error.h"
 #include "engine/points/point_finder.h"
@@ -17,6 +19,7 @@ struct DistanceOptions {
     CommonOptions common;
     std::filesystem::path scene, output;
     QueryPointOptions points;
+    SliceOptions slice;
     bool is_signed = false;
     double max_distance = PointFinder::unlimited;
     std::optional<double> within;
@@ -114,8 +117,7 @@ struct Search {
     }
 };
 
-void run_within(const DistanceOptions& options) {
-    Search search(options);
+void run_within(const DistanceOptions& options, Search& search) {
     const Clock::time_point start = Clock::now();
     const std::vector<NearTriangle> near = search.finder.within(search.points, *options.within);
     const double seconds = seconds_since(start);
@@ -129,8 +131,7 @@ void run_within(const DistanceOptions& options) {
     append_json(options.common.json, record);
 }
 
-void run_closest(const DistanceOptions& options) {
-    Search search(options);
+void run_closest(const DistanceOptions& options, Search& search) {
     const Clock::time_point start = Clock::now();
     std::vector<ClosestPoint> found = search.finder.closest(search.points, options.max_distance);
     std::size_t inside = 0;
@@ -163,13 +164,21 @@ void run_closest(const DistanceOptions& options) {
 }
 
 void run(const DistanceOptions& options) {
+    if (!options.points.is_asked_for() && options.slice.file.empty())
+        throw CLI::RequiredError("--points, --random, --grid or --slice");
     if (!options.output.empty()) check_writable(options.output);
+    if (!options.slice.file.empty()) check_png(options.slice.file);
     const std::string suffix = options.output.extension().string();
     if (suffix != "" && suffix != ".csv" && suffix != ".npz")
         fail("'", options.output.string(), "': distances go into .csv or .npz");
-    if (!options.within) return run_closest(options);
-    if (suffix == ".npz") fail("'", options.output.string(), "': what is within a radius goes into .csv");
-    run_within(options);
+    if (options.within && suffix == ".npz")
+        fail("'", options.output.string(), "': what is within a radius goes into .csv");
+    if (options.within && !options.slice.file.empty()) fail("--slice shows distances, not what is within a radius");
+    Search search(options);
+    if (options.points.is_asked_for()) options.within ? run_within(options, search) : run_closest(options, search);
+    if (!options.slice.file.empty())
+        write_slice(options.slice, search.scene, search.finder, options.is_signed,
+                    options.scene.filename().string() + ": distances");
 }
 
 }  // namespace
@@ -179,6 +188,7 @@ void add_distance(CLI::App& app, int&) {
     const auto options = std::make_shared<DistanceOptions>();
     command->add_option("scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
     add_query_point_options(*command, options->points);
+    add_slice_options(*command, options->slice);
     command->add_option("-o,--output", options->output,
                         "CSV of point,distance,x,y,z,instance,triangle, or .npz with the points, too");
     CLI::Option* sign = command->add_flag("--signed", options->is_signed,

@@ -15,18 +15,6 @@ using glm::dvec3;
 
 constexpr std::uint64_t most_points = 1u << 28;
 
-struct Box {
-    dvec3 lo, size;
-};
-
-Box box_of(const Scene& scene) {
-    const Bounds bounds = bounds_of(scene);
-    if (bounds.is_empty()) fail("distance: the scene has no triangle around which points could be");
-    const dvec3 lo(bounds.lo), hi(bounds.hi), size = hi - lo;
-    const double margin = 0.1 * std::max({size.x, size.y, size.z});
-    return {lo - margin, size + 2 * margin};
-}
-
 // Three numbers between commas or blanks, and nothing else.
 bool parse(std::string_view line, dvec3& point) {
     const char* at = line.data();
@@ -43,6 +31,14 @@ bool parse(std::string_view line, dvec3& point) {
 }
 
 }  // namespace
+
+QueryBox query_box(const Scene& scene) {
+    const Bounds bounds = bounds_of(scene);
+    if (bounds.is_empty()) fail("distance: the scene has no triangle around which points could be");
+    const dvec3 lo(bounds.lo), hi(bounds.hi), size = hi - lo;
+    const double margin = 0.1 * std::max({size.x, size.y, size.z});
+    return {lo - margin, size + 2 * margin};
+}
 
 std::vector<dvec3> read_points(const std::filesystem::path& file) {
     std::ifstream in(file);
@@ -64,7 +60,8 @@ std::vector<dvec3> read_points(const std::filesystem::path& file) {
 
 std::vector<dvec3> QueryPointOptions::make(const Scene& scene, std::uint64_t seed) const {
     if (!file.empty()) return read_points(file);
-    const Box box = box_of(scene);
+    if (random == 0 && grid == 0) return {};
+    const QueryBox box = query_box(scene);
     std::vector<dvec3> points;
     if (random > 0) {
         std::mt19937_64 generator(seed);
@@ -85,13 +82,13 @@ std::vector<dvec3> QueryPointOptions::make(const Scene& scene, std::uint64_t see
 }
 
 void add_query_point_options(CLI::App& command, QueryPointOptions& options) {
-    CLI::Option_group* source = command.add_option_group("points", "exactly one of them");
+    CLI::Option_group* source = command.add_option_group("points", "at most one of them");
     source->add_option("--points", options.file, "a file of x,y,z lines");
     source->add_option("--random", options.random, "so many, in the box of the scene and a tenth around it")
         ->check(CLI::Range(std::uint64_t{1}, most_points));
     source->add_option("--grid", options.grid, "the centres of N x N x N cells of that box, x fastest")
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{640}));
-    source->require_option(1);
+    source->require_option(0, 1);
 }
 
 }  // namespace twinray::cli

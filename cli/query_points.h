@@ -9,16 +9,23 @@
 
 namespace twinray::cli {
 
+// Of the scene, grown by a tenth of its largest side on all sides. Throws Error where there is no triangle.
+struct QueryBox {
+    glm::dvec3 lo, size;
+};
+QueryBox query_box(const Scene& scene);
+
 struct QueryPointOptions {
     std::filesystem::path file;
     std::uint64_t random = 0;
     std::uint64_t grid = 0;  // points along each side
 
-    // The last two in the box of the scene grown by a tenth of its largest side on all sides: of a grid, the centres of
-    // its cells, x fastest. Throws Error naming the file and the line.
+    bool is_asked_for() const { return !file.empty() || random > 0 || grid > 0; }
+    // The last two in query_box(): of a grid, the centres of its cells, x fastest. None if nothing was asked for.
+    // Throws Error naming the file and the line.
     std::vector<glm::dvec3> make(const Scene& scene, std::uint64_t seed) const;
 };
-// Exactly one of --points, --random, --grid.
+// At most one of --points, --random, --grid.
 void add_query_point_options(CLI::App& command, QueryPointOptions& options);
 
 // x,y,z a line; a first line that begins with a letter is passed over.

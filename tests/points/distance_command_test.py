@@ -52,6 +52,10 @@ with zipfile.ZipFile(here / "out.npz") as archive:
 run("open.ply", "--random", "5", "--quiet", "-o", "out.csv")
 assert len(lines("out.csv")) == 6
 
+run("solid.ply", "--slice", "plane.png", "--slice-axis", "x", "--slice-at", "0.5", "--slice-size", "64", "--signed", "--quiet")
+assert (here / "plane.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+assert ".png" in run("solid.ply", "--slice", "plane.jpg", status=1)
+assert "--slice shows distances" in run("solid.ply", "--random", "5", "--within", "1", "--slice", "plane.png", status=1)
 assert "is not closed" in run("open.ply", "--random", "5", "--signed", status=1)
 (here / "bad.csv").write_text("1,2,3\n1,2\n")
 assert "line 2: '1,2' is not three numbers" in run("solid.ply", "--points", "bad.csv", status=1)

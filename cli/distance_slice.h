@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// `twinray distance --slice`: distances in a plane as a picture.
+#pragma once
+
+#include "cli/common.h"
+#include "engine/points/point_finder.h"
+
+namespace twinray::cli {
+
+struct SliceOptions {
+    std::filesystem::path file;  // .png; empty: none
+    char axis = 'z';             // that the plane is perpendicular to
+    std::optional<double> at;    // the plane's place along it; none: the middle of the scene
+    uint width = 480;            // pixels of the larger side, a point each
+};
+void add_slice_options(CLI::App& command, SliceOptions& options);
+
+// Throws Error for a scene without triangles. `is_signed`: negative inside, as signed_distances() tells.
+void write_slice(const SliceOptions& options, const Scene& scene, PointFinder& finder, bool is_signed,
+                 const std::string& title);
+
+}  // namespace twinray::cli
