@@ -31,13 +31,11 @@ struct Options {
 };
 
 // Of what the rows depend on.
-std::string configuration_of(const Options& options, const Faces& faces) {
+std::string configuration_of(const Options& options, const Scene& scene) {
     const ViewFactorOptions& of = options.factors;
-    double area = 0;
-    for (const double one : faces.areas()) area += one;
     std::ostringstream out;
-    out << std::hexfloat << faces.count() << " faces " << area << ", by " << name_of(of.grouping) << ", "
-        << name_of(of.sides) << ", " << name_of(of.sequence) << ", " << of.rays << " rays, error "
+    out << std::hexfloat << count_triangles(scene) << " faces " << checksum_of(scene) << ", by " << name_of(of.grouping)
+        << ", " << name_of(of.sides) << ", " << name_of(of.sequence) << ", " << of.rays << " rays, error "
         << of.target_error.value_or(0) << ", seed " << of.seed << ", " << options.accel << ", estimator "
         << name_of(options.estimator);
     return out.str();
@@ -59,11 +57,11 @@ PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const 
 
 std::filesystem::path rows_file(const std::filesystem::path& output) { return output.string() + ".rows"; }
 
-std::vector<ViewFactorRow> compute(const Options& options, ViewFactors& factors, const Faces& faces) {
+std::vector<ViewFactorRow> compute(const Options& options, ViewFactors& factors, const Scene& scene) {
     std::vector<ViewFactorRow> rows;
     std::optional<RowFile> file;
     if (!options.output.empty()) {
-        file.emplace(rows_file(options.output), configuration_of(options, faces));
+        file.emplace(rows_file(options.output), configuration_of(options, scene));
         if (options.resumes)
             rows = file->load();
         else
@@ -190,7 +188,7 @@ void run(const Options& options) {
     const PairExchanges pairs = compute_pairs(options, *accel, scene, faces);
     const double seconds_of_pairs = seconds_since(start);
     ViewFactors factors(*accel, faces, options.factors, pairs.known);
-    std::vector<ViewFactorRow> rows = compute(options, factors, faces);
+    std::vector<ViewFactorRow> rows = compute(options, factors, scene);
     const double seconds = seconds_since(start);
     const Totals totals = totals_of(rows);
     const ViewFactorResiduals before = residuals_of(rows, factors.areas());

@@ -6,6 +6,7 @@
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "engine/scene/bytes.h"
 #include "engine/core/triangle.h"
 
 namespace twinray {
@@ -82,6 +83,23 @@ Faces::Faces(Context& context, const Scene& scene)
     parallel_for(count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t face = begin; face < end; ++face) areas_[face] = glm::length(area_vector(scene, faces_[face]));
     });
+}
+
+std::uint32_t checksum_of(const Scene& scene) {
+    std::uint32_t sum = 0;
+    const auto add = [&](const auto& values) { sum = crc32_of(std::as_bytes(std::span(values)), sum); };
+    for (const Mesh& mesh : scene.meshes) {
+        const std::array sizes = {mesh.positions.size(), mesh.triangles.size(), mesh.materials.size()};
+        add(sizes);
+        add(mesh.positions);
+        add(mesh.triangles);
+        add(mesh.materials);
+    }
+    for (const Instance& instance : scene.instances) {
+        add(std::array{instance.mesh});
+        add(instance.transform.rows);
+    }
+    return sum;
 }
 
 std::vector<uint> Faces::groups(FaceGrouping grouping) const {

@@ -34,6 +34,9 @@ dvec3 in_world(const Transform& transform, vec3 point);
 // 0 of triangles that are not active, which no ray meets.
 dvec3 area_vector(const Scene& scene, Face face);
 
+// Of meshes, instances and the materials of triangles: all that tells the faces of one scene from those of another.
+std::uint32_t checksum_of(const Scene& scene);
+
 // A copy of the scene's triangles on the device, as they were when it was made. Instances come in the order of the
 // scene, which is that of an accelerator into which push_scene() put it: hits of that tell faces.
 class Faces {

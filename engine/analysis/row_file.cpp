@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "engine/analysis/row_file.h"
 
-#include <zlib.h>
-
 #include <cstring>
 #include <optional>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/scene/bytes.h"
 
 namespace twinray {
 namespace {
@@ -23,10 +22,6 @@ struct RowHeader {
 };
 static_assert(sizeof(RowHeader) == 72);
 
-uint checksum(std::span<const std::byte> bytes) {
-    return static_cast<uint>(crc32_z(crc32(0, nullptr, 0), reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
 template <class T>
 void put(std::vector<std::byte>& out, std::span<const T> values) {
     const auto bytes = std::as_bytes(values);
@@ -38,7 +33,7 @@ std::vector<std::byte> bytes_of(const ViewFactorRow& row) {
     std::vector<std::byte> bytes;
     put(bytes, std::span(&header, 1));
     put(bytes, std::span(row.factors));
-    const uint sum = checksum(bytes);
+    const uint sum = crc32_of(bytes);
     put(bytes, std::span(&sum, 1));
     return bytes;
 }
@@ -55,7 +50,7 @@ class Reader {
         if (!peek(&header, at_, sizeof(header))) return std::nullopt;
         const std::uint64_t size = sizeof(header) + std::uint64_t{header.factor_count} * sizeof(ViewFactor);
         uint sum = 0;
-        if (!peek(&sum, at_ + size, sizeof(sum)) || sum != checksum(bytes_.subspan(at_, size))) return std::nullopt;
+        if (!peek(&sum, at_ + size, sizeof(sum)) || sum != crc32_of(bytes_.subspan(at_, size))) return std::nullopt;
         ViewFactorRow row{header.group, header.rays, std::vector<ViewFactor>(header.factor_count),
                           header.hits,  header.open, header.back};
         peek(row.factors.data(), at_ + sizeof(header), size - sizeof(header));

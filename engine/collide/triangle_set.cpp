@@ -116,10 +116,14 @@ TriangleSet::TriangleSet(Context& context)
 
 void TriangleSet::set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances,
                       std::span<const uint> chosen, Shared shared) {
+    count_ = 0;
+    std::uint64_t total = 0;
+    for (const uint index : chosen) total += meshes[instances[index].mesh].triangles.size();
+    if (total > BoxTree::max_count)
+        fail("the instances in question have ", total, " triangles; at most ", BoxTree::max_count, " fit");
     placed_.clear();
     vertex_ids_.assign(meshes.size(), {});
     chosen_.assign(chosen.begin(), chosen.end());
-    count_ = 0;
     Upload upload;
     std::vector<std::optional<PlacedMesh>> uploaded(meshes.size());
     std::vector<PlacedMesh> table;
@@ -135,8 +139,6 @@ void TriangleSet::set(std::span<const MeshView> meshes, std::span<const MeshInst
         table.push_back(placed(*of_mesh, instance.transform, count_));
         placed_.push_back(placed(on_host(mesh, ids), instance.transform, count_));
         count_ += mesh.triangles.size();
-        if (count_ > BoxTree::max_count)
-            fail("collide: the instances that may touch have more than ", BoxTree::max_count, " triangles");
     }
     if (count_ == 0) return;
     allocate(upload.bytes);

@@ -93,8 +93,12 @@ std::vector<Tick> ValueScale::ticks(std::size_t most) const {
 std::vector<Tick> ValueScale::linear_ticks(std::size_t most) const {
     const double step = nice_step((hi_ - lo_) / static_cast<double>(std::max<std::size_t>(most, 2) - 1));
     std::vector<Tick> ticks;
-    for (double index = std::ceil(lo_ / step); index * step <= hi_; ++index)
-        ticks.push_back({position(index * step), label_of(index * step, step)});
+    // Counted from 0: where lo and hi are neighbours, multiples of the step are too large for ++ to change them.
+    const double first = std::ceil(lo_ / step), last = std::floor(hi_ / step) - first;
+    for (double index = 0; index <= last; ++index) {
+        const double value = (first + index) * step;
+        ticks.push_back({position(value), label_of(value, step)});
+    }
     return ticks;
 }
 

@@ -33,8 +33,8 @@ float scale_for(std::span<const MeshView> meshes, std::span<const MeshInstance> 
     }
     const vec3 size = all.size();
     const float largest = std::max({size.x, size.y, size.z});
-    if (!(largest > 0) || !std::isfinite(largest)) return 1;
-    return std::ldexp(1.0f, -std::clamp(std::ilogb(largest), -126, 126));
+    if (!(largest > 0)) return 1;
+    return std::ldexp(1.0f, std::isfinite(largest) ? -std::clamp(std::ilogb(largest), -126, 126) : -126);
 }
 
 template <class Body>

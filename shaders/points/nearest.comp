@@ -78,7 +78,7 @@ void main()
     if (global_index() >= args.count) return;
     uint i = AT(args.order, global_index());
     point = AT(args.points, i).at;
-    point_box = box_around(point);
+    point_box = scaled(box_around(point), args.scale);
     best.squared = args.limit * args.limit;
     best_above = squared_distance_above(best.squared, args.scale);
     if (is_finite_corner(point)) search();

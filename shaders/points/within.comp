@@ -16,7 +16,7 @@ void main()
     uint i = AT(args.order, global_index());
     dvec3 point = AT(args.points, i).at;
     if (!is_finite_corner(point)) return;
-    PointBox point_box = box_around(point);
+    PointBox point_box = scaled(box_around(point), args.scale);
     double squared_limit = args.limit * args.limit;
     float limit_above = squared_distance_above(squared_limit, args.scale);
     uint end = args.leaf_begin + args.leaf_count;

@@ -69,6 +69,14 @@ FUNC PointBox box_around(dvec3 p)
     return box;
 }
 
+// In units of 1 / scale, a power of two.
+FUNC PointBox scaled(PointBox box, float scale)
+{
+    box.lo = box.lo * scale;
+    box.hi = box.hi * scale;
+    return box;
+}
+
 // Empty for a point that is not finite.
 FUNC TreeBox tree_box_of(dvec3 p, uint item)
 {
@@ -80,11 +88,12 @@ FUNC TreeBox tree_box_of(dvec3 p, uint item)
     return box;
 }
 
-// Not above the squared distance of any point of the box from the query, in units of 1 / scale; each of its roundings
-// is below 2^-24 of what it rounds. The largest float stands for all that is larger.
+// Not above the squared distance of any point of the box from the query, which is scaled, in units of 1 / scale. Scaling
+// comes first, so that no difference overflows; what it flushes is below what counts. Each rounding is below 2^-24 of what
+// it rounds. The largest float stands for all that is larger.
 FUNC float squared_distance_below(PointBox p, TreeBox box, float scale)
 {
-    vec3 gap = max(max(box.lo - p.hi, p.lo - box.hi), vec3(0.0f)) * scale;
+    vec3 gap = max(max(box.lo * scale - p.hi, p.lo - box.hi * scale), vec3(0.0f));
     return min(dot(gap, gap), 3.402823466e38f) * 0.9999995f;
 }
 

@@ -39,7 +39,7 @@ def array(archive, name):
     return list(struct.unpack(f"<{header['shape'][0]}{kind}", data[10 + size:]))
 
 
-def write_grid_box(path, n, with_plate=False):
+def write_grid_box(path, n, with_plate=False, plate_at=0.1):
     """A box of n x n quads a side that looks inwards; with a plate above the floor, if wanted."""
     lines, count = [], 0
     for axis in range(3):
@@ -54,7 +54,7 @@ def write_grid_box(path, n, with_plate=False):
                     lines.append("f {} {} {} {}".format(*(corners if side == 0 else corners[::-1])))
                     count += 4
     if with_plate:
-        lines += [f"v {x} {y} 0.1" for x, y in ((0.1, 0.1), (0.6, 0.1), (0.6, 0.6), (0.1, 0.6))]
+        lines += [f"v {x} {y} {plate_at}" for x, y in ((0.1, 0.1), (0.6, 0.1), (0.6, 0.6), (0.1, 0.6))]
         lines.append("f {} {} {} {}".format(*range(count + 1, count + 5)))
     with open(path, "w", encoding="utf-8") as out:
         out.write("\n".join(lines) + "\n")
@@ -124,6 +124,9 @@ with tempfile.TemporaryDirectory() as folder:
     for other in (["--rays", "4096"], ["--rays", "16384", "--estimator", "hits"]):
         refused = run(plate, "-o", killed, "--resume", *other, fails=True)
         expect("of another scene or of other options" in refused, refused)
+    write_grid_box(box, 4, with_plate=True, plate_at=0.2)  # as many faces of the same areas
+    refused = run(box, "-o", killed, "--resume", "--rays", "16384", fails=True)
+    expect("of another scene or of other options" in refused, refused)
     resumed = run(plate, "-o", killed, "--resume", "--rays", "16384")
     expect("resumed after" in resumed, resumed)
     with open(whole, "rb") as a, open(killed, "rb") as b:

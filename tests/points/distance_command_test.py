@@ -1,5 +1,5 @@
-#!/usr/bin/env python3
-# SPDX-License-Identifier: MIT
+#!/ usr / bin / env python3
+#SPDX - License - Identifier : MIT
 """Runs `twinray distance` as a user does. Usage: distance_command_test.py TWINRAY"""
 import json
 import pathlib
@@ -21,8 +21,7 @@ def run(*arguments, status=0):
 def lines(name):
     return (here / name).read_text().splitlines()
 
-
-# A tetrahedron with its fronts outward, and the same without its last face.
+#A tetrahedron with its fronts outward, and the same without its last face.
 def ply(name, faces):
     (here / name).write_text("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
                              f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"

@@ -78,8 +78,13 @@ class PointFinderTest : public test::VulkanTest {
         const auto own = std::find_if(placed_.begin(), placed_.end(), is_found);
         if (own == placed_.end()) return {INFINITY, INFINITY};
         const auto reached = static_cast<long double>(glm::distance(found.position, point));
+        const long double of_named = test::distance(point, own->corners);
         const double unit = std::max({static_cast<double>(least), size, glm::length(point)}) * 0x1p-52;
-        const long double error = std::max(std::abs(found.distance - least), std::abs(reached - least));
+        const Corners64& t = own->corners;
+        const dvec3 by_uv = (1 - found.uv.x - found.uv.y) * t.a + found.uv.x * t.b + found.uv.y * t.c;
+        const long double error =
+            std::max({std::abs(found.distance - least), std::abs(reached - least), of_named - least,
+                      static_cast<long double>(glm::distance(by_uv, found.position)) / 4});
         const auto as_float = static_cast<float>(least);
         return {static_cast<double>(error) / unit,
                 std::abs(static_cast<double>(static_cast<float>(found.distance)) - as_float) /
@@ -139,6 +144,37 @@ TEST_F(PointFinderTest, TheNearestTriangleIsFoundWhateverItsShape) {
     EXPECT_LE(errors.of_float, 1);
 }
 
+// Where barycentric coordinates lose most: on needles, and beside them by less than they are high.
+TEST_F(PointFinderTest, OnNeedlesAndBesideThem) {
+    std::mt19937 random(12);
+    for (int exponent = 3; exponent <= 60; exponent += 3) {
+        Soup needle;
+        const vec3 from = testing::uniform3(random, -1, 1), along = testing::uniform3(random, -1, 1);
+        const vec3 across = testing::uniform3(random, -1, 1) * std::ldexp(1.0f, -exponent);
+        needle.add(from, from + along, from + along * 0.3f + across);
+        set(needle.view());
+        const Corners64& t = placed().front().corners;
+        std::vector<dvec3> points;
+        for (int i = 0; i < 200; ++i) {
+            const double u = testing::uniform(random, 0, 1), v = testing::uniform(random, 0, 1) * (1 - u);
+            points.push_back(t.a + u * (t.b - t.a) + v * (t.c - t.a));
+            if (i % 2 == 0)
+                points.back() += dvec3(testing::uniform3(random, -1, 1)) * std::ldexp(1.0, -exponent - i % 8);
+        }
+        EXPECT_LE(errors_of(points).of_double, 4) << "height of 2^-" << exponent;
+    }
+}
+
+// Differences of coordinates that float32 cannot hold.
+TEST_F(PointFinderTest, AtTheEndsOfFloat32) {
+    Soup huge;
+    huge.add(vec3(-3e38f, 0, 0), vec3(-3e38f, 1e37f, 0), vec3(-3e38f, 0, 1e37f));
+    huge.add(vec3(-1e38f, 0, 0), vec3(-1e38f, 1e37f, 0), vec3(-1e38f, 0, 1e37f));
+    set(huge.view());
+    EXPECT_EQ(finder().closest(std::vector{dvec3(3e38, 0, 0)}).front().triangle, 1u);
+    EXPECT_EQ(finder().within(std::vector{dvec3(3e38, 0, 0)}, 5e38).size(), 1u);
+}
+
 TEST_F(PointFinderTest, FarAndOnTheSurface) {
     const Mesh ball = make_icosphere(3);
     set(ball);
@@ -179,6 +215,14 @@ TEST_F(PointFinderTest, OfSeveralAtOneDistanceTheFirst) {
     const Mesh ball = make_icosphere(1);
     set({ball}, {{0, {}}, {0, {}}, {0, {}}});
     for (const ClosestPoint& found : finder().closest(random_points(100, 2, 6))) EXPECT_EQ(found.instance, 0u);
+    // From outside, all triangles around a corner are as near.
+    for (uint corner = 0; corner < ball.positions.size(); ++corner) {
+        const auto has_it = [&](const uvec3& t) { return t.x == corner || t.y == corner || t.z == corner; };
+        const auto lowest = std::find_if(ball.triangles.begin(), ball.triangles.end(), has_it);
+        const dvec3 outside =
+            dvec3(ball.positions[corner]) * (1.7 + corner / 30.0) + dvec3(0.01 / 3, 0.01 / 7, 0.01 / 9);
+        EXPECT_EQ(finder().closest(std::vector{outside}).front().triangle, lowest - ball.triangles.begin()) << corner;
+    }
     const dvec3 vertex(ball.positions[3]);
     const auto first = std::find_if(ball.triangles.begin(), ball.triangles.end(),
                                     [](const uvec3& t) { return t.x == 3 || t.y == 3 || t.z == 3; });

@@ -8,14 +8,26 @@
 namespace twinray::test {
 namespace {
 
-using Vector = glm::vec<3, long double>;
-using glm::dot;
+using Real = __float128;  // 113 bits of mantissa
 
-long double distance_to_segment(const Vector& p, const Vector& a, const Vector& b) {
-    const Vector ab = b - a;
-    const long double squared = dot(ab, ab);
-    const long double along = squared > 0 ? std::clamp(dot(p - a, ab) / squared, 0.0L, 1.0L) : 0;
-    return glm::length(p - (a + along * ab));
+struct Vector {
+    Real x, y, z;
+
+    explicit Vector(const dvec3& v) : x(v.x), y(v.y), z(v.z) {}
+    Vector(Real a, Real b, Real c) : x(a), y(b), z(c) {}
+};
+Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Real dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vector cross(const Vector& a, const Vector& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+Real squared_distance_to_segment(const Vector& p, const Vector& a, const Vector& b) {
+    const Vector ab = b - a, ap = p - a;
+    const Real squared = dot(ab, ab);
+    const Real along = squared > 0 ? std::clamp<Real>(dot(ap, ab) / squared, 0, 1) : 0;
+    const Vector left(ap.x - along * ab.x, ap.y - along * ab.y, ap.z - along * ab.z);
+    return dot(left, left);
 }
 
 dvec3 placed(const Transform& m, vec3 p) {
@@ -45,13 +57,15 @@ std::vector<PlacedTriangle> placed_triangles(std::span<const MeshView> meshes,
 
 long double distance(const dvec3& point, const Corners64& triangle) {
     const Vector p(point), a(triangle.a), b(triangle.b), c(triangle.c);
-    const Vector ab = b - a, ac = c - a, normal = glm::cross(ab, ac);
-    const long double d1 = dot(ab, p - a), d2 = dot(ac, p - a), d3 = dot(ab, p - b), d4 = dot(ac, p - b);
-    const long double d5 = dot(ab, p - c), d6 = dot(ac, p - c);
-    const long double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
-    if (dot(normal, normal) > 0 && va > 0 && vb > 0 && vc > 0)
-        return std::abs(dot(normal, p - a)) / glm::length(normal);
-    return std::min({distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
+    const Vector ab = b - a, ac = c - a, normal = cross(ab, ac);
+    const Real d1 = dot(ab, p - a), d2 = dot(ac, p - a), d3 = dot(ab, p - b), d4 = dot(ac, p - b);
+    const Real d5 = dot(ab, p - c), d6 = dot(ac, p - c);
+    const Real va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    const Real height = dot(normal, p - a), area = dot(normal, normal);
+    if (area > 0 && va > 0 && vb > 0 && vc > 0) return std::sqrt(static_cast<long double>(height * height / area));
+    return std::sqrt(
+        static_cast<long double>(std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c),
+                                           squared_distance_to_segment(p, c, a)})));
 }
 
 double solid_winding(const dvec3& point, std::span<const PlacedTriangle> triangles) {

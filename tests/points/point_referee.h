@@ -17,7 +17,7 @@ struct PlacedTriangle {
 };
 std::vector<PlacedTriangle> placed_triangles(std::span<const MeshView> meshes, std::span<const MeshInstance> instances);
 
-// By Voronoi regions (Ericson, "Real-Time Collision Detection", 2005, 5.1.5), in numbers of 64 bits of mantissa; of
+// By Voronoi regions (Ericson, "Real-Time Collision Detection", 2005, 5.1.5), in numbers of 113 bits of mantissa; of
 // triangles without area, the least of the distances from their edges.
 long double distance(const dvec3& point, const Corners64& triangle);
 
