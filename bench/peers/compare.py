@@ -5,8 +5,8 @@
     compare.py TWINRAY [-o FILE.json] [--rounds N] [--only collisions|distances|rays|viewfactors]
 
 Needs numpy, trimesh, python-fcl, rtree, embreex, pyvista and pyviewfactor; peers.sh installs them into a folder and runs this.
-Times are of the work alone: loading files, starting Python and making the Vulkan device are not counted, building search
-structures is."""
+Times are of the work alone: loading files, starting Python and making the Vulkan device are not counted. Building what is
+searched is counted of collisions and distances; of rays and view factors, where each has an acceleration structure, it is not."""
 import argparse
 import json
 import pathlib
@@ -23,7 +23,7 @@ import references
 class Bench:
     def __init__(self, options):
         self.twinray, self.rounds = pathlib.Path(options.twinray).resolve(), options.rounds
-        self.folder, self.rows = pathlib.Path(tempfile.mkdtemp()), []
+        self.folder, self.rows, self.device = pathlib.Path(tempfile.mkdtemp()), [], None
 
     def run(self, *arguments):
         """The JSON line of a command."""
@@ -32,7 +32,15 @@ class Bench:
         done = subprocess.run([self.twinray, *map(str, arguments), "--quiet", "--json", record], capture_output=True, text=True)
         if done.returncode:
             raise SystemExit(f"twinray {arguments[0]}: {done.stderr}")
-        return json.loads(record.read_text())
+        told = json.loads(record.read_text())
+        self.device = told["device"]
+        return told
+
+    def versions(self):
+        """Of the packages, and the device."""
+        from importlib.metadata import version
+        names = ("numpy", "trimesh", "python-fcl", "rtree", "embreex", "pyvista", "pyviewfactor")
+        return {name: version(name) for name in names}
 
     def measure(self, case, contestants):
         """Runs each in turns: functions that return (seconds, {name: error}). Prints and keeps the medians."""
@@ -44,7 +52,7 @@ class Bench:
         first = np.median(times[next(iter(contestants))])
         for name in contestants:
             seconds = float(np.median(times[name]))
-            self.rows.append({"case": case, "who": name, "seconds": seconds, "times_ours": seconds / first, **errors[name]})
+            self.rows.append({"case": case, "who": name, "seconds": seconds, "least": min(times[name]), "most": max(times[name]), "times_ours": seconds / first, **errors[name]})
             said = ", ".join(f"{what} {value:.3g}" for what, value in errors[name].items())
             print(f"{case:44} {name:26} {seconds:10.4f} s {seconds / first:9.1f}x   {said}", flush=True)
 
@@ -92,14 +100,27 @@ def collisions(bench):
                 trimesh.Trimesh(vertices + np.float32(shift), mesh.faces, process=False)]
         scene = bench.folder / "pair.glb"
         trimesh.Scene({"a": both[0], "b": both[1]}).export(scene)
-        exact = set()
+        found_by = {}
+
+        def told(name, found):
+            """Pairs on which the two disagree are put to a referee in rational numbers."""
+            found_by[name] = found
+            if len(found_by) < 2:
+                return {"pairs": len(found)}
+            disputed = sorted(found_by["ours"] ^ found_by["fcl"])[:2000]
+            wrong = {each: 0 for each in found_by}
+            for i, j in disputed:
+                meet = references.meet(*(part.triangles[k] for part, k in zip(both, (i, j))))
+                for each, pairs in found_by.items():
+                    wrong[each] += ((i, j) in pairs) != meet
+            return {"pairs": len(found), "disputed": len(found_by["ours"] ^ found_by["fcl"]), "judged": len(disputed),
+                    "wrong of these": wrong[name]}
 
         def ours():
-            nonlocal exact
             record = bench.run("collide", scene, "-o", bench.folder / "pairs.csv")
             table = np.genfromtxt(bench.folder / "pairs.csv", delimiter=",", skip_header=1, dtype=None, encoding=None)
-            exact = {(row[2], row[3]) for row in table}
-            return record["search_seconds"] + record["classify_seconds"], {"pairs": len(exact), "wrong": 0}
+            return (record["search_seconds"] + record["classify_seconds"],
+                    told("ours", {(int(row[2]), int(row[3])) for row in table}))
 
         def of_fcl():
             def work():
@@ -114,7 +135,7 @@ def collisions(bench):
                 fcl.collide(*objects, fcl.CollisionRequest(num_max_contacts=10_000_000, enable_contact=True), result)
                 return {(contact.b1, contact.b2) for contact in result.contacts}
             seconds, found = timed(work)
-            return seconds, {"pairs": len(found), "wrong": len(found ^ exact)}
+            return seconds, told("fcl", found)
 
         bench.measure(case, {"twinray collide": ours, "python-fcl": of_fcl})
 
@@ -128,22 +149,27 @@ def distances(bench):
     some = np.arange(0, len(points), 100)
     truth = references.distances(points[some], mesh.triangles.astype(np.float64))
 
-    def error(found):
-        return {"largest error": float(np.max(np.abs(np.abs(found[some]) - truth)))}
+    inside = references.are_inside(points[some], mesh.triangles.astype(np.float64))
+
+    def error(found, inside_is=1):
+        """`inside_is`: the sign that distances have inside; 0: they have none."""
+        signs = np.where(inside, inside_is, -inside_is) if inside_is else 1
+        return {"largest error": float(np.max(np.abs(found[some] - signs * truth)))}
 
     def ours(*more):
         record = bench.run("distance", scene, "--points", bench.folder / "points.csv", "-o", bench.folder / "out.npz", *more)
-        return record["build_seconds"] + record["seconds"], error(np.load(bench.folder / "out.npz")["distance"])
+        return (record["build_seconds"] + record["seconds"],
+                error(np.load(bench.folder / "out.npz")["distance"], -1 if more else 0))
 
     def of_trimesh():
         seconds, (_, found, _) = timed(lambda: trimesh.proximity.closest_point(mesh, points))
         mesh._cache.clear()
-        return seconds, error(found)
+        return seconds, error(found, 0)
 
     def of_trimesh_signed():
         seconds, found = timed(lambda: trimesh.proximity.signed_distance(mesh, points))
         mesh._cache.clear()
-        return seconds, error(found)
+        return seconds, error(found, 1)  # trimesh counts up inside
 
     bench.measure("20,000 points, sphere of 20,480", {"twinray distance": ours, "trimesh": of_trimesh})
     bench.measure("the same, signed", {"twinray distance": lambda: ours("--signed"), "trimesh": of_trimesh_signed})
@@ -179,11 +205,10 @@ def rays(bench):
             return record["seconds"], errors(np.where(hits["f0"] == 1, hits["f2"].astype(int), -1), hits["f1"].astype(np.float64))
 
         def of_embreex():
-            def work():
-                embree = rtcore_scene.EmbreeScene()
-                TriangleMesh(embree, triangles)
-                return embree.run(origins, directions, output=1)
-            seconds, found = timed(work)
+            embree = rtcore_scene.EmbreeScene()
+            TriangleMesh(embree, triangles)
+            embree.run(origins[:1], directions[:1])  # builds the tree
+            seconds, found = timed(lambda: embree.run(origins, directions, output=1))
             return seconds, errors(found["primID"].astype(int), found["tfar"].astype(np.float64))
 
         bench.measure(f"10^6 rays {aim}, sphere of 81,920", {"twinray trace --accel sw": lambda: ours("sw"),
@@ -219,8 +244,7 @@ def viewfactors(bench):
         def of_pyviewfactor():
             polygons = pyvista.PolyData(box.vertices, np.column_stack([np.full(len(box.faces), 3), box.faces]))
             seconds, matrix = timed(lambda: pyviewfactor.compute_viewfactor_matrix(polygons))
-            matrix = np.asarray(matrix)
-            return seconds, errors(matrix if abs(matrix.sum(1).mean() - 1) <= abs(matrix.sum(0).mean() - 1) else matrix.T)
+            return seconds, errors(np.asarray(matrix))
 
         bench.measure(f"room of {len(box.faces)} triangles", {
             "twinray viewfactors": ours,
@@ -242,7 +266,8 @@ def main():
         if options.only in (None, name):
             domain(bench)
     if options.output:
-        pathlib.Path(options.output).write_text(json.dumps({"schema": "twinray-peers/1", "rows": bench.rows}, indent=1) + "\n")
+        pathlib.Path(options.output).write_text(json.dumps({"schema": "twinray-peers/1", "device": bench.device, "versions": bench.versions(),
+                                                         "rounds": bench.rounds, "rows": bench.rows}, indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -215,18 +215,29 @@ TEST_F(PointFinderTest, OfSeveralAtOneDistanceTheFirst) {
     const Mesh ball = make_icosphere(1);
     set({ball}, {{0, {}}, {0, {}}, {0, {}}});
     for (const ClosestPoint& found : finder().closest(random_points(100, 2, 6))) EXPECT_EQ(found.instance, 0u);
-    // From outside, all triangles around a corner are as near.
+}
+
+// From outside, all triangles around a corner are as near, and the same bits say so.
+TEST_F(PointFinderTest, OfTheTrianglesAroundACornerTheFirst) {
+    const Mesh ball = make_icosphere(1);
+    std::mt19937 random(5);
+    const Transform turn = turned(random, 1);
+    set({ball}, {{0, turn}});
+    const auto corner_of = [&](uint triangle, int k) {
+        const Corners64& t = placed()[triangle].corners;
+        return k == 0 ? t.a : k == 1 ? t.b : t.c;
+    };
+    const dvec3 center(turn.rows[0].w, turn.rows[1].w, turn.rows[2].w);
     for (uint corner = 0; corner < ball.positions.size(); ++corner) {
         const auto has_it = [&](const uvec3& t) { return t.x == corner || t.y == corner || t.z == corner; };
-        const auto lowest = std::find_if(ball.triangles.begin(), ball.triangles.end(), has_it);
-        const dvec3 outside =
-            dvec3(ball.positions[corner]) * (1.7 + corner / 30.0) + dvec3(0.01 / 3, 0.01 / 7, 0.01 / 9);
-        EXPECT_EQ(finder().closest(std::vector{outside}).front().triangle, lowest - ball.triangles.begin()) << corner;
+        const auto lowest = static_cast<uint>(std::find_if(ball.triangles.begin(), ball.triangles.end(), has_it) -
+                                              ball.triangles.begin());
+        const uvec3 t = ball.triangles[lowest];
+        const dvec3 at = corner_of(lowest, t.x == corner ? 0 : t.y == corner ? 1 : 2);
+        for (const double height : {0.0, 0.1, 0.7, 3.0})
+            EXPECT_EQ(finder().closest(std::vector{at + (at - center) * height}).front().triangle, lowest)
+                << corner << ' ' << height;
     }
-    const dvec3 vertex(ball.positions[3]);
-    const auto first = std::find_if(ball.triangles.begin(), ball.triangles.end(),
-                                    [](const uvec3& t) { return t.x == 3 || t.y == 3 || t.z == 3; });
-    EXPECT_EQ(finder().closest(std::vector{vertex}).front().triangle, first - ball.triangles.begin());
 }
 
 TEST_F(PointFinderTest, TheLargestDistanceCountsAsNear) {
