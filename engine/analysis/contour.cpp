@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -17,9 +18,11 @@ class Contours {
 
     struct Sum {
         Real value = 0, error = 0;
+        std::uint64_t evaluations = 0;
         Sum& operator+=(const Sum& other) {
             value += other.value;
             error += other.error;
+            evaluations += other.evaluations;
             return *this;
         }
     };
@@ -41,28 +44,47 @@ class Contours {
         Vec3 from, to;
     };
 
-    Contours(const Edge& of_a, const Edge& of_b)
-        : from_(of_a.from), way_(of_a.to - of_a.from), to_edge_(of_b.from), length_(glm::length(of_b.to - of_b.from)) {
-        if (length_ > 0) along_ = (of_b.to - of_b.from) / length_;
+    static constexpr std::size_t most_pieces = 16;  // of one length
+
+    // Along the longer edge in closed form: along a short one that would be a small difference of large terms.
+    Contours(const Edge& of_a, const Edge& of_b) : Contours(of_a, of_b, length(of_a) <= length(of_b)) {}
+    Contours(const Edge& of_a, const Edge& of_b, bool b_is_longer) : outer_(b_is_longer ? of_a : of_b) {
+        const Edge& inner = b_is_longer ? of_b : of_a;
+        way_ = outer_.to - outer_.from;
+        to_edge_ = inner.from;
+        length_ = length(inner);
+        if (length_ > 0) along_ = (inner.to - inner.from) / length_;
     }
 
     Sum integral() const {
         const Real factor = dot(way_, along_);
         if (factor == 0) return {};
-        const Sum sum = piece(0, 1, 0);
-        return {sum.value * factor, sum.error * std::abs(factor)};
+        const Sum sum = halved();
+        const Real rounded = 4 * std::numeric_limits<Real>::epsilon() * glm::length(way_);  // of the factor
+        return {sum.value * factor, sum.error * std::abs(factor) + rounded * std::abs(sum.value), sum.evaluations};
     }
 
-    static Real times_log(Real t, Real square) { return t == 0 ? Real{0} : t * std::log(square) / 2; }
+    static Real length(const Edge& edge) { return glm::length(edge.to - edge.from); }
 
-    // ln r to the edge of b, along all of that.
-    Real inner(Real s) const {
-        const Vec3 to = to_edge_ - (from_ + way_ * s);
+    // A value, and the size of what was added up to it: what both roundings of that and of coordinates are a part of.
+    struct Term {
+        Real value = 0, size = 0;
+    };
+
+    static Real log_of(Real square) { return square == 0 ? Real{0} : std::log(square) / 2; }
+
+    // ln r to the inner edge, along all of that.
+    Term inner(Real s) const {
+        const Vec3 to = to_edge_ - (outer_.from + way_ * s);
         const Real begin = dot(to, along_), end = begin + length_;
         const Vec3 beside = cross(to, along_);
         const Real square = dot(beside, beside), height = std::sqrt(square);
-        const Real turn = height == 0 ? Real{0} : height * std::atan2(height * length_, square + begin * end);
-        return times_log(end, end * end + square) - times_log(begin, begin * begin + square) - length_ + turn;
+        const Real turn = height == 0 ? Real{0} : std::atan2(height * length_, square + begin * end);
+        const Real log_end = log_of(end * end + square), log_begin = log_of(begin * begin + square);
+        // The logarithms and the angle are also what the integral changes by where the ends or the height do.
+        const Real reach = std::abs(begin) + length_ + height;
+        return {end * log_end - begin * log_begin - length_ + height * turn,
+                length_ + reach * (std::abs(log_end) + std::abs(log_begin) + turn)};
     }
 
     // Nodes and weights of the rules with 7 and 15 points (Kronrod 1965), those of 7 every other one.
@@ -82,38 +104,74 @@ class Contours {
          {0.207784955007898467600689403773245L, 0.204432940075298892414161999234649L, 0},
          {0, 0.209482141084727828012999174891714L, 0.417959183673469387755102040816327L}}};
 
-    // Where both rules agree to a rounding of the whole, the one with more points is better by far; what is left of
-    // halving a logarithm that often is less than a rounding, too.
-    Sum piece(Real begin, Real end, int depth) const {
+    struct Piece {
+        Real begin, end;
+    };
+    struct Pieces {
+        std::array<Piece, most_pieces> pieces;
+        std::size_t count = 0;
+        bool has_room_for_both() const { return count + 2 <= most_pieces; }
+        void add(const Piece& piece) { pieces[count++] = piece; }
+    };
+
+    struct Rules {
+        Sum sum;        // what is left of the error is that of the rule with fewer points
+        bool do_agree;  // to a rounding: then the one with more points is better by far
+    };
+    Rules rules_on(const Piece& piece) const {
         constexpr Real rounding = std::numeric_limits<Real>::epsilon();
-        constexpr int most_halvings = std::numeric_limits<Real>::digits / 2 + 4;
-        const Real middle = (begin + end) / 2, half = (end - begin) / 2;
+        const Real middle = (piece.begin + piece.end) / 2, half = (piece.end - piece.begin) / 2;
         Real kronrod = 0, gauss = 0, size = 0;
         for (const Node& node : nodes) {
             const Real by = half * static_cast<Real>(node.place);
-            const Real below = inner(middle - by), above = by == 0 ? Real{0} : inner(middle + by);
-            kronrod += static_cast<Real>(node.kronrod) * (below + above);
-            gauss += static_cast<Real>(node.gauss) * (below + above);
-            size += static_cast<Real>(node.kronrod) * (std::abs(below) + std::abs(above));
+            const Term below = inner(middle - by), above = by == 0 ? Term() : inner(middle + by);
+            kronrod += static_cast<Real>(node.kronrod) * (below.value + above.value);
+            gauss += static_cast<Real>(node.gauss) * (below.value + above.value);
+            size += static_cast<Real>(node.kronrod) * (below.size + above.size);
         }
         const Real difference = half * std::abs(kronrod - gauss);
-        const Real rounded = 4 * rounding * half * (size + length_);
-        if (difference <= 4 * rounding * length_ || depth == most_halvings)
-            return {half * kronrod, difference + rounded};
-        Sum both = piece(begin, middle, depth + 1);
-        both += piece(middle, end, depth + 1);
-        return both;
+        const Real rounded = 4 * rounding * half * size;
+        return {{half * kronrod, difference + rounded, 2 * nodes.size() - 1},
+                difference <= std::max(4 * rounding * length_, rounded)};
     }
 
-    Vec3 from_, way_, to_edge_, along_ = Vec3(0);
-    Real length_;
+    // Along all of the outer edge, whose pieces are halved where the rules do not agree. What is left of halving a
+    // logarithm that often is less than a rounding. It is at a few places of an edge: where more pieces than those
+    // need do not agree, rounding keeps them from it, and the error tells by how much.
+    Sum halved() const {
+        constexpr int most_halvings = std::numeric_limits<Real>::digits / 2 + 4;
+        Pieces open;
+        open.add({0, 1});
+        Sum sum;
+        for (int depth = 0; open.count; ++depth) {
+            Pieces next;
+            for (std::size_t i = 0; i < open.count; ++i) {
+                const Piece& piece = open.pieces[i];
+                const Rules rules = rules_on(piece);
+                if (rules.do_agree || depth == most_halvings || !next.has_room_for_both()) {
+                    sum += rules.sum;
+                    continue;
+                }
+                sum.evaluations += rules.sum.evaluations;
+                const Real middle = (piece.begin + piece.end) / 2;
+                next.add({piece.begin, middle});
+                next.add({middle, piece.end});
+            }
+            open = next;
+        }
+        return sum;
+    }
+
+    Edge outer_;
+    Vec3 way_ = Vec3(0), to_edge_ = Vec3(0), along_ = Vec3(0);
+    Real length_ = 0;
 };
 
 template <class Real>
 ContourExchange exchange(const Polygon64& a, const Polygon64& b, double unit) {
     const auto sum = Contours<Real>::along_both(a, b, unit);
     const Real scale = static_cast<Real>(unit) * static_cast<Real>(unit) / (2 * std::numbers::pi_v<Real>);
-    return {static_cast<double>(sum.value * scale), static_cast<double>(sum.error * scale)};
+    return {static_cast<double>(sum.value * scale), static_cast<double>(sum.error * scale), sum.evaluations};
 }
 
 }  // namespace
@@ -123,7 +181,10 @@ ContourExchange contour_exchange(const Polygon64& a, const Polygon64& b) {
     const double unit = std::max({a.longest_edge(), b.longest_edge(), glm::length(a.corners[0] - b.corners[0])});
     const ContourExchange first = exchange<double>(a, b, unit);
     constexpr double enough = 0x1p-32;  // of the flow: less than float32 keeps
-    return first.error <= enough * first.flow ? first : exchange<long double>(a, b, unit);
+    if (first.error <= enough * first.flow) return first;
+    ContourExchange second = exchange<long double>(a, b, unit);
+    second.evaluations += first.evaluations;
+    return second;
 }
 
 }  // namespace twinray

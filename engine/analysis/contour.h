@@ -2,19 +2,23 @@
 // The exchange of two polygons that see all of each other, by Stokes' theorem: a pure function.
 #pragma once
 
+#include <cstdint>
+
 #include "engine/analysis/polygon64.h"
 
 namespace twinray {
 
 struct ContourExchange {
-    double flow = 0;   // A F, from either to the other
-    double error = 0;  // bound of the quadrature's and of what rounding leaves
+    double flow = 0;                // A F, from either to the other
+    double error = 0;               // bound of the quadrature's and of what rounding leaves
+    std::uint64_t evaluations = 0;  // of ln r along an edge: what it took
 };
 
 // A F = 1 / (2 pi) of the integral of ln r dr_a . dr_b along both contours (Sparrow, "A new and simpler formulation for
-// radiative angle factors", 1963). Along an edge of b it is taken in closed form; along one of a by a pair of rules of
-// Gauss and Kronrod on pieces that are halved until both agree, which also finds the logarithms at corners and edges
-// that polygons share. Each polygon lies before the other's plane, see facing_parts().
+// radiative angle factors", 1963). Of two edges it is taken in closed form along the longer one; along
+// the other by a pair of rules of Gauss and Kronrod on pieces that are halved until both agree to what rounding leaves,
+// which also finds the logarithms at corners and edges that polygons share. Each polygon lies before the other's plane,
+// see facing_parts(); edges may be as short as what that leaves of a corner.
 ContourExchange contour_exchange(const Polygon64& a, const Polygon64& b);
 
 }  // namespace twinray

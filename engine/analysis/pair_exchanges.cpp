@@ -89,7 +89,7 @@ void sample(std::vector<Sampling>& samplings, PairSampler& sampler) {
 }
 
 KnownExchange exchange_of(const PlannedPair& pair, const Estimate& sampled) {
-    const auto [flow, error] = pair.contour;
+    const auto [flow, error, evaluations] = pair.contour;
     return {pair.i,
             pair.j,
             flow + sampled.value,

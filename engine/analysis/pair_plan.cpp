@@ -147,14 +147,16 @@ class Planner {
             const ContourExchange part = contour_exchange(parts.a, parts.b);
             sum.flow += part.flow;
             sum.error += part.error;
+            sum.evaluations += part.evaluations;
         }
         const double share = options_.sides == Sides::both ? 0.5 : 1;
-        return {std::max(0.0, share * sum.flow), share * sum.error};
+        return {std::max(0.0, share * sum.flow), share * sum.error, sum.evaluations};
     }
 
     static void add(const ContourExchange& contour, PlannedPair& pair) {
         pair.contour.flow += contour.flow;
         pair.contour.error += contour.error;
+        pair.contour.evaluations += contour.evaluations;
     }
 
     SampledPair sampled(const FacePair& faces) const {

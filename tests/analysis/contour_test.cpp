@@ -6,7 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/analysis/pair_plan.h"
 #include "engine/scene/shapes.h"
+#include "tests/analysis/plain_scenes.h"
 #include "tests/analysis/polygon_scenes.h"
 
 namespace twinray {
@@ -41,6 +43,47 @@ TEST(Contour, DoesNotDependOnPlaceAndScale) {
             }
         const double flow = known.value * 2 * scale * scale;
         EXPECT_NEAR(sum.flow / flow, 1, 1e-12) << scale;
+    }
+}
+
+constexpr std::uint64_t most_evaluations = 100'000;  // of two polygons: 0.02 s
+
+// What is cut off a square a hair from an edge, and the rest of it, are the square.
+TEST(Contour, OfSliversIsWhatIsLeftOfTheWhole) {
+    const Surface floor = test::quad(dvec3(0), dvec3(1, 0, 0), dvec3(0, 1, 0));
+    for (const double gap : {0.0, 1e-8, 0.5})
+        for (const double width : {1e-6, 1e-9, 1e-12}) {
+            const auto wall = [&](double low, double high) {
+                return test::quad(dvec3(-gap, 0, low), dvec3(0, 1, 0), dvec3(0, 0, high - low));
+            };
+            const ContourExchange whole = test::exchange_of(floor, wall(0, 1));
+            const ContourExchange sliver = test::exchange_of(floor, wall(0, width));
+            const ContourExchange rest = test::exchange_of(floor, wall(width, 1));
+            const double error = whole.error + sliver.error + rest.error;
+            EXPECT_LE(std::abs(sliver.flow + rest.flow - whole.flow), error + 1e-16) << gap << ' ' << width;
+            EXPECT_LE(error, 1e-12 * whole.flow) << gap << ' ' << width;
+            EXPECT_GE(sliver.flow + sliver.error, 0);
+            EXPECT_LE(sliver.flow - sliver.error, width);
+            EXPECT_LE(sliver.evaluations, 4 * most_evaluations);
+        }
+}
+
+// Clipping leaves edges of 1e-8, of corners that miss the planes of other walls by that.
+TEST(Contour, OfRoomsRoundedToFloat32IsAsExactAsOfOthers) {
+    for (const double angle : {0.1, 0.3, 0.7, 1.3}) {
+        const Surface room = FacePolygons(test::rounded_room(2, angle)).faces;
+        for (std::size_t i = 0; i < room.size(); i += 5) {
+            ContourExchange sum;
+            for (const Polygon64& other : room) {
+                const ContourExchange part = test::exchange_of({room[i]}, {other});
+                sum.flow += part.flow;
+                sum.error += part.error;
+                EXPECT_LE(part.evaluations, most_evaluations) << angle;
+            }
+            const double area = glm::length(room[i].area_vector());
+            EXPECT_LE(std::abs(sum.flow - area), sum.error + 1e-15 * area) << angle << ": the room is closed";
+            EXPECT_LE(sum.error, 1e-11 * area) << angle;
+        }
     }
 }
 

@@ -32,6 +32,7 @@ inline ContourExchange exchange_of(const Surface& a, const Surface& b) {
             const ContourExchange part = contour_exchange(pair.a, pair.b);
             sum.flow += part.flow;
             sum.error += part.error;
+            sum.evaluations += part.evaluations;
         }
     return sum;
 }
