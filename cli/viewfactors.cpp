@@ -276,6 +276,7 @@ void add_viewfactors(CLI::App& app, int&) {
     add_view_factor_picture_options(*command, picture, options->shown);
     add_common_options(*command, options->common);
     command->callback([options] {
+        if (options->common.seed > UINT32_MAX) fail("--seed ", options->common.seed, ": at most ", UINT32_MAX);
         options->factors.seed = static_cast<uint>(options->common.seed);
         run(*options);
     });

@@ -87,6 +87,8 @@ ViewFactors::ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFac
       areas_(faces.areas_of(members_)),
       known_(members_.size()) {
     for (const KnownExchange& exchange : known) {
+        // Where all rays between areas are blocked, those that hit something may still tell more.
+        if (exchange.flow == 0 && exchange.by == PairEstimator::area) continue;
         known_[exchange.i].push_back(factor_of(exchange, exchange.j, areas_[exchange.i]));
         if (exchange.i != exchange.j) known_[exchange.j].push_back(factor_of(exchange, exchange.i, areas_[exchange.j]));
     }
