@@ -46,7 +46,7 @@ TEST(Contour, DoesNotDependOnPlaceAndScale) {
     }
 }
 
-constexpr std::uint64_t most_evaluations = 100'000;  // of two polygons: 0.02 s
+constexpr std::uint64_t most_evaluations = 20'000;  // of two polygons: 4 ms
 
 // What is cut off a square a hair from an edge, and the rest of it, are the square.
 TEST(Contour, OfSliversIsWhatIsLeftOfTheWhole) {
