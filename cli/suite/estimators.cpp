@@ -67,11 +67,11 @@ class Estimators {
 
     static Answer contour(const FactorQuestion& question) {
         const auto start = Clock::now();
-        const auto [flow, error] = planned(question, PairEstimator::automatic).contour;
+        const ContourExchange exchange = planned(question, PairEstimator::automatic).contour;
         const double ms = ms_since(start), area = area_of(question);
-        const double value = question.of_open ? 1 - flow / area : flow / area;
+        const double value = question.of_open ? 1 - exchange.flow / area : exchange.flow / area;
         // The truth may be known to no more than float64 holds.
-        const double half = error / area + rounding_of(1);
+        const double half = exchange.error / area + rounding_of(1);
         return {value, value - half, value + half, ms, 0};
     }
 
