@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "cli/face_groups.h"
 #include "cli/sky_light.h"
 #include "engine/core/error.h"
 
@@ -17,19 +18,13 @@ struct IlluminationOptions {
     RayGridOptions grid;
     SkyOptions sky;
     Sides sides = Sides::both;
-    FaceGrouping by = FaceGrouping::face;
+    FaceGroupOptions groups;
     Measure measure = Measure::area;
 };
 
 const std::map<std::string, Measure> measures = {
     {"area", Measure::area}, {"fraction", Measure::fraction}, {"irradiance", Measure::irradiance}};
 const std::map<std::string, Sides> sides_by_name = {{"front", Sides::front}, {"both", Sides::both}};
-
-std::map<std::string, FaceGrouping> groupings() {
-    std::map<std::string, FaceGrouping> by_name;
-    for (const FaceGrouping grouping : all_face_groupings) by_name.emplace(name_of(grouping), grouping);
-    return by_name;
-}
 
 template <class T>
 std::string name_in(const std::map<std::string, T>& values, T wanted) {
@@ -47,7 +42,7 @@ double unit_of(const LitArea& lit, Measure measure) {
 
 void write(const IlluminationOptions& options, const Illumination& result) {
     const std::string what = name_in(measures, options.measure);
-    CsvFile csv(options.analysis.output, text(name_of(options.by), ",hits,", what, ",ci_low,ci_high"));
+    CsvFile csv(options.analysis.output, text(name_of(options.groups.by), ",hits,", what, ",ci_low,ci_high"));
     const bool has_interval = options.grid.points == GridPoints::random;
     for (std::size_t group = 0; group < result.groups.size(); ++group) {
         const LitArea& lit = result.groups[group];
@@ -64,7 +59,7 @@ void write(const IlluminationOptions& options, const Illumination& result) {
 ScenePicture picture_of(const IlluminationOptions& options, const Faces& faces, const Illumination& result) {
     const std::string what = name_in(measures, options.measure);
     std::vector<double> values;
-    for (const uint group : faces.groups(options.by)) {
+    for (const uint group : faces.groups(options.groups.by)) {
         const LitArea& lit = result.groups[group];
         const double unit = unit_of(lit, options.measure), value = unit > 0 ? lit.area / unit : NAN;
         values.push_back(options.measure == Measure::area ? value : std::min(value, 1.0));
@@ -72,8 +67,8 @@ ScenePicture picture_of(const IlluminationOptions& options, const Faces& faces, 
     ScenePicture picture = picture_of_values(options.analysis.pictures, values, what);
     const std::vector<double>& d = options.grid.direction;
     picture.page.title = options.analysis.scene.filename().string() + ": light of one direction";
-    picture.page.subtitle = text(what, " by ", name_of(options.by), ", direction ", text_of({d[0], d[1], d[2]}), ", ",
-                                 result.ray_count, " rays");
+    picture.page.subtitle = text(what, " by ", name_of(options.groups.by), ", direction ", text_of({d[0], d[1], d[2]}),
+                                 ", ", result.ray_count, " rays");
     return picture;
 }
 
@@ -84,7 +79,7 @@ void print(const IlluminationOptions& options, const Analysed& analysed, const I
     std::cout << "illumination " << options.analysis.scene.filename().string() << ": "
               << count_triangles(analysed.scene) << " faces, " << analysed.accel->name() << " on "
               << analysed.context->facts().name << "\n  " << speed_text(result.ray_count, seconds) << "\n  lit: " << lit
-              << " of " << result.groups.size() << " by " << name_of(options.by) << "; area across the light "
+              << " of " << result.groups.size() << " by " << name_of(options.groups.by) << "; area across the light "
               << total.area;
     if (options.grid.points == GridPoints::random)
         std::cout << " [" << total.interval.low << ", " << total.interval.high << "]";
@@ -93,20 +88,21 @@ void print(const IlluminationOptions& options, const Analysed& analysed, const I
 
 void run(const IlluminationOptions& options) {
     const Analysed analysed(options.analysis);
-    const Faces faces(*analysed.context, analysed.scene);
+    Faces faces(*analysed.context, analysed.scene);
+    options.groups.set_groups(faces);
     const RayGridDesc grid = options.grid.desc(options.analysis.common);
     Illumination result;
     const double seconds = seconds_of([&] {
         Progress progress("illumination", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
         result = illuminate(*analysed.accel, analysed.scene, faces,
-                            {.grid = grid, .sides = options.sides, .by = options.by, .progress = &progress});
+                            {.grid = grid, .sides = options.sides, .by = options.groups.by, .progress = &progress});
     });
     if (!options.analysis.output.empty()) write(options, result);
     if (!options.analysis.pictures.files.empty())
         write_pictures(options.analysis.pictures, *analysed.accel, analysed.scene, picture_of(options, faces, result));
     if (!options.analysis.common.quiet) print(options, analysed, result, seconds);
     nlohmann::json record = {{"schema", "twinray-illumination/1"}, {"sides", name_in(sides_by_name, options.sides)},
-                             {"by", name_of(options.by)},          {"n", result.ray_count},
+                             {"by", name_of(options.groups.by)},   {"n", result.ray_count},
                              {"hits", result.total.hits},          {"cell_area", result.cell_area},
                              {"area", result.total.area},          {"unobstructed", result.total.unobstructed},
                              {"surface", result.total.surface},    {"seconds", seconds}};
@@ -125,16 +121,16 @@ void add_illumination(CLI::App& app, int&) {
     const auto options = std::make_shared<IlluminationOptions>();
     add_analysis_options(*command, options->analysis, "CSV, one line a face: face,hits,area,ci_low,ci_high",
                          "what the third column of the CSV holds");
+    add_color_scale_option(*command, options->analysis.pictures);
     CLI::Option_group* source = command->add_option_group("light", "exactly one of them");
     CLI::Option* direction = add_ray_grid_options(*command, *source, options->grid);
     add_sky_options(*command, *source, options->sky);
     source->require_option(1);
     command->add_option("--sides", options->sides, "which sides receive light: both (the default), or front")
         ->transform(CLI::CheckedTransformer(sides_by_name).description("front|both"));
-    command
-        ->add_option("--by", options->by, "what a line of the CSV is: face (the default), mesh, instance or material")
-        ->needs(direction)
-        ->transform(CLI::CheckedTransformer(groupings()).description("face|mesh|instance|material"));
+    const FaceGroupOptionPair grouping = add_face_group_options(*command, options->groups, "what a line of the CSV is");
+    grouping.by->needs(direction);
+    grouping.groups->needs(direction);
     command
         ->add_option("--measure", options->measure,
                      "third column of the CSV: area across the light (the default), fraction of what is turned to the "

@@ -52,14 +52,17 @@ CLI::Option* add_picture_options(CLI::App& command, PictureOptions& options, con
         ->expected(2)
         ->check(CLI::Range(least_size, most_size))
         ->capture_default_str();
-    command.add_option("--color-scale", options.color_scale, "linear or log")
-        ->needs(picture)
-        ->transform(CLI::CheckedTransformer(color_scales).description("linear|log"));
     command
         .add_flag("--cutaway", options.is_cutaway,
                   "faces seen from their back are left out of the .png, so that rooms are seen from outside")
         ->needs(picture);
     return picture;
+}
+
+void add_color_scale_option(CLI::App& command, PictureOptions& options) {
+    command.add_option("--color-scale", options.color_scale, "linear or log")
+        ->needs(command.get_option("--picture"))
+        ->transform(CLI::CheckedTransformer(color_scales).description("linear|log"));
 }
 
 void check_png(const std::filesystem::path& file) {

@@ -21,6 +21,8 @@ struct PictureOptions {
 };
 // `shows`: what colours tell. Returns --picture, which the others need.
 CLI::Option* add_picture_options(CLI::App& command, PictureOptions& options, const std::string& shows);
+// Of commands whose colours are values; after add_picture_options().
+void add_color_scale_option(CLI::App& command, PictureOptions& options);
 // Throws Error where a file has an unknown suffix or no folder: before the work, not after it.
 void check_pictures(const PictureOptions& options);
 void check_png(const std::filesystem::path& file);

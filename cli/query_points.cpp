@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/query_points.h"
 
-#include <cctype>
-#include <charconv>
-#include <fstream>
 #include <random>
 
+#include "cli/number_lines.h"
 #include "engine/core/error.h"
 
 namespace twinray::cli {
@@ -14,21 +12,6 @@ namespace {
 using glm::dvec3;
 
 constexpr std::uint64_t most_points = 1u << 28;
-
-// Three numbers between commas or blanks, and nothing else.
-bool parse(std::string_view line, dvec3& point) {
-    const char* at = line.data();
-    const char* end = at + line.size();
-    const auto is_gap = [](char c) { return c == ',' || c == ' ' || c == '\t' || c == '\r'; };
-    for (int axis = 0; axis < 3; ++axis) {
-        while (at != end && is_gap(*at)) ++at;
-        const auto [after, error] = std::from_chars(at, end, point[axis]);
-        if (error != std::errc{} || (after != end && !is_gap(*after))) return false;
-        at = after;
-    }
-    while (at != end && is_gap(*at)) ++at;
-    return at == end;
-}
 
 }  // namespace
 
@@ -41,20 +24,11 @@ QueryBox query_box(const Scene& scene) {
 }
 
 std::vector<dvec3> read_points(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    if (!in) fail("points file '", file.string(), "' cannot be read");
     std::vector<dvec3> points;
-    std::string line;
-    for (std::size_t number = 1; std::getline(in, line); ++number) {
-        const std::size_t first = line.find_first_not_of(" \t\r");
-        if (first == std::string::npos) continue;
-        dvec3 point;
-        if (parse(line, point))
-            points.push_back(point);
-        else if (number != 1 || !std::isalpha(static_cast<unsigned char>(line[first])))
-            fail("points file '", file.string(), "', line ", number, ": '", line.substr(0, 40),
-                 "' is not three numbers x,y,z");
-    }
+    read_number_lines(file, "points file", "x,y,z", [&](std::span<const double> xyz) {
+        if (points.size() == most_points) fail("points file '", file.string(), "': it has more than ", most_points);
+        points.push_back({xyz[0], xyz[1], xyz[2]});
+    });
     return points;
 }
 

@@ -4,32 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <sstream>
 
+#include "cli/number_lines.h"
 #include "engine/core/error.h"
 
 namespace twinray::cli {
 namespace {
 
-// "x,y,z,hours" a line. The first line may be a header; empty lines and those that begin with # are left out.
 std::vector<SunPosition> read_sun(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    if (!in || std::filesystem::is_directory(file)) fail("sun file '", file.string(), "' cannot be opened");
     std::vector<SunPosition> positions;
-    std::string line;
-    for (std::size_t number = 1; std::getline(in, line); ++number) {
-        if (line.find_first_not_of(" \t\r") == std::string::npos || line[0] == '#') continue;
-        std::string numbers = line;
-        std::replace(numbers.begin(), numbers.end(), ',', ' ');
-        std::istringstream fields(numbers);
-        SunPosition at;
-        std::string rest;
-        if ((fields >> at.direction.x >> at.direction.y >> at.direction.z >> at.hours) && !(fields >> rest)) {
-            positions.push_back(at);
-        } else if (number > 1) {
-            fail("sun file '", file.string(), "', line ", number, ": '", line, "' is not x,y,z,hours");
-        }
-    }
+    read_number_lines(file, "sun file", "x,y,z,hours", [&](std::span<const double> n) {
+        positions.push_back({.direction = {n[0], n[1], n[2]}, .hours = n[3]});
+    });
     if (positions.empty()) fail("sun file '", file.string(), "' has no line x,y,z,hours");
     return positions;
 }

@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <iostream>
 
+#include "cli/face_groups.h"
 #include "cli/npz.h"
 #include "cli/view_factor_picture.h"
 #include "engine/accel/scene_push.h"
@@ -14,6 +15,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/progress.h"
+#include "engine/scene/bytes.h"
 
 namespace twinray::cli {
 namespace {
@@ -22,7 +24,8 @@ struct Options {
     CommonOptions common;
     std::filesystem::path scene, output;
     std::string accel = "sw";
-    ViewFactorOptions factors;
+    FaceGroupOptions groups;
+    ViewFactorOptions factors;  // of which this sets the grouping
     PairEstimator estimator = PairEstimator::automatic;
     bool resumes = false;
     bool projects = false;
@@ -31,13 +34,14 @@ struct Options {
 };
 
 // Of what the rows depend on.
-std::string configuration_of(const Options& options, const Scene& scene) {
+std::string configuration_of(const Options& options, const Scene& scene, const Faces& faces) {
     const ViewFactorOptions& of = options.factors;
+    const std::vector<uint> groups = faces.groups(of.grouping);
     std::ostringstream out;
     out << std::hexfloat << count_triangles(scene) << " faces " << checksum_of(scene) << ", by " << name_of(of.grouping)
-        << ", " << name_of(of.sides) << ", " << name_of(of.sequence) << ", " << of.rays << " rays, error "
-        << of.target_error.value_or(0) << ", seed " << of.seed << ", " << options.accel << ", estimator "
-        << name_of(options.estimator);
+        << ' ' << crc32_of(std::as_bytes(std::span(groups))) << ", " << name_of(of.sides) << ", "
+        << name_of(of.sequence) << ", " << of.rays << " rays, error " << of.target_error.value_or(0) << ", seed "
+        << of.seed << ", " << options.accel << ", estimator " << name_of(options.estimator);
     return out.str();
 }
 
@@ -57,11 +61,11 @@ PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const 
 
 std::filesystem::path rows_file(const std::filesystem::path& output) { return output.string() + ".rows"; }
 
-std::vector<ViewFactorRow> compute(const Options& options, ViewFactors& factors, const Scene& scene) {
+std::vector<ViewFactorRow> compute(const Options& options, ViewFactors& factors, const std::string& configuration) {
     std::vector<ViewFactorRow> rows;
     std::optional<RowFile> file;
     if (!options.output.empty()) {
-        file.emplace(rows_file(options.output), configuration_of(options, scene));
+        file.emplace(rows_file(options.output), configuration);
         if (options.resumes)
             rows = file->load();
         else
@@ -182,13 +186,14 @@ void run(const Options& options) {
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, options.accel);
     push_scene(*accel, scene);
     context->wait(accel->sync());
-    const Faces faces(*context, scene);
+    Faces faces(*context, scene);
+    options.groups.set_groups(faces);
     check_shown(options.shown, faces.group_count(options.factors.grouping));
     const auto start = std::chrono::steady_clock::now();
     const PairExchanges pairs = compute_pairs(options, *accel, scene, faces);
     const double seconds_of_pairs = seconds_since(start);
     ViewFactors factors(*accel, faces, options.factors, pairs.known);
-    std::vector<ViewFactorRow> rows = compute(options, factors, scene);
+    std::vector<ViewFactorRow> rows = compute(options, factors, configuration_of(options, scene, faces));
     const double seconds = seconds_since(start);
     const Totals totals = totals_of(rows);
     const ViewFactorResiduals before = residuals_of(rows, factors.areas());
@@ -246,10 +251,7 @@ void add_viewfactors(CLI::App& app, int&) {
     const auto options = std::make_shared<Options>();
     command->add_option("scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
     command->add_option("-o,--output", options->output, ".npz (a SciPy CSR matrix with intervals) or .csv");
-    std::map<std::string, FaceGrouping> groupings;
-    for (const FaceGrouping grouping : all_face_groupings) groupings.emplace(name_of(grouping), grouping);
-    command->add_option("--by", options->factors.grouping, "what a row is: face, mesh, instance, material")
-        ->transform(CLI::CheckedTransformer(groupings));
+    add_face_group_options(*command, options->groups, "what a row is");
     command->add_option("--rays", options->factors.rays, "of a row; with --target-error the most")
         ->capture_default_str();
     command->add_option("--target-error", options->factors.target_error,
@@ -273,11 +275,13 @@ void add_viewfactors(CLI::App& app, int&) {
     command->add_flag("--resume", options->resumes, "go on with the rows that an earlier run left beside the output");
     CLI::Option* picture = add_picture_options(*command, options->pictures,
                                                "the open fraction, or with --from the view factors of one row");
+    add_color_scale_option(*command, options->pictures);
     add_view_factor_picture_options(*command, picture, options->shown);
     add_common_options(*command, options->common);
     command->callback([options] {
         if (options->common.seed > UINT32_MAX) fail("--seed ", options->common.seed, ": at most ", UINT32_MAX);
         options->factors.seed = static_cast<uint>(options->common.seed);
+        options->factors.grouping = options->groups.by;
         run(*options);
     });
 }

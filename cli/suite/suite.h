@@ -66,6 +66,7 @@ std::vector<SuiteCase> build_cases();        // B: structure, build and refit
 std::vector<SuiteCase> arithmetic_cases();   // F: self-intersection, arithmetic
 std::vector<SuiteCase> price_cases();        // L: what levels cost
 std::vector<SuiteCase> view_factor_cases();  // V: view factors
+std::vector<SuiteCase> hidden_factor_cases();
 std::vector<SuiteCase> radiosity_cases();    // R: radiosity
 std::vector<SuiteCase> collision_cases();    // C: collisions
 std::vector<SuiteCase> distance_cases();     // D: distances

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "cli/suite/estimators.h"
+#include "cli/suite/factor_scenes.h"
 #include "engine/accel/scene_push.h"
 #include "engine/analysis/reciprocity.h"
 #include "engine/scene/shapes.h"
@@ -14,43 +15,6 @@ namespace {
 constexpr std::array hits_and_contour = {PairEstimator::hits, PairEstimator::contour};
 constexpr std::array far = {PairEstimator::area, PairEstimator::contour};
 constexpr std::array all = {PairEstimator::hits, PairEstimator::area, PairEstimator::contour};
-
-Scene scene_of(std::vector<Mesh> meshes, vec3 second_at = vec3(0)) {
-    Scene scene;
-    scene.materials.resize(1);
-    scene.meshes = std::move(meshes);
-    for (uint i = 0; i < scene.meshes.size(); ++i)
-        scene.instances.push_back({"", i, i == 1 ? Transform::translation(second_at) : Transform{}});
-    return scene;
-}
-
-Mesh seen_from_inside(Mesh mesh) {
-    for (uvec3& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
-    return mesh;
-}
-
-Scene parallel_squares(float distance) {
-    return scene_of({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
-                     make_quad(vec3(0, 0, distance), vec3(0, 1, 0), vec3(1, 0, 0))});
-}
-
-// Of w and h beside an edge of 1 in common.
-Scene perpendicular(float w, float h) {
-    return scene_of(
-        {make_quad(vec3(0), vec3(w, 0, 0), vec3(0, 1, 0)), make_quad(vec3(0), vec3(0, 1, 0), vec3(0, 0, h))});
-}
-
-Mesh disc(int corners) {
-    Mesh mesh;
-    mesh.positions.push_back(vec3(0));
-    for (int i = 0; i < corners; ++i) {
-        const double angle = 2 * std::numbers::pi * i / corners;
-        mesh.positions.push_back(vec3(std::cos(angle), std::sin(angle), 0));
-        const auto first = static_cast<uint>(i + 1);
-        mesh.triangles.push_back({0, first, i + 1 == corners ? 1 : first + 1});
-    }
-    return mesh;
-}
 
 // Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", C-11, C-14 and C-41, with 30 digits.
 void squares(CaseRun& run) {
@@ -82,7 +46,7 @@ void rectangles(CaseRun& run) {
 
 void discs(CaseRun& run) {
     constexpr double known = 0.381966011250105152;
-    for (const int corners : {8, 16, 32}) {
+    for (const uint corners : {8u, 16u, 32u}) {
         const Scene scene = scene_of({disc(corners), seen_from_inside(disc(corners))}, vec3(0, 0, 1));
         const double value = contour_value(scene, 0, 1);
         // A polygon is not a disc: what that does is told beside, and no fault.

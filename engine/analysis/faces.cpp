@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/analysis/faces.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "engine/core/commands.h"
@@ -22,7 +23,7 @@ std::uint64_t count_faces(const Scene& scene) {
 }  // namespace
 
 std::string_view name_of(FaceGrouping grouping) {
-    constexpr std::array names = {"face", "mesh", "instance", "material"};
+    constexpr std::array names = {"face", "mesh", "instance", "material", "group"};
     return names[static_cast<std::size_t>(grouping)];
 }
 
@@ -102,7 +103,20 @@ std::uint32_t checksum_of(const Scene& scene) {
     return sum;
 }
 
+void Faces::set_custom_groups(std::vector<uint> groups) {
+    if (groups.size() != count()) fail("faces: ", groups.size(), " groups for ", count(), " faces");
+    for (std::size_t face = 0; face < groups.size(); ++face)
+        if (groups[face] >= count())
+            fail("faces: face ", face, " is of group ", groups[face], ", which must be below the count of faces, ",
+                 count());
+    custom_groups_ = std::move(groups);
+}
+
 std::vector<uint> Faces::groups(FaceGrouping grouping) const {
+    if (grouping == FaceGrouping::custom) {
+        if (custom_groups_.size() != count()) fail("faces: no groups of faces have been set");
+        return custom_groups_;
+    }
     std::vector<uint> groups(count());
     const auto group = [&](const Face& face) {
         const uint mesh = mesh_of_instance_[face.instance];
@@ -124,7 +138,11 @@ std::size_t Faces::group_count(FaceGrouping grouping) const {
         case FaceGrouping::face: return count();
         case FaceGrouping::mesh: return mesh_count_;
         case FaceGrouping::instance: return mesh_of_instance_.size();
-        default: return material_count_;
+        case FaceGrouping::material: return material_count_;
+        default: {
+            const std::vector<uint> of = groups(grouping);
+            return of.empty() ? 0 : *std::max_element(of.begin(), of.end()) + 1;
+        }
     }
 }
 

@@ -23,9 +23,13 @@ enum class Sides : std::uint8_t {
 constexpr std::string_view name_of(Sides sides) { return sides == Sides::front ? "front" : "both"; }
 
 // By what faces are put together.
-enum class FaceGrouping : std::uint8_t { face, mesh, instance, material };
-inline constexpr std::array all_face_groupings = {FaceGrouping::face, FaceGrouping::mesh, FaceGrouping::instance,
-                                                  FaceGrouping::material};
+enum class FaceGrouping : std::uint8_t {
+    face,
+    mesh,
+    instance,
+    material,
+    custom,  // as Faces::set_custom_groups() was told
+};
 std::string_view name_of(FaceGrouping grouping);
 
 // In float64, as everything that the host computes of faces.
@@ -53,8 +57,11 @@ class Faces {
     const std::vector<double>& areas() const { return areas_; }
     Face operator[](std::size_t face) const { return faces_[face]; }
 
+    // One for each face, below their count. Throws Error, and changes nothing, for any other count or number.
+    void set_custom_groups(std::vector<uint> groups);
+
     // The group of each face: that of a face is its number, of others their place in Scene::meshes, instances or
-    // materials.
+    // materials, or what was set. Throws Error for custom ones before they are set.
     std::vector<uint> groups(FaceGrouping grouping) const;
     // How many groups there are; some may have no face.
     std::size_t group_count(FaceGrouping grouping) const;
@@ -68,6 +75,7 @@ class Faces {
     std::vector<Face> faces_;
     std::vector<uint> mesh_of_instance_;
     std::vector<std::vector<uint>> materials_;  // by mesh; empty: all 0
+    std::vector<uint> custom_groups_;           // of faces
     std::size_t mesh_count_ = 0, material_count_ = 0;
     std::vector<Buffer> meshes_;
     Buffer instance_buffer_, face_buffer_;

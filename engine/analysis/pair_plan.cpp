@@ -77,9 +77,10 @@ class Planner {
     // Nothing where they do not see each other.
     std::optional<FacePair> look_at(uint a, uint b) const {
         const Polygon64 &of_a = polygons_.faces[a], &of_b = polygons_.faces[b];
+        const double rounding = rounding_of(std::max(polygons_.sizes[a], polygons_.sizes[b]));
         FacePair pair{a, b, {}, {}, gap_over_size(of_a, of_b)};
         const auto add = [&](const Polygon64& side_a, const Polygon64& side_b) {
-            const FacingPair parts = facing_parts(side_a, side_b, polygons_.rounding);
+            const FacingPair parts = facing_parts(side_a, side_b, rounding);
             if (!parts.is_empty()) pair.parts.push_back(parts);
         };
         add(of_a, of_b);
@@ -90,7 +91,7 @@ class Planner {
         }
         if (pair.parts.empty()) return std::nullopt;
         for (const FacingPair& parts : pair.parts)
-            if (!pair.in_between) pair.in_between = first_between(Shaft(parts, polygons_.rounding), a, b);
+            if (!pair.in_between) pair.in_between = first_between(Shaft(parts, rounding), a, b);
         return pair;
     }
 
@@ -172,18 +173,17 @@ class Planner {
 }  // namespace
 
 FacePolygons::FacePolygons(const Scene& scene) {
-    double largest = 0;
     for (uint i = 0; i < scene.instances.size(); ++i) {
         const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
         for (uint primitive = 0; primitive < mesh.triangles.size(); ++primitive) {
             const bool has_area = area_vector(scene, {i, primitive}) != dvec3(0);
             faces.push_back(has_area ? polygon_of(scene, i, mesh, mesh.triangles[primitive]) : Polygon64());
             boxes.push_back(box_of(faces.back()));
+            double& largest = sizes.emplace_back(0);
             for (const dvec3& point : faces.back().points())
                 largest = std::max({largest, std::abs(point.x), std::abs(point.y), std::abs(point.z)});
         }
     }
-    rounding = rounding_of(largest);
 }
 
 PairPlan plan_pairs(const FacePolygons& polygons, std::span<const std::vector<uint>> members,

@@ -16,7 +16,7 @@ namespace twinray {
 struct FacePolygons {
     std::vector<Polygon64> faces;
     std::vector<PolygonBox> boxes;
-    double rounding = 0;  // of their corners
+    std::vector<double> sizes;  // the largest magnitude of a coordinate of each
 
     FacePolygons() = default;
     explicit FacePolygons(const Scene& scene);

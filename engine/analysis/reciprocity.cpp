@@ -67,22 +67,27 @@ double variance(double flow, double area, std::uint64_t rays) {
     return area * area * fraction * (1 - fraction) / static_cast<double>(rays);
 }
 
-// The weighted mean of both directions, and its variance.
+// The mean of both directions, weighted by the inverse of the variances that the mean itself gives them, and its
+// variance. A row that found all, or nearly, then counts for nearly all.
 struct Joint {
     double flow = 0, variance = 0;
 };
 Joint joint(const Exchange& exchange, const std::vector<ViewFactorRow>& rows, const std::vector<double>& areas) {
     if (exchange.known_deviation > 0)
         return {std::max(exchange.of_i, exchange.of_j), exchange.known_deviation * exchange.known_deviation};
-    const auto precision = [&](uint group) { return static_cast<double>(rows[group].rays) / areas[group]; };
     if (exchange.i == exchange.j)
         return {exchange.of_i, variance(exchange.of_i, areas[exchange.i], rows[exchange.i].rays)};
     if (rows[exchange.i].rays == 0 || rows[exchange.j].rays == 0) return {0, 0};
-    const double pi = precision(exchange.i), pj = precision(exchange.j);
-    const double flow = (exchange.of_i * pi + exchange.of_j * pj) / (pi + pj);
-    const double vi = variance(flow, areas[exchange.i], rows[exchange.i].rays);
-    const double vj = variance(flow, areas[exchange.j], rows[exchange.j].rays);
-    return {flow, vi + vj > 0 ? vi * vj / (vi + vj) : 0};
+    const auto variance_of = [&](uint group, double flow) { return variance(flow, areas[group], rows[group].rays); };
+    const double flow = std::min({(exchange.of_i + exchange.of_j) / 2, areas[exchange.i], areas[exchange.j]});
+    Joint mean{flow, 0};
+    constexpr int rounds = 8;  // of a quadratic convergence
+    for (int round = 0; round < rounds; ++round) {
+        const double vi = variance_of(exchange.i, mean.flow), vj = variance_of(exchange.j, mean.flow);
+        if (!(vi + vj > 0)) return {mean.flow, 0};
+        mean = {(exchange.of_i * vj + exchange.of_j * vi) / (vi + vj), vi * vj / (vi + vj)};
+    }
+    return mean;
 }
 
 // Where each row's remainder of 1 is to go: x_ij = flow_ij + variance_ij (lambda_i + lambda_j), with the lambda for
@@ -157,6 +162,7 @@ class Projection {
         return {flow, variance(std::clamp(left, 0.0, flow), area, row.rays)};
     }
 
+    // Each row is solved in units of its own area: those of small faces matter as much.
     Eigen::VectorXd multipliers() const {
         const auto n = static_cast<Eigen::Index>(rows_.size());
         Eigen::VectorXd missing = Eigen::VectorXd::Zero(n), diagonal = Eigen::VectorXd::Zero(n);
@@ -173,29 +179,32 @@ class Projection {
         for (std::size_t k = 0; k < lost_.size(); ++k) one_row(static_cast<Eigen::Index>(k / 2), lost_[k]);
         for (Eigen::Index i = 0; i < n; ++i)
             if (!(diagonal[i] > 0)) missing[i] = 0;  // nothing there can change
-        const Matrix matrix = upper_matrix(diagonal);
+        Eigen::VectorXd scale = Eigen::VectorXd::Ones(n);
+        for (Eigen::Index i = 0; i < n; ++i)
+            if (rows_[static_cast<std::size_t>(i)].rays) scale[i] = 1 / areas_[static_cast<std::size_t>(i)];
+        missing.array() *= scale.array();
+        const Matrix matrix = upper_matrix(diagonal, scale);
         Eigen::ConjugateGradient<Matrix, Eigen::Upper> solver(matrix);
         solver.setTolerance(std::numeric_limits<double>::epsilon());
         solver.setMaxIterations(10 * n + 100);
         const Eigen::VectorXd lambda = solver.solve(missing);
         const double residual = (matrix.selfadjointView<Eigen::Upper>() * lambda - missing).lpNorm<Eigen::Infinity>();
-        const double largest = *std::max_element(areas_.begin(), areas_.end());
-        if (!(residual <= 1e-9 * largest))
-            fail("view factors: the projection leaves ", residual / largest, " of the largest area; at most 1e-9");
-        return lambda;
+        if (!(residual <= 1e-9))
+            fail("view factors: the projection leaves ", residual, " of a row's area; at most 1e-9");
+        return scale.cwiseProduct(lambda);
     }
 
     // Entry by entry in order, without a copy of them all.
     using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-    Matrix upper_matrix(const Eigen::VectorXd& diagonal) const {
+    Matrix upper_matrix(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& scale) const {
         Matrix matrix(diagonal.size(), diagonal.size());
         matrix.reserve(static_cast<Eigen::Index>(pairs_.size()) + diagonal.size());
         auto pair = pairs_.begin();
         for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
             matrix.startVec(i);
-            matrix.insertBack(i, i) = diagonal[i] > 0 ? diagonal[i] : 1.0;
+            matrix.insertBack(i, i) = diagonal[i] > 0 ? diagonal[i] * scale[i] * scale[i] : 1.0;
             for (; pair != pairs_.end() && pair->i == i; ++pair)
-                if (pair->j != i) matrix.insertBack(i, pair->j) = pair->both.variance;
+                if (pair->j != i) matrix.insertBack(i, pair->j) = pair->both.variance * scale[i] * scale[pair->j];
         }
         matrix.finalize();
         return matrix;

@@ -56,12 +56,17 @@ std::optional<BoundaryEdge> find_boundary_edge(const MeshView& mesh) {
     return found;
 }
 
-std::string side_fault_of(const MeshView& mesh) {
+std::string side_fault_of(const MeshView& mesh, uint number) {
     const std::optional<BoundaryEdge> edge = find_boundary_edge(mesh);
     if (!edge) return {};
     std::ostringstream out;
     const auto print = [&](vec3 p) { out << '(' << p.x << ", " << p.y << ", " << p.z << ')'; };
-    out << "mesh '" << mesh.name << "' is not closed: triangle " << edge->triangle << " has an edge from ";
+    out << "mesh ";
+    if (mesh.name.empty())
+        out << number;
+    else
+        out << '\'' << mesh.name << '\'';
+    out << " is not closed: triangle " << edge->triangle << " has an edge from ";
     print(edge->ends[0]);
     out << " to ";
     print(edge->ends[1]);

@@ -20,7 +20,7 @@ struct BoundaryEdge {
 // winding number. Corners are one if their positions are. Triangles with a corner that is not finite do not count.
 std::optional<BoundaryEdge> find_boundary_edge(const MeshView& mesh);
 
-// Why points have no side to a mesh, naming an edge; "" if they have.
-std::string side_fault_of(const MeshView& mesh);
+// Why points have no side to a mesh, naming it, by its number where it has no name, and an edge; "" if they have.
+std::string side_fault_of(const MeshView& mesh, uint number);
 
 }  // namespace twinray

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "engine/collide/exact_sign.h"
 #include "engine/core/error.h"
@@ -72,6 +73,7 @@ void PointFinder::set(std::span<const MeshView> meshes, std::span<const MeshInst
     check_placed(meshes, instances, "points");
     meshes_.assign(meshes.begin(), meshes.end());
     instances_.assign(instances.begin(), instances.end());
+    side_fault_.reset();
     scale_ = scale_for(meshes_, instances_);
     std::vector<uint> all(instances.size());
     std::iota(all.begin(), all.end(), 0u);
@@ -161,7 +163,8 @@ std::vector<NearTriangle> PointFinder::within(std::span<const dvec3> points, dou
             return a.point != b.point ? a.point < b.point : a.item < b.item;
         });
         if (near.size() + items.size() > max_found())
-            fail("points: more than ", max_found(), " pairs of a point and a triangle, see set_max_found()");
+            fail("points: ", near.size() + items.size(), " pairs of a point and a triangle for the first ",
+                 first + some.size(), " points; at most ", max_found(), ", see set_max_found()");
         for (const PointItem& item : items)
             near.push_back({static_cast<uint>(first) + item.point, triangles_.instance(item.item),
                             triangles_.primitive(item.item), item.distance});
@@ -169,9 +172,15 @@ std::vector<NearTriangle> PointFinder::within(std::span<const dvec3> points, dou
     return near;
 }
 
-void PointFinder::check_closed() const {
-    for (const MeshView& mesh : meshes_)
-        if (const std::string fault = side_fault_of(mesh); !fault.empty()) fail("points: ", fault);
+void PointFinder::check_closed() {
+    if (!side_fault_) {
+        side_fault_.emplace();
+        std::set<uint> placed;
+        for (const MeshInstance& instance : instances_) placed.insert(instance.mesh);
+        for (auto mesh = placed.begin(); mesh != placed.end() && side_fault_->empty(); ++mesh)
+            side_fault_ = side_fault_of(meshes_[*mesh], *mesh);
+    }
+    if (!side_fault_->empty()) fail("points: ", *side_fault_);
 }
 
 std::vector<int> PointFinder::winding_numbers(std::span<const dvec3> points) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/collide/box_tree.h"
@@ -61,14 +63,15 @@ class PointFinder {
     // How often the scene winds around each point: exactly, 0 outside and 1 inside of a closed mesh whose fronts look
     // outward, n inside of n that overlap; a mirrored instance counts as its mesh does. Of points on a triangle it may
     // be either side's. Throws Error naming a mesh that is not closed (see find_boundary_edge) and one of its edges,
-    // and for points that are not finite or beyond 2^259.
+    // for points with a coordinate that is neither 0 nor of a magnitude from 2^-245 to 2^259, and where more crossings
+    // are undecided than max_found().
     std::vector<int> winding_numbers(std::span<const dvec3> points);
     // The distance of closest(), negative where the winding number is not 0.
     std::vector<double> signed_distances(std::span<const dvec3> points);
     // Of the last winding numbers: how many crossings float64 could not decide, and the host did.
     std::uint64_t host_decided() const { return host_decided_; }
 
-    // Of within(), 16 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
+    // Of all that a call of within() finds, 16 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
     std::uint64_t max_found() const { return found_.limit(); }
     void set_max_found(std::uint64_t count) { found_.set_limit(count); }
     std::uint64_t bytes() const;  // of device memory that is kept
@@ -76,7 +79,7 @@ class PointFinder {
   private:
     PointSearchArgs upload(std::span<const dvec3> points, std::uint64_t result_bytes);
     std::vector<PointItem> found(const Kernel<PointSearchArgs>& kernel, PointSearchArgs args);
-    void check_closed() const;
+    void check_closed();
     void wind(std::span<const dvec3> points, std::span<int> windings);
 
     Context& context_;
@@ -86,6 +89,7 @@ class PointFinder {
     BoxTree tree_;
     std::vector<MeshView> meshes_;
     std::vector<MeshInstance> instances_;
+    std::optional<std::string> side_fault_;  // of the first mesh that is not closed; not set: not looked for yet
     float scale_ = 1;
     Buffer points_, point_boxes_, results_;
     DeviceList found_;

@@ -47,6 +47,10 @@ near(records[0]["area"], 1.5, 0.001)
 
 assert run(*light, "--quiet", "--grid", "30", "--by", "mesh", "--measure", "fraction", "-o", "mesh.csv") == ""
 near(table("mesh.csv", "mesh,hits,fraction,ci_low,ci_high")[0][2], 0.75, 0.02)
+(here / "groups.csv").write_text("0 1\n1 1\n2 0\n3 0\n")
+run(*light, "--grid", "100", "--groups", "groups.csv", "-o", "groups_lit.csv")
+for row, exact in zip(table("groups_lit.csv", "group,hits,area,ci_low,ci_high"), [1, 0.5], strict=True):
+    near(row[2], exact, 0.01)
 run(*light, "--grid", "30", "--sides", "front", "--measure", "irradiance", "--points", "centers", "-o", "centers.csv")
 assert [row[3:] for row in table("centers.csv", "face,hits,irradiance,ci_low,ci_high")] == [["", ""]] * 4
 
@@ -71,7 +75,7 @@ for arguments, status, words in [
         (["--direction", "0", "0", "1", "-o", "none/a.csv"], 1, "there is no folder 'none'"),
         (["--direction", "0", "0", "1", "--sky", "9"], 2, "Exactly 1 option"), ([], 2, "Exactly 1 option"),
         (["--sky", "9", "--grid", "5"], 2, "--grid requires --direction"), (["--sky", "0"], 2, "not in range"),
-        (["--sun", "none.csv"], 1, "sun file 'none.csv' cannot be opened"),
+        (["--sun", "none.csv"], 1, "sun file 'none.csv' cannot be read"),
         (["--sun", "squares.ply"], 1, "'format ascii 1.0' is not x,y,z,hours")]:
     shown = run("illumination", "squares.ply", *arguments, status=status)
     assert words in shown, shown

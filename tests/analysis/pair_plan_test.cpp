@@ -53,6 +53,16 @@ TEST(PairPlan, ContoursTellAllOfAConvexRoom) {
     EXPECT_NEAR(total, 2 * (2 * 2 + 2 * 8 + 2 * 8), 1e-12 * total) << "all that the walls radiate meets walls";
 }
 
+TEST(PairPlan, WhatIsFarAwayDoesNotMakeOthersTouch) {
+    const Scene scene = test::scene_of_meshes({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
+                                               make_quad(vec3(0, 0, 1e-6f), vec3(0, 1, 0), vec3(1, 0, 0)),
+                                               make_quad(vec3(1e9f, 0, 9), vec3(1e9f, 0, 0), vec3(0, 1e9f, 0))});
+    const PairPlan plan = plan_pairs(FacePolygons(scene), std::vector<std::vector<uint>>{{0, 1}, {2, 3}, {4, 5}}, {});
+    ASSERT_FALSE(plan.pairs.empty());
+    EXPECT_EQ(plan.pairs[0].j, 1u);
+    EXPECT_NEAR(plan.pairs[0].contour.flow, 0.9999980000100295, 1e-12);
+}
+
 TEST(PairPlan, WhatMayBeBlockedIsLeftToAreasOrHitsByItsGap) {
     for (const float distance : {2.0f, 0.1f}) {
         const PairPlan plan = plan_of(plate_between(distance));

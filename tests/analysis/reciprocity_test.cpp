@@ -110,6 +110,35 @@ TEST(Projection, LeavesWhatFulfilsBothAlready) {
     EXPECT_LT(squared_error(rows, exact), 1e-13);
 }
 
+// What a row saw all its rays meet is certain, however little of the other's it is.
+TEST(Projection, KeepsWhatAllRaysOfARowMet) {
+    const std::vector<double> areas = {5, 1, 0x1p-40};
+    std::vector<ViewFactorRow> rows(3);
+    rows[0] = {0, rays, {{0, 0.8005f, 0, 1}, {1, 0.1995f, 0, 1}}, rays, fraction(0), fraction(0)};
+    for (uint i : {1u, 2u}) rows[i] = {i, rays, {{0, 1.0f, 0, 1}}, rays, fraction(0), fraction(0)};
+    project(rows, areas);
+    EXPECT_LE(residuals_of(rows, areas).closure, 0x1p-24);
+    for (uint i : {1u, 2u}) EXPECT_EQ(rows[i].factors[0].value, 1) << i;
+    EXPECT_FLOAT_EQ(rows[0].factors[1].value, 0.2f);
+    EXPECT_FLOAT_EQ(rows[0].factors[2].value, 0x1p-40f / 5);
+}
+
+// A small closed room beside a large one: the solver must not be content when the large one's rows add up.
+TEST(Projection, ClosesSmallFacesAsWellAsLargeOnes) {
+    std::mt19937 random(3);
+    Made made = made_matrix(12, false, random);
+    const Made large = made_matrix(3, false, random);
+    for (const ViewFactorRow& row : large.counted) {
+        made.counted.push_back(row);
+        made.counted.back().group += 12;
+        for (ViewFactor& factor : made.counted.back().factors) factor.target += 12;
+    }
+    for (double& area : made.areas) area *= 0x1p-60;
+    made.areas.insert(made.areas.end(), large.areas.begin(), large.areas.end());
+    project(made.counted, made.areas);
+    EXPECT_LE(residuals_of(made.counted, made.areas).closure, 0x1p-21);
+}
+
 TEST(Projection, CompletesWhatOneDirectionSawAndKeepsRowsWithoutRays) {
     std::vector<ViewFactorRow> rows(3);
     rows[0] = {0, rays, {{1, 0.001f, 0, 0.01f}}, 10, fraction(0.999), fraction(0)};

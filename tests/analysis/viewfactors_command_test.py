@@ -95,6 +95,24 @@ with tempfile.TemporaryDirectory() as folder:
     by_mesh = run(box, "--by", "mesh", "--rays", "65536", "--estimator", "hits")
     expect("1 mesh rows, 1 entries" in by_mesh, by_mesh)
 
+    # Groups of faces: with walls as groups, each sees the four beside it and the one that faces it.
+    groups = os.path.join(folder, "groups.csv")
+    def write_groups(lines):
+        with open(groups, "w", encoding="utf-8") as out:
+            out.write("face,group\n" + "".join(f"{face},{group}\n" for face, group in lines))
+    write_groups((face, face // 72) for face in reversed(range(432)))
+    by_wall = run(box, "--groups", groups, "--rays", "65536", "--estimator", "hits", "-o", csv_file)
+    expect("6 group rows, 30 entries" in by_wall, by_wall)
+    with open(csv_file, encoding="utf-8") as rows:
+        for r in csv.DictReader(rows):
+            truth = 0.199825 if int(r["i"]) // 2 == int(r["j"]) // 2 else 0.200044
+            expect(float(r["ci_low"]) - 0.002 < truth < float(r["ci_high"]) + 0.002, r)
+    expect("excludes" in run(box, "--groups", groups, "--by", "mesh", fails=True), "one or the other")
+    for lines, words in [([(0, 0)], "face 1 is missing"), ([(0, 0), (0, 0)], "face 0 is there twice"),
+                         ([(432, 0)], "face 432 in group 0; both count from 0 to 431"), ([(0, 0.5)], "in group 0.5")]:
+        write_groups(lines)
+        expect(words in run(box, "--groups", groups, fails=True), words)
+
     # Contours are exact but for float32; with a plate in the way, areas and hits have their part.
     small, plate, json_file = (os.path.join(folder, name) for name in ("small.obj", "plate.obj", "s.json"))
     write_grid_box(small, 2)

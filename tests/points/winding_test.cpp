@@ -138,7 +138,7 @@ TEST_F(WindingTest, OpenMeshesAndPointsOutOfRangeAreRefused) {
 TEST(Boundary, EdgesMustBePassedBothWays) {
     Mesh box = make_box(vec3(-1), vec3(1));  // vertices of their own for each face
     EXPECT_FALSE(find_boundary_edge(box));
-    EXPECT_EQ(side_fault_of(box), "");
+    EXPECT_EQ(side_fault_of(box, 0), "");
     box.triangles.push_back({0, 0, 1});  // nothing
     EXPECT_FALSE(find_boundary_edge(box));
     std::swap(box.triangles[5].x, box.triangles[5].y);

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "cli/face_groups.h"
+
+#include <cmath>
+
+#include "cli/number_lines.h"
+#include "engine/core/error.h"
+
+namespace twinray::cli {
+namespace {
+
+constexpr uint no_group = ~0u;
+
+std::vector<uint> read_face_groups(const std::filesystem::path& file, std::size_t face_count) {
+    std::vector<uint> groups(face_count, no_group);
+    read_number_lines(file, "groups file", "face,group", [&](std::span<const double> line) {
+        const double face = line[0], group = line[1];
+        const auto is_below_count = [&](double n) {
+            return n >= 0 && n < static_cast<double>(face_count) && n == std::floor(n);
+        };
+        if (!is_below_count(face) || !is_below_count(group))
+            fail("groups file '", file.string(), "': face ", face, " in group ", group, "; both count from 0 to ",
+                 static_cast<std::int64_t>(face_count) - 1, ", as there are so many faces");
+        uint& known = groups[static_cast<std::size_t>(face)];
+        if (known != no_group) fail("groups file '", file.string(), "': face ", face, " is there twice");
+        known = static_cast<uint>(group);
+    });
+    for (std::size_t face = 0; face < face_count; ++face)
+        if (groups[face] == no_group) fail("groups file '", file.string(), "': face ", face, " is missing");
+    return groups;
+}
+
+}  // namespace
+
+void FaceGroupOptions::set_groups(Faces& faces) const {
+    if (by == FaceGrouping::custom) faces.set_custom_groups(read_face_groups(file, faces.count()));
+}
+
+FaceGroupOptionPair add_face_group_options(CLI::App& command, FaceGroupOptions& options, const std::string& of_what) {
+    std::map<std::string, FaceGrouping> groupings;
+    for (const FaceGrouping by :
+         {FaceGrouping::face, FaceGrouping::mesh, FaceGrouping::instance, FaceGrouping::material})
+        groupings.emplace(name_of(by), by);
+    CLI::Option* by =
+        command.add_option("--by", options.by, of_what + ": face (the default), mesh, instance, material")
+            ->transform(CLI::CheckedTransformer(groupings).description("face|mesh|instance|material"));
+    CLI::Option* groups = command
+                              .add_option_function<std::string>(
+                                  "--groups",
+                                  [&options](const std::string& file) {
+                                      options.file = file;
+                                      options.by = FaceGrouping::custom;
+                                  },
+                                  of_what + ", told by a CSV of face,group: each face once, groups numbered from 0")
+                              ->excludes(by);
+    return {by, groups};
+}
+
+}  // namespace twinray::cli
