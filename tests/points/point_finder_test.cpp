@@ -33,6 +33,8 @@ class PointFinderTest : public test::VulkanTest {
     void set(const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& instances) {
         finder_->set(meshes, instances);
         placed_ = test::placed_triangles(meshes, instances);
+        sides_.clear();
+        for (const PlacedTriangle& each : placed_) sides_.push_back(side_of(each.corners));
     }
     void set(const MeshView& mesh) { set({mesh}, {{0, {}}}); }
     const std::vector<PlacedTriangle>& placed() const { return placed_; }
@@ -63,22 +65,25 @@ class PointFinderTest : public test::VulkanTest {
 
   private:
     Errors error_of(const dvec3& point, const ClosestPoint& found) const {
-        long double least = INFINITY;
-        double size = 0;
-        for (const PlacedTriangle& each : placed_) {
-            const long double distance = test::distance(point, each.corners);
-            if (distance < least) {
-                least = distance;
-                size = side_of(each.corners);
-            }
-        }
         const auto is_found = [&](const PlacedTriangle& each) {
             return each.instance == found.instance && each.triangle == found.triangle;
         };
         const auto own = std::find_if(placed_.begin(), placed_.end(), is_found);
         if (own == placed_.end()) return {INFINITY, INFINITY};
-        const auto reached = static_cast<long double>(glm::distance(found.position, point));
         const long double of_named = test::distance(point, own->corners);
+        long double least = of_named;
+        double size = side_of(own->corners);
+        for (std::size_t i = 0; i < placed_.size(); ++i) {
+            const Corners64& corners = placed_[i].corners;
+            const double to_corner = glm::distance(point, corners.a);
+            if (to_corner - sides_[i] > static_cast<double>(least) + 1e-9 * to_corner) continue;
+            const long double distance = test::distance(point, corners);
+            if (distance < least) {
+                least = distance;
+                size = sides_[i];
+            }
+        }
+        const auto reached = static_cast<long double>(glm::distance(found.position, point));
         const double unit = std::max({static_cast<double>(least), size, glm::length(point)}) * 0x1p-52;
         const Corners64& t = own->corners;
         const dvec3 by_uv = (1 - found.uv.x - found.uv.y) * t.a + found.uv.x * t.b + found.uv.y * t.c;
@@ -96,6 +101,7 @@ class PointFinderTest : public test::VulkanTest {
 
     std::unique_ptr<PointFinder> finder_;
     std::vector<PlacedTriangle> placed_;
+    std::vector<double> sides_;  // the longest of each
 };
 
 std::vector<dvec3> random_points(std::size_t count, float size, unsigned seed) {
