@@ -22,12 +22,12 @@ Mesh seen_from_inside(Mesh mesh) {
     return mesh;
 }
 
-Mesh square(float z, bool looks_up, uint n) {
+Mesh square(float z, bool looks_up, uint n, float side) {
     Mesh mesh;
     for (uint y = 0; y <= n; ++y)
         for (uint x = 0; x <= n; ++x)
-            mesh.positions.push_back(
-                vec3(static_cast<float>(x) / static_cast<float>(n), static_cast<float>(y) / static_cast<float>(n), z));
+            mesh.positions.push_back(vec3(side * static_cast<float>(x) / static_cast<float>(n),
+                                          side * static_cast<float>(y) / static_cast<float>(n), z));
     for (uint y = 0; y < n; ++y)
         for (uint x = 0; x < n; ++x) {
             const uint corner = y * (n + 1) + x;
@@ -37,7 +37,9 @@ Mesh square(float z, bool looks_up, uint n) {
     return looks_up ? mesh : seen_from_inside(std::move(mesh));
 }
 
-Scene parallel_squares(float distance, uint n) { return scene_of({square(0, true, n), square(distance, false, n)}); }
+Scene parallel_squares(float distance, uint n, float side) {
+    return scene_of({square(0, true, n, side), square(distance, false, n, side)});
+}
 
 Scene perpendicular(float w, float h) {
     return scene_of(

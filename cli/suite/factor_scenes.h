@@ -10,10 +10,10 @@ namespace twinray::suite {
 Scene scene_of(std::vector<Mesh> meshes, vec3 second_at = vec3(0));
 Mesh seen_from_inside(Mesh mesh);
 
-// A square with sides of 1 at the height z over [0, 1]^2, of n x n cells of two triangles each, that looks up or down.
-Mesh square(float z, bool looks_up, uint n = 1);
+// A square at the height z over [0, side]^2, of n x n cells of two triangles each, that looks up or down.
+Mesh square(float z, bool looks_up, uint n = 1, float side = 1);
 // Squares that look at each other.
-Scene parallel_squares(float distance, uint n = 1);
+Scene parallel_squares(float distance, uint n = 1, float side = 1);
 // Rectangles of w and h beside an edge of 1 in common, the first in the plane z = 0.
 Scene perpendicular(float w, float h);
 

@@ -18,12 +18,14 @@ constexpr std::array all = {PairEstimator::hits, PairEstimator::area, PairEstima
 
 // Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", C-11, C-14 and C-41, with 30 digits.
 void squares(CaseRun& run) {
-    const auto ask = [&](float distance, double value) {
-        measure_factor(run, {.scene = parallel_squares(distance), .value = value, .params = {{"distance", distance}}},
-                       methods_of(all));
+    const auto ask = [&](float distance, double value, float side = 1) {
+        measure_factor(
+            run,
+            {.scene = parallel_squares(distance, 1, side), .value = value, .params = {{"distance", distance / side}}},
+            methods_of(all));
     };
     ask(1, 0.199824895698387383);
-    ask(0.125f, 0.789953112339701735);
+    ask(1, 0.826994522397256578, 10);
     if (run.amount(0, 1)) {
         ask(2, 0.0685895888185524478);
         ask(10, 0.00316205683875760197);
