@@ -151,16 +151,16 @@ void walls(CaseRun& run) {
     for (const float at : {0.0f, 1024.0f})
         ask_contacts(run, text("boxes wall to wall at ", at), {box},
                      {{0, Transform::translation(vec3(at, 0, 0))}, {0, Transform::translation(vec3(at + 2, 0, 0))}},
-                     wall_to_wall());
+                     wall_to_wall(), "exact");
 }
 
 void within_a_mesh(CaseRun& run) {
     const Mesh ball = make_icosphere(4);
-    ask_contacts(run, "sphere with itself", {ball}, {{0, {}}}, {}, true);
+    ask_contacts(run, "sphere with itself", {ball}, {{0, {}}}, {}, "analytic", true);
     Mesh strip;  // two triangles at one edge, folded flat onto each other
     strip.positions = {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0), vec3(0.5f, 0.75f, 0)};
     strip.triangles = {{0, 1, 2}, {1, 0, 3}};
-    ask_contacts(run, "folded strip", {strip}, {{0, {}}}, {{coplanar_overlap, 1}}, true);
+    ask_contacts(run, "folded strip", {strip}, {{0, {}}}, {{coplanar_overlap, 1}}, "analytic", true);
 }
 
 void baked(CaseRun& run) {
@@ -184,11 +184,9 @@ void identical_boxes(CaseRun& run) {
         std::vector<double> times;
         std::uint64_t wrong = 0;
         for (int rep = 0; rep < 5; ++rep)
-            times.push_back(seconds_of([&] {
-                                wrong +=
-                                    finder.instance_pairs(accel).size() != expected || finder.count(accel) != expected;
-                            }) *
-                            1e9 / static_cast<double>(expected));
+            times.push_back(seconds_of([&] { wrong += finder.instance_pairs(accel).size() != expected; }) * 1e9 /
+                            static_cast<double>(expected));
+        wrong += finder.count(accel) != expected;
         run.expect(subject, {.params = {{"boxes", n}},
                              .results = {{"pairs", expected}},
                              .n = expected,

@@ -103,12 +103,13 @@ void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector
 }
 
 void ask_contacts(CaseRun& run, const std::string& what, const std::vector<MeshView>& meshes,
-                  const std::vector<MeshInstance>& instances, const ContactCounts& known, bool self) {
+                  const std::vector<MeshInstance>& instances, const ContactCounts& known, const std::string& reference,
+                  bool self) {
     ContactFinder finder(run.devices().context(query_backend));
     const Contacts contacts = finder.find(meshes, instances, {.self = self});
     ContactCounts found;
     for (const TriangleContact& contact : contacts.list) ++found[contact.pair_class];
-    Record record = query_record(run, "analytic");
+    Record record = query_record(run, reference);
     record.params = {{"scene", what}};
     record.n = std::max<std::uint64_t>(1, contacts.candidates);
     for (const auto& [pair_class, count] : found) record.counts[std::string(name_of(pair_class))] = count;

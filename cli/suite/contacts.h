@@ -28,7 +28,8 @@ void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector
 using ContactCounts = std::map<PairClass, std::uint64_t>;
 // Between instances, or within them.
 void ask_contacts(CaseRun& run, const std::string& what, const std::vector<MeshView>& meshes,
-                  const std::vector<MeshInstance>& instances, const ContactCounts& known, bool self = false);
+                  const std::vector<MeshInstance>& instances, const ContactCounts& known,
+                  const std::string& reference = "analytic", bool self = false);
 // Of two boxes of make_box() with a wall in common: what brute force with exact classes counts.
 ContactCounts wall_to_wall();
 void ask_same_contacts(CaseRun& run, const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& some,

@@ -67,10 +67,10 @@ std::vector<SuiteCase> arithmetic_cases();   // F: self-intersection, arithmetic
 std::vector<SuiteCase> price_cases();        // L: what levels cost
 std::vector<SuiteCase> view_factor_cases();  // V: view factors
 std::vector<SuiteCase> hidden_factor_cases();
-std::vector<SuiteCase> radiosity_cases();    // R: radiosity
-std::vector<SuiteCase> collision_cases();    // C: collisions
-std::vector<SuiteCase> distance_cases();     // D: distances
-std::vector<SuiteCase> catalogue();          // all of them
+std::vector<SuiteCase> radiosity_cases();  // R: radiosity
+std::vector<SuiteCase> collision_cases();  // C: collisions
+std::vector<SuiteCase> distance_cases();   // D: distances
+std::vector<SuiteCase> catalogue();        // all of them
 // The same as L for scenes of the user's, from L11 on.
 std::vector<SuiteCase> scene_cases(std::span<const std::filesystem::path> files);
 // The section of a case id, by its letter: "edges, vertices, watertightness".

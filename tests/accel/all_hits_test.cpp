@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every hit of rays, against the referee's test of every triangle.
+// Every hit of rays, against closest hits that begin behind each other.
 #include "engine/accel/all_hits.h"
 
 #include <algorithm>
