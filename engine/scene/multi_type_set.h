@@ -77,6 +77,14 @@ class MultiTypeSet {
     const { return std::get<std::vector<T>>(elements_).size(); }
     static constexpr std::size_t slots() { return sizeof...(Entries); }
 
+    // The elements of a type as kernels left them; submits and waits. Throws Error if edits are pending.
+    template <class T>
+        requires holds<T>
+    std::vector<T> download() const {
+        constexpr std::size_t type = number_of<T, Entries...>;
+        return twinray::download<T>(storage_.context(), storage_.buffer(type), storage_.slots()[type].count);
+    }
+
     // Uploads the elements that changed since the last sync; a clean set does nothing and returns the last sync point.
     SyncPoint sync() { return storage_.sync(bytes()); }
     // The same into the caller's command buffer, as AbstractAccel::sync does.
@@ -86,7 +94,7 @@ class MultiTypeSet {
     // Kernels may write elements; the host's next update() of an element replaces what they wrote, and nothing else
     // does. Throws Error if edits are pending.
     View view() const {
-        struct Layout {
+        struct ViewBytes {
             SetSlot slots[sizeof...(Entries)];
             Ref<Faults> faults;
             std::uint64_t revision;

@@ -55,6 +55,7 @@ class SetStorage {
     // Throws Error if edits are pending.
     const std::vector<SetSlot>& slots() const;
     std::uint64_t revision() const { return revision_; }
+    const Buffer& buffer(std::size_t type) const { return arrays_[type].buffer; }
 
     const std::string& name() const { return name_; }
     Context& context() const { return context_; }

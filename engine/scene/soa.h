@@ -42,7 +42,7 @@ struct SoaFields {
         return soa_layout(bytes, count);
     }
     static View view(std::uint64_t address, uint count, Ref<Faults> faults) {
-        struct Layout {
+        struct ViewBytes {
             std::uint64_t arrays[sizeof...(Entries)];
             uint count, reserved;
             Ref<Faults> faults;

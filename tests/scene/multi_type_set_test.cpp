@@ -191,6 +191,9 @@ TEST_F(MultiTypeSetTest, AnUpdateUploadsItsElementAloneAndViewsStay) {
         EXPECT_EQ(values[i], static_cast<float>(i) - ior) << "what the kernel wrote was uploaded over, or lost";
     }
     EXPECT_EQ(set().get<Glass>(keys[5]).ior, 5.0f) << "the host's copy is what the host wrote";
+    EXPECT_EQ(set().download<Glass>()[5].ior, 10.0f);
+    EXPECT_EQ(set().download<Layered>().size(), 1u);
+    EXPECT_TRUE(set().download<Diffuse>().empty());
 }
 
 TEST_F(MultiTypeSetTest, WhatKernelsWroteMovesAlongWhenAnArrayGrows) {
