@@ -33,6 +33,7 @@ cat >"$work/kernel.comp" <<'GLSL'
 #include "twinray/spawn.glsl"
 #include "twinray/multi_type_set.glsl"
 #include "twinray/soa.glsl"
+#include "twinray/textures.glsl"
 #include "twinray/unrolled.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };

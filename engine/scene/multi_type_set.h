@@ -35,7 +35,7 @@ class MultiTypeSet {
           faults_(context, name) {}
 
     template <class T>
-    requires holds<T> SetKey push(const T& element) {
+    SetKey push(const T& element) {
         std::vector<T>& elements = std::get<std::vector<T>>(elements_);
         if (elements.size() == UINT32_MAX) fail(storage_.name(), ": push: there are ", elements.size(), " already");
         elements.push_back(element);
@@ -45,7 +45,6 @@ class MultiTypeSet {
 
     // Another value for an element, of the same type. Views stay valid.
     template <class T>
-    requires holds<T>
     void update(SetKey key, const T& element) {
         check<T>(key, "update");
         std::get<std::vector<T>>(elements_)[key.index] = element;
@@ -54,7 +53,6 @@ class MultiTypeSet {
 
     // As the host last wrote it, whatever kernels did to the device's copy.
     template <class T>
-    requires holds<T>
     const T& get(SetKey key) const {
         check<T>(key, "get");
         return std::get<std::vector<T>>(elements_)[key.index];
@@ -73,13 +71,13 @@ class MultiTypeSet {
         return sum_unrolled([](const auto& elements) { return elements.size(); }, elements_);
     }
     template <class T>
-    requires holds<T> std::size_t size()
-    const { return std::get<std::vector<T>>(elements_).size(); }
+    std::size_t size() const {
+        return std::get<std::vector<T>>(elements_).size();
+    }
     static constexpr std::size_t slots() { return sizeof...(Entries); }
 
     // The elements of a type as kernels left them; submits and waits. Throws Error if edits are pending.
     template <class T>
-        requires holds<T>
     std::vector<T> download() const {
         constexpr std::size_t type = number_of<T, Entries...>;
         return twinray::download<T>(storage_.context(), storage_.buffer(type), storage_.slots()[type].count);
@@ -134,7 +132,10 @@ class MultiTypeSet {
 
   private:
     template <class T>
-    static constexpr uint type_of = number_of<T, Entries...> + 1;
+    static constexpr uint type_of = [] {
+        static_assert(holds<T>, "the set's list has no such type");
+        return static_cast<uint>(number_of<T, Entries...>) + 1;
+    }();
     template <class Entry>
     const auto& elements() const {
         return std::get<Entry::number>(elements_);

@@ -52,6 +52,15 @@ class SetStorage {
     // Into the caller's commands.
     void sync(Commands& commands, Elements elements);
 
+    // For those who record more than this into the same commands: records what is new, then, once that is certain to
+    // run, takes it over.
+    struct Staged {
+        std::vector<std::optional<Buffer>> replacements;  // by type, where it grew
+        std::vector<SetSlot> slots;
+    };
+    Staged stage(Commands& commands, Elements elements) const;
+    void commit(Staged&& staged, SyncPoint done);
+
     // Throws Error if edits are pending.
     const std::vector<SetSlot>& slots() const;
     std::uint64_t revision() const { return revision_; }
@@ -69,14 +78,8 @@ class SetStorage {
         std::vector<bool> is_edited;  // by element
         std::uint64_t capacity() const { return buffer.bytes() / type.bytes; }
     };
-    struct Staged {
-        std::vector<std::optional<Buffer>> replacements;  // by type, where it grew
-        std::vector<SetSlot> slots;
-    };
-    Staged stage(Commands& commands, Elements elements) const;
     void record_growth(Commands& commands, const Staged& staged) const;
     void record_uploads(Commands& commands, const Staged& staged, Elements elements) const;
-    void commit(Staged&& staged, SyncPoint done);
 
     Context& context_;
     std::string name_;

@@ -5,22 +5,19 @@
 #include "shaders/shared/multi_type_set.h"
 #include "shaders/shared/soa.h"
 
-struct Diffuse
-{
+struct Diffuse {
     vec3 color;
     float gain;
 };
 BUFFER_OF(Diffuse, 4);
 
-struct Glass
-{
+struct Glass {
     float ior;
 };
 BUFFER_OF(Glass, 4);
 
 // 8-byte members, and longer than the others.
-struct Layered
-{
+struct Layered {
     uint64_t id;
     vec4 layers[3];
 };
@@ -39,21 +36,19 @@ FUNC float weight_of(uint i) { return float(1u + i % 7u); }
 #define TEST_QUEUE(X, P) X(P, 0, vec3, origin) X(P, 1, uint, pixel) X(P, 2, float, t) X(P, 3, Diffuse, material)
 TWINRAY_SOA_VIEW(TestQueue, TEST_QUEUE)
 
-struct SetTestArgs
-{
+struct SetTestArgs {
     TestSet set;
     REF(SetKey) keys;
-    Floats values; // by key, then the weighted sum of all elements, then results of the unrolled loops
-    uint count;    // keys
-    uint writes;   // whether elements of glass are doubled instead
+    Floats values;  // by key, then the weighted sum of all elements, then results of the unrolled loops
+    uint count;     // keys
+    uint writes;    // whether elements of glass are doubled instead
 };
 
-struct SoaTestArgs
-{
+struct SoaTestArgs {
     TestQueue from;
     TestQueue to;
     uint invocations;
-    uint shift; // to item i goes from item i + shift
+    uint shift;  // to item i goes from item i + shift
 };
 
 const float FALLBACK = -1000.0f;
