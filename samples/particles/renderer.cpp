@@ -10,7 +10,7 @@
 namespace twinray::particles {
 namespace {
 
-const vec3 eye(0.06f, 0.11f, 4.2f), lamp(0.7f, 0.55f, 3);
+const vec3 eye(0.03f, 0.02f, 4.2f), lamp(0.7f, 0.55f, 3);
 constexpr float lamp_power = 32, ambient = 0.3f;
 const vec3 background(0.02f);
 
