@@ -31,6 +31,10 @@ cat >"$work/kernel.comp" <<'GLSL'
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/query.glsl"
 #include "twinray/spawn.glsl"
+#include "twinray/multi_type_set.glsl"
+#include "twinray/soa.glsl"
+#include "twinray/textures.glsl"
+#include "twinray/unrolled.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };
 

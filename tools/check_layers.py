@@ -15,7 +15,7 @@ SEES = {  # besides itself and shaders/shared
     "engine/points": BASE + ["engine/collide"],
     "swtlas": ENGINE, "hwtlas": ENGINE,
     "cli": PRODUCT + ["shaders/suite", "bench"],
-    "samples": PRODUCT + ["shaders/path_tracer", "shaders/embed_renderer"],
+    "samples": PRODUCT + ["shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"],
     "bench": PRODUCT, "tests": PRODUCT + ["cli", "samples", "bench"],
     "shaders/embed_renderer": ["shaders/path_tracer"],
     "shaders/twinray": ["shaders/hwtlas"],  # what users include

@@ -32,6 +32,22 @@ AllocatedBuffer Allocator::allocate(const BufferRequest& request) {
          made.buffer ? "memory that is not mapped" : "no buffer");
 }
 
+AllocatedImage Allocator::allocate(const ImageRequest& request) {
+    AllocatedImage made;
+    const VkResult result = hooks_.allocate_image(hooks_.user, request, made);
+    if (result != VK_SUCCESS)
+        fail("image '", request.name, "' of ", request.info->extent.width, " x ", request.info->extent.height, ": ",
+             name_of(result));
+    if (!made.image) fail("image '", request.name, "': the host's allocator reports success but gave no image");
+    live_bytes_ += made.bytes;
+    return made;
+}
+
+void Allocator::free(const AllocatedImage& image) noexcept {
+    hooks_.free_image(hooks_.user, image);
+    live_bytes_ -= image.bytes;
+}
+
 void Allocator::free(const AllocatedBuffer& buffer, std::uint64_t bytes) noexcept {
     hooks_.free(hooks_.user, buffer);
     live_bytes_ -= bytes;

@@ -35,6 +35,18 @@ struct AllocatedBuffer {
     void* allocation = nullptr;  // the allocator's own; twinray only hands it back
 };
 
+// What twinray asks of an allocator for textures: an image bound to memory of its own.
+struct ImageRequest {
+    const char* name = "";  // for debugging; valid during the call
+    const VkImageCreateInfo* info = nullptr;
+};
+
+struct AllocatedImage {
+    VkImage image = VK_NULL_HANDLE;
+    std::uint64_t bytes = 0;     // of its memory
+    void* allocation = nullptr;  // the allocator's own; twinray only hands it back
+};
+
 // The host's allocator. Plain functions and plain data, so that no version of any allocator's types crosses the border
 // of the library; engine/core/vma_adapter.h makes them of a VmaAllocator. They are called on the thread that uses the
 // Context and must not throw.
@@ -44,9 +56,12 @@ struct AllocatorHooks {
     // The GPU no longer uses the buffer.
     void (*free)(void* user, const AllocatedBuffer& buffer) = nullptr;
     void* user = nullptr;
+    // The same for images in the device's memory. Both may be null: then textures are kept in buffers.
+    VkResult (*allocate_image)(void* user, const ImageRequest& request, AllocatedImage& result) = nullptr;
+    void (*free_image)(void* user, const AllocatedImage& image) = nullptr;
 };
 
-// The one door through which buffers are made and freed.
+// The one door through which buffers and images are made and freed.
 class Allocator {
   public:
     // The host's. Throws Error if one hook is missing.
@@ -62,6 +77,11 @@ class Allocator {
     AllocatedBuffer allocate(const BufferRequest& request);
     void free(const AllocatedBuffer& buffer, std::uint64_t bytes) noexcept;
 
+    bool has_images() const { return hooks_.allocate_image && hooks_.free_image; }
+    // Likewise; has_images() must be true.
+    AllocatedImage allocate(const ImageRequest& request);
+    void free(const AllocatedImage& image) noexcept;
+
     std::uint64_t live_bytes() const { return live_bytes_; }
 
   private:
@@ -70,7 +90,7 @@ class Allocator {
     std::uint64_t live_bytes_ = 0;
 };
 
-// Bytes of the buffers that are alive, as they were asked for.
+// Bytes of the buffers that are alive, as they were asked for, and of the images' memory.
 inline std::uint64_t allocated_bytes(const Allocator& allocator) { return allocator.live_bytes(); }
 
 }  // namespace twinray

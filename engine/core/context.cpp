@@ -220,6 +220,7 @@ void Context::destroy_everything() noexcept {
     for (Retired& retired : retired_) retired.destroy();
     retired_.clear();
     pipelines_.clear();
+    if (image_array_layout_) vk_.vkDestroyDescriptorSetLayout(device_, image_array_layout_, nullptr);
     if (owns_pipeline_cache_) vk_.vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
     if (timeline_) vk_.vkDestroySemaphore(device_, timeline_, nullptr);
     allocator_.reset();

@@ -55,6 +55,9 @@ class Context {
     Allocator& allocator() const { return *allocator_; }
     VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
     PipelineTable& pipelines() { return pipelines_; }
+    // Of all descriptor sets of images (engine/core/image_array.h); made by the first call. Any thread. Throws Error
+    // where the device has no image arrays.
+    VkDescriptorSetLayout image_array_layout();
     std::uint32_t queue_family() const { return queue_family_; }
     const DeviceFacts& facts() const { return facts_; }                 // what is enabled, not merely supported
     float timestamp_period_ns() const { return timestamp_period_ns_; }  // 0: the queue has no timestamps
@@ -132,6 +135,8 @@ class Context {
     VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
     bool owns_pipeline_cache_ = false;
     PipelineTable pipelines_;
+    std::mutex image_array_mutex_;
+    VkDescriptorSetLayout image_array_layout_ = VK_NULL_HANDLE;
     PipelineStore pipeline_store_;
     std::size_t kept_pipeline_bytes_ = 0;
     VkSemaphore timeline_ = VK_NULL_HANDLE;

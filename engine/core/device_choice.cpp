@@ -36,8 +36,10 @@ auto rank(const DeviceFacts& device) {
 }  // namespace
 
 std::string Requirement::sentence() const {
-    constexpr const char* who[] = {"twinray needs ", "HwTlas needs ", "Level::refined and above need "};
-    constexpr const char* rest[] = {"", ", SwTlas works without", ", Level::watertight works without"};
+    constexpr const char* who[] = {"twinray needs ", "HwTlas needs ", "Level::refined and above need ",
+                                   "Textures as images need "};
+    constexpr const char* rest[] = {"", ", SwTlas works without", ", Level::watertight works without",
+                                    ", textures in buffers work without"};
     const auto i = static_cast<std::size_t>(of);
     return text(who[i], what, " because ", why, is_met ? "; this device has it" : "; this device lacks it",
                 is_met ? "" : rest[i]);
@@ -60,6 +62,9 @@ std::vector<Requirement> requirements_of(const DeviceFacts& device) {
         {"VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline", "it traces through one of them", hardware,
          device.ray_query || device.ray_tracing_pipeline},
         {"shaderFloat64", "they compute the hit that counts again in float64", refinement, device.shader_float64},
+        {"descriptor indexing (runtimeDescriptorArray, shaderSampledImageArrayNonUniformIndexing, "
+         "descriptorBindingVariableDescriptorCount and descriptorBindingSampledImageUpdateAfterBind)",
+         "kernels reach all of them through one array", images, device.has_image_arrays()},
     };
 }
 
@@ -73,7 +78,9 @@ std::vector<std::string> missing_for_software(const DeviceFacts& device) {
 std::vector<std::string> missing_for_hardware(const DeviceFacts& device) {
     std::vector<std::string> missing;
     for (const Requirement& requirement : requirements_of(device))
-        if (!requirement.is_met && requirement.of != Requirement::Of::refinement) missing.push_back(requirement.what);
+        if (!requirement.is_met &&
+            (requirement.of == Requirement::Of::everything || requirement.of == Requirement::Of::hardware))
+            missing.push_back(requirement.what);
     return missing;
 }
 

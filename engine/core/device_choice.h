@@ -26,14 +26,24 @@ struct DeviceFacts {
     bool acceleration_structure = false;
     bool ray_query = false;
     bool ray_tracing_pipeline = false;
+    bool runtime_descriptor_array = false;
+    bool variable_descriptor_count = false;
+    bool nonuniform_sampled_images = false;
+    bool update_after_bind_images = false;
     // The driver builds in input order, without spatial sorting (Mesa's lavapipe): presorted input pays.
     bool builds_in_input_order = false;
+
+    // Whether kernels can reach any number of images through one array of descriptors.
+    bool has_image_arrays() const {
+        return runtime_descriptor_array && variable_descriptor_count && nonuniform_sampled_images &&
+               update_after_bind_images;
+    }
 };
 
 // One thing that twinray uses of a device.
 struct Requirement {
-    // What does not work without: all, HwTlas, or the levels from refined on.
-    enum class Of : std::uint8_t { everything, hardware, refinement };
+    // What does not work without: all, HwTlas, the levels from refined on, or images in TextureStore.
+    enum class Of : std::uint8_t { everything, hardware, refinement, images };
     const char* what;
     const char* why;  // "because ..."
     Of of;

@@ -11,6 +11,7 @@ constexpr VkStructureType vulkan12 = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_
 constexpr VkStructureType timeline = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES;
 constexpr VkStructureType address = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES;
 constexpr VkStructureType layout = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES;
+constexpr VkStructureType indexing = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DESCRIPTOR_INDEXING_FEATURES;
 constexpr VkStructureType structure = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
 constexpr VkStructureType query = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
 constexpr VkStructureType pipeline = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
@@ -32,6 +33,18 @@ constexpr FeatureBit bits[] = {
     {&DeviceFacts::scalar_block_layout, "scalarBlockLayout", layout,
      offsetof(VkPhysicalDeviceScalarBlockLayoutFeatures, scalarBlockLayout), vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, scalarBlockLayout)},
+    {&DeviceFacts::runtime_descriptor_array, "runtimeDescriptorArray", indexing,
+     offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, runtimeDescriptorArray), vulkan12,
+     offsetof(VkPhysicalDeviceVulkan12Features, runtimeDescriptorArray)},
+    {&DeviceFacts::variable_descriptor_count, "descriptorBindingVariableDescriptorCount", indexing,
+     offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingVariableDescriptorCount), vulkan12,
+     offsetof(VkPhysicalDeviceVulkan12Features, descriptorBindingVariableDescriptorCount)},
+    {&DeviceFacts::nonuniform_sampled_images, "shaderSampledImageArrayNonUniformIndexing", indexing,
+     offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, shaderSampledImageArrayNonUniformIndexing), vulkan12,
+     offsetof(VkPhysicalDeviceVulkan12Features, shaderSampledImageArrayNonUniformIndexing)},
+    {&DeviceFacts::update_after_bind_images, "descriptorBindingSampledImageUpdateAfterBind", indexing,
+     offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingSampledImageUpdateAfterBind), vulkan12,
+     offsetof(VkPhysicalDeviceVulkan12Features, descriptorBindingSampledImageUpdateAfterBind)},
     alone(&DeviceFacts::acceleration_structure, "accelerationStructure", structure,
           offsetof(VkPhysicalDeviceAccelerationStructureFeaturesKHR, accelerationStructure)),
     alone(&DeviceFacts::ray_query, "rayQuery", query, offsetof(VkPhysicalDeviceRayQueryFeaturesKHR, rayQuery)),
@@ -56,13 +69,14 @@ FeatureStructs::FeatureStructs() {
     timeline.sType = twinray::timeline;
     address.sType = twinray::address;
     layout.sType = twinray::layout;
+    indexing.sType = twinray::indexing;
     structure.sType = twinray::structure;
     query.sType = twinray::query;
     pipeline.sType = twinray::pipeline;
 }
 
 VkBaseOutStructure* FeatureStructs::find(VkStructureType type) {
-    void* all[] = {&core, &timeline, &address, &layout, &structure, &query, &pipeline};
+    void* all[] = {&core, &timeline, &address, &layout, &indexing, &structure, &query, &pipeline};
     for (void* node : all)
         if (auto* base = static_cast<VkBaseOutStructure*>(node); base->sType == type) return base;
     return nullptr;

@@ -17,6 +17,7 @@ struct FeatureStructs {
     VkPhysicalDeviceTimelineSemaphoreFeatures timeline{};
     VkPhysicalDeviceBufferDeviceAddressFeatures address{};
     VkPhysicalDeviceScalarBlockLayoutFeatures layout{};
+    VkPhysicalDeviceDescriptorIndexingFeatures indexing{};
     VkPhysicalDeviceAccelerationStructureFeaturesKHR structure{};
     VkPhysicalDeviceRayQueryFeaturesKHR query{};
     VkPhysicalDeviceRayTracingPipelineFeaturesKHR pipeline{};

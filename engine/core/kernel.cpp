@@ -26,10 +26,13 @@ VkShaderModule create_shader_module(Context& context, std::span<const std::uint3
     return module;
 }
 
-VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlags stages, std::uint32_t bytes) {
+VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlags stages, std::uint32_t bytes,
+                                             VkDescriptorSetLayout images) {
     const VkPushConstantRange range{stages, 0, bytes};
     VkPipelineLayoutCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+    info.setLayoutCount = images ? 1 : 0;
+    info.pSetLayouts = &images;
     info.pushConstantRangeCount = 1;
     info.pPushConstantRanges = &range;
     VkPipelineLayout layout = VK_NULL_HANDLE;
@@ -49,18 +52,24 @@ ComputePipeline::~ComputePipeline() {
     if (compiled_) context_.pipelines().give_back(context_, std::move(compiled_));
 }
 
-void ComputePipeline::bind(Commands& commands, const void* args) const {
+void ComputePipeline::bind(Commands& commands, const void* args, VkDescriptorSet images) const {
+    if (desc_.has_images != (images != VK_NULL_HANDLE))
+        fail("kernel '", desc_.name, "': ", desc_.has_images ? "dispatched without images" : "it takes no images");
     if (!compiled_) compiled_ = context_.pipelines().get(context_, desc_, args_bytes_);
     const VulkanFunctions& vk = context_.vk();
     vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, compiled_->pipeline);
+    if (images)
+        vk.vkCmdBindDescriptorSets(commands.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, compiled_->layout, 0, 1, &images,
+                                   0, nullptr);
     vk.vkCmdPushConstants(commands.handle(), compiled_->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, args_bytes_, args);
 }
 
-void ComputePipeline::dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count) const {
+void ComputePipeline::dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count,
+                                      VkDescriptorSet images) const {
     if (group_count == 0) return;
     std::optional<Commands::Pass> own_pass;
     if (!commands.in_pass()) own_pass.emplace(commands, desc_.name);
-    bind(commands, args);
+    bind(commands, args, images);
     const std::uint64_t rows = (group_count + groups_per_row - 1) / groups_per_row;
     context_.vk().vkCmdDispatch(commands.handle(), static_cast<std::uint32_t>(std::min(group_count, groups_per_row)),
                                 static_cast<std::uint32_t>(rows), 1);
@@ -70,7 +79,7 @@ void ComputePipeline::dispatch_indirect(Commands& commands, const void* args, co
                                         std::uint64_t offset) const {
     std::optional<Commands::Pass> own_pass;
     if (!commands.in_pass()) own_pass.emplace(commands, desc_.name);
-    bind(commands, args);
+    bind(commands, args, VK_NULL_HANDLE);
     context_.vk().vkCmdDispatchIndirect(commands.handle(), counts.handle(), offset);
 }
 

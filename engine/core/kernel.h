@@ -21,11 +21,12 @@ struct KernelDesc {
     std::uint32_t group_size = 64;         // local_size_x of the shader
     std::vector<SpecializationConstant> constants = {};
     bool compiles_when_used =
-        false;  // by the first dispatch, which then throws what the constructor would; spirv stays valid
+        false;                // by the first dispatch, which then throws what the constructor would; spirv stays valid
+    bool has_images = false;  // it reads an ImageArray, which each dispatch then takes
 };
 
-// A compute pipeline whose only input is one push-constant block, shared with all others of the context that are made
-// from the same. Use Kernel<Args>.
+// A compute pipeline whose only input is one push-constant block and, where it has images, an ImageArray, shared with
+// all others of the context that are made from the same. Use Kernel<Args>.
 class ComputePipeline {
   public:
     ComputePipeline(Context& context, const KernelDesc& desc, std::uint32_t args_bytes);
@@ -33,7 +34,8 @@ class ComputePipeline {
     ComputePipeline(const ComputePipeline&) = delete;
     ComputePipeline& operator=(const ComputePipeline&) = delete;
 
-    void dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count) const;
+    void dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count,
+                         VkDescriptorSet images = VK_NULL_HANDLE) const;
     // As many groups as the VkDispatchIndirectCommand at `offset` of `counts` says.
     void dispatch_indirect(Commands& commands, const void* args, const Buffer& counts, std::uint64_t offset) const;
 
@@ -41,7 +43,7 @@ class ComputePipeline {
     std::uint32_t group_size() const { return desc_.group_size; }
 
   private:
-    void bind(Commands& commands, const void* args) const;
+    void bind(Commands& commands, const void* args, VkDescriptorSet images) const;
 
     Context& context_;
     KernelDesc desc_;
@@ -59,11 +61,14 @@ class Kernel {
 
     // Runs at least `count` invocations; the shader must ignore global_index() >= count. Opens a pass with the
     // kernel's name unless one is open.
-    void dispatch(Commands& commands, const Args& args, std::uint64_t count) const {
-        dispatch_groups(commands, args, (count + pipeline_.group_size() - 1) / pipeline_.group_size());
+    // `images`: of a TextureStore, for kernels made with KernelDesc::has_images.
+    void dispatch(Commands& commands, const Args& args, std::uint64_t count,
+                  VkDescriptorSet images = VK_NULL_HANDLE) const {
+        dispatch_groups(commands, args, (count + pipeline_.group_size() - 1) / pipeline_.group_size(), images);
     }
-    void dispatch_groups(Commands& commands, const Args& args, std::uint64_t group_count) const {
-        pipeline_.dispatch_groups(commands, &args, group_count);
+    void dispatch_groups(Commands& commands, const Args& args, std::uint64_t group_count,
+                         VkDescriptorSet images = VK_NULL_HANDLE) const {
+        pipeline_.dispatch_groups(commands, &args, group_count, images);
     }
     void dispatch_indirect(Commands& commands, const Args& args, const Buffer& counts, std::uint64_t offset) const {
         pipeline_.dispatch_indirect(commands, &args, counts, offset);
@@ -76,6 +81,7 @@ class Kernel {
 
 // Shared with the ray tracing pipeline.
 VkShaderModule create_shader_module(Context& context, std::span<const std::uint32_t> spirv, const std::string& name);
-VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlags stages, std::uint32_t bytes);
+VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlags stages, std::uint32_t bytes,
+                                             VkDescriptorSetLayout images = VK_NULL_HANDLE);
 
 }  // namespace twinray

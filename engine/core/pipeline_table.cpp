@@ -11,6 +11,7 @@ std::string key_of(const KernelDesc& desc, std::uint32_t args_bytes) {
     std::string key;
     const auto add = [&](const void* data, std::size_t bytes) { key.append(static_cast<const char*>(data), bytes); };
     add(&args_bytes, sizeof(args_bytes));
+    add(&desc.has_images, sizeof(desc.has_images));
     const std::size_t constants = desc.constants.size();
     add(&constants, sizeof(constants));
     add(desc.constants.data(), constants * sizeof(SpecializationConstant));
@@ -57,7 +58,8 @@ std::shared_ptr<CompiledKernel> PipelineTable::get(Context& context, const Kerne
     std::string key = key_of(desc, args_bytes);
     if (std::shared_ptr<CompiledKernel> kernel = find(key)) return kernel;
     auto kernel = std::make_shared<CompiledKernel>(context.vk(), context.device());
-    kernel->layout = create_push_constant_layout(context, VK_SHADER_STAGE_COMPUTE_BIT, args_bytes);
+    kernel->layout = create_push_constant_layout(context, VK_SHADER_STAGE_COMPUTE_BIT, args_bytes,
+                                                 desc.has_images ? context.image_array_layout() : VK_NULL_HANDLE);
     kernel->pipeline = new_pipeline(context, desc, kernel->layout);
     const std::lock_guard lock(mutex_);
     return entries_.try_emplace(std::move(key), Entry{std::move(kernel)}).first->second.kernel;

@@ -48,11 +48,29 @@ inline void free(void* user, const AllocatedBuffer& buffer) {
     vmaDestroyBuffer(static_cast<VmaAllocator>(user), buffer.buffer, static_cast<VmaAllocation>(buffer.allocation));
 }
 
+inline VkResult allocate_image(void* user, const ImageRequest& request, AllocatedImage& result) {
+    const auto allocator = static_cast<VmaAllocator>(user);
+    const VmaAllocationCreateInfo memory = memory_info(Memory::device);
+    VmaAllocation allocation = nullptr;
+    VmaAllocationInfo allocated{};
+    const VkResult made = vmaCreateImage(allocator, request.info, &memory, &result.image, &allocation, &allocated);
+    if (made != VK_SUCCESS) return made;
+    vmaSetAllocationName(allocator, allocation, request.name);
+    result.bytes = allocated.size;
+    result.allocation = allocation;
+    return VK_SUCCESS;
+}
+
+inline void free_image(void* user, const AllocatedImage& image) {
+    vmaDestroyImage(static_cast<VmaAllocator>(user), image.image, static_cast<VmaAllocation>(image.allocation));
+}
+
 }  // namespace vma_adapter
 
 // The allocator must have been created with VMA_ALLOCATOR_CREATE_BUFFER_DEVICE_ADDRESS_BIT, and outlive the Context.
 inline AllocatorHooks hooks_of(VmaAllocator allocator) {
-    return {&vma_adapter::allocate, &vma_adapter::free, allocator};
+    return {&vma_adapter::allocate, &vma_adapter::free, allocator, &vma_adapter::allocate_image,
+            &vma_adapter::free_image};
 }
 
 }  // namespace twinray

@@ -65,7 +65,19 @@
     F(vkCmdCopyBuffer)              \
     F(vkCmdFillBuffer)              \
     F(vkCmdUpdateBuffer)            \
-    F(vkGetBufferDeviceAddress)
+    F(vkGetBufferDeviceAddress)     \
+    F(vkCreateImageView)            \
+    F(vkDestroyImageView)           \
+    F(vkCreateSampler)              \
+    F(vkDestroySampler)             \
+    F(vkCreateDescriptorSetLayout)  \
+    F(vkDestroyDescriptorSetLayout) \
+    F(vkCreateDescriptorPool)       \
+    F(vkDestroyDescriptorPool)      \
+    F(vkAllocateDescriptorSets)     \
+    F(vkUpdateDescriptorSets)       \
+    F(vkCmdBindDescriptorSets)      \
+    F(vkCmdCopyBufferToImage)
 
 // Present only with VK_KHR_acceleration_structure and VK_KHR_ray_tracing_pipeline.
 #define TWINRAY_RAY_TRACING_FUNCTIONS(F)             \

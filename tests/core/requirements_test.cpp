@@ -59,6 +59,20 @@ TEST(Requirements, AreToldInSentences) {
               "it, SwTlas works without");
 }
 
+TEST(Requirements, TexturesAreImagesWhereNothingOfDescriptorIndexingLacks) {
+    EXPECT_TRUE(capable().has_image_arrays());
+    for (bool DeviceFacts::*fact : {&DeviceFacts::runtime_descriptor_array, &DeviceFacts::variable_descriptor_count,
+                                    &DeviceFacts::nonuniform_sampled_images, &DeviceFacts::update_after_bind_images}) {
+        DeviceFacts facts = capable();
+        facts.*fact = false;
+        EXPECT_FALSE(facts.has_image_arrays());
+        EXPECT_TRUE(missing_for_software(facts).empty() && missing_for_hardware(facts).empty());
+        EXPECT_NE(
+            requirements_of(facts).back().sentence().find("this device lacks it, textures in buffers work without"),
+            std::string::npos);
+    }
+}
+
 TEST(Requirements, OfADeviceWithNothingElse) {
     const DeviceRequirements requirements(capable());
     Info info;

@@ -22,6 +22,7 @@ namespace {
     F(vkBindBufferMemory, VK_ERROR_OUT_OF_DEVICE_MEMORY, false)                 \
     F(vkBindBufferMemory2, VK_ERROR_OUT_OF_DEVICE_MEMORY, false)                \
     F(vkAllocateCommandBuffers, VK_ERROR_OUT_OF_DEVICE_MEMORY, false)           \
+    F(vkAllocateDescriptorSets, VK_ERROR_OUT_OF_POOL_MEMORY, false)             \
     F(vkBeginCommandBuffer, VK_ERROR_OUT_OF_HOST_MEMORY, false)                 \
     F(vkEndCommandBuffer, VK_ERROR_OUT_OF_DEVICE_MEMORY, false)                 \
     F(vkQueueSubmit, VK_ERROR_OUT_OF_DEVICE_MEMORY, true)                       \
@@ -37,6 +38,11 @@ namespace {
     F(vkCreateDevice, VK_ERROR_INITIALIZATION_FAILED, true, VkDevice)                               \
     F(vkAllocateMemory, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkDeviceMemory)                       \
     F(vkCreateBuffer, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkBuffer)                               \
+    F(vkCreateImage, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkImage)                                 \
+    F(vkCreateImageView, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkImageView)                           \
+    F(vkCreateSampler, VK_ERROR_TOO_MANY_OBJECTS, false, VkSampler)                                 \
+    F(vkCreateDescriptorSetLayout, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkDescriptorSetLayout)       \
+    F(vkCreateDescriptorPool, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkDescriptorPool)               \
     F(vkCreateSemaphore, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkSemaphore)                           \
     F(vkCreateCommandPool, VK_ERROR_OUT_OF_HOST_MEMORY, false, VkCommandPool)                       \
     F(vkCreateQueryPool, VK_ERROR_OUT_OF_DEVICE_MEMORY, false, VkQueryPool)                         \
@@ -53,6 +59,11 @@ namespace {
     F(vkDestroyDevice, VkDevice)                                 \
     F(vkFreeMemory, VkDeviceMemory)                              \
     F(vkDestroyBuffer, VkBuffer)                                 \
+    F(vkDestroyImage, VkImage)                                   \
+    F(vkDestroyImageView, VkImageView)                           \
+    F(vkDestroySampler, VkSampler)                               \
+    F(vkDestroyDescriptorSetLayout, VkDescriptorSetLayout)       \
+    F(vkDestroyDescriptorPool, VkDescriptorPool)                 \
     F(vkDestroySemaphore, VkSemaphore)                           \
     F(vkDestroyCommandPool, VkCommandPool)                       \
     F(vkDestroyQueryPool, VkQueryPool)                           \

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// What kernels compiled with TWINRAY_DEBUG were refused, told to the host.
+#pragma once
+
+#include <cstring>
+
+#include "engine/core/buffer.h"
+
+namespace twinray {
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/faults.h"
+#include "engine/core/bridge_end.h"
+
+class FaultLog {
+  public:
+    explicit FaultLog(Context& context, const std::string& name)
+        : buffer_(context, {.name = "faults of " + name, .bytes = sizeof(Faults), .memory = Memory::readback}) {
+        clear();
+    }
+
+    Ref<Faults> on_device() const { return buffer_.ref<Faults>(); }
+    // What kernels noted that the GPU is done with.
+    Faults read() const {
+        Faults faults;
+        std::memcpy(&faults, buffer_.mapped(), sizeof faults);
+        return faults;
+    }
+    // While no kernel runs that may write.
+    void clear() { std::memset(buffer_.mapped(), 0, sizeof(Faults)); }
+
+  private:
+    Buffer buffer_;
+};
+
+}  // namespace twinray

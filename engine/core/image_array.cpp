@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/image_array.h"
+
+#include <utility>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+VkImageView create_view(Context& context, VkImage image, VkFormat format) {
+    VkImageViewCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+    info.image = image;
+    info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    info.format = format;
+    info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    VkImageView view = VK_NULL_HANDLE;
+    vk_check(context.vk().vkCreateImageView(context.device(), &info, nullptr, &view), "create an image view");
+    return view;
+}
+
+}  // namespace
+
+Samplers::~Samplers() {
+    for (const auto& [modes, sampler] : samplers_)
+        context_.retire([&vk = context_.vk(), device = context_.device(), sampler = sampler] {
+            vk.vkDestroySampler(device, sampler, nullptr);
+        });
+}
+
+VkSampler Samplers::get(VkSamplerAddressMode wrap_u, VkSamplerAddressMode wrap_v) {
+    if (const auto found = samplers_.find({wrap_u, wrap_v}); found != samplers_.end()) return found->second;
+    VkSamplerCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+    info.magFilter = info.minFilter = VK_FILTER_LINEAR;
+    info.addressModeU = wrap_u;
+    info.addressModeV = wrap_v;
+    VkSampler sampler = VK_NULL_HANDLE;
+    vk_check(context_.vk().vkCreateSampler(context_.device(), &info, nullptr, &sampler), "create a sampler");
+    return samplers_[{wrap_u, wrap_v}] = sampler;
+}
+
+// A variable count takes no more than it has; the limit is for update-after-bind descriptors, of which devices have at
+// least 500 000, though none is updated after it was bound.
+VkDescriptorSetLayout Context::image_array_layout() {
+    const std::lock_guard lock(image_array_mutex_);
+    if (image_array_layout_) return image_array_layout_;
+    if (!facts_.has_image_arrays())
+        fail("device '", facts_.name, "': descriptor indexing is not enabled; keep textures in buffers");
+    const VkDescriptorBindingFlags flags =
+        VK_DESCRIPTOR_BINDING_VARIABLE_DESCRIPTOR_COUNT_BIT | VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT;
+    VkDescriptorSetLayoutBindingFlagsCreateInfo binding_flags{};
+    binding_flags.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO;
+    binding_flags.bindingCount = 1;
+    binding_flags.pBindingFlags = &flags;
+    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, ImageArray::max_images,
+                                               VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
+    VkDescriptorSetLayoutCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    info.pNext = &binding_flags;
+    info.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_UPDATE_AFTER_BIND_POOL_BIT;
+    info.bindingCount = 1;
+    info.pBindings = &binding;
+    vk_check(vk_.vkCreateDescriptorSetLayout(device_, &info, nullptr, &image_array_layout_),
+             "create the layout of image arrays");
+    return image_array_layout_;
+}
+
+SampledImage::SampledImage(Context& context, const SampledImageDesc& desc) : context_(&context), desc_(desc) {
+    VkImageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = desc.format;
+    info.extent = {desc.width, desc.height, 1};
+    info.mipLevels = info.arrayLayers = 1;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    made_ = context.allocator().allocate(ImageRequest{desc_.name.c_str(), &info});
+    try {
+        view_ = create_view(context, made_.image, desc.format);
+    } catch (...) {
+        retire();
+        throw;
+    }
+    context.set_name(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<std::uint64_t>(made_.image), desc_.name);
+}
+
+void SampledImage::retire() noexcept {
+    if (!made_.image) return;
+    context_->retire([&context = *context_, made = made_, view = view_] {
+        context.vk().vkDestroyImageView(context.device(), view, nullptr);
+        context.allocator().free(made);
+    });
+}
+
+SampledImage::~SampledImage() { retire(); }
+
+SampledImage::SampledImage(SampledImage&& other) noexcept { *this = std::move(other); }
+
+SampledImage& SampledImage::operator=(SampledImage&& other) noexcept {
+    std::swap(context_, other.context_);
+    std::swap(desc_, other.desc_);
+    std::swap(made_, other.made_);
+    std::swap(view_, other.view_);
+    return *this;
+}
+
+void SampledImage::change_layout(Commands& commands, VkImageLayout from, VkImageLayout to) const {
+    VkImageMemoryBarrier barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
+    barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+    barrier.oldLayout = from;
+    barrier.newLayout = to;
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = made_.image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    context_->vk().vkCmdPipelineBarrier(commands.handle(), context_->stages(), context_->stages(), 0, 0, nullptr, 0,
+                                        nullptr, 1, &barrier);
+}
+
+void SampledImage::upload(Commands& commands, std::span<const std::byte> texels) {
+    Buffer staging(*context_, {.name = "staging for " + desc_.name, .bytes = texels.size(), .memory = Memory::upload});
+    std::memcpy(staging.mapped(), texels.data(), texels.size());
+    VkBufferImageCopy region{};
+    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.imageExtent = {desc_.width, desc_.height, 1};
+    // What it held is overwritten: its old layout does not matter.
+    change_layout(commands, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    context_->vk().vkCmdCopyBufferToImage(commands.handle(), staging.handle(), made_.image,
+                                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+    change_layout(commands, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    commands.keep(std::move(staging));
+}
+
+ImageArray::ImageArray(Context& context, std::span<const VkDescriptorImageInfo> images) : context_(&context) {
+    if (images.empty() || images.size() > max_images)
+        fail("image array of ", images.size(), " images; 1 to ", max_images, " fit");
+    const auto count = static_cast<std::uint32_t>(images.size());
+    const VulkanFunctions& vk = context.vk();
+    const VkDescriptorSetLayout layout = context.image_array_layout();
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, count};
+    VkDescriptorPoolCreateInfo pool{};
+    pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    pool.flags = VK_DESCRIPTOR_POOL_CREATE_UPDATE_AFTER_BIND_BIT;
+    pool.maxSets = 1;
+    pool.poolSizeCount = 1;
+    pool.pPoolSizes = &size;
+    vk_check(vk.vkCreateDescriptorPool(context.device(), &pool, nullptr, &pool_), "create a descriptor pool");
+    VkDescriptorSetVariableDescriptorCountAllocateInfo counts{};
+    counts.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_VARIABLE_DESCRIPTOR_COUNT_ALLOCATE_INFO;
+    counts.descriptorSetCount = 1;
+    counts.pDescriptorCounts = &count;
+    VkDescriptorSetAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+    allocate.pNext = &counts;
+    allocate.descriptorPool = pool_;
+    allocate.descriptorSetCount = 1;
+    allocate.pSetLayouts = &layout;
+    if (const VkResult result = vk.vkAllocateDescriptorSets(context.device(), &allocate, &set_); result != VK_SUCCESS) {
+        vk.vkDestroyDescriptorPool(context.device(), pool_, nullptr);
+        fail("image array of ", count, " images: ", name_of(result));
+    }
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = set_;
+    write.descriptorCount = count;
+    write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    write.pImageInfo = images.data();
+    vk.vkUpdateDescriptorSets(context.device(), 1, &write, 0, nullptr);
+}
+
+ImageArray::~ImageArray() {
+    if (!pool_) return;
+    context_->retire([&vk = context_->vk(), device = context_->device(), pool = pool_] {
+        vk.vkDestroyDescriptorPool(device, pool, nullptr);
+    });
+}
+
+ImageArray::ImageArray(ImageArray&& other) noexcept { *this = std::move(other); }
+
+ImageArray& ImageArray::operator=(ImageArray&& other) noexcept {
+    std::swap(context_, other.context_);
+    std::swap(pool_, other.pool_);
+    std::swap(set_, other.set_);
+    return *this;
+}
+
+}  // namespace twinray

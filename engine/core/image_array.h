@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Images that kernels sample, and the descriptors through which they reach any number of them by index.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+
+#include "engine/core/commands.h"
+
+namespace twinray {
+
+// Bilinear samplers, one for each pair of address modes that is asked for: devices have few (4000 at least).
+class Samplers {
+  public:
+    explicit Samplers(Context& context) : context_(context) {}
+    ~Samplers();  // destroys them after all work submitted so far
+    Samplers(const Samplers&) = delete;
+    Samplers& operator=(const Samplers&) = delete;
+
+    VkSampler get(VkSamplerAddressMode wrap_u, VkSamplerAddressMode wrap_v);
+
+  private:
+    Context& context_;
+    std::map<std::pair<VkSamplerAddressMode, VkSamplerAddressMode>, VkSampler> samplers_;
+};
+
+struct SampledImageDesc {
+    std::string name;
+    std::uint32_t width = 0, height = 0;
+    VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
+    VkSampler sampler = VK_NULL_HANDLE;
+};
+
+// One image of one level, with the sampler that it is read by. Move-only; destroyed after all work submitted so far.
+class SampledImage {
+  public:
+    SampledImage() = default;
+    // Throws Error naming the image when memory is out.
+    SampledImage(Context& context, const SampledImageDesc& desc);
+    ~SampledImage();
+    SampledImage(SampledImage&& other) noexcept;
+    SampledImage& operator=(SampledImage&& other) noexcept;
+
+    // Within a pass: replaces all texels, which are tightly packed in `texels`. What follows the pass sees them.
+    void upload(Commands& commands, std::span<const std::byte> texels);
+
+    VkDescriptorImageInfo descriptor() const {
+        return {desc_.sampler, view_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    }
+    explicit operator bool() const { return view_; }
+
+  private:
+    void retire() noexcept;
+    void change_layout(Commands& commands, VkImageLayout from, VkImageLayout to) const;
+
+    Context* context_ = nullptr;
+    SampledImageDesc desc_;
+    AllocatedImage made_;
+    VkImageView view_ = VK_NULL_HANDLE;
+};
+
+// Set 0, binding 0 of kernels made with KernelDesc::has_images. Written once, when it is made: where an image is
+// replaced, another array is made, so that work in flight keeps its own.
+class ImageArray {
+  public:
+    static constexpr std::uint32_t max_images = 65536;
+
+    ImageArray() = default;
+    // Throws Error when there are none or too many. The images must outlive all work that uses the array.
+    ImageArray(Context& context, std::span<const VkDescriptorImageInfo> images);
+    ~ImageArray();
+    ImageArray(ImageArray&& other) noexcept;
+    ImageArray& operator=(ImageArray&& other) noexcept;
+
+    VkDescriptorSet set() const { return set_; }  // null: none
+
+  private:
+    Context* context_ = nullptr;
+    VkDescriptorPool pool_ = VK_NULL_HANDLE;
+    VkDescriptorSet set_ = VK_NULL_HANDLE;
+};
+
+}  // namespace twinray

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// Materials of several types and textures in one set, that a kernel reads by key.
+#include <iostream>
+
+#include "engine/core/error.h"
+#include "engine/core/kernel.h"
+#include "engine/scene/multi_type_set.h"
+#include "engine/scene/png.h"
+#include "engine/scene/shapes.h"
+#include "engine/scene/texture_store.h"
+#include "materials_buffers.spv.h"
+#include "materials_images.spv.h"
+
+namespace twinray {
+#include "engine/core/bridge_begin.h"
+#include "samples/materials.h"
+#include "engine/core/bridge_end.h"
+}  // namespace twinray
+
+using namespace twinray;
+
+// Red grows along x, green along y.
+Image ramp(uint side) {
+    Image image{.name = "ramp", .width = side, .height = side, .rgba = {}};
+    for (uint i = 0; i < side * side; ++i)
+        for (const uint value : {255 * (i % side) / (side - 1), 255 * (i / side) / (side - 1), 64u, 255u})
+            image.rgba.push_back(static_cast<std::uint8_t>(value));
+    return image;
+}
+
+int main(int argc, char** argv) try {
+    Context context;
+    TextureStore textures(context, "textures");
+    const TextureRef painting = textures.push(ramp(64));
+    textures.sync();
+
+    TWINRAY_MULTI_TYPE_SET(MaterialSet, MATERIALS) materials(context, "materials");
+    const SetKey keys[] = {materials.push(Checker{vec3(1), vec3(0), 4}), materials.push(Painted{painting, 1}),
+                           materials.push(Painted{painting, 1}), SetKey{}};
+    materials.sync();
+    materials.update(keys[2], Painted{painting, 0.5f});  // darker: this element alone is uploaded
+    materials.sync();
+
+    constexpr uint side = 128, swatches = std::size(keys);
+    const Buffer on_device(context, {.name = "keys", .bytes = sizeof keys});
+    const Buffer picture(context, {.name = "picture", .bytes = sizeof(uint) * swatches * side * side});
+    const std::span<const uint> modules[] = {materials_buffers_spirv, materials_images_spirv};
+    const Kernel<SwatchArgs> kernel(
+        context, {.name = "swatches", .spirv = modules[textures.has_images()], .has_images = textures.has_images()});
+    Commands commands(context, "swatches");
+    {
+        const auto pass = commands.pass("keys");
+        commands.upload(on_device, std::span<const SetKey>(keys));
+    }
+    kernel.dispatch(commands,
+                    {materials.view(), textures.view(), on_device.ref<SetKey>(), picture.ref<uint>(), swatches, side},
+                    swatches * side * side, textures.images());
+    commands.submit();
+
+    std::vector<Rgb> pixels;
+    for (const uint texel : download<uint>(context, picture, swatches * side * side))
+        pixels.push_back({static_cast<std::uint8_t>(texel), static_cast<std::uint8_t>(texel >> 8),
+                          static_cast<std::uint8_t>(texel >> 16)});
+    const auto middle = [&](uint swatch) {
+        return pixels[(side / 2 + 1) * swatches * side + swatch * side + side / 2 + 1];
+    };
+    std::cout << "textures are " << (textures.has_images() ? "images" : "in buffers")
+              << "; in the middle of the swatches:";
+    for (uint i = 0; i < swatches; ++i)
+        std::cout << " (" << +middle(i).r << ", " << +middle(i).g << ", " << +middle(i).b << ')';
+    std::cout << '\n';
+    if (argc > 1) write_png(argv[1], swatches * side, side, pixels);
+} catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+}

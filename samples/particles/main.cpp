@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Balls that move, refit and change colour on the GPU: the host submits all frames and reads the last picture alone.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+#include "engine/core/error.h"
+#include "hwtlas/hw_tlas.h"
+#include "samples/particles/report.h"
+#include "swtlas/sw_tlas.h"
+
+namespace twinray::particles {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// With what TWINRAY_DISABLE, a comma-separated list of ray_query and ray_tracing_pipeline, leaves unused.
+ContextDesc context_desc(const Options& options) {
+    ContextDesc desc;
+    desc.device = options.device;
+    desc.validation = options.validation;
+    if (const char* disabled = std::getenv("TWINRAY_DISABLE")) disable_features(desc, disabled);
+    return desc;
+}
+
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const std::string& kind) {
+    const bool can_hardware = missing_for_hardware(context.facts()).empty();
+    if (kind == "hw" || (kind.empty() && can_hardware)) return std::make_unique<HwTlas>(context);
+    return std::make_unique<SwTlas>(context);
+}
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+RunTimes run_frames(Simulation& simulation, Renderer& renderer, uint frames) {
+    Context& context = simulation.accel().context();
+    context.wait_for_gpu();
+    const auto start = Clock::now();
+    for (uint frame = 0; frame < frames; ++frame) {
+        simulation.step();
+        renderer.draw();
+    }
+    RunTimes times;
+    times.submit_ms = milliseconds_since(start);
+    times.was_ahead = !context.is_reached(context.last_submission());
+    context.wait_for_gpu();
+    times.total_ms = milliseconds_since(start);
+    times.last_frame = simulation.timings();
+    for (const PassTiming& pass : renderer.timings()) times.last_frame.push_back(pass);
+    return times;
+}
+
+int run(const Options& options) {
+    if (!options.output.empty() && !path_tracer::is_picture_file(options.output))
+        fail("'", options.output.string(), "': pictures are .png or .exr");
+    Context context(context_desc(options));
+    const std::unique_ptr<AbstractAccel> accel = make_accel(context, options.accel);
+    Simulation simulation(*accel, make_particles(options.count, options.seed));
+    Renderer renderer(simulation, options.size);
+    const RunTimes times = run_frames(simulation, renderer, options.frames);
+    if (!options.output.empty()) path_tracer::write_picture(options.output, renderer.picture(), 0);
+    report(options, accel->name(), times);
+    return context.validation_messages().empty() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace twinray::particles
+
+int main(int argc, char** argv) {
+    using namespace twinray::particles;
+    try {
+        const ParsedOptions parsed = parse_options(argc, argv);
+        if (parsed.exit_status) return *parsed.exit_status;
+        return run(parsed.options);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "particles: %s\n", error.what());
+        return 1;
+    }
+}

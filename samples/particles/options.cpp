@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "samples/particles/options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace twinray::particles {
+namespace {
+
+constexpr uint max_side = 8192, max_frames = 100'000, max_count = 1'000'000;
+
+void add_options(CLI::App& app, Options& options) {
+    app.add_option("-o,--output", options.output, "the last frame: .png, or .exr with linear radiance");
+    app.add_option("--json", options.json, "append one line with what was done and how fast");
+    app.add_option("--frames", options.frames, "how many")->check(CLI::Range(1u, max_frames))->capture_default_str();
+    app.add_option("--count", options.count, "particles")->check(CLI::Range(1u, max_count))->capture_default_str();
+    app.add_option("--width", options.size.width, "pixels")->check(CLI::Range(1u, max_side))->capture_default_str();
+    app.add_option("--height", options.size.height, "pixels")->check(CLI::Range(1u, max_side))->capture_default_str();
+    app.add_option("--samples", options.size.samples, "rays of a pixel: 1, 4, 9 or 16")
+        ->check(CLI::IsMember({1u, 4u, 9u, 16u}))
+        ->capture_default_str();
+    app.add_option("--seed", options.seed, "of where the particles start")->capture_default_str();
+    app.add_option("--accel", options.accel, "hw (ray tracing extensions) or sw (compute); default: hw where possible")
+        ->check(CLI::IsMember({"hw", "sw"}));
+    app.add_option("--device", options.device, "index, or a part of the name");
+    app.add_flag("--validation", options.validation, "Khronos validation layer; exit 1 on any message");
+    app.add_flag("--quiet", options.quiet, "errors only");
+}
+
+}  // namespace
+
+ParsedOptions parse_options(int argc, char** argv) {
+    CLI::App app("particles: moving balls, coloured by their speed, without the host in the loop");
+    ParsedOptions result;
+    add_options(app, result.options);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        result.exit_status = app.exit(help);
+    } catch (const CLI::ParseError& error) {
+        std::fprintf(stderr, "particles: %s (see particles --help)\n", error.what());
+        result.exit_status = 2;
+    }
+    return result;
+}
+
+}  // namespace twinray::particles

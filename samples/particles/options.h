@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "samples/particles/renderer.h"
+
+namespace twinray::particles {
+
+struct Options {
+    std::filesystem::path output, json;
+    std::string accel;  // "hw", "sw", "" = hw where the device has it
+    std::string device;
+    uint frames = 100;
+    uint count = 1000;
+    uint seed = 1;
+    PictureSize size;
+    bool validation = false;
+    bool quiet = false;
+};
+
+// The options, or the exit status of a run that is over: help was shown (0) or the usage is wrong (2).
+struct ParsedOptions {
+    Options options;
+    std::optional<int> exit_status;
+};
+ParsedOptions parse_options(int argc, char** argv);
+
+}  // namespace twinray::particles

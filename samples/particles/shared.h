@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// The structs and the mathematics that the particles share with their kernels, for C++.
+#pragma once
+
+#include <cmath>
+
+#include "engine/accel/spawn.h"
+#include "engine/scene/multi_type_set.h"
+#include "engine/scene/soa.h"
+
+namespace twinray::particles {
+using std::sin;
+
+#include "engine/core/bridge_begin.h"
+#include "shaders/particles/particles.h"
+#include "shaders/particles/picture.h"
+#include "engine/core/bridge_end.h"
+
+static_assert(sizeof(MoveArgs) == 112 && sizeof(PictureScene) == 80 && sizeof(ShadeArgs) <= 128);
+using Materials = TWINRAY_MULTI_TYPE_SET(ParticleMaterials, PARTICLE_MATERIALS);
+using ParticleArrays = TWINRAY_SOA(Particles, PARTICLE_FIELDS);
+}  // namespace twinray::particles

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// Balls in a box with an open front: the host places them, a kernel does the rest.
+#pragma once
+
+#include "engine/accel/abstract_accel.h"
+#include "engine/core/kernel.h"
+#include "samples/particles/shared.h"
+
+namespace twinray::particles {
+
+struct Motions {
+    std::vector<vec3> positions, velocities;
+    std::vector<float> radii;
+};
+// Random, the same for the same seed; the more particles, the smaller.
+Motions make_particles(uint count, uint seed);
+
+constexpr float seconds_per_frame = 1.0f / 60, gravity = 3, bounce = 0.9f, max_speed = 3;
+
+class Simulation {
+  public:
+    // Places walls and balls in the accelerator, which is empty, and syncs it.
+    Simulation(AbstractAccel& accel, const Motions& start);
+
+    // Records and submits one frame: moves the balls, colours them, refits the accelerator. Waits for nothing.
+    void step();
+
+    AbstractAccel& accel() { return accel_; }
+    const Mesh& walls() const { return walls_; }
+    const Mesh& ball() const { return ball_; }
+    Materials& materials() { return materials_; }
+    const std::vector<SetKey>& keys() const { return keys_; }  // by instance
+    const ParticleArrays& particles() const { return particles_; }
+    AccelHandle balls() const { return balls_; }
+    // Of all instances, the walls first.
+    Ref<InstanceRecord> instances() const { return accel_.instance_buffer(walls_handle_).records; }
+    // GPU times of the last step(), for which it waits.
+    std::vector<PassTiming> timings() const;
+
+  private:
+    AbstractAccel& accel_;
+    Mesh walls_, ball_;
+    Materials materials_;
+    std::vector<SetKey> keys_;
+    ParticleArrays particles_;
+    Kernel<MoveArgs> move_;
+    AccelHandle walls_handle_, balls_;
+    std::unique_ptr<Commands> last_;
+};
+
+}  // namespace twinray::particles

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// In kernels compiled with TWINRAY_DEBUG: tells the host of a key or an index that names nothing.
+#ifndef TWINRAY_FAULTS_GLSL
+#define TWINRAY_FAULTS_GLSL
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/faults.h"
+
+#ifdef TWINRAY_DEBUG
+void note_fault(REF(Faults) faults, uint type, uint index)
+{
+    if (atomicAdd(AT(faults, 0).count, 1u) != 0u) return;
+    AT(faults, 0).type = type;
+    AT(faults, 0).index = index;
+}
+#define TWINRAY_FAULT(faults, type, index) note_fault(faults, type, index);
+#else
+#define TWINRAY_FAULT(faults, type, index)
+#endif
+#endif

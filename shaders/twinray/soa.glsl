@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Items of a structure of arrays in kernels: what Soa::view() gives, declared by TWINRAY_SOA_VIEW.
+//
+//     vec3 direction = vec3(0); // what an index out of range gives
+//     SOA_GET(push.queue, i, direction, direction)
+//     SOA_SET(push.queue, i, t_max, 2.0 * t_max)
+//
+// An index that is not below `count` reads and writes nothing. Kernels compiled with TWINRAY_DEBUG note it, for
+// Soa::check_faults(). Where i is known to be in range, AT(push.queue.direction, i) is the same without the comparison.
+#ifndef TWINRAY_SOA_GLSL
+#define TWINRAY_SOA_GLSL
+#include "twinray/faults.glsl"
+#include "shaders/shared/soa.h"
+
+// Statements; `queue` is a variable or a member, not a call.
+#define SOA_GET(queue, i, field, variable)                                                      \
+    {                                                                                           \
+        if ((i) < queue.count) {                                                                \
+            variable = AT(queue.field, i);                                                      \
+        } else {                                                                                \
+            TWINRAY_FAULT(queue.faults, 0u, i)                                                  \
+        }                                                                                       \
+    }
+#define SOA_SET(queue, i, field, value)                                                         \
+    {                                                                                           \
+        if ((i) < queue.count) {                                                                \
+            AT(queue.field, i) = value;                                                         \
+        } else {                                                                                \
+            TWINRAY_FAULT(queue.faults, 0u, i)                                                  \
+        }                                                                                       \
+    }
+#endif

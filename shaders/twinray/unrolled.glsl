@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Loops over structs whose members differ in type, unrolled by the preprocessor: engine/core/unrolled.h for kernels.
+// FUNCTION is a set of overloads, ACTION a macro of the caller's that may use what is around it:
+//
+//     #define LIGHTS(X, P) X(P, 0, Lamp, lamp) X(P, 1, Sun, sun)
+//     TUPLE(Lights, LIGHTS) // struct Lights { Lamp lamp; Sun sun; };
+//     float power(Lamp lamp) { ... }
+//     float power(Sun sun) { ... }
+//
+//     float total = 0.0;
+//     SUM_UNROLLED(LIGHTS, lights, total, power)
+//
+// `tuple` is a variable or a member, not a call. Loops of a constant count are unrolled by UNROLL before `for`.
+#ifndef TWINRAY_UNROLLED_GLSL
+#define TWINRAY_UNROLLED_GLSL
+#include "shaders/shared/bridge.glsl"
+
+#define TUPLE_FIELD_(P, number, Type, name) Type name;
+#define TUPLE(Name, LIST) struct Name { LIST(TUPLE_FIELD_, 0) };
+
+// The parts of what lists pass on to each type.
+#define FIRST_(a, b, c) a
+#define SECOND_(a, b, c) b
+#define THIRD_(a, b, c) c
+
+// ACTION(element) for each.
+#define FOR_CASE_(P, number, Type, name) SECOND_ P(FIRST_ P.name);
+#define FOR_UNROLLED(LIST, tuple, ACTION) { LIST(FOR_CASE_, (tuple, ACTION, 0)) }
+
+// to.member = FUNCTION(from.member) for each; `to` has members of the same names.
+#define MAP_CASE_(P, number, Type, name) SECOND_ P.name = THIRD_ P(FIRST_ P.name);
+#define MAP_UNROLLED(LIST, from, to, FUNCTION) { LIST(MAP_CASE_, (from, to, FUNCTION)) }
+
+// result = FUNCTION(result, element) for each in order; result keeps its value where there are none.
+#define REDUCE_CASE_(P, number, Type, name) SECOND_ P = THIRD_ P(SECOND_ P, FIRST_ P.name);
+#define REDUCE_UNROLLED(LIST, tuple, result, FUNCTION) { LIST(REDUCE_CASE_, (tuple, result, FUNCTION)) }
+
+// result = result + FUNCTION(element) for each in order.
+#define SUM_CASE_(P, number, Type, name) SECOND_ P = SECOND_ P + THIRD_ P(FIRST_ P.name);
+#define SUM_UNROLLED(LIST, tuple, result, FUNCTION) { LIST(SUM_CASE_, (tuple, result, FUNCTION)) }
+
+// ACTION(element) for the element at an index: a switch. An index out of range calls nothing.
+#define GET_CASE_(P, number, Type, name) case uint(number): SECOND_ P(FIRST_ P.name); break;
+#define GET_UNROLLED(LIST, tuple, index, ACTION) switch (uint(index)) { LIST(GET_CASE_, (tuple, ACTION, 0)) default: break; }
+#endif

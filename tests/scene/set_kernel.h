@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Types of the test's sets, and what is asked of them, on host and GPU alike.
+#ifndef TWINRAY_TESTS_SET_KERNEL_H
+#define TWINRAY_TESTS_SET_KERNEL_H
+#include "shaders/shared/multi_type_set.h"
+#include "shaders/shared/soa.h"
+
+struct Diffuse {
+    vec3 color;
+    float gain;
+};
+BUFFER_OF(Diffuse, 4);
+
+struct Glass {
+    float ior;
+};
+BUFFER_OF(Glass, 4);
+
+// 8-byte members, and longer than the others.
+struct Layered {
+    uint64_t id;
+    vec4 layers[3];
+};
+BUFFER_OF(Layered, 8);
+
+#define TEST_TYPES(X, P) X(P, 0, Diffuse, diffuse) X(P, 1, Glass, glass) X(P, 2, Layered, layered)
+TWINRAY_SET_VIEW(TestSet, TEST_TYPES)
+
+FUNC float value_of(Diffuse diffuse, float x) { return x * diffuse.gain + diffuse.color.y; }
+FUNC float value_of(Glass glass, float x) { return x - glass.ior; }
+FUNC float value_of(Layered layered, float x) { return x + layered.layers[2].w + float(uint(layered.id >> 32u)); }
+
+// The weight in which FOREACH_ELEMENT takes an element.
+FUNC float weight_of(uint i) { return float(1u + i % 7u); }
+
+#define TEST_QUEUE(X, P) X(P, 0, vec3, origin) X(P, 1, uint, pixel) X(P, 2, float, t) X(P, 3, Diffuse, material)
+TWINRAY_SOA_VIEW(TestQueue, TEST_QUEUE)
+
+struct SetTestArgs {
+    TestSet set;
+    REF(SetKey) keys;
+    Floats values;  // by key, then the weighted sum of all elements, then results of the unrolled loops
+    uint count;     // keys
+    uint writes;    // whether elements of glass are doubled instead
+};
+
+struct SoaTestArgs {
+    TestQueue from;
+    TestQueue to;
+    uint invocations;
+    uint shift;  // to item i goes from item i + shift
+};
+
+const float FALLBACK = -1000.0f;
+const uint UNROLLED_RESULTS = 9u;
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#ifndef TWINRAY_TESTS_TEXTURE_KERNEL_H
+#define TWINRAY_TESTS_TEXTURE_KERNEL_H
+#include "shaders/shared/textures.h"
+
+// Asks for the size and one texel, and samples at a point.
+struct TextureQuestion {
+    TextureRef texture;
+    int x;
+    int y;
+    vec2 uv;
+};
+BUFFER_OF(TextureQuestion, 4);
+
+struct TextureAnswer {
+    uvec2 size;
+    vec4 texel;
+    vec4 color;
+};
+BUFFER_OF(TextureAnswer, 4);
+
+struct TextureTestArgs {
+    TextureTable textures;
+    REF(TextureQuestion) questions;
+    REF(TextureAnswer) answers;
+    uint count;
+};
+#endif
