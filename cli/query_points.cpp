@@ -25,7 +25,7 @@ QueryBox query_box(const Scene& scene) {
 
 std::vector<dvec3> read_points(const std::filesystem::path& file) {
     std::vector<dvec3> points;
-    read_number_lines(file, "points file", "x,y,z", [&](std::span<const double> xyz) {
+    read_number_lines(file, "points file", "x,y,z", [&](std::span<const double> xyz, std::size_t) {
         if (points.size() == most_points) fail("points file '", file.string(), "': it has more than ", most_points);
         points.push_back({xyz[0], xyz[1], xyz[2]});
     });

@@ -159,12 +159,14 @@ Totals totals_of(const std::vector<ViewFactorRow>& rows) {
 }
 
 void print_residuals(const char* when, const ViewFactorResiduals& residuals) {
-    std::cout << when << ": reciprocity " << residuals.reciprocity << " of the largest area ("
-              << residuals.reciprocity_sigma << " standard errors at most), closure " << residuals.closure << '\n';
+    std::cout << when << ": reciprocity " << residuals.reciprocity << " of the largest area, "
+              << residuals.reciprocity_scaled << " of the smaller of two (" << residuals.reciprocity_sigma
+              << " standard errors at most), closure " << residuals.closure << '\n';
 }
 
 nlohmann::json json_of(const ViewFactorResiduals& residuals) {
     return {{"reciprocity", residuals.reciprocity},
+            {"reciprocity_scaled", residuals.reciprocity_scaled},
             {"reciprocity_sigma", residuals.reciprocity_sigma},
             {"closure", residuals.closure}};
 }

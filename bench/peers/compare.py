@@ -248,8 +248,8 @@ def viewfactors(bench):
 
         bench.measure(f"room of {len(box.faces)} triangles", {
             "twinray viewfactors": ours,
-            "the same, hits of 2^14 rays": lambda: ours("--estimator", "hits"),
-            "the same, 2^18 rays": lambda: ours("--estimator", "hits", "--rays", 1 << 18),
+            **{f"the same, hits of 2^{k} rays": lambda k=k: ours("--estimator", "hits", "--rays", 1 << k)
+               for k in (10, 12, 14, 16, 18)},
             "pyviewfactor": of_pyviewfactor})
 
 
@@ -261,6 +261,8 @@ def main():
     domains = {each.__name__: each for each in (collisions, distances, rays, viewfactors)}
     parser.add_argument("--only", choices=domains)
     options = parser.parse_args()
+    if options.rounds < 2:
+        parser.error(f"--rounds {options.rounds}: at least 2, for pairs are judged once both have found theirs")
     bench = Bench(options)
     for name, domain in domains.items():
         if options.only in (None, name):

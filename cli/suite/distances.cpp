@@ -51,7 +51,8 @@ void measure_nearest(CaseRun& run, const Mesh& mesh, const std::vector<dvec3>& p
             const dvec3& point = points[i * step];
             const ClosestPoint& of = found[i * step];
             const double known = nearest_of_all(mesh, point);
-            const double of_named = distance_to(mesh, mesh.triangles[of.triangle], point);
+            const double of_named =
+                of.is_found ? distance_to(mesh, mesh.triangles[of.triangle], point) : static_cast<double>(INFINITY);
             errors[i] = std::max(std::abs(of.distance - known), of_named - known) / known;
             slack[i] = 0x1p-49 * (1 + glm::length(point)) / known;
         }

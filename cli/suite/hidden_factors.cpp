@@ -26,6 +26,13 @@ Rows rows_of(CaseRun& run, const Subject& subject, const Scene& scene, FaceGroup
     return {factors.rows(0, factors.row_count()), factors.areas()};
 }
 
+// 0, known without a doubt, where no ray told: a fault if it is wrong.
+ViewFactor factor_of(const ViewFactorRow& row, uint target) {
+    for (const ViewFactor& factor : row.factors)
+        if (factor.target == target) return factor;
+    return {.target = target};
+}
+
 // Before projection, pairs differ as counts do; after it, by rounding to float32.
 void expect_reciprocity(CaseRun& run, const Scene& scene, FaceGrouping grouping, const Values& params) {
     for (const Subject& subject : analysis_subjects(run)) {
@@ -34,12 +41,14 @@ void expect_reciprocity(CaseRun& run, const Scene& scene, FaceGrouping grouping,
         project(rows, areas);
         const ViewFactorResiduals after = residuals_of(rows, areas);
         constexpr double rounding = 0x1p-22;
-        const bool is_far = before.reciprocity_sigma > most_sigma, is_left = after.reciprocity > rounding;
+        const bool is_far = before.reciprocity_sigma > most_sigma, is_left = after.reciprocity_scaled > rounding;
         run.expect(subject, {.params = params,
                              .results = {{"reciprocity", before.reciprocity},
                                          {"reciprocity_sigma", before.reciprocity_sigma},
                                          {"closure", before.closure},
+                                         {"reciprocity_scaled", before.reciprocity_scaled},
                                          {"reciprocity_projected", after.reciprocity},
+                                         {"reciprocity_scaled_projected", after.reciprocity_scaled},
                                          {"closure_projected", after.closure}},
                              .n = rows.size(),
                              .faults = static_cast<std::uint64_t>(is_far) + is_left + (after.closure > rounding),
@@ -61,7 +70,9 @@ void expect_nothing(CaseRun& run, const Scene& scene, const std::string& what) {
             if (row.group > 1) continue;
             rays += row.rays;
             for (const ViewFactor& factor : row.factors)
-                if (factor.target < 2) seen += static_cast<std::uint64_t>(factor.value * static_cast<double>(row.rays));
+                if (factor.target < 2)
+                    seen += static_cast<std::uint64_t>(
+                        std::llround(static_cast<double>(factor.value) * static_cast<double>(row.rays)));
         }
         run.expect(subject, {.params = {{"faces", what}},
                              .n = rays,
@@ -139,7 +150,7 @@ void refined(CaseRun& run) {
     const auto most = static_cast<uint>(run.amount(64, 224));
     const Scene scene = parallel_squares(1, most);
     for (const Subject& subject : analysis_subjects(run)) {
-        const ViewFactor found = rows_of(run, subject, scene, FaceGrouping::mesh, 1 << 16).rows[0].factors[0];
+        const ViewFactor found = factor_of(rows_of(run, subject, scene, FaceGrouping::mesh, 1 << 16).rows[0], 1);
         const double error = static_cast<double>(found.value) - known, half = (found.high - found.low) / 2.0;
         run.expect(subject, {.params = {{"faces", 4 * most * most}},
                              .results = {{"error", error}, {"half_interval", half}},

@@ -65,6 +65,8 @@ void discs(CaseRun& run) {
 void concentric_spheres(CaseRun& run) {
     const Scene scene = scene_of({seen_from_inside(make_icosphere(1, 2)), make_icosphere(1, 1)});
     measure_factor(run, {.scene = scene, .value = 0.25, .params = {{"radii", "2, 1"}}}, methods_of(hits_and_contour));
+    measure_factor(run, {.scene = scene, .value = 1, .from = 1, .to = 0, .params = {{"radii", "1, 2"}}},
+                   std::array{EstimatorMethod{PairEstimator::hits}});
 }
 
 void gaps(CaseRun& run) {

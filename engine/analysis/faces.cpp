@@ -20,6 +20,18 @@ std::uint64_t count_faces(const Scene& scene) {
     return count;
 }
 
+double largest_coordinate_of(const Scene& scene, Face face) {
+    const Instance& instance = scene.instances[face.instance];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const uvec3 triangle = mesh.triangles[face.primitive];
+    double largest = 0;
+    for (const uint vertex : {triangle.x, triangle.y, triangle.z}) {
+        const dvec3 p = glm::abs(in_world(instance.transform, mesh.positions[vertex]));
+        largest = std::max({largest, p.x, p.y, p.z});
+    }
+    return largest;
+}
+
 }  // namespace
 
 std::string_view name_of(FaceGrouping grouping) {
@@ -82,7 +94,13 @@ Faces::Faces(Context& context, const Scene& scene)
     table_ = {instance_buffer_.ref<FacesOfInstance>(), face_buffer_.ref<Face>()};
     areas_.resize(count);
     parallel_for(count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t face = begin; face < end; ++face) areas_[face] = glm::length(area_vector(scene, faces_[face]));
+        for (std::size_t face = begin; face < end; ++face) {
+            areas_[face] = glm::length(area_vector(scene, faces_[face]));
+            const double largest = areas_[face] > 0 ? largest_coordinate_of(scene, faces_[face]) : 0;
+            if (!(largest <= largest_coordinate))
+                fail("faces: triangle ", faces_[face].primitive, " of instance ", faces_[face].instance,
+                     " has a coordinate of ", largest, " in world space; at most 2^124, about 2.1e37");
+        }
     });
 }
 

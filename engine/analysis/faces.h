@@ -45,9 +45,11 @@ std::uint32_t checksum_of(const Scene& scene);
 // scene, which is that of an accelerator into which push_scene() put it: hits of that tell faces.
 class Faces {
   public:
-    static constexpr std::uint64_t most = 0xffff'fff0;  // numbers above mean something else to kernels
+    static constexpr std::uint64_t most = 0xffff'fff0;     // numbers above mean something else to kernels
+    static constexpr double largest_coordinate = 0x1p124;  // beyond it, distances overflow float32
 
-    // Throws Error where there are more than `most`.
+    // Throws Error where there are more than `most`, or a corner that counts is further out in world space than
+    // `largest_coordinate`.
     Faces(Context& context, const Scene& scene);
 
     FaceTable table() const { return table_; }

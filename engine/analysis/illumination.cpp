@@ -88,7 +88,8 @@ void estimate(LitArea& lit, const GroupCount& count, const RayGridPlan& plan) {
     lit.interval = {0, lit.unobstructed};
     if (plan.grid.points != GRID_AT_RANDOM) return;
     const Interval hits = paired_count_interval_95(lit.hits, count.odd, plan.ray_count);
-    lit.interval.high = std::min(hits.high * plan.cell_area, lit.unobstructed);
+    // No more light than without shadows; but of few rays more may hit than their share, which is then what is told.
+    lit.interval.high = std::max(std::min(hits.high * plan.cell_area, lit.unobstructed), lit.area);
     lit.interval.low = std::min(hits.low * plan.cell_area, lit.interval.high);
 }
 

@@ -126,13 +126,13 @@ class Planner {
         return choose(faces, pair);
     }
 
-    // Contours are kept where they err by less than float32 does, or where nothing better is left.
+    // Contours are kept unless areas are sure to be better, which take 10^4 rays and more to an error of 2^-12.
     bool choose(const FacePair& faces, PlannedPair& pair) const {
         const bool is_far = faces.gap_over_size >= least_gap_for_area;
         if (!faces.in_between) {
-            constexpr double rounding = 0x1p-24;
+            constexpr double worse = 0x1p-12;
             const ContourExchange contour = contour_of(faces);
-            if (contour.error <= rounding * contour.flow || !is_far) {
+            if (contour.error <= worse * contour.flow || !is_far) {
                 add(contour, pair);
                 return true;
             }

@@ -81,8 +81,8 @@ Joint joint(const Exchange& exchange, const std::vector<ViewFactorRow>& rows, co
     const auto variance_of = [&](uint group, double flow) { return variance(flow, areas[group], rows[group].rays); };
     const double flow = std::min({(exchange.of_i + exchange.of_j) / 2, areas[exchange.i], areas[exchange.j]});
     Joint mean{flow, 0};
-    constexpr int rounds = 8;  // of a quadratic convergence
-    for (int round = 0; round < rounds; ++round) {
+    constexpr int most_rounds = 8;  // each leaves a small part of the error
+    for (int round = 0; round < most_rounds; ++round) {
         const double vi = variance_of(exchange.i, mean.flow), vj = variance_of(exchange.j, mean.flow);
         if (!(vi + vj > 0)) return {mean.flow, 0};
         mean = {(exchange.of_i * vj + exchange.of_j * vi) / (vi + vj), vi * vj / (vi + vj)};
@@ -239,6 +239,8 @@ ViewFactorResiduals residuals_of(const std::vector<ViewFactorRow>& rows, const s
         if (i == j || rows[i].rays == 0 || rows[j].rays == 0) return;
         const double difference = std::abs(of_i - of_j), flow = joint(exchange, rows, areas).flow;
         residuals.reciprocity = std::max(residuals.reciprocity, difference / largest);
+        residuals.reciprocity_scaled =
+            std::max(residuals.reciprocity_scaled, difference / std::min(areas[i], areas[j]));
         if (known > 0) return;
         const auto expected = [&](uint group) { return flow / areas[group] * static_cast<double>(rows[group].rays); };
         if (std::min(expected(i), expected(j)) < 10) return;

@@ -10,7 +10,8 @@
 namespace twinray {
 
 struct ViewFactorResiduals {
-    double reciprocity = 0;  // largest |A_i F_ij - A_j F_ji| over the largest area
+    double reciprocity = 0;         // largest |A_i F_ij - A_j F_ji| over the largest area
+    double reciprocity_scaled = 0;  // the same, over the smaller area of the two
     // The same difference in standard errors of it: the largest of those pairs of which at least 10 rays are expected
     // either way.
     double reciprocity_sigma = 0;

@@ -87,8 +87,6 @@ ViewFactors::ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFac
       areas_(faces.areas_of(members_)),
       known_(members_.size()) {
     for (const KnownExchange& exchange : known) {
-        // Where all rays between areas are blocked, those that hit something may still tell more.
-        if (exchange.flow == 0 && exchange.by == PairEstimator::area) continue;
         known_[exchange.i].push_back(factor_of(exchange, exchange.j, areas_[exchange.i]));
         if (exchange.i != exchange.j) known_[exchange.j].push_back(factor_of(exchange, exchange.i, areas_[exchange.j]));
     }
@@ -228,7 +226,6 @@ std::vector<ViewFactorRow> ViewFactors::results(const std::vector<Row>& rows) {
         }
         std::merge(counted.begin(), counted.end(), known.begin(), known.end(), std::back_inserter(result.factors),
                    is_before);
-        std::erase_if(result.factors, [](const ViewFactor& factor) { return factor.value == 0; });
         results.push_back(std::move(result));
     }
     return results;

@@ -41,10 +41,12 @@ struct ViewFactor {
 
 struct ViewFactorRow {
     uint group = 0;
-    std::uint64_t rays = 0;           // none where it has no area
-    std::vector<ViewFactor> factors;  // above 0, ascending by target
-    std::uint64_t hits = 0;           // rays that met a face
-    Estimate open, back;              // fractions that met nothing, or a back side
+    std::uint64_t rays = 0;  // none where it has no area
+    // Ascending by target, without those that are 0, but for areas all of whose rays were blocked: hits in their place
+    // whenever they found nothing would make the mean too large, and the interval is what is known of them.
+    std::vector<ViewFactor> factors;
+    std::uint64_t hits = 0;  // rays that met a face
+    Estimate open, back;     // fractions that met nothing, or a back side
 };
 
 class ViewFactors {

@@ -122,6 +122,10 @@ TEST_P(CentroidRulesTest, WrongUseSaysWhatIsWrong) {
                   centroid(accel(), scene_of({square(0)}), along({0, INFINITY, -1}, 9));
               }).find("finite"),
               std::string::npos);
+    const Scene vast = scene_of({make_quad(vec3(-3.4e38f, 0, 0), vec3(3.4e38f, 0, 0), vec3(0, 3e38f, 0))});
+    fill(vast);
+    EXPECT_NE(error_of([&] { centroid(accel(), vast, along({1, 0, 0.1}, 9)); }).find("float32 ends"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -72,6 +72,50 @@ TEST_P(PairExchangesTest, IntervalsOfAreasHoldTheTruthAsOftenAsTheyShould) {
     }
 }
 
+// A square at half the height of parallel squares with a hole of 1/16 in its middle, and further out than they are.
+Mesh pierced_plate() {
+    Mesh mesh;
+    for (const float half : {1.5f, 0x1p-5f})
+        for (const vec3& corner :
+             {vec3(-half, -half, 0), vec3(half, -half, 0), vec3(half, half, 0), vec3(-half, half, 0)})
+            mesh.positions.push_back(vec3(0.5f) + corner);
+    for (uint i = 0; i < 4; ++i) {
+        const uint next = (i + 1) % 4;
+        mesh.triangles.push_back({i, next, 4 + next});
+        mesh.triangles.push_back({i, 4 + next, 4 + i});
+    }
+    return mesh;
+}
+
+// Whether rays of an area find the hole is chance, of which the mean must not depend.
+TEST_P(PairExchangesTest, FewRaysThroughAHoleHaveNoBias) {
+    Scene scene = test::parallel_squares(1);
+    scene.meshes.push_back(pierced_plate());
+    scene.instances.push_back({"", 2, {}});
+    constexpr double known = 0.00210311518129349067;  // the integral over the hole of Howell's B-4
+    constexpr uint seeds = 100;
+    double sum = 0, squares = 0;
+    uint without = 0;
+    for (uint seed = 1; seed <= seeds; ++seed) {
+        double flow = 0;
+        for (const ViewFactorRow& row : rows(scene, {.rays = 64, .seed = seed}, PairEstimator::automatic)) {
+            if (row.group > 1) continue;
+            for (const ViewFactor& factor : row.factors)
+                if (factor.target == 2 || factor.target == 3) {
+                    EXPECT_EQ(factor.by, PairEstimator::area);
+                    without += factor.value == 0;
+                    flow += 0.5 * static_cast<double>(factor.value);
+                }
+        }
+        sum += flow;
+        squares += flow * flow;
+    }
+    const double mean = sum / seeds, error = std::sqrt((squares / seeds - mean * mean) / seeds);
+    EXPECT_NEAR(mean, known, 3 * error);
+    EXPECT_LE(error, 0.15 * known);
+    EXPECT_GT(without, seeds) << "of " << 4 * seeds;
+}
+
 const ViewFactor& factor(const ViewFactorRow& row, uint target) {
     static const ViewFactor none;
     for (const ViewFactor& entry : row.factors)

@@ -109,7 +109,7 @@ with tempfile.TemporaryDirectory() as folder:
             expect(float(r["ci_low"]) - 0.002 < truth < float(r["ci_high"]) + 0.002, r)
     expect("excludes" in run(box, "--groups", groups, "--by", "mesh", fails=True), "one or the other")
     for lines, words in [([(0, 0)], "face 1 is missing"), ([(0, 0), (0, 0)], "face 0 is there twice"),
-                         ([(432, 0)], "face 432 in group 0; both count from 0 to 431"), ([(0, 0.5)], "in group 0.5")]:
+                         ([(432, 0)], "line 2: face 432; both are whole numbers from 0 to 431"), ([(0, 0.5)], "line 2: group 0.5")]:
         write_groups(lines)
         expect(words in run(box, "--groups", groups, fails=True), words)
 
@@ -124,6 +124,10 @@ with tempfile.TemporaryDirectory() as folder:
     expect(exact["entries_by_estimator"] == {"area": 0, "contour": 48 * 40, "hits": 0}, exact)
     expect(exact["as_counted"]["closure"] < 1e-6 and exact["widest_half_interval"] < 1e-6, exact)
     expect(all(count > 0 for count in mixed["entries_by_estimator"].values()) and mixed["rays_between_faces"] > 0, mixed)
+    for accel in ("sw", "hw"):
+        run(plate, "--rays", "1024", "--estimator", "hits", "--accel", accel, "-o", os.path.join(folder, accel + ".npz"))
+    with open(os.path.join(folder, "sw.npz"), "rb") as one, open(os.path.join(folder, "hw.npz"), "rb") as other:
+        expect(one.read() == other.read(), "both accelerators give the same counts")
     expect("may come between" in run(plate, "--estimator", "contour", fails=True), "contours are refused")
     expect("of their longest edge" in run(plate, "--estimator", "area", fails=True), "areas are refused")
 
