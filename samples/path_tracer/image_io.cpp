@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
@@ -73,10 +74,15 @@ bool is_picture_file(const std::filesystem::path& file) {
 }
 
 void write_picture(const std::filesystem::path& file, const Picture& picture, float exposure) {
+    std::filesystem::path partial = file;
+    partial += text(".partial-", std::hex, std::random_device{}());
     if (lower_suffix(file) == ".exr")
-        write_exr(file, picture);
+        write_exr(partial, picture);
     else
-        write_exposed(file, picture, exposure);
+        write_exposed(partial, picture, exposure);
+    std::error_code error;
+    std::filesystem::rename(partial, file, error);
+    if (error) fail("'", file.string(), "': cannot be written: ", error.message());
 }
 
 }  // namespace twinray::path_tracer

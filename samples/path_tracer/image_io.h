@@ -20,7 +20,7 @@ struct Picture {
 float automatic_exposure(const Picture& picture);
 
 // By suffix: .exr, linear 32-bit float, without exposure; .png, 8-bit sRGB, exposed and tone mapped with Khronos PBR
-// Neutral. Throws Error naming the file.
+// Neutral. What was there before is replaced at the end. Throws Error naming the file.
 void write_picture(const std::filesystem::path& file, const Picture& picture, float exposure);
 
 // Whether write_picture knows the suffix.

@@ -14,7 +14,7 @@ struct PathState
 {
     vec3 throughput;
     float pdf;     // density by solid angle with which the ray was sampled; 0: it could not have been found as light
-    uint pixel;
+    uint pixel;    // of the film
     uint progress; // low half: surfaces met, which number the random dimensions; high half: scatterings of them
 };
 BUFFER_OF(PathState, 8);
@@ -46,15 +46,28 @@ struct CameraRays
     uint orthographic;
 };
 
+// Where the pixels of a film lie in the whole picture. Random numbers belong to pixels of the whole picture, so that a
+// part of it is the same when it is rendered alone.
+struct FilmWindow
+{
+    uint width;         // of the film
+    uint picture_width;
+    uint first;         // index of the film's first pixel in the picture
+};
+FUNC uint picture_index(FilmWindow window, uint pixel)
+{
+    return window.first + pixel + (pixel / window.width) * (window.picture_width - window.width);
+}
+
 struct GenerateArgs
 {
     REF(Ray) rays;
     REF(PathState) paths;
+    Uints pixels; // of the film, in the order in which they are traced
     CameraRays camera;
-    uint first; // position in the order of pixels
+    FilmWindow window;
+    uint picture_height;
     uint count;
-    uint width;
-    uint height;
     uint sample_index;
     uint seed;
 };
@@ -75,6 +88,7 @@ struct ShadeArgs
     uint sample_index;
     uint seed;
     uint max_depth;
+    FilmWindow window;
 };
 
 struct ShadowArgs
