@@ -126,7 +126,22 @@ void Renderer::accumulate() {
         commands,
         {film_.ref<FilmPixel>(), sums_.ref<Radiance>(), counters_.ref<Counters>(), pixels_.ref<uint>(), pixel_count_},
         pixel_count_);
-    commands.submit();
+    submit(commands);
+}
+
+SyncPoint Renderer::submit(Commands& commands) {
+    const SyncPoint done = commands.submit();
+    if (settings_.is_timed)
+        for (const PassTiming& pass : commands.timings()) stats_.pass_ms[pass.name] += pass.ms;
+    return done;
+}
+
+std::uint64_t Renderer::device_bytes() const {
+    std::uint64_t bytes = 0;
+    for (const Buffer* buffer : {&rays_[0], &rays_[1], &paths_[0], &paths_[1], &hits_, &shadow_rays_[0],
+                                 &shadow_rays_[1], &shadows_[0], &shadows_[1], &counters_, &sums_, &film_, &pixels_})
+        bytes += buffer->bytes();
+    return bytes;
 }
 
 void Renderer::read(Film& film) { film.pixels = download<FilmPixel>(context_, film_, film_size_); }

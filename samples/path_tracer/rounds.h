@@ -14,9 +14,9 @@ constexpr uint pilot_blocks = 4;
 
 // Whichever comes first.
 struct StoppingRules {
-    uint samples = 16;              // of each pixel
-    std::optional<double> seconds;  // of this run
-    std::optional<double> error;    // Film::error(); pixels then get as many samples as they need
+    uint samples = 16;                   // of each pixel
+    std::optional<double> seconds = {};  // of this run
+    std::optional<double> error = {};    // Film::error(); pixels then get as many samples as they need
 };
 
 // Every count-th block from `index` on.
