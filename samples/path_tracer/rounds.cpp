@@ -2,6 +2,8 @@
 #include "samples/path_tracer/rounds.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "samples/path_tracer/renderer.h"
 
@@ -25,12 +27,29 @@ std::vector<double> means_around(const std::vector<double>& variances, uint widt
     return means;
 }
 
+// Those that lack blocks, and as many blocks as they lack on average; but no more than an eighth of what there is,
+// since what they need is known better after each round.
+Round lacking_round(const Film& film, uint end, double target) {
+    const std::vector<double> needed = blocks_needed(film, target);
+    const uint done = film.blocks.end();
+    Round round{.first = done};
+    double lack = 0;
+    for (const uint pixel : pixel_order(film.width, film.height))
+        if (const double missing = needed[pixel] - film.pixels[pixel].count; missing > 0) {
+            round.pixels.push_back(pixel);
+            lack += missing;
+        }
+    const double most = std::min(end - done, std::max(1u, done / 8));
+    round.count =
+        static_cast<uint>(std::clamp(lack / std::max(1.0, static_cast<double>(round.pixels.size())), 1.0, most));
+    return round;
+}
+
 std::optional<Round> next_adaptive_round(const Film& film, uint end, double target) {
     const uint done = film.blocks.end();
-    if (done < pilot_blocks) return Round{done, pilot_blocks - done};
+    if (done < pilot_blocks) return Round{.first = done, .count = pilot_blocks - done};
     if (done >= end || film.error() <= target) return {};
-    // An eighth more: the error falls by 6 % or less, so that the target is not missed by more than that.
-    return Round{done, std::min(end - done, std::max(1u, done / 8)), pixels_above(film, target)};
+    return lacking_round(film, end, target);
 }
 
 }  // namespace
@@ -43,14 +62,18 @@ std::optional<Round> next_round(const Film& film, const StoppingRules& rules, co
     return {};
 }
 
-std::vector<uint> pixels_above(const Film& film, double target) {
-    const std::vector<double> around = means_around(film.variances(), film.width, film.height);
-    const double error = target * mean_luminance(film), limit = error * error;
-    const std::vector<uint> order = pixel_order(film.width, film.height);
-    std::vector<uint> pixels;
-    std::copy_if(order.begin(), order.end(), std::back_inserter(pixels),
-                 [&](uint pixel) { return around[pixel] > limit; });
-    return pixels.empty() ? order : pixels;
+std::vector<double> blocks_needed(const Film& film, double target) {
+    std::vector<double> deviations = film.variances();
+    for (std::size_t i = 0; i < deviations.size(); ++i) deviations[i] *= film.pixels[i].count;
+    deviations = means_around(deviations, film.width, film.height);
+    const auto mean = [&] {
+        return std::accumulate(deviations.begin(), deviations.end(), 0.0) / static_cast<double>(deviations.size());
+    };
+    for (double& deviation : deviations) deviation = std::sqrt(deviation);
+    for (const double least = mean() / 4; double& deviation : deviations) deviation = std::max(deviation, least);
+    const double error = target * mean_luminance(film), scale = mean() / (error * error);
+    for (double& deviation : deviations) deviation *= scale;
+    return deviations;
 }
 
 double fraction_done(const BlockSet& blocks, uint block_size, const StoppingRules& rules, const Shard& shard,

@@ -36,11 +36,11 @@ struct Round {
 // film.blocks is looked at.
 std::optional<Round> next_round(const Film& film, const StoppingRules& rules, const Shard& shard);
 
-// Those around which (5 x 5 pixels) the root mean square of the standard errors exceeds target times the mean luminance
-// of the picture, in the order of pixels; all, where there is none. Neighbours make up for how little a few blocks of
-// one pixel tell of its error: a pixel that by chance has missed all bright paths would otherwise be left alone, and
-// the picture be too dark.
-std::vector<uint> pixels_above(const Film& film, double target);
+// How many blocks each pixel should have, so that the film has the target error with as few as possible: as many as its
+// standard deviation asks for (Neyman's optimal allocation, 1934). Deviations are taken over 5 x 5 pixels, and none
+// counts for less than a quarter of their mean: a few blocks of one pixel tell little, one that by chance has missed
+// all bright paths would be left alone, and the picture be too dark.
+std::vector<double> blocks_needed(const Film& film, double target);
 
 // How much of the work is done, from 0 to 1. error: as it is now; infinite where not known.
 double fraction_done(const BlockSet& blocks, uint block_size, const StoppingRules& rules, const Shard& shard,

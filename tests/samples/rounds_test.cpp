@@ -71,11 +71,10 @@ TEST(Rounds, PixelsGetAsManySamplesAsTheyNeed) {
     const Film film = adaptive_film({.samples = 1 << 16, .error = 0.1}, uneven, 1);
     EXPECT_LE(film.error(), 0.1);
     EXPECT_GT(film.error(), 0.09);
-    // Two rows of neighbours see the noisy half.
-    for (uint pixel = 0; pixel < side * (side / 2 - 2); ++pixel)
-        ASSERT_EQ(film.pixels[pixel].count, pilot_blocks) << pixel;
-    // Half of the pixels have a variance of 19 a sample, the others next to none.
-    EXPECT_NEAR(film.mean_samples(), 19 / 0.01 / 4, 150);
+    // Half of the pixels have a variance of 19 a sample, the others next to none: as many samples for each would be 950.
+    EXPECT_LT(film.mean_samples(), 750);
+    EXPECT_GT(film.pixels.back().count, 5 * film.pixels.front().count);
+    EXPECT_GT(film.pixels.front().count, 2 * pilot_blocks) << "none is left alone";
 }
 
 TEST(Rounds, TheLimitOfSamplesHolds) {
