@@ -83,9 +83,10 @@ float exposure_of(const std::optional<float>& wanted, const Configuration& confi
     return value_of(configuration, environment_entry) == default_sky_value ? 0 : automatic_exposure(picture);
 }
 
-void write_picture_of(const std::filesystem::path& file, const Film& film, const std::optional<float>& exposure) {
+void write_picture_of(const std::filesystem::path& file, const Film& film, const std::optional<float>& exposure,
+                      std::span<const Channel> layers) {
     const Picture picture = film.mean();
-    write_picture(file, picture, exposure_of(exposure, film.configuration, picture));
+    write_picture(file, picture, exposure_of(exposure, film.configuration, picture), layers);
 }
 
 std::string hash_of(const Configuration& configuration) {

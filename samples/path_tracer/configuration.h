@@ -16,7 +16,8 @@ Configuration configuration_of(const RenderSettings& settings, const Scene& scen
 float exposure_of(const std::optional<float>& wanted, const Configuration& configuration, const Picture& picture);
 
 // The mean, exposed so.
-void write_picture_of(const std::filesystem::path& file, const Film& film, const std::optional<float>& exposure);
+void write_picture_of(const std::filesystem::path& file, const Film& film, const std::optional<float>& exposure,
+                      std::span<const Channel> layers = {});
 
 // CRC-32 of the text, to tell configurations apart at a glance.
 std::string hash_of(const Configuration& configuration);

@@ -35,6 +35,10 @@ void add_files(CLI::App& app, Options& options) {
     app.add_option("scene", options.scene, ".gltf, .glb, .obj, .ply or .stl, or builtin:cornell-box")->required();
     add_output(app, options.output);
     add_finish(app, options.exposure, options.reference);
+    app.add_flag(
+        "--aovs", options.aovs,
+        "write to the .exr, too: albedo, normal, depth, instance and primitive of what is seen first, samples, "
+        "variance");
     app.add_option("--environment", options.environment, "light from all around: latitude-longitude .hdr or .exr");
     app.add_option("--json", options.json, "append one line with what was rendered and how fast");
     app.add_option("--cross-check", options.cross_check,
@@ -144,7 +148,7 @@ ParsedOptions parse_options(int argc, char** argv) {
     add_camera(app, result.options);
     add_machine(app, result.options);
     for (const char* other : {"--accel", "--time", "--target-error", "--resume", "--shard", "--write-partial-images",
-                              "--keep-film", "--mse-reference-image"})
+                              "--keep-film", "--mse-reference-image", "--aovs"})
         app.get_option("--cross-check")->excludes(other);
     app.get_option("--target-error")->excludes("--shard");
     result.exit_status = parse(app, argc, argv);

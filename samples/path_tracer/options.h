@@ -21,6 +21,7 @@ struct Options {
     std::optional<double> checkpoint_seconds = 60;
     bool resume = false;
     bool keep_film = false;
+    bool aovs = false;
     std::vector<float> crop;  // fractions x0 x1 y0 y1; none: all
     std::vector<float> look_from, look_at, up = {0, 1, 0};
     float fov = 40;            // degrees, vertical

@@ -17,13 +17,14 @@ namespace {
 // Bounds the memory of a wave, about 220 bytes a ray.
 constexpr std::uint64_t max_batch_size = 1 << 19;
 
-std::vector<SpecializationConstant> constants_of(const SceneFeatures& features, uint strategy) {
+std::vector<SpecializationConstant> constants_of(const SceneFeatures& features, uint strategy, bool has_aovs = false) {
     return {{PT_HAS_ALPHA, features.alpha},
             {PT_HAS_TEXTURES, features.textures},
             {PT_HAS_GLASS, features.glass},
             {PT_HAS_ENVIRONMENT, features.environment},
             {PT_HAS_LOCAL_LIGHTS, features.local_lights},
-            {PT_STRATEGY, strategy}};
+            {PT_STRATEGY, strategy},
+            {PT_HAS_AOVS, has_aovs}};
 }
 
 KernelDesc kernel(const char* name, std::span<const std::uint32_t> spirv,
@@ -109,15 +110,18 @@ void Renderer::set_pixels(std::span<const uint> pixels) {
 void Renderer::add_block(AbstractAccel& accel, uint number, WaveObserver* observer) {
     const auto start = std::chrono::steady_clock::now();
     accel.sync();
-    const Tracing tracing{accel, accel.view(), observer};
+    trace_block({accel, accel.view(), observer, shade_, settings_.max_depth}, number);
+    accumulate();
+    stats_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Renderer::trace_block(const Tracing& tracing, uint number) {
     const auto batch = static_cast<uint>(batch_size_);
     // In blocks of one all samples are of the same sequence; else each block's is one of its own.
     const uint first_sample = settings_.block_size > 1 ? 0 : number;
     for (uint sample = first_sample; sample < first_sample + settings_.block_size; ++sample)
         for (uint first = 0; first < pixel_count_; first += batch)
             trace_batch(tracing, {first, std::min(batch, pixel_count_ - first), sample, seed_of(settings_, number)});
-    accumulate();
-    stats_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void Renderer::accumulate() {
@@ -127,6 +131,30 @@ void Renderer::accumulate() {
         {film_.ref<FilmPixel>(), sums_.ref<Radiance>(), counters_.ref<Counters>(), pixels_.ref<uint>(), pixel_count_},
         pixel_count_);
     submit(commands);
+}
+
+std::vector<FirstSurface> Renderer::first_surfaces(AbstractAccel& accel) {
+    const RenderStats kept = stats_;
+    const Kernel<ShadeArgs> shade(context_, kernel("path_tracer_shade", path_tracer_shade_spirv,
+                                                   constants_of(scene_.features(), settings_.strategy, true)));
+    const Buffer found = array_of<FirstSurface>(context_, "first surfaces", film_size_);
+    const auto clear = [&](const Buffer& buffer) {
+        Commands commands(context_, "path tracer clear");
+        {
+            const auto pass = commands.pass("path tracer clear");
+            commands.fill(buffer, 0, buffer.bytes(), 0);
+        }
+        commands.submit();
+    };
+    clear(found);
+    const Crop part = settings_.part();
+    set_pixels(pixel_order(part.width, part.height));
+    accel.sync();
+    for (uint block = 0; block < samples_of_first_surfaces / settings_.block_size; ++block)
+        trace_block({accel, accel.view(), nullptr, shade, 0, found.ref<FirstSurface>()}, block);
+    clear(sums_);  // of what emits
+    stats_ = kept;
+    return download<FirstSurface>(context_, found, film_size_);
 }
 
 SyncPoint Renderer::submit(Commands& commands) {
@@ -167,12 +195,13 @@ Counters Renderer::wave(const Tracing& tracing, const Batch& batch, uint count) 
     trace(commands, tracing, {.rays = rays_[current_].ref<Ray>(), .hits = hits_.ref<Hit>(), .count = count},
           {{paths_[current_].address() + offsetof(PathState, pixel)}, sizeof(PathState) / sizeof(uint)});
     clear_appended(commands);
-    shade_.dispatch(commands,
-                    {scene_.data(), rays_[current_].ref<Ray>(), hits_.ref<Hit>(), paths_[current_].ref<PathState>(),
-                     rays_[next].ref<Ray>(), paths_[next].ref<PathState>(), shadow_rays_[0].ref<Ray>(),
-                     shadows_[0].ref<ShadowState>(), counters_.ref<Counters>(), sums_.ref<Radiance>(), count,
-                     batch.sample, batch.seed, settings_.max_depth, window_},
-                    count);
+    tracing.shade.dispatch(
+        commands,
+        {scene_.data(), rays_[current_].ref<Ray>(), hits_.ref<Hit>(), paths_[current_].ref<PathState>(),
+         rays_[next].ref<Ray>(), paths_[next].ref<PathState>(), shadow_rays_[0].ref<Ray>(),
+         shadows_[0].ref<ShadowState>(), counters_.ref<Counters>(), sums_.ref<Radiance>(), count, batch.sample,
+         batch.seed, tracing.max_depth, window_, tracing.first_surfaces},
+        count);
     stats_.path_rays += count;
     current_ = next;
     return run(commands, tracing);

@@ -47,6 +47,9 @@ struct RayPixels {
     uint stride = 0;  // in words
 };
 
+// Camera rays of a pixel that Renderer::first_surfaces follows.
+constexpr uint samples_of_first_surfaces = 16;
+
 // Sees every batch of rays that is traced.
 class WaveObserver {
   public:
@@ -77,6 +80,8 @@ class Renderer {
     void read(Film& film);
     const RenderStats& stats() const { return stats_; }  // since start()
 
+    // What the camera rays of the first samples see, per pixel of the film. No part of stats().
+    std::vector<FirstSurface> first_surfaces(AbstractAccel& accel);
     // Of rays, paths, sums and film.
     std::uint64_t device_bytes() const;
     // Most rays in one trace.
@@ -95,7 +100,11 @@ class Renderer {
         AbstractAccel& accel;
         AccelView view;
         WaveObserver* observer;
+        const Kernel<ShadeArgs>& shade;
+        uint max_depth;
+        Ref<FirstSurface> first_surfaces = {};
     };
+    void trace_block(const Tracing& tracing, uint number);
     void trace_batch(const Tracing& tracing, const Batch& batch);
     Counters wave(const Tracing& tracing, const Batch& batch, uint count);
     void shadow_rounds(const Tracing& tracing, uint count);

@@ -9,6 +9,7 @@
 #include "engine/core/error.h"
 #include "samples/path_tracer/film_file.h"
 #include "samples/path_tracer/interrupts.h"
+#include "samples/path_tracer/layers.h"
 #include "samples/path_tracer/rounds.h"
 
 namespace twinray::path_tracer {
@@ -89,6 +90,7 @@ class FilmRenderer {
             if ((result_.signal = interrupts_.signal()) != 0) break;
         }
         session_.renderer->read(result_.film);
+        write_output(layers());
         finish();
         return std::move(result_);
     }
@@ -135,14 +137,20 @@ class FilmRenderer {
         }
     }
 
-    void write_output() const {
-        if (!is_film_file(options_.output)) write_picture_of(options_.output, result_.film, options_.exposure);
+    std::vector<Channel> layers() const {
+        if (!options_.aovs) return {};
+        std::vector<Channel> layers = layers_of(session_.renderer->first_surfaces(accel_), samples_of_first_surfaces);
+        for (Channel& channel : layers_of(result_.film)) layers.push_back(std::move(channel));
+        return layers;
+    }
+
+    void write_output(std::span<const Channel> layers = {}) const {
+        if (!is_film_file(options_.output)) write_picture_of(options_.output, result_.film, options_.exposure, layers);
     }
 
     // A checkpoint is of no use beside a finished picture.
     void finish() const {
         const std::filesystem::path file = checkpoint_file(options_.output);
-        write_output();
         if (file == options_.output || options_.keep_film || result_.signal)
             save_film(file, result_.film);
         else if (options_.resume || checkpoint_.elapsed() < time_.elapsed())

@@ -7,6 +7,7 @@
 
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
+#include "engine/scene/bytes.h"
 #include "engine/scene/shapes.h"
 #include "hwtlas/hw_tlas.h"
 #include "samples/path_tracer/camera.h"
@@ -110,6 +111,8 @@ void check_folder(const std::filesystem::path& file) {
 
 Session make_session(const Options& options) {
     for (const std::filesystem::path& file : {options.output, options.json, options.cross_check}) check_folder(file);
+    if (options.aovs && lower_suffix(options.output) != ".exr")
+        fail("--aovs: '", options.output.string(), "' must end in .exr");
     Session session;
     session.scene = load(options);
     if (!options.quiet)

@@ -19,5 +19,5 @@ using glm::clamp;
 static_assert(sizeof(SurfaceVertex) == 48 && sizeof(SurfaceTriangle) == 16 && sizeof(SurfaceInstance) == 120);
 static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 96);
 static_assert(sizeof(PathState) == 24 && sizeof(ShadowState) == 16 && sizeof(Disagreement) == 104);
-static_assert(sizeof(FilmPixel) == 72);
+static_assert(sizeof(FilmPixel) == 72 && sizeof(FirstSurface) == 40);
 }  // namespace twinray::path_tracer

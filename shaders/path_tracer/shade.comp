@@ -160,6 +160,22 @@ void scatter(Vertex vertex)
     go_on(ray, path);
 }
 
+// Each pixel has one ray at a time.
+void note_first(Vertex vertex, Hit hit, uint flags, vec3 albedo)
+{
+    FirstSurface first = AT(args.first_surfaces, vertex.path.pixel);
+    first.albedo += albedo;
+    first.normal += shading_normal(AT(args.scene, 0), vertex.surface, flags, vertex.wo);
+    first.distance += vertex.surface.t;
+    first.count += 1u;
+    if (args.sample_index == 0u)
+    {
+        first.instance = hit.instance_index + 1u;
+        first.primitive = hit.primitive_index;
+    }
+    AT(args.first_surfaces, vertex.path.pixel) = first;
+}
+
 void shade(PathState path, Ray ray, Hit hit)
 {
     Vertex vertex;
@@ -181,6 +197,7 @@ void shade(PathState path, Ray ray, Hit hit)
             return;
         }
     }
+    if (HAS_AOVS && path.progress >> 16u == 0u) note_first(vertex, hit, flags, color.rgb);
     if ((flags & MATERIAL_UNLIT) != 0u)
     {
         add(path.pixel, path.throughput * color.rgb);

@@ -72,6 +72,18 @@ struct GenerateArgs
     uint seed;
 };
 
+// What the camera rays of a pixel see first, summed over them.
+struct FirstSurface
+{
+    vec3 albedo;    // base color
+    vec3 normal;    // for shading, in world space, on the side of the camera
+    float distance; // from the camera
+    uint count;     // of the rays that see something
+    uint instance;  // 1 + that of sample 0; 0: it sees nothing
+    uint primitive;
+};
+BUFFER_OF(FirstSurface, 8);
+
 struct ShadeArgs
 {
     REF(SceneData) scene;
@@ -89,6 +101,7 @@ struct ShadeArgs
     uint seed;
     uint max_depth;
     FilmWindow window;
+    REF(FirstSurface) first_surfaces; // one per pixel; null without PT_HAS_AOVS
 };
 
 struct ShadowArgs
