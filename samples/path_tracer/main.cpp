@@ -11,11 +11,12 @@ namespace twinray::path_tracer {
 namespace {
 
 // 128 + the signal, as shells have it, where one came.
-int render(const Options& options) {
-    const Session session = make_session(options);
+int render(const Options& options, Ranks& ranks) {
+    const Session session = make_session(options, ranks);
     const auto accel = make_accel(*session.context, session.scene, chosen_accel(options, *session.context));
-    const Rendering rendering = render_film(options, session, *accel);
-    report_render(options, session, *accel, rendering);
+    const Rendering rendering = render_film(options, session, *accel, ranks);
+    if (rendering.signal) say_interrupted(rendering, checkpoint_file(options.output, ranks));
+    if (ranks.index() == 0) report_render(options, session, *accel, rendering);
     return rendering.signal ? 128 + rendering.signal : 0;
 }
 
@@ -24,9 +25,9 @@ std::filesystem::path with_suffix(const std::filesystem::path& file, const char*
 }
 
 // Hardware leads, software traces the same rays; then software renders alone.
-int cross_check(const Options& options) {
+int cross_check(const Options& options, const Ranks& ranks) {
     if (!is_picture_file(options.output)) fail("--cross-check: '", options.output.string(), "' must be a picture");
-    const Session session = make_session(options);
+    const Session session = make_session(options, ranks);
     Renderer& renderer = *session.renderer;
     const auto hardware = make_accel(*session.context, session.scene, "hw");
     const auto software = make_accel(*session.context, session.scene, "sw");
@@ -59,10 +60,12 @@ int cross_check(const Options& options) {
 int main(int argc, char** argv) {
     using namespace twinray::path_tracer;
     try {
-        const ParsedOptions parsed = parse_options(argc, argv);
+        Ranks ranks(argc, argv);
+        ParsedOptions parsed = parse_options(argc, argv);
         if (parsed.exit_status) return *parsed.exit_status;
         if (parsed.merge) return merge_films(*parsed.merge);
-        return parsed.options.cross_check.empty() ? render(parsed.options) : cross_check(parsed.options);
+        parsed.options.quiet |= ranks.index() > 0;
+        return parsed.options.cross_check.empty() ? render(parsed.options, ranks) : cross_check(parsed.options, ranks);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "path_tracer: %s\n", error.what());
         return 1;

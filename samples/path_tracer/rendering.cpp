@@ -52,10 +52,13 @@ class RoundProgress {
     Progress bar_;
 };
 
+std::filesystem::path film_file(const std::filesystem::path& output) {
+    return is_film_file(output) ? output : std::filesystem::path(output.string() + ".film");
+}
+
 // Nothing to resume from is no error: an array of jobs may start them all with --resume.
-Film first_film(const Options& options, const Session& session) {
+Film first_film(const Options& options, const Session& session, const std::filesystem::path& file) {
     Film film = session.renderer->make_film(session.configuration);
-    const std::filesystem::path file = checkpoint_file(options.output);
     if (!options.resume) return film;
     if (!std::filesystem::exists(file)) {
         if (!options.quiet)
@@ -68,11 +71,13 @@ Film first_film(const Options& options, const Session& session) {
 
 class FilmRenderer {
   public:
-    FilmRenderer(const Options& options, const Session& session, AbstractAccel& accel)
+    FilmRenderer(const Options& options, const Session& session, AbstractAccel& accel, Ranks& ranks)
         : options_(options),
           session_(session),
           accel_(accel),
-          result_{.film = first_film(options, session)},
+          ranks_(ranks),
+          file_(checkpoint_file(options.output, ranks)),
+          result_{.film = first_film(options, session, file_)},
           error_(result_.film.error()),
           preview_(options.preview_seconds),
           checkpoint_(options.checkpoint_seconds),
@@ -90,8 +95,11 @@ class FilmRenderer {
             if ((result_.signal = interrupts_.signal()) != 0) break;
         }
         session_.renderer->read(result_.film);
-        write_output(layers());
-        finish();
+        result_.stats = session_.renderer->stats();
+        if (result_.signal)
+            stop();
+        else
+            finish();
         return std::move(result_);
     }
 
@@ -132,7 +140,7 @@ class FilmRenderer {
         }
         if (checkpoint_.is_due()) {
             read();
-            save_film(checkpoint_file(options_.output), result_.film);
+            save_film(file_, result_.film);
             checkpoint_.restart();
         }
     }
@@ -148,18 +156,32 @@ class FilmRenderer {
         if (!is_film_file(options_.output)) write_picture_of(options_.output, result_.film, options_.exposure, layers);
     }
 
+    // The signal may come from mpirun, because a rank is lost: each saves its own, and none waits for the others.
+    void stop() {
+        ranks_.abandon();
+        save_film(file_, result_.film);
+        if (ranks_.index() == 0) write_output(layers());
+    }
+
     // A checkpoint is of no use beside a finished picture.
-    void finish() const {
-        const std::filesystem::path file = checkpoint_file(options_.output);
-        if (file == options_.output || options_.keep_film || result_.signal)
-            save_film(file, result_.film);
-        else if (options_.resume || checkpoint_.elapsed() < time_.elapsed())
-            std::filesystem::remove(file);
+    void finish() {
+        const bool has_checkpoint = options_.resume || checkpoint_.elapsed() < time_.elapsed() || ranks_.count() > 1;
+        if (ranks_.count() > 1) save_film(file_, result_.film);  // a rank may be lost while others wait for it
+        ranks_.gather(result_.film, result_.stats);
+        const std::filesystem::path whole = film_file(options_.output);
+        if (ranks_.index() == 0) {
+            write_output(layers());
+            if (options_.keep_film || whole == options_.output) save_film(whole, result_.film);
+        }
+        const bool is_kept = file_ == whole && (options_.keep_film || whole == options_.output);
+        if (has_checkpoint && !is_kept) std::filesystem::remove(file_);
     }
 
     const Options& options_;
     const Session& session_;
     AbstractAccel& accel_;
+    Ranks& ranks_;
+    std::filesystem::path file_;  // checkpoint
     Interrupts interrupts_;
     Rendering result_;
     double error_, last_round_ = 0;
@@ -169,12 +191,13 @@ class FilmRenderer {
 
 }  // namespace
 
-std::filesystem::path checkpoint_file(const std::filesystem::path& output) {
-    return is_film_file(output) ? output : std::filesystem::path(output.string() + ".film");
+std::filesystem::path checkpoint_file(const std::filesystem::path& output, const Ranks& ranks) {
+    if (ranks.count() > 1) return text(output.string(), ".rank", ranks.index(), "of", ranks.count(), ".film");
+    return film_file(output);
 }
 
-Rendering render_film(const Options& options, const Session& session, AbstractAccel& accel) {
-    return FilmRenderer(options, session, accel).run();
+Rendering render_film(const Options& options, const Session& session, AbstractAccel& accel, Ranks& ranks) {
+    return FilmRenderer(options, session, accel, ranks).run();
 }
 
 }  // namespace twinray::path_tracer

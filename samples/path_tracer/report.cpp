@@ -39,8 +39,9 @@ nlohmann::json settings_json(const Options& options, const Session& session) {
 }
 
 nlohmann::json render_json(const Options& options, const Session& session, const AbstractAccel& accel,
-                           const Film& film) {
-    const RenderStats& stats = session.renderer->stats();
+                           const Rendering& rendering) {
+    const RenderStats& stats = rendering.stats;
+    const Film& film = rendering.film;
     nlohmann::json record = settings_json(options, session);
     record.update({{"case", "path_tracer"},
                    {"spp", film.mean_samples()},
@@ -99,14 +100,7 @@ std::string reference_text(const std::filesystem::path& file, const Film& film, 
     return text("against '", file.string(), "': MSE ", error.mse, ", relMSE ", error.relative_mse, '\n');
 }
 
-void say_interrupted(const Options& options, const Film& film) {
-    std::fprintf(stderr,
-                 "path_tracer: interrupted after %g paths per pixel; '%s' has them; --resume goes on from there\n",
-                 film.mean_samples(), checkpoint_file(options.output).string().c_str());
-}
-
-void print_stats(const Session& session, const AbstractAccel& accel) {
-    const RenderStats& stats = session.renderer->stats();
+void print_stats(const Session& session, const AbstractAccel& accel, const RenderStats& stats) {
     std::printf("rays: %llu of paths, %llu of shadows, %llu cut off behind transparent surfaces\n",
                 static_cast<unsigned long long>(stats.path_rays), static_cast<unsigned long long>(stats.shadow_rays),
                 static_cast<unsigned long long>(stats.cut));
@@ -141,16 +135,15 @@ std::string cross_check_text(const Options& options, const Session& session, con
 
 void report_render(const Options& options, const Session& session, const AbstractAccel& accel,
                    const Rendering& rendering) {
-    const RenderStats& stats = session.renderer->stats();
+    const RenderStats& stats = rendering.stats;
     const Film& film = rendering.film;
     if (stats.non_finite)
         std::fprintf(stderr, "path_tracer: %llu contributions were NaN or infinite and are missing from the picture\n",
                      static_cast<unsigned long long>(stats.non_finite));
-    nlohmann::json record = render_json(options, session, accel, film);
+    nlohmann::json record = render_json(options, session, accel, rendering);
     const std::string against = reference_text(options.reference, film, &record);
     if (!options.json.empty()) write_line(options.json, record.dump() + "\n", std::ios::app);
-    if (rendering.signal) say_interrupted(options, film);
-    if (options.stats) print_stats(session, accel);
+    if (options.stats) print_stats(session, accel, stats);
     if (options.quiet) return;
     if (stats.cut)
         std::fprintf(stderr,
@@ -161,6 +154,12 @@ void report_render(const Options& options, const Session& session, const Abstrac
     std::printf("%s: %s%s by %s (%s) in %.1f s, %.2f Mrays/s\n%s", options.output.string().c_str(),
                 film_text(film).c_str(), resumed.c_str(), accel.name().c_str(), trace_path(accel).c_str(),
                 stats.seconds, mega_rays_per_second(stats), against.c_str());
+}
+
+void say_interrupted(const Rendering& rendering, const std::filesystem::path& checkpoint) {
+    std::fprintf(stderr,
+                 "path_tracer: interrupted after %g paths per pixel; '%s' has them; --resume goes on from there\n",
+                 rendering.film.mean_samples(), checkpoint.string().c_str());
 }
 
 void report_merge(const MergeOptions& options, const Film& film) {

@@ -16,6 +16,8 @@ namespace twinray::path_tracer {
 void report_render(const Options& options, const Session& session, const AbstractAccel& accel,
                    const Rendering& rendering);
 
+void say_interrupted(const Rendering& rendering, const std::filesystem::path& checkpoint);
+
 // One line, unless quiet.
 void report_merge(const MergeOptions& options, const Film& film);
 

@@ -87,7 +87,13 @@ StoppingRules make_rules(const Options& options) {
             options.target_error};
 }
 
-Shard make_shard(const Options& options) {
+// What each of many ranks renders, or the options ask for.
+Shard make_shard(const Options& options, const Ranks& ranks) {
+    if (ranks.count() > 1) {
+        if (!options.shard.empty() || options.target_error || !options.cross_check.empty())
+            fail("under mpirun there is no --shard, --target-error or --cross-check: ranks share the samples out");
+        return {ranks.index(), ranks.count()};
+    }
     if (options.shard.empty()) return {};
     Shard shard;
     char slash = 0;
@@ -100,6 +106,13 @@ Shard make_shard(const Options& options) {
     return shard;
 }
 
+ContextDesc desc_for(const Options& options, const Ranks& ranks) {
+    ContextDesc desc = context_desc(options);
+    if (ranks.count() > 1 && options.device.empty())
+        desc.device = std::to_string(device_of_rank(list_devices(), ranks.local_index()));
+    return desc;
+}
+
 }  // namespace
 
 void check_folder(const std::filesystem::path& file) {
@@ -109,7 +122,7 @@ void check_folder(const std::filesystem::path& file) {
         fail("'", file.string(), "': there is no folder '", folder.string(), "'");
 }
 
-Session make_session(const Options& options) {
+Session make_session(const Options& options, const Ranks& ranks) {
     for (const std::filesystem::path& file : {options.output, options.json, options.cross_check}) check_folder(file);
     if (options.aovs && lower_suffix(options.output) != ".exr")
         fail("--aovs: '", options.output.string(), "' must end in .exr");
@@ -119,7 +132,7 @@ Session make_session(const Options& options) {
         for (const std::string& warning : session.scene.warnings)
             std::fprintf(stderr, "path_tracer: %s\n", warning.c_str());
     session.rules = make_rules(options);
-    session.shard = make_shard(options);
+    session.shard = make_shard(options, ranks);
     session.settings = make_settings(options, session.scene);
     session.lights = collect_lights(session.scene);
     const bool is_default_sky = options.environment.empty() && !has_lamps(session.scene);
@@ -128,7 +141,7 @@ Session make_session(const Options& options) {
         session.environment = std::make_unique<EnvironmentMap>(load_hdr_image(options.environment));
     session.configuration =
         configuration_of(session.settings, session.scene, session.lights, session.environment.get(), is_default_sky);
-    session.context = std::make_unique<Context>(context_desc(options));
+    session.context = std::make_unique<Context>(desc_for(options, ranks));
     session.device_scene =
         std::make_unique<DeviceScene>(*session.context, session.scene, session.lights, session.environment.get());
     session.renderer = std::make_unique<Renderer>(*session.context, *session.device_scene, session.settings);

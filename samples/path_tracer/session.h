@@ -6,6 +6,7 @@
 
 #include "samples/path_tracer/configuration.h"
 #include "samples/path_tracer/options.h"
+#include "samples/path_tracer/ranks.h"
 #include "samples/path_tracer/rounds.h"
 
 namespace twinray::path_tracer {
@@ -27,7 +28,7 @@ struct Session {
 void check_folder(const std::filesystem::path& file);
 
 // Throws Error naming the file, the option and the limit.
-Session make_session(const Options& options);
+Session make_session(const Options& options, const Ranks& ranks);
 
 // kind: "hw" or "sw". Holds the scene, built.
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const std::string& kind);

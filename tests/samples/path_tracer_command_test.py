@@ -55,7 +55,8 @@ for name, rule in [("plain", ["--spp", "120"]), ("adaptive", ["--target-error", 
     status, shown = stop_when(f"{name}.exr.film", signal.SIGKILL, *job, f"{name}.exr")
     assert status == -signal.SIGKILL and not (here / f"{name}.exr").exists(), shown
     assert "resumed" in run(*job, f"{name}.exr", "--resume")
-    run(*job, f"{name}2.exr")
+    shown = run(*job, f"{name}2.exr", "--mse-reference-image", f"{name}.exr", "--json", "errors.jsonl")
+    assert "MSE 0, relMSE 0" in shown, shown
     assert same(f"{name}.exr", f"{name}2.exr"), name
     assert not list(here.glob("*exr.film")), "nothing is left behind"
 
@@ -82,15 +83,20 @@ def pixels(name):  # 72 bytes each, before the checksum
 
 assert pixels("part.film") == [row[6:12] for row in pixels("all.film")[12:24]]
 
-# A reference, a camera.
-assert "MSE 0, relMSE 0" in run(*box, "--spp", "120", "-o", "again.exr", "--mse-reference-image", "plain.exr", "--json", "all.jsonl")
+# A camera; what is seen first, in layers beside the same picture.
 run(*box, "--spp", "2", "-o", "right.png", "--look-from", "0", "1", "3", "--look-at", "0", "1", "0", "--fov", "30")
 run(*box, "--spp", "2", "-o", "left.png", "--look-from", "-1", "1", "3", "--look-at", "0", "1", "0", "--fov", "30")
 assert not same("right.png", "left.png")
+run(*box, "--spp", "8", "-o", "layers.exr", "--aovs")
+assert "MSE 0" in run("merge", "whole.png.film", "-o", "flat.exr", "--mse-reference-image", "layers.exr")
+layers = (here / "layers.exr").read_bytes()
+for layer in ["albedo.R", "normal.Z", "depth.Z", "instance.ID", "primitive.ID", "samples.N", "variance.Y"]:
+    assert layer.encode() + b"\0" in layers[:1000], layer
 
 records = [json.loads(line) for line in (here / "all.jsonl").read_text().splitlines()]
 assert records[0]["spp"] == 8 and 0 < records[0]["error"] < 10 and len(records[0]["configuration"]) == 8, records[0]
-assert records[2]["mse"] == 0 and records[2]["relative_mse"] == 0, records[2]
+record = json.loads((here / "errors.jsonl").read_text().splitlines()[0])
+assert record["mse"] == 0 and record["relative_mse"] == 0, record
 assert not list(here.glob("*partial*")), "nothing half written is left"
 
 for arguments, status, words in [
@@ -98,9 +104,10 @@ for arguments, status, words in [
         (["-o", "a.png", "--shard", "0/2"], 1, "must end in .film"), (["-o", "a.film", "--shard", "2/2"], 1, "must be I/N"),
         (["-o", "a.film", "--shard", "0/2", "--target-error", "0.1"], 2, "excludes"),
         (["-o", "a.png", "--spp", "16", "--target-error", "0.1"], 1, "at least 32"),
+        (["-o", "a.png", "--aovs"], 1, "must end in .exr"),
         (["-o", "a.png", "--cropwindow", "0.5", "0.5", "0", "1"], 1, "no pixel"),
         (["-o", "a.png", "--look-from", "0", "1", "0", "--look-at", "0", "0", "0"], 1, "which is up"),
-        (["-o", "a.png", "--mse-reference-image", "again.exr", "--width", "30"], 1, "24 x 24 pixels, but the picture has 30 x 24")]:
+        (["-o", "a.png", "--mse-reference-image", "plain.exr", "--width", "30"], 1, "24 x 24 pixels, but the picture has 30 x 24")]:
     shown = run(*box, *arguments, status=status)
     assert words in shown, f"{arguments}: {shown}"
 (here / "bad.film").write_bytes((here / "0.film").read_bytes()[:-5])
