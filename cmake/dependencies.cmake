@@ -15,6 +15,7 @@ find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 
 if(TWINRAY_BUILD_APPS)
+    find_package(MPI QUIET COMPONENTS C)  # optional, for the path tracer: Debian's libopenmpi-dev and openmpi-bin
     find_package(CLI11 CONFIG REQUIRED)
     find_path(GMPXX_INCLUDE_DIR gmpxx.h REQUIRED)  # Debian: libgmp-dev
     find_library(GMPXX_LIBRARY gmpxx REQUIRED)

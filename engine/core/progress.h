@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 namespace twinray {
 
@@ -17,6 +18,7 @@ class Progress {
     Progress& operator=(const Progress&) = delete;
 
     void advance(std::uint64_t steps = 1);
+    void rename(std::string label) { label_ = std::move(label); }  // as shown from the next step on
 
   private:
     using Clock = std::chrono::steady_clock;

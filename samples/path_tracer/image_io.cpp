@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
@@ -36,7 +37,7 @@ void write_exposed(const std::filesystem::path& file, const Picture& picture, fl
     write_png(file, picture.width, picture.height, pixels);
 }
 
-void write_exr(const std::filesystem::path& file, const Picture& picture) {
+void write_exr(const std::filesystem::path& file, const Picture& picture, std::span<const Channel> layers) {
     try {
         Imf::Header header(static_cast<int>(picture.width), static_cast<int>(picture.height));
         Imf::FrameBuffer frame;
@@ -47,6 +48,16 @@ void write_exr(const std::filesystem::path& file, const Picture& picture) {
             char* first = const_cast<char*>(reinterpret_cast<const char*>(picture.rgb.data())) + i * sizeof(float);
             frame.insert(names[i], Imf::Slice(Imf::FLOAT, first, sizeof(vec3), sizeof(vec3) * picture.width));
         }
+        for (const Channel& layer : layers)
+            std::visit(
+                [&](const auto& values) {
+                    using Value = typename std::decay_t<decltype(values)>::value_type;
+                    const Imf::PixelType type = std::is_same_v<Value, float> ? Imf::FLOAT : Imf::UINT;
+                    header.channels().insert(layer.name, Imf::Channel(type));
+                    char* first = const_cast<char*>(reinterpret_cast<const char*>(values.data()));
+                    frame.insert(layer.name, Imf::Slice(type, first, sizeof(Value), sizeof(Value) * picture.width));
+                },
+                layer.values);
         Imf::OutputFile out(file.string().c_str(), header);
         out.setFrameBuffer(frame);
         out.writePixels(static_cast<int>(picture.height));
@@ -72,11 +83,17 @@ bool is_picture_file(const std::filesystem::path& file) {
     return lower_suffix(file) == ".png" || lower_suffix(file) == ".exr";
 }
 
-void write_picture(const std::filesystem::path& file, const Picture& picture, float exposure) {
+void write_picture(const std::filesystem::path& file, const Picture& picture, float exposure,
+                   std::span<const Channel> layers) {
+    std::filesystem::path partial = file;
+    partial += text(".partial-", std::hex, std::random_device{}());
     if (lower_suffix(file) == ".exr")
-        write_exr(file, picture);
+        write_exr(partial, picture, layers);
     else
-        write_exposed(file, picture, exposure);
+        write_exposed(partial, picture, exposure);
+    std::error_code error;
+    std::filesystem::rename(partial, file, error);
+    if (error) fail("'", file.string(), "': cannot be written: ", error.message());
 }
 
 }  // namespace twinray::path_tracer

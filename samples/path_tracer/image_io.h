@@ -3,6 +3,9 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "samples/path_tracer/shared.h"
@@ -16,12 +19,20 @@ struct Picture {
     std::vector<vec3> rgb;
 };
 
+// More of each pixel, row 0 on top: 32-bit float or unsigned integers.
+struct Channel {
+    std::string name;
+    std::variant<std::vector<float>, std::vector<uint>> values;
+};
+
 // Exposure in stops that brings the geometric mean luminance of the pixels that are not black to a middle grey of 0.18.
 float automatic_exposure(const Picture& picture);
 
 // By suffix: .exr, linear 32-bit float, without exposure; .png, 8-bit sRGB, exposed and tone mapped with Khronos PBR
-// Neutral. Throws Error naming the file.
-void write_picture(const std::filesystem::path& file, const Picture& picture, float exposure);
+// Neutral. What was there before is replaced at the end. Throws Error naming the file.
+// layers: channels for .exr.
+void write_picture(const std::filesystem::path& file, const Picture& picture, float exposure,
+                   std::span<const Channel> layers = {});
 
 // Whether write_picture knows the suffix.
 bool is_picture_file(const std::filesystem::path& file);

@@ -4,18 +4,20 @@
 #include <cstdio>
 
 #include "engine/core/error.h"
+#include "samples/path_tracer/merge.h"
 #include "samples/path_tracer/report.h"
 
 namespace twinray::path_tracer {
 namespace {
 
-int render(const Options& options) {
-    const Session session = make_session(options);
+// 128 + the signal, as shells have it, where one came.
+int render(const Options& options, Ranks& ranks) {
+    const Session session = make_session(options, ranks);
     const auto accel = make_accel(*session.context, session.scene, chosen_accel(options, *session.context));
-    const Picture picture = session.renderer->render(*accel, options.quiet);
-    write_picture(options.output, picture, session.exposure(options, picture));
-    report_render(options, session, *accel);
-    return 0;
+    const Rendering rendering = render_film(options, session, *accel, ranks);
+    if (rendering.signal) say_interrupted(rendering, checkpoint_file(options.output, ranks));
+    if (ranks.index() == 0) report_render(options, session, *accel, rendering);
+    return rendering.signal ? 128 + rendering.signal : 0;
 }
 
 std::filesystem::path with_suffix(const std::filesystem::path& file, const char* suffix) {
@@ -23,26 +25,27 @@ std::filesystem::path with_suffix(const std::filesystem::path& file, const char*
 }
 
 // Hardware leads, software traces the same rays; then software renders alone.
-int cross_check(const Options& options) {
-    const Session session = make_session(options);
+int cross_check(const Options& options, const Ranks& ranks) {
+    if (!is_picture_file(options.output)) fail("--cross-check: '", options.output.string(), "' must be a picture");
+    const Session session = make_session(options, ranks);
     Renderer& renderer = *session.renderer;
     const auto hardware = make_accel(*session.context, session.scene, "hw");
     const auto software = make_accel(*session.context, session.scene, "sw");
     CrossCheck result;
     result.hardware_path = trace_path(*hardware);
-    result.pixel_count = std::uint64_t{session.settings.width} * session.settings.height;
+    result.pixel_count = renderer.film_size();
 
     CrossChecker checker(*session.context, *software, renderer, result.pixel_count);
-    const Picture by_hardware = renderer.render(*hardware, options.quiet, &checker);
+    const Picture by_hardware = render_picture(renderer, session.settings, *hardware, options.quiet, &checker);
     result.path_rays = renderer.stats().path_rays;
     result.shadow_rays = renderer.stats().shadow_rays;
     result.disagreeing = checker.found();
-    const Picture by_software = renderer.render(*software, options.quiet);
+    const Picture by_software = render_picture(renderer, session.settings, *software, options.quiet);
     const std::vector<uint> marks = checker.marks();
     result.pictures = compare_pictures(by_hardware, by_software, marks);
     classify_disagreements(session.scene, checker.kept(), result);
 
-    const float exposure = session.exposure(options, by_hardware);
+    const float exposure = exposure_of(options.exposure, session.configuration, by_hardware);
     write_picture(with_suffix(options.output, "_hw"), by_hardware, exposure);
     write_picture(with_suffix(options.output, "_sw"), by_software, exposure);
     write_picture(with_suffix(options.output, "_difference"),
@@ -57,9 +60,12 @@ int cross_check(const Options& options) {
 int main(int argc, char** argv) {
     using namespace twinray::path_tracer;
     try {
-        const ParsedOptions parsed = parse_options(argc, argv);
+        Ranks ranks(argc, argv);
+        ParsedOptions parsed = parse_options(argc, argv);
         if (parsed.exit_status) return *parsed.exit_status;
-        return parsed.options.cross_check.empty() ? render(parsed.options) : cross_check(parsed.options);
+        if (parsed.merge) return merge_films(*parsed.merge);
+        parsed.options.quiet |= ranks.index() > 0;
+        return parsed.options.cross_check.empty() ? render(parsed.options, ranks) : cross_check(parsed.options, ranks);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "path_tracer: %s\n", error.what());
         return 1;

@@ -4,16 +4,27 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/core/context.h"
 
 namespace twinray::path_tracer {
 
 struct Options {
-    std::filesystem::path scene, output, environment, json, cross_check;
+    std::filesystem::path scene, output, environment, json, cross_check, reference;
     std::string accel;  // "hw", "sw", "" = hw where the device has it
     std::string device;
-    std::uint32_t samples = 16;
+    std::optional<std::uint32_t> samples;
+    std::optional<double> seconds, target_error;
+    std::string shard;  // "i/N"
+    std::optional<double> preview_seconds;
+    std::optional<double> checkpoint_seconds = 60;
+    bool resume = false;
+    bool keep_film = false;
+    bool aovs = false;
+    std::vector<float> crop;  // fractions x0 x1 y0 y1; none: all
+    std::vector<float> look_from, look_at, up = {0, 1, 0};
+    float fov = 40;            // degrees, vertical
     std::uint32_t width = 0;   // 0: from the camera's aspect and the height, else 640
     std::uint32_t height = 0;  // 0: 480
     std::uint32_t max_depth = 8;
@@ -22,11 +33,21 @@ struct Options {
     std::optional<float> exposure;  // stops; none: 0 under the default sky, else automatic
     bool validation = false;
     bool quiet = false;
+    bool stats = false;
+};
+
+// `path_tracer merge`.
+struct MergeOptions {
+    std::vector<std::filesystem::path> films;
+    std::filesystem::path output, reference;
+    std::optional<float> exposure;
+    bool quiet = false;
 };
 
 // The options, or the exit status of a run that is over: help was shown (0) or the usage is wrong (2).
 struct ParsedOptions {
     Options options;
+    std::optional<MergeOptions> merge;  // set: this was asked for
     std::optional<int> exit_status;
 };
 ParsedOptions parse_options(int argc, char** argv);

@@ -1,21 +1,35 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <map>
+
 #include "engine/accel/abstract_accel.h"
 #include "engine/core/progress.h"
-#include "samples/path_tracer/image_io.h"
+#include "samples/path_tracer/film.h"
 #include "samples/path_tracer/scene_upload.h"
 
 namespace twinray::path_tracer {
 
+// A part of a picture, in pixels.
+struct Crop {
+    uint x = 0, y = 0, width = 0, height = 0;
+};
+
 struct RenderSettings {
-    uint width = 640;
+    uint width = 640;  // of the whole picture
     uint height = 480;
-    uint samples = 16;   // per pixel
+    std::optional<Crop> crop = {};  // what is rendered of it; none: all
+    uint samples = 16;              // per pixel
+    // Samples that are added to the film as one. Above 1 each block has random numbers of its own, so that blocks do
+    // not depend on each other; else all samples of a pixel are of one Sobol sequence, which are spread more evenly.
+    uint block_size = 1;
     uint max_depth = 8;  // scatterings of a path; 0 = only what emits is seen
     uint seed = 1;
     CameraRays camera = {};
     uint strategy = STRATEGY_MIS;
+    bool is_timed = false;  // keeps times by pass
+
+    Crop part() const { return crop.value_or(Crop{0, 0, width, height}); }
 };
 
 struct RenderStats {
@@ -23,7 +37,8 @@ struct RenderStats {
     std::uint64_t shadow_rays = 0;  // likewise
     std::uint64_t non_finite = 0;   // contributions dropped as NaN or infinite
     std::uint64_t cut = 0;          // rays ended after MAX_PASSES or MAX_SHADOW_PASSES transparent surfaces
-    double seconds = 0;
+    double seconds = 0;             // of rendering
+    std::map<std::string, double> pass_ms = {};  // the device's time by pass, where RenderSettings::is_timed
 };
 
 // The pixel of ray i is first[i * stride].
@@ -31,6 +46,9 @@ struct RayPixels {
     Uints first;
     uint stride = 0;  // in words
 };
+
+// Camera rays of a pixel that Renderer::first_surfaces follows.
+constexpr uint samples_of_first_surfaces = 16;
 
 // Sees every batch of rays that is traced.
 class WaveObserver {
@@ -43,49 +61,80 @@ class WaveObserver {
 };
 
 // A wavefront path tracer: the rays of one sample of many pixels advance together, one bounce a wave, through
-// AbstractAccel::trace, so both accelerators and both hardware paths are shaded by the same kernels. A pixel's sum
-// is added up in a fixed order: the same input gives the same bits.
+// AbstractAccel::trace, so both accelerators and both hardware paths are shaded by the same kernels. A block's sum is
+// added up in a fixed order, and blocks add up to the same bits in any: the same input gives the same bits.
 class Renderer {
   public:
     // The scene must outlive the renderer.
     Renderer(Context& context, const DeviceScene& scene, const RenderSettings& settings);
 
-    // The accelerator must hold the scene as push_scene places it. One step of progress per sample and batch.
-    Picture render(AbstractAccel& accel, bool quiet, WaveObserver* observer = nullptr);
-    const RenderStats& stats() const { return stats_; }  // of the last render
+    // An empty film for the settings.
+    Film make_film(Configuration configuration = {}) const;
+    // Goes on from a film that make_film made.
+    void start(const Film& film);
+    // The pixels of the film that the next blocks are of, by index, in the order in which they are traced.
+    void set_pixels(std::span<const uint> pixels);
+    // Samples number * block_size and those after it. The accelerator must hold the scene as push_scene places it.
+    void add_block(AbstractAccel& accel, uint number, WaveObserver* observer = nullptr);
+    // What the film has by now.
+    void read(Film& film);
+    const RenderStats& stats() const { return stats_; }  // since start()
 
+    // What the camera rays of the first samples see, per pixel of the film. No part of stats().
+    std::vector<FirstSurface> first_surfaces(AbstractAccel& accel);
+    // Of rays, paths, sums and film.
+    std::uint64_t device_bytes() const;
     // Most rays in one trace.
     std::uint64_t batch_size() const { return batch_size_; }
+    std::uint64_t film_size() const { return film_size_; }
 
   private:
+    // One sample of some of the pixels.
     struct Batch {
-        uint first = 0;
+        uint first = 0;  // in the order of pixels
         uint count = 0;
         uint sample = 0;
+        uint seed = 0;
     };
     struct Tracing {
         AbstractAccel& accel;
         AccelView view;
         WaveObserver* observer;
+        const Kernel<ShadeArgs>& shade;
+        uint max_depth;
+        Ref<FirstSurface> first_surfaces = {};
     };
+    void trace_block(const Tracing& tracing, uint number);
     void trace_batch(const Tracing& tracing, const Batch& batch);
     Counters wave(const Tracing& tracing, const Batch& batch, uint count);
     void shadow_rounds(const Tracing& tracing, uint count);
     void trace(Commands& commands, const Tracing& tracing, const TraceDesc& desc, const RayPixels& pixels);
     void clear_appended(Commands& commands);
     Counters run(Commands& commands, const Tracing& tracing);
-    Picture mean_picture();
+    SyncPoint submit(Commands& commands);
+    void accumulate();
 
     Context& context_;
     const DeviceScene& scene_;
     RenderSettings settings_;
-    std::uint64_t batch_size_;
+    FilmWindow window_;
+    std::uint64_t film_size_, batch_size_;
     Kernel<GenerateArgs> generate_;
     Kernel<ShadeArgs> shade_;
     Kernel<ShadowArgs> shadow_;
-    Buffer rays_[2], paths_[2], hits_, shadow_rays_[2], shadows_[2], counters_, counters_readback_, sums_;
-    uint current_ = 0;  // which of the pairs holds the wave in flight
+    Kernel<AccumulateArgs> accumulate_;
+    Buffer rays_[2], paths_[2], hits_, shadow_rays_[2], shadows_[2], counters_, counters_readback_, sums_, film_,
+        pixels_;
+    uint pixel_count_ = 0;  // in pixels_
+    uint current_ = 0;      // which of the pairs holds the wave in flight
     RenderStats stats_;
 };
+
+// All pixels in strips of eight rows, column by column: 64 neighbours in the order lie in a block of 8 x 8.
+std::vector<uint> pixel_order(uint width, uint height);
+
+// All samples of the settings, from the first one on. One step of progress per block.
+Picture render_picture(Renderer& renderer, const RenderSettings& settings, AbstractAccel& accel, bool quiet,
+                       WaveObserver* observer = nullptr);
 
 }  // namespace twinray::path_tracer

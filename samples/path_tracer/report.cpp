@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/report.h"
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iomanip>
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "samples/path_tracer/reference.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -30,17 +32,20 @@ nlohmann::json settings_json(const Options& options, const Session& session) {
             {"driver", session.context->facts().driver},
             {"width", session.settings.width},
             {"height", session.settings.height},
-            {"spp", session.settings.samples},
             {"max_depth", session.settings.max_depth},
             {"seed", session.settings.seed},
             {"triangles", count_triangles(session.scene)},
             {"instances", session.scene.instances.size()}};
 }
 
-nlohmann::json render_json(const Options& options, const Session& session, const AbstractAccel& accel) {
-    const RenderStats& stats = session.renderer->stats();
+nlohmann::json render_json(const Options& options, const Session& session, const AbstractAccel& accel,
+                           const Rendering& rendering) {
+    const RenderStats& stats = rendering.stats;
+    const Film& film = rendering.film;
     nlohmann::json record = settings_json(options, session);
     record.update({{"case", "path_tracer"},
+                   {"spp", film.mean_samples()},
+                   {"configuration", hash_of(film.configuration)},
                    {"backend", backend(accel)},
                    {"path", trace_path(accel)},
                    {"path_rays", stats.path_rays},
@@ -50,6 +55,7 @@ nlohmann::json render_json(const Options& options, const Session& session, const
                    {"build_ms", build_ms(accel)},
                    {"seconds", stats.seconds},
                    {"mrays_per_s", mega_rays_per_second(stats)}});
+    if (const double error = film.error(); std::isfinite(error)) record["error"] = error;
     return record;
 }
 
@@ -63,6 +69,7 @@ nlohmann::json cross_check_json(const Options& options, const Session& session, 
     for (const auto& [kinds, count] : result.classes)
         classes.push_back({{"sw", name(kinds.first)}, {"hw", name(kinds.second)}, {"rays", count}});
     record.update({{"case", "path_tracer.cross_check"},
+                   {"spp", session.settings.samples},
                    {"path", result.hardware_path},
                    {"path_rays", result.path_rays},
                    {"shadow_rays", result.shadow_rays},
@@ -74,6 +81,34 @@ nlohmann::json cross_check_json(const Options& options, const Session& session, 
                    {"unexplained_pixels", result.pictures.unexplained},
                    {"pass", result.passed()}});
     return record;
+}
+
+// "640 x 480, 16 spp, error 3.2 %".
+std::string film_text(const Film& film) {
+    std::ostringstream out;
+    out << film.width << " x " << film.height << ", " << std::setprecision(6) << film.mean_samples() << " spp";
+    if (const double error = film.error(); std::isfinite(error))
+        out << ", error " << std::setprecision(3) << 100 * error << " %";
+    return out.str();
+}
+
+// A line with how the picture differs from the reference, which goes into the record, too; empty without.
+std::string reference_text(const std::filesystem::path& file, const Film& film, nlohmann::json* record) {
+    if (file.empty()) return {};
+    const PictureError error = error_against(film.mean(), load_reference(file, film.width, film.height));
+    if (record) record->update({{"mse", error.mse}, {"relative_mse", error.relative_mse}});
+    return text("against '", file.string(), "': MSE ", error.mse, ", relMSE ", error.relative_mse, '\n');
+}
+
+void print_stats(const Session& session, const AbstractAccel& accel, const RenderStats& stats) {
+    std::printf("rays: %llu of paths, %llu of shadows, %llu cut off behind transparent surfaces\n",
+                static_cast<unsigned long long>(stats.path_rays), static_cast<unsigned long long>(stats.shadow_rays),
+                static_cast<unsigned long long>(stats.cut));
+    for (const auto& [pass, ms] : stats.pass_ms) std::printf("device time: %9.1f ms  %s\n", ms, pass.c_str());
+    constexpr double mib = 1 << 20;
+    std::printf("device memory: %.1f MiB of rays, sums and film, %.1f MiB of the accelerator\n",
+                static_cast<double>(session.renderer->device_bytes()) / mib,
+                static_cast<double>(accel.memory_usage().total()) / mib);
 }
 
 std::string cross_check_text(const Options& options, const Session& session, const CrossCheck& result) {
@@ -98,21 +133,40 @@ std::string cross_check_text(const Options& options, const Session& session, con
 
 }  // namespace
 
-void report_render(const Options& options, const Session& session, const AbstractAccel& accel) {
-    const RenderStats& stats = session.renderer->stats();
+void report_render(const Options& options, const Session& session, const AbstractAccel& accel,
+                   const Rendering& rendering) {
+    const RenderStats& stats = rendering.stats;
+    const Film& film = rendering.film;
     if (stats.non_finite)
         std::fprintf(stderr, "path_tracer: %llu contributions were NaN or infinite and are missing from the picture\n",
                      static_cast<unsigned long long>(stats.non_finite));
-    if (!options.json.empty())
-        write_line(options.json, render_json(options, session, accel).dump() + "\n", std::ios::app);
+    nlohmann::json record = render_json(options, session, accel, rendering);
+    const std::string against = reference_text(options.reference, film, &record);
+    if (!options.json.empty()) write_line(options.json, record.dump() + "\n", std::ios::app);
+    if (options.stats) print_stats(session, accel, stats);
     if (options.quiet) return;
     if (stats.cut)
         std::fprintf(stderr,
                      "path_tracer: %llu rays met more transparent surfaces than are followed (%u, shadows %u)\n",
                      static_cast<unsigned long long>(stats.cut), MAX_PASSES, MAX_SHADOW_PASSES);
-    std::printf("%s: %u x %u, %u spp by %s (%s) in %.1f s, %.2f Mrays/s\n", options.output.string().c_str(),
-                session.settings.width, session.settings.height, session.settings.samples, accel.name().c_str(),
-                trace_path(accel).c_str(), stats.seconds, mega_rays_per_second(stats));
+    const std::string resumed =
+        rendering.resumed_samples > 0 ? text(" (", rendering.resumed_samples, " resumed)") : std::string();
+    std::printf("%s: %s%s by %s (%s) in %.1f s, %.2f Mrays/s\n%s", options.output.string().c_str(),
+                film_text(film).c_str(), resumed.c_str(), accel.name().c_str(), trace_path(accel).c_str(),
+                stats.seconds, mega_rays_per_second(stats), against.c_str());
+}
+
+void say_interrupted(const Rendering& rendering, const std::filesystem::path& checkpoint) {
+    std::fprintf(stderr,
+                 "path_tracer: interrupted after %g paths per pixel; '%s' has them; --resume goes on from there\n",
+                 rendering.film.mean_samples(), checkpoint.string().c_str());
+}
+
+void report_merge(const MergeOptions& options, const Film& film) {
+    const std::string against = reference_text(options.reference, film, nullptr);
+    if (options.quiet) return;
+    std::printf("%s: %s of %zu films\n%s", options.output.string().c_str(), film_text(film).c_str(),
+                options.films.size(), against.c_str());
 }
 
 void classify_disagreements(const Scene& scene, const std::vector<Disagreement>& disagreements, CrossCheck& result) {

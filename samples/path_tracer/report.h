@@ -7,13 +7,19 @@
 
 #include "engine/verify/classify.h"
 #include "samples/path_tracer/cross_check.h"
-#include "samples/path_tracer/session.h"
+#include "samples/path_tracer/rendering.h"
 
 namespace twinray::path_tracer {
 
 // One line per render, unless quiet, and warnings about what was dropped. Appends the JSON record that the options
 // ask for.
-void report_render(const Options& options, const Session& session, const AbstractAccel& accel);
+void report_render(const Options& options, const Session& session, const AbstractAccel& accel,
+                   const Rendering& rendering);
+
+void say_interrupted(const Rendering& rendering, const std::filesystem::path& checkpoint);
+
+// One line, unless quiet.
+void report_merge(const MergeOptions& options, const Film& film);
 
 // What one cross-check found.
 struct CrossCheck {

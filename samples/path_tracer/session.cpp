@@ -7,16 +7,19 @@
 
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
+#include "engine/scene/bytes.h"
 #include "engine/scene/shapes.h"
 #include "hwtlas/hw_tlas.h"
 #include "samples/path_tracer/camera.h"
+#include "samples/path_tracer/film_file.h"
 #include "swtlas/sw_tlas.h"
 
 namespace twinray::path_tracer {
 namespace {
 
 constexpr float default_aspect = 4.0f / 3.0f;
-constexpr uint default_height = 480;
+constexpr uint default_height = 480, default_samples = 16;
+constexpr uint most_samples = 1 << 20;
 
 Scene load(const Options& options) {
     const std::string builtin = "builtin:", name = options.scene.string();
@@ -25,30 +28,43 @@ Scene load(const Options& options) {
     fail("'", name, "': unknown; there is builtin:cornell-box");
 }
 
-// Before the work, not after it.
-void check_folder(const std::filesystem::path& file) {
-    if (file.empty()) return;
-    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-    if (!std::filesystem::is_directory(folder))
-        fail("'", file.string(), "': there is no folder '", folder.string(), "'");
-}
+vec3 vector_of(const std::vector<float>& values) { return {values[0], values[1], values[2]}; }
 
-const Camera* chosen_camera(const Options& options, const Scene& scene) {
-    if (options.camera < 0 || (scene.cameras.empty() && options.camera == 0)) return nullptr;
+// Nothing: the whole scene is framed.
+std::optional<Camera> chosen_camera(const Options& options, const Scene& scene) {
+    if (!options.look_from.empty())
+        return look_camera(vector_of(options.look_from), vector_of(options.look_at), vector_of(options.up),
+                           options.fov);
+    if (options.camera < 0 || (scene.cameras.empty() && options.camera == 0)) return {};
     const auto index = static_cast<std::size_t>(options.camera);
     if (index >= scene.cameras.size())
         fail("'", options.scene.string(), "': --camera ", index, " does not exist; the scene has ",
              scene.cameras.size());
-    return &scene.cameras[index];
+    return scene.cameras[index];
+}
+
+// As pbrt-v4 rounds.
+Crop crop_of(const std::vector<float>& window, uint width, uint height) {
+    const auto edge = [](float fraction, uint side) {
+        return static_cast<uint>(std::ceil(fraction * static_cast<float>(side)));
+    };
+    const uint x0 = edge(window[0], width), x1 = edge(window[1], width);
+    const uint y0 = edge(window[2], height), y1 = edge(window[3], height);
+    if (x1 <= x0 || y1 <= y0)
+        fail("--cropwindow ", window[0], ' ', window[1], ' ', window[2], ' ', window[3], ": no pixel of ", width, " x ",
+             height, " lies in it; X0 X1 Y0 Y1 are fractions, from left to right and from top to bottom");
+    return {x0, y0, x1 - x0, y1 - y0};
 }
 
 RenderSettings make_settings(const Options& options, const Scene& scene) {
-    const Camera* camera = chosen_camera(options, scene);
+    const std::optional<Camera> camera = chosen_camera(options, scene);
     float aspect = camera ? camera->aspect.value_or(default_aspect) : default_aspect;
     RenderSettings settings;
-    settings.samples = options.samples;
+    settings.samples = options.samples.value_or(default_samples);
+    settings.block_size = options.target_error ? adaptive_block_size : 1;
     settings.max_depth = options.max_depth;
     settings.seed = options.seed;
+    settings.is_timed = options.stats;
     const auto scaled = [](uint side, float factor) {
         return std::max(1u, static_cast<uint>(std::lround(static_cast<float>(side) * factor)));
     };
@@ -58,30 +74,74 @@ RenderSettings make_settings(const Options& options, const Scene& scene) {
     settings.width = options.width ? options.width : scaled(settings.height, aspect);
     aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     settings.camera = camera_rays(camera ? *camera : frame_scene(scene, aspect), aspect);
+    if (!options.crop.empty()) settings.crop = crop_of(options.crop, settings.width, settings.height);
     return settings;
+}
+
+StoppingRules make_rules(const Options& options) {
+    const bool has_other = options.seconds || options.target_error;
+    constexpr uint pilot = adaptive_block_size * pilot_blocks;
+    if (options.target_error && options.samples.value_or(pilot) < pilot)
+        fail("--target-error with --spp ", *options.samples, ": errors are estimated from at least ", pilot);
+    return {options.samples.value_or(has_other ? most_samples : default_samples), options.seconds,
+            options.target_error};
+}
+
+// What each of many ranks renders, or the options ask for.
+Shard make_shard(const Options& options, const Ranks& ranks) {
+    if (ranks.count() > 1) {
+        if (!options.shard.empty() || options.target_error || !options.cross_check.empty())
+            fail("under mpirun there is no --shard, --target-error or --cross-check: ranks share the samples out");
+        return {ranks.index(), ranks.count()};
+    }
+    if (options.shard.empty()) return {};
+    Shard shard;
+    char slash = 0;
+    std::istringstream in(options.shard);
+    if (!(in >> shard.index >> slash >> shard.count) || slash != '/' || !in.eof() || shard.index >= shard.count ||
+        options.shard.find('-') != std::string::npos)
+        fail("--shard '", options.shard, "': must be I/N with I from 0 to N - 1");
+    if (!is_film_file(options.output))
+        fail("--shard ", options.shard, ": its output '", options.output.string(), "' must end in .film");
+    return shard;
+}
+
+ContextDesc desc_for(const Options& options, const Ranks& ranks) {
+    ContextDesc desc = context_desc(options);
+    if (ranks.count() > 1 && options.device.empty())
+        desc.device = std::to_string(device_of_rank(list_devices(), ranks.local_index()));
+    return desc;
 }
 
 }  // namespace
 
-float Session::exposure(const Options& options, const Picture& picture) const {
-    if (options.exposure) return *options.exposure;
-    return is_default_sky ? 0 : automatic_exposure(picture);
+void check_folder(const std::filesystem::path& file) {
+    if (file.empty()) return;
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    if (!std::filesystem::is_directory(folder))
+        fail("'", file.string(), "': there is no folder '", folder.string(), "'");
 }
 
-Session make_session(const Options& options) {
+Session make_session(const Options& options, const Ranks& ranks) {
     for (const std::filesystem::path& file : {options.output, options.json, options.cross_check}) check_folder(file);
+    if (options.aovs && lower_suffix(options.output) != ".exr")
+        fail("--aovs: '", options.output.string(), "' must end in .exr");
     Session session;
     session.scene = load(options);
     if (!options.quiet)
         for (const std::string& warning : session.scene.warnings)
             std::fprintf(stderr, "path_tracer: %s\n", warning.c_str());
+    session.rules = make_rules(options);
+    session.shard = make_shard(options, ranks);
     session.settings = make_settings(options, session.scene);
     session.lights = collect_lights(session.scene);
-    session.is_default_sky = options.environment.empty() && !has_lamps(session.scene);
-    if (session.is_default_sky) session.environment = std::make_unique<EnvironmentMap>(default_sky());
+    const bool is_default_sky = options.environment.empty() && !has_lamps(session.scene);
+    if (is_default_sky) session.environment = std::make_unique<EnvironmentMap>(default_sky());
     if (!options.environment.empty())
         session.environment = std::make_unique<EnvironmentMap>(load_hdr_image(options.environment));
-    session.context = std::make_unique<Context>(context_desc(options));
+    session.configuration =
+        configuration_of(session.settings, session.scene, session.lights, session.environment.get(), is_default_sky);
+    session.context = std::make_unique<Context>(desc_for(options, ranks));
     session.device_scene =
         std::make_unique<DeviceScene>(*session.context, session.scene, session.lights, session.environment.get());
     session.renderer = std::make_unique<Renderer>(*session.context, *session.device_scene, session.settings);

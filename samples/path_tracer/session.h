@@ -4,8 +4,10 @@
 
 #include <memory>
 
+#include "samples/path_tracer/configuration.h"
 #include "samples/path_tracer/options.h"
-#include "samples/path_tracer/renderer.h"
+#include "samples/path_tracer/ranks.h"
+#include "samples/path_tracer/rounds.h"
 
 namespace twinray::path_tracer {
 
@@ -13,18 +15,20 @@ struct Session {
     Scene scene;
     LocalLights lights;
     std::unique_ptr<EnvironmentMap> environment;  // null: black
-    bool is_default_sky = false;
     RenderSettings settings;
+    StoppingRules rules;
+    Shard shard;
+    Configuration configuration;
     std::unique_ptr<Context> context;
     std::unique_ptr<DeviceScene> device_scene;
     std::unique_ptr<Renderer> renderer;
-
-    // Of a picture, as the options say.
-    float exposure(const Options& options, const Picture& picture) const;
 };
 
+// Before the work, not after it. Throws Error where there is no folder for the file.
+void check_folder(const std::filesystem::path& file);
+
 // Throws Error naming the file, the option and the limit.
-Session make_session(const Options& options);
+Session make_session(const Options& options, const Ranks& ranks);
 
 // kind: "hw" or "sw". Holds the scene, built.
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const std::string& kind);

@@ -11,6 +11,7 @@ using glm::clamp;
 #include "engine/core/bridge_begin.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
+#include "shaders/path_tracer/film.h"
 #include "shaders/path_tracer/weights.h"
 #include "shaders/path_tracer/bsdf.h"
 #include "engine/core/bridge_end.h"
@@ -18,4 +19,5 @@ using glm::clamp;
 static_assert(sizeof(SurfaceVertex) == 48 && sizeof(SurfaceTriangle) == 16 && sizeof(SurfaceInstance) == 120);
 static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 96);
 static_assert(sizeof(PathState) == 24 && sizeof(ShadowState) == 16 && sizeof(Disagreement) == 104);
+static_assert(sizeof(FilmPixel) == 72 && sizeof(FirstSurface) == 40);
 }  // namespace twinray::path_tracer

@@ -10,23 +10,14 @@
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { GenerateArgs args; };
 
-// Strips of eight rows, column by column: 64 neighbours in the order lie in an 8 x 8 block.
-uvec2 pixel_at(uint position)
-{
-    uint strip = position / (8u * args.width);
-    uint rows = min(8u, args.height - 8u * strip);
-    uint inside = position - strip * 8u * args.width;
-    return uvec2(inside / rows, strip * 8u + inside % rows);
-}
-
 void main()
 {
     uint i = global_index();
     if (i >= args.count) return;
-    uvec2 pixel = pixel_at(args.first + i);
-    uint index = pixel.y * args.width + pixel.x;
-    vec2 jitter = unit_floats(sample_pair(index, args.sample_index, 0u, args.seed));
-    vec2 inside = (vec2(pixel) + jitter) / vec2(args.width, args.height);
+    uint index = AT(args.pixels, i), key = picture_index(args.window, index);
+    uvec2 pixel = uvec2(key % args.window.picture_width, key / args.window.picture_width);
+    vec2 jitter = unit_floats(sample_pair(key, args.sample_index, 0u, args.seed));
+    vec2 inside = (vec2(pixel) + jitter) / vec2(args.window.picture_width, args.picture_height);
     vec3 across = args.camera.right * (2.0 * inside.x - 1.0) + args.camera.up * (1.0 - 2.0 * inside.y);
     bool is_orthographic = args.camera.orthographic != 0u;
     Ray ray;

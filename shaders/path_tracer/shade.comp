@@ -27,6 +27,7 @@ struct Vertex
     vec3 wo;
     vec3 normal;   // shading normal on the side of wo
     bool is_front; // of the triangle
+    uint key;      // of the pixel's random numbers
     uint number;   // it has PAIR_COUNT pairs of random dimensions
 };
 
@@ -34,7 +35,7 @@ float infinity() { return uintBitsToFloat(0x7f800000u); }
 
 uvec2 pair_of(Vertex vertex, uint which)
 {
-    return sample_pair(vertex.path.pixel, args.sample_index, PAIR_COUNT * vertex.number + which + 1u, args.seed);
+    return sample_pair(vertex.key, args.sample_index, PAIR_COUNT * vertex.number + which + 1u, args.seed);
 }
 
 void add(uint pixel, vec3 radiance)
@@ -159,6 +160,22 @@ void scatter(Vertex vertex)
     go_on(ray, path);
 }
 
+// Each pixel has one ray at a time.
+void note_first(Vertex vertex, Hit hit, uint flags, vec3 albedo)
+{
+    FirstSurface first = AT(args.first_surfaces, vertex.path.pixel);
+    first.albedo += albedo;
+    first.normal += shading_normal(AT(args.scene, 0), vertex.surface, flags, vertex.wo);
+    first.distance += vertex.surface.t;
+    first.count += 1u;
+    if (args.sample_index == 0u)
+    {
+        first.instance = hit.instance_index + 1u;
+        first.primitive = hit.primitive_index;
+    }
+    AT(args.first_surfaces, vertex.path.pixel) = first;
+}
+
 void shade(PathState path, Ray ray, Hit hit)
 {
     Vertex vertex;
@@ -166,6 +183,7 @@ void shade(PathState path, Ray ray, Hit hit)
     vertex.surface = surface_of(AT(args.scene, 0), ray, hit);
     vertex.wo = -ray.direction;
     vertex.is_front = dot(vertex.surface.point.normal, vertex.wo) >= 0.0;
+    vertex.key = picture_index(args.window, path.pixel);
     vertex.number = path.progress & 0xffffu;
     uint flags = AT(AT(args.scene, 0).materials, vertex.surface.material).flags;
     vec2 part = unit_floats(pair_of(vertex, PAIR_PART));
@@ -179,6 +197,7 @@ void shade(PathState path, Ray ray, Hit hit)
             return;
         }
     }
+    if (HAS_AOVS && path.progress >> 16u == 0u) note_first(vertex, hit, flags, color.rgb);
     if ((flags & MATERIAL_UNLIT) != 0u)
     {
         add(path.pixel, path.throughput * color.rgb);

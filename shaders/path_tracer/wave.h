@@ -14,7 +14,7 @@ struct PathState
 {
     vec3 throughput;
     float pdf;     // density by solid angle with which the ray was sampled; 0: it could not have been found as light
-    uint pixel;
+    uint pixel;    // of the film
     uint progress; // low half: surfaces met, which number the random dimensions; high half: scatterings of them
 };
 BUFFER_OF(PathState, 8);
@@ -46,18 +46,43 @@ struct CameraRays
     uint orthographic;
 };
 
+// Where the pixels of a film lie in the whole picture. Random numbers belong to pixels of the whole picture, so that a
+// part of it is the same when it is rendered alone.
+struct FilmWindow
+{
+    uint width;         // of the film
+    uint picture_width;
+    uint first;         // index of the film's first pixel in the picture
+};
+FUNC uint picture_index(FilmWindow window, uint pixel)
+{
+    return window.first + pixel + (pixel / window.width) * (window.picture_width - window.width);
+}
+
 struct GenerateArgs
 {
     REF(Ray) rays;
     REF(PathState) paths;
+    Uints pixels; // of the film, in the order in which they are traced
     CameraRays camera;
-    uint first; // position in the order of pixels
+    FilmWindow window;
+    uint picture_height;
     uint count;
-    uint width;
-    uint height;
     uint sample_index;
     uint seed;
 };
+
+// What the camera rays of a pixel see first, summed over them.
+struct FirstSurface
+{
+    vec3 albedo;    // base color
+    vec3 normal;    // for shading, in world space, on the side of the camera
+    float distance; // from the camera
+    uint count;     // of the rays that see something
+    uint instance;  // 1 + that of sample 0; 0: it sees nothing
+    uint primitive;
+};
+BUFFER_OF(FirstSurface, 8);
 
 struct ShadeArgs
 {
@@ -75,6 +100,8 @@ struct ShadeArgs
     uint sample_index;
     uint seed;
     uint max_depth;
+    FilmWindow window;
+    REF(FirstSurface) first_surfaces; // one per pixel; null without PT_HAS_AOVS
 };
 
 struct ShadowArgs

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "samples/path_tracer/camera.h"
 #include "samples/path_tracer/image_io.h"
 #include "samples/path_tracer/lights.h"
+#include "samples/path_tracer/reference.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -84,6 +86,27 @@ TEST(HasLamps, TellsLampsFromGlowingLabels) {
     EXPECT_FALSE(has_lamps(scene));
     scene.materials[0].emission = vec3(5);
     EXPECT_TRUE(has_lamps(scene));
+}
+
+TEST(LookCamera, StandsWhereItIsToldAndLooksThere) {
+    const CameraRays rays = camera_rays(look_camera({1, 2, 3}, {1, 2, -7}, {0, 5, 0}, 90), 2);
+    EXPECT_EQ(rays.origin, vec3(1, 2, 3));
+    EXPECT_EQ(rays.forward, vec3(0, 0, -1));
+    EXPECT_NEAR(length(rays.right - vec3(2, 0, 0)), 0, 1e-6f);
+    EXPECT_NEAR(length(rays.up - vec3(0, 1, 0)), 0, 1e-6f);
+    const CameraRays tilted = camera_rays(look_camera({0, 4, 4}, vec3(0), {0, 1, 0}, 40), 1);
+    EXPECT_NEAR(dot(tilted.forward, tilted.up), 0, 1e-6f);
+    EXPECT_GT(tilted.up.y, 0);
+    EXPECT_THROW(look_camera(vec3(1), vec3(1), {0, 1, 0}, 40), Error);
+    EXPECT_THROW(look_camera({0, 2, 0}, vec3(0), {0, 1, 0}, 40), Error);
+    EXPECT_THROW(look_camera({0, NAN, 0}, vec3(0), {1, 0, 0}, 40), Error);
+}
+
+TEST(Reference, ErrorsAreMeansOverPixelsAndChannels) {
+    const Picture picture{2, 1, {vec3(1, 2, 3), vec3(0)}};
+    const PictureError error = error_against(picture, {2, 1, {vec3(1, 2, 1), vec3(0, 0, 0.1f)}});
+    EXPECT_NEAR(error.mse, (4 + 0.01) / 6, 1e-6);
+    EXPECT_NEAR(error.relative_mse, (4 / 1.01 + 0.01 / 0.02) / 6, 1e-6);
 }
 
 }  // namespace

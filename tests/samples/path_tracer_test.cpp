@@ -45,8 +45,8 @@ TEST_F(PathTracer, EveryDifferenceBetweenTheAcceleratorsComesFromARayOnWhichThey
     settings.width = settings.height = 64;
     Renderer renderer(context(), device_scene, settings);
     CrossChecker checker(context(), software, renderer, 64 * 64);
-    const Picture by_hardware = renderer.render(hardware, true, &checker);
-    const Picture by_software = renderer.render(software, true);
+    const Picture by_hardware = render_picture(renderer, settings, hardware, true, &checker);
+    const Picture by_software = render_picture(renderer, settings, software, true);
     const PictureDifference difference = compare_pictures(by_hardware, by_software, checker.marks());
     EXPECT_EQ(difference.unexplained, 0u);
     EXPECT_LT(checker.found(), 10u);
@@ -62,12 +62,14 @@ TEST_F(PathTracer, TheCrossCheckFindsAMissingWall) {
     push_scene(broken, scene);
     broken.sync();
     const DeviceScene device_scene(context(), scene, collect_lights(scene), nullptr);
-    Renderer renderer(context(), device_scene, cornell_shot(scene).settings);
+    const RenderSettings settings = cornell_shot(scene).settings;
+    Renderer renderer(context(), device_scene, settings);
     CrossChecker checker(context(), broken, renderer, 32 * 32);
-    const Picture right = renderer.render(whole, true, &checker);
+    const Picture right = render_picture(renderer, settings, whole, true, &checker);
     EXPECT_GT(checker.found(), 100u);
     const std::vector<uint> nothing_marked(32 * 32);
-    EXPECT_GT(compare_pictures(right, renderer.render(broken, true), nothing_marked).unexplained, 0u);
+    EXPECT_GT(compare_pictures(right, render_picture(renderer, settings, broken, true), nothing_marked).unexplained,
+              0u);
 }
 
 TEST_F(PathTracer, AMaskedSurfaceLetsLightThroughWhereItsTextureIsClear) {

@@ -46,7 +46,7 @@ inline Picture render(Context& context, const Scene& scene, const Shot& shot) {
     else
         accel = std::make_unique<SwTlas>(context);
     push_scene(*accel, scene);
-    Picture picture = renderer.render(*accel, true);
+    Picture picture = render_picture(renderer, shot.settings, *accel, true);
     EXPECT_EQ(renderer.stats().non_finite, 0u);
     return picture;
 }

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "samples/path_tracer/configuration.h"
+
+#include <iomanip>
+
+#include "engine/core/error.h"
+#include "engine/scene/bytes.h"
+#include "samples/path_tracer/surface_records.h"
+
+namespace twinray::path_tracer {
+namespace {
+
+constexpr const char* environment_entry = "environment";
+constexpr const char* default_sky_value = "default sky";
+
+// Of many pieces, one after the other.
+class Sum {
+  public:
+    template <class T>
+    Sum& add(const std::vector<T>& values) {
+        sum_ = crc32_of(std::as_bytes(std::span(values)), sum_);
+        return *this;
+    }
+    std::string hex() const { return text(std::hex, std::setw(8), std::setfill('0'), sum_); }
+
+  private:
+    uint sum_ = 0;
+};
+
+std::string geometry_sum(const Scene& scene) {
+    Sum sum;
+    for (const Mesh& mesh : scene.meshes) sum.add(vertex_records(mesh)).add(triangle_records(mesh));
+    std::vector<SurfaceInstance> instances;
+    std::vector<uint> meshes;
+    for (const Instance& instance : scene.instances) {
+        instances.push_back(instance_record(instance.transform));
+        meshes.push_back(instance.mesh);
+    }
+    return sum.add(instances).add(meshes).hex();
+}
+
+std::string image_sum(const Scene& scene) {
+    Sum sum;
+    for (const Image& image : scene.images) sum.add(std::vector<uint>{image.width, image.height}).add(image.rgba);
+    return sum.hex();
+}
+
+std::string environment_text(const EnvironmentMap* environment, bool is_default_sky) {
+    if (is_default_sky) return default_sky_value;
+    if (!environment) return "none";
+    const HdrImage& image = environment->image;
+    return text(image.width, " x ", image.height, ' ', Sum().add(image.rgb).hex());
+}
+
+const char* strategy_text(uint strategy) {
+    return strategy == STRATEGY_MIS ? "lights and surfaces" : strategy == STRATEGY_LIGHTS ? "lights" : "surfaces";
+}
+
+}  // namespace
+
+Configuration configuration_of(const RenderSettings& settings, const Scene& scene, const LocalLights& lights,
+                               const EnvironmentMap* environment, bool is_default_sky) {
+    const Crop part = settings.part();
+    const std::string sampling = settings.block_size > 1
+                                     ? text("blocks of ", settings.block_size, " that do not depend on each other")
+                                     : "one sequence a pixel";
+    return {{"picture", text(settings.width, " x ", settings.height)},
+            {"part", text(part.width, " x ", part.height, " at ", part.x, ", ", part.y)},
+            {"sampling", sampling},
+            {"seed", text(settings.seed)},
+            {"max depth", text(settings.max_depth)},
+            {"direct light by sampling", strategy_text(settings.strategy)},
+            {"camera", Sum().add(std::vector{settings.camera}).hex()},
+            {"geometry", geometry_sum(scene)},
+            {"materials", Sum().add(material_records(scene)).hex()},
+            {"images", image_sum(scene)},
+            {"lights", Sum().add(lights.punctual).add(lights.table).hex()},
+            {environment_entry, environment_text(environment, is_default_sky)}};
+}
+
+float exposure_of(const std::optional<float>& wanted, const Configuration& configuration, const Picture& picture) {
+    if (wanted) return *wanted;
+    return value_of(configuration, environment_entry) == default_sky_value ? 0 : automatic_exposure(picture);
+}
+
+void write_picture_of(const std::filesystem::path& file, const Film& film, const std::optional<float>& exposure,
+                      std::span<const Channel> layers) {
+    const Picture picture = film.mean();
+    write_picture(file, picture, exposure_of(exposure, film.configuration, picture), layers);
+}
+
+std::string hash_of(const Configuration& configuration) {
+    std::string all;
+    for (const auto& [name, value] : configuration) all += text(name, ": ", value, '\n');
+    return Sum().add(std::vector<char>(all.begin(), all.end())).hex();
+}
+
+}  // namespace twinray::path_tracer

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "samples/path_tracer/environment.h"
+#include "samples/path_tracer/lights.h"
+#include "samples/path_tracer/renderer.h"
+
+namespace twinray::path_tracer {
+
+// What a picture of the scene depends on: contents stand by their CRC-32, so that where files lie does not matter.
+// environment: null for black. How many samples are taken, by which accelerator and on which device is no part of it.
+Configuration configuration_of(const RenderSettings& settings, const Scene& scene, const LocalLights& lights,
+                               const EnvironmentMap* environment, bool is_default_sky);
+
+// Stops for a .png: as asked for, else 0 under the default sky, else automatic.
+float exposure_of(const std::optional<float>& wanted, const Configuration& configuration, const Picture& picture);
+
+// The mean, exposed so.
+void write_picture_of(const std::filesystem::path& file, const Film& film, const std::optional<float>& exposure,
+                      std::span<const Channel> layers = {});
+
+// CRC-32 of the text, to tell configurations apart at a glance.
+std::string hash_of(const Configuration& configuration);
+
+}  // namespace twinray::path_tracer

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include "samples/path_tracer/reference.h"
+
+#include "engine/core/error.h"
+
+namespace twinray::path_tracer {
+
+PictureError error_against(const Picture& picture, const HdrImage& reference) {
+    PictureError error;
+    for (std::size_t i = 0; i < picture.rgb.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            const double right = static_cast<double>(reference.rgb[i][c]);
+            const double off = static_cast<double>(picture.rgb[i][c]) - right;
+            error.mse += off * off;
+            error.relative_mse += off * off / (right * right + 0.01);
+        }
+    const double count = 3.0 * static_cast<double>(picture.rgb.size());
+    return {error.mse / count, error.relative_mse / count};
+}
+
+HdrImage load_reference(const std::filesystem::path& file, uint width, uint height) {
+    HdrImage image = load_hdr_image(file);
+    if (image.width != width || image.height != height)
+        fail("'", file.string(), "': ", image.width, " x ", image.height, " pixels, but the picture has ", width, " x ",
+             height);
+    return image;
+}
+
+}  // namespace twinray::path_tracer

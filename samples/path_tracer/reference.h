@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+
+#include "engine/scene/image.h"
+#include "samples/path_tracer/image_io.h"
+
+namespace twinray::path_tracer {
+
+// How a picture differs from a better one: means over pixels and channels.
+struct PictureError {
+    double mse = 0;           // of the squared difference
+    double relative_mse = 0;  // of the squared difference over the squared reference + 0.01, which keeps black out
+};
+PictureError error_against(const Picture& picture, const HdrImage& reference);
+
+// Throws Error unless the file is a picture of that size.
+HdrImage load_reference(const std::filesystem::path& file, uint width, uint height);
+
+}  // namespace twinray::path_tracer

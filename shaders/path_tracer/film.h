@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// What each pixel has gathered. Sums are kept so that neither the order nor the grouping of what is added changes a bit
+// of them: each number is cut at fixed places of the binary system, every 40 bits, and the pieces of two places are
+// added as integers, those of the place that the largest number reaches and of the next below. What is smaller than
+// both, less than 2^-40 of the largest number, is left out, whenever it comes. (Demmel and Nguyen, "Parallel
+// Reproducible Summation", 2015; integers, because devices need not round float64 correctly or have it at all.) Needs wave.h.
+#ifndef TWINRAY_PATH_TRACER_FILM_H
+#define TWINRAY_PATH_TRACER_FILM_H
+
+const uint FILM_PIECE_BITS = 40u; // 2^23 numbers fit into a sum of 64 bits with a sign
+const uint FILM_SQUARES = 3u;     // index of their sum
+
+// 72 bytes. A sum is (high * 2^40 + low) * 2^(40 place), in two's complement, in units of 2^-149 for colors and of 2^-298
+// for squares.
+struct FilmPixel
+{
+    uint count;       // of the blocks that were added
+    uint places;      // low half: of the color sums; high half: of the sum of squares
+    uint64_t high[4]; // of a block's red, green and blue, and of its luminance squared
+    uint64_t low[4];
+};
+BUFFER_OF(FilmPixel, 8);
+
+// |x| is mantissa << shift, in units of 2^-149, for finite x.
+FUNC uint64_t film_mantissa(float x)
+{
+    uint bits = floatBitsToUint(x);
+    return uint64_t((bits & 0x7fffffu) | ((bits & 0x7f800000u) != 0u ? 0x800000u : 0u));
+}
+FUNC uint film_shift(float x) { return max((floatBitsToUint(x) >> 23u) & 0xffu, 1u) - 1u; }
+
+// The lower of the two places for a number of so many bits, which need not all be used.
+FUNC uint film_place(uint shift, uint bits) { return max((shift + bits - 1u) / FILM_PIECE_BITS, 1u) - 1u; }
+
+// Bits [40 place, 40 place + 40) of mantissa << shift, for mantissas of at most 48 bits.
+FUNC uint64_t film_piece(uint64_t mantissa, uint shift, uint place)
+{
+    int up = int(shift) - int(FILM_PIECE_BITS * place);
+    if (up >= int(FILM_PIECE_BITS) || up <= -48) return uint64_t(0);
+    uint64_t bits = up >= 0 ? mantissa << up : mantissa >> -up;
+    return bits & 0xfffffffffful;
+}
+
+// What lies below the places is left out; a sum whose place is not lower already stays.
+FUNC void film_raise(INOUT(FilmPixel) pixel, uint sum, uint from, uint to)
+{
+    if (to <= from) return;
+    pixel.low[sum] = to == from + 1u ? pixel.high[sum] : uint64_t(0);
+    pixel.high[sum] = uint64_t(0);
+}
+
+FUNC void film_raise_all(INOUT(FilmPixel) pixel, uint color_place, uint square_place)
+{
+    uint old_color = pixel.places & 0xffffu, old_square = pixel.places >> 16u;
+    for (uint i = 0u; i < FILM_SQUARES; ++i) film_raise(pixel, i, old_color, color_place);
+    film_raise(pixel, FILM_SQUARES, old_square, square_place);
+    pixel.places = max(old_color, color_place) | (max(old_square, square_place) << 16u);
+}
+
+// A block's sum of finite radiance.
+FUNC void film_add(INOUT(FilmPixel) pixel, vec3 radiance, float luminance_of_it)
+{
+    float values[3];
+    values[0] = radiance.x;
+    values[1] = radiance.y;
+    values[2] = radiance.z;
+    uint shift = max(film_shift(radiance.x), max(film_shift(radiance.y), film_shift(radiance.z)));
+    uint square_shift = 2u * film_shift(luminance_of_it);
+    film_raise_all(pixel, film_place(shift, 24u), film_place(square_shift, 48u));
+    uint place = pixel.places & 0xffffu, square_place = pixel.places >> 16u;
+    for (uint i = 0u; i < FILM_SQUARES; ++i)
+    {
+        uint64_t mantissa = film_mantissa(values[i]), low = film_piece(mantissa, film_shift(values[i]), place);
+        uint64_t high = film_piece(mantissa, film_shift(values[i]), place + 1u);
+        bool is_negative = values[i] < 0.0f;
+        pixel.low[i] += is_negative ? uint64_t(0) - low : low;
+        pixel.high[i] += is_negative ? uint64_t(0) - high : high;
+    }
+    uint64_t square = film_mantissa(luminance_of_it) * film_mantissa(luminance_of_it);
+    pixel.low[FILM_SQUARES] += film_piece(square, square_shift, square_place);
+    pixel.high[FILM_SQUARES] += film_piece(square, square_shift, square_place + 1u);
+    pixel.count += 1u;
+}
+
+struct AccumulateArgs
+{
+    REF(FilmPixel) film;
+    REF(Radiance) sums;
+    REF(Counters) counters;
+    Uints pixels;
+    uint count;
+};
+#endif

@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Runs `path_tracer` as a user does. Usage: path_tracer_command_test.py PATH_TRACER"""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+path_tracer, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+box = ["builtin:cornell-box", "--height", "24", "--accel", "sw"]
+
+
+def run(*arguments, status=0):
+    done = subprocess.run([path_tracer, *arguments], capture_output=True, text=True, cwd=here)
+    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout + done.stderr
+
+
+def same(*names):
+    return len({(here / name).read_bytes() for name in names}) == 1
+
+
+def stop_when(checkpoint, signal_number, *arguments):
+    """Starts a run and sends it the signal once its checkpoint is there."""
+    process = subprocess.Popen([path_tracer, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=here)
+    while process.poll() is None and not (here / checkpoint).exists():
+        time.sleep(0.005)
+    assert process.poll() is None, f"{arguments} ended by itself: {process.communicate()}"
+    process.send_signal(signal_number)
+    shown = "".join(process.communicate())
+    return process.returncode, shown
+
+
+# One run, and the same in three shards, merged in another order; the film is the same, too.
+shown = run(*box, "--spp", "8", "-o", "whole.png", "--keep-film", "--json", "all.jsonl", "--stats")
+assert "24 x 24, 8 spp, error" in shown and "swtlas_trace closest" in shown and "device memory" in shown, shown
+for shard in range(3):
+    run(*box, "--spp", "8", "--shard", f"{shard}/3", "--outfile", f"{shard}.film")
+assert "8 spp" in run("merge", "2.film", "0.film", "1.film", "-o", "merged.png")
+run("merge", "1.film", "2.film", "0.film", "-o", "merged.film")
+assert same("whole.png", "merged.png") and same("whole.png.film", "merged.film")
+assert "both hold samples 1 to 1" in run("merge", "0.film", "1.film", "1.film", "-o", "no.png", status=1)
+# A lost shard can be rendered later.
+run("merge", "2.film", "0.film", "-o", "part.png.film")
+assert "(5 resumed)" in run(*box, "--spp", "8", "-o", "part.png", "--resume")
+assert same("whole.png", "part.png") and not (here / "part.png.film").exists()
+
+# Killed in the middle and resumed: the same picture, bit for bit; for adaptive sampling, too.
+for name, rule in [("plain", ["--spp", "120"]), ("adaptive", ["--target-error", "0.2"])]:
+    job = [*box, *rule, "--checkpoint", "0", "-o"]
+    status, shown = stop_when(f"{name}.exr.film", signal.SIGKILL, *job, f"{name}.exr")
+    assert status == -signal.SIGKILL and not (here / f"{name}.exr").exists(), shown
+    assert "resumed" in run(*job, f"{name}.exr", "--resume")
+    shown = run(*job, f"{name}2.exr", "--mse-reference-image", f"{name}.exr", "--json", "errors.jsonl")
+    assert "MSE 0, relMSE 0" in shown, shown
+    assert same(f"{name}.exr", f"{name}2.exr"), name
+    assert not list(here.glob("*exr.film")), "nothing is left behind"
+
+# Ctrl-C: a picture and a checkpoint.
+status, shown = stop_when("stopped.png", signal.SIGINT, *box, "--time", "600", "-o", "stopped.png", "--write-partial-images", "0")
+assert status == 130 and "interrupted after" in shown and (here / "stopped.png.film").exists(), (status, shown)
+assert (here / "stopped.png").read_bytes()[-8:-4] == b"IEND"
+assert "seed is 1, not 2" in run(*box, "--seed", "2", "--resume", "-o", "stopped.png", status=1)
+begun = time.monotonic()
+run(*box, "--time", "1", "--resume", "-o", "stopped.png", "--json", "all.jsonl")
+assert 1 <= time.monotonic() - begun < 20
+
+# The part of a picture is as it is in the whole.
+run(*box, "--spp", "2", "-o", "all.film", "--quiet")
+run(*box, "--spp", "2", "--cropwindow", "0.25", "0.5", "0.5", "1", "-o", "part.film", "--quiet")
+
+
+def pixels(name):  # 72 bytes each, before the checksum
+    data = (here / name).read_bytes()
+    width, height = (int.from_bytes(data[at:at + 4], "little") for at in (16, 20))
+    rows = data[len(data) - 4 - 72 * width * height:-4]
+    return [[rows[72 * (y * width + x):72 * (y * width + x + 1)] for x in range(width)] for y in range(height)]
+
+
+assert pixels("part.film") == [row[6:12] for row in pixels("all.film")[12:24]]
+
+# A camera; what is seen first, in layers beside the same picture.
+run(*box, "--spp", "2", "-o", "right.png", "--look-from", "0", "1", "3", "--look-at", "0", "1", "0", "--fov", "30")
+run(*box, "--spp", "2", "-o", "left.png", "--look-from", "-1", "1", "3", "--look-at", "0", "1", "0", "--fov", "30")
+assert not same("right.png", "left.png")
+run(*box, "--spp", "8", "-o", "layers.exr", "--aovs")
+assert "MSE 0" in run("merge", "whole.png.film", "-o", "flat.exr", "--mse-reference-image", "layers.exr")
+layers = (here / "layers.exr").read_bytes()
+for layer in ["albedo.R", "normal.Z", "depth.Z", "instance.ID", "primitive.ID", "samples.N", "variance.Y"]:
+    assert layer.encode() + b"\0" in layers[:1000], layer
+
+records = [json.loads(line) for line in (here / "all.jsonl").read_text().splitlines()]
+assert records[0]["spp"] == 8 and 0 < records[0]["error"] < 10 and len(records[0]["configuration"]) == 8, records[0]
+record = json.loads((here / "errors.jsonl").read_text().splitlines()[0])
+assert record["mse"] == 0 and record["relative_mse"] == 0, record
+assert not list(here.glob("*partial*")), "nothing half written is left"
+
+for arguments, status, words in [
+        (["-o", "a.jpg"], 2, "must end in .png, .exr or .film"), (["-o", "none/a.png"], 1, "there is no folder 'none'"),
+        (["-o", "a.png", "--shard", "0/2"], 1, "must end in .film"), (["-o", "a.film", "--shard", "2/2"], 1, "must be I/N"),
+        (["-o", "a.film", "--shard", "0/2", "--target-error", "0.1"], 2, "excludes"),
+        (["-o", "a.png", "--spp", "16", "--target-error", "0.1"], 1, "at least 32"),
+        (["-o", "a.png", "--aovs"], 1, "must end in .exr"),
+        (["-o", "a.png", "--cropwindow", "0.5", "0.5", "0", "1"], 1, "no pixel"),
+        (["-o", "a.png", "--look-from", "0", "1", "0", "--look-at", "0", "0", "0"], 1, "which is up"),
+        (["-o", "a.png", "--mse-reference-image", "plain.exr", "--width", "30"], 1, "24 x 24 pixels, but the picture has 30 x 24")]:
+    shown = run(*box, *arguments, status=status)
+    assert words in shown, f"{arguments}: {shown}"
+(here / "bad.film").write_bytes((here / "0.film").read_bytes()[:-5])
+for films, words in [(["bad.film"], "cut short or damaged"), (["whole.png"], "not a film"), (["part.film", "0.film"], "part is")]:
+    shown = run("merge", *films, "-o", "a.png", status=1)
+    assert words in shown, shown
+print("path_tracer_command_test: passed")
