@@ -109,9 +109,10 @@ class FilmRenderer {
                              time_.elapsed(), error_);
     }
 
-    // A round that would end further beyond the time than it began before is not begun.
+    // A round that would end further beyond the time than it began before is not begun; the first is.
     bool is_out_of_time() const {
-        return session_.rules.seconds && time_.elapsed() + last_round_ / 2 >= *session_.rules.seconds;
+        return session_.rules.seconds && last_round_ > 0 &&
+               time_.elapsed() + last_round_ / 2 >= *session_.rules.seconds;
     }
 
     void render(const Round& round) {
@@ -133,7 +134,7 @@ class FilmRenderer {
     }
 
     void write_what_is_due() {
-        if (preview_.is_due()) {
+        if (preview_.is_due() && ranks_.index() == 0) {
             read();
             write_output();
             preview_.restart();
