@@ -15,7 +15,8 @@
 namespace twinray::path_tracer {
 namespace {
 
-constexpr double seconds_between_estimates = 2;
+// Of the error that is shown; more where estimates take long.
+constexpr double seconds_between_estimates = 2, share_of_estimates = 0.05;
 
 // Says when something that is done every so often is due.
 class Timer {
@@ -79,6 +80,7 @@ class FilmRenderer {
           file_(checkpoint_file(options.output, ranks)),
           result_{.film = first_film(options, session, file_)},
           error_(result_.film.error()),
+          estimate_(options.quiet ? std::nullopt : std::optional(seconds_between_estimates)),
           preview_(options.preview_seconds),
           checkpoint_(options.checkpoint_seconds),
           progress_("path_tracer " + accel.name(), fraction(), options.quiet) {
@@ -128,9 +130,11 @@ class FilmRenderer {
     }
 
     void read() {
+        const double start = time_.elapsed();
         session_.renderer->read(result_.film);
         error_ = result_.film.error();
-        estimate_.restart();
+        const double cost = time_.elapsed() - start;
+        if (!options_.quiet) estimate_ = Timer(std::max(seconds_between_estimates, cost / share_of_estimates));
     }
 
     void write_what_is_due() {
@@ -186,7 +190,7 @@ class FilmRenderer {
     Interrupts interrupts_;
     Rendering result_;
     double error_, last_round_ = 0;
-    Timer time_{std::nullopt}, estimate_{seconds_between_estimates}, preview_, checkpoint_;
+    Timer time_{std::nullopt}, estimate_, preview_, checkpoint_;
     RoundProgress progress_;
 };
 
