@@ -39,9 +39,9 @@ std::span<std::byte> bytes_of(std::vector<T>& values) {
 
 }  // namespace
 
-// A program that mpirun did not start needs none of it.
+// What neither mpirun nor srun has started needs none of it.
 Ranks::Ranks(int& argc, char**& argv) {
-    if (!std::getenv("OMPI_COMM_WORLD_SIZE") && !std::getenv("PMI_SIZE")) return;
+    if (!std::getenv("OMPI_COMM_WORLD_SIZE") && !std::getenv("PMIX_RANK") && !std::getenv("PMI_SIZE")) return;
     MPI_Init(&argc, &argv);
     int index = 0, count = 1, local = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &index);

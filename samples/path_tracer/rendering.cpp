@@ -15,7 +15,8 @@
 namespace twinray::path_tracer {
 namespace {
 
-constexpr double seconds_between_estimates = 2;
+// Of the error that is shown; more where estimates take long.
+constexpr double seconds_between_estimates = 2, share_of_estimates = 0.05;
 
 // Says when something that is done every so often is due.
 class Timer {
@@ -79,6 +80,7 @@ class FilmRenderer {
           file_(checkpoint_file(options.output, ranks)),
           result_{.film = first_film(options, session, file_)},
           error_(result_.film.error()),
+          estimate_(options.quiet ? std::nullopt : std::optional(seconds_between_estimates)),
           preview_(options.preview_seconds),
           checkpoint_(options.checkpoint_seconds),
           progress_("path_tracer " + accel.name(), fraction(), options.quiet) {
@@ -109,9 +111,10 @@ class FilmRenderer {
                              time_.elapsed(), error_);
     }
 
-    // A round that would end further beyond the time than it began before is not begun.
+    // A round that would end further beyond the time than it began before is not begun; the first is.
     bool is_out_of_time() const {
-        return session_.rules.seconds && time_.elapsed() + last_round_ / 2 >= *session_.rules.seconds;
+        return session_.rules.seconds && last_round_ > 0 &&
+               time_.elapsed() + last_round_ / 2 >= *session_.rules.seconds;
     }
 
     void render(const Round& round) {
@@ -127,13 +130,15 @@ class FilmRenderer {
     }
 
     void read() {
+        const double start = time_.elapsed();
         session_.renderer->read(result_.film);
         error_ = result_.film.error();
-        estimate_.restart();
+        const double cost = time_.elapsed() - start;
+        if (!options_.quiet) estimate_ = Timer(std::max(seconds_between_estimates, cost / share_of_estimates));
     }
 
     void write_what_is_due() {
-        if (preview_.is_due()) {
+        if (preview_.is_due() && ranks_.index() == 0) {
             read();
             write_output();
             preview_.restart();
@@ -185,7 +190,7 @@ class FilmRenderer {
     Interrupts interrupts_;
     Rendering result_;
     double error_, last_round_ = 0;
-    Timer time_{std::nullopt}, estimate_{seconds_between_estimates}, preview_, checkpoint_;
+    Timer time_{std::nullopt}, estimate_, preview_, checkpoint_;
     RoundProgress progress_;
 };
 

@@ -32,16 +32,17 @@ std::vector<double> means_around(const std::vector<double>& variances, uint widt
 Round lacking_round(const Film& film, uint end, double target) {
     const std::vector<double> needed = blocks_needed(film, target);
     const uint done = film.blocks.end();
+    const std::vector<uint> order = pixel_order(film.width, film.height);
     Round round{.first = done};
     double lack = 0;
-    for (const uint pixel : pixel_order(film.width, film.height))
+    for (const uint pixel : order)
         if (const double missing = needed[pixel] - film.pixels[pixel].count; missing > 0) {
             round.pixels.push_back(pixel);
             lack += missing;
         }
+    if (round.pixels.empty()) round.pixels = order;
     const double most = std::min(end - done, std::max(1u, done / 8));
-    round.count =
-        static_cast<uint>(std::clamp(lack / std::max(1.0, static_cast<double>(round.pixels.size())), 1.0, most));
+    round.count = static_cast<uint>(std::clamp(lack / static_cast<double>(round.pixels.size()), 1.0, most));
     return round;
 }
 

@@ -29,7 +29,7 @@ struct Shard {
 struct Round {
     uint first = 0;
     uint count = 1;
-    std::vector<uint> pixels = {};  // by index in the film; none: all
+    std::vector<uint> pixels = {};  // by index in the film; none: all, as in all rounds before
 };
 
 // Nothing where the shard has all its samples, or the film the error that is asked for. Without a target error only

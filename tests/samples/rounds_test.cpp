@@ -71,10 +71,28 @@ TEST(Rounds, PixelsGetAsManySamplesAsTheyNeed) {
     const Film film = adaptive_film({.samples = 1 << 16, .error = 0.1}, uneven, 1);
     EXPECT_LE(film.error(), 0.1);
     EXPECT_GT(film.error(), 0.09);
-    // Half of the pixels have a variance of 19 a sample, the others next to none: as many samples for each would be 950.
+    // Half of the pixels have a variance of 19 a sample, the others next to none: as many samples for each would be
+    // 950.
     EXPECT_LT(film.mean_samples(), 750);
     EXPECT_GT(film.pixels.back().count, 5 * film.pixels.front().count);
     EXPECT_GT(film.pixels.front().count, 2 * pilot_blocks) << "none is left alone";
+}
+
+// A corner is seen by few neighbours, so that none lacks blocks before the error is what it should be.
+TEST(Rounds, ANoisyCornerIsNoDeadEnd) {
+    const Source corner = [](uint pixel, std::mt19937& random) {
+        return pixel == 0 ? uneven(side * side - 1, random) : 1.0f;
+    };
+    Film film = Film::empty(side, side, adaptive_block_size, {});
+    std::mt19937 random(1);
+    bool had_none_lacking = false;
+    while (const auto round = next_round(film, {.samples = 1 << 16, .error = 0.01}, {})) {
+        EXPECT_EQ(round->pixels.empty(), film.blocks.count() == 0) << "what follows the pilot is named";
+        had_none_lacking |= film.blocks.count() > 0 && round->pixels.size() == film.pixels.size();
+        add_round(film, *round, corner, random);
+    }
+    EXPECT_TRUE(had_none_lacking);
+    EXPECT_LE(film.error(), 0.01);
 }
 
 TEST(Rounds, TheLimitOfSamplesHolds) {
