@@ -61,8 +61,20 @@ PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const 
 
 std::filesystem::path rows_file(const std::filesystem::path& output) { return output.string() + ".rows"; }
 
-std::vector<ViewFactorRow> compute(const Options& options, ViewFactors& factors, const std::string& configuration) {
+struct Computed {
     std::vector<ViewFactorRow> rows;
+    std::size_t resumed = 0;  // rows of an earlier run
+
+    std::uint64_t rays() const {
+        std::uint64_t rays = 0;
+        for (std::size_t i = resumed; i < rows.size(); ++i) rays += rows[i].rays;
+        return rays;
+    }
+};
+
+Computed compute(const Options& options, ViewFactors& factors, const std::string& configuration) {
+    Computed computed;
+    std::vector<ViewFactorRow>& rows = computed.rows;
     std::optional<RowFile> file;
     if (!options.output.empty()) {
         file.emplace(rows_file(options.output), configuration);
@@ -74,7 +86,7 @@ std::vector<ViewFactorRow> compute(const Options& options, ViewFactors& factors,
             std::cout << "resumed after " << rows.size() << " of " << factors.row_count() << " rows\n";
     }
     Progress progress("view factors", factors.row_count(), options.common.quiet);
-    progress.advance(rows.size());
+    progress.advance(computed.resumed = rows.size());
     while (rows.size() < factors.row_count()) {
         const std::size_t last = std::min(rows.size() + factors.block(), factors.row_count());
         const std::vector<ViewFactorRow> block = factors.rows(rows.size(), last);
@@ -82,7 +94,7 @@ std::vector<ViewFactorRow> compute(const Options& options, ViewFactors& factors,
         rows.insert(rows.end(), block.begin(), block.end());
         progress.advance(block.size());
     }
-    return rows;
+    return computed;
 }
 
 void write_csv(const std::filesystem::path& file, const std::vector<ViewFactorRow>& rows) {
@@ -195,8 +207,9 @@ void run(const Options& options) {
     const PairExchanges pairs = compute_pairs(options, *accel, scene, faces);
     const double seconds_of_pairs = seconds_since(start);
     ViewFactors factors(*accel, faces, options.factors, pairs.known);
-    std::vector<ViewFactorRow> rows = compute(options, factors, configuration_of(options, scene, faces));
-    const double seconds = seconds_since(start);
+    Computed computed = compute(options, factors, configuration_of(options, scene, faces));
+    const double seconds = seconds_since(start), rate = static_cast<double>(computed.rays()) / seconds;
+    std::vector<ViewFactorRow>& rows = computed.rows;
     const Totals totals = totals_of(rows);
     const ViewFactorResiduals before = residuals_of(rows, factors.areas());
     std::optional<ViewFactorResiduals> after;
@@ -215,8 +228,8 @@ void run(const Options& options) {
     if (!options.output.empty()) RowFile(rows_file(options.output), {}).remove();
     if (!options.common.quiet) {
         std::cout << rows.size() << ' ' << name_of(options.factors.grouping) << " rows, " << totals.entries
-                  << " entries, " << totals.rays << " rays in " << seconds << " s ("
-                  << static_cast<double>(totals.rays) / seconds / 1e6 << " million a second), " << totals.hits
+                  << " entries, " << totals.rays << " rays in " << seconds << " s (" << rate / 1e6
+                  << " million a second), " << totals.hits
                   << " met a face\nentries by estimator: " << totals.entries_by.at("contour") << " contour, "
                   << totals.entries_by.at("area") << " area, " << totals.entries_by.at("hits") << " hits; "
                   << pairs.rays << " rays between points of faces, " << seconds_of_pairs
