@@ -121,6 +121,16 @@ struct Series {
     }
 };
 
+// Whether 95 % of all intervals may hold the truth where `inside` of n do: the binomial tail is no less than 10^-6.
+bool covers_enough(std::uint64_t inside, std::uint64_t n) {
+    double chance = std::pow(0.05, static_cast<double>(n)), tail = chance;
+    for (std::uint64_t k = 0; k < inside; ++k) {
+        chance *= 19 * static_cast<double>(n - k) / static_cast<double>(k + 1);
+        tail += chance;
+    }
+    return tail >= 1e-6;
+}
+
 void set_series(Record& record, const Series& series) {
     record.reference = "analytic";
     record.n = series.errors.size();
@@ -131,7 +141,11 @@ void set_series(Record& record, const Series& series) {
     record.time = time_figures("ms_per_estimate", series.ms);
     record.results.emplace("rms", series.rms());
     if (series.rays) record.results.emplace("rays", series.rays);
-    record.pass = series.faults == 0;
+    if (series.faults)
+        record.reason = "estimates are wrong by more than 3 times half of their interval";
+    else if (!covers_enough(series.inside, record.n))
+        record.reason = text("of intervals, only ", series.inside, " hold the truth");
+    record.pass = record.reason.empty();
     if (!*record.pass) record.fault_of = "twinray";
 }
 

@@ -29,7 +29,8 @@ std::vector<EstimatorMethod> methods_of(std::span<const PairEstimator> estimator
 // Measures each method on software and on hardware, by ray query where it can, else by pipeline: over ray counts and
 // seeds, of each the error against the truth, how many intervals hold it and the time; with the most rays also the
 // slope of the error over rays. Contours are measured once. A fault is an estimate that misses the truth by more than
-// three times half of its interval, which one in 10^5 does.
+// three times half of its interval, which one in 10^5 does. A measurement fails, too, if fewer intervals hold the truth
+// than 95 % of all could explain.
 void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<const EstimatorMethod> methods);
 
 // The subjects of these cases: software, and hardware once.
