@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Installs the packages, builds and runs every test.
 #   tools/test.sh [release|debug|asan]
-# TWINRAY_REQUIRE names the devices without which tests fail instead of skipping: "vulkan,ray_tracing" unless it is set.
+# TWINRAY_REQUIRE names the devices without which tests fail instead of skipping: "vulkan,ray_tracing,descriptor_indexing" unless it is set.
 # The last lines are ctest's summary.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -16,5 +16,5 @@ fi
 
 build "$preset"
 section "Tests ($preset)"
-export TWINRAY_REQUIRE=${TWINRAY_REQUIRE-vulkan,ray_tracing}
+export TWINRAY_REQUIRE=${TWINRAY_REQUIRE-vulkan,ray_tracing,descriptor_indexing}
 exec ctest --preset "$preset"

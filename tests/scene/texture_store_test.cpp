@@ -59,7 +59,7 @@ class Textures : public test::VulkanTest, public ::testing::WithParamInterface<T
         test::VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
         if (GetParam() == TextureStorage::images && !context().facts().has_image_arrays())
-            GTEST_SKIP() << "no descriptor indexing";
+            TWINRAY_LACKS("descriptor_indexing", "no descriptor indexing");
         store_ = std::make_unique<TextureStore>(context(), "textures", GetParam());
     }
     void TearDown() override {
