@@ -90,7 +90,7 @@ void add_camera(CLI::App& app, Options& options) {
         ->capture_default_str();
     app.add_option("--focal-distance", options.focal_distance,
                    "from the camera to the plane that is sharp; default: where --look-at lies")
-        ->check(CLI::Range(1e-30f, 1e30f));
+        ->check(CLI::PositiveNumber);
 }
 
 void add_picture(CLI::App& app, Options& options) {
