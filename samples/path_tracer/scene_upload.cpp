@@ -8,12 +8,6 @@
 namespace twinray::path_tracer {
 namespace {
 
-bool has_texture(const Material& material) {
-    for (const Texture* texture : textures_of(material))
-        if (texture->image >= 0) return true;
-    return false;
-}
-
 std::vector<uint> texels_of(const Image& image) {
     std::vector<uint> texels(std::size_t{image.width} * image.height);
     std::memcpy(texels.data(), image.rgba.data(), texels.size() * sizeof(uint));
@@ -24,11 +18,7 @@ std::vector<uint> texels_of(const Image& image) {
 
 SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment) {
     SceneFeatures features;
-    for (const Material& material : scene.materials) {
-        features.alpha |= material.alpha_mode != AlphaMode::opaque;
-        features.textures |= has_texture(material);
-        features.glass |= material.transmission > 0;
-    }
+    features.kinds = kinds_of(scene);
     features.environment = environment && !environment->is_black();
     features.local_lights = !lights.empty();
     return features;
@@ -53,6 +43,8 @@ SceneData DeviceScene::upload_all(Commands& commands, const Scene& scene, const 
     SceneData data{};
     data.instances = upload_instances(commands, scene, lights);
     data.materials = upload(commands, "materials", material_records(scene));
+    if (features_.kinds.needs.size() > 1)
+        data.material_kinds = upload(commands, "kinds of materials", features_.kinds.of);
     data.images = upload_images(commands, scene);
     data.emitters = upload(commands, "emitters", lights.emitters);
     data.punctual = upload(commands, "punctual lights", lights.punctual);
