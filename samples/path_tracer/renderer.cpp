@@ -23,6 +23,7 @@ std::vector<SpecializationConstant> constants_of(const SceneFeatures& features, 
             {PT_HAS_GLASS, features.glass},
             {PT_HAS_ENVIRONMENT, features.environment},
             {PT_HAS_LOCAL_LIGHTS, features.local_lights},
+            {PT_LAYERS, features.layers},
             {PT_STRATEGY, strategy},
             {PT_HAS_AOVS, has_aovs}};
 }

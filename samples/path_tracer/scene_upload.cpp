@@ -3,16 +3,10 @@
 
 #include <cstring>
 
-#include "samples/path_tracer/surface_records.h"
+#include "samples/path_tracer/layered_records.h"
 
 namespace twinray::path_tracer {
 namespace {
-
-bool has_texture(const Material& material) {
-    for (const Texture* texture : textures_of(material))
-        if (texture->image >= 0) return true;
-    return false;
-}
 
 std::vector<uint> texels_of(const Image& image) {
     std::vector<uint> texels(std::size_t{image.width} * image.height);
@@ -29,6 +23,7 @@ SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const E
         features.textures |= has_texture(material);
         features.glass |= material.transmission > 0;
     }
+    features.layers = layers_of(scene);
     features.environment = environment && !environment->is_black();
     features.local_lights = !lights.empty();
     return features;
@@ -53,6 +48,7 @@ SceneData DeviceScene::upload_all(Commands& commands, const Scene& scene, const 
     SceneData data{};
     data.instances = upload_instances(commands, scene, lights);
     data.materials = upload(commands, "materials", material_records(scene));
+    data.layered = upload(commands, "layers of materials", layered_records(scene));
     data.images = upload_images(commands, scene);
     data.emitters = upload(commands, "emitters", lights.emitters);
     data.punctual = upload(commands, "punctual lights", lights.punctual);

@@ -19,6 +19,7 @@ struct SceneFeatures {
     bool glass = false;
     bool environment = false;
     bool local_lights = false;
+    uint layers = 0;  // LAYER_ bits
 };
 SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment);
 

@@ -7,17 +7,29 @@
 
 namespace twinray::path_tracer {
 using glm::clamp;
+using glm::exp;
+using glm::mix;
+using glm::pow;
+
+constexpr uint LAYERS = ~0u;  // in kernels a specialisation constant
 
 #include "engine/core/bridge_begin.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/film.h"
 #include "shaders/path_tracer/weights.h"
+#include "shaders/path_tracer/microfacet.h"
+#include "shaders/path_tracer/bsdf_record.h"
+#include "shaders/path_tracer/bsdf_opaque.h"
+#include "shaders/path_tracer/bsdf_glass.h"
+#include "shaders/path_tracer/sheen_table.h"
+#include "shaders/path_tracer/bsdf_sheen.h"
+#include "shaders/path_tracer/bsdf_coat.h"
 #include "shaders/path_tracer/bsdf.h"
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(SurfaceVertex) == 48 && sizeof(SurfaceTriangle) == 16 && sizeof(SurfaceInstance) == 120);
-static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 96);
-static_assert(sizeof(PathState) == 24 && sizeof(ShadowState) == 16 && sizeof(Disagreement) == 104);
+static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 104);
+static_assert(sizeof(LayeredMaterial) == 332 && sizeof(PathState) == 28 && sizeof(ShadowState) == 16 && sizeof(Disagreement) == 104);
 static_assert(sizeof(FilmPixel) == 72 && sizeof(FirstSurface) == 40);
 }  // namespace twinray::path_tracer

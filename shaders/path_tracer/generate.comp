@@ -30,6 +30,7 @@ void main()
     path.pdf = 0.0;
     path.pixel = index;
     path.progress = 0u;
+    path.medium = 0u;
     AT(args.rays, i) = ray;
     AT(args.paths, i) = path;
 }

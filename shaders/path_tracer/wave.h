@@ -9,15 +9,16 @@ const uint PATH_GROUP = 64u;
 const uint MAX_PASSES = 32u;
 const uint MAX_SHADOW_PASSES = 8u;
 
-// 24 bytes, one per ray.
+// 28 bytes, one per ray.
 struct PathState
 {
     vec3 throughput;
     float pdf;     // density by solid angle with which the ray was sampled; 0: it could not have been found as light
     uint pixel;    // of the film
     uint progress; // low half: surfaces met, which number the random dimensions; high half: scatterings of them
+    uint medium;   // 1 + the material of the volume that it is in; 0: none
 };
-BUFFER_OF(PathState, 8);
+BUFFER_OF(PathState, 4);
 
 // What a shadow ray adds to its pixel if nothing blocks it.
 struct ShadowState
