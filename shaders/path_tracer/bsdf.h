@@ -9,10 +9,10 @@ FUNC BsdfValue evaluate_base(Bsdf bsdf, vec3 wo, vec3 wi)
     return evaluate_opaque(bsdf, wo, wi);
 }
 
-FUNC BsdfSample sample_base(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
+FUNC BsdfChoice choose_base(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
 {
-    if (bsdf.is_glass) return sample_glass(bsdf, wo, lobe, u);
-    return sample_opaque(bsdf, wo, lobe, u);
+    if (bsdf.is_glass) return choose_glass(bsdf, wo, lobe, u);
+    return choose_opaque(bsdf, wo, lobe, u);
 }
 
 FUNC bool is_layered(Bsdf bsdf) { return has_layer(bsdf, LAYER_COAT | LAYER_SHEEN); }
@@ -87,43 +87,36 @@ FUNC BsdfValue evaluate(Bsdf bsdf, vec3 wo, vec3 wi)
     return value;
 }
 
-FUNC BsdfSample sample_layers(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
+FUNC BsdfChoice choose_layer(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
 {
     LayerChances chances = layer_chances(bsdf, wo);
-    BsdfSample result = no_sample();
     if (lobe < chances.coat)
     {
-        result.wi = sample_coat(bsdf, wo, u);
-        if (has_smooth_coat(bsdf))
-        {
-            result.weight = vec3(kept_by_coat(bsdf, wo) / chances.coat);
-            return result;
-        }
+        vec3 wi = sample_coat(bsdf, wo, u);
+        return has_smooth_coat(bsdf) ? final_choice(wi, vec3(kept_by_coat(bsdf, wo) / chances.coat)) : open_choice(wi);
     }
-    else
-    {
-        float below = remapped(lobe, chances.coat);
-        if (below < chances.sheen) result.wi = sample_sheen(u);
-        else
-        {
-            result = sample_base(bsdf, wo, remapped(below, chances.sheen), u);
-            if (result.pdf == 0.0f)
-            {
-                float chance = (1.0f - chances.coat) * (1.0f - chances.sheen);
-                result.weight = result.weight * (under_layers(bsdf, wo, result.wi) / chance);
-                return result;
-            }
-        }
-    }
-    BsdfValue value = evaluate(bsdf, wo, result.wi);
-    result.pdf = value.pdf;
-    result.weight = value.pdf > 0.0f ? value.f / value.pdf : vec3(0.0f);
-    return result;
+    float below = remapped(lobe, chances.coat);
+    if (below < chances.sheen) return open_choice(sample_sheen(u));
+    BsdfChoice base = choose_base(bsdf, wo, remapped(below, chances.sheen), u);
+    float chance = (1.0f - chances.coat) * (1.0f - chances.sheen);
+    if (base.is_final) base.weight = base.weight * (under_layers(bsdf, wo, base.wi) / chance);
+    return base;
 }
 
 FUNC BsdfSample sample_bsdf(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
 {
-    if (is_layered(bsdf)) return sample_layers(bsdf, wo, lobe, u);
-    return sample_base(bsdf, wo, lobe, u);
+    BsdfChoice choice;
+    if (is_layered(bsdf)) choice = choose_layer(bsdf, wo, lobe, u);
+    else choice = choose_base(bsdf, wo, lobe, u);
+    BsdfSample result;
+    result.wi = choice.wi;
+    result.weight = choice.weight;
+    result.pdf = 0.0f;
+    if (choice.is_final) return result;
+    BsdfValue value = evaluate(bsdf, wo, choice.wi);
+    if (value.pdf <= 0.0f) return result;
+    result.weight = value.f / value.pdf;
+    result.pdf = value.pdf;
+    return result;
 }
 #endif

@@ -12,13 +12,6 @@ FUNC vec3 refracted(vec3 wo, vec3 h, float eta)
     return h * (cosine / eta - cosine_t) - wo / eta;
 }
 
-// Passed through a thin wall by a facet with normal h: reflected, then mirrored at the wall.
-FUNC vec3 passed(vec3 wo, vec3 h)
-{
-    vec3 wi = h * (2.0f * dot(wo, h)) - wo;
-    return vec3(wi.x, wi.y, -wi.z);
-}
-
 // KHR_materials_transmission: the lobe of what passes is that of what is reflected, mirrored at the wall.
 FUNC BsdfValue evaluate_thin(Bsdf bsdf, vec3 wo, vec3 wi)
 {
@@ -60,26 +53,15 @@ FUNC BsdfValue evaluate_glass(Bsdf bsdf, vec3 wo, vec3 wi)
     return evaluate_solid(bsdf, wo, wi);
 }
 
-FUNC BsdfSample sample_glass(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
+FUNC BsdfChoice choose_glass(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
 {
-    BsdfSample result = no_sample();
     vec3 h = is_smooth(bsdf) ? vec3(0.0f, 0.0f, 1.0f) : sample_facet(bsdf, wo, u);
     float cosine = dot(wo, h);
-    if (cosine <= 0.0f) return result;
+    if (cosine <= 0.0f) return no_choice();
     bool is_reflected = lobe < fresnel_dielectric(cosine, bsdf.eta);
-    if (is_reflected) result.wi = h * (2.0f * cosine) - wo;
-    else if (is_thin(bsdf)) result.wi = passed(wo, h);
-    else result.wi = refracted(wo, h, bsdf.eta);
-    if (is_smooth(bsdf))
-    {
-        result.weight = is_reflected ? vec3(1.0f) : bsdf.diffuse;
-        return result;
-    }
-    if ((result.wi.z > 0.0f) != is_reflected) return result;
-    BsdfValue value = evaluate_glass(bsdf, wo, result.wi);
-    if (value.pdf <= 0.0f) return result;
-    result.weight = value.f / value.pdf;
-    result.pdf = value.pdf;
-    return result;
+    vec3 wi = h * (2.0f * cosine) - wo;
+    if (!is_reflected) wi = is_thin(bsdf) ? vec3(wi.x, wi.y, -wi.z) : refracted(wo, h, bsdf.eta);
+    if (is_smooth(bsdf)) return final_choice(wi, is_reflected ? vec3(1.0f) : bsdf.diffuse);
+    return (wi.z > 0.0f) == is_reflected ? open_choice(wi) : final_choice(wi, vec3(0.0f));
 }
 #endif

@@ -65,27 +65,12 @@ FUNC BsdfValue evaluate_opaque(Bsdf bsdf, vec3 wo, vec3 wi)
     return value;
 }
 
-FUNC BsdfSample sample_opaque(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
+FUNC BsdfChoice choose_opaque(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
 {
-    BsdfSample result = no_sample();
     float chance = specular_chance(bsdf, wo.z);
-    bool is_specular = lobe < chance;
-    if (is_specular && is_smooth(bsdf))
-    {
-        result.wi = vec3(-wo.x, -wo.y, wo.z);
-        result.weight = schlick(bsdf, wo.z) / chance;
-        return result;
-    }
-    if (is_specular)
-    {
-        vec3 h = sample_facet(bsdf, wo, u);
-        result.wi = h * (2.0f * dot(wo, h)) - wo;
-    }
-    else result.wi = sample_cosine_hemisphere(u);
-    BsdfValue value = evaluate_opaque(bsdf, wo, result.wi);
-    if (value.pdf <= 0.0f) return result;
-    result.weight = value.f / value.pdf;
-    result.pdf = value.pdf;
-    return result;
+    if (lobe >= chance) return open_choice(sample_cosine_hemisphere(u));
+    if (is_smooth(bsdf)) return final_choice(vec3(-wo.x, -wo.y, wo.z), schlick(bsdf, wo.z) / chance);
+    vec3 h = sample_facet(bsdf, wo, u);
+    return open_choice(h * (2.0f * dot(wo, h)) - wo);
 }
 #endif

@@ -30,6 +30,14 @@ struct BsdfSample
     float pdf;   // by solid angle; 0: a mirror direction, which no other strategy finds
 };
 
+// A direction that a part has chosen. Either it is a mirror direction, or none, with its weight, or of what evaluate() tells.
+struct BsdfChoice
+{
+    vec3 wi;
+    vec3 weight;
+    bool is_final;
+};
+
 // Value times |cos| and density of a direction, without mirror directions.
 struct BsdfValue
 {
@@ -37,14 +45,23 @@ struct BsdfValue
     float pdf;
 };
 
-FUNC BsdfSample no_sample()
+FUNC BsdfChoice final_choice(vec3 wi, vec3 weight)
 {
-    BsdfSample result;
-    result.wi = vec3(0.0f, 0.0f, 1.0f);
-    result.weight = vec3(0.0f);
-    result.pdf = 0.0f;
-    return result;
+    BsdfChoice choice;
+    choice.wi = wi;
+    choice.weight = weight;
+    choice.is_final = true;
+    return choice;
 }
+
+FUNC BsdfChoice open_choice(vec3 wi)
+{
+    BsdfChoice choice = final_choice(wi, vec3(0.0f));
+    choice.is_final = false;
+    return choice;
+}
+
+FUNC BsdfChoice no_choice() { return final_choice(vec3(0.0f, 0.0f, 1.0f), vec3(0.0f)); }
 
 FUNC BsdfValue no_value()
 {
