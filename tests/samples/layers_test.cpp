@@ -209,6 +209,18 @@ TEST(Layers, ASmoothCoatReflectsItsFresnelShare) {
     }
 }
 
+TEST(Layers, MirrorsBelowLayersReflectWhatIsLetThrough) {
+    for (const Bsdf& base : {mirror(0), glass(0, 1.5f), thin_glass(0, 1.5f)})
+        for (const float cosine : {1.0f, 0.5f, 0.1f}) {
+            EXPECT_NEAR(albedo_of(with_coat(base, 0.5f, 0), cosine), 1, 2e-3);
+            const double let_through = mean_of_samples(
+                with_sheen(base, vec3(0.5f), 0.6f), direction(cosine),
+                [](const BsdfSample& s) { return s.pdf == 0 ? s.weight.x : 0; }, samples / 4);
+            const double kept = 0.5 * static_cast<double>(sheen_albedo(cosine, 0.6f));
+            EXPECT_NEAR(let_through, 1 - kept, 2e-3);
+        }
+}
+
 TEST(Layers, TheSheenTableBoundsTheAlbedoOfTheLobe) {
     const Bsdf black = opaque(vec3(0), vec3(0), 0, 1);
     for (const float roughness : {0.4f, 0.55f, 0.72f, 0.9f, 1.0f})
