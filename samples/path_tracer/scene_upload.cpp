@@ -18,12 +18,7 @@ std::vector<uint> texels_of(const Image& image) {
 
 SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment) {
     SceneFeatures features;
-    for (const Material& material : scene.materials) {
-        features.alpha |= material.alpha_mode != AlphaMode::opaque;
-        features.textures |= has_texture(material);
-        features.glass |= material.transmission > 0;
-    }
-    features.layers = layers_of(scene);
+    features.kinds = kinds_of(scene);
     features.environment = environment && !environment->is_black();
     features.local_lights = !lights.empty();
     return features;
@@ -49,6 +44,8 @@ SceneData DeviceScene::upload_all(Commands& commands, const Scene& scene, const 
     data.instances = upload_instances(commands, scene, lights);
     data.materials = upload(commands, "materials", material_records(scene));
     data.layered = upload(commands, "layers of materials", layered_records(scene));
+    if (features_.kinds.needs.size() > 1)
+        data.material_kinds = upload(commands, "kinds of materials", features_.kinds.of);
     data.images = upload_images(commands, scene);
     data.emitters = upload(commands, "emitters", lights.emitters);
     data.punctual = upload(commands, "punctual lights", lights.punctual);

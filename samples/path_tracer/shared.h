@@ -4,18 +4,21 @@
 
 #include "engine/accel/spawn.h"
 #include "engine/core/sampling.h"
+#include "engine/scene/soa.h"
 
 namespace twinray::path_tracer {
 using glm::clamp;
 using glm::exp;
+using glm::log;
 using glm::mix;
 using glm::pow;
 
-constexpr uint LAYERS = ~0u;  // in kernels a specialisation constant
+constexpr uint LAYERS = ~0u;  // in kernels specialisation constants
 
 #include "engine/core/bridge_begin.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
+#include "shaders/path_tracer/camera.h"
 #include "shaders/path_tracer/film.h"
 #include "shaders/path_tracer/weights.h"
 #include "shaders/path_tracer/microfacet.h"
@@ -29,7 +32,8 @@ constexpr uint LAYERS = ~0u;  // in kernels a specialisation constant
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(SurfaceVertex) == 48 && sizeof(SurfaceTriangle) == 16 && sizeof(SurfaceInstance) == 120);
-static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 104);
-static_assert(sizeof(LayeredMaterial) == 332 && sizeof(PathState) == 28 && sizeof(ShadowState) == 16 && sizeof(Disagreement) == 104);
+static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 112);
+static_assert(sizeof(LayeredMaterial) == 332 && sizeof(WaveData) == 280);
+static_assert(sizeof(KindQueue) == 16 && sizeof(Disagreement) == 104);
 static_assert(sizeof(FilmPixel) == 72 && sizeof(FirstSurface) == 40);
 }  // namespace twinray::path_tracer

@@ -11,7 +11,15 @@ const uint PT_HAS_ENVIRONMENT = 3u;
 const uint PT_HAS_LOCAL_LIGHTS = 4u; // emissive triangles or punctual lights
 const uint PT_STRATEGY = 5u;         // how direct light is found
 const uint PT_HAS_AOVS = 6u;         // first surfaces are noted
-const uint PT_LAYERS = 7u;           // LAYER_ bits of what some material has
+const uint PT_FILTER = 7u;           // which part of the picture a pixel shows
+const uint PT_HAS_QUEUES = 8u;       // rays are shaded by the kind of material that they met
+// The layers that a material may have (LAYER_ below).
+const uint PT_HAS_SPECULAR = 9u;
+const uint PT_HAS_COAT = 10u;
+const uint PT_HAS_SHEEN = 11u;
+const uint PT_HAS_ANISOTROPY = 12u;
+const uint PT_HAS_VOLUME = 13u;
+const uint PT_HAS_MEDIA = 14u;       // some material of the scene bounds a volume, in which a path may be anywhere
 
 const uint STRATEGY_MIS = 0u;    // both of the following, weighted by the power heuristic
 const uint STRATEGY_LIGHTS = 1u; // sample lights only
@@ -196,6 +204,7 @@ struct SceneData
     REF(SurfaceInstance) instances;
     REF(SurfaceMaterial) materials;
     REF(LayeredMaterial) layered; // null: no material has layers
+    Uints material_kinds; // of the materials; null where all are of one
     REF(TexelGrid) images;
     REF(Emitter) emitters;
     REF(PunctualLight) punctual;
