@@ -73,8 +73,8 @@ TEST_F(LayersRender, FactorsReachTheBsdf) {
 
     Material material = plastic_material();
     material.specular = 0.5f;
-    material.specular_color = {8, 2, 1};
-    floors.add("specular", material, with_specular(plastic_bsdf(0), vec3(0), 0, 1.5f, 0.5f, {8, 2, 1}));
+    material.specular_color = {2, 8, 1};
+    floors.add("specular", material, with_specular(plastic_bsdf(0), vec3(0), 0, 1.5f, 0.5f, {2, 8, 1}));
 
     material = plastic_material();
     material.clearcoat = 0.75f;
@@ -85,11 +85,11 @@ TEST_F(LayersRender, FactorsReachTheBsdf) {
     floors.add("coat", material, bsdf);
 
     material = plastic_material();
-    material.sheen_color = {0.25f, 0.5f, 1};
-    material.sheen_roughness = 0.5f;
+    material.sheen_color = {0.25f, 0.5f, 0.75f};
+    material.sheen_roughness = 0.9f;
     bsdf = plastic_bsdf(LAYER_SHEEN);
-    bsdf.sheen = {0.25f, 0.5f, 1};
-    bsdf.sheen_roughness = 0.5f;
+    bsdf.sheen = {0.25f, 0.5f, 0.75f};
+    bsdf.sheen_roughness = 0.9f;
     floors.add("sheen", material, bsdf);
 
     for (const float turns : {0.0f, 0.125f, -0.25f}) {
