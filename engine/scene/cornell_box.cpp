@@ -16,7 +16,7 @@ std::vector<Material> cornell_materials() {
             diffuse("green", {0.12f, 0.45f, 0.15f}),
             {.name = "light", .base_color = vec4(0, 0, 0, 1), .metallic = 0, .emission = vec3(15, 13.5f, 11)},
             {.name = "metal", .base_color = vec4(0.95f, 0.85f, 0.6f, 1), .metallic = 1, .roughness = 0.15f},
-            {.name = "glass", .metallic = 0, .roughness = 0, .transmission = 1, .ior = 1.5f}};
+            {.name = "glass", .metallic = 0, .roughness = 0, .transmission = 1, .ior = 1.5f, .thickness = 1}};
 }
 
 void add(Scene& scene, Mesh mesh, const char* name, CornellMaterial material, const Transform& transform = {}) {

@@ -13,11 +13,16 @@ using nlohmann::json;
 bool is_supported(const std::string& extension) {
     static const std::set<std::string_view> supported = {"EXT_mesh_gpu_instancing",
                                                          "KHR_lights_punctual",
+                                                         "KHR_materials_anisotropy",
+                                                         "KHR_materials_clearcoat",
                                                          "KHR_materials_emissive_strength",
                                                          "KHR_materials_ior",
                                                          "KHR_materials_pbrSpecularGlossiness",
+                                                         "KHR_materials_sheen",
+                                                         "KHR_materials_specular",
                                                          "KHR_materials_transmission",
                                                          "KHR_materials_unlit",
+                                                         "KHR_materials_volume",
                                                          "KHR_mesh_quantization",
                                                          "KHR_texture_transform"};
     return supported.contains(extension);

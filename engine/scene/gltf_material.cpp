@@ -1,27 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/gltf_material.h"
 
-#include <cmath>
-
+#include "engine/scene/gltf_factors.h"
+#include "engine/scene/gltf_layers.h"
 #include "engine/scene/gltf_texture.h"
 
 namespace twinray {
 namespace {
-
-// Factors outside of what glTF allows would make surfaces that emit by reflecting.
-float clamped(double factor, double lo, double hi) {
-    return static_cast<float>(factor >= lo ? std::min(factor, hi) : lo);  // NaN becomes lo
-}
-
-float unit(double factor) { return clamped(factor, 0, 1); }
-
-template <int N>
-glm::vec<N, float> color_of(const std::vector<double>& factors, glm::vec<N, float> fallback) {
-    if (factors.size() != N) return fallback;
-    glm::vec<N, float> color;
-    for (int i = 0; i < N; ++i) color[i] = unit(factors[std::size_t(i)]);
-    return color;
-}
 
 AlphaMode alpha_mode_of(const std::string& mode) {
     if (mode == "MASK") return AlphaMode::mask;
@@ -46,14 +31,14 @@ class MaterialReader {
   private:
     static void read_surface(const tinygltf::Material& source, Material& material) {
         const auto& pbr = source.pbrMetallicRoughness;
-        material.base_color = color_of<4>(pbr.baseColorFactor, vec4(1));
-        material.metallic = unit(pbr.metallicFactor);
-        material.roughness = unit(pbr.roughnessFactor);
-        material.emission = color_of<3>(source.emissiveFactor, vec3(0));
+        material.base_color = color_factor<4>(pbr.baseColorFactor, vec4(1));
+        material.metallic = unit_factor(pbr.metallicFactor);
+        material.roughness = unit_factor(pbr.roughnessFactor);
+        material.emission = color_factor<3>(source.emissiveFactor, vec3(0));
         material.alpha_mode = alpha_mode_of(source.alphaMode);
-        material.alpha_cutoff = clamped(source.alphaCutoff, 0, 1e30);
+        material.alpha_cutoff = clamped_factor(source.alphaCutoff, 0, 1e30);
         material.double_sided = source.doubleSided;
-        material.normal_scale = clamped(source.normalTexture.scale, -1e30, 1e30);
+        material.normal_scale = clamped_factor(source.normalTexture.scale, -1e30, 1e30);
     }
 
     void read_texture_slots(const tinygltf::Material& source, const std::string& object, Material& material) {
@@ -72,20 +57,22 @@ class MaterialReader {
     void read_extension(const std::string& name, const tinygltf::Value& extension, const std::string& object,
                         Material& material) {
         if (name == "KHR_materials_emissive_strength") {
-            material.emission *= clamped(number_of(extension, "emissiveStrength", 1), 0, 1e30);
+            material.emission *= clamped_factor(number_of(extension, "emissiveStrength", 1), 0, 1e30);
         } else if (name == "KHR_materials_ior") {
-            material.ior = clamped(number_of(extension, "ior", 1.5), 0, 1e30);
+            material.ior = clamped_factor(number_of(extension, "ior", 1.5), 0, 1e30);
         } else if (name == "KHR_materials_unlit") {
             material.unlit = true;
         } else if (name == "KHR_materials_transmission") {
-            material.transmission = unit(number_of(extension, "transmissionFactor", 0));
+            material.transmission = unit_factor(number_of(extension, "transmissionFactor", 0));
             material.transmission_texture = textures_.read(extension, "transmissionTexture", object);
         } else if (name == "KHR_materials_pbrSpecularGlossiness") {
-            material.base_color = color_of<4>(numbers_of(extension, "diffuseFactor"), vec4(1));
+            material.base_color = color_factor<4>(numbers_of(extension, "diffuseFactor"), vec4(1));
             material.base_color_texture = textures_.read(extension, "diffuseTexture", object);
             material.metallic = 0;
-            material.roughness = 1 - unit(number_of(extension, "glossinessFactor", 1));
+            material.roughness = 1 - unit_factor(number_of(extension, "glossinessFactor", 1));
             file_.warn("KHR_materials_pbrSpecularGlossiness is shown by its diffuse colour and glossiness alone");
+        } else {
+            read_gltf_layer(name, extension, object, textures_, material);
         }
     }
 

@@ -36,7 +36,8 @@ struct Texture {
 
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
-// glTF 2.0 metallic-roughness material with KHR_materials_{emissive_strength, transmission, ior, unlit}.
+// glTF 2.0 metallic-roughness material with KHR_materials_{anisotropy, clearcoat, emissive_strength, ior, sheen,
+// specular, transmission, unlit, volume}. Roughness is perceptual throughout.
 struct Material {
     std::string name;
     vec4 base_color = vec4(1);  // linear
@@ -45,13 +46,27 @@ struct Material {
     vec3 emission = vec3(0);  // linear, emissive_strength multiplied in
     float transmission = 0;
     float ior = 1.5f;
+    float specular = 1;             // weight of the dielectric reflection
+    vec3 specular_color = vec3(1);  // linear, of its reflectance at normal incidence
+    float clearcoat = 0;
+    float clearcoat_roughness = 0;
+    float clearcoat_normal_scale = 1;
+    vec3 sheen_color = vec3(0);  // linear
+    float sheen_roughness = 0;
+    float anisotropy = 0;
+    float anisotropy_rotation = 0;     // radians, from the tangent to the bitangent
+    float thickness = 0;               // above 0: what transmits is the boundary of a volume, else a thin wall
+    vec3 attenuation_color = vec3(1);  // linear: what is left of white light after attenuation_distance
+    float attenuation_distance = INFINITY;
     float normal_scale = 1;
     float alpha_cutoff = 0.5f;
     AlphaMode alpha_mode = AlphaMode::opaque;
     bool double_sided = false;
     bool unlit = false;
     Texture base_color_texture = {}, metallic_roughness_texture = {}, emission_texture = {}, normal_texture = {},
-            transmission_texture = {};
+            transmission_texture = {}, specular_texture = {}, specular_color_texture = {}, clearcoat_texture = {},
+            clearcoat_roughness_texture = {}, clearcoat_normal_texture = {}, sheen_color_texture = {},
+            sheen_roughness_texture = {}, anisotropy_texture = {};
 };
 
 // One placement of a mesh in the world.

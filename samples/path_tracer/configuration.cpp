@@ -5,7 +5,7 @@
 
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
-#include "samples/path_tracer/surface_records.h"
+#include "samples/path_tracer/layered_records.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -77,7 +77,7 @@ Configuration configuration_of(const RenderSettings& settings, const Scene& scen
             {"direct light by sampling", strategy_text(settings.strategy)},
             {"camera", Sum().add(std::vector{settings.camera}).hex()},
             {"geometry", geometry_sum(scene)},
-            {"materials", Sum().add(material_records(scene)).hex()},
+            {"materials", Sum().add(material_records(scene)).add(layered_records(scene)).hex()},
             {"images", image_sum(scene)},
             {"lights", Sum().add(lights.punctual).add(lights.table).hex()},
             {environment_entry, environment_text(environment, is_default_sky)}};

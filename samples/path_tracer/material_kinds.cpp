@@ -4,15 +4,16 @@
 #include <algorithm>
 #include <bit>
 
-#include "samples/path_tracer/surface_records.h"
+#include "samples/path_tracer/layered_records.h"
 
 namespace twinray::path_tracer {
 namespace {
 
-bool has_texture(const Material& material) {
-    const auto textures = textures_of(material);
-    return std::any_of(textures.begin(), textures.end(), [](const Texture* texture) { return texture->image >= 0; });
-}
+constexpr std::pair<uint, uint> needs_of_layers[] = {{LAYER_SPECULAR, PT_HAS_SPECULAR},
+                                                     {LAYER_COAT, PT_HAS_COAT},
+                                                     {LAYER_SHEEN, PT_HAS_SHEEN},
+                                                     {LAYER_ANISOTROPY, PT_HAS_ANISOTROPY},
+                                                     {LAYER_VOLUME, PT_HAS_VOLUME}};
 
 std::vector<bool> used_materials(const Scene& scene) {
     std::vector<bool> used(scene.materials.size());
@@ -55,6 +56,8 @@ uint needs_of(const Material& material) {
     if (material.alpha_mode != AlphaMode::opaque) needs |= 1u << PT_HAS_ALPHA;
     if (has_texture(material)) needs |= 1u << PT_HAS_TEXTURES;
     if (material.transmission > 0) needs |= 1u << PT_HAS_GLASS;
+    for (const auto& [layer, need] : needs_of_layers)
+        if (layers_of(material) & layer) needs |= 1u << need;
     return needs;
 }
 
@@ -78,8 +81,10 @@ MaterialKinds kinds_of(const Scene& scene) {
 }
 
 std::string name_of_needs(uint needs) {
-    const std::pair<uint, const char*> names[] = {
-        {PT_HAS_ALPHA, "alpha"}, {PT_HAS_TEXTURES, "textures"}, {PT_HAS_GLASS, "glass"}};
+    const std::pair<uint, const char*> names[] = {{PT_HAS_ALPHA, "alpha"},   {PT_HAS_TEXTURES, "textures"},
+                                                  {PT_HAS_GLASS, "glass"},   {PT_HAS_SPECULAR, "specular"},
+                                                  {PT_HAS_COAT, "coat"},     {PT_HAS_SHEEN, "sheen"},
+                                                  {PT_HAS_VOLUME, "volume"}, {PT_HAS_ANISOTROPY, "anisotropy"}};
     std::string result;
     for (const auto& [id, name] : names)
         if (needs >> id & 1) result += (result.empty() ? "" : ", ") + std::string(name);

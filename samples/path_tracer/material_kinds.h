@@ -12,7 +12,8 @@ namespace twinray::path_tracer {
 constexpr std::size_t most_material_kinds = 4;
 
 // What materials can need of the kernel that shades them.
-constexpr uint material_needs[] = {PT_HAS_ALPHA, PT_HAS_TEXTURES, PT_HAS_GLASS};
+constexpr uint material_needs[] = {PT_HAS_ALPHA, PT_HAS_TEXTURES, PT_HAS_GLASS,      PT_HAS_SPECULAR,
+                                   PT_HAS_COAT,  PT_HAS_SHEEN,    PT_HAS_ANISOTROPY, PT_HAS_VOLUME};
 
 // One bit for each of material_needs: 1 << PT_HAS_ALPHA and the like.
 uint needs_of(const Material& material);

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "samples/path_tracer/surface_records.h"
+#include "samples/path_tracer/layered_records.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -43,6 +43,7 @@ SceneData DeviceScene::upload_all(Commands& commands, const Scene& scene, const 
     SceneData data{};
     data.instances = upload_instances(commands, scene, lights);
     data.materials = upload(commands, "materials", material_records(scene));
+    data.layered = upload(commands, "layers of materials", layered_records(scene));
     if (features_.kinds.needs.size() > 1)
         data.material_kinds = upload(commands, "kinds of materials", features_.kinds.of);
     data.images = upload_images(commands, scene);

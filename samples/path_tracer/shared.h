@@ -8,7 +8,12 @@
 
 namespace twinray::path_tracer {
 using glm::clamp;
+using glm::exp;
 using glm::log;
+using glm::mix;
+using glm::pow;
+
+constexpr uint LAYERS = ~0u;  // in kernels specialisation constants
 
 #include "engine/core/bridge_begin.h"
 #include "shaders/path_tracer/scene.h"
@@ -16,11 +21,19 @@ using glm::log;
 #include "shaders/path_tracer/camera.h"
 #include "shaders/path_tracer/film.h"
 #include "shaders/path_tracer/weights.h"
+#include "shaders/path_tracer/microfacet.h"
+#include "shaders/path_tracer/bsdf_record.h"
+#include "shaders/path_tracer/bsdf_opaque.h"
+#include "shaders/path_tracer/bsdf_glass.h"
+#include "shaders/path_tracer/sheen_table.h"
+#include "shaders/path_tracer/bsdf_sheen.h"
+#include "shaders/path_tracer/bsdf_coat.h"
 #include "shaders/path_tracer/bsdf.h"
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(SurfaceVertex) == 48 && sizeof(SurfaceTriangle) == 16 && sizeof(SurfaceInstance) == 120);
-static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 104);
-static_assert(sizeof(WaveData) == 264 && sizeof(KindQueue) == 16 && sizeof(Disagreement) == 104);
+static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 112);
+static_assert(sizeof(LayeredMaterial) == 332 && sizeof(WaveData) == 280);
+static_assert(sizeof(KindQueue) == 16 && sizeof(Disagreement) == 104);
 static_assert(sizeof(FilmPixel) == 72 && sizeof(FirstSurface) == 40);
 }  // namespace twinray::path_tracer

@@ -13,13 +13,6 @@ uint wrap_word(Wrap wrap) {
     return WRAP_REPEAT;
 }
 
-TextureSlot slot_of(const Texture& texture, uint flag, uint& flags) {
-    if (texture.image < 0) return {};
-    flags |= flag;
-    return {static_cast<uint>(texture.image), wrap_word(texture.wrap_u) | wrap_word(texture.wrap_v) << 8,
-            texture.uv_row0, texture.uv_row1};
-}
-
 SurfaceMaterial material_record(const Material& material) {
     SurfaceMaterial record{};
     uint flags = 0;
@@ -45,6 +38,13 @@ SurfaceMaterial material_record(const Material& material) {
 }
 
 }  // namespace
+
+TextureSlot slot_of(const Texture& texture, uint flag, uint& flags) {
+    if (texture.image < 0) return {};
+    flags |= flag;
+    return {static_cast<uint>(texture.image), wrap_word(texture.wrap_u) | wrap_word(texture.wrap_v) << 8,
+            texture.uv_row0, texture.uv_row1};
+}
 
 std::vector<SurfaceVertex> vertex_records(const Mesh& mesh) {
     std::vector<SurfaceVertex> records(mesh.positions.size());
@@ -78,11 +78,6 @@ SurfaceInstance instance_record(const Transform& transform) {
     record.world_to_object[1] = inverse.r1;
     record.world_to_object[2] = inverse.r2;
     return record;
-}
-
-std::array<const Texture*, 5> textures_of(const Material& material) {
-    return {&material.base_color_texture, &material.metallic_roughness_texture, &material.emission_texture,
-            &material.normal_texture, &material.transmission_texture};
 }
 
 }  // namespace twinray::path_tracer

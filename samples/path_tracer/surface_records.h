@@ -2,7 +2,6 @@
 // From Scene to the records that the kernels read: plain data in, plain data out.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "engine/scene/scene.h"
@@ -17,6 +16,7 @@ std::vector<SurfaceMaterial> material_records(const Scene& scene);
 // References left null.
 SurfaceInstance instance_record(const Transform& transform);
 
-std::array<const Texture*, 5> textures_of(const Material& material);
+// Sets `flag` in `flags` where there is a texture.
+TextureSlot slot_of(const Texture& texture, uint flag, uint& flags);
 
 }  // namespace twinray::path_tracer

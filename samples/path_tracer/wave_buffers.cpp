@@ -26,6 +26,7 @@ WaveBuffers::WaveBuffers(Context& context, const DeviceScene& scene, Ref<Radianc
     for (uint turn = 0; turn < 2; ++turn) {
         rays_.push_back(array_of<Ray>(context, "rays", capacity));
         paths_.emplace_back(context, "paths", capacity);
+        if (scene.features().some(PT_HAS_VOLUME)) media_.push_back(array_of<uint>(context, "media of paths", capacity));
         // Shadow rays take a second round only behind transparent surfaces.
         if (turn == 1 && !scene.features().some(PT_HAS_ALPHA)) break;
         shadow_rays_.push_back(array_of<Ray>(context, "shadow rays", capacity));
@@ -46,7 +47,7 @@ WaveBuffers::WaveBuffers(Context& context, const DeviceScene& scene, Ref<Radianc
 
 std::uint64_t WaveBuffers::bytes() const {
     std::uint64_t bytes = hits_.bytes() + counters_.bytes() + data_.bytes();
-    for (const auto* buffers : {&rays_, &shadow_rays_})
+    for (const auto* buffers : {&rays_, &shadow_rays_, &media_})
         for (const Buffer& buffer : *buffers) bytes += buffer.bytes();
     for (const auto& paths : paths_) bytes += paths.buffer().bytes();
     for (const auto& shadows : shadows_) bytes += shadows.buffer().bytes();
@@ -64,6 +65,10 @@ WaveData WaveBuffers::data_of(uint turn, uint shadow_turn) const {
     data.paths = paths_[turn].view();
     data.next_rays = rays(1 - turn);
     data.next_paths = paths_[1 - turn].view();
+    if (!media_.empty()) {
+        data.media = media_[turn].ref<uint>();
+        data.next_media = media_[1 - turn].ref<uint>();
+    }
     data.shadow_rays = shadow_rays_[shadows].ref<Ray>();
     data.shadows = shadows_[shadows].view();
     data.next_shadow_rays = shadow_rays_[next_shadows].ref<Ray>();

@@ -32,22 +32,19 @@ float opacity(uint flags, float cutoff, float alpha)
     return (flags & MATERIAL_BLENDED) != 0u ? clamp(alpha, 0.0, 1.0) : 1.0;
 }
 
-// The shading normal on the side of wo: mapped, turned to the viewer, and bent until the viewer can see it, since no
-// BSDF is defined below the horizon.
-vec3 shading_normal(SceneData scene, Surface surface, uint flags, vec3 wo)
+vec3 mapped_normal(SceneData scene, Surface surface, TextureSlot slot, float scale)
 {
-    vec3 normal = surface.normal;
-    if (HAS_TEXTURES && (flags & MATERIAL_NORMAL_TEXTURE) != 0u)
-    {
-        TextureSlot slot = AT(scene.materials, surface.material).normal_texture;
-        vec3 mapped = sample_texture(scene.images, slot, surface.uv, false).xyz * 2.0 - 1.0;
-        mapped.xy *= AT(scene.materials, surface.material).normal_scale;
-        float t = length(surface.tangent);
-        float b = length(surface.bitangent);
-        if (t > 0.0 && b > 0.0)
-            normal = normalize(surface.tangent * (mapped.x / t) + surface.bitangent * (mapped.y / b) +
-                               normal * mapped.z);
-    }
+    vec3 mapped = sample_texture(scene.images, slot, surface.uv, false).xyz * 2.0 - 1.0;
+    mapped.xy *= scale;
+    float t = length(surface.tangent);
+    float b = length(surface.bitangent);
+    if (!(t > 0.0 && b > 0.0)) return surface.normal;
+    return normalize(surface.tangent * (mapped.x / t) + surface.bitangent * (mapped.y / b) + surface.normal * mapped.z);
+}
+
+// Turned to the viewer, and bent until the viewer can see it, since no BSDF is defined below the horizon.
+vec3 facing(vec3 normal, Surface surface, vec3 wo)
+{
     bool is_front = dot(surface.point.normal, wo) >= 0.0;
     normal = is_front ? normal : -normal;
     const float least_cosine = 0.01;
@@ -55,53 +52,15 @@ vec3 shading_normal(SceneData scene, Surface surface, uint flags, vec3 wo)
     return cosine < least_cosine ? normalize(normal + wo * (least_cosine - cosine)) : normal;
 }
 
-Bsdf glass_of(SceneData scene, Surface surface, vec3 color, float roughness, bool is_front)
+// The shading normal on the side of wo.
+vec3 shading_normal(SceneData scene, Surface surface, uint flags, vec3 wo)
 {
-    float ior = max(AT(scene.materials, surface.material).ior, 1e-3);
-    Bsdf bsdf;
-    bsdf.is_glass = true;
-    bsdf.diffuse = color;
-    bsdf.f0 = vec3(0.0);
-    bsdf.f90 = 0.0;
-    bsdf.alpha = roughness * roughness;
-    bsdf.eta = is_front ? ior : 1.0 / ior;
-    return bsdf;
-}
-
-// glTF 2.0, appendix B. An index of refraction of 1 is no interface at all, so nothing reflects, at grazing neither.
-Bsdf opaque_of(vec3 color, float metallic, float roughness, float ior)
-{
-    float root = (ior - 1.0) / (ior + 1.0);
-    Bsdf bsdf;
-    bsdf.is_glass = false;
-    bsdf.diffuse = color * (1.0 - metallic);
-    bsdf.f0 = mix(vec3(root * root), color, metallic);
-    bsdf.f90 = mix(ior == 1.0 ? 0.0 : 1.0, 1.0, metallic);
-    bsdf.alpha = roughness * roughness;
-    bsdf.eta = 1.0;
-    return bsdf;
-}
-
-// Where a material transmits in part, `choice` decides which part is met.
-Bsdf bsdf_of(SceneData scene, Surface surface, uint flags, vec3 color, bool is_front, float choice)
-{
-    float metallic = AT(scene.materials, surface.material).metallic;
-    float roughness = AT(scene.materials, surface.material).roughness;
-    if (HAS_TEXTURES && (flags & MATERIAL_ROUGHNESS_TEXTURE) != 0u)
+    vec3 normal = surface.normal;
+    if (HAS_TEXTURES && (flags & MATERIAL_NORMAL_TEXTURE) != 0u)
     {
-        TextureSlot slot = AT(scene.materials, surface.material).roughness_texture;
-        vec4 map = sample_texture(scene.images, slot, surface.uv, false);
-        roughness *= map.g;
-        metallic *= map.b;
+        TextureSlot slot = AT(scene.materials, surface.material).normal_texture;
+        normal = mapped_normal(scene, surface, slot, AT(scene.materials, surface.material).normal_scale);
     }
-    if (HAS_GLASS)
-    {
-        float transmission = AT(scene.materials, surface.material).transmission;
-        if (HAS_TEXTURES && (flags & MATERIAL_TRANSMISSION_TEXTURE) != 0u)
-            transmission *= sample_texture(scene.images, AT(scene.materials, surface.material).transmission_texture,
-                                           surface.uv, false).r;
-        if (choice < transmission * (1.0 - metallic)) return glass_of(scene, surface, color, roughness, is_front);
-    }
-    return opaque_of(color, metallic, roughness, AT(scene.materials, surface.material).ior);
+    return facing(normal, surface, wo);
 }
 #endif

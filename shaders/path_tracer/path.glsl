@@ -14,6 +14,7 @@ struct PathState
     float pdf;
     uint pixel;
     uint progress;
+    uint medium; // of WaveData::media
 };
 
 PathState load_path(uint i)
@@ -23,6 +24,7 @@ PathState load_path(uint i)
     path.pdf = AT(wave.paths.pdf, i);
     path.pixel = AT(wave.paths.pixel, i);
     path.progress = AT(wave.paths.progress, i);
+    path.medium = HAS_MEDIA ? AT(wave.media, i) : 0u;
     return path;
 }
 
@@ -34,6 +36,7 @@ void go_on(Ray ray, PathState path)
     AT(wave.next_paths.pdf, slot) = path.pdf;
     AT(wave.next_paths.pixel, slot) = path.pixel;
     AT(wave.next_paths.progress, slot) = path.progress;
+    if (HAS_MEDIA) AT(wave.next_media, slot) = path.medium;
 }
 
 void add(uint pixel, vec3 radiance)

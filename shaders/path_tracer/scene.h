@@ -13,6 +13,13 @@ const uint PT_STRATEGY = 5u;         // how direct light is found
 const uint PT_HAS_AOVS = 6u;         // first surfaces are noted
 const uint PT_FILTER = 7u;           // which part of the picture a pixel shows
 const uint PT_HAS_QUEUES = 8u;       // rays are shaded by the kind of material that they met
+// The layers that a material may have (LAYER_ below).
+const uint PT_HAS_SPECULAR = 9u;
+const uint PT_HAS_COAT = 10u;
+const uint PT_HAS_SHEEN = 11u;
+const uint PT_HAS_ANISOTROPY = 12u;
+const uint PT_HAS_VOLUME = 13u;
+const uint PT_HAS_MEDIA = 14u;       // some material of the scene bounds a volume, in which a path may be anywhere
 
 const uint STRATEGY_MIS = 0u;    // both of the following, weighted by the power heuristic
 const uint STRATEGY_LIGHTS = 1u; // sample lights only
@@ -96,6 +103,49 @@ struct SurfaceMaterial
 };
 BUFFER_OF(SurfaceMaterial, 4);
 
+// What a material may have beyond the plain metallic-roughness surface.
+const uint LAYER_SPECULAR = 1u;   // a weight or color of the dielectric reflection; in a Bsdf: a color
+const uint LAYER_COAT = 2u;
+const uint LAYER_SHEEN = 4u;
+const uint LAYER_ANISOTROPY = 8u;
+const uint LAYER_VOLUME = 16u;    // what transmits is the boundary of a volume, else a thin wall
+
+// Bits of the textures that a LayeredMaterial has.
+const uint LAYERED_SPECULAR = 1u;
+const uint LAYERED_SPECULAR_COLOR = 2u;
+const uint LAYERED_COAT = 4u;
+const uint LAYERED_COAT_ROUGHNESS = 8u;
+const uint LAYERED_COAT_NORMAL = 16u;
+const uint LAYERED_SHEEN_COLOR = 32u;
+const uint LAYERED_SHEEN_ROUGHNESS = 64u;
+const uint LAYERED_ANISOTROPY = 128u;
+
+// By the index of the material.
+struct LayeredMaterial
+{
+    uint layers;   // LAYER_ bits
+    uint textures; // LAYERED_ bits
+    float specular;
+    vec3 specular_color;
+    float coat;
+    float coat_roughness;
+    float coat_normal_scale;
+    vec3 sheen_color;
+    float sheen_roughness;
+    float anisotropy;
+    vec2 grain;      // unit, by tangent and bitangent
+    vec3 extinction; // per unit of length in the world
+    TextureSlot specular_texture;
+    TextureSlot specular_color_texture;
+    TextureSlot coat_texture;
+    TextureSlot coat_roughness_texture;
+    TextureSlot coat_normal_texture;
+    TextureSlot sheen_color_texture;
+    TextureSlot sheen_roughness_texture;
+    TextureSlot anisotropy_texture;
+};
+BUFFER_OF(LayeredMaterial, 4);
+
 // One column of an alias table: keep it if a random 32-bit fraction is below `keep`, else take `other`.
 struct AliasEntry
 {
@@ -153,6 +203,7 @@ struct SceneData
 {
     REF(SurfaceInstance) instances;
     REF(SurfaceMaterial) materials;
+    REF(LayeredMaterial) layered; // null: no material has layers
     Uints material_kinds; // of the materials; null where all are of one
     REF(TexelGrid) images;
     REF(Emitter) emitters;

@@ -102,6 +102,7 @@ void scatter(Vertex vertex)
     {
         // A mirror direction through the triangle: mirror at the triangle itself, where losing it would be seen.
         frame = frame_about(vertex.is_front ? vertex.surface.point.normal : -vertex.surface.point.normal);
+        vertex.bsdf.coat_normal = vec3(0.0, 0.0, 1.0);
         onwards = sample_bsdf(vertex.bsdf, to_local(frame, vertex.wo), lobe, u);
         direction = to_world(frame, onwards.wi);
     }
@@ -117,6 +118,8 @@ void scatter(Vertex vertex)
     if (!(largest(path.throughput) > 0.0)) return;
     path.pdf = onwards.pdf;
     path.progress += 0x10001u;
+    if (has_layer(vertex.bsdf, LAYER_VOLUME) && onwards.wi.z < 0.0)
+        path.medium = vertex.is_front ? vertex.surface.material + 1u : 0u;
     Ray ray;
     ray.origin = spawn_position(vertex.surface.point, (onwards.wi.z > 0.0) == vertex.is_front);
     ray.direction = direction;
@@ -144,8 +147,10 @@ void note_first(Vertex vertex, Hit hit, uint flags, vec3 albedo)
 void shade(PathState path, Ray ray, Hit hit)
 {
     Vertex vertex;
-    vertex.path = path;
     vertex.surface = surface_of(AT(wave.scene, 0), ray, hit);
+    if (HAS_MEDIA && path.medium != 0u)
+        path.throughput *= transmittance(AT(wave.scene, 0), path.medium, vertex.surface.t - ray.t_min);
+    vertex.path = path;
     vertex.wo = -ray.direction;
     vertex.is_front = dot(vertex.surface.point.normal, vertex.wo) >= 0.0;
     vertex.key = picture_index(wave.window, path.pixel);
@@ -172,6 +177,8 @@ void shade(PathState path, Ray ray, Hit hit)
     if (path.progress >> 16u >= args.max_depth) return;
     vertex.normal = shading_normal(AT(wave.scene, 0), vertex.surface, flags, vertex.wo);
     vertex.bsdf = bsdf_of(AT(wave.scene, 0), vertex.surface, flags, color.rgb, vertex.is_front, part.y);
+    if (LAYERS != 0u)
+        set_layers(vertex.bsdf, AT(wave.scene, 0), vertex.surface, vertex.normal, vertex.wo, vertex.is_front);
     bool samples_lights = STRATEGY != STRATEGY_BSDF && (HAS_ENVIRONMENT || HAS_LOCAL_LIGHTS);
     if (samples_lights && scatters(vertex.bsdf)) light_directly(vertex);
     scatter(vertex);

@@ -150,7 +150,7 @@ Surface surface_of(SceneData scene, Ray ray, Hit hit)
     vec3 at = crossing_of(ray, placement, corners_of(data));
     Surface surface = surface_at(data, placement, at.xy);
     surface.t = at.z;
-    if (HAS_TEXTURES) set_tangents(surface, data, at.xy);
+    if (HAS_TEXTURES || (LAYERS & LAYER_ANISOTROPY) != 0u) set_tangents(surface, data, at.xy);
     return surface;
 }
 #endif

@@ -72,6 +72,8 @@ struct WaveData
     PathQueue paths;
     REF(Ray) next_rays;
     PathQueue next_paths;
+    Uints media;                      // of the paths: 1 + the material of the volume that it is in, 0: none; null
+    Uints next_media;                 // without PT_HAS_MEDIA
     REF(Ray) shadow_rays;
     ShadowQueue shadows;
     REF(Ray) next_shadow_rays;

@@ -1,43 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include "samples/path_tracer/shared.h"
+#include "tests/samples/bsdf_samples.h"
 
 namespace twinray::path_tracer {
 namespace {
-
-constexpr uint samples = 1 << 16;
-
-Bsdf mirror(float alpha) { return {vec3(0), vec3(1), 1, alpha, 1, false}; }
-Bsdf plastic(float alpha) { return {vec3(0.7f, 0.5f, 0.2f), vec3(0.04f), 1, alpha, 1, false}; }
-Bsdf glass(float alpha, float eta) { return {vec3(1), vec3(0), 0, alpha, eta, true}; }
-
-vec3 direction(float cosine) { return {sqrt(1 - cosine * cosine), 0, cosine}; }
-
-// Mean of `value(sample)` over the BSDF's own sampling.
-template <class Value>
-double mean_of_samples(const Bsdf& bsdf, vec3 wo, const Value& value) {
-    double sum = 0;
-    for (uint i = 0; i < samples; ++i) {
-        const vec2 u = unit_floats(sample_pair(1, i, 0, 1));
-        const float lobe = unit_float(sample_pair(1, i, 1, 1).x);
-        sum += static_cast<double>(value(sample_bsdf(bsdf, wo, lobe, u)));
-    }
-    return sum / samples;
-}
-
-// Integral of `value(wi)` over the whole sphere of directions.
-template <class Value>
-double integral(const Value& value) {
-    double sum = 0;
-    for (uint i = 0; i < samples * 16; ++i) {
-        const vec2 u = unit_floats(sample_pair(2, i, 0, 1));
-        const float z = 1 - 2 * u.x;
-        const vec2 circle = unit_circle(u.y) * sqrt(1 - z * z);
-        sum += static_cast<double>(value(vec3(circle.x, circle.y, z)));
-    }
-    return sum / (samples * 16) * 4 * static_cast<double>(PI);
-}
 
 // Single-scattering albedo of GGX with Smith's height-correlated shadowing, F = 1, by quadrature.
 TEST(Bsdf, TheAlbedoOfAWhiteMirrorIsThatOfSingleScatteringGgx) {
@@ -55,7 +22,7 @@ TEST(Bsdf, TheAlbedoOfAWhiteMirrorIsThatOfSingleScatteringGgx) {
 }
 
 TEST(Bsdf, ALambertianSurfaceReflectsItsAlbedoInEverySample) {
-    const Bsdf bsdf{vec3(0.25f, 0.5f, 1), vec3(0), 0, 1, 1, false};
+    const Bsdf bsdf = opaque(vec3(0.25f, 0.5f, 1), vec3(0), 0, 1);
     mean_of_samples(bsdf, direction(0.3f), [&](const BsdfSample& s) {
         EXPECT_NEAR(s.weight.x, 0.25f, 1e-6f);
         EXPECT_NEAR(s.weight.z, 1.0f, 1e-6f);

@@ -123,7 +123,8 @@ TEST_F(Energy, PunctualLightsGiveTheirAnalyticIrradiance) {
 TEST_F(Energy, AGlassSphereVanishesInAWhiteFurnace) {
     for (const float roughness : {0.0f, 0.4f}) {
         Scene scene;
-        Material glass{.name = "glass", .metallic = 0, .roughness = roughness, .transmission = 1, .ior = 1.5f};
+        Material glass{
+            .name = "glass", .metallic = 0, .roughness = roughness, .transmission = 1, .ior = 1.5f, .thickness = 1};
         add(scene, make_icosphere(4), glass);
         Shot shot;
         shot.environment = sky(1);

@@ -70,10 +70,21 @@ TEST(MaterialKinds, ThoseBecomeOneThatDifferLeast) {
     EXPECT_NE(kinds.of[3], kinds.of[4]);
 }
 
+TEST(MaterialKinds, LayersAreNeeds) {
+    EXPECT_EQ(needs_of({.name = "matt", .specular = 0.5f}), 1u << PT_HAS_SPECULAR);
+    EXPECT_EQ(needs_of({.name = "paint", .clearcoat = 1}), 1u << PT_HAS_COAT);
+    EXPECT_EQ(needs_of({.name = "cloth", .sheen_color = vec3(1)}), 1u << PT_HAS_SHEEN);
+    EXPECT_EQ(needs_of({.name = "brushed", .anisotropy = 1}), 1u << PT_HAS_ANISOTROPY);
+    EXPECT_EQ(needs_of({.name = "amber", .transmission = 1, .thickness = 1}), glass | 1u << PT_HAS_VOLUME);
+    EXPECT_EQ(needs_of({.name = "pane", .transmission = 1, .thickness = 0}), glass);
+    const Material mapped{.name = "mapped", .clearcoat = 1, .clearcoat_texture = {.image = 0}};
+    EXPECT_EQ(needs_of(mapped), textures | 1u << PT_HAS_COAT);
+}
+
 TEST(MaterialKinds, HaveNames) {
     EXPECT_EQ(name_of_needs(0), "plain");
     EXPECT_EQ(name_of_needs(textures | glass), "textures, glass");
-    EXPECT_EQ(std::size(material_needs), 3u);
+    EXPECT_EQ(std::size(material_needs), 8u);
     for (const uint need : material_needs) EXPECT_NE(name_of_needs(1u << need), "plain") << need;
 }
 

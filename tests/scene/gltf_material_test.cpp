@@ -67,6 +67,110 @@ TEST(GltfMaterial, ExtensionsAreTaken) {
     EXPECT_EQ(material.alpha_mode, AlphaMode::blend);
 }
 
+TEST(GltfMaterial, LayersAreTaken) {
+    const json texture = {{"index", 0}}, scaled = {{"index", 0}, {"scale", 0.25}};
+    const Material material =
+        textured_triangle(
+            {{"extensions",
+              {{"KHR_materials_specular",
+                {{"specularFactor", 0.5},
+                 {"specularColorFactor", {0.25, 2, 1}},
+                 {"specularTexture", texture},
+                 {"specularColorTexture", texture}}},
+               {"KHR_materials_clearcoat",
+                {{"clearcoatFactor", 0.5},
+                 {"clearcoatRoughnessFactor", 0.25},
+                 {"clearcoatTexture", texture},
+                 {"clearcoatRoughnessTexture", texture},
+                 {"clearcoatNormalTexture", scaled}}},
+               {"KHR_materials_sheen",
+                {{"sheenColorFactor", {0.25, 0.5, 1}},
+                 {"sheenRoughnessFactor", 0.75},
+                 {"sheenColorTexture", texture},
+                 {"sheenRoughnessTexture", texture}}},
+               {"KHR_materials_anisotropy",
+                {{"anisotropyStrength", 0.5}, {"anisotropyRotation", -7}, {"anisotropyTexture", texture}}},
+               {"KHR_materials_volume",
+                {{"thicknessFactor", 3}, {"attenuationColor", {0.5, 0.25, 1}}, {"attenuationDistance", 2}}}}}})
+            .load()
+            .materials[0];
+    EXPECT_EQ(material.specular, 0.5f);
+    EXPECT_EQ(material.specular_color, vec3(0.25f, 2, 1));
+    EXPECT_EQ(material.clearcoat, 0.5f);
+    EXPECT_EQ(material.clearcoat_roughness, 0.25f);
+    EXPECT_EQ(material.clearcoat_normal_scale, 0.25f);
+    EXPECT_EQ(material.sheen_color, vec3(0.25f, 0.5f, 1));
+    EXPECT_EQ(material.sheen_roughness, 0.75f);
+    EXPECT_EQ(material.anisotropy, 0.5f);
+    EXPECT_EQ(material.anisotropy_rotation, -7);
+    EXPECT_EQ(material.thickness, 3);
+    EXPECT_EQ(material.attenuation_color, vec3(0.5f, 0.25f, 1));
+    EXPECT_EQ(material.attenuation_distance, 2);
+    for (const Texture* read :
+         {&material.specular_texture, &material.specular_color_texture, &material.clearcoat_texture,
+          &material.clearcoat_roughness_texture, &material.clearcoat_normal_texture, &material.sheen_color_texture,
+          &material.sheen_roughness_texture, &material.anisotropy_texture})
+        EXPECT_EQ(read->image, 0);
+}
+
+TEST(GltfMaterial, LayersThatAreNamedButNotGivenChangeNothing) {
+    const Material material = textured_triangle({{"extensions",
+                                                  {{"KHR_materials_specular", json::object()},
+                                                   {"KHR_materials_clearcoat", json::object()},
+                                                   {"KHR_materials_sheen", json::object()},
+                                                   {"KHR_materials_anisotropy", json::object()},
+                                                   {"KHR_materials_volume", json::object()}}}})
+                                  .load()
+                                  .materials[0];
+    EXPECT_EQ(material.specular, 1);
+    EXPECT_EQ(material.specular_color, vec3(1));
+    EXPECT_EQ(material.clearcoat, 0);
+    EXPECT_EQ(material.sheen_color, vec3(0));
+    EXPECT_EQ(material.anisotropy, 0);
+    EXPECT_EQ(material.thickness, 0);
+    EXPECT_EQ(material.attenuation_distance, INFINITY);
+}
+
+TEST(GltfMaterial, LayersOutsideOfTheirRangeAreClamped) {
+    const Material material =
+        textured_triangle({{"extensions",
+                            {{"KHR_materials_specular", {{"specularFactor", 2}, {"specularColorFactor", {-1, 2, 0}}}},
+                             {"KHR_materials_clearcoat", {{"clearcoatFactor", 2}, {"clearcoatRoughnessFactor", -1}}},
+                             {"KHR_materials_sheen", {{"sheenColorFactor", {2, -1, 0}}}},
+                             {"KHR_materials_anisotropy", {{"anisotropyStrength", 3}}},
+                             {"KHR_materials_volume", {{"thicknessFactor", -1}, {"attenuationDistance", 0}}}}}})
+            .load()
+            .materials[0];
+    EXPECT_EQ(material.specular, 1);
+    EXPECT_EQ(material.specular_color, vec3(0, 2, 0));
+    EXPECT_EQ(material.clearcoat, 1);
+    EXPECT_EQ(material.clearcoat_roughness, 0);
+    EXPECT_EQ(material.sheen_color, vec3(1, 0, 0));
+    EXPECT_EQ(material.anisotropy, 1);
+    EXPECT_EQ(material.thickness, 0);
+    EXPECT_GT(material.attenuation_distance, 0);
+}
+
+TEST(GltfMaterial, AnUnreadableNormalMapOfACoatIsLeftOut) {
+    GltfBuilder gltf = textured_triangle(
+        {{"extensions",
+          {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatNormalTexture", {{"index", 0}}}}}}}});
+    gltf.root["images"][0] = {{"uri", "missing.png"}};
+    const Scene scene = gltf.load();
+    EXPECT_TRUE(has_warning(scene, "missing.png': file not found"));
+    EXPECT_EQ(scene.materials[0].clearcoat_normal_texture.image, -1);
+}
+
+TEST(GltfMaterial, WhatIsNotShownIsNamedOnce) {
+    GltfBuilder gltf = textured_triangle(
+        {{"extensions", {{"KHR_materials_iridescence", json::object()}, {"KHR_materials_sheen", json::object()}}}});
+    gltf.root["extensionsUsed"] = {"KHR_materials_iridescence", "KHR_materials_dispersion", "KHR_materials_sheen",
+                                   "KHR_materials_diffuse_transmission"};
+    EXPECT_EQ(gltf.load().warnings,
+              (std::vector<std::string>{"shown without the glTF extensions KHR_materials_diffuse_transmission, "
+                                        "KHR_materials_dispersion, KHR_materials_iridescence"}));
+}
+
 TEST(GltfMaterial, SpecularGlossinessIsShownByItsDiffuseColour) {
     const Scene scene = textured_triangle({{"extensions",
                                             {{"KHR_materials_pbrSpecularGlossiness",

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// What materials have beyond the plain surface, as the kernels read it.
+#pragma once
+
+#include "samples/path_tracer/surface_records.h"
+
+namespace twinray::path_tracer {
+
+// LAYER_ bits of what changes anything.
+uint layers_of(const Material& material);
+uint layers_of(const Scene& scene);
+
+// One per material; none if no material has layers.
+std::vector<LayeredMaterial> layered_records(const Scene& scene);
+
+bool has_texture(const Material& material);
+
+}  // namespace twinray::path_tracer

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// The BSDF of a surface, but for what set_layers adds.
+#ifndef TWINRAY_PATH_TRACER_BSDF_OF_GLSL
+#define TWINRAY_PATH_TRACER_BSDF_OF_GLSL
+
+Bsdf glass_of(SceneData scene, Surface surface, vec3 color, float roughness, bool is_front)
+{
+    float ior = max(AT(scene.materials, surface.material).ior, 1e-3);
+    Bsdf bsdf = plain_bsdf();
+    bsdf.is_glass = true;
+    bsdf.diffuse = color;
+    bsdf.alpha = roughness * roughness;
+    bsdf.layers = volume_of(scene, surface.material);
+    bsdf.eta = is_front || is_thin(bsdf) ? ior : 1.0 / ior;
+    return bsdf;
+}
+
+// Where a material transmits in part, `choice` decides which part is met.
+Bsdf bsdf_of(SceneData scene, Surface surface, uint flags, vec3 color, bool is_front, float choice)
+{
+    float metallic = AT(scene.materials, surface.material).metallic;
+    float roughness = AT(scene.materials, surface.material).roughness;
+    if (HAS_TEXTURES && (flags & MATERIAL_ROUGHNESS_TEXTURE) != 0u)
+    {
+        TextureSlot slot = AT(scene.materials, surface.material).roughness_texture;
+        vec4 map = sample_texture(scene.images, slot, surface.uv, false);
+        roughness *= map.g;
+        metallic *= map.b;
+    }
+    if (HAS_GLASS)
+    {
+        float transmission = AT(scene.materials, surface.material).transmission;
+        if (HAS_TEXTURES && (flags & MATERIAL_TRANSMISSION_TEXTURE) != 0u)
+            transmission *= sample_texture(scene.images, AT(scene.materials, surface.material).transmission_texture,
+                                           surface.uv, false).r;
+        if (choice < transmission * (1.0 - metallic)) return glass_of(scene, surface, color, roughness, is_front);
+    }
+    float ior = AT(scene.materials, surface.material).ior;
+    Bsdf bsdf = opaque_of(color, metallic, roughness, ior);
+    if ((LAYERS & LAYER_SPECULAR) == 0u) return bsdf;
+    vec4 specular = specular_of(scene, surface);
+    return with_specular(bsdf, color, metallic, ior, specular.a, specular.rgb);
+}
+#endif

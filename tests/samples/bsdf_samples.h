@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// BSDFs, their samples and their integrals.
+#pragma once
+
+#include "samples/path_tracer/shared.h"
+
+namespace twinray::path_tracer {
+
+constexpr uint samples = 1 << 16;
+
+inline Bsdf opaque(vec3 diffuse, vec3 f0, float f90, float alpha) {
+    Bsdf bsdf = plain_bsdf();
+    bsdf.diffuse = diffuse;
+    bsdf.f0 = f0;
+    bsdf.f90 = f90;
+    bsdf.alpha = alpha;
+    return bsdf;
+}
+inline Bsdf mirror(float alpha) { return opaque(vec3(0), vec3(1), 1, alpha); }
+inline Bsdf plastic(float alpha) { return opaque(vec3(0.7f, 0.5f, 0.2f), vec3(0.04f), 1, alpha); }
+inline Bsdf thin_glass(float alpha, float ior) {
+    Bsdf bsdf = opaque(vec3(1), vec3(0), 0, alpha);
+    bsdf.is_glass = true;
+    bsdf.eta = ior;
+    return bsdf;
+}
+inline Bsdf glass(float alpha, float eta) {
+    Bsdf bsdf = thin_glass(alpha, eta);
+    bsdf.layers = LAYER_VOLUME;
+    return bsdf;
+}
+
+inline vec3 direction(float cosine, float turns = 0) {
+    const vec2 circle = unit_circle(turns) * sqrt(1 - cosine * cosine);
+    return {circle.x, circle.y, cosine};
+}
+
+// Mean of `value(sample)` over the BSDF's own sampling.
+template <class Value>
+double mean_of_samples(const Bsdf& bsdf, vec3 wo, const Value& value, uint count = samples) {
+    double sum = 0;
+    for (uint i = 0; i < count; ++i) {
+        const vec2 u = unit_floats(sample_pair(1, i, 0, 1));
+        const float lobe = unit_float(sample_pair(1, i, 1, 1).x);
+        sum += static_cast<double>(value(sample_bsdf(bsdf, wo, lobe, u)));
+    }
+    return sum / count;
+}
+
+// Integral of `value(wi)` over the whole sphere of directions.
+template <class Value>
+double integral(const Value& value, uint count = samples * 16) {
+    double sum = 0;
+    for (uint i = 0; i < count; ++i) {
+        const vec2 u = unit_floats(sample_pair(2, i, 0, 1));
+        const float z = 1 - 2 * u.x;
+        const vec2 circle = unit_circle(u.y) * sqrt(1 - z * z);
+        sum += static_cast<double>(value(vec3(circle.x, circle.y, z)));
+    }
+    return sum / count * 4 * static_cast<double>(PI);
+}
+
+}  // namespace twinray::path_tracer
