@@ -52,6 +52,10 @@ std::string environment_text(const EnvironmentMap* environment, bool is_default_
     return text(image.width, " x ", image.height, ' ', Sum().add(image.rgb).hex());
 }
 
+const char* filter_text(uint filter) {
+    return filter == FILTER_BOX ? "box" : filter == FILTER_TRIANGLE ? "triangle" : "gaussian";
+}
+
 const char* strategy_text(uint strategy) {
     return strategy == STRATEGY_MIS ? "lights and surfaces" : strategy == STRATEGY_LIGHTS ? "lights" : "surfaces";
 }
@@ -67,6 +71,7 @@ Configuration configuration_of(const RenderSettings& settings, const Scene& scen
     return {{"picture", text(settings.width, " x ", settings.height)},
             {"part", text(part.width, " x ", part.height, " at ", part.x, ", ", part.y)},
             {"sampling", sampling},
+            {"filter", filter_text(settings.filter)},
             {"seed", text(settings.seed)},
             {"max depth", text(settings.max_depth)},
             {"direct light by sampling", strategy_text(settings.strategy)},

@@ -85,6 +85,12 @@ void add_camera(CLI::App& app, Options& options) {
         ->check(CLI::Range(0.001f, 179.0f))
         ->needs(from)
         ->capture_default_str();
+    app.add_option("--lens-radius", options.lens_radius, "of the aperture, in units of the scene; 0: all is sharp")
+        ->check(CLI::Range(0.0f, 1e30f))
+        ->capture_default_str();
+    app.add_option("--focal-distance", options.focal_distance,
+                   "from the camera to the plane that is sharp; default: where --look-at lies")
+        ->check(CLI::PositiveNumber);
 }
 
 void add_picture(CLI::App& app, Options& options) {
@@ -95,6 +101,11 @@ void add_picture(CLI::App& app, Options& options) {
                    "X0 X1 Y0 Y1: the part of the picture to render, in fractions from 0 to 1")
         ->expected(4)
         ->check(CLI::Range(0.0f, 1.0f));
+    app.add_option("--filter", options.filter,
+                   "what of the picture a pixel shows: its square (box), or its surroundings within a pixel (triangle) "
+                   "or with a standard deviation of half a pixel (gaussian)")
+        ->check(CLI::IsMember({"box", "triangle", "gaussian"}))
+        ->capture_default_str();
     app.add_option("--seed", options.seed, "of the random numbers")->capture_default_str();
     app.add_option("--max-depth", options.max_depth, "scatterings of a path; 0 shows only what emits")
         ->check(CLI::Range(0u, max_max_depth))

@@ -24,7 +24,10 @@ struct Options {
     bool aovs = false;
     std::vector<float> crop;  // fractions x0 x1 y0 y1; none: all
     std::vector<float> look_from, look_at, up = {0, 1, 0};
-    float fov = 40;            // degrees, vertical
+    float fov = 40;  // degrees, vertical
+    float lens_radius = 0;
+    std::optional<float> focal_distance;  // none: to look_at
+    std::string filter = "gaussian";
     std::uint32_t width = 0;   // 0: from the camera's aspect and the height, else 640
     std::uint32_t height = 0;  // 0: 480
     std::uint32_t max_depth = 8;

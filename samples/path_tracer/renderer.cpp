@@ -56,7 +56,7 @@ Renderer::Renderer(Context& context, const DeviceScene& scene, const RenderSetti
       window_(window_of(settings)),
       film_size_(std::uint64_t{settings.part().width} * settings.part().height),
       batch_size_(std::min(max_batch_size, film_size_)),
-      generate_(context, kernel("path_tracer_generate", path_tracer_generate_spirv)),
+      generate_(context, kernel("path_tracer_generate", path_tracer_generate_spirv, {{PT_FILTER, settings.filter}})),
       shade_(context,
              kernel("path_tracer_shade", path_tracer_shade_spirv, constants_of(scene.features(), settings.strategy))),
       shadow_(context, kernel("path_tracer_shadow", path_tracer_shadow_spirv,

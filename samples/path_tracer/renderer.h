@@ -26,6 +26,7 @@ struct RenderSettings {
     uint max_depth = 8;  // scatterings of a path; 0 = only what emits is seen
     uint seed = 1;
     CameraRays camera = {};
+    uint filter = FILTER_GAUSSIAN;
     uint strategy = STRATEGY_MIS;
     bool is_timed = false;  // keeps times by pass
 

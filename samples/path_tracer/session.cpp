@@ -56,6 +56,20 @@ Crop crop_of(const std::vector<float>& window, uint width, uint height) {
     return {x0, y0, x1 - x0, y1 - y0};
 }
 
+uint filter_of(const std::string& name) {
+    return name == "box" ? FILTER_BOX : name == "triangle" ? FILTER_TRIANGLE : FILTER_GAUSSIAN;
+}
+
+void set_lens(CameraRays& camera, const Options& options) {
+    if (options.lens_radius > 0 && !options.focal_distance && options.look_at.empty())
+        fail("--lens-radius ", options.lens_radius, ": needs --focal-distance, or --look-at at what is to be sharp");
+    camera.lens_radius = options.lens_radius;
+    if (options.look_at.empty() || options.focal_distance)
+        camera.focal_distance = options.focal_distance.value_or(0);
+    else
+        camera.focal_distance = length(vector_of(options.look_at) - vector_of(options.look_from));
+}
+
 RenderSettings make_settings(const Options& options, const Scene& scene) {
     const std::optional<Camera> camera = chosen_camera(options, scene);
     float aspect = camera ? camera->aspect.value_or(default_aspect) : default_aspect;
@@ -74,6 +88,8 @@ RenderSettings make_settings(const Options& options, const Scene& scene) {
     settings.width = options.width ? options.width : scaled(settings.height, aspect);
     aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
     settings.camera = camera_rays(camera ? *camera : frame_scene(scene, aspect), aspect);
+    set_lens(settings.camera, options);
+    settings.filter = filter_of(options.filter);
     if (!options.crop.empty()) settings.crop = crop_of(options.crop, settings.width, settings.height);
     return settings;
 }

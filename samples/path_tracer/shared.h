@@ -7,10 +7,12 @@
 
 namespace twinray::path_tracer {
 using glm::clamp;
+using glm::log;
 
 #include "engine/core/bridge_begin.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
+#include "shaders/path_tracer/camera.h"
 #include "shaders/path_tracer/film.h"
 #include "shaders/path_tracer/weights.h"
 #include "shaders/path_tracer/bsdf.h"

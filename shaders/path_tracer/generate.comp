@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
-// One camera ray per pixel, through a uniformly random point of it.
+// One camera ray per pixel, through a random point of what its filter covers and of the lens.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/ray.h"
+#include "shaders/shared/sampling.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
+#include "shaders/path_tracer/camera.h"
 #include "shaders/shared/random.h"
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { GenerateArgs args; };
+layout(constant_id = PT_FILTER) const uint FILTER = FILTER_BOX;
+
+const uint PAIR_LENS = 0xffffffffu; // of random dimensions; vertices of paths count theirs from 1
 
 void main()
 {
@@ -16,20 +21,15 @@ void main()
     if (i >= args.count) return;
     uint index = AT(args.pixels, i), key = picture_index(args.window, index);
     uvec2 pixel = uvec2(key % args.window.picture_width, key / args.window.picture_width);
-    vec2 jitter = unit_floats(sample_pair(key, args.sample_index, 0u, args.seed));
-    vec2 inside = (vec2(pixel) + jitter) / vec2(args.window.picture_width, args.picture_height);
-    vec3 across = args.camera.right * (2.0 * inside.x - 1.0) + args.camera.up * (1.0 - 2.0 * inside.y);
-    bool is_orthographic = args.camera.orthographic != 0u;
-    Ray ray;
-    ray.origin = args.camera.origin + (is_orthographic ? across : vec3(0.0));
-    ray.direction = normalize(args.camera.forward + (is_orthographic ? vec3(0.0) : across));
-    ray.t_min = 0.0;
-    ray.t_max = uintBitsToFloat(0x7f800000u);
+    vec2 offset = filter_offset(FILTER, unit_floats(sample_pair(key, args.sample_index, 0u, args.seed)));
+    vec2 inside = (vec2(pixel) + 0.5 + offset) / vec2(args.window.picture_width, args.picture_height);
+    vec2 lens = vec2(0.0);
+    if (args.camera.lens_radius > 0.0) lens = unit_floats(sample_pair(key, args.sample_index, PAIR_LENS, args.seed));
     PathState path;
     path.throughput = vec3(1.0);
     path.pdf = 0.0;
     path.pixel = index;
     path.progress = 0u;
-    AT(args.rays, i) = ray;
+    AT(args.rays, i) = camera_ray(args.camera, vec2(2.0 * inside.x - 1.0, 1.0 - 2.0 * inside.y), lens);
     AT(args.paths, i) = path;
 }

@@ -11,6 +11,7 @@ const uint PT_HAS_ENVIRONMENT = 3u;
 const uint PT_HAS_LOCAL_LIGHTS = 4u; // emissive triangles or punctual lights
 const uint PT_STRATEGY = 5u;         // how direct light is found
 const uint PT_HAS_AOVS = 6u;         // first surfaces are noted
+const uint PT_FILTER = 7u;           // which part of the picture a pixel shows
 
 const uint STRATEGY_MIS = 0u;    // both of the following, weighted by the power heuristic
 const uint STRATEGY_LIGHTS = 1u; // sample lights only

@@ -36,16 +36,6 @@ struct Counters
 };
 BUFFER_OF(Counters, 4);
 
-// Rays leave origin + x right + y up (orthographic) or in direction forward + x right + y up, x and y in [-1, 1].
-struct CameraRays
-{
-    vec3 origin;
-    vec3 right;
-    vec3 up;
-    vec3 forward;
-    uint orthographic;
-};
-
 // Where the pixels of a film lie in the whole picture. Random numbers belong to pixels of the whole picture, so that a
 // part of it is the same when it is rendered alone.
 struct FilmWindow
@@ -58,19 +48,6 @@ FUNC uint picture_index(FilmWindow window, uint pixel)
 {
     return window.first + pixel + (pixel / window.width) * (window.picture_width - window.width);
 }
-
-struct GenerateArgs
-{
-    REF(Ray) rays;
-    REF(PathState) paths;
-    Uints pixels; // of the film, in the order in which they are traced
-    CameraRays camera;
-    FilmWindow window;
-    uint picture_height;
-    uint count;
-    uint sample_index;
-    uint seed;
-};
 
 // What the camera rays of a pixel see first, summed over them.
 struct FirstSurface
