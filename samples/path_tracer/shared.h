@@ -11,6 +11,7 @@ using glm::log;
 
 #include "engine/core/bridge_begin.h"
 #include "shaders/path_tracer/scene.h"
+#include "shaders/path_tracer/move_vertices.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/camera.h"
 #include "shaders/path_tracer/film.h"
