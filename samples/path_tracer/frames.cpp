@@ -37,7 +37,7 @@ class FrameRenderer {
 
     // The signal that ended it, or 0.
     int render(uint frame) {
-        FrameNote note{frame + 1, sequence_.frames, sequence_.time_of(frame), build_ms_, {}};
+        FrameNote note{frame + 1, sequence_.frames, sequence_.time_of(frame), build_ms_};
         if (motion_) note.times = motion_->move_to(pose_at(*session_.scene.rig, *sequence_.animation, note.seconds));
         set_view(frame);
         describe(note);

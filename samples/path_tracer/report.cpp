@@ -78,23 +78,23 @@ nlohmann::json cross_check_json(const Options& options, const Session& session, 
 }
 
 void add_frame(const FrameNote& frame, nlohmann::json& record) {
-    record.update({{"frame", frame.number},
-                   {"frames", frame.count},
-                   {"time", frame.seconds},
-                   {"build_ms", frame.build_ms},
-                   {"pose_ms", frame.times.host},
-                   {"vertices_ms", frame.times.vertices},
-                   {"refit_ms", frame.times.refit},
-                   {"refit_device_ms", frame.times.refit_device}});
+    record.update({{"frame", frame.number}, {"frames", frame.count}, {"build_ms", frame.build_ms}});
+    if (frame.times)
+        record.update({{"time", frame.seconds},
+                       {"pose_ms", frame.times->host},
+                       {"vertices_ms", frame.times->vertices},
+                       {"refit_ms", frame.times->refit},
+                       {"refit_device_ms", frame.times->refit_device}});
 }
 
 std::string frame_text(const FrameNote& frame) {
     std::ostringstream out;
-    out << std::fixed << std::setprecision(3) << "frame " << frame.number << " of " << frame.count << ": "
-        << frame.seconds << " s; pose " << frame.times.host << " ms, vertices " << frame.times.vertices << " ms, refit "
-        << frame.times.refit << " ms (device " << frame.times.refit_device << " ms, build " << frame.build_ms
-        << " ms)\n";
-    return out.str();
+    out << std::fixed << std::setprecision(3) << "frame " << frame.number << " of " << frame.count;
+    if (frame.times)
+        out << ": " << frame.seconds << " s; pose " << frame.times->host << " ms, vertices " << frame.times->vertices
+            << " ms, refit " << frame.times->refit << " ms (device " << frame.times->refit_device << " ms, build "
+            << frame.build_ms << " ms)";
+    return out.str() + '\n';
 }
 
 // "640 x 480, 16 spp, error 3.2 %".

@@ -15,9 +15,9 @@ namespace twinray::path_tracer {
 // Of a sequence.
 struct FrameNote {
     uint number = 1, count = 1;
-    double seconds = 0;   // of the animation
-    double build_ms = 0;  // of the accelerator, before the first frame
-    MotionTimes times;
+    double seconds = 0;                     // of the animation
+    double build_ms = 0;                    // of the accelerator, before the first frame
+    std::optional<MotionTimes> times = {};  // none: nothing moves but the camera
 };
 
 // The device's time of the accelerator's last build or refit.

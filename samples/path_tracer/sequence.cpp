@@ -104,7 +104,9 @@ Scene swept(const Scene& scene, const Sequence& sequence) {
             Instance moved = scene.instances[k];
             moved.transform = transform_of(matrix_of(pose, scene.rig->instances[k]));
             moved.mesh = shapes[moved.mesh];
-            if (fault_of(moved.transform).empty()) all.instances.push_back(std::move(moved));
+            const bool has_moved =
+                moved.mesh != scene.instances[k].mesh || moved.transform != scene.instances[k].transform;
+            if (has_moved && fault_of(moved.transform).empty()) all.instances.push_back(std::move(moved));
         }
     }
     return all;

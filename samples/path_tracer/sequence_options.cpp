@@ -16,7 +16,7 @@ void add_sequence(CLI::App& app, SequenceOptions& options) {
         ->needs(frames);
     app.add_option("--fps", options.fps,
                    "pictures in a second of the animation; default: they share the time range evenly")
-        ->check(CLI::Range(1e-6, 1e6))
+        ->check(CLI::PositiveNumber)
         ->needs(frames);
     app.add_option("--time-range", options.time_range, "A:B, seconds of the animation; default: all of it")
         ->needs(frames);
