@@ -44,7 +44,7 @@ CrossChecker::CrossChecker(Context& context, AbstractAccel& second, const Render
     commands.submit();
 }
 
-void CrossChecker::record(Commands& commands, const TraceDesc& desc, const RayPixels& pixels) {
+void CrossChecker::record(Commands& commands, const TraceDesc& desc, Uints pixels) {
     TraceDesc again = desc;
     again.hits = hits_.ref<Hit>();
     second_.trace(commands, second_.view(), again);
@@ -52,11 +52,10 @@ void CrossChecker::record(Commands& commands, const TraceDesc& desc, const RayPi
         const auto pass = commands.pass("cross-check clear");
         commands.fill(batch_count_, 0, sizeof(uint), 0);
     }
-    compare_.dispatch(
-        commands,
-        {desc.rays, desc.hits, again.hits, pixels.first, batch_.ref<Disagreement>(), batch_count_.ref<uint>(),
-         marks_.ref<uint>(), pixels.stride, static_cast<uint>(desc.count), batch_capacity, desc.query == Query::any},
-        desc.count);
+    compare_.dispatch(commands,
+                      {desc.rays, desc.hits, again.hits, pixels, batch_.ref<Disagreement>(), batch_count_.ref<uint>(),
+                       marks_.ref<uint>(), static_cast<uint>(desc.count), batch_capacity, desc.query == Query::any},
+                      desc.count);
     const auto pass = commands.pass("cross-check count");
     commands.copy(batch_count_, 0, batch_count_readback_, 0, sizeof(uint));
 }

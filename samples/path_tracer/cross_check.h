@@ -13,7 +13,7 @@ class CrossChecker final : public WaveObserver {
     // `second` must hold the scene, built.
     CrossChecker(Context& context, AbstractAccel& second, const Renderer& renderer, std::uint64_t pixel_count);
 
-    void record(Commands& commands, const TraceDesc& desc, const RayPixels& pixels) override;
+    void record(Commands& commands, const TraceDesc& desc, Uints pixels) override;
     void collect() override;
 
     // The first max_kept of them.

@@ -10,21 +10,24 @@
 #include "path_tracer_generate.spv.h"
 #include "path_tracer_shade.spv.h"
 #include "path_tracer_shadow.spv.h"
+#include "path_tracer_sort.spv.h"
 
 namespace twinray::path_tracer {
 namespace {
 
-// Bounds the memory of a wave, about 220 bytes a ray.
+// Bounds the memory of a wave, about 220 bytes a ray, and 4 more for each kind of material.
 constexpr std::uint64_t max_batch_size = 1 << 19;
 
-std::vector<SpecializationConstant> constants_of(const SceneFeatures& features, uint strategy, bool has_aovs = false) {
-    return {{PT_HAS_ALPHA, features.alpha},
-            {PT_HAS_TEXTURES, features.textures},
-            {PT_HAS_GLASS, features.glass},
-            {PT_HAS_ENVIRONMENT, features.environment},
-            {PT_HAS_LOCAL_LIGHTS, features.local_lights},
-            {PT_STRATEGY, strategy},
-            {PT_HAS_AOVS, has_aovs}};
+// needs: what the materials need that the kernel shades (needs_of).
+std::vector<SpecializationConstant> constants_of(const SceneFeatures& features, uint needs, uint strategy,
+                                                 bool has_aovs) {
+    std::vector<SpecializationConstant> constants = {{PT_HAS_ENVIRONMENT, features.environment},
+                                                     {PT_HAS_LOCAL_LIGHTS, features.local_lights},
+                                                     {PT_STRATEGY, strategy},
+                                                     {PT_HAS_AOVS, has_aovs},
+                                                     {PT_HAS_QUEUES, features.kinds.needs.size() > 1}};
+    for (const uint need : material_needs) constants.push_back({need, needs >> need & 1});
+    return constants;
 }
 
 KernelDesc kernel(const char* name, std::span<const std::uint32_t> spirv,
@@ -55,27 +58,26 @@ Renderer::Renderer(Context& context, const DeviceScene& scene, const RenderSetti
       settings_(settings),
       window_(window_of(settings)),
       film_size_(std::uint64_t{settings.part().width} * settings.part().height),
-      batch_size_(std::min(max_batch_size, film_size_)),
-      generate_(context, kernel("path_tracer_generate", path_tracer_generate_spirv, {{PT_FILTER, settings.filter}})),
-      shade_(context,
-             kernel("path_tracer_shade", path_tracer_shade_spirv, constants_of(scene.features(), settings.strategy))),
-      shadow_(context, kernel("path_tracer_shadow", path_tracer_shadow_spirv,
-                              constants_of(scene.features(), settings.strategy))),
-      accumulate_(context, kernel("path_tracer_accumulate", path_tracer_accumulate_spirv)),
-      hits_(array_of<Hit>(context, "hits", batch_size_)),
-      counters_(array_of<Counters>(context, "counters", 1)),
-      counters_readback_(context, {.name = "counters readback", .bytes = sizeof(Counters), .memory = Memory::readback}),
       sums_(array_of<Radiance>(context, "sums of a block", film_size_)),
       film_(array_of<FilmPixel>(context, "film", film_size_)),
-      pixels_(array_of<uint>(context, "order of pixels", film_size_)) {
-    for (int i = 0; i < 2; ++i) {
-        rays_[i] = array_of<Ray>(context, "rays", batch_size_);
-        paths_[i] = array_of<PathState>(context, "paths", batch_size_);
-        if (i == 1 && !scene.features().alpha)
-            break;  // shadow rays take a second round only behind transparent surfaces
-        shadow_rays_[i] = array_of<Ray>(context, "shadow rays", batch_size_);
-        shadows_[i] = array_of<ShadowState>(context, "shadows", batch_size_);
-    }
+      pixels_(array_of<uint>(context, "order of pixels", film_size_)),
+      waves_(context, scene, sums_.ref<Radiance>(), window_, static_cast<uint>(std::min(max_batch_size, film_size_))),
+      counters_readback_(context, {.name = "counters readback", .bytes = sizeof(Counters), .memory = Memory::readback}),
+      generate_(context, kernel("path_tracer_generate", path_tracer_generate_spirv, {{PT_FILTER, settings.filter}})),
+      sort_(context, kernel("path_tracer_sort", path_tracer_sort_spirv,
+                            constants_of(scene.features(), 0, settings.strategy, false))),
+      shade_(shade_kernels(false)),
+      shadow_(context,
+              kernel("path_tracer_shadow", path_tracer_shadow_spirv,
+                     constants_of(scene.features(), scene.features().kinds.all_needs(), settings.strategy, false))),
+      accumulate_(context, kernel("path_tracer_accumulate", path_tracer_accumulate_spirv)) {}
+
+std::deque<Kernel<ShadeArgs>> Renderer::shade_kernels(bool has_aovs) const {
+    std::deque<Kernel<ShadeArgs>> kernels;
+    for (const uint needs : scene_.features().kinds.needs)
+        kernels.emplace_back(context_, kernel("path_tracer_shade", path_tracer_shade_spirv,
+                                              constants_of(scene_.features(), needs, settings_.strategy, has_aovs)));
+    return kernels;
 }
 
 Film Renderer::make_film(Configuration configuration) const {
@@ -89,7 +91,7 @@ void Renderer::start(const Film& film) {
     {
         const auto pass = commands.pass("path tracer start");
         commands.fill(sums_, 0, sums_.bytes(), 0);
-        commands.fill(counters_, 0, counters_.bytes(), 0);
+        waves_.clear_counters(commands);
         commands.upload(film_, std::span(film.pixels));
     }
     commands.submit();
@@ -116,7 +118,7 @@ void Renderer::add_block(AbstractAccel& accel, uint number, WaveObserver* observ
 }
 
 void Renderer::trace_block(const Tracing& tracing, uint number) {
-    const auto batch = static_cast<uint>(batch_size_);
+    const uint batch = waves_.capacity();
     // In blocks of one all samples are of the same sequence; else each block's is one of its own.
     const uint first_sample = settings_.block_size > 1 ? 0 : number;
     for (uint sample = first_sample; sample < first_sample + settings_.block_size; ++sample)
@@ -126,33 +128,33 @@ void Renderer::trace_block(const Tracing& tracing, uint number) {
 
 void Renderer::accumulate() {
     Commands commands(context_, "path tracer accumulate");
-    accumulate_.dispatch(
-        commands,
-        {film_.ref<FilmPixel>(), sums_.ref<Radiance>(), counters_.ref<Counters>(), pixels_.ref<uint>(), pixel_count_},
-        pixel_count_);
+    accumulate_.dispatch(commands,
+                         {film_.ref<FilmPixel>(), sums_.ref<Radiance>(), waves_.counters().ref<Counters>(),
+                          pixels_.ref<uint>(), pixel_count_},
+                         pixel_count_);
     submit(commands);
 }
 
 std::vector<FirstSurface> Renderer::first_surfaces(AbstractAccel& accel) {
     const RenderStats kept = stats_;
-    const Kernel<ShadeArgs> shade(context_, kernel("path_tracer_shade", path_tracer_shade_spirv,
-                                                   constants_of(scene_.features(), settings_.strategy, true)));
+    const std::deque<Kernel<ShadeArgs>> shade = shade_kernels(true);
     const Buffer found = array_of<FirstSurface>(context_, "first surfaces", film_size_);
-    const auto clear = [&](const Buffer& buffer) {
-        Commands commands(context_, "path tracer clear");
+    const auto prepare = [&](const Buffer& cleared, Ref<FirstSurface> first_surfaces) {
+        Commands commands(context_, "path tracer first surfaces");
         {
-            const auto pass = commands.pass("path tracer clear");
-            commands.fill(buffer, 0, buffer.bytes(), 0);
+            const auto pass = commands.pass("path tracer first surfaces");
+            commands.fill(cleared, 0, cleared.bytes(), 0);
+            waves_.set_first_surfaces(commands, first_surfaces);
         }
         commands.submit();
     };
-    clear(found);
+    prepare(found, found.ref<FirstSurface>());
     const Crop part = settings_.part();
     set_pixels(pixel_order(part.width, part.height));
     accel.sync();
     for (uint block = 0; block < samples_of_first_surfaces / settings_.block_size; ++block)
-        trace_block({accel, accel.view(), nullptr, shade, 0, found.ref<FirstSurface>()}, block);
-    clear(sums_);  // of what emits
+        trace_block({accel, accel.view(), nullptr, shade, 0}, block);
+    prepare(sums_, {});  // they are of what emits
     stats_ = kept;
     return download<FirstSurface>(context_, found, film_size_);
 }
@@ -165,21 +167,17 @@ SyncPoint Renderer::submit(Commands& commands) {
 }
 
 std::uint64_t Renderer::device_bytes() const {
-    std::uint64_t bytes = 0;
-    for (const Buffer* buffer : {&rays_[0], &rays_[1], &paths_[0], &paths_[1], &hits_, &shadow_rays_[0],
-                                 &shadow_rays_[1], &shadows_[0], &shadows_[1], &counters_, &sums_, &film_, &pixels_})
-        bytes += buffer->bytes();
-    return bytes;
+    return waves_.bytes() + sums_.bytes() + film_.bytes() + pixels_.bytes();
 }
 
 void Renderer::read(Film& film) { film.pixels = download<FilmPixel>(context_, film_, film_size_); }
 
 void Renderer::trace_batch(const Tracing& tracing, const Batch& batch) {
-    current_ = 0;
+    turn_ = 0;
     Commands commands(context_, "path tracer generate");
     generate_.dispatch(commands,
-                       {rays_[0].ref<Ray>(), paths_[0].ref<PathState>(), pixels_.ref<uint>(batch.first * sizeof(uint)),
-                        settings_.camera, window_, settings_.height, batch.count, batch.sample, batch.seed},
+                       {waves_.data(turn_), pixels_.ref<uint>(batch.first * sizeof(uint)), settings_.camera,
+                        settings_.height, batch.count, batch.sample, batch.seed},
                        batch.count);
     submit(commands);
     for (uint count = batch.count; count > 0;) {
@@ -190,60 +188,57 @@ void Renderer::trace_batch(const Tracing& tracing, const Batch& batch) {
 }
 
 Counters Renderer::wave(const Tracing& tracing, const Batch& batch, uint count) {
-    const uint next = 1 - current_;
     Commands commands(context_, "path tracer wave");
-    trace(commands, tracing, {.rays = rays_[current_].ref<Ray>(), .hits = hits_.ref<Hit>(), .count = count},
-          {{paths_[current_].address() + offsetof(PathState, pixel)}, sizeof(PathState) / sizeof(uint)});
-    clear_appended(commands);
-    tracing.shade.dispatch(
-        commands,
-        {scene_.data(), rays_[current_].ref<Ray>(), hits_.ref<Hit>(), paths_[current_].ref<PathState>(),
-         rays_[next].ref<Ray>(), paths_[next].ref<PathState>(), shadow_rays_[0].ref<Ray>(),
-         shadows_[0].ref<ShadowState>(), counters_.ref<Counters>(), sums_.ref<Radiance>(), count, batch.sample,
-         batch.seed, tracing.max_depth, window_, tracing.first_surfaces},
-        count);
+    trace(commands, tracing, {.rays = waves_.rays(turn_), .hits = waves_.hits(), .count = count}, waves_.pixels(turn_));
+    shade(commands, tracing, batch, count);
     stats_.path_rays += count;
-    current_ = next;
+    turn_ = 1 - turn_;
     return run(commands, tracing);
 }
 
+void Renderer::shade(Commands& commands, const Tracing& tracing, const Batch& batch, uint count) {
+    clear_appended(commands);
+    const Ref<WaveData> wave = waves_.data(turn_);
+    ShadeArgs args{wave, count, 0, batch.sample, batch.seed, tracing.max_depth};
+    if (waves_.kind_count() == 1) return tracing.shade[0].dispatch(commands, args, count);
+    sort_.dispatch(commands, {wave, count}, count);
+    for (; args.kind < waves_.kind_count(); ++args.kind)
+        tracing.shade[args.kind].dispatch_indirect(commands, args, waves_.kinds(),
+                                                   WaveBuffers::groups_offset(args.kind));
+}
+
 void Renderer::shadow_rounds(const Tracing& tracing, uint count) {
-    const bool has_alpha = scene_.features().alpha;
+    const bool has_alpha = scene_.features().some(PT_HAS_ALPHA);
     for (uint round = 0; count > 0; ++round) {
-        const uint from = round % 2, to = has_alpha ? 1 - from : from;
+        const uint turn = has_alpha ? round % 2 : 0;
         Commands commands(context_, "path tracer shadows");
         trace(commands, tracing,
-              {.rays = shadow_rays_[from].ref<Ray>(),
-               .hits = hits_.ref<Hit>(),
+              {.rays = waves_.shadow_rays(turn),
+               .hits = waves_.hits(),
                .count = count,
                .query = has_alpha ? Query::closest : Query::any},
-              {{shadows_[from].address() + offsetof(ShadowState, pixel)}, sizeof(ShadowState) / sizeof(uint)});
+              waves_.shadow_pixels(turn));
         clear_appended(commands);
-        shadow_.dispatch(
-            commands,
-            {scene_.data(), shadow_rays_[from].ref<Ray>(), hits_.ref<Hit>(), shadows_[from].ref<ShadowState>(),
-             shadow_rays_[to].ref<Ray>(), shadows_[to].ref<ShadowState>(), counters_.ref<Counters>(),
-             sums_.ref<Radiance>(), count, round == MAX_SHADOW_PASSES},
-            count);
+        shadow_.dispatch(commands, {waves_.data(0, turn), count, round == MAX_SHADOW_PASSES}, count);
         stats_.shadow_rays += count;
         count = run(commands, tracing).shadows;
     }
 }
 
-void Renderer::trace(Commands& commands, const Tracing& tracing, const TraceDesc& desc, const RayPixels& pixels) {
+void Renderer::trace(Commands& commands, const Tracing& tracing, const TraceDesc& desc, Uints pixels) {
     tracing.accel.trace(commands, tracing.view, desc);
     if (tracing.observer) tracing.observer->record(commands, desc, pixels);
 }
 
 void Renderer::clear_appended(Commands& commands) {
     const auto pass = commands.pass("path tracer clear");
-    commands.fill(counters_, 0, offsetof(Counters, non_finite), 0);
+    waves_.clear_appended(commands);
 }
 
 Counters Renderer::run(Commands& commands, const Tracing& tracing) {
     {
         const auto pass = commands.pass("path tracer counters");
-        commands.copy(counters_, 0, counters_readback_, 0, sizeof(Counters));
+        commands.copy(waves_.counters(), 0, counters_readback_, 0, sizeof(Counters));
     }
     context_.wait(submit(commands));
     Counters counters;

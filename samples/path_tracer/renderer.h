@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <deque>
 #include <map>
 
 #include "engine/accel/abstract_accel.h"
 #include "engine/core/progress.h"
 #include "samples/path_tracer/film.h"
-#include "samples/path_tracer/scene_upload.h"
+#include "samples/path_tracer/wave_buffers.h"
 
 namespace twinray::path_tracer {
 
@@ -42,12 +43,6 @@ struct RenderStats {
     std::map<std::string, double> pass_ms = {};  // the device's time by pass, where RenderSettings::is_timed
 };
 
-// The pixel of ray i is first[i * stride].
-struct RayPixels {
-    Uints first;
-    uint stride = 0;  // in words
-};
-
 // Camera rays of a pixel that Renderer::first_surfaces follows.
 constexpr uint samples_of_first_surfaces = 16;
 
@@ -55,8 +50,8 @@ constexpr uint samples_of_first_surfaces = 16;
 class WaveObserver {
   public:
     virtual ~WaveObserver() = default;
-    // What was recorded before writes the hits of `desc`.
-    virtual void record(Commands& commands, const TraceDesc& desc, const RayPixels& pixels) = 0;
+    // What was recorded before writes the hits of `desc`. pixels: which the rays are of.
+    virtual void record(Commands& commands, const TraceDesc& desc, Uints pixels) = 0;
     // Everything recorded so far has run.
     virtual void collect() = 0;
 };
@@ -88,7 +83,7 @@ class Renderer {
     // Of rays, paths, sums and film.
     std::uint64_t device_bytes() const;
     // Most rays in one trace.
-    std::uint64_t batch_size() const { return batch_size_; }
+    std::uint64_t batch_size() const { return waves_.capacity(); }
     std::uint64_t film_size() const { return film_size_; }
 
   private:
@@ -103,17 +98,18 @@ class Renderer {
         AbstractAccel& accel;
         AccelView view;
         WaveObserver* observer;
-        const Kernel<ShadeArgs>& shade;
+        const std::deque<Kernel<ShadeArgs>>& shade;  // by kind of material
         uint max_depth;
-        Ref<FirstSurface> first_surfaces = {};
     };
     void trace_block(const Tracing& tracing, uint number);
     void trace_batch(const Tracing& tracing, const Batch& batch);
     Counters wave(const Tracing& tracing, const Batch& batch, uint count);
     void shadow_rounds(const Tracing& tracing, uint count);
-    void trace(Commands& commands, const Tracing& tracing, const TraceDesc& desc, const RayPixels& pixels);
-    void clear_appended(Commands& commands);
+    void trace(Commands& commands, const Tracing& tracing, const TraceDesc& desc, Uints pixels);
+    void shade(Commands& commands, const Tracing& tracing, const Batch& batch, uint count);
+    std::deque<Kernel<ShadeArgs>> shade_kernels(bool has_aovs) const;
     Counters run(Commands& commands, const Tracing& tracing);
+    void clear_appended(Commands& commands);
     SyncPoint submit(Commands& commands);
     void accumulate();
 
@@ -121,15 +117,17 @@ class Renderer {
     const DeviceScene& scene_;
     RenderSettings settings_;
     FilmWindow window_;
-    std::uint64_t film_size_, batch_size_;
+    std::uint64_t film_size_;
+    Buffer sums_, film_, pixels_;
+    WaveBuffers waves_;
+    Buffer counters_readback_;
     Kernel<GenerateArgs> generate_;
-    Kernel<ShadeArgs> shade_;
+    Kernel<SortArgs> sort_;
+    std::deque<Kernel<ShadeArgs>> shade_;
     Kernel<ShadowArgs> shadow_;
     Kernel<AccumulateArgs> accumulate_;
-    Buffer rays_[2], paths_[2], hits_, shadow_rays_[2], shadows_[2], counters_, counters_readback_, sums_, film_,
-        pixels_;
     uint pixel_count_ = 0;  // in pixels_
-    uint current_ = 0;      // which of the pairs holds the wave in flight
+    uint turn_ = 0;         // whose the wave in flight is
     RenderStats stats_;
 };
 

@@ -114,10 +114,25 @@ std::string reference_text(const std::filesystem::path& file, const Film& film, 
     return text("against '", file.string(), "': MSE ", error.mse, ", relMSE ", error.relative_mse, '\n');
 }
 
+// "shaded as: plain | glass; left out: alpha, textures, environment".
+std::string features_text(const SceneFeatures& features) {
+    std::string kinds, absent;
+    for (const uint needs : features.kinds.needs) kinds += (kinds.empty() ? "" : " | ") + name_of_needs(needs);
+    const auto note = [&](bool is_present, const std::string& name) {
+        if (!is_present) absent += (absent.empty() ? "" : ", ") + name;
+    };
+    for (const uint need : material_needs) note(features.some(need), name_of_needs(1u << need));
+    note(features.environment, "environment");
+    note(features.local_lights, "local lights");
+    note(features.kinds.needs.size() > 1, "queues by kind");
+    return "shaded as: " + kinds + "; left out: " + (absent.empty() ? "nothing" : absent);
+}
+
 void print_stats(const Session& session, const AbstractAccel& accel, const RenderStats& stats) {
     std::printf("rays: %llu of paths, %llu of shadows, %llu cut off behind transparent surfaces\n",
                 static_cast<unsigned long long>(stats.path_rays), static_cast<unsigned long long>(stats.shadow_rays),
                 static_cast<unsigned long long>(stats.cut));
+    std::printf("%s\n", features_text(session.device_scene->features()).c_str());
     for (const auto& [pass, ms] : stats.pass_ms) std::printf("device time: %9.1f ms  %s\n", ms, pass.c_str());
     constexpr double mib = 1 << 20;
     std::printf("device memory: %.1f MiB of rays, sums and film, %.1f MiB of the accelerator\n",

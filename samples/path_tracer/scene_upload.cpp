@@ -9,12 +9,6 @@
 namespace twinray::path_tracer {
 namespace {
 
-bool has_texture(const Material& material) {
-    for (const Texture* texture : textures_of(material))
-        if (texture->image >= 0) return true;
-    return false;
-}
-
 std::vector<uint> texels_of(const Image& image) {
     std::vector<uint> texels(std::size_t{image.width} * image.height);
     std::memcpy(texels.data(), image.rgba.data(), texels.size() * sizeof(uint));
@@ -25,11 +19,7 @@ std::vector<uint> texels_of(const Image& image) {
 
 SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment) {
     SceneFeatures features;
-    for (const Material& material : scene.materials) {
-        features.alpha |= material.alpha_mode != AlphaMode::opaque;
-        features.textures |= has_texture(material);
-        features.glass |= material.transmission > 0;
-    }
+    features.kinds = kinds_of(scene);
     features.environment = environment && !environment->is_black();
     features.local_lights = !lights.empty();
     return features;
@@ -69,6 +59,8 @@ void DeviceScene::upload_all(Commands& commands, const Scene& scene, const Local
     upload_meshes(commands, scene);
     record_.instances = upload_instances(commands, scene, lights);
     record_.materials = upload(commands, "materials", material_records(scene));
+    if (features_.kinds.needs.size() > 1)
+        record_.material_kinds = upload(commands, "kinds of materials", features_.kinds.of);
     record_.images = upload_images(commands, scene);
     if (features_.environment) record_.environment = upload_environment(commands, *map);
     upload_lights(commands, lights);

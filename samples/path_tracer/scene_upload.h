@@ -9,16 +9,18 @@
 #include "engine/core/kernel.h"
 #include "samples/path_tracer/environment.h"
 #include "samples/path_tracer/lights.h"
+#include "samples/path_tracer/material_kinds.h"
 
 namespace twinray::path_tracer {
 
-// What a scene needs of the kernels; what is false is compiled out.
+// What a scene needs of the kernels; the rest is compiled out.
 struct SceneFeatures {
-    bool alpha = false;
-    bool textures = false;
-    bool glass = false;
+    MaterialKinds kinds;
     bool environment = false;
     bool local_lights = false;
+
+    // Whether some material needs it; need: PT_HAS_ALPHA and the like.
+    bool some(uint need) const { return kinds.all_needs() >> need & 1; }
 };
 SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment);
 

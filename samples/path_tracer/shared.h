@@ -4,6 +4,7 @@
 
 #include "engine/accel/spawn.h"
 #include "engine/core/sampling.h"
+#include "engine/scene/soa.h"
 
 namespace twinray::path_tracer {
 using glm::clamp;
@@ -20,7 +21,7 @@ using glm::log;
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(SurfaceVertex) == 48 && sizeof(SurfaceTriangle) == 16 && sizeof(SurfaceInstance) == 120);
-static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 96);
-static_assert(sizeof(PathState) == 24 && sizeof(ShadowState) == 16 && sizeof(Disagreement) == 104);
+static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 104);
+static_assert(sizeof(WaveData) == 264 && sizeof(KindQueue) == 16 && sizeof(Disagreement) == 104);
 static_assert(sizeof(FilmPixel) == 72 && sizeof(FirstSurface) == 40);
 }  // namespace twinray::path_tracer

@@ -18,11 +18,9 @@ struct CameraRays
 
 struct GenerateArgs
 {
-    REF(Ray) rays;
-    REF(PathState) paths;
+    REF(WaveData) wave;
     Uints pixels; // of the film, in the order in which they are traced
     CameraRays camera;
-    FilmWindow window;
     uint picture_height;
     uint count;
     uint sample_index;

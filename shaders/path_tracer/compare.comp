@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/ray.h"
+#include "shaders/shared/soa.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
 layout(local_size_x = PATH_GROUP) in;
@@ -21,7 +22,7 @@ void main()
         is_same = is_same && first.instance_index == second.instance_index &&
                   first.primitive_index == second.primitive_index;
     if (is_same) return;
-    uint pixel = AT(args.pixels, i * args.pixel_stride);
+    uint pixel = AT(args.pixels, i);
     AT(args.marks, pixel) = 1u;
     uint slot = atomicAdd(AT(args.found_count, 0), 1u);
     if (slot >= args.capacity) return;

@@ -5,6 +5,7 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/sampling.h"
+#include "shaders/shared/soa.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/camera.h"
@@ -19,17 +20,16 @@ void main()
 {
     uint i = global_index();
     if (i >= args.count) return;
-    uint index = AT(args.pixels, i), key = picture_index(args.window, index);
-    uvec2 pixel = uvec2(key % args.window.picture_width, key / args.window.picture_width);
+    WaveData wave = AT(args.wave, 0);
+    uint index = AT(args.pixels, i), key = picture_index(wave.window, index);
+    uvec2 pixel = uvec2(key % wave.window.picture_width, key / wave.window.picture_width);
     vec2 offset = filter_offset(FILTER, unit_floats(sample_pair(key, args.sample_index, 0u, args.seed)));
-    vec2 inside = (vec2(pixel) + 0.5 + offset) / vec2(args.window.picture_width, args.picture_height);
+    vec2 inside = (vec2(pixel) + 0.5 + offset) / vec2(wave.window.picture_width, args.picture_height);
     vec2 lens = vec2(0.0);
     if (args.camera.lens_radius > 0.0) lens = unit_floats(sample_pair(key, args.sample_index, PAIR_LENS, args.seed));
-    PathState path;
-    path.throughput = vec3(1.0);
-    path.pdf = 0.0;
-    path.pixel = index;
-    path.progress = 0u;
-    AT(args.rays, i) = camera_ray(args.camera, vec2(2.0 * inside.x - 1.0, 1.0 - 2.0 * inside.y), lens);
-    AT(args.paths, i) = path;
+    AT(wave.rays, i) = camera_ray(args.camera, vec2(2.0 * inside.x - 1.0, 1.0 - 2.0 * inside.y), lens);
+    AT(wave.paths.throughput, i) = vec3(1.0);
+    AT(wave.paths.pdf, i) = 0.0;
+    AT(wave.paths.pixel, i) = index;
+    AT(wave.paths.progress, i) = 0u;
 }

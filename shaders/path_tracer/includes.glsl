@@ -5,6 +5,7 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/intersect.h"
 #include "shaders/shared/spawn.h"
+#include "shaders/shared/soa.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/weights.h"

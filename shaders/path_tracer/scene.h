@@ -12,6 +12,7 @@ const uint PT_HAS_LOCAL_LIGHTS = 4u; // emissive triangles or punctual lights
 const uint PT_STRATEGY = 5u;         // how direct light is found
 const uint PT_HAS_AOVS = 6u;         // first surfaces are noted
 const uint PT_FILTER = 7u;           // which part of the picture a pixel shows
+const uint PT_HAS_QUEUES = 8u;       // rays are shaded by the kind of material that they met
 
 const uint STRATEGY_MIS = 0u;    // both of the following, weighted by the power heuristic
 const uint STRATEGY_LIGHTS = 1u; // sample lights only
@@ -159,6 +160,7 @@ struct SceneData
 {
     REF(SurfaceInstance) instances;
     REF(SurfaceMaterial) materials;
+    Uints material_kinds; // of the materials; null where all are of one
     REF(TexelGrid) images;
     REF(Emitter) emitters;
     REF(PunctualLight) punctual;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What each ray of a wave met: adds the light it found, sends a shadow ray to a light and the path onwards.
+// What rays of a wave met, all or those of one queue: adds the light they found, sends shadow rays to lights and the
+// paths onwards.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/path_tracer/includes.glsl"
-#include "shaders/shared/random.h"
-#include "shaders/path_tracer/lights.glsl"
+#include "shaders/path_tracer/path.glsl"
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };
 
@@ -38,46 +38,12 @@ uvec2 pair_of(Vertex vertex, uint which)
     return sample_pair(vertex.key, args.sample_index, PAIR_COUNT * vertex.number + which + 1u, args.seed);
 }
 
-void add(uint pixel, vec3 radiance)
-{
-    if (is_finite(radiance)) AT(args.sums, pixel).rgb += radiance;
-    else atomicAdd(AT(args.counters, 0).non_finite, 1u);
-}
-
-// Weight of light that a ray sampled with density `own` has found, where light sampling has density `other`.
-float found_weight(float own, float other)
-{
-    if (STRATEGY == STRATEGY_BSDF) return 1.0;
-    if (STRATEGY == STRATEGY_LIGHTS) return own > 0.0 && other > 0.0 ? 0.0 : 1.0;
-    return mis_weight(own, other);
-}
-
-void add_environment(PathState path, Ray ray)
-{
-    if (!HAS_ENVIRONMENT) return;
-    Environment env = AT(args.scene, 0).environment;
-    vec2 at = environment_position(env, ray.direction);
-    if (path.pdf > 0.0)
-    {
-        vec3 pixel = environment_pixel(env, int(at.x), int(at.y));
-        add(path.pixel, path.throughput * pixel * found_weight(path.pdf, environment_pdf(env, pixel)));
-    }
-    else add(path.pixel, path.throughput * environment_seen(env, at));
-}
-
 void add_emission(Vertex vertex, Ray ray, Hit hit, uint flags)
 {
-    vec3 radiance = emitted(AT(args.scene, 0), vertex.surface.material, flags, vertex.surface.uv, vertex.is_front);
+    vec3 radiance = emitted(AT(wave.scene, 0), vertex.surface.material, flags, vertex.surface.uv, vertex.is_front);
     if (!HAS_LOCAL_LIGHTS || largest(radiance) <= 0.0) return;
-    float other = emitter_pdf(AT(args.scene, 0), hit, vertex.surface, ray.origin, ray.direction);
+    float other = emitter_pdf(AT(wave.scene, 0), hit, vertex.surface, ray.origin, ray.direction);
     add(vertex.path.pixel, vertex.path.throughput * radiance * found_weight(vertex.path.pdf, other));
-}
-
-void go_on(Ray ray, PathState path)
-{
-    uint slot = atomicAdd(AT(args.counters, 0).paths, 1u);
-    AT(args.next_rays, slot) = ray;
-    AT(args.next_paths, slot) = path;
 }
 
 // The same ray behind a transparent surface.
@@ -85,7 +51,7 @@ void pass(Vertex vertex, Ray ray)
 {
     if (vertex.number - (vertex.path.progress >> 16u) >= MAX_PASSES)
     {
-        atomicAdd(AT(args.counters, 0).cut, 1u);
+        atomicAdd(AT(wave.counters, 0).cut, 1u);
         return;
     }
     ray.t_min = passing_t(vertex.surface.point, vertex.surface.placement, ray, vertex.surface.t);
@@ -101,7 +67,7 @@ bool is_above(Vertex vertex, vec3 direction)
 // Next-event estimation.
 void light_directly(Vertex vertex)
 {
-    SceneData scene = AT(args.scene, 0);
+    SceneData scene = AT(wave.scene, 0);
     LightSample light = sample_light(scene, vertex.surface.point.position, pair_of(vertex, PAIR_CHOICE),
                                      unit_floats(pair_of(vertex, PAIR_LIGHT)));
     if (!(light.pdf > 0.0) || !(largest(light.radiance) > 0.0)) return;
@@ -112,17 +78,16 @@ void light_directly(Vertex vertex)
     BsdfValue value = evaluate(vertex.bsdf, to_local(frame, vertex.wo), wi);
     if (!(largest(value.f) > 0.0)) return;
     float weight = light.is_delta || STRATEGY == STRATEGY_LIGHTS ? 1.0 : mis_weight(light.pdf, value.pdf);
-    ShadowState shadow;
-    shadow.contribution = vertex.path.throughput * value.f * light.radiance * (weight / light.pdf);
-    shadow.pixel = vertex.path.pixel;
+    vec3 contribution = vertex.path.throughput * value.f * light.radiance * (weight / light.pdf);
     Ray ray;
     ray.origin = spawn_position(vertex.surface.point, (wi.z > 0.0) == vertex.is_front);
     ray.direction = light.has_target ? light.target - ray.origin : light.direction;
     ray.t_min = 0.0;
     ray.t_max = light.has_target ? 1.0 : infinity();
-    uint slot = atomicAdd(AT(args.counters, 0).shadows, 1u);
-    AT(args.shadow_rays, slot) = ray;
-    AT(args.shadows, slot) = shadow;
+    uint slot = atomicAdd(AT(wave.counters, 0).shadows, 1u);
+    AT(wave.shadow_rays, slot) = ray;
+    AT(wave.shadows.contribution, slot) = contribution;
+    AT(wave.shadows.pixel, slot) = vertex.path.pixel;
 }
 
 void scatter(Vertex vertex)
@@ -163,9 +128,9 @@ void scatter(Vertex vertex)
 // Each pixel has one ray at a time.
 void note_first(Vertex vertex, Hit hit, uint flags, vec3 albedo)
 {
-    FirstSurface first = AT(args.first_surfaces, vertex.path.pixel);
+    FirstSurface first = AT(wave.first_surfaces, vertex.path.pixel);
     first.albedo += albedo;
-    first.normal += shading_normal(AT(args.scene, 0), vertex.surface, flags, vertex.wo);
+    first.normal += shading_normal(AT(wave.scene, 0), vertex.surface, flags, vertex.wo);
     first.distance += vertex.surface.t;
     first.count += 1u;
     if (args.sample_index == 0u)
@@ -173,24 +138,24 @@ void note_first(Vertex vertex, Hit hit, uint flags, vec3 albedo)
         first.instance = hit.instance_index + 1u;
         first.primitive = hit.primitive_index;
     }
-    AT(args.first_surfaces, vertex.path.pixel) = first;
+    AT(wave.first_surfaces, vertex.path.pixel) = first;
 }
 
 void shade(PathState path, Ray ray, Hit hit)
 {
     Vertex vertex;
     vertex.path = path;
-    vertex.surface = surface_of(AT(args.scene, 0), ray, hit);
+    vertex.surface = surface_of(AT(wave.scene, 0), ray, hit);
     vertex.wo = -ray.direction;
     vertex.is_front = dot(vertex.surface.point.normal, vertex.wo) >= 0.0;
-    vertex.key = picture_index(args.window, path.pixel);
+    vertex.key = picture_index(wave.window, path.pixel);
     vertex.number = path.progress & 0xffffu;
-    uint flags = AT(AT(args.scene, 0).materials, vertex.surface.material).flags;
+    uint flags = AT(AT(wave.scene, 0).materials, vertex.surface.material).flags;
     vec2 part = unit_floats(pair_of(vertex, PAIR_PART));
-    vec4 color = base_color(AT(args.scene, 0), vertex.surface.material, flags, vertex.surface.uv);
+    vec4 color = base_color(AT(wave.scene, 0), vertex.surface.material, flags, vertex.surface.uv);
     if (HAS_ALPHA)
     {
-        float cutoff = AT(AT(args.scene, 0).materials, vertex.surface.material).alpha_cutoff;
+        float cutoff = AT(AT(wave.scene, 0).materials, vertex.surface.material).alpha_cutoff;
         if (part.x >= opacity(flags, cutoff, color.a))
         {
             pass(vertex, ray);
@@ -205,8 +170,8 @@ void shade(PathState path, Ray ray, Hit hit)
     }
     add_emission(vertex, ray, hit, flags);
     if (path.progress >> 16u >= args.max_depth) return;
-    vertex.normal = shading_normal(AT(args.scene, 0), vertex.surface, flags, vertex.wo);
-    vertex.bsdf = bsdf_of(AT(args.scene, 0), vertex.surface, flags, color.rgb, vertex.is_front, part.y);
+    vertex.normal = shading_normal(AT(wave.scene, 0), vertex.surface, flags, vertex.wo);
+    vertex.bsdf = bsdf_of(AT(wave.scene, 0), vertex.surface, flags, color.rgb, vertex.is_front, part.y);
     bool samples_lights = STRATEGY != STRATEGY_BSDF && (HAS_ENVIRONMENT || HAS_LOCAL_LIGHTS);
     if (samples_lights && scatters(vertex.bsdf)) light_directly(vertex);
     scatter(vertex);
@@ -214,11 +179,15 @@ void shade(PathState path, Ray ray, Hit hit)
 
 void main()
 {
+    wave = AT(args.wave, 0);
     uint i = global_index();
-    if (i >= args.count) return;
-    PathState path = AT(args.paths, i);
-    Ray ray = AT(args.rays, i);
-    Hit hit = AT(args.hits, i);
-    if (hit.hit != 0u) shade(path, ray, hit);
+    uint count = args.count;
+    if (HAS_QUEUES) count = AT(wave.kinds, args.kind).count;
+    if (i >= count) return;
+    if (HAS_QUEUES) i = AT(wave.queues, args.kind * wave.capacity + i);
+    PathState path = load_path(i);
+    Ray ray = AT(wave.rays, i);
+    Hit hit = AT(wave.hits, i);
+    if (HAS_QUEUES || hit.hit != 0u) shade(path, ray, hit);
     else add_environment(path, ray);
 }

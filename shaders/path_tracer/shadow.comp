@@ -7,9 +7,11 @@
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadowArgs args; };
 
-void pass(Ray ray, ShadowState shadow, Hit hit)
+WaveData wave;
+
+void pass(Ray ray, vec3 contribution, uint pixel, Hit hit)
 {
-    SceneData scene = AT(args.scene, 0);
+    SceneData scene = AT(wave.scene, 0);
     Surface surface = surface_of(scene, ray, hit);
     uint flags = AT(scene.materials, surface.material).flags;
     if ((flags & (MATERIAL_MASKED | MATERIAL_BLENDED)) == 0u) return;
@@ -18,26 +20,28 @@ void pass(Ray ray, ShadowState shadow, Hit hit)
     if (passed <= 0.0) return;
     if (args.is_last != 0u)
     {
-        atomicAdd(AT(args.counters, 0).cut, 1u);
+        atomicAdd(AT(wave.counters, 0).cut, 1u);
         return;
     }
     ray.t_min = passing_t(surface.point, surface.placement, ray, surface.t);
-    shadow.contribution *= passed;
-    uint slot = atomicAdd(AT(args.counters, 0).shadows, 1u);
-    AT(args.next_rays, slot) = ray;
-    AT(args.next_shadows, slot) = shadow;
+    uint slot = atomicAdd(AT(wave.counters, 0).shadows, 1u);
+    AT(wave.next_shadow_rays, slot) = ray;
+    AT(wave.next_shadows.contribution, slot) = contribution * passed;
+    AT(wave.next_shadows.pixel, slot) = pixel;
 }
 
 void main()
 {
     uint i = global_index();
     if (i >= args.count) return;
-    Hit hit = AT(args.hits, i);
-    ShadowState shadow = AT(args.shadows, i);
+    wave = AT(args.wave, 0);
+    Hit hit = AT(wave.hits, i);
+    vec3 contribution = AT(wave.shadows.contribution, i);
+    uint pixel = AT(wave.shadows.pixel, i);
     if (hit.hit == 0u)
     {
-        if (is_finite(shadow.contribution)) AT(args.sums, shadow.pixel).rgb += shadow.contribution;
-        else atomicAdd(AT(args.counters, 0).non_finite, 1u);
+        if (is_finite(contribution)) AT(wave.sums, pixel).rgb += contribution;
+        else atomicAdd(AT(wave.counters, 0).non_finite, 1u);
     }
-    else if (HAS_ALPHA) pass(AT(args.rays, i), shadow, hit);
+    else if (HAS_ALPHA) pass(AT(wave.shadow_rays, i), contribution, pixel, hit);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A wave: rays in flight, what each carries, and what the kernels that move it take. Needs ray.h and scene.h.
+// A wave: rays in flight, what each carries, and what the kernels that move it take. Needs ray.h, scene.h and soa.h.
 #ifndef TWINRAY_PATH_TRACER_WAVE_H
 #define TWINRAY_PATH_TRACER_WAVE_H
 
@@ -9,23 +9,25 @@ const uint PATH_GROUP = 64u;
 const uint MAX_PASSES = 32u;
 const uint MAX_SHADOW_PASSES = 8u;
 
-// 24 bytes, one per ray.
-struct PathState
-{
-    vec3 throughput;
-    float pdf;     // density by solid angle with which the ray was sampled; 0: it could not have been found as light
-    uint pixel;    // of the film
-    uint progress; // low half: surfaces met, which number the random dimensions; high half: scatterings of them
-};
-BUFFER_OF(PathState, 8);
+// What the path of a ray carries. throughput: of light along it. pdf: density by solid angle with which the ray was
+// sampled; 0: it could not have been found as light. pixel: of the film. progress: low half: surfaces met, which number
+// the random dimensions; high half: scatterings of them.
+#define PATH_FIELDS(X, P) X(P, 0, vec3, throughput) X(P, 1, float, pdf) X(P, 2, uint, pixel) X(P, 3, uint, progress)
+TWINRAY_SOA_VIEW(PathQueue, PATH_FIELDS)
 
 // What a shadow ray adds to its pixel if nothing blocks it.
-struct ShadowState
+#define SHADOW_FIELDS(X, P) X(P, 0, vec3, contribution) X(P, 1, uint, pixel)
+TWINRAY_SOA_VIEW(ShadowQueue, SHADOW_FIELDS)
+
+// The rays of a wave that met materials of one kind. The last three are what an indirect dispatch reads.
+struct KindQueue
 {
-    vec3 contribution;
-    uint pixel;
+    uint count;
+    uint groups_x;
+    uint groups_y;
+    uint groups_z;
 };
-BUFFER_OF(ShadowState, 8);
+BUFFER_OF(KindQueue, 4);
 
 struct Counters
 {
@@ -61,36 +63,48 @@ struct FirstSurface
 };
 BUFFER_OF(FirstSurface, 8);
 
-struct ShadeArgs
+// Where the arrays of a wave lie. A wave of shadow rays has the same, with its rays in shadow_rays.
+struct WaveData
 {
     REF(SceneData) scene;
     REF(Ray) rays;
     REF(Hit) hits;
-    REF(PathState) paths;
+    PathQueue paths;
     REF(Ray) next_rays;
-    REF(PathState) next_paths;
+    PathQueue next_paths;
     REF(Ray) shadow_rays;
-    REF(ShadowState) shadows;
+    ShadowQueue shadows;
+    REF(Ray) next_shadow_rays;
+    ShadowQueue next_shadows;
+    REF(KindQueue) kinds;             // null where all materials are of one kind
+    Uints queues;                     // for each kind, `capacity` indices of rays
     REF(Counters) counters;
     REF(Radiance) sums;
+    REF(FirstSurface) first_surfaces; // one per pixel; null without PT_HAS_AOVS
+    FilmWindow window;
+    uint capacity;                    // of the arrays
+};
+BUFFER_OF(WaveData, 8);
+
+struct SortArgs
+{
+    REF(WaveData) wave;
     uint count;
+};
+
+struct ShadeArgs
+{
+    REF(WaveData) wave;
+    uint count; // of rays; those of a queue have theirs
+    uint kind;
     uint sample_index;
     uint seed;
     uint max_depth;
-    FilmWindow window;
-    REF(FirstSurface) first_surfaces; // one per pixel; null without PT_HAS_AOVS
 };
 
 struct ShadowArgs
 {
-    REF(SceneData) scene;
-    REF(Ray) rays;
-    REF(Hit) hits;
-    REF(ShadowState) shadows;
-    REF(Ray) next_rays;
-    REF(ShadowState) next_shadows;
-    REF(Counters) counters;
-    REF(Radiance) sums;
+    REF(WaveData) wave;
     uint count;
     uint is_last; // rays that are not through after this round end
 };
@@ -111,11 +125,10 @@ struct CompareArgs
     REF(Ray) rays;
     REF(Hit) first;
     REF(Hit) second;
-    Uints pixels;       // of ray i at i * pixel_stride
+    Uints pixels;       // of the rays
     REF(Disagreement) found;
     Uints found_count;  // counts beyond the capacity too
     Uints marks;        // one per pixel, set to 1 where a ray disagrees
-    uint pixel_stride;
     uint count;
     uint capacity;
     uint is_any;

@@ -53,6 +53,18 @@ TEST_F(PathTracer, EveryDifferenceBetweenTheAcceleratorsComesFromARayOnWhichThey
     EXPECT_EQ(checker.kept().size(), checker.found());
 }
 
+// Materials that transmit next to nothing are of the kind of glass, and look as they did.
+TEST_F(PathTracer, ShadingByKindOfMaterialChangesNoBit) {
+    Scene scene = cornell_box_scene();
+    Shot shot = cornell_shot(scene);
+    shot.environment = sky(0.5f);
+    ASSERT_GT(kinds_of(scene).needs.size(), 1u);
+    const Picture queued = render(context(), scene, shot);
+    for (Material& material : scene.materials) material.transmission = std::max(material.transmission, 1e-30f);
+    ASSERT_EQ(kinds_of(scene).needs.size(), 1u);
+    EXPECT_TRUE(same_bits(queued, render(context(), scene, shot)));
+}
+
 // The check must be able to fail: against a scene with a wall less it finds the wall.
 TEST_F(PathTracer, TheCrossCheckFindsAMissingWall) {
     Scene scene = cornell_box_scene();

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "samples/path_tracer/material_kinds.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "samples/path_tracer/surface_records.h"
+
+namespace twinray::path_tracer {
+namespace {
+
+bool has_texture(const Material& material) {
+    const auto textures = textures_of(material);
+    return std::any_of(textures.begin(), textures.end(), [](const Texture* texture) { return texture->image >= 0; });
+}
+
+std::vector<bool> used_materials(const Scene& scene) {
+    std::vector<bool> used(scene.materials.size());
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        if (instance.material) used[*instance.material] = true;
+        for (std::size_t i = 0; !instance.material && i < mesh.triangles.size(); ++i) used[mesh.material(i)] = true;
+    }
+    return used;
+}
+
+uint index_of(std::vector<uint>& kinds, uint needs) {
+    const auto place = std::find(kinds.begin(), kinds.end(), needs);
+    if (place == kinds.end()) kinds.push_back(needs);
+    return static_cast<uint>(std::find(kinds.begin(), kinds.end(), needs) - kinds.begin());
+}
+
+// The two kinds whose union has the fewest needs that one of them lacks.
+std::pair<std::size_t, std::size_t> closest(const std::vector<uint>& kinds) {
+    std::pair<std::size_t, std::size_t> best{0, 1};
+    for (std::size_t i = 0; i < kinds.size(); ++i)
+        for (std::size_t j = i + 1; j < kinds.size(); ++j)
+            if (std::popcount(kinds[i] ^ kinds[j]) < std::popcount(kinds[best.first] ^ kinds[best.second]))
+                best = {i, j};
+    return best;
+}
+
+void merge(MaterialKinds& kinds, std::size_t kept, std::size_t removed) {
+    kinds.needs[kept] |= kinds.needs[removed];
+    kinds.needs.erase(kinds.needs.begin() + static_cast<std::ptrdiff_t>(removed));
+    for (uint& kind : kinds.of) {
+        if (kind == removed) kind = static_cast<uint>(kept);
+        if (kind > removed) --kind;
+    }
+}
+
+}  // namespace
+
+uint needs_of(const Material& material) {
+    uint needs = 0;
+    if (material.alpha_mode != AlphaMode::opaque) needs |= 1u << PT_HAS_ALPHA;
+    if (has_texture(material)) needs |= 1u << PT_HAS_TEXTURES;
+    if (material.transmission > 0) needs |= 1u << PT_HAS_GLASS;
+    return needs;
+}
+
+uint MaterialKinds::all_needs() const {
+    uint all = 0;
+    for (const uint kind : needs) all |= kind;
+    return all;
+}
+
+MaterialKinds kinds_of(const Scene& scene) {
+    MaterialKinds kinds;
+    const std::vector<bool> used = used_materials(scene);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+        kinds.of.push_back(used[i] ? index_of(kinds.needs, needs_of(scene.materials[i])) : 0);
+    while (kinds.needs.size() > most_material_kinds) {
+        const auto [kept, removed] = closest(kinds.needs);
+        merge(kinds, kept, removed);
+    }
+    if (kinds.needs.empty()) kinds.needs.push_back(0);
+    return kinds;
+}
+
+std::string name_of_needs(uint needs) {
+    const std::pair<uint, const char*> names[] = {
+        {PT_HAS_ALPHA, "alpha"}, {PT_HAS_TEXTURES, "textures"}, {PT_HAS_GLASS, "glass"}};
+    std::string result;
+    for (const auto& [id, name] : names)
+        if (needs >> id & 1) result += (result.empty() ? "" : ", ") + std::string(name);
+    return result.empty() ? "plain" : result;
+}
+
+}  // namespace twinray::path_tracer

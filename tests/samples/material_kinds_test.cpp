@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "engine/scene/shapes.h"
+#include "samples/path_tracer/material_kinds.h"
+
+namespace twinray::path_tracer {
+namespace {
+
+constexpr uint alpha = 1u << PT_HAS_ALPHA, textures = 1u << PT_HAS_TEXTURES, glass = 1u << PT_HAS_GLASS;
+
+Material material_with(uint needs) {
+    Material material;
+    if (needs & alpha) material.alpha_mode = AlphaMode::blend;
+    if (needs & textures) material.normal_texture.image = 0;
+    if (needs & glass) material.transmission = 0.5f;
+    return material;
+}
+
+// A triangle of each.
+Scene scene_with(const std::vector<uint>& needs) {
+    Scene scene;
+    for (const uint kind : needs) {
+        Mesh mesh = make_quad(vec3(0), {1, 0, 0}, {0, 1, 0});
+        mesh.materials.assign(mesh.triangles.size(), static_cast<uint>(scene.materials.size()));
+        scene.instances.push_back({"quad", static_cast<uint>(scene.meshes.size()), {}});
+        scene.meshes.push_back(std::move(mesh));
+        scene.materials.push_back(material_with(kind));
+    }
+    return scene;
+}
+
+TEST(MaterialKinds, MaterialsThatNeedTheSameAreOfOneKind) {
+    const MaterialKinds kinds = kinds_of(scene_with({0, glass, 0, textures | glass, glass}));
+    EXPECT_EQ(kinds.needs, (std::vector<uint>{0, glass, textures | glass}));
+    EXPECT_EQ(kinds.of, (std::vector<uint>{0, 1, 0, 2, 1}));
+    EXPECT_EQ(kinds.all_needs(), textures | glass);
+}
+
+TEST(MaterialKinds, UnusedMaterialsNeedNothing) {
+    Scene scene = scene_with({textures});
+    scene.materials.push_back(material_with(glass));
+    const MaterialKinds kinds = kinds_of(scene);
+    EXPECT_EQ(kinds.needs, std::vector<uint>{textures});
+    EXPECT_EQ(kinds.of, (std::vector<uint>{0, 0}));
+    EXPECT_EQ(kinds_of(Scene{}).needs, std::vector<uint>{0});
+}
+
+TEST(MaterialKinds, ThereAreFewAndEachHasWhatItsMaterialsNeed) {
+    const std::vector<uint> needs = {
+        0, alpha, textures, glass, alpha | textures, alpha | glass, textures | glass, alpha | textures | glass};
+    const MaterialKinds kinds = kinds_of(scene_with(needs));
+    ASSERT_EQ(kinds.needs.size(), most_material_kinds);
+    std::vector<bool> is_used(kinds.needs.size());
+    for (std::size_t i = 0; i < needs.size(); ++i) {
+        ASSERT_LT(kinds.of[i], kinds.needs.size());
+        is_used[kinds.of[i]] = true;
+        EXPECT_EQ(kinds.needs[kinds.of[i]] & needs[i], needs[i]) << "material " << i;
+    }
+    EXPECT_EQ(is_used, std::vector<bool>(kinds.needs.size(), true));
+}
+
+TEST(MaterialKinds, ThoseBecomeOneThatDifferLeast) {
+    const uint all = alpha | textures | glass;
+    const MaterialKinds kinds = kinds_of(scene_with({0, alpha | textures, all, glass | alpha, textures | glass}));
+    EXPECT_EQ(kinds.of[1], kinds.of[2]);
+    EXPECT_NE(kinds.of[0], kinds.of[1]);
+    EXPECT_NE(kinds.of[3], kinds.of[4]);
+}
+
+TEST(MaterialKinds, HaveNames) {
+    EXPECT_EQ(name_of_needs(0), "plain");
+    EXPECT_EQ(name_of_needs(textures | glass), "textures, glass");
+    EXPECT_EQ(std::size(material_needs), 3u);
+    for (const uint need : material_needs) EXPECT_NE(name_of_needs(1u << need), "plain") << need;
+}
+
+}  // namespace
+}  // namespace twinray::path_tracer
