@@ -144,5 +144,20 @@ TEST_F(MovingSceneTest, InstancesMayHaveMaterialsOfTheirOwn) {
     expect_mean(by_override, statistics(by_mesh).mean, "a floor that shines");
 }
 
+// Rays are queued by kind of material: a clear one needs a kernel that passes surfaces, which the mesh's own does not.
+TEST_F(MovingSceneTest, MaterialsOfTheirOwnAreOfTheirOwnKind) {
+    Scene scene;
+    Material white{.name = "white", .unlit = true};
+    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), white);
+    add(scene, make_quad({-5, 1, -5}, {0, 0, 10}, {10, 0, 0}), {.name = "black", .base_color = vec4(0), .unlit = true});
+    scene.materials.push_back({.name = "clear", .base_color = vec4(0), .alpha_mode = AlphaMode::blend});
+    Shot shot;
+    shot.settings.samples = 1;
+    shot.settings.camera = camera_rays(look({0, 3, 0}, vec3(0), 0.1f), 1);
+    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 0);
+    scene.instances[1].material = 2;
+    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 1);
+}
+
 }  // namespace
 }  // namespace twinray::path_tracer
