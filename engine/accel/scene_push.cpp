@@ -15,8 +15,12 @@ std::vector<AccelHandle> push_scene(AbstractAccel& accel, const Scene& scene) {
     for (auto first = scene.instances.begin(); first != scene.instances.end();) {
         const auto last = std::upper_bound(first, scene.instances.end(), *first, by_mesh);
         std::vector<Transform> transforms;
-        std::transform(first, last, std::back_inserter(transforms), [](const Instance& i) { return i.transform; });
-        handles.push_back(accel.push(scene.meshes[first->mesh], transforms));
+        std::vector<InstanceOptions> options;
+        for (auto instance = first; instance != last; ++instance) {
+            transforms.push_back(instance->transform);
+            options.push_back({.custom_index = instance->material ? *instance->material + 1 : 0});
+        }
+        handles.push_back(accel.push(scene.meshes[first->mesh], transforms, options));
         first = last;
     }
     return handles;

@@ -91,15 +91,23 @@ void apply_sparse(const GltfFile& file, const tinygltf::Accessor& accessor, std:
     }
 }
 
+struct ElementType {
+    int id;
+    std::string name;
+};
+ElementType type_of(int components) {
+    if (components == 1) return {TINYGLTF_TYPE_SCALAR, "SCALAR"};
+    if (components == 16) return {TINYGLTF_TYPE_MAT4, "MAT4"};
+    return {components, text("VEC", components)};
+}
+
 Elements gather(const GltfFile& file, int index, int components, const std::string& object) {
     const auto& accessors = file.model.accessors;
     if (index < 0 || std::size_t(index) >= accessors.size())
         file.fail(object, ": accessor ", index, " does not exist; the file has ", accessors.size());
     const tinygltf::Accessor& accessor = accessors[std::size_t(index)];
-    const bool has_type = accessor.type == (components == 1 ? TINYGLTF_TYPE_SCALAR : components);
-    if (!has_type)
-        file.fail(object, ": accessor ", index, " is not of type ",
-                  components == 1 ? std::string("SCALAR") : text("VEC", components));
+    if (const ElementType type = type_of(components); accessor.type != type.id)
+        file.fail(object, ": accessor ", index, " is not of type ", type.name);
     const std::size_t size = component_size(accessor.componentType) * std::size_t(components);
     if (size == 0) file.fail(object, ": accessor ", index, " has component type ", accessor.componentType);
 

@@ -8,7 +8,8 @@
 namespace twinray {
 
 // All elements as floats, `components` per element. Normalised integers become [-1, 1] or [0, 1], others keep their
-// value (KHR_mesh_quantization). `object` names the reader in errors: "mesh 2 'wheel' primitive 0 POSITION".
+// value (KHR_mesh_quantization). 16 components are a matrix, column by column. `object` names the reader in errors:
+// "mesh 2 'wheel' primitive 0 POSITION".
 std::vector<float> read_floats(const GltfFile& file, int accessor, int components, const std::string& object);
 
 // The same as vectors of N floats.

@@ -23,6 +23,7 @@ bool is_supported(const std::string& extension) {
                                                          "KHR_materials_transmission",
                                                          "KHR_materials_unlit",
                                                          "KHR_materials_volume",
+                                                         "KHR_materials_variants",
                                                          "KHR_mesh_quantization",
                                                          "KHR_texture_transform"};
     return supported.contains(extension);

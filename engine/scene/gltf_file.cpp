@@ -46,12 +46,13 @@ std::string one_line(std::string text) {
     return text.size() > max_length ? text.substr(0, max_length) + "..." : text;
 }
 
-// What we do not animate is not parsed either.
-void drop_animation(GltfFile& file, json& root) {
-    if (root.contains("animations")) file.warn("animations are ignored; the scene is shown in its rest pose");
-    if (root.contains("skins")) file.warn("skins are ignored; skinned meshes are shown in their bind pose");
-    root.erase("animations");
-    root.erase("skins");
+std::shared_ptr<const json> take_motion(json& root) {
+    json motion = json::object();
+    for (const char* key : {"animations", "skins"}) {
+        motion[key] = root.value(key, json());
+        root.erase(key);
+    }
+    return std::make_shared<const json>(std::move(motion));
 }
 
 void parse_model(GltfFile& file, const json& root) {
@@ -121,12 +122,12 @@ std::span<const std::uint8_t> view_bytes(const GltfFile& file, int view, const s
 }
 
 GltfFile open_gltf(const std::filesystem::path& path) {
-    GltfFile file{.path = path, .model = {}, .warnings = {}};
+    GltfFile file{.path = path, .model = {}, .motion = {}, .warnings = {}};
     GltfJson source = read_gltf_json(file);
     check_extensions(file, source.root);
     std::vector<tinygltf::Buffer> buffers = take_buffers(file, source);
     std::vector<tinygltf::Image> images = take_images(source.root);
-    drop_animation(file, source.root);
+    file.motion = take_motion(source.root);
     check_types(file, source.root);
     parse_model(file, source.root);
     file.model.buffers = std::move(buffers);

@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
 #include <tiny_gltf.h>
 
 #include "engine/core/error.h"
@@ -22,6 +24,8 @@ namespace twinray {
 struct GltfFile {
     std::filesystem::path path;
     tinygltf::Model model;  // buffers hold their bytes; images hold name, uri, bufferView and mimeType, not pixels
+    // "animations" and "skins": tinygltf is not given them, so that faults of those that nothing uses do not matter.
+    std::shared_ptr<const nlohmann::json> motion;
     std::vector<std::string> warnings;
 
     template <class... Parts>

@@ -24,8 +24,8 @@ class Placements {
     bool is_instanced() const { return count_.has_value(); }
 
     glm::dmat4 matrix(std::size_t i) const {
-        return matrix_of(file_, entry(translations_, i), entry(rotations_, i), entry(scales_, i),
-                         text(name_, " instance ", i));
+        return matrix_of(read_trs(file_, entry(translations_, i), entry(rotations_, i), entry(scales_, i),
+                                  text(name_, " instance ", i)));
     }
 
   private:
@@ -56,7 +56,9 @@ class Placements {
     std::vector<vec4> rotations_;
 };
 
-void add_instances(GltfFile& file, const GltfNode& node, std::vector<Instance>& instances) {
+void add_instances(GltfFile& file, const std::vector<GltfNode>& nodes, std::size_t index,
+                   std::vector<GltfInstance>& instances) {
+    const GltfNode& node = nodes[index];
     const tinygltf::Node& source = file.model.nodes[node.index];
     if (source.mesh < 0 || std::size_t(source.mesh) >= file.model.meshes.size())
         file.fail(node.name, ": mesh ", source.mesh, " does not exist; the file has ", file.model.meshes.size());
@@ -64,14 +66,19 @@ void add_instances(GltfFile& file, const GltfNode& node, std::vector<Instance>& 
     std::size_t singular = 0;
     for (std::size_t i = 0; i < placements.count(); ++i) {
         const std::string object = placements.is_instanced() ? text(node.name, " instance ", i) : node.name;
-        Instance instance;
-        instance.name = source.name.empty() ? object : source.name;
-        instance.mesh = static_cast<uint>(source.mesh);
-        instance.transform = rounded_transform(file, node.world * placements.matrix(i), object);
-        if (determinant(instance.transform) == 0)
+        const bool is_skinned = source.skin >= 0;
+        GltfInstance placed;
+        placed.node = index;
+        placed.skin = source.skin;
+        placed.place = {is_skinned ? -1 : static_cast<std::int32_t>(index), placements.matrix(i)};
+        placed.instance.name = source.name.empty() ? object : source.name;
+        placed.instance.mesh = static_cast<uint>(source.mesh);
+        placed.instance.transform =
+            rounded_transform(file, is_skinned ? placed.place.local : node.world * placed.place.local, object);
+        if (determinant(placed.instance.transform) == 0)
             ++singular;
         else
-            instances.push_back(std::move(instance));
+            instances.push_back(std::move(placed));
     }
     if (singular)
         file.warn(text(node.name, ": skipped ", singular, " of ", placements.count(),
@@ -80,10 +87,10 @@ void add_instances(GltfFile& file, const GltfNode& node, std::vector<Instance>& 
 
 }  // namespace
 
-std::vector<Instance> read_gltf_instances(GltfFile& file, const std::vector<GltfNode>& nodes) {
-    std::vector<Instance> instances;
-    for (const GltfNode& node : nodes)
-        if (file.model.nodes[node.index].mesh != -1) add_instances(file, node, instances);
+std::vector<GltfInstance> read_gltf_instances(GltfFile& file, const std::vector<GltfNode>& nodes) {
+    std::vector<GltfInstance> instances;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (file.model.nodes[nodes[i].index].mesh != -1) add_instances(file, nodes, i, instances);
     return instances;
 }
 

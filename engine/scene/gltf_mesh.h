@@ -2,12 +2,20 @@
 #pragma once
 
 #include "engine/scene/gltf_file.h"
+#include "engine/scene/gltf_motion.h"
 #include "engine/scene/mesh.h"
 
 namespace twinray {
 
+struct GltfMesh {
+    Mesh mesh;                                // before morph targets and skin
+    VertexMotion motion;                      // of its vertices
+    std::vector<std::vector<uint>> variants;  // by variant of KHR_materials_variants, like Mesh::materials; or none
+};
+
 // One glTF mesh as one Mesh: the triangles of all its primitives in file order. Primitives without a material get
-// `default_material`. Points and lines are skipped with a warning; the result may be empty.
-Mesh read_gltf_mesh(GltfFile& file, std::size_t index, uint default_material);
+// `default_material`. Points and lines are skipped with a warning; the result may be empty. is_skinned: whether a node
+// with a skin shows it.
+GltfMesh read_gltf_mesh(GltfFile& file, std::size_t index, uint default_material, bool is_skinned);
 
 }  // namespace twinray

@@ -76,45 +76,46 @@ std::vector<int> shown_roots(const GltfFile& file, const std::vector<int>& paren
     return roots;
 }
 
-glm::dmat4 local_matrix(const GltfFile& file, std::size_t index, const std::string& object) {
-    const tinygltf::Node& node = file.model.nodes[index];
-    if (node.matrix.empty()) return matrix_of(file, node.translation, node.rotation, node.scale, object);
-    if (node.matrix.size() != 16) file.fail(object, ": matrix has ", node.matrix.size(), " numbers instead of 16");
+glm::dmat4 read_matrix(const GltfFile& file, const std::vector<double>& numbers, const std::string& object) {
+    if (numbers.size() != 16) file.fail(object, ": matrix has ", numbers.size(), " numbers instead of 16");
     glm::dmat4 matrix;
-    for (std::size_t i = 0; i < 16; ++i) matrix[int(i / 4)][int(i % 4)] = node.matrix[i];
+    for (std::size_t i = 0; i < 16; ++i) matrix[int(i / 4)][int(i % 4)] = numbers[i];
     if (matrix[0][3] != 0 || matrix[1][3] != 0 || matrix[2][3] != 0 || matrix[3][3] != 1)
         file.fail(object, ": the last row of its matrix is not 0 0 0 1");
     return matrix;
+}
+
+Rig::Node read_local(const GltfFile& file, std::size_t index, std::int32_t parent, const std::string& object) {
+    const tinygltf::Node& source = file.model.nodes[index];
+    Rig::Node node;
+    node.name = source.name;
+    node.parent = parent;
+    node.is_fixed = !source.matrix.empty();
+    if (node.is_fixed)
+        node.matrix = read_matrix(file, source.matrix, object);
+    else
+        node.rest = read_trs(file, source.translation, source.rotation, source.scale, object);
+    return node;
 }
 
 void check_length(const GltfFile& file, const std::vector<double>& list, std::size_t length, const std::string& what) {
     if (!list.empty() && list.size() != length) file.fail(what, " has ", list.size(), " numbers instead of ", length);
 }
 
-glm::dmat3 rotation_matrix(const GltfFile& file, const std::vector<double>& q, const std::string& object) {
-    const double x = q[0], y = q[1], z = q[2], w = q[3];
-    const double length2 = x * x + y * y + z * z + w * w;
-    if (!(length2 > 0) || !std::isfinite(length2)) file.fail(object, ": rotation has length ", std::sqrt(length2));
-    const double s = 2 / length2;  // files round their unit quaternions
-    return {1 - s * (y * y + z * z), s * (x * y + z * w),     s * (x * z - y * w),
-            s * (x * y - z * w),     1 - s * (x * x + z * z), s * (y * z + x * w),
-            s * (x * z + y * w),     s * (y * z - x * w),     1 - s * (x * x + y * y)};
-}
-
 }  // namespace
 
-glm::dmat4 matrix_of(const GltfFile& file, const std::vector<double>& translation, const std::vector<double>& rotation,
-                     const std::vector<double>& scale, const std::string& object) {
+Trs read_trs(const GltfFile& file, const std::vector<double>& translation, const std::vector<double>& rotation,
+             const std::vector<double>& scale, const std::string& object) {
     check_length(file, translation, 3, object + ": translation");
     check_length(file, rotation, 4, object + ": rotation");
     check_length(file, scale, 3, object + ": scale");
-    glm::dmat4 matrix(1);
-    if (!rotation.empty()) matrix = glm::dmat4(rotation_matrix(file, rotation, object));
-    for (int i = 0; i < 3; ++i) {
-        if (!scale.empty()) matrix[i] *= scale[std::size_t(i)];
-        if (!translation.empty()) matrix[3][i] = translation[std::size_t(i)];
-    }
-    return matrix;
+    Trs trs;
+    if (!translation.empty()) trs.translation = {translation[0], translation[1], translation[2]};
+    if (!rotation.empty()) trs.rotation = {rotation[0], rotation[1], rotation[2], rotation[3]};
+    if (!scale.empty()) trs.scale = {scale[0], scale[1], scale[2]};
+    const double length2 = dot(trs.rotation, trs.rotation);
+    if (!(length2 > 0) || !std::isfinite(length2)) file.fail(object, ": rotation has length ", std::sqrt(length2));
+    return trs;
 }
 
 Transform rounded_transform(const GltfFile& file, const glm::dmat4& matrix, const std::string& object) {
@@ -135,17 +136,17 @@ std::vector<GltfNode> flatten_nodes(const GltfFile& file) {
     const std::vector<int> parents = find_parents(file);
     check_tree(file, parents);
     std::vector<GltfNode> flat;
-    const auto add = [&](int index, const glm::dmat4& above) {
-        GltfNode node{std::size_t(index), node_name(file, std::size_t(index)), above};
-        node.world = above * local_matrix(file, node.index, node.name);
+    const auto add = [&](int index, std::int32_t parent) {
+        GltfNode node{std::size_t(index), node_name(file, std::size_t(index)), {}, glm::dmat4(1)};
+        node.local = read_local(file, node.index, parent, node.name);
+        node.world = node.local.is_fixed ? node.local.matrix : matrix_of(node.local.rest);
+        if (parent >= 0) node.world = flat[std::size_t(parent)].world * node.world;
         rounded_transform(file, node.world, node.name);
         flat.push_back(std::move(node));
     };
-    for (const int root : shown_roots(file, parents)) add(root, glm::dmat4(1));
-    for (std::size_t i = 0; i < flat.size(); ++i) {
-        const glm::dmat4 world = flat[i].world;  // add() moves flat's nodes
-        for (const int child : nodes[flat[i].index].children) add(child, world);
-    }
+    for (const int root : shown_roots(file, parents)) add(root, -1);
+    for (std::size_t i = 0; i < flat.size(); ++i)
+        for (const int child : nodes[flat[i].index].children) add(child, static_cast<std::int32_t>(i));
     return flat;
 }
 

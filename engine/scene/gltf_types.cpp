@@ -47,9 +47,10 @@ std::optional<Kind> kind_of(const std::string& key) {
         std::set<std::string_view> names;
     };
     static const Keys all[] = {
-        {Kind::index, {"buffer",  "bufferView", "byteLength", "byteOffset", "byteStride", "camera",    "componentType",
-                       "count",   "index",      "material",   "mesh",       "mode",       "NORMAL",    "POSITION",
-                       "sampler", "scene",      "source",     "TANGENT",    "texCoord",   "TEXCOORD_0"}},
+        {Kind::index,
+         {"buffer", "bufferView", "byteLength", "byteOffset", "byteStride", "camera",   "componentType", "count",
+          "index",  "material",   "mesh",       "mode",       "NORMAL",     "POSITION", "sampler",       "scene",
+          "source", "TANGENT",    "texCoord",   "TEXCOORD_0", "JOINTS_0",   "JOINTS_1", "WEIGHTS_0",     "WEIGHTS_1"}},
         {Kind::number, {"metallicFactor", "roughnessFactor"}},
         {Kind::indices, {"children"}},
         {Kind::numbers, {"baseColorFactor", "emissiveFactor", "matrix", "rotation", "translation"}},
@@ -67,6 +68,11 @@ std::optional<Kind> kind_of(const std::string& key) {
 std::optional<Kind> kind_of(const std::string& key, const json& parent, const std::string& parent_path) {
     const bool is_root = parent.contains("asset");
     const bool is_texture = parent_path.ends_with("Texture");
+    const bool is_morphed = parent_path.starts_with("/meshes/") && parent_path.find("extensions") == std::string::npos;
+    const bool is_node = parent_path.starts_with("/nodes/") && parent_path.find("extensions") == std::string::npos;
+    if (key == "targets" && is_morphed) return Kind::objects;
+    if (key == "weights" && (is_morphed || is_node)) return Kind::numbers;
+    if (key == "skin" && is_node) return Kind::index;
     if (key == "nodes") return is_root ? Kind::objects : Kind::indices;    // of the file or of a scene
     if (key == "scale") return is_texture ? Kind::number : Kind::numbers;  // of a normal map or of a node
     return kind_of(key);

@@ -4,22 +4,12 @@
 #include <numbers>
 
 #include "engine/scene/gltf_nodes.h"
+#include "engine/scene/pose_scene.h"
 
 namespace twinray {
 namespace {
 
 std::string name_or(const std::string& name, const std::string& fallback) { return name.empty() ? fallback : name; }
-
-// The frame without its scale, which glTF keeps from cameras and lights; nothing when an axis has no length.
-std::optional<glm::dmat4> unscaled(const glm::dmat4& world) {
-    glm::dmat4 frame = world;
-    for (int i = 0; i < 3; ++i) {
-        const double length = glm::length(world[i]);
-        if (!(length > 0)) return std::nullopt;
-        frame[i] /= length;
-    }
-    return frame;
-}
 
 // False when the lens cannot form an image.
 bool set_lens(const tinygltf::Camera& source, Camera& camera) {
@@ -42,32 +32,35 @@ std::optional<Light::Kind> kind_of(const std::string& type) {
     return std::nullopt;
 }
 
-void add_light(GltfFile& file, const GltfNode& node, const tinygltf::Light& source, Scene& scene) {
+// False where it was skipped.
+bool add_light(GltfFile& file, const GltfNode& node, const tinygltf::Light& source, Scene& scene) {
     const std::optional<Light::Kind> kind = kind_of(source.type);
     const std::optional<glm::dmat4> frame = unscaled(node.world);
     if (!kind || !frame) {
         file.warn(text(node.name, ": skipped its light, ",
                        kind ? "whose frame has no extent" : "of unknown type '" + source.type + "'"));
-        return;
+        return false;
     }
     Light light;
     light.name = name_or(source.name, node.name);
     light.kind = *kind;
     if (source.color.size() == 3) light.color = vec3(source.color[0], source.color[1], source.color[2]);
     light.color *= static_cast<float>(source.intensity);
-    light.position = vec3((*frame)[3]);
-    light.direction = -vec3((*frame)[2]);
+    place_light(light, *frame);
     if (source.range > 0) light.range = static_cast<float>(source.range);
     light.inner_cone = static_cast<float>(source.spot.innerConeAngle);
     light.outer_cone = static_cast<float>(source.spot.outerConeAngle);
     scene.lights.push_back(std::move(light));
+    return true;
 }
 
 }  // namespace
 
-void read_gltf_cameras(GltfFile& file, const std::vector<GltfNode>& nodes, Scene& scene) {
+std::vector<Rig::Place> read_gltf_cameras(GltfFile& file, const std::vector<GltfNode>& nodes, Scene& scene) {
     const auto& cameras = file.model.cameras;
-    for (const GltfNode& node : nodes) {
+    std::vector<Rig::Place> places;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const GltfNode& node = nodes[i];
         const int index = file.model.nodes[node.index].camera;
         if (index == -1) continue;
         if (index < 0 || std::size_t(index) >= cameras.size())
@@ -82,20 +75,26 @@ void read_gltf_cameras(GltfFile& file, const std::vector<GltfNode>& nodes, Scene
         }
         camera.camera_to_world = rounded_transform(file, *frame, node.name);
         scene.cameras.push_back(std::move(camera));
+        places.push_back({.node = static_cast<std::int32_t>(i)});
     }
+    return places;
 }
 
-void read_gltf_lights(GltfFile& file, const std::vector<GltfNode>& nodes, Scene& scene) {
+std::vector<Rig::Place> read_gltf_lights(GltfFile& file, const std::vector<GltfNode>& nodes, Scene& scene) {
     const auto& lights = file.model.lights;
-    for (const GltfNode& node : nodes) {
+    std::vector<Rig::Place> places;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const GltfNode& node = nodes[i];
         const auto& extensions = file.model.nodes[node.index].extensions;
         const tinygltf::Value* extension = find_extension(extensions, "KHR_lights_punctual");
         if (!extension || !find_member(*extension, "light")) continue;
         const int index = index_of(*extension, "light");
         if (index < 0 || std::size_t(index) >= lights.size())
             file.fail(node.name, ": light ", index, " does not exist; the file has ", lights.size());
-        add_light(file, node, lights[std::size_t(index)], scene);
+        if (add_light(file, node, lights[std::size_t(index)], scene))
+            places.push_back({.node = static_cast<std::int32_t>(i)});
     }
+    return places;
 }
 
 }  // namespace twinray

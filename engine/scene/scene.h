@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,7 +75,20 @@ struct Instance {
     std::string name;
     uint mesh = 0;  // index into Scene::meshes
     Transform transform;
+    std::optional<uint> material = {};  // index into Scene::materials, in place of all of the mesh's
 };
+
+// KHR_materials_variants: other materials for the same triangles.
+struct MaterialVariant {
+    struct Part {
+        uint mesh = 0;                // index into Scene::meshes
+        std::vector<uint> materials;  // in place of Mesh::materials
+    };
+    std::string name;
+    std::vector<Part> parts;
+};
+
+struct Rig;  // engine/scene/animation.h
 
 // Looks along -z of its frame, +y up (glTF).
 struct Camera {
@@ -105,6 +119,8 @@ struct Scene {
     std::vector<Instance> instances;  // load_scene leaves them grouped by mesh, ascending
     std::vector<Camera> cameras;
     std::vector<Light> lights;
+    std::vector<MaterialVariant> variants;
+    std::shared_ptr<const Rig> rig;     // of files with animations; all else is in the rest pose. Null: nothing moves
     std::vector<std::string> warnings;  // what was skipped or replaced, one clear sentence each
 };
 

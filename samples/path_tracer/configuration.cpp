@@ -31,12 +31,14 @@ std::string geometry_sum(const Scene& scene) {
     Sum sum;
     for (const Mesh& mesh : scene.meshes) sum.add(vertex_records(mesh)).add(triangle_records(mesh));
     std::vector<SurfaceInstance> instances;
-    std::vector<uint> meshes;
+    std::vector<uint> meshes, overrides;
     for (const Instance& instance : scene.instances) {
         instances.push_back(instance_record(instance.transform));
         meshes.push_back(instance.mesh);
+        if (instance.material)
+            overrides.insert(overrides.end(), {static_cast<uint>(meshes.size()), *instance.material});
     }
-    return sum.add(instances).add(meshes).hex();
+    return sum.add(instances).add(meshes).add(overrides).hex();
 }
 
 std::string image_sum(const Scene& scene) {

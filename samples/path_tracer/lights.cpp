@@ -55,14 +55,15 @@ struct Collector {
         const Instance& instance = scene.instances[index];
         const Mesh& mesh = scene.meshes[instance.mesh];
         for (uint primitive = 0; primitive < mesh.triangles.size(); ++primitive) {
-            const Material& material = scene.materials[mesh.material(primitive)];
+            const uint material_index = instance.material.value_or(mesh.material(primitive));
+            const Material& material = scene.materials[material_index];
             if (material.unlit || largest(material.emission) <= 0) continue;
             const uvec3& triangle = mesh.triangles[primitive];
             const double area = world_area(mesh, triangle, instance.transform);
             if (!(area > 0) || !std::isfinite(area)) continue;
             const float mean =
                 luminance(material.emission) * mean_texture(scene, material.emission_texture, mesh, triangle);
-            lights.emitters.push_back({index, primitive});
+            lights.emitters.push_back({index, primitive, material_index});
             areas.push_back(area);
             weights.push_back(double{PI} * area * double{mean} * (material.double_sided ? 2 : 1));
         }

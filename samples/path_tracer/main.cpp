@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "engine/core/error.h"
+#include "samples/path_tracer/frames.h"
 #include "samples/path_tracer/merge.h"
 #include "samples/path_tracer/report.h"
 
@@ -65,6 +66,7 @@ int main(int argc, char** argv) {
         if (parsed.exit_status) return *parsed.exit_status;
         if (parsed.merge) return merge_films(*parsed.merge);
         parsed.options.quiet |= ranks.index() > 0;
+        if (parsed.options.sequence.is_wanted()) return render_frames(parsed.options, ranks);
         return parsed.options.cross_check.empty() ? render(parsed.options, ranks) : cross_check(parsed.options, ranks);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "path_tracer: %s\n", error.what());

@@ -19,7 +19,8 @@ std::vector<bool> used_materials(const Scene& scene) {
     std::vector<bool> used(scene.materials.size());
     for (const Instance& instance : scene.instances) {
         const Mesh& mesh = scene.meshes[instance.mesh];
-        for (std::size_t i = 0; i < mesh.triangles.size(); ++i) used[mesh.material(i)] = true;
+        if (instance.material) used[*instance.material] = true;
+        for (std::size_t i = 0; !instance.material && i < mesh.triangles.size(); ++i) used[mesh.material(i)] = true;
     }
     return used;
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "samples/path_tracer/film_file.h"
+#include "samples/path_tracer/sequence_options.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -39,6 +40,7 @@ void add_files(CLI::App& app, Options& options) {
         "--aovs", options.aovs,
         "write to the .exr, too: albedo, normal, depth, instance and primitive of what is seen first, samples, "
         "variance");
+    app.add_option("--variant", options.variant, "which of the scene's sets of materials (KHR_materials_variants)");
     app.add_option("--environment", options.environment, "light from all around: latitude-longitude .hdr or .exr");
     app.add_option("--json", options.json, "append one line with what was rendered and how fast");
     app.add_option("--cross-check", options.cross_check,
@@ -162,6 +164,7 @@ ParsedOptions parse_options(int argc, char** argv) {
                               "--keep-film", "--mse-reference-image", "--aovs"})
         app.get_option("--cross-check")->excludes(other);
     app.get_option("--target-error")->excludes("--shard");
+    add_sequence(app, result.options.sequence);
     result.exit_status = parse(app, argc, argv);
     return result;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/context.h"
+#include "samples/path_tracer/sequence.h"
 
 namespace twinray::path_tracer {
 
@@ -32,6 +33,8 @@ struct Options {
     std::uint32_t height = 0;  // 0: 480
     std::uint32_t max_depth = 8;
     std::uint32_t seed = 1;
+    std::string variant;  // of the materials; "": the file's own
+    SequenceOptions sequence;
     int camera = 0;                 // -1: frame the scene
     std::optional<float> exposure;  // stops; none: 0 under the default sky, else automatic
     bool validation = false;

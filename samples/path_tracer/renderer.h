@@ -66,6 +66,8 @@ class Renderer {
 
     // An empty film for the settings.
     Film make_film(Configuration configuration = {}) const;
+    // What start() begins next is seen so, with other random numbers.
+    void set_frame(const CameraRays& camera, uint seed) { settings_.camera = camera, settings_.seed = seed; }
     // Goes on from a film that make_film made.
     void start(const Film& film);
     // The pixels of the film that the next blocks are of, by index, in the order in which they are traced.

@@ -164,13 +164,14 @@ class FilmRenderer {
     // The signal may come from mpirun, because a rank is lost: each saves its own, and none waits for the others.
     void stop() {
         ranks_.abandon();
-        save_film(file_, result_.film);
+        if (options_.checkpoint_seconds) save_film(file_, result_.film);
         if (ranks_.index() == 0) write_output(layers());
     }
 
     // A checkpoint is of no use beside a finished picture.
     void finish() {
-        const bool has_checkpoint = options_.resume || checkpoint_.elapsed() < time_.elapsed() || ranks_.count() > 1;
+        const bool has_checkpoint = options_.checkpoint_seconds &&
+                                    (options_.resume || checkpoint_.elapsed() < time_.elapsed() || ranks_.count() > 1);
         if (ranks_.count() > 1) save_film(file_, result_.film);  // a rank may be lost while others wait for it
         ranks_.gather(result_.film, result_.stats);
         const std::filesystem::path whole = film_file(options_.output);

@@ -14,12 +14,6 @@
 namespace twinray::path_tracer {
 namespace {
 
-double build_ms(const AbstractAccel& accel) {
-    double ms = 0;
-    for (const PassTiming& pass : accel.build_timings()) ms += pass.ms;
-    return ms;
-}
-
 double mega_rays_per_second(const RenderStats& stats) {
     return static_cast<double>(stats.path_rays + stats.shadow_rays) / stats.seconds * 1e-6;
 }
@@ -81,6 +75,26 @@ nlohmann::json cross_check_json(const Options& options, const Session& session, 
                    {"unexplained_pixels", result.pictures.unexplained},
                    {"pass", result.passed()}});
     return record;
+}
+
+void add_frame(const FrameNote& frame, nlohmann::json& record) {
+    record.update({{"frame", frame.number}, {"frames", frame.count}, {"build_ms", frame.build_ms}});
+    if (frame.times)
+        record.update({{"time", frame.seconds},
+                       {"pose_ms", frame.times->host},
+                       {"vertices_ms", frame.times->vertices},
+                       {"refit_ms", frame.times->refit},
+                       {"refit_device_ms", frame.times->refit_device}});
+}
+
+std::string frame_text(const FrameNote& frame) {
+    std::ostringstream out;
+    out << std::fixed << std::setprecision(3) << "frame " << frame.number << " of " << frame.count;
+    if (frame.times)
+        out << ": " << frame.seconds << " s; pose " << frame.times->host << " ms, vertices " << frame.times->vertices
+            << " ms, refit " << frame.times->refit << " ms (device " << frame.times->refit_device << " ms, build "
+            << frame.build_ms << " ms)";
+    return out.str() + '\n';
 }
 
 // "640 x 480, 16 spp, error 3.2 %".
@@ -148,8 +162,14 @@ std::string cross_check_text(const Options& options, const Session& session, con
 
 }  // namespace
 
+double build_ms(const AbstractAccel& accel) {
+    double ms = 0;
+    for (const PassTiming& pass : accel.build_timings()) ms += pass.ms;
+    return ms;
+}
+
 void report_render(const Options& options, const Session& session, const AbstractAccel& accel,
-                   const Rendering& rendering) {
+                   const Rendering& rendering, const FrameNote* frame) {
     const RenderStats& stats = rendering.stats;
     const Film& film = rendering.film;
     if (stats.non_finite)
@@ -157,6 +177,7 @@ void report_render(const Options& options, const Session& session, const Abstrac
                      static_cast<unsigned long long>(stats.non_finite));
     nlohmann::json record = render_json(options, session, accel, rendering);
     const std::string against = reference_text(options.reference, film, &record);
+    if (frame) add_frame(*frame, record);
     if (!options.json.empty()) write_line(options.json, record.dump() + "\n", std::ios::app);
     if (options.stats) print_stats(session, accel, stats);
     if (options.quiet) return;
@@ -166,6 +187,7 @@ void report_render(const Options& options, const Session& session, const Abstrac
                      static_cast<unsigned long long>(stats.cut), MAX_PASSES, MAX_SHADOW_PASSES);
     const std::string resumed =
         rendering.resumed_samples > 0 ? text(" (", rendering.resumed_samples, " resumed)") : std::string();
+    if (frame) std::fputs(frame_text(*frame).c_str(), stdout);
     std::printf("%s: %s%s by %s (%s) in %.1f s, %.2f Mrays/s\n%s", options.output.string().c_str(),
                 film_text(film).c_str(), resumed.c_str(), accel.name().c_str(), trace_path(accel).c_str(),
                 stats.seconds, mega_rays_per_second(stats), against.c_str());

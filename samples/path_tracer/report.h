@@ -7,14 +7,26 @@
 
 #include "engine/verify/classify.h"
 #include "samples/path_tracer/cross_check.h"
+#include "samples/path_tracer/moving_scene.h"
 #include "samples/path_tracer/rendering.h"
 
 namespace twinray::path_tracer {
 
+// Of a sequence.
+struct FrameNote {
+    uint number = 1, count = 1;
+    double seconds = 0;                     // of the animation
+    double build_ms = 0;                    // of the accelerator, before the first frame
+    std::optional<MotionTimes> times = {};  // none: nothing moves but the camera
+};
+
+// The device's time of the accelerator's last build or refit.
+double build_ms(const AbstractAccel& accel);
+
 // One line per render, unless quiet, and warnings about what was dropped. Appends the JSON record that the options
 // ask for.
 void report_render(const Options& options, const Session& session, const AbstractAccel& accel,
-                   const Rendering& rendering);
+                   const Rendering& rendering, const FrameNote* frame = nullptr);
 
 void say_interrupted(const Rendering& rendering, const std::filesystem::path& checkpoint);
 

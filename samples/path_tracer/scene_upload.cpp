@@ -3,7 +3,9 @@
 
 #include <cstring>
 
+#include "engine/core/error.h"
 #include "samples/path_tracer/layered_records.h"
+#include "samples/path_tracer/surface_records.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -32,28 +34,51 @@ DeviceScene::DeviceScene(Context& context, const Scene& scene, const LocalLights
     Commands commands(context, "path tracer upload");
     {
         const auto pass = commands.pass("path tracer upload");
-        const SceneData data = upload_all(commands, scene, lights, environment);
-        commands.upload(data_, std::span(&data, 1));
+        upload_all(commands, scene, lights, environment);
+        commands.write(data_, record_);
     }
     commands.submit();
 }
 
-SceneData DeviceScene::upload_all(Commands& commands, const Scene& scene, const LocalLights& lights,
-                                  const EnvironmentMap* map) {
-    SceneData data{};
-    data.instances = upload_instances(commands, scene, lights);
-    data.materials = upload(commands, "materials", material_records(scene));
-    data.layered = upload(commands, "layers of materials", layered_records(scene));
+void DeviceScene::move(const Scene& scene, const LocalLights& lights) {
+    if (!lights.empty() && !features_.local_lights)
+        fail("a surface or light begins to shine in a scene that is dark at rest, which is not supported");
+    context_.wait_for_gpu();
+    moving_.clear();
+    Commands commands(context_, "path tracer move");
+    {
+        const auto pass = commands.pass("path tracer move");
+        record_.instances = upload_instances(commands, scene, lights);
+        upload_lights(commands, lights);
+        commands.write(data_, record_);
+    }
+    commands.submit();
+}
+
+void DeviceScene::upload_all(Commands& commands, const Scene& scene, const LocalLights& lights,
+                             const EnvironmentMap* map) {
+    upload_meshes(commands, scene);
+    record_.instances = upload_instances(commands, scene, lights);
+    record_.materials = upload(commands, "materials", material_records(scene));
+    record_.layered = upload(commands, "layers of materials", layered_records(scene));
     if (features_.kinds.needs.size() > 1)
-        data.material_kinds = upload(commands, "kinds of materials", features_.kinds.of);
-    data.images = upload_images(commands, scene);
-    data.emitters = upload(commands, "emitters", lights.emitters);
-    data.punctual = upload(commands, "punctual lights", lights.punctual);
-    data.local_table = upload(commands, "light table", lights.table);
-    data.emitter_count = static_cast<uint>(lights.emitters.size());
-    data.local_count = static_cast<uint>(lights.table.size());
-    if (features_.environment) data.environment = upload_environment(commands, *map);
-    return data;
+        record_.material_kinds = upload(commands, "kinds of materials", features_.kinds.of);
+    record_.images = upload_images(commands, scene);
+    if (features_.environment) record_.environment = upload_environment(commands, *map);
+    upload_lights(commands, lights);
+}
+
+// Where all lights have gone out, kernels that look for them find one that is black.
+void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
+    const bool is_dark = features_.local_lights && lights.empty();
+    const std::vector<PunctualLight> black(1);
+    const std::vector<AliasEntry> only(1);
+    record_.emitters = upload_moving(commands, "emitters", lights.emitters);
+    record_.punctual = upload_moving(commands, "punctual lights", is_dark ? black : lights.punctual);
+    record_.local_table = upload_moving(commands, "light table", is_dark ? only : lights.table);
+    record_.emitter_count = static_cast<uint>(lights.emitters.size());
+    record_.local_count = static_cast<uint>(is_dark ? only.size() : lights.table.size());
+    record_.environment.chance = !features_.environment ? 0 : features_.local_lights && !is_dark ? 0.5f : 1.0f;
 }
 
 template <class T>
@@ -64,24 +89,30 @@ Ref<T> DeviceScene::upload(Commands& commands, const std::string& name, const st
     return buffers_.back().ref<T>();
 }
 
-Ref<SurfaceInstance> DeviceScene::upload_instances(Commands& commands, const Scene& scene, const LocalLights& lights) {
-    struct MeshRefs {
-        Ref<SurfaceVertex> vertices;
-        Ref<SurfaceTriangle> triangles;
-    };
-    std::vector<MeshRefs> meshes;
+template <class T>
+Ref<T> DeviceScene::upload_moving(Commands& commands, const std::string& name, const std::vector<T>& values) {
+    Buffer buffer(context_, {.name = name, .bytes = values.size() * sizeof(T)});
+    commands.upload(buffer, std::span(values));
+    moving_.push_back(std::move(buffer));
+    return moving_.back().ref<T>();
+}
+
+void DeviceScene::upload_meshes(Commands& commands, const Scene& scene) {
     for (const Mesh& mesh : scene.meshes)
-        meshes.push_back({upload(commands, "vertices of '" + mesh.name + "'", vertex_records(mesh)),
-                          upload(commands, "triangles of '" + mesh.name + "'", triangle_records(mesh))});
+        meshes_.push_back({upload(commands, "vertices of '" + mesh.name + "'", vertex_records(mesh)),
+                           upload(commands, "triangles of '" + mesh.name + "'", triangle_records(mesh))});
+}
+
+Ref<SurfaceInstance> DeviceScene::upload_instances(Commands& commands, const Scene& scene, const LocalLights& lights) {
     std::vector<SurfaceInstance> records;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         SurfaceInstance record = instance_record(scene.instances[i].transform);
-        record.vertices = meshes[scene.instances[i].mesh].vertices;
-        record.triangles = meshes[scene.instances[i].mesh].triangles;
-        record.emitter_density = upload(commands, "emitter densities", lights.densities[i]);
+        record.vertices = meshes_[scene.instances[i].mesh].vertices;
+        record.triangles = meshes_[scene.instances[i].mesh].triangles;
+        record.emitter_density = upload_moving(commands, "emitter densities", lights.densities[i]);
         records.push_back(record);
     }
-    return upload(commands, "surface instances", records);
+    return upload_moving(commands, "surface instances", records);
 }
 
 Ref<TexelGrid> DeviceScene::upload_images(Commands& commands, const Scene& scene) {
@@ -101,7 +132,7 @@ Environment DeviceScene::upload_environment(Commands& commands, const Environmen
             map.image.width,
             map.image.height,
             map.density_per_luminance,
-            features_.local_lights ? 0.5f : 1.0f};
+            1.0f};
 }
 
 }  // namespace twinray::path_tracer

@@ -30,21 +30,37 @@ class DeviceScene {
     // environment: null for black. Returns before the upload is done; later submissions see it.
     DeviceScene(Context& context, const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment);
 
+    // Takes over where instances and lights of the scene are now. Waits for the device. Throws Error where there are
+    // lights now and were none when this was made: kernels lack what finds them.
+    void move(const Scene& scene, const LocalLights& lights);
+    // Of a mesh, for kernels that move them.
+    Ref<SurfaceVertex> vertices(std::size_t mesh) const { return meshes_[mesh].vertices; }
+
     Ref<SceneData> data() const { return data_.ref<SceneData>(); }
     const SceneFeatures& features() const { return features_; }
 
   private:
     template <class T>
     Ref<T> upload(Commands& commands, const std::string& name, const std::vector<T>& values);
+    template <class T>
+    Ref<T> upload_moving(Commands& commands, const std::string& name, const std::vector<T>& values);
+    void upload_meshes(Commands& commands, const Scene& scene);
     Ref<SurfaceInstance> upload_instances(Commands& commands, const Scene& scene, const LocalLights& lights);
+    void upload_lights(Commands& commands, const LocalLights& lights);
     Ref<TexelGrid> upload_images(Commands& commands, const Scene& scene);
     Environment upload_environment(Commands& commands, const EnvironmentMap& map);
-    SceneData upload_all(Commands& commands, const Scene& scene, const LocalLights& lights, const EnvironmentMap* map);
+    void upload_all(Commands& commands, const Scene& scene, const LocalLights& lights, const EnvironmentMap* map);
 
+    struct MeshRefs {
+        Ref<SurfaceVertex> vertices;
+        Ref<SurfaceTriangle> triangles;
+    };
     Context& context_;
     SceneFeatures features_;
-    std::vector<Buffer> buffers_;
-    Buffer data_;
+    std::vector<Buffer> buffers_, moving_;  // what stays, what move() replaces
+    std::vector<MeshRefs> meshes_;
+    SceneData record_{};
+    Buffer data_;  // of record_
 };
 
 }  // namespace twinray::path_tracer

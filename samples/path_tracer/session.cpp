@@ -9,6 +9,7 @@
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/shapes.h"
+#include "engine/scene/variants.h"
 #include "hwtlas/hw_tlas.h"
 #include "samples/path_tracer/camera.h"
 #include "samples/path_tracer/film_file.h"
@@ -21,11 +22,17 @@ constexpr float default_aspect = 4.0f / 3.0f;
 constexpr uint default_height = 480, default_samples = 16;
 constexpr uint most_samples = 1 << 20;
 
-Scene load(const Options& options) {
+Scene load_any(const Options& options) {
     const std::string builtin = "builtin:", name = options.scene.string();
     if (name.rfind(builtin, 0) != 0) return load_scene(options.scene);
     if (name == builtin + "cornell-box") return cornell_box_scene();
     fail("'", name, "': unknown; there is builtin:cornell-box");
+}
+
+Scene load(const Options& options) {
+    Scene scene = load_any(options);
+    if (!options.variant.empty()) apply_variant(scene, options.variant);
+    return scene;
 }
 
 vec3 vector_of(const std::vector<float>& values) { return {values[0], values[1], values[2]}; }
@@ -41,6 +48,10 @@ std::optional<Camera> chosen_camera(const Options& options, const Scene& scene) 
         fail("'", options.scene.string(), "': --camera ", index, " does not exist; the scene has ",
              scene.cameras.size());
     return scene.cameras[index];
+}
+
+float aspect_of(const RenderSettings& settings) {
+    return static_cast<float>(settings.width) / static_cast<float>(settings.height);
 }
 
 // As pbrt-v4 rounds.
@@ -72,7 +83,7 @@ void set_lens(CameraRays& camera, const Options& options) {
 
 RenderSettings make_settings(const Options& options, const Scene& scene) {
     const std::optional<Camera> camera = chosen_camera(options, scene);
-    float aspect = camera ? camera->aspect.value_or(default_aspect) : default_aspect;
+    const float aspect = camera ? camera->aspect.value_or(default_aspect) : default_aspect;
     RenderSettings settings;
     settings.samples = options.samples.value_or(default_samples);
     settings.block_size = options.target_error ? adaptive_block_size : 1;
@@ -86,9 +97,7 @@ RenderSettings make_settings(const Options& options, const Scene& scene) {
                       : options.width ? scaled(options.width, 1 / aspect)
                                       : default_height;
     settings.width = options.width ? options.width : scaled(settings.height, aspect);
-    aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-    settings.camera = camera_rays(camera ? *camera : frame_scene(scene, aspect), aspect);
-    set_lens(settings.camera, options);
+    settings.camera = rays_of(options, camera_of(options, scene, settings), settings);
     settings.filter = filter_of(options.filter);
     if (!options.crop.empty()) settings.crop = crop_of(options.crop, settings.width, settings.height);
     return settings;
@@ -130,6 +139,19 @@ ContextDesc desc_for(const Options& options, const Ranks& ranks) {
 }
 
 }  // namespace
+
+Camera camera_of(const Options& options, const Scene& scene, const RenderSettings& settings) {
+    const std::optional<Camera> camera = chosen_camera(options, scene);
+    return camera ? *camera : frame_scene(scene, aspect_of(settings));
+}
+
+bool is_framing(const Options& options, const Scene& scene) { return !chosen_camera(options, scene); }
+
+CameraRays rays_of(const Options& options, const Camera& camera, const RenderSettings& settings) {
+    CameraRays rays = camera_rays(camera, aspect_of(settings));
+    set_lens(rays, options);
+    return rays;
+}
 
 void check_folder(const std::filesystem::path& file) {
     if (file.empty()) return;

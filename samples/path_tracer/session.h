@@ -30,6 +30,12 @@ void check_folder(const std::filesystem::path& file);
 // Throws Error naming the file, the option and the limit.
 Session make_session(const Options& options, const Ranks& ranks);
 
+// The camera that the options choose; one that frames the scene where is_framing().
+Camera camera_of(const Options& options, const Scene& scene, const RenderSettings& settings);
+bool is_framing(const Options& options, const Scene& scene);
+// With the lens of the options.
+CameraRays rays_of(const Options& options, const Camera& camera, const RenderSettings& settings);
+
 // kind: "hw" or "sw". Holds the scene, built.
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const std::string& kind);
 

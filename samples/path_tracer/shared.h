@@ -17,6 +17,7 @@ constexpr uint LAYERS = ~0u;  // in kernels specialisation constants
 
 #include "engine/core/bridge_begin.h"
 #include "shaders/path_tracer/scene.h"
+#include "shaders/path_tracer/move_vertices.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/camera.h"
 #include "shaders/path_tracer/film.h"

@@ -94,14 +94,14 @@ LightSample sample_emitter(SceneData scene, Emitter emitter, vec3 from, vec2 u)
     Placement placement = load_placement(scene.instances, emitter.instance);
     TriangleData data = load_triangle_data(AT(scene.instances, emitter.instance), emitter.primitive);
     Surface surface = surface_at(data, placement, sample_triangle(u));
-    uint flags = AT(scene.materials, surface.material).flags;
+    uint flags = AT(scene.materials, emitter.material).flags;
     float density = AT(AT(scene.instances, emitter.instance).emitter_density, emitter.primitive);
     vec3 way = surface.point.position - from;
     float distance2 = dot(way, way);
     float cosine = -dot(surface.point.normal, way) * inversesqrt(distance2);
     LightSample light;
     light.direction = way * inversesqrt(distance2);
-    light.radiance = emitted(scene, surface.material, flags, surface.uv, cosine > 0.0);
+    light.radiance = emitted(scene, emitter.material, flags, surface.uv, cosine > 0.0);
     light.pdf = (1.0 - scene.environment.chance) * density * distance2 / abs(cosine);
     light.is_delta = false;
     light.has_target = true;

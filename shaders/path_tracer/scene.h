@@ -158,8 +158,15 @@ struct Emitter
 {
     uint instance;
     uint primitive;
+    uint material;
 };
-BUFFER_OF(Emitter, 8);
+BUFFER_OF(Emitter, 4);
+
+// Custom indices of instances stand for materials in place of the mesh's; 0: for none.
+FUNC uint material_of(uint custom_index, uint of_triangle)
+{
+    return custom_index != 0u ? custom_index - 1u : of_triangle;
+}
 
 const uint PUNCTUAL_DIRECTIONAL = 0u;
 const uint PUNCTUAL_POINT = 1u;

@@ -11,7 +11,8 @@ layout(push_constant, scalar) uniform Push { SortArgs args; };
 uint kind_of(SceneData scene, Hit hit)
 {
     SurfaceInstance instance = AT(scene.instances, hit.instance_index);
-    return AT(scene.material_kinds, AT(instance.triangles, hit.primitive_index).material);
+    uint of_triangle = AT(instance.triangles, hit.primitive_index).material;
+    return AT(scene.material_kinds, material_of(hit.custom_index, of_triangle));
 }
 
 void main()

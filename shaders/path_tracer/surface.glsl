@@ -149,6 +149,7 @@ Surface surface_of(SceneData scene, Ray ray, Hit hit)
     TriangleData data = load_triangle_data(AT(scene.instances, hit.instance_index), hit.primitive_index);
     vec3 at = crossing_of(ray, placement, corners_of(data));
     Surface surface = surface_at(data, placement, at.xy);
+    surface.material = material_of(hit.custom_index, data.material);
     surface.t = at.z;
     if (HAS_TEXTURES || (LAYERS & LAYER_ANISOTROPY) != 0u) set_tangents(surface, data, at.xy);
     return surface;

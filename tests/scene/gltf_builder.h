@@ -46,7 +46,9 @@ struct GltfBuilder {
     // An accessor of numbers of type T, e.g. add<float>("VEC3", 5126, {...}).
     template <class T>
     int add(const std::string& type, int component_type, const std::vector<T>& values) {
-        const std::size_t components = type == "SCALAR" ? 1 : static_cast<std::size_t>(type[3] - '0');
+        const std::size_t components = type == "SCALAR" ? 1
+                                       : type == "MAT4" ? 16
+                                                        : static_cast<std::size_t>(type[3] - '0');
         std::string bytes(values.size() * sizeof(T), '\0');
         if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
         return append("accessors", {{"bufferView", add_view(bytes)},

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// What moves in a scene: the node hierarchy of its file with animations, skins and morph targets, and the pose that
+// they give at a time. As glTF 2.0 has them (3.7.2.2, 3.7.3 and 3.11). Pure data, pure functions, in float64.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+
+#include "engine/core/transform.h"
+#include "engine/scene/mesh.h"
+
+namespace twinray {
+
+// The place of a node in its parent: scaled, then rotated, then moved.
+struct Trs {
+    glm::dvec3 translation = glm::dvec3(0);
+    glm::dvec4 rotation = glm::dvec4(0, 0, 0, 1);  // quaternion x y z w, of any length but 0
+    glm::dvec3 scale = glm::dvec3(1);
+};
+glm::dmat4 matrix_of(const Trs& trs);
+
+enum class Interpolation : std::uint8_t { linear, step, cubic_spline };
+
+// Values at times, and what lies between them.
+struct Keyframes {
+    Interpolation interpolation = Interpolation::linear;
+    bool is_rotation = false;   // values are quaternions: interpolated on the sphere, of length 1
+    uint width = 3;             // numbers of a value
+    std::vector<float> times;   // seconds, not descending; at least one
+    std::vector<float> values;  // one a time; of cubic_spline three: in-tangent, value, out-tangent
+};
+
+// At `seconds`; before the first time and after the last their values.
+std::vector<double> value_at(const Keyframes& keyframes, double seconds);
+
+struct Animation {
+    // What keyframes drive.
+    struct Channel {
+        enum class Path : std::uint8_t { translation, rotation, scale, weights };
+        uint node = 0;  // index into Rig::nodes
+        Path path = Path::translation;
+        uint keyframes = 0;  // index into Animation::keyframes
+    };
+    std::string name;
+    std::vector<Keyframes> keyframes;
+    std::vector<Channel> channels;
+    std::string fault;  // why it cannot be played; empty: it can
+};
+
+// Seconds: the first and the last time of its keyframes; 0, 0 without any.
+struct TimeRange {
+    double begin = 0, end = 0;
+};
+TimeRange range_of(const Animation& animation);
+
+// Joints that carry vertices.
+struct Skin {
+    std::string name;
+    std::vector<uint> joints;               // indices into Rig::nodes
+    std::vector<glm::dmat4> inverse_binds;  // by joint: from the mesh to the joint's frame as the mesh was bound to it
+};
+
+// Displacements of vertices; empty: none, else one a vertex. Tangents keep their sign.
+struct MorphTarget {
+    std::vector<vec3> positions, normals, tangents;
+};
+
+// How the vertices of a mesh move.
+struct VertexMotion {
+    std::vector<MorphTarget> targets;
+    uint influences = 0;         // joints a vertex; 0: no skin
+    std::vector<uint> joints;    // `influences` a vertex, indices into Skin::joints
+    std::vector<float> weights;  // likewise; not negative, of sum 1 up to rounding
+};
+
+// The vertices of a mesh, as in Mesh.
+struct MeshVertices {
+    std::vector<vec3> positions, normals;
+    std::vector<vec4> tangents;
+};
+
+// A mesh of the scene whose vertices follow a pose.
+struct DeformedMesh {
+    uint mesh = 0;           // index into Scene::meshes, which holds it in the rest pose
+    uint node = 0;           // whose morph weights count
+    std::int32_t skin = -1;  // index into Rig::skins; then the vertices are in world space; -1: none
+    MeshVertices base;       // before targets and skin
+    VertexMotion motion;
+};
+
+// What poses a scene.
+struct Rig {
+    struct Node {
+        std::string name;
+        std::int32_t parent = -1;  // index into nodes, less than its own; -1: none
+        Trs rest;
+        glm::dmat4 matrix = glm::dmat4(1);  // instead of `rest`, where is_fixed
+        bool is_fixed = false;              // the file gives a matrix, which no animation may drive
+        std::vector<double> weights;        // of the morph targets of its mesh, at rest
+    };
+    // Where something stands: node's place in the world * local.
+    struct Place {
+        std::int32_t node = -1;  // -1: the world itself
+        glm::dmat4 local = glm::dmat4(1);
+    };
+    std::vector<Node> nodes;
+    std::vector<Animation> animations;
+    std::vector<Skin> skins;
+    std::vector<DeformedMesh> meshes;
+    std::vector<Place> instances, cameras, lights;  // by index in Scene
+};
+
+// Of each node of a rig.
+struct Pose {
+    std::vector<glm::dmat4> nodes;             // to world space
+    std::vector<std::vector<double>> weights;  // of morph targets
+};
+Pose rest_pose(const Rig& rig);
+// What the animation does not drive is at rest.
+Pose pose_at(const Rig& rig, const Animation& animation, double seconds);
+
+glm::dmat4 matrix_of(const Pose& pose, const Rig::Place& place);
+// By joint: from the mesh as it was bound to world space. Rounded once; not finite where the pose is not.
+std::vector<Transform> joint_transforms(const Skin& skin, const Pose& pose);
+
+}  // namespace twinray

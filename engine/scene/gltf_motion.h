@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Morph targets and skins of glTF primitives: what moves their vertices.
+#pragma once
+
+#include "engine/scene/animation.h"
+#include "engine/scene/gltf_file.h"
+
+namespace twinray {
+
+// What a mesh as a whole has; its primitives give 0 for what they lack.
+struct MotionLayout {
+    std::size_t targets = 0;
+    bool normals = false, tangents = false;  // of targets
+    uint influences = 0;                     // joints a vertex
+};
+// has_*: whether the mesh has them. is_skinned: whether a node with a skin shows it. Throws Error naming the primitive
+// that has another number of targets than the first, or no joints.
+MotionLayout motion_layout(const GltfFile& file, const std::vector<const tinygltf::Primitive*>& primitives,
+                           const std::string& object, bool is_skinned);
+
+// Of the vertices of one primitive. Weights are divided by their sum; vertices without any weight follow the first
+// joint, with a warning.
+VertexMotion read_gltf_motion(GltfFile& file, const tinygltf::Primitive& primitive, const MotionLayout& layout,
+                              std::size_t vertex_count, const std::string& object);
+
+void append(VertexMotion& all, const VertexMotion& part);
+// Of some vertices.
+VertexMotion picked(const VertexMotion& motion, const std::vector<uint>& vertices);
+
+// Throws Error naming the vertex where a weight belongs to a joint that the skin does not have.
+void check_joints(const GltfFile& file, const VertexMotion& motion, std::size_t joint_count, const std::string& object);
+
+}  // namespace twinray

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "engine/scene/pose_scene.h"
+
+namespace twinray {
+
+std::optional<glm::dmat4> unscaled(const glm::dmat4& world) {
+    glm::dmat4 frame = world;
+    for (int i = 0; i < 3; ++i) {
+        const double length = glm::length(world[i]);
+        if (!(length > 0)) return std::nullopt;
+        frame[i] /= length;
+    }
+    return frame;
+}
+
+Transform transform_of(const glm::dmat4& matrix) { return Transform::of(glm::mat4(matrix)); }
+
+void place_light(Light& light, const glm::dmat4& frame) {
+    light.position = vec3(frame[3]);
+    light.direction = -vec3(frame[2]);
+}
+
+void place_camera(Camera& camera, const glm::dmat4& frame) { camera.camera_to_world = transform_of(frame); }
+
+void pose_scene(Scene& scene, const Pose& pose) {
+    const Rig& rig = *scene.rig;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i)
+        scene.instances[i].transform = transform_of(matrix_of(pose, rig.instances[i]));
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i)
+        if (const auto frame = unscaled(matrix_of(pose, rig.cameras[i]))) place_camera(scene.cameras[i], *frame);
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        if (const auto frame = unscaled(matrix_of(pose, rig.lights[i]))) place_light(scene.lights[i], *frame);
+}
+
+}  // namespace twinray

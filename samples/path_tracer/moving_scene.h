@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "engine/accel/abstract_accel.h"
+#include "engine/scene/deformer.h"
+#include "samples/path_tracer/scene_upload.h"
+
+namespace twinray::path_tracer {
+
+// What one pose took, in milliseconds.
+struct MotionTimes {
+    double host = 0;          // lights, records
+    double vertices = 0;      // skins and morph targets on the device
+    double refit = 0;         // of the accelerator, until it is done
+    double refit_device = 0;  // the device's share of it
+};
+
+// Brings poses of a scene's rig to the device: vertices by a Deformer, instances by their transforms, the accelerator
+// by a refit, and lights with densities that fit where they are. All the while views stay valid.
+class MovingScene {
+  public:
+    // The scene has a rig, and the accelerator holds it as push_scene places it. All three must outlive this.
+    MovingScene(Context& context, Scene& scene, DeviceScene& device_scene, AbstractAccel& accel);
+
+    // Waits for it to be done. The scene's instances, cameras and lights move, too, and of its meshes those that emit.
+    MotionTimes move_to(const Pose& pose);
+
+  private:
+    void move_emitters(const Pose& pose);
+    void move_vertices(const Pose& pose);
+    // False where nothing moved.
+    bool edit_accel(const std::vector<Instance>& before);
+
+    Context& context_;
+    Scene& scene_;
+    DeviceScene& device_scene_;
+    AbstractAccel& accel_;
+    std::vector<AccelHandle> handles_;   // by mesh
+    std::vector<std::size_t> emitting_;  // indices into Rig::meshes
+    Deformer deformer_;
+    Kernel<MoveVerticesArgs> move_vertices_;
+    Buffer transforms_;  // by instance
+};
+
+}  // namespace twinray::path_tracer

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Many pictures of one scene: which moment, view and file each has. Pure decisions.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "engine/scene/animation.h"
+#include "engine/scene/scene.h"
+
+namespace twinray::path_tracer {
+
+// Of --frames; none: one picture of the scene at rest.
+struct SequenceOptions {
+    std::optional<uint> frames = {};
+    std::optional<double> fps = {};
+    std::string animation = {};   // name or index
+    std::string time_range = {};  // "A:B", in seconds
+    bool turntable = false;
+
+    bool is_wanted() const { return frames.has_value(); }
+};
+
+// What moves, and when.
+struct Sequence {
+    const Animation* animation = nullptr;  // of the scene's rig; null: nothing moves
+    TimeRange range = {};
+    std::optional<double> fps = {};  // none: the frames share the range evenly, and would begin anew after the last
+    uint frames = 1;
+    bool turntable = false;
+
+    // Seconds of the animation; what would be past the range begins anew.
+    double time_of(uint frame) const;
+    // Radians by which the camera has gone round.
+    double angle_of(uint frame) const;
+};
+
+// The animation that the options name; without a name the first, or none with --turntable. Throws Error where it is not
+// there or cannot be played, and where nothing would move.
+Sequence make_sequence(const SequenceOptions& options, const Scene& scene);
+
+// The scene as it is at up to 16 of the sequence's moments, all at once, to be framed. Without cameras and lights.
+Scene swept(const Scene& scene, const Sequence& sequence);
+
+// `pattern` with the frame's number, from 1 on: in place of the last row of '#', with so many digits at least, else
+// "_0001" before the suffix.
+std::filesystem::path frame_file(const std::filesystem::path& pattern, uint frame);
+
+// Gone round the vertical axis through `center`, against the clock as seen from above.
+Camera turned_about(const Camera& camera, vec3 center, double angle);
+
+}  // namespace twinray::path_tracer

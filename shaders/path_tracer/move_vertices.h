@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// What the kernel that brings moved vertices into a mesh's records takes. Needs scene.h.
+#ifndef TWINRAY_PATH_TRACER_MOVE_VERTICES_H
+#define TWINRAY_PATH_TRACER_MOVE_VERTICES_H
+
+struct MoveVerticesArgs
+{
+    REF(SurfaceVertex) vertices;
+    Floats positions; // 3 floats a vertex
+    Floats normals;   // 3; null: the mesh has none
+    Floats tangents;  // 4; null: the mesh has none
+    uint count;
+};
+#endif

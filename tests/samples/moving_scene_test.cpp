@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// A scene that has moved is the scene as if it had been made so.
+#include "samples/path_tracer/moving_scene.h"
+
+#include <cstring>
+
+#include "engine/core/error.h"
+#include "engine/scene/deform.h"
+#include "engine/scene/pose_scene.h"
+#include "tests/samples/render.h"
+
+namespace twinray::path_tracer {
+namespace {
+
+bool same_bits(const Picture& a, const Picture& b) {
+    return std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(vec3)) == 0;
+}
+
+Keyframes keyframes(uint width, std::vector<float> values) {
+    return {Interpolation::linear, false, width, {0, 1}, std::move(values)};
+}
+
+// A floor, a lamp that an animation widens by a morph target, a box and a light that it carries. All numbers are short,
+// so that float32 and float64 agree on where things are.
+Scene moving_scene() {
+    Scene scene;
+    add(scene, make_quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}), lambert(0.5f));
+    add(scene, make_quad({-1, 3, -1}, {2, 0, 0}, {0, 0, 2}), lamp(4));
+    add(scene, make_box({-0.5f, 0, -0.5f}, {0.5f, 1, 0.5f}), lambert(0.75f));
+    scene.lights = {{.name = "light", .color = vec3(2), .position = {0, 2, 0}}};
+    auto rig = std::make_shared<Rig>();
+    rig->nodes.resize(3);  // 0 stays, 1 carries the lamp, 2 box and light
+    rig->nodes[1].weights = {0};
+    rig->instances = {{.node = 0}, {.node = 1}, {.node = 2}};
+    rig->lights = {{.node = 2, .local = matrix_of(Trs{.translation = {0, 2, 0}})}};
+    DeformedMesh wide{1, 1, -1, {scene.meshes[1].positions, {}, {}}, {}};
+    wide.motion.targets = {{{{-2, 0, 0}, {2, 0, 0}, {2, 0, 0}, {-2, 0, 0}}, {}, {}}};
+    rig->meshes = {wide};
+    Animation animation{.name = "all", .keyframes = {}, .channels = {}, .fault = {}};
+    using Path = Animation::Channel::Path;
+    animation.keyframes = {keyframes(1, {0, 1}), keyframes(3, {0, 0, 0, 2, 0, -1}), keyframes(3, {1, 1, 1, 0, 0, 0})};
+    animation.channels = {{1, Path::weights, 0}, {2, Path::translation, 1}};
+    rig->animations = {animation};
+    animation.channels = {{1, Path::scale, 2}};
+    rig->animations.push_back(animation);  // the lamp vanishes
+    scene.rig = rig;
+    return scene;
+}
+
+class MovingSceneTest : public test::VulkanTest {
+  protected:
+    // Before and after the move; then of a scene that was made as it is after it.
+    struct Pictures {
+        Picture before, after, expected;
+    };
+    Pictures pictures(Scene scene, const Pose& pose, bool hardware) {
+        Shot shot;
+        shot.settings.camera = camera_rays(look({0, 6, 9}, {0, 1, 0}, 0.4f), 1);
+        shot.settings.samples = 2;
+        shot.hardware = hardware;
+        Scene made = scene;
+        const LocalLights lights = collect_lights(scene);
+        DeviceScene device_scene(context(), scene, lights, nullptr);
+        Renderer renderer(context(), device_scene, shot.settings);
+        std::unique_ptr<AbstractAccel> accel;
+        if (hardware)
+            accel = std::make_unique<HwTlas>(context());
+        else
+            accel = std::make_unique<SwTlas>(context());
+        push_scene(*accel, scene);
+        accel->sync();
+        Pictures result;
+        result.before = render_picture(renderer, shot.settings, *accel, true);
+        MovingScene moving(context(), scene, device_scene, *accel);
+        const std::uint64_t revision = accel->revision();
+        moving.move_to(pose);
+        EXPECT_EQ(accel->revision(), revision);
+        result.after = render_picture(renderer, shot.settings, *accel, true);
+        pose_scene(made, pose);
+        for (const DeformedMesh& mesh : made.rig->meshes)
+            made.meshes[mesh.mesh].positions = deformed(*made.rig, mesh, pose).positions;
+        std::erase_if(made.instances, [](const Instance& i) { return !fault_of(i.transform).empty(); });
+        result.expected = render(context(), made, shot);
+        return result;
+    }
+};
+
+TEST_F(MovingSceneTest, IsAsIfItHadBeenMadeSo) {
+    const Scene scene = moving_scene();
+    for (const bool hardware : {false, true}) {
+        if (hardware && !missing_for_hardware(context().facts()).empty())
+            TWINRAY_LACKS("ray_tracing", "no ray tracing extensions");
+        SCOPED_TRACE(hardware ? "hw" : "sw");
+        const Pictures found = pictures(scene, pose_at(*scene.rig, scene.rig->animations[0], 0.5), hardware);
+        EXPECT_FALSE(same_bits(found.before, found.after));
+        EXPECT_TRUE(same_bits(found.after, found.expected));
+    }
+}
+
+TEST_F(MovingSceneTest, ALampThatVanishesShinesNoMore) {
+    Scene scene = moving_scene();
+    const Pose pose = pose_at(*scene.rig, scene.rig->animations[1], 1);
+    const Pictures lit = pictures(scene, pose, false);
+    EXPECT_TRUE(same_bits(lit.after, lit.expected));
+    scene.lights.clear();
+    const Pictures dark = pictures(scene, pose, false);
+    EXPECT_GT(statistics(dark.before).mean, 0);
+    EXPECT_EQ(statistics(dark.after).mean, 0);
+}
+
+TEST_F(MovingSceneTest, LightInASceneThatWasDarkIsRefused) {
+    Scene scene = moving_scene();
+    scene.lights.clear();
+    scene.meshes[1].positions[1] = scene.meshes[1].positions[2] = scene.meshes[1].positions[0];  // no area
+    DeviceScene device_scene(context(), scene, collect_lights(scene), nullptr);
+    SwTlas accel(context());
+    push_scene(accel, scene);
+    accel.sync();
+    MovingScene moving(context(), scene, device_scene, accel);
+    EXPECT_THROW(moving.move_to(rest_pose(*scene.rig)), Error);
+}
+
+// One mesh, two instances, of which the second has a material of its own.
+TEST_F(MovingSceneTest, InstancesMayHaveMaterialsOfTheirOwn) {
+    Scene own = moving_scene(), shared = own;
+    own.rig = shared.rig = nullptr;
+    add(own, own.meshes[1], lambert(0.25f), Transform::translation({0, -1, 0}));
+    shared.materials = own.materials;
+    shared.instances.insert(shared.instances.begin() + 2, {"dark lamp", 1, Transform::translation({0, -1, 0}), 3});
+    shared.instances[3].material = 0;
+    own.meshes[2].materials.assign(own.meshes[2].triangles.size(), 0);
+    Shot shot;
+    shot.settings.samples = 16;
+    shot.settings.camera = camera_rays(look({0, 6, 9}, {0, 1, 0}, 0.4f), 1);
+    const Statistics expected = statistics(render(context(), own, shot));
+    expect_mean(render(context(), shared, shot), expected.mean, "a lamp that is none");
+    // And the other way: a dark mesh that shines.
+    own.instances[0].material = 1;
+    own.meshes[1].materials.assign(2, 0);
+    shared.meshes[0].materials.assign(2, 1);
+    shared.instances[1].material = 0;
+    const Picture by_override = render(context(), own, shot), by_mesh = render(context(), shared, shot);
+    EXPECT_GT(statistics(by_mesh).mean, expected.mean);
+    expect_mean(by_override, statistics(by_mesh).mean, "a floor that shines");
+}
+
+// Rays are queued by kind of material: a clear one needs a kernel that passes surfaces, which the mesh's own does not.
+TEST_F(MovingSceneTest, MaterialsOfTheirOwnAreOfTheirOwnKind) {
+    Scene scene;
+    Material white{.name = "white", .unlit = true};
+    add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), white);
+    add(scene, make_quad({-5, 1, -5}, {0, 0, 10}, {10, 0, 0}), {.name = "black", .base_color = vec4(0), .unlit = true});
+    scene.materials.push_back({.name = "clear", .base_color = vec4(0), .alpha_mode = AlphaMode::blend});
+    Shot shot;
+    shot.settings.samples = 1;
+    shot.settings.camera = camera_rays(look({0, 3, 0}, vec3(0), 0.1f), 1);
+    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 0);
+    scene.instances[1].material = 2;
+    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 1);
+}
+
+}  // namespace
+}  // namespace twinray::path_tracer
