@@ -121,6 +121,8 @@ void add_machine(CLI::App& app, Options& options) {
     app.add_flag("--validation", options.validation, "Khronos validation layer");
     app.add_flag("--quiet", options.quiet, "errors only");
     app.add_flag("--stats", options.stats, "print what was traced, the device's time by pass, and memory");
+    app.add_flag("--all-features", options.all_features,
+                 "leave out nothing that other scenes would need, to measure what leaving out saves");
 }
 
 void add_merge(CLI::App& app, MergeOptions& options) {

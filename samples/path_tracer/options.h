@@ -40,6 +40,7 @@ struct Options {
     bool validation = false;
     bool quiet = false;
     bool stats = false;
+    bool all_features = false;
 };
 
 // `path_tracer merge`.
