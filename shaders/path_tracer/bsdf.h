@@ -87,27 +87,32 @@ FUNC BsdfValue evaluate(Bsdf bsdf, vec3 wo, vec3 wi)
     return value;
 }
 
-FUNC BsdfChoice choose_layer(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
+// Calls choose_base() once, for all: drivers inline it.
+FUNC BsdfChoice choose(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
 {
-    LayerChances chances = layer_chances(bsdf, wo);
-    if (lobe < chances.coat)
+    float chance = 1.0f; // of the base
+    if (is_layered(bsdf))
     {
-        vec3 wi = sample_coat(bsdf, wo, u);
-        return has_smooth_coat(bsdf) ? final_choice(wi, vec3(kept_by_coat(bsdf, wo) / chances.coat)) : open_choice(wi);
+        LayerChances chances = layer_chances(bsdf, wo);
+        if (has_layer(bsdf, LAYER_COAT) && lobe < chances.coat)
+        {
+            vec3 wi = sample_coat(bsdf, wo, u);
+            if (!has_smooth_coat(bsdf)) return open_choice(wi);
+            return final_choice(wi, vec3(kept_by_coat(bsdf, wo) / chances.coat));
+        }
+        lobe = remapped(lobe, chances.coat);
+        if (has_layer(bsdf, LAYER_SHEEN) && lobe < chances.sheen) return open_choice(sample_sheen(u));
+        lobe = remapped(lobe, chances.sheen);
+        chance = (1.0f - chances.coat) * (1.0f - chances.sheen);
     }
-    float below = remapped(lobe, chances.coat);
-    if (below < chances.sheen) return open_choice(sample_sheen(u));
-    BsdfChoice base = choose_base(bsdf, wo, remapped(below, chances.sheen), u);
-    float chance = (1.0f - chances.coat) * (1.0f - chances.sheen);
-    if (base.is_final) base.weight = base.weight * (under_layers(bsdf, wo, base.wi) / chance);
+    BsdfChoice base = choose_base(bsdf, wo, lobe, u);
+    if (is_layered(bsdf) && base.is_final) base.weight = base.weight * (under_layers(bsdf, wo, base.wi) / chance);
     return base;
 }
 
 FUNC BsdfSample sample_bsdf(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
 {
-    BsdfChoice choice;
-    if (is_layered(bsdf)) choice = choose_layer(bsdf, wo, lobe, u);
-    else choice = choose_base(bsdf, wo, lobe, u);
+    BsdfChoice choice = choose(bsdf, wo, lobe, u);
     BsdfSample result;
     result.wi = choice.wi;
     result.weight = choice.weight;

@@ -95,16 +95,18 @@ void scatter(Vertex vertex)
     vec2 lobe_and_roulette = unit_floats(pair_of(vertex, PAIR_LOBE));
     float lobe = lobe_and_roulette.x;
     vec2 u = unit_floats(pair_of(vertex, PAIR_SCATTER));
-    Frame frame = frame_about(vertex.normal);
-    BsdfSample onwards = sample_bsdf(vertex.bsdf, to_local(frame, vertex.wo), lobe, u);
-    vec3 direction = to_world(frame, onwards.wi);
-    if (onwards.pdf == 0.0 && (onwards.wi.z > 0.0) != is_above(vertex, direction))
+    BsdfSample onwards;
+    vec3 direction;
+    // A loop, because drivers inline everything, and the BSDF is most of the kernel.
+    for (uint attempt = 0u; attempt < 2u; attempt++)
     {
-        // A mirror direction through the triangle: mirror at the triangle itself, where losing it would be seen.
-        frame = frame_about(vertex.is_front ? vertex.surface.point.normal : -vertex.surface.point.normal);
-        vertex.bsdf.coat_normal = vec3(0.0, 0.0, 1.0);
+        Frame frame = frame_about(vertex.normal);
         onwards = sample_bsdf(vertex.bsdf, to_local(frame, vertex.wo), lobe, u);
         direction = to_world(frame, onwards.wi);
+        if (onwards.pdf != 0.0 || (onwards.wi.z > 0.0) == is_above(vertex, direction)) break;
+        // A mirror direction through the triangle: mirror at the triangle itself, where losing it would be seen.
+        vertex.normal = vertex.is_front ? vertex.surface.point.normal : -vertex.surface.point.normal;
+        vertex.bsdf.coat_normal = vec3(0.0, 0.0, 1.0);
     }
     if ((onwards.wi.z > 0.0) != is_above(vertex, direction)) return;
     PathState path = vertex.path;
