@@ -183,6 +183,12 @@ VkDescriptorSet TextureStore::images() const {
     return array_.set();
 }
 
+std::uint64_t TextureStore::buffer_bytes() const {
+    std::uint64_t bytes = records_.buffer(0).bytes();
+    for (const Texture& texture : textures_) bytes += texture.texels.bytes();
+    return bytes;
+}
+
 void TextureStore::check_faults() const {
     context_.wait_for_gpu();
     const Faults faults = faults_.read();

@@ -27,6 +27,7 @@ struct TextureOptions {
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
     bool is_srgb = false;
+    bool operator==(const TextureOptions&) const = default;
 };
 
 // Textures that kernels name by a TextureRef, which stays valid for as long as the store lives. Edits only note what
@@ -64,6 +65,8 @@ class TextureStore {
     VkDescriptorSet images() const;
     // Counts the syncs that brought textures or replaced one by another size: views of before are stale.
     std::uint64_t revision() const { return revision_; }
+    // Of textures in buffers: texels and records.
+    std::uint64_t buffer_bytes() const;
     bool has_images() const { return storage_ == TextureStorage::images; }
 
     // Throws Error if kernels compiled with TWINRAY_DEBUG met references that name nothing. Waits for the GPU.

@@ -69,7 +69,7 @@ Renderer::Renderer(const Device& device, const Stage& stage, const Options& opti
       context_(device.adopted()),
       accel_(new_accel(context_, options.accel)),
       targets_(device, {options.width, options.height}),
-      scene_(device, stage.scene),
+      scene_(device, context_, stage.scene),
       timer_(device),
       commands_(device),
       raster_pipeline_(device, targets_, embed_renderer_gbuffer_vert_spirv, embed_renderer_gbuffer_frag_spirv,
@@ -104,7 +104,7 @@ FrameData Renderer::frame_data(const Stage& stage, const Options& options) const
     FrameData data{};
     data.instances = scene_.instances();
     data.materials = scene_.materials();
-    data.images = scene_.images();
+    data.textures = scene_.textures();
     data.camera = path_tracer::camera_rays(chosen_camera(stage, options), aspect);
     data.near = near_plane * diagonal;
     data.sun_direction = to_sun;

@@ -5,10 +5,14 @@
 
 namespace twinray::embed_renderer {
 
-SceneBuffers::SceneBuffers(const Device& device, const Scene& scene) : device_(device) {
+SceneBuffers::SceneBuffers(const Device& device, Context& context, const Scene& scene)
+    : device_(device), textures_(context, "textures", TextureStorage::buffers) {
+    path_tracer::TextureList list;
     instances_ = add_instances(scene);
-    materials_ = add(path_tracer::material_records(scene));
-    images_ = add_images(scene);
+    materials_ = add(path_tracer::material_records(scene, list));
+    path_tracer::push_textures(textures_, scene, list);
+    textures_.sync();
+    context.wait_for_gpu();
     device.run_once([&](VkCommandBuffer commands) {
         for (const Upload& upload : uploads_) {
             const VkBufferCopy all{0, 0, upload.staging.bytes()};
@@ -44,16 +48,6 @@ Ref<SurfaceInstance> SceneBuffers::add_instances(const Scene& scene) {
         triangle_counts_.push_back(static_cast<uint>(scene.meshes[instance.mesh].triangles.size()));
     }
     return add(records);
-}
-
-Ref<TexelGrid> SceneBuffers::add_images(const Scene& scene) {
-    std::vector<TexelGrid> grids;
-    for (const Image& image : scene.images) {
-        std::vector<uint> texels(std::size_t{image.width} * image.height);
-        std::memcpy(texels.data(), image.rgba.data(), texels.size() * sizeof(uint));
-        grids.push_back({add(texels), image.width, image.height});
-    }
-    return add(grids);
 }
 
 }  // namespace twinray::embed_renderer

@@ -12,11 +12,11 @@ namespace twinray::embed_renderer {
 
 class SceneBuffers {
   public:
-    SceneBuffers(const Device& device, const Scene& scene);
+    SceneBuffers(const Device& device, Context& context, const Scene& scene);
 
     Ref<SurfaceInstance> instances() const { return instances_; }
     Ref<SurfaceMaterial> materials() const { return materials_; }
-    Ref<TexelGrid> images() const { return images_; }
+    TextureTable textures() const { return textures_.view(); }
     // By instance.
     const std::vector<uint>& triangle_counts() const { return triangle_counts_; }
 
@@ -28,14 +28,13 @@ class SceneBuffers {
     template <class T>
     Ref<T> add(const std::vector<T>& values);
     Ref<SurfaceInstance> add_instances(const Scene& scene);
-    Ref<TexelGrid> add_images(const Scene& scene);
 
     const Device& device_;
     std::vector<HostBuffer> buffers_;
     std::vector<Upload> uploads_;
     Ref<SurfaceInstance> instances_;
     Ref<SurfaceMaterial> materials_;
-    Ref<TexelGrid> images_;
+    TextureStore textures_;  // twinray's, in the renderer's memory, too
     std::vector<uint> triangle_counts_;
 };
 

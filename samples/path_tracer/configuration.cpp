@@ -41,8 +41,13 @@ std::string geometry_sum(const Scene& scene) {
     return sum.add(instances).add(meshes).add(overrides).hex();
 }
 
-std::string image_sum(const Scene& scene) {
+std::string image_sum(const Scene& scene, const TextureList& list) {
     Sum sum;
+    std::vector<uint> sampled;
+    for (const auto& [image, options] : list.textures)
+        sampled.insert(sampled.end(), {image, static_cast<uint>(options.wrap_u), static_cast<uint>(options.wrap_v),
+                                       static_cast<uint>(options.is_srgb)});
+    sum.add(sampled);
     for (const Image& image : scene.images) sum.add(std::vector<uint>{image.width, image.height}).add(image.rgba);
     return sum.hex();
 }
@@ -67,6 +72,9 @@ const char* strategy_text(uint strategy) {
 Configuration configuration_of(const RenderSettings& settings, const Scene& scene, const LocalLights& lights,
                                const EnvironmentMap* environment, bool is_default_sky) {
     const Crop part = settings.part();
+    TextureList textures;
+    const std::string materials =
+        Sum().add(material_records(scene, textures)).add(layered_records(scene, textures)).hex();
     const std::string sampling = settings.block_size > 1
                                      ? text("blocks of ", settings.block_size, " that do not depend on each other")
                                      : "one sequence a pixel";
@@ -79,8 +87,8 @@ Configuration configuration_of(const RenderSettings& settings, const Scene& scen
             {"direct light by sampling", strategy_text(settings.strategy)},
             {"camera", Sum().add(std::vector{settings.camera}).hex()},
             {"geometry", geometry_sum(scene)},
-            {"materials", Sum().add(material_records(scene)).add(layered_records(scene)).hex()},
-            {"images", image_sum(scene)},
+            {"materials", materials},
+            {"images", image_sum(scene, textures)},
             {"lights", Sum().add(lights.punctual).add(lights.table).hex()},
             {environment_entry, environment_text(environment, is_default_sky)}};
 }

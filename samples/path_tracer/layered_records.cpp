@@ -15,16 +15,19 @@ vec3 extinction_of(const Material& material) {
     return glm::min(extinction, vec3(std::numeric_limits<float>::max()));
 }
 
-LayeredMaterial record_of(const Material& material) {
+LayeredMaterial record_of(const Material& material, TextureList& textures) {
     LayeredMaterial record{};
     record.layers = layers_of(material);
-    const auto slot = [&](const Texture& texture, uint flag) { return slot_of(texture, flag, record.textures); };
+    const auto slot = [&](const Texture& texture, uint flag, bool is_srgb = false) {
+        if (texture.image >= 0) record.textures |= flag;
+        return textures.slot_of(texture, is_srgb);
+    };
     record.specular_texture = slot(material.specular_texture, LAYERED_SPECULAR);
-    record.specular_color_texture = slot(material.specular_color_texture, LAYERED_SPECULAR_COLOR);
+    record.specular_color_texture = slot(material.specular_color_texture, LAYERED_SPECULAR_COLOR, true);
     record.coat_texture = slot(material.clearcoat_texture, LAYERED_COAT);
     record.coat_roughness_texture = slot(material.clearcoat_roughness_texture, LAYERED_COAT_ROUGHNESS);
     record.coat_normal_texture = slot(material.clearcoat_normal_texture, LAYERED_COAT_NORMAL);
-    record.sheen_color_texture = slot(material.sheen_color_texture, LAYERED_SHEEN_COLOR);
+    record.sheen_color_texture = slot(material.sheen_color_texture, LAYERED_SHEEN_COLOR, true);
     record.sheen_roughness_texture = slot(material.sheen_roughness_texture, LAYERED_SHEEN_ROUGHNESS);
     record.anisotropy_texture = slot(material.anisotropy_texture, LAYERED_ANISOTROPY);
     record.specular = material.specular;
@@ -54,9 +57,9 @@ uint layers_of(const Material& material) {
     return layers;
 }
 
-std::vector<LayeredMaterial> layered_records(const Scene& scene) {
+std::vector<LayeredMaterial> layered_records(const Scene& scene, TextureList& textures) {
     std::vector<LayeredMaterial> records;
-    for (const Material& material : scene.materials) records.push_back(record_of(material));
+    for (const Material& material : scene.materials) records.push_back(record_of(material, textures));
     return records;
 }
 

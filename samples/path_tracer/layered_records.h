@@ -9,8 +9,8 @@ namespace twinray::path_tracer {
 // LAYER_ bits of what changes anything.
 uint layers_of(const Material& material);
 
-// One per material.
-std::vector<LayeredMaterial> layered_records(const Scene& scene);
+// One per material. Adds their textures to the list.
+std::vector<LayeredMaterial> layered_records(const Scene& scene, TextureList& textures);
 
 bool has_texture(const Material& material);
 

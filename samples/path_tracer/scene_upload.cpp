@@ -1,23 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/scene_upload.h"
 
-#include <cstring>
-
 #include "engine/core/error.h"
 #include "samples/path_tracer/layered_records.h"
 #include "samples/path_tracer/surface_records.h"
 
 namespace twinray::path_tracer {
-namespace {
-
-std::vector<uint> texels_of(const Image& image) {
-    std::vector<uint> texels(std::size_t{image.width} * image.height);
-    std::memcpy(texels.data(), image.rgba.data(), texels.size() * sizeof(uint));
-    return texels;
-}
-
-}  // namespace
-
 SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment) {
     SceneFeatures features;
     features.kinds = kinds_of(scene);
@@ -66,13 +54,15 @@ void DeviceScene::move(const Scene& scene, const LocalLights& lights) {
 
 void DeviceScene::upload_all(Commands& commands, const Scene& scene, const LocalLights& lights,
                              const EnvironmentMap* map) {
+    TextureList textures;
     upload_meshes(commands, scene);
     record_.instances = upload_instances(commands, scene, lights);
-    record_.materials = upload(commands, "materials", material_records(scene));
-    if (features_.has_layers()) record_.layered = upload(commands, "layers of materials", layered_records(scene));
+    record_.materials = upload(commands, "materials", material_records(scene, textures));
+    if (features_.has_layers())
+        record_.layered = upload(commands, "layers of materials", layered_records(scene, textures));
     if (features_.kinds.needs.size() > 1)
         record_.material_kinds = upload(commands, "kinds of materials", features_.kinds.of);
-    record_.images = upload_images(commands, scene);
+    upload_textures(scene, textures);
     if (features_.environment)
         record_.environment = upload_environment(commands, map ? *map : EnvironmentMap(constant_sky(vec3(0))));
     upload_lights(commands, lights);
@@ -93,7 +83,7 @@ void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
 }
 
 std::uint64_t DeviceScene::device_bytes() const {
-    std::uint64_t bytes = data_.bytes();
+    std::uint64_t bytes = data_.bytes() + (textures_ ? textures_->buffer_bytes() : 0);
     for (const auto* buffers : {&buffers_, &moving_})
         for (const Buffer& buffer : *buffers) bytes += buffer.bytes();
     return bytes;
@@ -133,11 +123,13 @@ Ref<SurfaceInstance> DeviceScene::upload_instances(Commands& commands, const Sce
     return upload_moving(commands, "surface instances", records);
 }
 
-Ref<TexelGrid> DeviceScene::upload_images(Commands& commands, const Scene& scene) {
-    std::vector<TexelGrid> grids;
-    for (const Image& image : scene.images)
-        grids.push_back({upload(commands, "image '" + image.name + "'", texels_of(image)), image.width, image.height});
-    return upload(commands, "images", grids);
+// In buffers, which are filtered in float32 everywhere: a picture does not depend on the device's samplers.
+void DeviceScene::upload_textures(const Scene& scene, const TextureList& list) {
+    if (list.textures.empty() || !features_.some(PT_HAS_TEXTURES)) return;
+    textures_.emplace(context_, "textures", TextureStorage::buffers);
+    push_textures(*textures_, scene, list);
+    textures_->sync();
+    record_.textures = textures_->view();
 }
 
 Environment DeviceScene::upload_environment(Commands& commands, const EnvironmentMap& map) {

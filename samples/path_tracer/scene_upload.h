@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "samples/path_tracer/environment.h"
 #include "samples/path_tracer/lights.h"
 #include "samples/path_tracer/material_kinds.h"
+#include "samples/path_tracer/texture_list.h"
 
 namespace twinray::path_tracer {
 
@@ -60,7 +62,7 @@ class DeviceScene {
     void upload_meshes(Commands& commands, const Scene& scene);
     Ref<SurfaceInstance> upload_instances(Commands& commands, const Scene& scene, const LocalLights& lights);
     void upload_lights(Commands& commands, const LocalLights& lights);
-    Ref<TexelGrid> upload_images(Commands& commands, const Scene& scene);
+    void upload_textures(const Scene& scene, const TextureList& list);
     Environment upload_environment(Commands& commands, const EnvironmentMap& map);
     void upload_all(Commands& commands, const Scene& scene, const LocalLights& lights, const EnvironmentMap* map);
 
@@ -72,6 +74,7 @@ class DeviceScene {
     SceneFeatures features_;
     std::vector<Buffer> buffers_, moving_;  // what stays, what move() replaces
     std::vector<MeshRefs> meshes_;
+    std::optional<TextureStore> textures_;  // none: no material has any
     SceneData record_{};
     Buffer data_;  // of record_
 };

@@ -4,27 +4,22 @@
 namespace twinray::path_tracer {
 namespace {
 
-uint wrap_word(Wrap wrap) {
-    switch (wrap) {
-        case Wrap::clamp_to_edge: return WRAP_CLAMP;
-        case Wrap::mirrored_repeat: return WRAP_MIRROR;
-        case Wrap::repeat: break;
-    }
-    return WRAP_REPEAT;
-}
-
-SurfaceMaterial material_record(const Material& material) {
+SurfaceMaterial material_record(const Material& material, TextureList& textures) {
     SurfaceMaterial record{};
     uint flags = 0;
+    const auto slot = [&](const Texture& texture, uint flag, bool is_srgb = false) {
+        if (texture.image >= 0) flags |= flag;
+        return textures.slot_of(texture, is_srgb);
+    };
     if (material.alpha_mode == AlphaMode::mask) flags |= MATERIAL_MASKED;
     if (material.alpha_mode == AlphaMode::blend) flags |= MATERIAL_BLENDED;
     if (material.double_sided) flags |= MATERIAL_TWO_SIDED;
     if (material.unlit) flags |= MATERIAL_UNLIT;
-    record.base_texture = slot_of(material.base_color_texture, MATERIAL_BASE_TEXTURE, flags);
-    record.roughness_texture = slot_of(material.metallic_roughness_texture, MATERIAL_ROUGHNESS_TEXTURE, flags);
-    record.emission_texture = slot_of(material.emission_texture, MATERIAL_EMISSION_TEXTURE, flags);
-    record.normal_texture = slot_of(material.normal_texture, MATERIAL_NORMAL_TEXTURE, flags);
-    record.transmission_texture = slot_of(material.transmission_texture, MATERIAL_TRANSMISSION_TEXTURE, flags);
+    record.base_texture = slot(material.base_color_texture, MATERIAL_BASE_TEXTURE, true);
+    record.roughness_texture = slot(material.metallic_roughness_texture, MATERIAL_ROUGHNESS_TEXTURE);
+    record.emission_texture = slot(material.emission_texture, MATERIAL_EMISSION_TEXTURE, true);
+    record.normal_texture = slot(material.normal_texture, MATERIAL_NORMAL_TEXTURE);
+    record.transmission_texture = slot(material.transmission_texture, MATERIAL_TRANSMISSION_TEXTURE);
     record.base_color = material.base_color;
     record.emission = material.emission;
     record.flags = flags;
@@ -38,13 +33,6 @@ SurfaceMaterial material_record(const Material& material) {
 }
 
 }  // namespace
-
-TextureSlot slot_of(const Texture& texture, uint flag, uint& flags) {
-    if (texture.image < 0) return {};
-    flags |= flag;
-    return {static_cast<uint>(texture.image), wrap_word(texture.wrap_u) | wrap_word(texture.wrap_v) << 8,
-            texture.uv_row0, texture.uv_row1};
-}
 
 std::vector<SurfaceVertex> vertex_records(const Mesh& mesh) {
     std::vector<SurfaceVertex> records(mesh.positions.size());
@@ -64,9 +52,9 @@ std::vector<SurfaceTriangle> triangle_records(const Mesh& mesh) {
     return records;
 }
 
-std::vector<SurfaceMaterial> material_records(const Scene& scene) {
+std::vector<SurfaceMaterial> material_records(const Scene& scene, TextureList& textures) {
     std::vector<SurfaceMaterial> records;
-    for (const Material& material : scene.materials) records.push_back(material_record(material));
+    for (const Material& material : scene.materials) records.push_back(material_record(material, textures));
     return records;
 }
 

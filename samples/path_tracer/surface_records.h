@@ -5,18 +5,16 @@
 #include <vector>
 
 #include "engine/scene/scene.h"
-#include "samples/path_tracer/shared.h"
+#include "samples/path_tracer/texture_list.h"
 
 namespace twinray::path_tracer {
 
 std::vector<SurfaceVertex> vertex_records(const Mesh& mesh);
 std::vector<SurfaceTriangle> triangle_records(const Mesh& mesh);
-std::vector<SurfaceMaterial> material_records(const Scene& scene);
+// Adds the textures of the materials to the list.
+std::vector<SurfaceMaterial> material_records(const Scene& scene, TextureList& textures);
 
 // References left null.
 SurfaceInstance instance_record(const Transform& transform);
-
-// Sets `flag` in `flags` where there is a texture.
-TextureSlot slot_of(const Texture& texture, uint flag, uint& flags);
 
 }  // namespace twinray::path_tracer

@@ -11,7 +11,7 @@ struct FrameData
 {
     REF(SurfaceInstance) instances;
     REF(SurfaceMaterial) materials;
-    REF(TexelGrid) images;
+    TextureTable textures;
     CameraRays camera;
     float near;          // in units of camera.forward
     vec3 sun_direction;  // unit, towards the sun

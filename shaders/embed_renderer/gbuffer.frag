@@ -17,7 +17,8 @@ void main()
     SurfaceMaterial material = AT(AT(args.frame, 0).materials, index);
     vec3 color = material.base_color.rgb;
     if ((material.flags & MATERIAL_BASE_TEXTURE) != 0u)
-        color *= sample_texture(AT(args.frame, 0).images, material.base_texture, uv, true).rgb;
+        color *= sample_texture(AT(args.frame, 0).textures, material.base_texture.texture,
+                                transformed_uv(material.base_texture, uv)).rgb;
     out_albedo = vec4(color, 1.0);
     out_normal = vec4(normalize(normal), 0.0);
     out_ids = ids;

@@ -6,13 +6,13 @@
 #include "shaders/shared/ray.h"
 #include "shaders/shared/soa.h"
 #include "shaders/shared/spawn.h"
+#include "twinray/textures.glsl"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/shared/random.h"
 #include "shaders/path_tracer/weights.h"
 #include "shaders/shared/sampling.h"
 #include "shaders/path_tracer/camera.h"
-#include "shaders/path_tracer/texture.glsl"
 #include "shaders/embed_renderer/frame.h"
 
 Rows to_world_of(SurfaceInstance instance)

@@ -23,7 +23,7 @@ Bsdf bsdf_of(SceneData scene, Surface surface, uint flags, vec3 color, bool is_f
     if (HAS_TEXTURES && (flags & MATERIAL_ROUGHNESS_TEXTURE) != 0u)
     {
         TextureSlot slot = AT(scene.materials, surface.material).roughness_texture;
-        vec4 map = sample_texture(scene.images, slot, surface.uv, false);
+        vec4 map = sample_data(scene, slot, surface.uv);
         roughness *= map.g;
         metallic *= map.b;
     }
@@ -31,8 +31,7 @@ Bsdf bsdf_of(SceneData scene, Surface surface, uint flags, vec3 color, bool is_f
     {
         float transmission = AT(scene.materials, surface.material).transmission;
         if (HAS_TEXTURES && (flags & MATERIAL_TRANSMISSION_TEXTURE) != 0u)
-            transmission *= sample_texture(scene.images, AT(scene.materials, surface.material).transmission_texture,
-                                           surface.uv, false).r;
+            transmission *= sample_data(scene, AT(scene.materials, surface.material).transmission_texture, surface.uv).r;
         if (choice < transmission * (1.0 - metallic)) return glass_of(scene, surface, color, roughness, is_front);
     }
     float ior = AT(scene.materials, surface.material).ior;

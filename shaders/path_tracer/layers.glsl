@@ -20,9 +20,9 @@ vec4 specular_of(SceneData scene, Surface surface)
     uint m = surface.material;
     vec4 specular = vec4(AT(scene.layered, m).specular_color, AT(scene.layered, m).specular);
     if (has_map(scene, m, LAYERED_SPECULAR))
-        specular.a *= sample_texture(scene.images, AT(scene.layered, m).specular_texture, surface.uv, false).a;
+        specular.a *= sample_data(scene, AT(scene.layered, m).specular_texture, surface.uv).a;
     if (has_map(scene, m, LAYERED_SPECULAR_COLOR))
-        specular.rgb *= sample_texture(scene.images, AT(scene.layered, m).specular_color_texture, surface.uv, true).rgb;
+        specular.rgb *= sample_color(scene, AT(scene.layered, m).specular_color_texture, surface.uv).rgb;
     return specular;
 }
 
@@ -35,7 +35,7 @@ void set_anisotropy(inout Bsdf bsdf, SceneData scene, Surface surface, vec3 norm
     vec2 grain = turn;
     if (has_map(scene, m, LAYERED_ANISOTROPY))
     {
-        vec3 map = sample_texture(scene.images, AT(scene.layered, m).anisotropy_texture, surface.uv, false).rgb;
+        vec3 map = sample_data(scene, AT(scene.layered, m).anisotropy_texture, surface.uv).rgb;
         vec2 mapped = map.rg * 2.0 - 1.0;
         grain = vec2(turn.x * mapped.x - turn.y * mapped.y, turn.y * mapped.x + turn.x * mapped.y);
         strength *= map.b;
@@ -57,10 +57,10 @@ void set_sheen(inout Bsdf bsdf, SceneData scene, Surface surface)
     bsdf.sheen = AT(scene.layered, m).sheen_color;
     bsdf.sheen_roughness = AT(scene.layered, m).sheen_roughness;
     if (has_map(scene, m, LAYERED_SHEEN_COLOR))
-        bsdf.sheen *= sample_texture(scene.images, AT(scene.layered, m).sheen_color_texture, surface.uv, true).rgb;
+        bsdf.sheen *= sample_color(scene, AT(scene.layered, m).sheen_color_texture, surface.uv).rgb;
     if (has_map(scene, m, LAYERED_SHEEN_ROUGHNESS))
         bsdf.sheen_roughness *=
-            sample_texture(scene.images, AT(scene.layered, m).sheen_roughness_texture, surface.uv, false).a;
+            sample_data(scene, AT(scene.layered, m).sheen_roughness_texture, surface.uv).a;
     bsdf.sheen_roughness = max(bsdf.sheen_roughness, SHEEN_LEAST_ROUGHNESS);
     if (largest(bsdf.sheen) > 0.0) bsdf.layers |= LAYER_SHEEN;
 }
@@ -71,11 +71,11 @@ void set_coat(inout Bsdf bsdf, SceneData scene, Surface surface, vec3 normal, ve
     uint m = surface.material;
     bsdf.coat = AT(scene.layered, m).coat;
     if (has_map(scene, m, LAYERED_COAT))
-        bsdf.coat *= sample_texture(scene.images, AT(scene.layered, m).coat_texture, surface.uv, false).r;
+        bsdf.coat *= sample_data(scene, AT(scene.layered, m).coat_texture, surface.uv).r;
     if (bsdf.coat <= 0.0) return;
     float roughness = AT(scene.layered, m).coat_roughness;
     if (has_map(scene, m, LAYERED_COAT_ROUGHNESS))
-        roughness *= sample_texture(scene.images, AT(scene.layered, m).coat_roughness_texture, surface.uv, false).g;
+        roughness *= sample_data(scene, AT(scene.layered, m).coat_roughness_texture, surface.uv).g;
     vec3 coat_normal = surface.normal;
     if (has_map(scene, m, LAYERED_COAT_NORMAL))
         coat_normal = mapped_normal(scene, surface, AT(scene.layered, m).coat_normal_texture,

@@ -3,11 +3,21 @@
 #ifndef TWINRAY_PATH_TRACER_MATERIAL_GLSL
 #define TWINRAY_PATH_TRACER_MATERIAL_GLSL
 
+vec4 sample_color(SceneData scene, TextureSlot slot, vec2 uv)
+{
+    return sample_texture(scene.textures, slot.texture, transformed_uv(slot, uv));
+}
+
+vec4 sample_data(SceneData scene, TextureSlot slot, vec2 uv)
+{
+    return sample_linear_texture(scene.textures, slot.texture, transformed_uv(slot, uv));
+}
+
 vec4 base_color(SceneData scene, uint material, uint flags, vec2 uv)
 {
     vec4 color = AT(scene.materials, material).base_color;
     if (HAS_TEXTURES && (flags & MATERIAL_BASE_TEXTURE) != 0u)
-        color *= sample_texture(scene.images, AT(scene.materials, material).base_texture, uv, true);
+        color *= sample_color(scene, AT(scene.materials, material).base_texture, uv);
     return color;
 }
 
@@ -15,7 +25,7 @@ vec3 emission(SceneData scene, uint material, uint flags, vec2 uv)
 {
     vec3 color = AT(scene.materials, material).emission;
     if (HAS_TEXTURES && (flags & MATERIAL_EMISSION_TEXTURE) != 0u && largest(color) > 0.0)
-        color *= sample_texture(scene.images, AT(scene.materials, material).emission_texture, uv, true).rgb;
+        color *= sample_color(scene, AT(scene.materials, material).emission_texture, uv).rgb;
     return color;
 }
 
@@ -34,7 +44,7 @@ float opacity(uint flags, float cutoff, float alpha)
 
 vec3 mapped_normal(SceneData scene, Surface surface, TextureSlot slot, float scale)
 {
-    vec3 mapped = sample_texture(scene.images, slot, surface.uv, false).xyz * 2.0 - 1.0;
+    vec3 mapped = sample_data(scene, slot, surface.uv).xyz * 2.0 - 1.0;
     mapped.xy *= scale;
     float t = length(surface.tangent);
     float b = length(surface.bitangent);

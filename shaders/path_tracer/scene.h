@@ -2,6 +2,7 @@
 // The scene as the path tracer's kernels read it from device memory.
 #ifndef TWINRAY_PATH_TRACER_SCENE_H
 #define TWINRAY_PATH_TRACER_SCENE_H
+#include "shaders/shared/textures.h"
 
 // Ids of the specialisation constants: what a scene lacks is compiled out.
 const uint PT_HAS_ALPHA = 0u;        // some material is masked or blended: rays may pass surfaces
@@ -53,26 +54,18 @@ struct SurfaceInstance
 };
 BUFFER_OF(SurfaceInstance, 8);
 
-// 8-bit RGBA, row 0 at v = 0.
-struct TexelGrid
-{
-    Uints texels;
-    uint width;
-    uint height;
-};
-BUFFER_OF(TexelGrid, 8);
-
-const uint WRAP_REPEAT = 0u;
-const uint WRAP_CLAMP = 1u;
-const uint WRAP_MIRROR = 2u;
-
+// A texture and where a material samples it.
 struct TextureSlot
 {
-    uint image;
-    uint wrap; // of u in the low byte, of v in the next
+    TextureRef texture;
     vec3 row0; // uv' = (row0 . (u, v, 1), row1 . (u, v, 1))
     vec3 row1;
 };
+
+FUNC vec2 transformed_uv(TextureSlot slot, vec2 uv)
+{
+    return vec2(dot(slot.row0, vec3(uv, 1.0f)), dot(slot.row1, vec3(uv, 1.0f)));
+}
 
 const uint MATERIAL_MASKED = 1u;
 const uint MATERIAL_BLENDED = 2u;
@@ -212,7 +205,7 @@ struct SceneData
     REF(SurfaceMaterial) materials;
     REF(LayeredMaterial) layered; // null: no material has layers
     Uints material_kinds; // of the materials; null where all are of one
-    REF(TexelGrid) images;
+    TextureTable textures; // of the materials; empty: none has any
     REF(Emitter) emitters;
     REF(PunctualLight) punctual;
     REF(AliasEntry) local_table; // emitters, then punctual lights

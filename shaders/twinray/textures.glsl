@@ -47,6 +47,9 @@ vec4 sample_texture(TextureTable table, TextureRef ref, vec2 uv)
     if (!has_texture(table, ref)) return vec4(1.0);
     return textureLod(TWINRAY_IMAGE(ref), uv, 0.0);
 }
+
+// The same of a texture that was not pushed as sRGB: kernels then lack the decoding, where that is theirs to do.
+vec4 sample_linear_texture(TextureTable table, TextureRef ref, vec2 uv) { return sample_texture(table, ref, uv); }
 #else
 vec3 texture_srgb_to_linear(vec3 c)
 {
@@ -68,10 +71,10 @@ uint texture_neighbour(int i, uint size, uint mode)
     return min(uint(max(i, 0)), size - 1u);
 }
 
-vec4 texture_texel(TextureRecord record, uint x, uint y)
+vec4 texture_texel(TextureRecord record, uint x, uint y, bool is_srgb)
 {
     vec4 color = unpackUnorm4x8(AT(record.texels, y * record.width + x));
-    return record.is_srgb != 0u ? vec4(texture_srgb_to_linear(color.rgb), color.a) : color;
+    return is_srgb ? vec4(texture_srgb_to_linear(color.rgb), color.a) : color;
 }
 
 // (0, 0) where there is none.
@@ -88,14 +91,12 @@ vec4 fetch_texel(TextureTable table, TextureRef ref, ivec2 at)
     if (!has_texture(table, ref)) return vec4(1.0);
     TextureRecord record = AT(table.records, ref.number - 1u);
     ivec2 inside = clamp(at, ivec2(0), ivec2(record.width, record.height) - 1);
-    return texture_texel(record, uint(inside.x), uint(inside.y));
+    return texture_texel(record, uint(inside.x), uint(inside.y), record.is_srgb != 0u);
 }
 
 // Bilinear in float32, after decoding.
-vec4 sample_texture(TextureTable table, TextureRef ref, vec2 uv)
+vec4 texture_filtered(TextureRecord record, vec2 uv, bool is_srgb)
 {
-    if (!has_texture(table, ref)) return vec4(1.0);
-    TextureRecord record = AT(table.records, ref.number - 1u);
     vec2 at = vec2(texture_wrapped(uv.x, record.wrap_u) * float(record.width),
                    texture_wrapped(uv.y, record.wrap_v) * float(record.height)) - 0.5;
     vec2 low = floor(at);
@@ -104,9 +105,23 @@ vec4 sample_texture(TextureTable table, TextureRef ref, vec2 uv)
     uint x1 = texture_neighbour(int(low.x) + 1, record.width, record.wrap_u);
     uint y0 = texture_neighbour(int(low.y), record.height, record.wrap_v);
     uint y1 = texture_neighbour(int(low.y) + 1, record.height, record.wrap_v);
-    vec4 top = mix(texture_texel(record, x0, y0), texture_texel(record, x1, y0), weight.x);
-    vec4 bottom = mix(texture_texel(record, x0, y1), texture_texel(record, x1, y1), weight.x);
+    vec4 top = mix(texture_texel(record, x0, y0, is_srgb), texture_texel(record, x1, y0, is_srgb), weight.x);
+    vec4 bottom = mix(texture_texel(record, x0, y1, is_srgb), texture_texel(record, x1, y1, is_srgb), weight.x);
     return mix(top, bottom, weight.y);
+}
+
+vec4 sample_texture(TextureTable table, TextureRef ref, vec2 uv)
+{
+    if (!has_texture(table, ref)) return vec4(1.0);
+    TextureRecord record = AT(table.records, ref.number - 1u);
+    return texture_filtered(record, uv, record.is_srgb != 0u);
+}
+
+// The same of a texture that was not pushed as sRGB: kernels then lack the decoding.
+vec4 sample_linear_texture(TextureTable table, TextureRef ref, vec2 uv)
+{
+    if (!has_texture(table, ref)) return vec4(1.0);
+    return texture_filtered(AT(table.records, ref.number - 1u), uv, false);
 }
 #endif
 #endif

@@ -305,7 +305,8 @@ TEST(Layers, AreWhatChangesAnything) {
     EXPECT_EQ(layers_of(Material{.name = "brushed", .anisotropy = 0.5f}), LAYER_ANISOTROPY);
     scene.materials.push_back({.name = "paint", .clearcoat = 0.5f});
     scene.materials.push_back({.name = "amber", .transmission = 1, .thickness = 1});
-    const std::vector<LayeredMaterial> records = layered_records(scene);
+    TextureList textures;
+    const std::vector<LayeredMaterial> records = layered_records(scene, textures);
     ASSERT_EQ(records.size(), 5u);
     EXPECT_EQ(records[0].layers, 0u);
     EXPECT_EQ(records[3].layers, LAYER_COAT);
@@ -320,7 +321,8 @@ TEST(Layers, ExtinctionLeavesTheColorAfterTheDistance) {
                             .thickness = 1,
                             .attenuation_color = color,
                             .attenuation_distance = distance}};
-        return layered_records(scene)[0].extinction;
+        TextureList textures;
+        return layered_records(scene, textures)[0].extinction;
     };
     const vec3 amber = extinction({0.5f, 0.25f, 1}, 3);
     EXPECT_NEAR(std::exp(-amber.x * 3), 0.5f, 1e-6f);
