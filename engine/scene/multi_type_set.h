@@ -105,6 +105,9 @@ class MultiTypeSet {
     // Counts the syncs that brought new elements: views of before are stale.
     std::uint64_t revision() const { return storage_.revision(); }
 
+    // Of the arrays of elements, with the room that they have to grow.
+    std::uint64_t buffer_bytes() const { return storage_.buffer_bytes(); }
+
     // Throws Error if kernels compiled with TWINRAY_DEBUG met keys that name nothing. Waits for the GPU.
     void check_faults() const {
         storage_.context().wait_for_gpu();

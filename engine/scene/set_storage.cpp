@@ -108,6 +108,12 @@ void SetStorage::commit(Staged&& staged, SyncPoint done) {
     synced_ = done;
 }
 
+std::uint64_t SetStorage::buffer_bytes() const {
+    std::uint64_t bytes = 0;
+    for (const Array& array : arrays_) bytes += array.buffer.bytes();
+    return bytes;
+}
+
 const std::vector<SetSlot>& SetStorage::slots() const {
     if (!is_clean_) fail(name_, ": view: edits are pending; call sync() first");
     return slots_;

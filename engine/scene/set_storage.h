@@ -64,6 +64,7 @@ class SetStorage {
     // Throws Error if edits are pending.
     const std::vector<SetSlot>& slots() const;
     std::uint64_t revision() const { return revision_; }
+    std::uint64_t buffer_bytes() const;
     const Buffer& buffer(std::size_t type) const { return arrays_[type].buffer; }
 
     const std::string& name() const { return name_; }

@@ -184,7 +184,7 @@ VkDescriptorSet TextureStore::images() const {
 }
 
 std::uint64_t TextureStore::buffer_bytes() const {
-    std::uint64_t bytes = records_.buffer(0).bytes();
+    std::uint64_t bytes = records_.buffer_bytes();
     for (const Texture& texture : textures_) bytes += texture.texels.bytes();
     return bytes;
 }

@@ -100,7 +100,26 @@ struct Collector {
     }
 };
 
+template <class T>
+void put_all(LocalLightSet& set, std::vector<SetKey>& keys, const std::vector<T>& lights) {
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        if (i < keys.size())
+            set.update(keys[i], lights[i]);
+        else
+            keys.push_back(set.push(lights[i]));
+}
+
 }  // namespace
+
+std::vector<SetKey> LightSet::put(const LocalLights& lights) {
+    put_all(set_, emitters_, lights.emitters);
+    put_all(set_, punctual_, lights.punctual);
+    set_.sync();
+    const auto count = [](const auto& list) { return static_cast<std::ptrdiff_t>(list.size()); };
+    std::vector<SetKey> keys(emitters_.begin(), emitters_.begin() + count(lights.emitters));
+    keys.insert(keys.end(), punctual_.begin(), punctual_.begin() + count(lights.punctual));
+    return keys;
+}
 
 LocalLights collect_lights(const Scene& scene) {
     Collector collector{scene};

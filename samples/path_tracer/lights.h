@@ -19,6 +19,23 @@ struct LocalLights {
     bool empty() const { return table.empty(); }
 };
 
+using LocalLightSet = TWINRAY_MULTI_TYPE_SET(LocalLightsView, LOCAL_LIGHTS);
+
+// The lights in device memory. Their number may change; who was there keeps the key.
+class LightSet {
+  public:
+    explicit LightSet(Context& context) : set_(context, "local lights") {}
+
+    // Takes the place of what was put before. Returns the keys in the order of the table.
+    std::vector<SetKey> put(const LocalLights& lights);
+    LocalLightsView view() const { return set_.view(); }
+    std::uint64_t buffer_bytes() const { return set_.buffer_bytes(); }
+
+  private:
+    LocalLightSet set_;
+    std::vector<SetKey> emitters_, punctual_;  // all that there ever were at once
+};
+
 LocalLights collect_lights(const Scene& scene);
 
 // Whether the scene brings light to see by: a punctual light, or a surface brighter than the radiance 1 that glTF

@@ -68,22 +68,26 @@ void DeviceScene::upload_all(Commands& commands, const Scene& scene, const Local
     upload_lights(commands, lights);
 }
 
-// Where all lights have gone out, kernels that look for them find one that is black.
+// Where all lights have gone out, kernels that look for them find a key that names nothing.
 void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
     const bool is_dark = features_.local_lights && lights.empty();
-    const std::vector<PunctualLight> black(1);
-    const std::vector<AliasEntry> only(1);
-    record_.emitters = upload_moving(commands, "emitters", lights.emitters);
-    record_.punctual = upload_moving(commands, "punctual lights", is_dark ? black : lights.punctual);
-    record_.local_table = upload_moving(commands, "light table", is_dark ? only : lights.table);
-    record_.emitter_count = static_cast<uint>(lights.emitters.size());
-    record_.local_count = static_cast<uint>(is_dark ? only.size() : lights.table.size());
+    if (features_.local_lights) {
+        if (!lights_) lights_.emplace(context_);
+        const std::vector<SetKey> keys = is_dark ? std::vector<SetKey>(1) : lights_->put(lights);
+        record_.lights = lights_->view();
+        record_.light_keys = upload_moving(commands, "keys of lights", keys);
+        record_.light_table =
+            upload_moving(commands, "light table", is_dark ? std::vector<AliasEntry>(1) : lights.table);
+        record_.light_count = static_cast<uint>(keys.size());
+    }
     const bool has_sky = record_.environment.density_per_luminance > 0;
     record_.environment.chance = !has_sky ? 0 : features_.local_lights && !is_dark ? 0.5f : 1.0f;
 }
 
 std::uint64_t DeviceScene::device_bytes() const {
-    std::uint64_t bytes = data_.bytes() + (textures_ ? textures_->buffer_bytes() : 0);
+    std::uint64_t bytes = data_.bytes();
+    if (textures_) bytes += textures_->buffer_bytes();
+    if (lights_) bytes += lights_->buffer_bytes();
     for (const auto* buffers : {&buffers_, &moving_})
         for (const Buffer& buffer : *buffers) bytes += buffer.bytes();
     return bytes;

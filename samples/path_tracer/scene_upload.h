@@ -74,6 +74,7 @@ class DeviceScene {
     SceneFeatures features_;
     std::vector<Buffer> buffers_, moving_;  // what stays, what move() replaces
     std::vector<MeshRefs> meshes_;
+    std::optional<LightSet> lights_;        // none: no need for any
     std::optional<TextureStore> textures_;  // none: no material has any
     SceneData record_{};
     Buffer data_;  // of record_

@@ -4,6 +4,7 @@
 
 #include "engine/accel/spawn.h"
 #include "engine/core/sampling.h"
+#include "engine/scene/multi_type_set.h"
 #include "engine/scene/soa.h"
 #include "engine/scene/texture_store.h"
 
@@ -34,7 +35,7 @@ constexpr uint LAYERS = ~0u;  // in kernels specialisation constants
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(SurfaceVertex) == 48 && sizeof(SurfaceTriangle) == 16 && sizeof(SurfaceInstance) == 120);
-static_assert(sizeof(SurfaceMaterial) == 196 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 136);
+static_assert(sizeof(SurfaceMaterial) == 196 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 176);
 static_assert(sizeof(LayeredMaterial) == 300 && sizeof(WaveData) == 280);
 static_assert(sizeof(KindQueue) == 16 && sizeof(Disagreement) == 104);
 static_assert(sizeof(FilmPixel) == 72 && sizeof(FirstSurface) == 40);

@@ -6,6 +6,7 @@
 #include "shaders/shared/intersect.h"
 #include "shaders/shared/spawn.h"
 #include "shaders/shared/soa.h"
+#include "twinray/multi_type_set.glsl"
 #include "twinray/textures.glsl"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"

@@ -89,7 +89,7 @@ LightSample sample_environment(Environment env, vec2 u)
     return light;
 }
 
-LightSample sample_emitter(SceneData scene, Emitter emitter, vec3 from, vec2 u)
+LightSample sample_local(SceneData scene, Emitter emitter, vec3 from, vec2 u)
 {
     Placement placement = load_placement(scene.instances, emitter.instance);
     TriangleData data = load_triangle_data(AT(scene.instances, emitter.instance), emitter.primitive);
@@ -109,7 +109,7 @@ LightSample sample_emitter(SceneData scene, Emitter emitter, vec3 from, vec2 u)
     return light;
 }
 
-LightSample sample_punctual(SceneData scene, PunctualLight light, vec3 from)
+LightSample sample_local(SceneData scene, PunctualLight light, vec3 from, vec2 u)
 {
     LightSample result;
     result.pdf = (1.0 - scene.environment.chance) * light.chance;
@@ -137,9 +137,12 @@ LightSample sample_light(SceneData scene, vec3 from, uvec2 choice, vec2 u)
 {
     if (HAS_ENVIRONMENT && (!HAS_LOCAL_LIGHTS || unit_float(choice.x) < scene.environment.chance))
         return sample_environment(scene.environment, u);
-    uint index = sample_alias(scene.local_table, scene.local_count, choice.y);
-    if (index < scene.emitter_count) return sample_emitter(scene, AT(scene.emitters, index), from, u);
-    return sample_punctual(scene, AT(scene.punctual, index - scene.emitter_count), from);
+    SetKey key = AT(scene.light_keys, sample_alias(scene.light_table, scene.light_count, choice.y));
+    LightSample light;
+    light.pdf = 0.0; // where all lights have gone out, of a key that names nothing
+#define SAMPLE_LOCAL(element) light = sample_local(scene, element, from, u)
+    WITH_INDEX(LOCAL_LIGHTS, scene.lights, key, SAMPLE_LOCAL)
+    return light;
 }
 
 // Density with which sample_light would have found this point of an emitter.

@@ -2,6 +2,7 @@
 // The scene as the path tracer's kernels read it from device memory.
 #ifndef TWINRAY_PATH_TRACER_SCENE_H
 #define TWINRAY_PATH_TRACER_SCENE_H
+#include "shaders/shared/multi_type_set.h"
 #include "shaders/shared/textures.h"
 
 // Ids of the specialisation constants: what a scene lacks is compiled out.
@@ -179,6 +180,10 @@ struct PunctualLight
 };
 BUFFER_OF(PunctualLight, 4);
 
+// Lights that the scene has somewhere, in contrast to the environment.
+#define LOCAL_LIGHTS(X, P) X(P, 0, Emitter, emitters) X(P, 1, PunctualLight, punctual)
+TWINRAY_SET_VIEW(LocalLightsView, LOCAL_LIGHTS)
+
 // Of a pixel of the environment, or summed over the samples of a pixel of the picture.
 struct Radiance
 {
@@ -206,11 +211,11 @@ struct SceneData
     REF(LayeredMaterial) layered; // null: no material has layers
     Uints material_kinds; // of the materials; null where all are of one
     TextureTable textures; // of the materials; empty: none has any
-    REF(Emitter) emitters;
-    REF(PunctualLight) punctual;
-    REF(AliasEntry) local_table; // emitters, then punctual lights
-    uint emitter_count;
-    uint local_count;
+    LocalLightsView lights;
+    REF(SetKey) light_keys; // those that may be chosen
+    REF(AliasEntry) light_table; // of them, in the same order
+    uint light_count;
+    uint reserved;
     Environment environment;
 };
 BUFFER_OF(SceneData, 8);

@@ -313,6 +313,19 @@ TEST(Layers, AreWhatChangesAnything) {
     EXPECT_EQ(records[4].layers, LAYER_VOLUME);
 }
 
+TEST(Layers, TexturesAreListedOnceForEachWayOfSampling) {
+    TextureList list;
+    const Texture texture{.image = 3};
+    const uint first = list.slot_of(texture, true).texture.number;
+    EXPECT_EQ(first, 1u);
+    EXPECT_EQ(list.slot_of(texture, true).texture.number, first);
+    EXPECT_EQ(list.slot_of(texture, false).texture.number, 2u);
+    EXPECT_EQ(list.slot_of({.image = 3, .wrap_v = Wrap::clamp_to_edge}, true).texture.number, 3u);
+    EXPECT_EQ(list.slot_of({}, true).texture.number, 0u);
+    ASSERT_EQ(list.textures.size(), 3u);
+    EXPECT_EQ(list.textures[2].options.wrap_v, Wrap::clamp_to_edge);
+}
+
 TEST(Layers, ExtinctionLeavesTheColorAfterTheDistance) {
     const auto extinction = [](vec3 color, float distance) {
         Scene scene;
