@@ -60,6 +60,8 @@ void add_stopping(CLI::App& app, Options& options) {
     app.add_option("--write-partial-images", options.preview_seconds,
                    "write the picture as it is every so many seconds")
         ->check(CLI::Range(0.0, 1e9));
+    app.add_option("--display-server", options.display_server,
+                   "show the picture as it grows in a viewer with the protocol of tev, at HOST or HOST:PORT");
     app.add_option("--checkpoint", options.checkpoint_seconds,
                    "save what is there to OUTPUT.film every so many seconds; it goes when the picture is done")
         ->check(CLI::Range(0.0, 1e9))
