@@ -54,16 +54,9 @@ uint layers_of(const Material& material) {
     return layers;
 }
 
-uint layers_of(const Scene& scene) {
-    uint layers = 0;
-    for (const Material& material : scene.materials) layers |= layers_of(material);
-    return layers;
-}
-
 std::vector<LayeredMaterial> layered_records(const Scene& scene) {
     std::vector<LayeredMaterial> records;
-    if (layers_of(scene) != 0)
-        for (const Material& material : scene.materials) records.push_back(record_of(material));
+    for (const Material& material : scene.materials) records.push_back(record_of(material));
     return records;
 }
 

@@ -8,9 +8,8 @@ namespace twinray::path_tracer {
 
 // LAYER_ bits of what changes anything.
 uint layers_of(const Material& material);
-uint layers_of(const Scene& scene);
 
-// One per material; none if no material has layers.
+// One per material.
 std::vector<LayeredMaterial> layered_records(const Scene& scene);
 
 bool has_texture(const Material& material);

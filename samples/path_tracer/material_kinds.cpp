@@ -25,6 +25,14 @@ std::vector<bool> used_materials(const Scene& scene) {
     return used;
 }
 
+// What every kind needs: each kernel samples all lights, of which some may have a texture.
+uint needs_of_lights(const Scene& scene, const std::vector<bool>& used) {
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+        if (used[i] && scene.materials[i].emission_texture.image >= 0 && largest(scene.materials[i].emission) > 0)
+            return 1u << PT_HAS_TEXTURES;
+    return 0;
+}
+
 uint index_of(std::vector<uint>& kinds, uint needs) {
     const auto place = std::find(kinds.begin(), kinds.end(), needs);
     if (place == kinds.end()) kinds.push_back(needs);
@@ -71,8 +79,9 @@ uint MaterialKinds::all_needs() const {
 MaterialKinds kinds_of(const Scene& scene) {
     MaterialKinds kinds;
     const std::vector<bool> used = used_materials(scene);
+    const uint common = needs_of_lights(scene, used);
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
-        kinds.of.push_back(used[i] ? index_of(kinds.needs, needs_of(scene.materials[i])) : 0);
+        kinds.of.push_back(used[i] ? index_of(kinds.needs, common | needs_of(scene.materials[i])) : 0);
     while (kinds.needs.size() > most_material_kinds) {
         const auto [kept, removed] = closest(kinds.needs);
         merge(kinds, kept, removed);

@@ -23,8 +23,8 @@ struct MaterialKinds {
     std::vector<uint> of;     // by material: its kind, 0 where nothing uses it
     uint all_needs() const;   // of any kind
 };
-// Kinds of the materials that triangles use. Where there would be more than most_material_kinds, those become one that
-// differ least.
+// Kinds of the materials that triangles use; where a light has a texture, all kinds have the need for it. Where there
+// would be more than most_material_kinds, those become one that differ least.
 MaterialKinds kinds_of(const Scene& scene);
 
 // "textures, glass": for people.

@@ -60,6 +60,8 @@ void add_stopping(CLI::App& app, Options& options) {
     app.add_option("--write-partial-images", options.preview_seconds,
                    "write the picture as it is every so many seconds")
         ->check(CLI::Range(0.0, 1e9));
+    app.add_option("--display-server", options.display_server,
+                   "show the picture as it grows in a viewer with the protocol of tev, at HOST or HOST:PORT");
     app.add_option("--checkpoint", options.checkpoint_seconds,
                    "save what is there to OUTPUT.film every so many seconds; it goes when the picture is done")
         ->check(CLI::Range(0.0, 1e9))
@@ -121,6 +123,8 @@ void add_machine(CLI::App& app, Options& options) {
     app.add_flag("--validation", options.validation, "Khronos validation layer");
     app.add_flag("--quiet", options.quiet, "errors only");
     app.add_flag("--stats", options.stats, "print what was traced, the device's time by pass, and memory");
+    app.add_flag("--all-features", options.all_features,
+                 "leave out nothing that other scenes would need, to measure what leaving out saves");
 }
 
 void add_merge(CLI::App& app, MergeOptions& options) {

@@ -17,7 +17,8 @@ struct Options {
     std::string device;
     std::optional<std::uint32_t> samples;
     std::optional<double> seconds, target_error;
-    std::string shard;  // "i/N"
+    std::string shard;           // "i/N"
+    std::string display_server;  // HOST[:PORT]; "": none
     std::optional<double> preview_seconds;
     std::optional<double> checkpoint_seconds = 60;
     bool resume = false;
@@ -40,6 +41,7 @@ struct Options {
     bool validation = false;
     bool quiet = false;
     bool stats = false;
+    bool all_features = false;
 };
 
 // `path_tracer merge`.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/core/error.h"
+#include "samples/path_tracer/display.h"
 #include "samples/path_tracer/film_file.h"
 #include "samples/path_tracer/interrupts.h"
 #include "samples/path_tracer/layers.h"
@@ -17,6 +18,7 @@ namespace {
 
 // Of the error that is shown; more where estimates take long.
 constexpr double seconds_between_estimates = 2, share_of_estimates = 0.05;
+constexpr double seconds_between_displays = 1;
 
 // Says when something that is done every so often is due.
 class Timer {
@@ -83,8 +85,12 @@ class FilmRenderer {
           estimate_(options.quiet ? std::nullopt : std::optional(seconds_between_estimates)),
           preview_(options.preview_seconds),
           checkpoint_(options.checkpoint_seconds),
+          display_due_(options.display_server.empty() ? std::nullopt : std::optional(seconds_between_displays)),
           progress_("path_tracer " + accel.name(), fraction(), options.quiet) {
         result_.resumed_samples = result_.film.mean_samples();
+        if (!options.display_server.empty() && ranks.index() == 0)
+            display_.emplace(options.display_server, options.output.filename().string(), result_.film.width,
+                             result_.film.height);
     }
 
     Rendering run() {
@@ -98,6 +104,7 @@ class FilmRenderer {
         }
         session_.renderer->read(result_.film);
         result_.stats = session_.renderer->stats();
+        show();
         if (result_.signal)
             stop();
         else
@@ -143,11 +150,24 @@ class FilmRenderer {
             write_output();
             preview_.restart();
         }
+        if (display_ && display_due_.is_due()) {
+            read();
+            show();
+        }
         if (checkpoint_.is_due()) {
             read();
             save_film(file_, result_.film);
             checkpoint_.restart();
         }
+    }
+
+    // Of this rank's part. A viewer that has been closed is no reason to stop.
+    void show() {
+        if (display_ && !display_->show(result_.film.mean())) {
+            if (!options_.quiet) std::fprintf(stderr, "path_tracer: the display server has gone\n");
+            display_.reset();
+        }
+        display_due_.restart();
     }
 
     std::vector<Channel> layers() const {
@@ -191,7 +211,8 @@ class FilmRenderer {
     Interrupts interrupts_;
     Rendering result_;
     double error_, last_round_ = 0;
-    Timer time_{std::nullopt}, estimate_, preview_, checkpoint_;
+    Timer time_{std::nullopt}, estimate_, preview_, checkpoint_, display_due_;
+    std::optional<Display> display_;
     RoundProgress progress_;
 };
 

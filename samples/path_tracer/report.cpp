@@ -135,8 +135,9 @@ void print_stats(const Session& session, const AbstractAccel& accel, const Rende
     std::printf("%s\n", features_text(session.device_scene->features()).c_str());
     for (const auto& [pass, ms] : stats.pass_ms) std::printf("device time: %9.1f ms  %s\n", ms, pass.c_str());
     constexpr double mib = 1 << 20;
-    std::printf("device memory: %.1f MiB of rays, sums and film, %.1f MiB of the accelerator\n",
+    std::printf("device memory: %.1f MiB of rays, sums and film, %.1f MiB of the scene, %.1f MiB of the accelerator\n",
                 static_cast<double>(session.renderer->device_bytes()) / mib,
+                static_cast<double>(session.device_scene->device_bytes()) / mib,
                 static_cast<double>(accel.memory_usage().total()) / mib);
 }
 

@@ -26,10 +26,19 @@ SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const E
     return features;
 }
 
+SceneFeatures all_features(const Scene& scene) {
+    SceneFeatures features;
+    features.kinds.needs = {0};
+    for (const uint need : material_needs) features.kinds.needs[0] |= 1u << need;
+    features.kinds.of.resize(scene.materials.size());
+    features.environment = features.local_lights = true;
+    return features;
+}
+
 DeviceScene::DeviceScene(Context& context, const Scene& scene, const LocalLights& lights,
-                         const EnvironmentMap* environment)
+                         const EnvironmentMap* environment, SceneFeatures features)
     : context_(context),
-      features_(features_of(scene, lights, environment)),
+      features_(std::move(features)),
       data_(context, {.name = "path tracer scene", .bytes = sizeof(SceneData)}) {
     Commands commands(context, "path tracer upload");
     {
@@ -60,11 +69,12 @@ void DeviceScene::upload_all(Commands& commands, const Scene& scene, const Local
     upload_meshes(commands, scene);
     record_.instances = upload_instances(commands, scene, lights);
     record_.materials = upload(commands, "materials", material_records(scene));
-    record_.layered = upload(commands, "layers of materials", layered_records(scene));
+    if (features_.has_layers()) record_.layered = upload(commands, "layers of materials", layered_records(scene));
     if (features_.kinds.needs.size() > 1)
         record_.material_kinds = upload(commands, "kinds of materials", features_.kinds.of);
     record_.images = upload_images(commands, scene);
-    if (features_.environment) record_.environment = upload_environment(commands, *map);
+    if (features_.environment)
+        record_.environment = upload_environment(commands, map ? *map : EnvironmentMap(constant_sky(vec3(0))));
     upload_lights(commands, lights);
 }
 
@@ -78,7 +88,15 @@ void DeviceScene::upload_lights(Commands& commands, const LocalLights& lights) {
     record_.local_table = upload_moving(commands, "light table", is_dark ? only : lights.table);
     record_.emitter_count = static_cast<uint>(lights.emitters.size());
     record_.local_count = static_cast<uint>(is_dark ? only.size() : lights.table.size());
-    record_.environment.chance = !features_.environment ? 0 : features_.local_lights && !is_dark ? 0.5f : 1.0f;
+    const bool has_sky = record_.environment.density_per_luminance > 0;
+    record_.environment.chance = !has_sky ? 0 : features_.local_lights && !is_dark ? 0.5f : 1.0f;
+}
+
+std::uint64_t DeviceScene::device_bytes() const {
+    std::uint64_t bytes = data_.bytes();
+    for (const auto* buffers : {&buffers_, &moving_})
+        for (const Buffer& buffer : *buffers) bytes += buffer.bytes();
+    return bytes;
 }
 
 template <class T>

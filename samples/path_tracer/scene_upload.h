@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/commands.h"
@@ -21,14 +22,25 @@ struct SceneFeatures {
 
     // Whether some material needs it; need: PT_HAS_ALPHA and the like.
     bool some(uint need) const { return kinds.all_needs() >> need & 1; }
+    bool has_layers() const {
+        return some(PT_HAS_SPECULAR) || some(PT_HAS_COAT) || some(PT_HAS_SHEEN) || some(PT_HAS_ANISOTROPY) ||
+               some(PT_HAS_VOLUME);
+    }
 };
 SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment);
+// One kind of material that has all there is, under an environment: to measure what leaving out saves.
+SceneFeatures all_features(const Scene& scene);
 
 // A scene in device memory as the kernels read it. Instances keep their index.
 class DeviceScene {
   public:
-    // environment: null for black. Returns before the upload is done; later submissions see it.
-    DeviceScene(Context& context, const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment);
+    // environment: null for black. features: at least what the scene needs. Returns before the upload is done; later
+    // submissions see it.
+    DeviceScene(Context& context, const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment,
+                SceneFeatures features);
+    // With what the scene needs.
+    DeviceScene(Context& context, const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment)
+        : DeviceScene(context, scene, lights, environment, features_of(scene, lights, environment)) {}
 
     // Takes over where instances and lights of the scene are now. Waits for the device. Throws Error where there are
     // lights now and were none when this was made: kernels lack what finds them.
@@ -38,6 +50,7 @@ class DeviceScene {
 
     Ref<SceneData> data() const { return data_.ref<SceneData>(); }
     const SceneFeatures& features() const { return features_; }
+    std::uint64_t device_bytes() const;
 
   private:
     template <class T>

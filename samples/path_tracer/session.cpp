@@ -180,8 +180,10 @@ Session make_session(const Options& options, const Ranks& ranks) {
     session.configuration =
         configuration_of(session.settings, session.scene, session.lights, session.environment.get(), is_default_sky);
     session.context = std::make_unique<Context>(desc_for(options, ranks));
-    session.device_scene =
-        std::make_unique<DeviceScene>(*session.context, session.scene, session.lights, session.environment.get());
+    session.device_scene = std::make_unique<DeviceScene>(
+        *session.context, session.scene, session.lights, session.environment.get(),
+        options.all_features ? all_features(session.scene)
+                             : features_of(session.scene, session.lights, session.environment.get()));
     session.renderer = std::make_unique<Renderer>(*session.context, *session.device_scene, session.settings);
     return session;
 }

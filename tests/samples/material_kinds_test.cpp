@@ -39,6 +39,15 @@ TEST(MaterialKinds, MaterialsThatNeedTheSameAreOfOneKind) {
     EXPECT_EQ(kinds.all_needs(), textures | glass);
 }
 
+// Kernels of all kinds sample them.
+TEST(MaterialKinds, AllReadTheTexturesOfLights) {
+    Scene scene = scene_with({0, glass, 0});
+    scene.materials[2].emission_texture.image = 0;
+    EXPECT_EQ(kinds_of(scene).needs, (std::vector<uint>{0, glass, textures}));
+    scene.materials[2].emission = vec3(0, 1, 0);
+    EXPECT_EQ(kinds_of(scene).needs, (std::vector<uint>{textures, textures | glass}));
+}
+
 TEST(MaterialKinds, UnusedMaterialsNeedNothing) {
     Scene scene = scene_with({textures});
     scene.materials.push_back(material_with(glass));

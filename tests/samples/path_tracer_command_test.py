@@ -5,6 +5,8 @@ import json
 import os
 import pathlib
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -92,6 +94,33 @@ assert "MSE 0" in run("merge", "whole.png.film", "-o", "flat.exr", "--mse-refere
 layers = (here / "layers.exr").read_bytes()
 for layer in ["albedo.R", "normal.Z", "depth.Z", "instance.ID", "primitive.ID", "samples.N", "variance.Y"]:
     assert layer.encode() + b"\0" in layers[:1000], layer
+
+# A viewer gets the whole picture, channel by channel, and one that leaves is no reason to stop.
+with socket.create_server(("localhost", 0)) as server:
+    port = server.getsockname()[1]
+    process = subprocess.Popen([path_tracer, *box, "--spp", "4", "-o", "seen.png", "--display-server", f"localhost:{port}"], cwd=here,
+                               stdout=subprocess.DEVNULL)
+    connection = server.accept()[0]
+    data = b"".join(iter(lambda: connection.recv(1 << 16), b""))
+    assert process.wait() == 0
+    packets, values = [], {}
+    while data:
+        size = struct.unpack_from("<I", data)[0]
+        packets.append(data[4:size])
+        data = data[size:]
+    assert packets[0] == b"\4\0seen.png\0" + struct.pack("<III", 24, 24, 3) + b"R\0G\0B\0", packets[0]
+    for packet in packets[1:]:
+        name, rest = packet[2:].split(b"\0", 1)
+        channel, rest = rest.split(b"\0", 1)
+        assert packet[0] == 3 and name == b"seen.png" and struct.unpack_from("<IIII", rest) == (0, 0, 24, 24), packet[:60]
+        values[channel] = struct.unpack("<576f", rest[16:])
+    assert set(values) == {b"R", b"G", b"B"} and all(0 < sum(channel) / 576 < 10 for channel in values.values()), values
+    assert sum(values[b"R"]) > sum(values[b"B"]), "the lamp is warm"
+    process = subprocess.Popen([path_tracer, *box, "--time", "4", "-o", "unseen.png", "--display-server", f"localhost:{port}"], cwd=here,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    server.accept()[0].close()
+    assert "the display server has gone" in process.communicate()[1] and process.returncode == 0
+assert "nobody listens" in run(*box, "-o", "a.png", "--display-server", f"localhost:{port}", status=1)
 
 records = [json.loads(line) for line in (here / "all.jsonl").read_text().splitlines()]
 assert records[0]["spp"] == 8 and 0 < records[0]["error"] < 10 and len(records[0]["configuration"]) == 8, records[0]

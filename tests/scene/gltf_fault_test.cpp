@@ -253,9 +253,9 @@ TEST(GltfFile, AMissingFileIsNamed) {
 
 TEST(GltfFile, AppearanceExtensionsMayBeRequiredAndAreSkippedWithAWarning) {
     GltfBuilder gltf = one_triangle();
-    gltf.root["extensionsRequired"] = {"KHR_materials_sheen"};
-    gltf.root["extensionsUsed"] = {"KHR_materials_sheen", "KHR_texture_transform"};
-    EXPECT_EQ(gltf.load().warnings, std::vector<std::string>{"shown without the glTF extensions KHR_materials_sheen"});
+    gltf.root["extensionsRequired"] = {"KHR_materials_iridescence"};
+    gltf.root["extensionsUsed"] = {"KHR_materials_iridescence", "KHR_texture_transform"};
+    EXPECT_EQ(gltf.load().warnings, std::vector<std::string>{"shown without the glTF extensions KHR_materials_iridescence"});
 }
 
 }  // namespace
