@@ -46,13 +46,13 @@ def sky(image, finer=64):
     return {"type": "envmap", "bitmap": mi.Bitmap(np.roll(fine, -columns // 4, axis=1).astype(np.float32))}
 
 
-def sensor(to_world, fov, side, rfilter):
+def sensor(to_world, fov, side, sampler):
     return {"type": "perspective", "fov": float(fov), "fov_axis": "y", "near_clip": 0.001, "far_clip": 1e4, "to_world": to_world,
-            "film": {"type": "hdrfilm", "width": side, "height": side, "rfilter": {"type": rfilter}, "pixel_format": "rgb", "component_format": "float32"},
-            "sampler": {"type": "independent"}}
+            "film": {"type": "hdrfilm", "width": side, "height": side, "rfilter": {"type": "box"}, "pixel_format": "rgb", "component_format": "float32"},
+            "sampler": sampler}
 
 
-def load(scene, side, rfilter="box"):
+def load(scene, side, sampler=None):
     eye = scene["eye"]
     to_world = mi.ScalarTransform4f().look_at(origin=eye, target=[eye[0], eye[1], eye[2] - 1], up=[0, 1, 0])
     parts = {f"part{i}": mesh(f"part{i}", part) for i, part in enumerate(scene["parts"])}
@@ -60,4 +60,4 @@ def load(scene, side, rfilter="box"):
         parts["sky"] = sky(scene["sky"])
     # Mitsuba counts edges of paths, the path tracer scatterings.
     return mi.load_dict({"type": "scene", "integrator": {"type": "path", "max_depth": scene["depth"] + 1},
-                         "sensor": sensor(to_world, scene["fov"], side, rfilter), **parts})
+                         "sensor": sensor(to_world, scene["fov"], side, sampler or {"type": "independent"}), **parts})

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/configuration.h"
 
+#include <cstdio>
 #include <iomanip>
 
 #include "engine/core/error.h"
@@ -11,6 +12,7 @@ namespace twinray::path_tracer {
 namespace {
 
 constexpr const char* environment_entry = "environment";
+constexpr const char *picture_entry = "picture", *part_entry = "part";
 constexpr const char* default_sky_value = "default sky";
 
 // Of many pieces, one after the other.
@@ -70,8 +72,8 @@ Configuration configuration_of(const RenderSettings& settings, const Scene& scen
     const std::string sampling = settings.block_size > 1
                                      ? text("blocks of ", settings.block_size, " that do not depend on each other")
                                      : "one sequence a pixel";
-    return {{"picture", text(settings.width, " x ", settings.height)},
-            {"part", text(part.width, " x ", part.height, " at ", part.x, ", ", part.y)},
+    return {{picture_entry, text(settings.width, " x ", settings.height)},
+            {part_entry, text(part.width, " x ", part.height, " at ", part.x, ", ", part.y)},
             {"sampling", sampling},
             {"filter", filter_text(settings.filter)},
             {"seed", text(settings.seed)},
@@ -90,9 +92,20 @@ float exposure_of(const std::optional<float>& wanted, const Configuration& confi
     return value_of(configuration, environment_entry) == default_sky_value ? 0 : automatic_exposure(picture);
 }
 
+PicturePart part_of(const Configuration& configuration) {
+    PicturePart part;
+    uint width = 0, height = 0;
+    const std::string whole = value_of(configuration, picture_entry), piece = value_of(configuration, part_entry);
+    if (std::sscanf(whole.c_str(), "%u x %u", &part.whole_width, &part.whole_height) != 2 ||
+        std::sscanf(piece.c_str(), "%u x %u at %u, %u", &width, &height, &part.x, &part.y) != 4)
+        fail("a film's configuration says '", whole, "' and '", piece, "': not where its pixels lie");
+    return part;
+}
+
 void write_picture_of(const std::filesystem::path& file, const Film& film, const std::optional<float>& exposure,
                       std::span<const Channel> layers) {
-    const Picture picture = film.mean();
+    Picture picture = film.mean();
+    picture.part = part_of(film.configuration);
     write_picture(file, picture, exposure_of(exposure, film.configuration, picture), layers);
 }
 

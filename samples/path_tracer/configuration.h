@@ -15,6 +15,9 @@ Configuration configuration_of(const RenderSettings& settings, const Scene& scen
 // Stops for a .png: as asked for, else 0 under the default sky, else automatic.
 float exposure_of(const std::optional<float>& wanted, const Configuration& configuration, const Picture& picture);
 
+// Where the film's pixels lie in the picture. Throws Error for a configuration that does not say it.
+PicturePart part_of(const Configuration& configuration);
+
 // The mean, exposed so.
 void write_picture_of(const std::filesystem::path& file, const Film& film, const std::optional<float>& exposure,
                       std::span<const Channel> layers = {});

@@ -37,25 +37,35 @@ void write_exposed(const std::filesystem::path& file, const Picture& picture, fl
     write_png(file, picture.width, picture.height, pixels);
 }
 
+// Of the pixels that a picture has, and of the whole that they are of; both with their last pixel.
+Imath::Box2i data_window(const Picture& picture) {
+    const PicturePart part = picture.part.value_or(PicturePart{});
+    const Imath::V2i first(static_cast<int>(part.x), static_cast<int>(part.y));
+    return {first, first + Imath::V2i(static_cast<int>(picture.width) - 1, static_cast<int>(picture.height) - 1)};
+}
+Imath::Box2i display_window(const Picture& picture) {
+    if (!picture.part) return data_window(picture);
+    const Imath::V2i size(static_cast<int>(picture.part->whole_width), static_cast<int>(picture.part->whole_height));
+    return {Imath::V2i(0, 0), size - Imath::V2i(1, 1)};
+}
+
 void write_exr(const std::filesystem::path& file, const Picture& picture, std::span<const Channel> layers) {
     try {
-        Imf::Header header(static_cast<int>(picture.width), static_cast<int>(picture.height));
+        const Imath::Box2i window = data_window(picture);
+        Imf::Header header(display_window(picture), window);
         Imf::FrameBuffer frame;
+        const auto insert = [&](const std::string& name, Imf::PixelType type, const void* first, std::size_t stride) {
+            header.channels().insert(name, Imf::Channel(type));
+            frame.insert(name, Imf::Slice::Make(type, first, window, stride, stride * picture.width));
+        };
         const char* names[] = {"R", "G", "B"};
-        for (std::size_t i = 0; i < 3; ++i) {
-            header.channels().insert(names[i], Imf::Channel(Imf::FLOAT));
-            // The library takes pointers to non-const for reading and writing alike.
-            char* first = const_cast<char*>(reinterpret_cast<const char*>(picture.rgb.data())) + i * sizeof(float);
-            frame.insert(names[i], Imf::Slice(Imf::FLOAT, first, sizeof(vec3), sizeof(vec3) * picture.width));
-        }
+        for (int i = 0; i < 3; ++i) insert(names[i], Imf::FLOAT, &picture.rgb[0][i], sizeof(vec3));
         for (const Channel& layer : layers)
             std::visit(
                 [&](const auto& values) {
                     using Value = typename std::decay_t<decltype(values)>::value_type;
-                    const Imf::PixelType type = std::is_same_v<Value, float> ? Imf::FLOAT : Imf::UINT;
-                    header.channels().insert(layer.name, Imf::Channel(type));
-                    char* first = const_cast<char*>(reinterpret_cast<const char*>(values.data()));
-                    frame.insert(layer.name, Imf::Slice(type, first, sizeof(Value), sizeof(Value) * picture.width));
+                    insert(layer.name, std::is_same_v<Value, float> ? Imf::FLOAT : Imf::UINT, values.data(),
+                           sizeof(Value));
                 },
                 layer.values);
         Imf::OutputFile out(file.string().c_str(), header);

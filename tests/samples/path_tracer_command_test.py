@@ -74,6 +74,14 @@ assert 1 <= time.monotonic() - begun < 20
 # The part of a picture is as it is in the whole.
 run(*box, "--spp", "2", "-o", "all.film", "--quiet")
 run(*box, "--spp", "2", "--cropwindow", "0.25", "0.5", "0.5", "1", "-o", "part.film", "--quiet")
+# The part is the data window of the whole; its pixels are those of the film.
+run("merge", "part.film", "-o", "part.exr")
+header = (here / "part.exr").read_bytes()[:2000]
+for window, corners in [(b"dataWindow", (6, 12, 11, 23)), (b"displayWindow", (0, 0, 23, 23))]:
+    at = header.index(window + b"\0box2i\0") + len(window) + 7
+    assert struct.unpack_from("<Iiiii", header, at) == (16, *corners), window
+assert "MSE 0, relMSE 0" in run(*box, "--spp", "2", "--cropwindow", "0.25", "0.5", "0.5", "1", "-o", "again.exr",
+                                "--mse-reference-image", "part.exr")
 
 
 def pixels(name):  # 72 bytes each, before the checksum
