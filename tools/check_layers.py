@@ -14,7 +14,7 @@ SEES = {  # besides itself and shaders/shared
     "engine/analysis": BASE, "engine/collide": BASE, "engine/picture": BASE, "engine/verify": BASE,
     "engine/points": BASE + ["engine/collide"],
     "swtlas": ENGINE, "hwtlas": ENGINE,
-    "cli": PRODUCT + ["shaders/suite", "bench"],
+    "cli": PRODUCT + ["shaders/suite", "shaders/path_tracer", "bench", "samples"],
     "samples": PRODUCT + ["shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"],
     "bench": PRODUCT, "tests": PRODUCT + ["cli", "samples", "bench"],
     "shaders/embed_renderer": ["shaders/path_tracer"],

@@ -54,9 +54,19 @@ std::optional<PlotPoint> t_error(const Record& record) {
     return point;
 }
 
-// Of estimates whose truth is known, over their seeds. An error below that of the number's type is none.
+// How the errors of estimates are called on an axis, by metric; "" where it is none.
+std::string axis_of(const std::string& metric) {
+    static const std::map<std::string, std::string> names = {{"relative", "median relative error"},
+                                                             {"relMSE", "median relative mean squared error"},
+                                                             {"variance", "median variance of a pixel"},
+                                                             {"FLIP", "median FLIP"}};
+    const auto found = names.find(metric);
+    return found == names.end() ? "" : found->second;
+}
+
+// Of estimates, over their seeds. An error below that of the number's type is none.
 std::optional<PlotPoint> estimate_error(const Record& record) {
-    if (!record.time || !record.error || record.error->metric != "relative") return std::nullopt;
+    if (!record.time || !record.error || axis_of(record.error->metric).empty()) return std::nullopt;
     PlotPoint point = timed_point(record);
     point.is_zero = record.error->median < record.error->floor;
     point.error = std::max(record.error->median, record.error->floor);
@@ -115,7 +125,13 @@ Plot t_plot(const std::string& id, const std::string& title, std::span<const Rec
             "ns per ray", floor_of(records),      curves_of(records, t_error, with_fit)};
 }
 
-// For each setting of a case but for the number of rays, over which its curves go.
+// "ms_per_estimate" as it is said.
+std::string spaced(std::string metric) {
+    std::replace(metric.begin(), metric.end(), '_', ' ');
+    return metric;
+}
+
+// For each setting of a case but for the number of rays, or of samples a pixel, over which its curves go.
 std::vector<Plot> estimate_plots(const std::string& id, std::span<const Record* const> records) {
     std::vector<std::string> settings;
     std::map<std::string, std::vector<const Record*>> by_setting;
@@ -123,17 +139,19 @@ std::vector<Plot> estimate_plots(const std::string& id, std::span<const Record* 
         if (!estimate_error(*record)) continue;
         std::string setting;
         for (const auto& [name, value] : record->params)
-            if (name != "rays") setting += (setting.empty() ? "" : ", ") + name + ' ' + value.text();
+            if (name != "rays" && name != "spp") setting += (setting.empty() ? "" : ", ") + name + ' ' + value.text();
         std::vector<const Record*>& same = by_setting[setting];
         if (same.empty()) settings.push_back(setting);
         same.push_back(record);
     }
     std::vector<Plot> plots;
-    for (const std::string& setting : settings)
+    for (const std::string& setting : settings) {
+        const std::vector<const Record*>& same = by_setting[setting];
         plots.push_back({id + "-error-" + std::to_string(plots.size() + 1),
-                         id + (setting.empty() ? "" : ", " + setting) + ": error of estimates", "median relative error",
-                         "ms per estimate", floor_of(by_setting[setting]),
-                         curves_of(by_setting[setting], estimate_error, true)});
+                         id + (setting.empty() ? "" : ", " + setting) + ": error of estimates",
+                         axis_of(same.front()->error->metric), spaced(same.front()->time->metric), floor_of(same),
+                         curves_of(same, estimate_error, true)});
+    }
     return plots;
 }
 

@@ -73,6 +73,8 @@ class CaseRun {
     // A record of this case, to be filled further and added.
     Record record(const Subject& subject) const;
     void add(const Record& record) { recorder_.add(record); }
+    // Of the cases before this one, too.
+    std::span<const Record> earlier() const { return recorder_.records(); }
     void add_not_run(const std::string& reason, const Subject* subject = nullptr);
     void add_failure(const std::string& what);  // an exception: a fault of ours
 

@@ -54,7 +54,7 @@ std::vector<SuiteCase> catalogue() {
     std::vector<SuiteCase> all;
     for (const auto& section :
          {edge_cases, scale_cases, shape_cases, input_cases, instance_cases, build_cases, arithmetic_cases, price_cases,
-          view_factor_cases, hidden_factor_cases, radiosity_cases, collision_cases, distance_cases}) {
+          view_factor_cases, hidden_factor_cases, radiosity_cases, collision_cases, distance_cases, picture_cases}) {
         const std::vector<SuiteCase> cases = section();
         all.insert(all.end(), cases.begin(), cases.end());
     }
@@ -75,6 +75,7 @@ std::string_view section_of(std::string_view id) {
         case 'R': return "radiosity";
         case 'C': return "collisions";
         case 'D': return "distances";
+        case 'P': return "pictures";
         default: return "";
     }
 }

@@ -70,6 +70,7 @@ std::vector<SuiteCase> hidden_factor_cases();
 std::vector<SuiteCase> radiosity_cases();  // R: radiosity
 std::vector<SuiteCase> collision_cases();  // C: collisions
 std::vector<SuiteCase> distance_cases();   // D: distances
+std::vector<SuiteCase> picture_cases();    // P: pictures
 std::vector<SuiteCase> catalogue();        // all of them
 // The same as L for scenes of the user's, from L11 on.
 std::vector<SuiteCase> scene_cases(std::span<const std::filesystem::path> files);

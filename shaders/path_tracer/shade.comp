@@ -8,6 +8,9 @@
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };
 
+// Where shadow rays to a point of a light end, of their way: 16 roundings before it. The point is clear of its triangle,
+// but its way from here is rounded, and a ray that went all of it could meet a light that is small for its distance.
+const float SHADOW_END = 1.0 - 9.5367431640625e-07;
 const uint ROULETTE_DEPTH = 3u; // scatterings that no path is spared
 
 // The pairs of random dimensions of a vertex; pair 0 of a path is its place in the pixel.
@@ -83,7 +86,7 @@ void light_directly(Vertex vertex)
     ray.origin = spawn_position(vertex.surface.point, (wi.z > 0.0) == vertex.is_front);
     ray.direction = light.has_target ? light.target - ray.origin : light.direction;
     ray.t_min = 0.0;
-    ray.t_max = light.has_target ? 1.0 : infinity();
+    ray.t_max = light.has_target ? SHADOW_END : infinity();
     uint slot = atomicAdd(AT(wave.counters, 0).shadows, 1u);
     AT(wave.shadow_rays, slot) = ray;
     AT(wave.shadows.contribution, slot) = contribution;
@@ -113,7 +116,9 @@ void scatter(Vertex vertex)
     path.throughput *= onwards.weight;
     if (path.progress >> 16u >= ROULETTE_DEPTH)
     {
-        float survival = min(largest(path.throughput), 0.95);
+        // Never less than the throughput: what survives would weigh more and more, and where little is absorbed the mean
+        // would be that of few paths of great weight. Paths that lose nothing end at max_depth.
+        float survival = min(largest(path.throughput), 1.0);
         if (lobe_and_roulette.y >= survival) return;
         path.throughput /= survival;
     }

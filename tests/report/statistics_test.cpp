@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "engine/report/bootstrap.h"
 #include "engine/report/statistics.h"
 
 #include <gtest/gtest.h>
@@ -200,6 +201,33 @@ TEST(PairedMargin, CoversWeightedSums) {
     EXPECT_NEAR(paired_margin(100, 1, 0.05), 33.86, 0.01);
     EXPECT_NEAR(paired_margin(2500, 5, 0.05), 5 * 33.86, 0.05);
     EXPECT_GT(paired_margin(200, 5, 0.01), paired_margin(200, 5, 0.05));
+}
+
+// Of means of 30 numbers that are 1 with a chance of 0.3.
+TEST(Bootstrap, CoversAMeanAboutAsOftenAsItSays) {
+    std::mt19937 random(7);
+    int covered = 0;
+    double width = 0;
+    constexpr int trials = 200;
+    for (int trial = 0; trial < trials; ++trial) {
+        std::vector<double> values;
+        for (int i = 0; i < 30; ++i) values.push_back(random() % 10 < 3);
+        const Interval interval = bootstrap_interval_95(values.size(), [&](std::span<const std::size_t> items) {
+            double sum = 0;
+            for (const std::size_t item : items) sum += values[item];
+            return sum / static_cast<double>(items.size());
+        });
+        width += (interval.high - interval.low) / trials;
+        covered += interval.low <= 0.3 && 0.3 <= interval.high;
+    }
+    EXPECT_NEAR(width, 2 * 1.96 * std::sqrt(0.3 * 0.7 / 30), 0.02);
+    EXPECT_GE(covered, trials * 0.87);
+    EXPECT_LT(covered, trials);
+}
+
+TEST(Bootstrap, OfOneItemIsThatItem) {
+    const auto first = [](std::span<const std::size_t> items) { return static_cast<double>(items.size() + items[0]); };
+    EXPECT_EQ(bootstrap_interval_95(1, first), (Interval{1, 1}));
 }
 
 }  // namespace

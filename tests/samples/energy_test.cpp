@@ -46,6 +46,39 @@ TEST_F(Energy, InsideAClosedFurnaceRadianceIsTheSumOfAllBounces) {
     }
 }
 
+// 100 bounces on average, of which roulette must spare enough: survivors that weigh ever more would leave 20 % out.
+TEST_F(Energy, DeepPathsArriveWithTheirShare) {
+    Scene scene;
+    Material wall = lambert(0.99f);
+    wall.emission = vec3(1);
+    wall.double_sided = true;
+    add(scene, flat_sphere(2), wall);
+    Shot shot;
+    shot.settings.samples = 2;
+    shot.settings.max_depth = 2000;
+    shot.settings.strategy = STRATEGY_BSDF;
+    shot.settings.camera = camera_rays(look({0.1f, 0, 0}, {1, 0.2f, 0.3f}, 0.5f), 1);
+    const Picture picture = render(context(), scene, shot);
+    expect_mean(picture, 100, "albedo 0.99");
+    EXPECT_LT(statistics(picture).error, 100.0 * 1.2 / std::sqrt(2.0 * 32 * 32))
+        << "lengths vary as a geometric distribution";
+}
+
+// A shadow ray is rounded by more than the light's own points are known.
+TEST_F(Energy, ALightSmallForItsDistanceDoesNotHideItself) {
+    for (const bool hardware : {false, true}) {
+        if (hardware && !missing_for_hardware(context().facts()).empty()) continue;
+        Scene scene;
+        add(scene, make_quad({-5, -1, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+        add(scene, make_quad({-5e-5f, 0, -5e-5f}, {1e-4f, 0, 0}, {0, 0, 1e-4f}), lamp(1e8f * PI));
+        Shot shot;
+        shot.hardware = hardware;
+        shot.settings.max_depth = 1;
+        shot.settings.camera = camera_rays(look({0, -0.5f, 0}, {0, -1, 0}, 1e-4f), 1);
+        EXPECT_NEAR(statistics(render(context(), scene, shot)).mean, 1, 1e-6);
+    }
+}
+
 // A 2 x 2 light one above the middle of a floor: view factor 0.554126.
 TEST_F(Energy, ARectangularLightGivesItsAnalyticIrradianceByEveryStrategy) {
     Scene scene;
