@@ -3,6 +3,7 @@
 
 #include <netdb.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <array>
@@ -37,6 +38,9 @@ int connected_socket(const Address& address) {
     for (const addrinfo* one = all.get(); one; one = one->ai_next) {
         const int result = socket(one->ai_family, one->ai_socktype, one->ai_protocol);
         if (result < 0) continue;
+        // A viewer that does not read for so long counts as gone.
+        const timeval patience{.tv_sec = 2, .tv_usec = 0};
+        setsockopt(result, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
         if (connect(result, one->ai_addr, one->ai_addrlen) == 0) return result;
         close(result);
     }

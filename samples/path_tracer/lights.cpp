@@ -7,6 +7,7 @@
 
 #include "engine/scene/rgb.h"
 #include "samples/path_tracer/alias_table.h"
+#include "samples/path_tracer/material_kinds.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -131,8 +132,10 @@ LocalLights collect_lights(const Scene& scene) {
 }
 
 bool has_lamps(const Scene& scene) {
-    const auto is_lamp = [](const Material& material) { return largest(material.emission) > 1; };
-    return !scene.lights.empty() || std::any_of(scene.materials.begin(), scene.materials.end(), is_lamp);
+    const std::vector<bool> used = used_materials(scene);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+        if (used[i] && largest(scene.materials[i].emission) > 1) return true;
+    return !scene.lights.empty();
 }
 
 }  // namespace twinray::path_tracer

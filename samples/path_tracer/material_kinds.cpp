@@ -15,22 +15,18 @@ constexpr std::pair<uint, uint> needs_of_layers[] = {{LAYER_SPECULAR, PT_HAS_SPE
                                                      {LAYER_ANISOTROPY, PT_HAS_ANISOTROPY},
                                                      {LAYER_VOLUME, PT_HAS_VOLUME}};
 
-std::vector<bool> used_materials(const Scene& scene) {
-    std::vector<bool> used(scene.materials.size());
-    for (const Instance& instance : scene.instances) {
-        const Mesh& mesh = scene.meshes[instance.mesh];
-        if (instance.material) used[*instance.material] = true;
-        for (std::size_t i = 0; !instance.material && i < mesh.triangles.size(); ++i) used[mesh.material(i)] = true;
-    }
-    return used;
-}
-
-// What every kind needs: each kernel samples all lights, of which some may have a texture.
+// What every kind needs: each kernel samples all lights, of which some may have textures or be transparent.
 uint needs_of_lights(const Scene& scene, const std::vector<bool>& used) {
-    for (std::size_t i = 0; i < scene.materials.size(); ++i)
-        if (used[i] && scene.materials[i].emission_texture.image >= 0 && largest(scene.materials[i].emission) > 0)
-            return 1u << PT_HAS_TEXTURES;
-    return 0;
+    uint needs = 0;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        if (!used[i] || largest(material.emission) <= 0) continue;
+        const bool is_transparent = material.alpha_mode != AlphaMode::opaque;
+        if (is_transparent) needs |= 1u << PT_HAS_ALPHA;
+        if (material.emission_texture.image >= 0 || (is_transparent && material.base_color_texture.image >= 0))
+            needs |= 1u << PT_HAS_TEXTURES;
+    }
+    return needs;
 }
 
 uint index_of(std::vector<uint>& kinds, uint needs) {
@@ -59,6 +55,16 @@ void merge(MaterialKinds& kinds, std::size_t kept, std::size_t removed) {
 }
 
 }  // namespace
+
+std::vector<bool> used_materials(const Scene& scene) {
+    std::vector<bool> used(scene.materials.size());
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        if (instance.material) used[*instance.material] = true;
+        for (std::size_t i = 0; !instance.material && i < mesh.triangles.size(); ++i) used[mesh.material(i)] = true;
+    }
+    return used;
+}
 
 uint needs_of(const Material& material) {
     uint needs = 0;

@@ -11,6 +11,9 @@ namespace twinray::path_tracer {
 // Each kind costs a pipeline and 4 bytes a ray in flight.
 constexpr std::size_t most_material_kinds = 4;
 
+// By material: whether an instance shows it.
+std::vector<bool> used_materials(const Scene& scene);
+
 // What materials can need of the kernel that shades them.
 constexpr uint material_needs[] = {PT_HAS_ALPHA, PT_HAS_TEXTURES, PT_HAS_GLASS,      PT_HAS_SPECULAR,
                                    PT_HAS_COAT,  PT_HAS_SHEEN,    PT_HAS_ANISOTROPY, PT_HAS_VOLUME};

@@ -171,7 +171,11 @@ std::uint64_t Renderer::device_bytes() const {
     return waves_.bytes() + sums_.bytes() + film_.bytes() + pixels_.bytes();
 }
 
-void Renderer::read(Film& film) { film.pixels = download<FilmPixel>(context_, film_, film_size_); }
+void Renderer::read(Film& film) {
+    film.pixels = download<FilmPixel>(context_, film_, film_size_);
+    // Sums of a block may be infinite where none of its contributions is.
+    stats_.non_finite = download<Counters>(context_, waves_.counters(), 1)[0].non_finite;
+}
 
 void Renderer::trace_batch(const Tracing& tracing, const Batch& batch) {
     turn_ = 0;

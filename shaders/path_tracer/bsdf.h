@@ -97,7 +97,10 @@ FUNC BsdfChoice choose(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
         if (has_layer(bsdf, LAYER_COAT) && lobe < chances.coat)
         {
             vec3 wi = sample_coat(bsdf, wo, u);
-            if (!has_smooth_coat(bsdf)) return open_choice(wi);
+            // Below the coat or what bears it nothing is reflected; a mirror direction there would pass the surface.
+            bool is_above = wi.z > 0.0f && dot(wi, bsdf.coat_normal) > 0.0f;
+            if (!has_smooth_coat(bsdf)) return is_above ? open_choice(wi) : final_choice(wi, vec3(0.0f));
+            wi = is_above ? wi : vec3(-wo.x, -wo.y, wo.z);
             return final_choice(wi, vec3(kept_by_coat(bsdf, wo) / chances.coat));
         }
         lobe = remapped(lobe, chances.coat);

@@ -56,7 +56,7 @@ FUNC Ray camera_ray(CameraRays camera, vec2 at, vec2 u)
         vec2 disk = unit_circle(u.y) * (camera.lens_radius * sqrt(u.x));
         vec3 lens = normalize(camera.right) * disk.x + normalize(camera.up) * disk.y;
         ray.origin = ray.origin + lens;
-        ray.direction = ray.direction * camera.focal_distance - lens;
+        ray.direction = ray.direction - lens / camera.focal_distance;
     }
     ray.direction = normalize(ray.direction);
     ray.t_min = 0.0f;

@@ -98,6 +98,6 @@ void set_layers(inout Bsdf bsdf, SceneData scene, Surface surface, vec3 normal, 
 // Beer and Lambert: what is left after a way through a volume.
 vec3 transmittance(SceneData scene, uint medium, float distance)
 {
-    return exp(AT(scene.layered, medium - 1u).extinction * -distance);
+    return exp(AT(scene.layered, medium - 1u).extinction * -max(distance, 0.0));
 }
 #endif

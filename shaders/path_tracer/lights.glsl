@@ -102,6 +102,9 @@ LightSample sample_local(SceneData scene, Emitter emitter, vec3 from, vec2 u)
     LightSample light;
     light.direction = way * inversesqrt(distance2);
     light.radiance = emitted(scene, emitter.material, flags, surface.uv, cosine > 0.0);
+    if (HAS_ALPHA)
+        light.radiance *= opacity(flags, AT(scene.materials, emitter.material).alpha_cutoff,
+                                  base_color(scene, emitter.material, flags, surface.uv).a);
     light.pdf = (1.0 - scene.environment.chance) * density * distance2 / abs(cosine);
     light.is_delta = false;
     light.has_target = true;

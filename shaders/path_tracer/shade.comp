@@ -67,6 +67,14 @@ bool is_above(Vertex vertex, vec3 direction)
     return (dot(vertex.surface.point.normal, direction) > 0.0) == vertex.is_front;
 }
 
+// That a ray in the local direction wi starts in; 0: none.
+uint medium_towards(Vertex vertex, vec3 wi)
+{
+    if (!HAS_MEDIA) return 0u;
+    if (!has_layer(vertex.bsdf, LAYER_VOLUME) || wi.z > 0.0) return vertex.path.medium;
+    return vertex.is_front ? vertex.surface.material + 1u : 0u;
+}
+
 // Next-event estimation.
 void light_directly(Vertex vertex)
 {
@@ -87,6 +95,8 @@ void light_directly(Vertex vertex)
     ray.direction = light.has_target ? light.target - ray.origin : light.direction;
     ray.t_min = 0.0;
     ray.t_max = light.has_target ? SHADOW_END : infinity();
+    uint medium = medium_towards(vertex, wi);
+    if (medium != 0u && light.has_target) contribution *= transmittance(scene, medium, length(ray.direction));
     uint slot = atomicAdd(AT(wave.counters, 0).shadows, 1u);
     AT(wave.shadow_rays, slot) = ray;
     AT(wave.shadows.contribution, slot) = contribution;
@@ -125,8 +135,7 @@ void scatter(Vertex vertex)
     if (!(largest(path.throughput) > 0.0)) return;
     path.pdf = onwards.pdf;
     path.progress += 0x10001u;
-    if (has_layer(vertex.bsdf, LAYER_VOLUME) && onwards.wi.z < 0.0)
-        path.medium = vertex.is_front ? vertex.surface.material + 1u : 0u;
+    path.medium = medium_towards(vertex, onwards.wi);
     Ray ray;
     ray.origin = spawn_position(vertex.surface.point, (onwards.wi.z > 0.0) == vertex.is_front);
     ray.direction = direction;

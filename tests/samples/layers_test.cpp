@@ -294,6 +294,20 @@ TEST(Layers, AThinWallBendsNothing) {
     EXPECT_NEAR(passed, 1 - static_cast<double>(fresnel_dielectric(0.3f, 1.5f)), 1e-3);
 }
 
+TEST(Layers, NothingPassesAnOpaqueSurfaceUnderATiltedCoat) {
+    const vec3 tilted = normalize(vec3(0.6f, 0, 1));
+    for (const float alpha : {0.0f, 0.2f})
+        for (const vec3& wo :
+             {normalize(vec3(-1, 0, 0.7f)), normalize(vec3(1, 0, 0.1f)), normalize(vec3(0.5f, 1, 0.3f))})
+            for (uint i = 0; i < 1000; ++i) {
+                const Bsdf bsdf = with_coat(plastic(0.3f), 1, alpha, tilted);
+                if (dot(wo, tilted) <= 0) continue;
+                const BsdfSample s =
+                    sample_bsdf(bsdf, wo, unit_float(sample_pair(i, 0, 1, 1).x), unit_floats(sample_pair(i, 0, 2, 1)));
+                EXPECT_TRUE(s.wi.z > 0 || largest(s.weight) == 0) << alpha << ' ' << i;
+            }
+}
+
 TEST(Layers, AreWhatChangesAnything) {
     Scene scene;
     scene.materials = {{.name = "plain"}, {.name = "glass", .transmission = 1}, {.name = "solid", .thickness = 1}};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "engine/scene/scene.h"
 #include "samples/path_tracer/camera.h"
@@ -77,6 +78,14 @@ TEST(Lens, RaysOfAPointMeetOnTheFocalPlane) {
             EXPECT_NEAR(length(cross(sharp - ray.origin, ray.direction)), 0, 3e-6f);
         }
     }
+}
+
+TEST(Lens, MayFocusAnywhere) {
+    CameraRays camera = tilted_camera(false);
+    const Ray pinhole = camera_ray(camera, vec2(0), vec2(0));
+    camera.lens_radius = 0.25f;
+    camera.focal_distance = std::numeric_limits<float>::max();
+    EXPECT_EQ(camera_ray(camera, vec2(0), vec2(0.3f)).direction, pinhole.direction);
 }
 
 TEST(Lens, RaysStartUniformlyOnADisk) {
