@@ -5,10 +5,10 @@ is left out must make it smaller, and the leanest variants may not outgrow instr
 anew. Usage: variants_test.py FEATURES_H COUNTS [--record] BACKEND=MODULE.spv..., BACKEND being sw or hw."""
 import pathlib
 import re
-import struct
-import subprocess
 import sys
-import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import frozen_spirv
 
 QUERY, FEATURES, LEVEL = 0, 100, 101  # ids of the constants
 CLOSEST, ANY, WATERTIGHT = 0, 1, 1
@@ -23,24 +23,11 @@ modules = dict(a.split("=", 1) for a in arguments[2:])
 bits = {name: int(value) for name, value in re.findall(r"^const uint FEATURE_(\w+) = (\d+)u;", header.read_text(), re.M)}
 uncovered = set(bits) - {name for names in [*OPTIONAL.values(), *LEAST.values()] for name in names}
 assert not uncovered, f"no module leaves out {uncovered}: add them to the table"
-folder = pathlib.Path(tempfile.mkdtemp())
 
 
 def count(module, query, features):
-    """Instructions between OpFunction and OpFunctionEnd, without labels and line numbers."""
-    frozen = folder / "frozen.spv"
     value = sum(bits[name] for name in features)
-    subprocess.run(["spirv-opt", "--scalar-block-layout", "--target-env=vulkan1.2",
-                    f"--set-spec-const-default-value={QUERY}:{query} {FEATURES}:{value} {LEVEL}:{WATERTIGHT}",
-                    "--freeze-spec-const", "--fold-spec-const-op-composite", "-O", module, "-o", str(frozen)], check=True)
-    data = frozen.read_bytes()
-    words, at, inside, found = struct.unpack(f"<{len(data) // 4}I", data), 5, False, 0
-    while at < len(words):
-        opcode = words[at] & 0xFFFF
-        inside = (inside or opcode == 54) and opcode != 56
-        found += inside and opcode not in (8, 248, 317)
-        at += words[at] >> 16
-    return found
+    return frozen_spirv.count(module, {QUERY: query, FEATURES: value, LEVEL: WATERTIGHT})
 
 
 faults, counts = [], {}

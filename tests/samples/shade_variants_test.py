@@ -5,33 +5,20 @@ each feature that a scene leaves out must make the kernel smaller, and the plain
 Usage: shade_variants_test.py SCENE_H MODULE.spv"""
 import pathlib
 import re
-import struct
-import subprocess
 import sys
-import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import frozen_spirv
 
 header, module = pathlib.Path(sys.argv[1]), sys.argv[2]
 ids = {name: int(value) for name, value in re.findall(r"^const uint PT_HAS_(\w+) = (\d+)u;", header.read_text(), re.M)}
 # Light from somewhere there has to be, and where first surfaces go is no matter of the scene.
 least, other = {"LOCAL_LIGHTS"}, {"AOVS", "QUEUES"}
 most_of_the_plainest = 2450
-folder = pathlib.Path(tempfile.mkdtemp())
 
 
 def count(features):
-    """Instructions between OpFunction and OpFunctionEnd, without labels and line numbers."""
-    frozen = folder / "frozen.spv"
-    values = " ".join(f"{number}:{str(name in features).lower()}" for name, number in ids.items())
-    subprocess.run(["spirv-opt", "--scalar-block-layout", "--target-env=vulkan1.2", f"--set-spec-const-default-value={values}",
-                    "--freeze-spec-const", "--fold-spec-const-op-composite", "-O", module, "-o", str(frozen)], check=True)
-    data = frozen.read_bytes()
-    words, at, inside, found = struct.unpack(f"<{len(data) // 4}I", data), 5, False, 0
-    while at < len(words):
-        opcode = words[at] & 0xFFFF
-        inside = (inside or opcode == 54) and opcode != 56
-        found += inside and opcode not in (8, 248, 317)
-        at += words[at] >> 16
-    return found
+    return frozen_spirv.count(module, {number: str(name in features).lower() for name, number in ids.items()})
 
 
 faults, everything = [], set(ids) - other
