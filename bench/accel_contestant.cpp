@@ -39,6 +39,7 @@ double AccelContestant::trace(const RayBatch& batch) {
                    .count = batch.rays().size(),
                    .query = batch.query(),
                    .level = level_,
+                   .answer_only = batch.query() == Query::any,
                    .order = order_});
     const Stopwatch watch;
     commands.submit();

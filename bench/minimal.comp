@@ -23,11 +23,10 @@ Hit closest_triangle(SwInstance instance, Ray ray)
     RaySpace space = make_ray_space(origin, without_negative_zeros(ray.direction), corner_pad(origin, instance.extent));
     float t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;
     float t_best = ray.t_max;
+    HeldGroups held = no_groups();
     uint stack[GROUP_STACK_SIZE];
     uint height = 1u;
     stack[0] = BOTTOM;
-    uint group = BOTTOM;
-    uint before = BOTTOM;
     uint cursor = 0u;
     for (;;)
     {
@@ -38,19 +37,7 @@ Hit closest_triangle(SwInstance instance, Ray ray)
             uint count = count_entered(keys);
             uint others = BOTTOM;
             order_children(keys, count, record.c.z, cursor, others);
-            if (count > 1u)
-            {
-                if (is_waiting(group))
-                {
-                    if (is_waiting(before))
-                    {
-                        stack[height] = before;
-                        height = height + 1u;
-                    }
-                    before = group;
-                }
-                group = others;
-            }
+            if (count > 1u) TWINRAY_PUSH_GROUP(held, stack, height, others)
             if (count > 0u) continue;
         }
         else
@@ -70,19 +57,16 @@ Hit closest_triangle(SwInstance instance, Ray ray)
                 if (MINIMAL_QUERY == QUERY_ANY) break;
             }
         }
-        if (!is_waiting(group))
-        {
-            group = before;
-            before = BOTTOM;
-        }
-        if (!is_waiting(group))
+        uint group = held.first;
+        if (group == BOTTOM)
         {
             height = height - 1u;
             group = stack[height];
             if (group == BOTTOM) break;
         }
         cursor = next_of(group);
-        group = rest_of(group);
+        held.first = rest_of(group);
+        if (held.first == BOTTOM) drop_group(held);
     }
     return best;
 }

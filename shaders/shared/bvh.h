@@ -138,6 +138,28 @@ FUNC BvhNode load_node(REF(BvhNode) nodes, uint index)
     return node;
 }
 
+FUNC SwInstance load_instance(REF(SwInstance) instances, uint index)
+{
+    Words64 words = Words64(uint64_t(instances) + uint64_t(index) * 104ul);
+    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4), w5 = AT(words, 5);
+    uint64_t w10 = AT(words, 10), w11 = AT(words, 11), w12 = AT(words, 12);
+    SwInstance instance;
+    instance.world_to_object[0] = vec4(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x, FLOATS(w1).y);
+    instance.world_to_object[1] = vec4(FLOATS(w2).x, FLOATS(w2).y, FLOATS(w3).x, FLOATS(w3).y);
+    instance.world_to_object[2] = vec4(FLOATS(w4).x, FLOATS(w4).y, FLOATS(w5).x, FLOATS(w5).y);
+    instance.nodes = REF(BvhNode)(AT(words, 6));
+    instance.triangles = REF(BvhTriangle)(AT(words, 7));
+    instance.records = REF(CompressedRecord)(AT(words, 8));
+    instance.record_boxes = REF(LeafBox)(AT(words, 9));
+    instance.root = UINTS(w10).x;
+    instance.custom_index_mask = UINTS(w10).y;
+    instance.flags = UINTS(w11).x;
+    instance.kind = UINTS(w11).y;
+    instance.extent = FLOATS(w12).x;
+    instance.reserved = 0u;
+    return instance;
+}
+
 FUNC LeafBox load_box(REF(LeafBox) boxes, uint index)
 {
     Words64 words = Words64(uint64_t(boxes) + uint64_t(index) * 24ul);

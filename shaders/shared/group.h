@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The children of a node of four that a ray has still to visit, as one word: where they lie, and in which order.
+// The children of a node of four that a ray has still to visit, as one word: where they lie, and in which order. And the stack
+// of those that wait.
 #ifndef TWINRAY_SHARED_GROUP_H
 #define TWINRAY_SHARED_GROUP_H
 #include "shaders/shared/visit.h"
 
 // A group: where the siblings begin (25 bits), up to three of them to visit, in order (2 bits each, the last one repeated),
-// and 1 at the top. Else there is none:
+// and 1 at the top, so that no group is one of the other entries of a stack: its bottom, and where the ray leaves an instance.
 const uint BOTTOM = 0u;
 const uint LEAVE_INSTANCE = 1u;
-FUNC bool is_waiting(uint group) { return group >= 0x80000000u; }
 FUNC uint make_group(uint siblings, uint second, uint third, uint fourth)
 {
     return 0x80000000u | fourth << 29u | third << 27u | second << 25u | siblings;
@@ -21,6 +21,62 @@ FUNC uint rest_of(uint group)
     return is_last ? BOTTOM : (group & 0xe1ffffffu) | (group >> 2u & 0x1e000000u);
 }
 
+// A node leaves one group at most, so the deepest path of each level, the mark between them and the bottom.
+const uint GROUP_STACK_SIZE = 2u * DEEPEST_TREE + 4u;
+
+// What is on top of a stack of groups and LEAVE_INSTANCE lies in registers, the last one first: most come and go without a trip
+// to memory. BOTTOM: there are no more.
+struct HeldGroups
+{
+    uint first;
+    uint second;
+    uint third;
+    uint fourth;
+    uint fifth;
+};
+
+FUNC HeldGroups no_groups()
+{
+    HeldGroups held;
+    held.first = BOTTOM;
+    held.second = BOTTOM;
+    held.third = BOTTOM;
+    held.fourth = BOTTOM;
+    held.fifth = BOTTOM;
+    return held;
+}
+
+FUNC void hold_group(INOUT(HeldGroups) held, uint group)
+{
+    held.fifth = held.fourth;
+    held.fourth = held.third;
+    held.third = held.second;
+    held.second = held.first;
+    held.first = group;
+}
+
+FUNC void drop_group(INOUT(HeldGroups) held)
+{
+    held.first = held.second;
+    held.second = held.third;
+    held.third = held.fourth;
+    held.fourth = held.fifth;
+    held.fifth = BOTTOM;
+}
+
+// Pushes a group. If five are held already, the last of them goes to `memory`, a uint[GROUP_STACK_SIZE] that holds `height`
+// entries. A macro, since drivers on CPUs copy an array that is passed to a function, and a ray would take twice as long. The
+// inner condition always holds: it makes the block too long for these drivers to run it for all lanes under a mask, which can
+// take a quarter of a ray's time.
+#define TWINRAY_PUSH_GROUP(held, memory, height, group)                    \
+    {                                                                      \
+        if (held.fifth != BOTTOM)                                          \
+        {                                                                  \
+            if (height < GROUP_STACK_SIZE) memory[height] = held.fifth;    \
+            height = height + 1u;                                          \
+        }                                                                  \
+        hold_group(held, group);                                           \
+    }
 
 // Where the children of a node come in order, the least first (see place_in_order), each with its number in the last two bits;
 // NO_ENTRY or more: the ray does not enter it.

@@ -30,7 +30,7 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
     if (has_top) space = world_space(scene, ray);
     else if (cursor != END_OF_STACK)
     {
-        SwInstance instance = AT(scene.instances, 0);
+        SwInstance instance = load_instance(scene.instances, 0u);
         if (!is_visible(instance, options)) return search.best;
         inside = enter_instance(instance, 0u, options);
         space = space_in(instance, inside, ray, options);
@@ -70,7 +70,7 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
         else
         {
             uint index = cursor & ~LEAF_BIT;
-            SwInstance instance = AT(scene.instances, index);
+            SwInstance instance = load_instance(scene.instances, index);
             if (is_visible(instance, options))
             {
                 inside = enter_instance(instance, index, options);

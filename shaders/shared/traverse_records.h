@@ -6,9 +6,6 @@
 #include "shaders/shared/enter_compressed.h"
 #include "shaders/shared/enter_full.h"
 
-// A node leaves one group at most, so the deepest path of each level, the mark between them and the bottom.
-const uint GROUP_STACK_SIZE = 2u * DEEPEST_TREE + 4u;
-
 FUNC ChildKeys enter_children(CompressedRecord node, REF(LeafBox) boxes, RaySpace space, Search search, TraceOptions options)
 {
     bool may_be_full = (options.features & FEATURE_BVH4) != 0u;
@@ -30,7 +27,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
     if (has_top) space = world_space(scene, ray);
     else
     {
-        SwInstance instance = AT(scene.instances, 0);
+        SwInstance instance = load_instance(scene.instances, 0u);
         if (!is_visible(instance, options)) return search.best;
         inside = enter_instance(instance, 0u, options);
         space = space_in(instance, inside, ray, options);
@@ -39,12 +36,10 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
     }
     bool in_instance = !has_top;
 
+    HeldGroups held = no_groups();
     uint stack[GROUP_STACK_SIZE];
     uint height = 1u;
     stack[0] = BOTTOM;
-    // The last two groups, if they are waiting: most come and go without a trip to memory.
-    uint group = BOTTOM;
-    uint before = BOTTOM;
     uint cursor = 0u;
     for (;;)
     {
@@ -56,19 +51,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
             uint count = count_entered(keys);
             uint others = BOTTOM;
             order_children(keys, count, record.c.z, cursor, others);
-            if (count > 1u)
-            {
-                if (is_waiting(group))
-                {
-                    if (is_waiting(before))
-                    {
-                        stack[height] = before;
-                        height = height + 1u;
-                    }
-                    before = group;
-                }
-                group = others;
-            }
+            if (count > 1u) TWINRAY_PUSH_GROUP(held, stack, height, others)
             descend = count > 0u;
         }
         else if (!has_top || in_instance)
@@ -78,49 +61,45 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
         else
         {
             uint index = record.a.w & ~LEAF_BIT;
-            SwInstance instance = AT(scene.instances, index);
+            SwInstance instance = load_instance(scene.instances, index);
             if (is_visible(instance, options))
             {
                 inside = enter_instance(instance, index, options);
                 space = space_in(instance, inside, ray, options);
                 records = instance.records;
                 boxes = instance.record_boxes;
-                stack[height] = before;
-                height = height + (is_waiting(before) ? 1u : 0u);
-                stack[height] = group;
-                height = height + (is_waiting(group) ? 1u : 0u);
-                stack[height] = LEAVE_INSTANCE;
-                height = height + 1u;
-                group = BOTTOM;
-                before = BOTTOM;
+                TWINRAY_PUSH_GROUP(held, stack, height, LEAVE_INSTANCE)
                 in_instance = true;
                 cursor = 0u;
                 descend = true;
             }
         }
         if (descend) continue;
-        if (!is_waiting(group))
-        {
-            group = before;
-            before = BOTTOM;
-        }
-        if (!is_waiting(group))
+        uint group = held.first;
+        if (group == BOTTOM)
         {
             height = height - 1u;
             group = stack[height];
-            if (has_top && group == LEAVE_INSTANCE)
-            {
-                space = world_space(scene, ray);
-                records = scene.records;
-                boxes = scene.record_boxes;
-                in_instance = false;
-                height = height - 1u;
-                group = stack[height];
-            }
             if (group == BOTTOM) break;
         }
+        if (has_top && group == LEAVE_INSTANCE)
+        {
+            space = world_space(scene, ray);
+            records = scene.records;
+            boxes = scene.record_boxes;
+            in_instance = false;
+            drop_group(held);
+            group = held.first;
+            if (group == BOTTOM)
+            {
+                height = height - 1u;
+                group = stack[height];
+                if (group == BOTTOM) break;
+            }
+        }
         cursor = next_of(group);
-        group = rest_of(group);
+        held.first = rest_of(group);
+        if (held.first == BOTTOM) drop_group(held);
     }
     return search.best;
 }
