@@ -75,6 +75,17 @@ TEST_P(Layouts, AgreeOnInstancesOfEveryKind) {
     expect_equal(rays, {.cull = Cull::front});
 }
 
+// Boxes that overlap, many levels of them: more waits than registers hold, below the top level and in it.
+TEST_P(Layouts, AgreeWhereMuchWaits) {
+    const Mesh soup = make_soup(3000, 7, 0.5f);
+    const std::vector<Ray> rays = random_rays({vec3(-1), vec3(1)}, 2'000, 8);
+    for (const auto& accel : accels_) accel->push(soup);
+    expect_equal(rays);
+    for (const auto& accel : accels_)
+        for (int i = 1; i < 20; ++i) accel->push(soup, Transform::translation(vec3(0.05f * static_cast<float>(i))));
+    expect_equal(rays);
+}
+
 // Rays within planes of boxes, through corners, from far away, and along axes.
 TEST_P(Layouts, AgreeWhereBoxesAreMetExactly) {
     const Mesh grid = make_grid(16, 16);
