@@ -93,7 +93,9 @@ LineUp make_line_up(Context& context, Context* pipeline, const LineUpOptions& op
     Maker maker(options);
     for (const Layout layout : options.layouts)
         for (const BuildQuality quality : options.build_qualities)
-            for (const Level level : options.levels) maker.add_software(context, {level, layout, quality});
+            for (const Level level : options.levels)
+                maker.add_software(context,
+                                   {.level = level, .layout = layout, .build_quality = quality, .can_move = false});
     maker.add_hardware(context);
     if (pipeline) maker.add_hardware(*pipeline, BuildOrder::automatic, options.levels.front());
     LineUp line_up = std::move(maker.line_up);

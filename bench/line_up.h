@@ -24,10 +24,10 @@ struct LineUpOptions {
 // "fast", "watertight", ...
 const char* level_name(Level level);
 
-// SwTlas in each layout and build quality at each level; HwTlas at each level it has, and with input in the given order
-// where the driver builds in that order; HwTlas by ray tracing pipeline in `pipeline`, a context in which ray queries
-// are left disabled, unless that is null; each of them in each order of rays; Embree. Contexts must outlive it. Throws
-// Error if none is left of `only`.
+// SwTlas in each layout and build quality at each level, its instances standing still; HwTlas at each level it has, and
+// with input in the given order where the driver builds in that order; HwTlas by ray tracing pipeline in `pipeline`, a
+// context in which ray queries are left disabled, unless that is null; each of them in each order of rays; Embree.
+// Contexts must outlive it. Throws Error if none is left of `only`.
 LineUp make_line_up(Context& context, Context* pipeline, const LineUpOptions& options);
 
 // Whose times others are given in: the first contestant at the first level by ray query with sorted input, ...

@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
+#define TWINRAY_GROUP_STACK ONE_LEVEL_STACK_SIZE
 #include "shaders/shared/traverse_records.h"
 layout(local_size_x = 64) in;
 layout(constant_id = QUERY_CONSTANT) const uint MINIMAL_QUERY = QUERY_CLOSEST;
@@ -24,7 +25,7 @@ Hit closest_triangle(SwInstance instance, Ray ray)
     float t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;
     float t_best = ray.t_max;
     HeldGroups held = no_groups();
-    uint stack[GROUP_STACK_SIZE];
+    uint stack[TWINRAY_GROUP_STACK];
     uint height = 1u;
     stack[0] = BOTTOM;
     uint cursor = 0u;
@@ -36,7 +37,7 @@ Hit closest_triangle(SwInstance instance, Ray ray)
             ChildKeys keys = enter_compressed(record, space, t_min, t_best, MINIMAL_QUERY);
             uint count = count_entered(keys);
             uint others = BOTTOM;
-            order_children(keys, count, record.c.z, cursor, others);
+            order_children(keys, count, first_child_of(record), cursor, others);
             if (count > 1u) TWINRAY_PUSH_GROUP(held, stack, height, others)
             if (count > 0u) continue;
         }

@@ -31,7 +31,7 @@ class Walk {
     struct Below {
         LeafBox box = empty_box();
         uint leaves = 0;
-        uint height = 0;
+        uint height = 0;  // as the nodes below tell it: of no less than there are
     };
 
     Below visit(uint reference, uint depth) {
@@ -47,6 +47,7 @@ class Walk {
     void finish(const Bvh& bvh, const Below& all) {
         if (!same(all.box.lo, bvh.lo) || !same(all.box.hi, bvh.hi))
             violated("the root's box is not the union of the leaves");
+        if (all.height > DEEPEST_TREE) violated(text("the tree is told to have ", all.height, " levels"));
         for (std::size_t i = 0; i < seen_leaves_.size(); ++i)
             if (!seen_leaves_[i]) violated(text("leaf ", i, " is not reached"));
         for (std::size_t i = 0; i < seen_nodes_.size(); ++i)
@@ -78,8 +79,9 @@ class Walk {
                 violated(text("node ", index, ": told of ", leaves_in(told), " leaves in ", height_in(told),
                               " levels, not ", found.leaves, " in ", found.height));
         area_ += half_area(a.box) + half_area(b.box);
-        return {
-            {min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)}, a.leaves + b.leaves, 1 + std::max(a.height, b.height)};
+        return {{min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)},
+                a.leaves + b.leaves,
+                1 + std::max(height_in(node.below0), height_in(node.below1))};
     }
 
     std::span<const BvhNode> nodes_;

@@ -24,9 +24,8 @@ struct Planes {
 
 Planes planes_of(const CompressedRecord& node, uint child) {
     const auto plane = [&](uint word) { return static_cast<double>(word >> 8 * child & 0xff); };
-    const glm::dvec3 origin(uintBitsToFloat(node.a.x), uintBitsToFloat(node.a.y), uintBitsToFloat(node.a.z));
-    const glm::dvec3 cell(cell_size(node.a.w & 0xff), cell_size(node.a.w >> 8 & 0xff),
-                          cell_size(node.a.w >> 16 & 0xff));
+    const glm::dvec3 origin(grid_origin(node));
+    const glm::dvec3 cell(grid_cell(node));
     return {origin + cell * glm::dvec3(plane(node.b.x), plane(node.b.z), plane(node.c.x)),
             origin + cell * glm::dvec3(plane(node.b.y), plane(node.b.w), plane(node.c.y)), cell};
 }
@@ -73,7 +72,7 @@ class Walk {
     LeafBox visit_record(uint index, uint depth) {
         const CompressedRecord& record = records_[index];
         if (is_leaf(record)) return visit_leaf(record.a.w & ~LEAF_BIT);
-        if (depth >= DEEPEST_TREE) return violated(text("depth exceeds ", DEEPEST_TREE));
+        if (depth >= DEEPEST_RECORDS) return violated(text("depth exceeds ", DEEPEST_RECORDS));
         result_.depth = std::max(result_.depth, depth + 1);
         return visit_node(index, depth);
     }
@@ -91,7 +90,7 @@ class Walk {
         if (count < 2 || count > 4) return violated(text("record ", index, " has ", count, " children"));
         LeafBox all = empty_box();
         for (uint child = 0; child < count; ++child) {
-            const LeafBox below = visit(node.c.z + child, depth + 1);
+            const LeafBox below = visit(first_child_of(node) + child, depth + 1);
             const Planes planes = planes_of(node, child);
             area_ += half_area(planes.lo, planes.hi);
             full_area_ += half_area(below.lo, below.hi);

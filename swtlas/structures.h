@@ -22,7 +22,7 @@ using NodeWords = Words64;
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 104 &&
-              sizeof(CompressedRecord) == 48);
+              sizeof(CompressedRecord) == 40);
 static_assert(sizeof(OverlapSum) == 8);
 static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 72 && sizeof(SwScene) == 80);
 }  // namespace twinray

@@ -35,5 +35,5 @@ BUFFER_OF_WORDS(Vec4s, vec4, 4);
 // Linear index of this group and this invocation; Kernel::dispatch spreads large counts over x and y. Macros, because
 // gl_WorkGroupSize has its value only after the shader's local_size declaration, which follows this include.
 #define group_index() (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x)
-#define global_index() (group_index() * gl_WorkGroupSize.x + gl_LocalInvocationIndex)
+#define global_index() (group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x)
 #endif

@@ -17,6 +17,7 @@ const uint NOTHING = 0xffffffffu;
 
 // Inner nodes on a path split on ever lower bits of (30-bit Morton code, 30-bit fine code, 25-bit position).
 const uint DEEPEST_TREE = 85u;
+const uint DEEPEST_RECORDS = (DEEPEST_TREE + 1u) / 2u; // inner nodes on a path of records, see collapse.h
 
 struct LeafBox
 {
@@ -50,20 +51,21 @@ struct BvhTriangle
 };
 BUFFER_OF(BvhTriangle, 8);
 
-// 48 bytes, see compressed.h.
+// 40 bytes, see compressed.h.
 //
-// node       a: lower corner of the grid; w: exponents of the cells' sizes, 8 bits an axis, count of children << 24
-//            b: lo.x, hi.x, lo.y, hi.y in cells, 8 bits a child      c: lo.z, hi.z, the first child, -
-// primitive  a: v0; w: LEAF_BIT | primitive_index      b: v1; w, c.xy: v2
+// node       a: lower corner of the grid, the last 8 bits of each coordinate being the exponent of the cells' size there;
+//               w: the first child, count of children << 25
+//            b: lo.x, hi.x, lo.y, hi.y in cells, 8 bits a child      c: lo.z, hi.z
+// primitive  a: v0; w: LEAF_BIT | primitive_index      b: v1; w, c: v2
 // instance   a.w: LEAF_BIT | index
 // none       0
 struct CompressedRecord
 {
     uvec4 a;
     uvec4 b;
-    uvec4 c;
+    uvec2 c;
 };
-BUFFER_OF(CompressedRecord, 16);
+BUFFER_OF(CompressedRecord, 8);
 
 struct Bvh
 {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // From a binary tree to nodes of four children. Where the records of a subtree go follows from the number of its leaves
 // and of those before it, so that the result does not depend on the order in which invocations run.
+//
+// A node takes the place of two levels of the binary tree wherever that must be for no path to have more than
+// DEEPEST_RECORDS of them, and where it need not be, of those with the largest boxes.
 #ifndef TWINRAY_SHARED_COLLAPSE_H
 #define TWINRAY_SHARED_COLLAPSE_H
 #include "shaders/shared/compressed.h"
@@ -10,7 +13,7 @@
 struct CollapseItem
 {
     uint tree;
-    uint node;   // of the binary tree
+    uint place;  // see make_place
     uint record; // where it goes
     uint below;  // where the records below it begin
 };
@@ -25,6 +28,11 @@ struct CollapseLevel
     uint count;
 };
 BUFFER_OF(CollapseLevel, 4);
+
+// A node of the binary tree, and how many nodes of four are above the one that it becomes.
+FUNC uint make_place(uint node, uint level) { return node | level << 25u; }
+FUNC uint node_at(uint place) { return place & 0x1ffffffu; }
+FUNC uint level_at(uint place) { return place >> 25u; }
 
 const uint COLLAPSE_GROUP = 64u;
 
@@ -44,7 +52,7 @@ struct CollapseArgs
     uint reserved;
 };
 
-FUNC void set_child(INOUT(NodeChildren) children, uint at, uint child, vec3 lo, vec3 hi, uint leaves)
+FUNC void set_child(INOUT(NodeChildren) children, uint at, uint child, vec3 lo, vec3 hi, uint below)
 {
     UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
     {
@@ -52,7 +60,7 @@ FUNC void set_child(INOUT(NodeChildren) children, uint at, uint child, vec3 lo, 
         children.child[i] = is_here ? child : children.child[i];
         children.box[i].lo = is_here ? lo : children.box[i].lo;
         children.box[i].hi = is_here ? hi : children.box[i].hi;
-        children.leaves[i] = is_here ? leaves : children.leaves[i];
+        children.below[i] = is_here ? below : children.below[i];
     }
 }
 
@@ -60,20 +68,25 @@ FUNC void set_child(INOUT(NodeChildren) children, uint at, uint child, vec3 lo, 
 FUNC void open_child(REF(BvhNode) nodes, uint node, uint i, INOUT(NodeChildren) children)
 {
     BvhNode opened = load_node(nodes, node);
-    set_child(children, i, opened.child0, opened.lo0, opened.hi0, leaves_in(opened.below0));
-    set_child(children, children.count, opened.child1, opened.lo1, opened.hi1, leaves_in(opened.below1));
+    set_child(children, i, opened.child0, opened.lo0, opened.hi0, opened.below0);
+    set_child(children, children.count, opened.child1, opened.lo1, opened.hi1, opened.below1);
     children.count = children.count + 1u;
 }
 
-// Opens the child with the largest box of those that have children themselves, if there is one.
-FUNC void open_widest(REF(BvhNode) nodes, float unit, INOUT(NodeChildren) children)
+// How many levels of the binary tree may be below the children of a node of four.
+FUNC uint tallest_below(uint level) { return 2u * (DEEPEST_RECORDS - 1u - level); }
+
+// Opens a child that is too tall, else the one with the largest box of those that have children themselves, if there is one.
+FUNC void open_widest(REF(BvhNode) nodes, float unit, uint tallest, INOUT(NodeChildren) children)
 {
+    const float WIDEST = 3.402823466e+38f;
     uint widest = 4u;
     uint node = 0u;
     float largest = -1.0f;
     UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
     {
-        float area = half_area(children.box[i].lo, children.box[i].hi, unit);
+        bool is_too_tall = height_in(children.below[i]) > tallest;
+        float area = is_too_tall ? WIDEST : half_area(children.box[i].lo, children.box[i].hi, unit);
         bool is_wider = i < children.count && (children.child[i] & LEAF_BIT) == 0u && area > largest;
         widest = is_wider ? i : widest;
         node = is_wider ? children.child[i] : node;
@@ -82,22 +95,23 @@ FUNC void open_widest(REF(BvhNode) nodes, float unit, INOUT(NodeChildren) childr
     if (widest < 4u) open_child(nodes, node, widest, children);
 }
 
-// The children of the node of four that a binary node becomes: the largest boxes are opened first.
-FUNC NodeChildren children_of(REF(BvhNode) nodes, uint node)
+// The children of the node of four that a binary node becomes. It has two levels more than its children may have at most,
+// so that none is too tall once two are opened.
+FUNC NodeChildren children_of(REF(BvhNode) nodes, uint place)
 {
     NodeChildren children;
     UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
     {
         children.child[i] = LEAF_BIT;
         children.box[i] = empty_box();
-        children.leaves[i] = 0u;
+        children.below[i] = 0u;
     }
     children.count = 1u;
-    open_child(nodes, node, 0u, children);
+    open_child(nodes, node_at(place), 0u, children);
     LeafBox around = box_around(children);
     float unit = area_unit(around.lo, around.hi);
-    open_widest(nodes, unit, children);
-    open_widest(nodes, unit, children);
+    open_widest(nodes, unit, tallest_below(level_at(place)), children);
+    open_widest(nodes, unit, tallest_below(level_at(place)), children);
     return children;
 }
 
@@ -117,7 +131,7 @@ FUNC CollapseStep no_step()
 // Writes the node of an item, and where the leaves among its children go.
 FUNC CollapseStep collapse(BuildTree tree, Uints places, CollapseItem item)
 {
-    NodeChildren children = children_of(tree.nodes, item.node);
+    NodeChildren children = children_of(tree.nodes, item.place);
     store_record(tree.records, item.record, encode_node(children, item.below));
     CollapseStep step = no_step();
     uint below = item.below + children.count;
@@ -125,7 +139,7 @@ FUNC CollapseStep collapse(BuildTree tree, Uints places, CollapseItem item)
     UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
     {
         if (i >= children.count) continue;
-        leaves = leaves + children.leaves[i];
+        leaves = leaves + leaves_in(children.below[i]);
         keep_box(tree, item.below + i, children.box[i]);
         uint child = children.child[i];
         step.is_inner[i] = (child & LEAF_BIT) == 0u;
@@ -135,10 +149,10 @@ FUNC CollapseStep collapse(BuildTree tree, Uints places, CollapseItem item)
             continue;
         }
         step.items[i].tree = item.tree;
-        step.items[i].node = child;
+        step.items[i].place = make_place(child, level_at(item.place) + 1u);
         step.items[i].record = item.below + i;
         step.items[i].below = below;
-        below = below + records_below(children.leaves[i]);
+        below = below + records_below(leaves_in(children.below[i]));
     }
     for (uint end = item.below + records_below(leaves); below < end; below = below + 1u)
         store_record(tree.records, below, no_record());
@@ -154,7 +168,7 @@ FUNC CollapseStep begin_collapse(BuildTree tree, Uints places, uint index)
     AT(tree.bvh, 0).root = 0u;
     step.is_inner[0] = (root & LEAF_BIT) == 0u;
     step.items[0].tree = index;
-    step.items[0].node = root;
+    step.items[0].place = make_place(root, 0u);
     step.items[0].record = 0u;
     step.items[0].below = 1u;
     if (!step.is_inner[0]) AT(places, tree.first) = 0u;

@@ -17,43 +17,56 @@ const uint MOST_RECORDS = 1u << 25u; // a tree may have: what an entry on the st
 // nodes come from pairs of leaves, of which 3 n + 1 have n nodes above them. Those that a tree does not use are `none`.
 FUNC uint record_count(uint leaf_count) { return leaf_count == 0u ? 0u : (5u * leaf_count - 1u) / 3u; }
 FUNC uint records_below(uint leaf_count) { return leaf_count < 2u ? 0u : record_count(leaf_count) - 1u; }
-FUNC uint children_in(CompressedRecord node) { return node.a.w >> 24u; } // 0: none
+FUNC uint children_in(CompressedRecord node) { return node.a.w >> 25u; } // 0: none
+FUNC uint first_child_of(CompressedRecord node) { return node.a.w & (MOST_RECORDS - 1u); }
 FUNC bool is_leaf(CompressedRecord record) { return (record.a.w & LEAF_BIT) != 0u; }
 
 FUNC CompressedRecord load_record(REF(CompressedRecord) records, uint index)
 {
     // In 64-bit components: drivers on CPUs pay per component, not per byte.
-    Words64 words = Words64(uint64_t(records) + uint64_t(index) * 48ul);
-    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4), w5 = AT(words, 5);
+    Words64 words = Words64(uint64_t(records) + uint64_t(index) * 40ul);
+    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4);
     CompressedRecord record;
     record.a = uvec4(UINTS(w0).x, UINTS(w0).y, UINTS(w1).x, UINTS(w1).y);
     record.b = uvec4(UINTS(w2).x, UINTS(w2).y, UINTS(w3).x, UINTS(w3).y);
-    record.c = uvec4(UINTS(w4).x, UINTS(w4).y, UINTS(w5).x, UINTS(w5).y);
+    record.c = uvec2(UINTS(w4).x, UINTS(w4).y);
     return record;
 }
 FUNC void store_record(REF(CompressedRecord) records, uint index, CompressedRecord record)
 {
-    Words64 words = Words64(uint64_t(records) + uint64_t(index) * 48ul);
+    Words64 words = Words64(uint64_t(records) + uint64_t(index) * 40ul);
     AT(words, 0) = WORD(record.a.x, record.a.y);
     AT(words, 1) = WORD(record.a.z, record.a.w);
     AT(words, 2) = WORD(record.b.x, record.b.y);
     AT(words, 3) = WORD(record.b.z, record.b.w);
     AT(words, 4) = WORD(record.c.x, record.c.y);
-    AT(words, 5) = WORD(record.c.z, record.c.w);
 }
 
-// The exponent of the smallest power of two by which lo..hi is 252 cells long at most, and a cell some roundings of the
-// coordinates: then what lies a cell below lo, rounded, is 1/2 to 3/2 of a cell below.
+// The exponent of the smallest power of two by which lo..hi is 252 cells long at most, with what origin_below may lie farther
+// off, and a cell some roundings of the coordinates: then what lies a cell below lo, rounded, is 1/2 to 3/2 of a cell below.
 FUNC uint cell_exponent(float lo, float hi)
 {
     const float LONGEST = 0.003968253968f;              // 1 / 252
+    const float STEPS = 6.103515625e-05f;               // 2^-14
     const float ROUNDINGS = 4.76837158203125e-07f;      // 2^-21
-    PRECISE float size = (hi - lo) * LONGEST;
-    float least = max(size, max(abs(lo), abs(hi)) * ROUNDINGS);
+    float largest = max(abs(lo), abs(hi));
+    PRECISE float size = (hi - lo + largest * STEPS) * LONGEST;
+    float least = max(size, largest * ROUNDINGS);
     return clamp((floatBitsToUint(least) >> 23u) + 1u, 1u, 253u);
 }
 FUNC float cell_size(uint exponent) { return uintBitsToFloat(exponent << 23u); }
 FUNC float cells_per_unit(uint exponent) { return uintBitsToFloat((254u - exponent) << 23u); }
+
+// The largest number that is not above `limit` and whose last 8 bits are an exponent: 2^-14 of it lower at most.
+FUNC float origin_below(float limit, uint exponent)
+{
+    uint bits = floatBitsToUint(limit);
+    bool is_negative = (bits & 0x80000000u) != 0u;
+    uint moved = (bits & 0xffffff00u) | exponent;
+    if (is_negative) return uintBitsToFloat(moved < bits ? moved + 256u : moved);
+    if (moved <= bits) return uintBitsToFloat(moved);
+    return uintBitsToFloat(moved < 256u ? 0x80000000u | exponent : moved - 256u);
+}
 
 // A plane in cells from the origin, moved outwards by a 256th of a cell at least: a traversal that computes with a plane's
 // distance from the ray in float32 is off by less than 2^-14 cells near it, and by its own padding far from it.
@@ -73,7 +86,7 @@ struct NodeChildren
 {
     uint child[4]; // as in BvhNode
     LeafBox box[4];
-    uint leaves[4]; // below it
+    uint below[4]; // see make_below
     uint count;
 };
 
@@ -110,21 +123,20 @@ FUNC CompressedRecord encode_node(NodeChildren children, uint first_child)
     LeafBox around = box_around(children);
     around.lo = is_active(around) ? clamp(around.lo, vec3(-FARTHEST), vec3(FARTHEST)) : vec3(0.0f);
     around.hi = around.lo.x <= around.hi.x ? clamp(around.hi, vec3(-FARTHEST), vec3(FARTHEST)) : vec3(0.0f);
-    uint header = children.count << 24u;
     vec3 origin = vec3(0.0f);
     uvec2 planes[3];
     UNROLL for (uint axis = 0u; axis < 3u; axis = axis + 1u)
     {
         uint exponent = cell_exponent(around.lo[axis], around.hi[axis]);
         PRECISE float lower = around.lo[axis] - cell_size(exponent);
-        origin[axis] = lower;
-        header = header | exponent << 8u * axis;
-        planes[axis] = encode_axis(children, axis, lower, cells_per_unit(exponent));
+        origin[axis] = origin_below(lower, exponent);
+        planes[axis] = encode_axis(children, axis, origin[axis], cells_per_unit(exponent));
     }
     CompressedRecord record;
-    record.a = uvec4(floatBitsToUint(origin.x), floatBitsToUint(origin.y), floatBitsToUint(origin.z), header);
+    record.a = uvec4(floatBitsToUint(origin.x), floatBitsToUint(origin.y), floatBitsToUint(origin.z),
+                     first_child | children.count << 25u);
     record.b = uvec4(planes[0].x, planes[0].y, planes[1].x, planes[1].y);
-    record.c = uvec4(planes[2].x, planes[2].y, first_child, 0u);
+    record.c = planes[2];
     return record;
 }
 
@@ -133,7 +145,7 @@ FUNC CompressedRecord encode_primitive(BvhTriangle t)
     CompressedRecord record;
     record.a = uvec4(floatBitsToUint(t.v0.x), floatBitsToUint(t.v0.y), floatBitsToUint(t.v0.z), LEAF_BIT | t.primitive_index);
     record.b = uvec4(floatBitsToUint(t.v1.x), floatBitsToUint(t.v1.y), floatBitsToUint(t.v1.z), floatBitsToUint(t.v2.x));
-    record.c = uvec4(floatBitsToUint(t.v2.y), floatBitsToUint(t.v2.z), 0u, 0u);
+    record.c = uvec2(floatBitsToUint(t.v2.y), floatBitsToUint(t.v2.z));
     return record;
 }
 
@@ -142,7 +154,7 @@ FUNC CompressedRecord no_record()
     CompressedRecord record;
     record.a = uvec4(0u);
     record.b = uvec4(0u);
-    record.c = uvec4(0u);
+    record.c = uvec2(0u);
     return record;
 }
 
@@ -159,7 +171,7 @@ FUNC vec3 grid_origin(CompressedRecord node)
 }
 FUNC vec3 grid_cell(CompressedRecord node)
 {
-    return vec3(cell_size(node.a.w & 0xffu), cell_size(node.a.w >> 8u & 0xffu), cell_size(node.a.w >> 16u & 0xffu));
+    return vec3(cell_size(node.a.x & 0xffu), cell_size(node.a.y & 0xffu), cell_size(node.a.z & 0xffu));
 }
 
 // The box of a node's child as rays meet it.
@@ -194,7 +206,7 @@ FUNC float areas_of_boxes(CompressedRecord node, REF(LeafBox) boxes, float unit)
     float sum = 0.0f;
     for (uint i = 0u; i < children_in(node); i = i + 1u)
     {
-        LeafBox box = load_box(boxes, node.c.z + i);
+        LeafBox box = load_box(boxes, first_child_of(node) + i);
         sum = sum + half_area(box.lo, box.hi, unit);
     }
     return sum;

@@ -113,8 +113,8 @@ FUNC NodeBoxes boxes_in(SwGeometry geometry, uint index)
     node.count = children_in(record);
     for (uint i = 0u; i < node.count; i = i + 1u)
     {
-        node.child[i] = record.c.z + i;
-        if (uint64_t(geometry.record_boxes) != 0ul) node.box[i] = load_box(geometry.record_boxes, record.c.z + i);
+        node.child[i] = first_child_of(record) + i;
+        if (uint64_t(geometry.record_boxes) != 0ul) node.box[i] = load_box(geometry.record_boxes, first_child_of(record) + i);
         else node.box[i] = box_in_planes(record, i);
     }
     return node;

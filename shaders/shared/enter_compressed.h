@@ -61,6 +61,7 @@ FUNC ChildKeys enter_compressed(CompressedRecord node, RaySpace space, float t_m
     keys.key1 = enter_planes(grid, 8u, first, last, query) | 1u;
     keys.key2 = enter_planes(grid, 16u, first, last, query) | 2u;
     keys.key3 = enter_planes(grid, 24u, first, last, query) | 3u;
+    // Boxes that are not there may be entered, too: a ray's padding can be wider than the grid.
     uint children = children_in(node);
     keys.key2 = children > 2u ? keys.key2 : NO_ENTRY;
     keys.key3 = children > 3u ? keys.key3 : NO_ENTRY;

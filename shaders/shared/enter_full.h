@@ -16,7 +16,7 @@ FUNC uint enter_full_box(REF(LeafBox) boxes, uint record, RaySpace space, float 
 
 FUNC ChildKeys enter_full(REF(LeafBox) boxes, CompressedRecord node, RaySpace space, float t_min, float t_max, uint query)
 {
-    uint first = node.c.z;
+    uint first = first_child_of(node);
     uint last = children_in(node) - 1u;
     ChildKeys keys;
     keys.key0 = enter_full_box(boxes, first, space, t_min, t_max, query);

@@ -21,8 +21,14 @@ FUNC uint rest_of(uint group)
     return is_last ? BOTTOM : (group & 0xe1ffffffu) | (group >> 2u & 0x1e000000u);
 }
 
-// A node leaves one group at most, so the deepest path of each level, the mark between them and the bottom.
-const uint GROUP_STACK_SIZE = 2u * DEEPEST_TREE + 4u;
+// What a stack must hold in memory: a node leaves one group at most, so the deepest path of each level, the mark between them
+// and the bottom, without those that HeldGroups has. Drivers on CPUs clear all of it for each ray, so where there is no top
+// level, TWINRAY_GROUP_STACK should be the lesser one.
+const uint GROUP_STACK_SIZE = 2u * DEEPEST_RECORDS + 2u - 5u;
+const uint ONE_LEVEL_STACK_SIZE = DEEPEST_RECORDS + 1u - 5u;
+#ifndef TWINRAY_GROUP_STACK
+#define TWINRAY_GROUP_STACK GROUP_STACK_SIZE
+#endif
 
 // What is on top of a stack of groups and LEAVE_INSTANCE lies in registers, the last one first: most come and go without a trip
 // to memory. BOTTOM: there are no more.
@@ -64,7 +70,7 @@ FUNC void drop_group(INOUT(HeldGroups) held)
     held.fifth = BOTTOM;
 }
 
-// Pushes a group. If five are held already, the last of them goes to `memory`, a uint[GROUP_STACK_SIZE] that holds `height`
+// Pushes a group. If five are held already, the last of them goes to `memory`, a uint[TWINRAY_GROUP_STACK] that holds `height`
 // entries. A macro, since drivers on CPUs copy an array that is passed to a function, and a ray would take twice as long. The
 // inner condition always holds: it makes the block too long for these drivers to run it for all lanes under a mask, which can
 // take a quarter of a ray's time.
@@ -72,7 +78,7 @@ FUNC void drop_group(INOUT(HeldGroups) held)
     {                                                                      \
         if (held.fifth != BOTTOM)                                          \
         {                                                                  \
-            if (height < GROUP_STACK_SIZE) memory[height] = held.fifth;    \
+            if (height < TWINRAY_GROUP_STACK) memory[height] = held.fifth; \
             height = height + 1u;                                          \
         }                                                                  \
         hold_group(held, group);                                           \

@@ -37,7 +37,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
     bool in_instance = !has_top;
 
     HeldGroups held = no_groups();
-    uint stack[GROUP_STACK_SIZE];
+    uint stack[TWINRAY_GROUP_STACK];
     uint height = 1u;
     stack[0] = BOTTOM;
     uint cursor = 0u;
@@ -50,7 +50,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
             ChildKeys keys = enter_children(record, boxes, space, search, options);
             uint count = count_entered(keys);
             uint others = BOTTOM;
-            order_children(keys, count, record.c.z, cursor, others);
+            order_children(keys, count, first_child_of(record), cursor, others);
             if (count > 1u) TWINRAY_PUSH_GROUP(held, stack, height, others)
             descend = count > 0u;
         }

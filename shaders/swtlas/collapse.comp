@@ -15,7 +15,7 @@ shared uint pushed_before;
 // Of one subtree, depth first.
 void collapse_all(CollapseItem item)
 {
-    CollapseItem stack[3u * DEEPEST_TREE];
+    CollapseItem stack[3u * DEEPEST_RECORDS];
     uint height = 0u;
     BuildTree tree = AT(args.trees, item.tree);
     for (;;)

@@ -14,7 +14,7 @@ void visit(BuildTree tree, uint slot)
     CompressedRecord record = load_record(tree.records, slot);
     if (is_leaf(record)) return;
     AT(args.missing, base + slot) = children_in(record);
-    for (uint i = 0u; i < children_in(record); ++i) AT(args.parents, base + record.c.z + i) = slot;
+    for (uint i = 0u; i < children_in(record); ++i) AT(args.parents, base + first_child_of(record) + i) = slot;
 }
 
 void main()

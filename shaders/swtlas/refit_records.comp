@@ -27,9 +27,9 @@ LeafBox refit_node(BuildTree tree, uint slot, SharedBoxes boxes)
     UNROLL for (uint i = 0u; i < 4u; ++i)
     {
         children.box[i] = empty_box();
-        if (i < children.count) children.box[i] = boxes.items[2u * tree.first + node.c.z + i];
+        if (i < children.count) children.box[i] = boxes.items[2u * tree.first + first_child_of(node) + i];
     }
-    store_record(tree.records, slot, encode_node(children, node.c.z));
+    store_record(tree.records, slot, encode_node(children, first_child_of(node)));
     return box_around(children);
 }
 

@@ -9,6 +9,7 @@
 #include "swtlas/check.h"
 #include "swtlas/check_compressed.h"
 #include "swtlas/reference.h"
+#include "tests/support/tall_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -43,9 +44,9 @@ TEST(CompressedCheck, NamesWhatIsWrong) {
         return check.violations.empty() ? "" : check.violations.front();
     };
     EXPECT_NE(wrong([](CompressedRecord& root) { root.b.y -= 1; }).find("lies in planes"), std::string::npos);
-    EXPECT_NE(wrong([](CompressedRecord& root) { root.c.z = 1u << 24; }).find("of 3"), std::string::npos);
-    EXPECT_NE(wrong([](CompressedRecord& root) { root.a.w |= 7u << 24; }).find("has 7 children"), std::string::npos);
-    EXPECT_NE(wrong([](CompressedRecord& root) { root.c.z += 1; }), "");
+    EXPECT_NE(wrong([](CompressedRecord& root) { root.a.w |= 1u << 24; }).find("of 3"), std::string::npos);
+    EXPECT_NE(wrong([](CompressedRecord& root) { root.a.w |= 7u << 25; }).find("has 7 children"), std::string::npos);
+    EXPECT_NE(wrong([](CompressedRecord& root) { root.a.w += 1; }), "");
 }
 
 TEST(Compressed, PlanesLieOutsideAtAnySizeAndPlace) {
@@ -75,6 +76,37 @@ TEST(Compressed, PlanesLieOutsideAtAnySizeAndPlace) {
         ASSERT_TRUE(check.violations.empty()) << check.violations.front();
     }
     EXPECT_LT(record_count(static_cast<uint>(Geometry::max_primitives)), MOST_RECORDS);
+}
+
+TEST(Compressed, OriginsKeepAnExponentAndLieCloseBelow) {
+    std::mt19937 random(3);
+    for (int i = 0; i < 100'000; ++i) {
+        const auto bits = static_cast<uint>(random() & 0x80ffffffu) | static_cast<uint>(random() % 0xf8) << 23;
+        const float limit = uintBitsToFloat(bits);
+        const auto exponent = 1 + static_cast<uint>(random() % 253);
+        const float origin = origin_below(limit, exponent);
+        EXPECT_EQ(floatBitsToUint(origin) & 0xffu, exponent) << limit;
+        EXPECT_LE(origin, limit) << exponent;
+        EXPECT_LE(double{limit} - double{origin}, std::ldexp(std::abs(double{limit}), -14) + 0x1p-140) << exponent;
+    }
+}
+
+TEST(Compressed, NoPathIsDeeperThanAStackIsMadeFor) {
+    std::vector<LeafBox> leaf_boxes;
+    float size = 0x1p-100f;
+    for (uint i = 0; i < test::TallTree::leaves; ++i) {
+        leaf_boxes.push_back({vec3(-size), vec3(size)});
+        if (i % 4 == 0) size *= 4;
+    }
+    const test::TallTree tall(leaf_boxes);
+    const Bvh binary{tall.tree.box.lo, tall.tree.box.hi, {}, tall.tree.root, tall.leaves};
+    const TreeCheck tree = check_tree(binary, tall.tree.nodes, tall.boxes);
+    EXPECT_TRUE(tree.violations.empty()) << tree.violations.front();
+    EXPECT_EQ(tree.depth, DEEPEST_TREE);
+    const CompressedCheck check = check_compressed(
+        tall.bvh_of_records(), reference::records_of_instances(tall.tree, tall.leaves).records, tall.boxes);
+    EXPECT_TRUE(check.violations.empty()) << check.violations.front();
+    EXPECT_EQ(check.depth, DEEPEST_RECORDS);
 }
 
 TEST(TreeCheck, NamesWhatIsWrong) {

@@ -55,7 +55,7 @@ std::set<uint> collect(const SwTlas::Tree& tree, uint reference, std::vector<Box
         const CompressedRecord& record = tree.records[reference];
         if (is_leaf(record)) return {record.a.w & ~LEAF_BIT};
         for (uint i = 0; i < children_in(record); ++i) {
-            const uint child = record.c.z + i;
+            const uint child = first_child_of(record) + i;
             children.emplace_back(tree.record_boxes.empty() ? box_in_planes(record, i) : tree.record_boxes[child],
                                   child);
         }

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "swtlas/reference.h"
+
+namespace twinray::test {
+
+// A binary tree as tall as they come: its spine forks into a fat tree of four leaves and all that is farther in. Where
+// boxes shrink inwards, what is tall is always what is smaller. Leaf 0 is the innermost, then come four a fork.
+struct TallTree {
+    static constexpr uint forks = DEEPEST_TREE - 2;
+    static constexpr uint leaves = 4 * forks + 1;
+
+    std::vector<LeafBox> boxes;
+    reference::Hierarchy tree = {};
+
+    explicit TallTree(std::vector<LeafBox> leaf_boxes) : boxes(std::move(leaf_boxes)) {
+        Part all = leaf(0);
+        for (uint i = 0; i < forks; ++i)
+            all = join(all, join(join(leaf(4 * i + 1), leaf(4 * i + 2)), join(leaf(4 * i + 3), leaf(4 * i + 4))));
+        tree.root = all.reference;
+        tree.box = all.box;
+    }
+
+    // Of a file or a check, in layout compressed4.
+    Bvh bvh_of_records() const { return {tree.box.lo, tree.box.hi, {}, 0, leaves}; }
+
+  private:
+    struct Part {
+        uint reference;
+        LeafBox box;
+        uint below;
+    };
+
+    Part leaf(uint i) const { return {LEAF_BIT | i, boxes[i], make_below(1, 0)}; }
+    Part join(const Part& a, const Part& b) {
+        tree.nodes.push_back({a.box.lo, a.reference, a.box.hi, a.below, b.box.lo, b.reference, b.box.hi, b.below});
+        return {
+            static_cast<uint>(tree.nodes.size() - 1),
+            {min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)},
+            make_below(leaves_in(a.below) + leaves_in(b.below), 1 + std::max(height_in(a.below), height_in(b.below)))};
+    }
+};
+
+}  // namespace twinray::test
