@@ -273,10 +273,7 @@ void expect_same_topology(const SwTlas::Tree& after, const SwTlas::Tree& before)
     for (std::size_t i = 0; i < before.records.size(); ++i) {
         const CompressedRecord &now = after.records[i], &then = before.records[i];
         EXPECT_EQ(is_leaf(now), is_leaf(then));
-        if (is_leaf(then))
-            EXPECT_EQ(now.a.w, then.a.w);
-        else
-            EXPECT_EQ(now.a.w, then.a.w);
+        EXPECT_EQ(now.a.w, then.a.w);
     }
 }
 
