@@ -32,8 +32,24 @@ KernelDesc stage(const char* name, std::span<const std::uint32_t> spirv, bool is
 }
 
 KernelDesc specialized(KernelDesc desc, uint value) {
-    desc.constants = {{0, value}};
+    desc.constants.push_back({0, value});
     return desc;
+}
+
+// Of which `gpu_group` invocations, or CPU_GROUP, make a group.
+KernelDesc grouped(const Context& context, KernelDesc desc, uint gpu_group) {
+    desc.group_size = context.facts().kind == DeviceKind::cpu ? CPU_GROUP : gpu_group;
+    desc.constants.push_back({GROUP_SIZE_CONSTANT, desc.group_size});
+    return desc;
+}
+
+KernelDesc leaves_stage(const Context& context, const char* name, std::span<const std::uint32_t> spirv) {
+    return grouped(context, stage(name, spirv, true), LEAVES_GROUP);
+}
+
+KernelDesc hierarchy_stage(const Context& context, BuildQuality quality) {
+    return specialized(grouped(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv, true), BUILD_GROUP),
+                       quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST);
 }
 
 KernelDesc collapse_stage(uint step, bool is_needed) {
@@ -55,15 +71,14 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
     : run_(context.facts().kind == DeviceKind::cpu ? BUILD_GROUP : 8),
       sort_(context),
       areas_(context),
-      leaves_triangles_(context, stage("swtlas_leaves_triangles", swtlas_leaves_triangles_spirv, true, LEAVES_GROUP)),
-      leaves_instances_(context, stage("swtlas_leaves_instances", swtlas_leaves_instances_spirv, true, LEAVES_GROUP)),
+      leaves_triangles_(context, leaves_stage(context, "swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
+      leaves_instances_(context, leaves_stage(context, "swtlas_leaves_instances", swtlas_leaves_instances_spirv)),
       morton_(context, stage("swtlas_morton", swtlas_morton_spirv, true)),
       node_areas_(context, stage("swtlas_node_areas", swtlas_node_areas_spirv, needs.moves)),
-      crowding_(context, stage("swtlas_crowding", swtlas_crowding_spirv, true, LEAVES_GROUP)),
+      crowding_(context, leaves_stage(context, "swtlas_crowding", swtlas_crowding_spirv)),
       fine_codes_(context, stage("swtlas_fine_codes", swtlas_fine_codes_spirv, true)),
       gather_keys_(context, stage("swtlas_gather_keys", swtlas_gather_keys_spirv, true)),
-      hierarchy_(context, specialized(stage("swtlas_hierarchy", swtlas_hierarchy_spirv, true),
-                                      options.build_quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST)),
+      hierarchy_(context, hierarchy_stage(context, options.build_quality)),
       encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv, needs.binary)),
       collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS, needs.records)),
       collapse_level_(context, collapse_stage(COLLAPSE_LEVEL, needs.records)),
@@ -124,26 +139,28 @@ Builder::Batch Builder::begin_instances(Commands& commands, const BuildPlan& pla
     return batch;
 }
 
-Uints Builder::record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+RadixSort::Pairs Builder::record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
     const MortonArgs args{batch.blocks,  batch.boxes,       batch.centroids,
                           batch.codes,   batch.pairs.keys,  batch.pairs.values,
                           batch.tree_of, batch.block_count, 0};
     morton_.dispatch_groups(commands, args, batch.block_count);
-    RadixSort::Pairs sorted =
+    const RadixSort::Pairs by_code =
         sort_.record(commands, batch.pairs, batch.spare, batch.counters, plan.leaf_count, morton_bits);
+    RadixSort::Pairs sorted = by_code;
     if (plan.tree_bits != 0) {
         gather_keys_.dispatch(commands, {batch.tree_of, sorted.values, sorted.keys, plan.leaf_count, 0},
                               plan.leaf_count);
         sorted = sort_.record(commands, sorted, batch.other(sorted), batch.counters, plan.leaf_count, plan.tree_bits);
+        gather_keys_.dispatch(commands, {batch.codes, sorted.values, sorted.keys, plan.leaf_count, 0}, plan.leaf_count);
     }
-    if (plan.leaf_count > CROWD) record_fine_order(commands, plan, batch, sorted);
-    return sorted.values;
+    if (plan.leaf_count > CROWD) record_fine_order(commands, plan, batch, by_code, sorted);
+    return sorted;
 }
 
-// Where crowding_ finds that it is needed, and else nothing: sorts by fine code, by code and by tree. Begins in that
-// half of the ping-pong from which it ends in `sorted`, after two passes by code.
+// Where crowding_ finds that it is needed, and else nothing: sorts by fine code, by code and by tree. Begins in the
+// half of the ping-pong that leaves were sorted by code in, so that, after two sorts by 30 bits, it ends in `sorted`.
 void Builder::record_fine_order(Commands& commands, const BuildPlan& plan, const Batch& batch,
-                                const RadixSort::Pairs& sorted) const {
+                                const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const {
     const uint count = plan.leaf_count;
     const std::uint64_t at = plan.scratch.crowding;
     const std::uint64_t of_leaves = at + offsetof(Crowding, leaf_groups);
@@ -158,10 +175,10 @@ void Builder::record_fine_order(Commands& commands, const BuildPlan& plan, const
     };
     crowding_.dispatch_groups(
         commands,
-        {batch.codes, sorted.values, batch.tree_of, batch.crowding, count,
+        {sorted.keys, sorted.values, batch.tree_of, batch.crowding, count,
          std::max(batch.block_count, (count + BUILD_GROUP - 1) / BUILD_GROUP), sort_.sort_groups(count), 0},
         (count + BUILD_GROUP - 1) / BUILD_GROUP);
-    const RadixSort::Pairs& begin = batch.spare;
+    const RadixSort::Pairs& begin = by_code;
     fine_codes_.dispatch_indirect(
         commands,
         {batch.blocks, batch.boxes, batch.centroids, batch.fine_codes, begin.keys, begin.values, batch.block_count, 0},
@@ -171,17 +188,18 @@ void Builder::record_fine_order(Commands& commands, const BuildPlan& plan, const
     fine = sort(fine, morton_bits);
     if (plan.tree_bits == 0) return;
     gather(batch.tree_of, fine);
-    sort(fine, plan.tree_bits);
+    gather(batch.codes, sort(fine, plan.tree_bits));
 }
 
-void Builder::record_hierarchy(Commands& commands, const Batch& batch, Uints order, bool leaves_are_sorted) const {
+void Builder::record_hierarchy(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
+                               bool leaves_are_sorted) const {
     const HierarchyArgs args{batch.trees,
                              batch.blocks,
                              batch.boxes,
-                             batch.codes,
+                             sorted.keys,
                              batch.fine_codes,
                              batch.crowding,
-                             order,
+                             sorted.values,
                              batch.meeting,
                              batch.centroids,
                              batch.block_count,
@@ -197,14 +215,14 @@ void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::s
     const Batch batch = begin(commands, plan, trees, scratch);
     leaves_triangles_.dispatch_groups(
         commands, {batch.trees, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0}, batch.block_count);
-    const Uints order = record_order(commands, plan, batch);
+    const RadixSort::Pairs sorted = record_order(commands, plan, batch);
     if (has_records(plan.layout)) {
-        record_hierarchy(commands, batch, order, false);
+        record_hierarchy(commands, batch, sorted, false);
         record_collapse(commands, plan, batch);
         return;
     }
-    record_hierarchy(commands, batch, order, true);
-    encode_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, order, batch.block_count, 0},
+    record_hierarchy(commands, batch, sorted, true);
+    encode_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, sorted.values, batch.block_count, 0},
                                       batch.block_count);
 }
 

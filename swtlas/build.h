@@ -53,10 +53,12 @@ class Builder {
     // With the leaves of one tree over the records.
     Batch begin_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
                           Ref<SwInstance> instances, const Buffer& scratch) const;
-    Uints record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
+    // The leaves in order, with their codes.
+    RadixSort::Pairs record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_fine_order(Commands& commands, const BuildPlan& plan, const Batch& batch,
-                           const RadixSort::Pairs& sorted) const;
-    void record_hierarchy(Commands& commands, const Batch& batch, Uints order, bool leaves_are_sorted) const;
+                           const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const;
+    void record_hierarchy(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
+                          bool leaves_are_sorted) const;
     void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_levels(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_climb(Commands& commands, const Batch& batch) const;

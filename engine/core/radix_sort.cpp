@@ -12,31 +12,55 @@
 namespace twinray {
 namespace {
 
-std::uint64_t block_count(std::uint64_t count, uint run) {
-    const std::uint64_t block = std::uint64_t{SORT_DIGITS} * run;
-    return (count + block - 1) / block;
+std::uint64_t divide_up(std::uint64_t count, std::uint64_t by) { return (count + by - 1) / by; }
+
+uint group_size(uint cpu_threads) { return cpu_threads ? CPU_GROUP : SORT_GPU_GROUP; }
+
+KernelDesc sort_kernel(const char* name, std::span<const std::uint32_t> spirv, uint cpu_threads) {
+    const uint size = group_size(cpu_threads);
+    return {.name = name,
+            .spirv = spirv,
+            .group_size = size,
+            .constants = {{GROUP_SIZE_CONSTANT, size}, {DIGIT_BITS_CONSTANT, RadixSort::digit_bits(cpu_threads)}}};
+}
+
+KernelDesc scan_kernel(uint cpu_threads) {
+    const uint size = cpu_threads ? CPU_GROUP : SCAN_GPU_GROUP;
+    return {.name = "sort_scan",
+            .spirv = engine_sort_scan_spirv,
+            .group_size = size,
+            .constants = {{GROUP_SIZE_CONSTANT, size}}};
 }
 
 }  // namespace
 
 RadixSort::RadixSort(Context& context)
-    : cpu_threads_(context.facts().kind == DeviceKind::cpu ? std::max(1u, std::thread::hardware_concurrency()) : 0),
-      histogram_(context, {.name = "sort_histogram", .spirv = engine_sort_histogram_spirv, .group_size = SORT_DIGITS}),
-      scan_(context, {.name = "sort_scan", .spirv = engine_sort_scan_spirv, .group_size = SCAN_GROUP}),
-      scatter_(context, {.name = "sort_scatter", .spirv = engine_sort_scatter_spirv, .group_size = SORT_DIGITS}) {}
+    : RadixSort(context,
+                context.facts().kind == DeviceKind::cpu ? std::max(1u, std::thread::hardware_concurrency()) : 0) {}
+
+RadixSort::RadixSort(Context& context, uint cpu_threads)
+    : cpu_threads_(cpu_threads),
+      histogram_(context, sort_kernel("sort_histogram", engine_sort_histogram_spirv, cpu_threads_)),
+      scan_(context, scan_kernel(cpu_threads)),
+      scatter_(context, sort_kernel("sort_scatter", engine_sort_scatter_spirv, cpu_threads_)) {}
 
 std::uint64_t RadixSort::counter_bytes(std::uint64_t count) {
-    return block_count(count, SORT_SHORTEST_RUN) * SORT_DIGITS * sizeof(uint);
+    return std::max(divide_up(count, SORT_GPU_BLOCK) << SORT_GPU_DIGIT_BITS, divide_up(count, SORT_CPU_BLOCK)
+                                                                                 << SORT_CPU_DIGIT_BITS) *
+           sizeof(uint);
 }
+
+uint RadixSort::digit_bits(uint cpu_threads) { return cpu_threads ? SORT_CPU_DIGIT_BITS : SORT_GPU_DIGIT_BITS; }
 
 uint RadixSort::run_of(std::uint64_t count, uint cpu_threads) {
-    if (cpu_threads == 0) return SORT_SHORTEST_RUN;
-    const std::uint64_t run = (count + SORT_DIGITS * cpu_threads - 1) / (SORT_DIGITS * cpu_threads);
-    return static_cast<uint>(std::clamp<std::uint64_t>(run, SORT_SHORTEST_RUN, SORT_LONGEST_RUN));
+    if (cpu_threads == 0 || count == 0) return SORT_GPU_BLOCK / SORT_GPU_GROUP;
+    const std::uint64_t rounds = divide_up(count, std::uint64_t{CPU_GROUP} * SORT_LONGEST_RUN * cpu_threads);
+    const std::uint64_t blocks = std::min(rounds * cpu_threads, divide_up(count, SORT_CPU_BLOCK));
+    return static_cast<uint>(divide_up(count, CPU_GROUP * blocks));
 }
 
-uint RadixSort::sort_groups(std::uint64_t count) const {
-    return static_cast<uint>(block_count(count, run_of(count, cpu_threads_)));
+uint RadixSort::groups_of(std::uint64_t count, uint cpu_threads) {
+    return static_cast<uint>(divide_up(count, std::uint64_t{group_size(cpu_threads)} * run_of(count, cpu_threads)));
 }
 
 RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
@@ -49,12 +73,12 @@ RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare,
         else
             kernel.dispatch_groups(commands, args, groups);
     };
-    for (uint shift = 0; shift < bits; shift += SORT_DIGIT_BITS) {
+    for (uint shift = 0; shift < bits; shift += digit_bits(cpu_threads_)) {
         const SortArgs args{pairs.keys,   pairs.values, spare.keys,
                             spare.values, counters,     count,
                             shift,        blocks,       run_of(count, cpu_threads_)};
         dispatch(histogram_, args, blocks, &Counts::sort);
-        dispatch(scan_, ScanArgs{counters, blocks * SORT_DIGITS, 0}, 1, &Counts::scan);
+        dispatch(scan_, ScanArgs{counters, blocks << digit_bits(cpu_threads_), 0}, 1, &Counts::scan);
         dispatch(scatter_, args, blocks, &Counts::sort);
         std::swap(pairs, spare);
     }

@@ -10,6 +10,8 @@ namespace twinray {
 class RadixSort {
   public:
     explicit RadixSort(Context& context);
+    // As on a CPU of so many threads, or with 0 as on a GPU.
+    RadixSort(Context& context, uint cpu_threads);
 
     struct Pairs {
         Uints keys;
@@ -27,11 +29,13 @@ class RadixSort {
     };
     Pairs record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count, std::uint32_t bits,
                  const Counts* if_counts = nullptr) const;
-    uint sort_groups(std::uint64_t count) const;
+    uint sort_groups(std::uint64_t count) const { return groups_of(count, cpu_threads_); }
 
     // How many items an invocation sorts: few on a GPU, which wants many of them; on a CPU so many that each thread has
     // one group, because counters cost a group the same whatever it sorts, but no more than caches hold.
     static uint run_of(std::uint64_t count, uint cpu_threads);
+    static uint groups_of(std::uint64_t count, uint cpu_threads);
+    static uint digit_bits(uint cpu_threads);  // sorted by in a pass
 
   private:
     uint cpu_threads_;  // 0: a GPU

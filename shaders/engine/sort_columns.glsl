@@ -4,18 +4,25 @@
 #ifndef TWINRAY_ENGINE_SORT_COLUMNS_GLSL
 #define TWINRAY_ENGINE_SORT_COLUMNS_GLSL
 #include "shaders/shared/sort.h"
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
+layout(constant_id = DIGIT_BITS_CONSTANT) const uint DIGIT_BITS = SORT_GPU_DIGIT_BITS;
 
-shared uint columns[SORT_DIGITS * SORT_DIGITS]; // [digit][thread]
+const uint THREADS = gl_WorkGroupSize.x;
+const uint DIGITS = 1u << DIGIT_BITS;
+
+shared uint columns[DIGITS * THREADS]; // [digit][thread]
 
 uint slot_of(SortArgs args, uint key)
 {
-    return (key >> args.shift & (SORT_DIGITS - 1u)) * SORT_DIGITS + gl_LocalInvocationIndex;
+    return (key >> args.shift & (DIGITS - 1u)) * THREADS + gl_LocalInvocationID.x;
 }
+
+uint run_begin(SortArgs args) { return min((group_index() * THREADS + gl_LocalInvocationID.x) * args.run, args.count); }
 
 // Counts the digits of this thread's items, begin .. end - 1. All threads of the group call it.
 void count_digits(SortArgs args, uint begin, uint end)
 {
-    for (uint digit = 0u; digit < SORT_DIGITS; ++digit) columns[digit * SORT_DIGITS + gl_LocalInvocationIndex] = 0u;
+    for (uint digit = 0u; digit < DIGITS; ++digit) columns[digit * THREADS + gl_LocalInvocationID.x] = 0u;
     for (uint i = begin; i < end; ++i) columns[slot_of(args, AT(args.keys_in, i))] += 1u;
     barrier();
 }

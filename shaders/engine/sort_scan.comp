@@ -4,22 +4,24 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/sort.h"
-layout(local_size_x = SCAN_GROUP) in;
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
+
+const uint THREADS = gl_WorkGroupSize.x;
 layout(push_constant, scalar) uniform Push { ScanArgs args; };
 
-shared uint sums[SCAN_GROUP];
+shared uint sums[THREADS];
 
 void main()
 {
-    uint thread = gl_LocalInvocationIndex;
-    uint run = (args.count + SCAN_GROUP - 1u) / SCAN_GROUP;
+    uint thread = gl_LocalInvocationID.x;
+    uint run = (args.count + THREADS - 1u) / THREADS;
     uint begin = min(thread * run, args.count);
     uint end = min(begin + run, args.count);
     uint total = 0u;
     for (uint i = begin; i < end; ++i) total += AT(args.values, i);
     sums[thread] = total;
     barrier();
-    for (uint distance = 1u; distance < SCAN_GROUP; distance *= 2u)
+    for (uint distance = 1u; distance < THREADS; distance *= 2u)
     {
         uint before = thread >= distance ? sums[thread - distance] : 0u;
         barrier();

@@ -4,27 +4,31 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/engine/sort_columns.glsl"
-layout(local_size_x = SORT_DIGITS) in;
 layout(push_constant, scalar) uniform Push { SortArgs args; };
+
+// Where the items of each digit and thread go.
+void place_digits()
+{
+    for (uint digit = gl_LocalInvocationID.x; digit < DIGITS; digit += THREADS)
+    {
+        uint place = AT(args.counts, digit * args.block_count + group_index());
+        for (uint t = 0u; t < THREADS; ++t)
+        {
+            uint count = columns[digit * THREADS + t];
+            columns[digit * THREADS + t] = place;
+            place += count;
+        }
+    }
+    barrier();
+}
 
 void main()
 {
-    uint thread = gl_LocalInvocationIndex;
-    uint block = group_index();
-    if (block >= args.block_count) return;
-    uint begin = min((block * SORT_DIGITS + thread) * args.run, args.count);
+    if (group_index() >= args.block_count) return;
+    uint begin = run_begin(args);
     uint end = min(begin + args.run, args.count);
     count_digits(args, begin, end);
-
-    uint place = AT(args.counts, thread * args.block_count + block);
-    for (uint t = 0u; t < SORT_DIGITS; ++t)
-    {
-        uint count = columns[thread * SORT_DIGITS + t];
-        columns[thread * SORT_DIGITS + t] = place;
-        place += count;
-    }
-    barrier();
-
+    place_digits();
     for (uint i = begin; i < end; ++i)
     {
         uint key = AT(args.keys_in, i);

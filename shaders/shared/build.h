@@ -7,9 +7,10 @@
 #include "shaders/shared/ray.h"
 #include "shaders/shared/transform.h"
 #include "shaders/shared/triangle.h"
+#include "shaders/shared/workgroup.h"
 
 const uint BUILD_GROUP = 256u;
-const uint LEAVES_GROUP = 32u; // invocations that share a block's leaves where they need each other: few barriers
+const uint LEAVES_GROUP = 32u; // invocations that share a block's leaves where they need each other, on a GPU
 const uint INACTIVE_CODE = 0x3fffffffu; // Morton code of leaves without a finite box: last
 
 // Box of a tree's leaf centres, as ordered bits (see ordered_bits).
@@ -96,10 +97,9 @@ BUFFER_OF(Crowding, 4);
 
 FUNC bool needs_fine_codes(uint crowded, uint leaf_count) { return crowded > leaf_count / 8u; }
 
-// In sorted order.
 struct CrowdingArgs
 {
-    Uints codes;   // by leaf
+    Uints codes;   // in order
     Uints order;
     Uints tree_of; // by leaf; 0: a single tree
     REF(Crowding) crowding;
@@ -140,8 +140,8 @@ struct HierarchyArgs
     REF(BuildTree) trees;
     REF(BuildBlock) blocks;
     REF(LeafBox) boxes;
-    Uints codes;
-    Uints fine_codes;
+    Uints codes;            // in order
+    Uints fine_codes;       // by leaf
     REF(Crowding) crowding;
     Uints order;
     Uints meeting;          // by inner node: the far end of the range that arrived first, NOTHING before

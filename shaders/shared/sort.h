@@ -3,12 +3,17 @@
 // depends on their width.
 #ifndef TWINRAY_SHARED_SORT_H
 #define TWINRAY_SHARED_SORT_H
+#include "shaders/shared/workgroup.h"
 
-const uint SORT_DIGIT_BITS = 6u;
-const uint SORT_DIGITS = 64u;             // == threads of a group, each of which owns one digit
-const uint SORT_SHORTEST_RUN = 32u;       // items of a thread
-const uint SORT_LONGEST_RUN = 512u;
-const uint SCAN_GROUP = 256u;
+// A group has counters for each digit and thread: on a GPU many threads, on a CPU many digits, so that there are fewer passes.
+const uint DIGIT_BITS_CONSTANT = 0u;
+const uint SORT_GPU_GROUP = 64u;
+const uint SORT_GPU_DIGIT_BITS = 6u;
+const uint SORT_GPU_BLOCK = 2048u; // items of a group
+const uint SORT_CPU_DIGIT_BITS = 10u;
+const uint SORT_CPU_BLOCK = 8192u; // items of a group at least, if there are as many
+const uint SORT_LONGEST_RUN = 8192u;
+const uint SCAN_GPU_GROUP = 256u;
 
 // counts[digit * block_count + block]: how often a digit occurs in a block; after the scan, where its items go.
 struct SortArgs
@@ -21,7 +26,7 @@ struct SortArgs
     uint count;
     uint shift;
     uint block_count;
-    uint run; // items of a thread; a block has SORT_DIGITS runs
+    uint run; // items of a thread
 };
 
 // In-place exclusive prefix sum by one group.

@@ -5,9 +5,10 @@
 #define TWINRAY_SWTLAS_CENTROIDS_GLSL
 #include "shaders/shared/build.h"
 #include "shaders/shared/morton.h"
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 
-shared vec3 group_lo[LEAVES_GROUP];
-shared vec3 group_hi[LEAVES_GROUP];
+shared vec3 group_lo[gl_WorkGroupSize.x];
+shared vec3 group_hi[gl_WorkGroupSize.x];
 
 void add_center(inout LeafBox centers, LeafBox box)
 {
@@ -20,11 +21,11 @@ void add_center(inout LeafBox centers, LeafBox box)
 // Called by all invocations of the group.
 void add_centroids(REF(CentroidBounds) centroids, uint tree, LeafBox centers)
 {
-    uint thread = gl_LocalInvocationIndex;
+    uint thread = gl_LocalInvocationID.x;
     group_lo[thread] = centers.lo;
     group_hi[thread] = centers.hi;
     barrier();
-    for (uint stride = LEAVES_GROUP / 2u; stride > 0u; stride /= 2u)
+    for (uint stride = gl_WorkGroupSize.x / 2u; stride > 0u; stride /= 2u)
     {
         if (thread < stride)
         {

@@ -52,11 +52,11 @@ void push(CollapseStep found)
 {
     uint count = 0u;
     UNROLL for (uint i = 0u; i < 4u; i = i + 1u) count = count + (found.is_inner[i] ? 1u : 0u);
-    if (gl_LocalInvocationIndex == 0u) pushed = 0u;
+    if (gl_LocalInvocationID.x == 0u) pushed = 0u;
     barrier();
     uint place = atomicAdd(pushed, count);
     barrier();
-    if (gl_LocalInvocationIndex == 0u && pushed != 0u)
+    if (gl_LocalInvocationID.x == 0u && pushed != 0u)
     {
         pushed_before = atomicAdd(AT(args.level, 1).count, pushed);
         atomicMax(AT(args.level, 1).groups_x, (pushed_before + pushed + COLLAPSE_GROUP - 1u) / COLLAPSE_GROUP);

@@ -4,19 +4,18 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
-layout(local_size_x = LEAVES_GROUP) in;
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { CrowdingArgs args; };
 
-shared uint crowded[LEAVES_GROUP];
+shared uint crowded[gl_WorkGroupSize.x];
 
 bool begins_crowd(uint position)
 {
     if (position + CROWD >= args.count) return false;
-    uint leaf = AT(args.order, position);
-    uint later = AT(args.order, position + CROWD);
-    uint code = AT(args.codes, leaf);
-    if (code == INACTIVE_CODE || code != AT(args.codes, later)) return false;
-    return uint64_t(args.tree_of) == 0ul || AT(args.tree_of, leaf) == AT(args.tree_of, later);
+    uint code = AT(args.codes, position);
+    if (code == INACTIVE_CODE || code != AT(args.codes, position + CROWD)) return false;
+    if (uint64_t(args.tree_of) == 0ul) return true;
+    return AT(args.tree_of, AT(args.order, position)) == AT(args.tree_of, AT(args.order, position + CROWD));
 }
 
 void decide()
@@ -34,14 +33,14 @@ void main()
 {
     uint groups = (args.count + BUILD_GROUP - 1u) / BUILD_GROUP;
     if (group_index() >= groups) return;
-    uint thread = gl_LocalInvocationIndex;
+    uint thread = gl_LocalInvocationID.x;
     uint own = 0u;
     uint end = min((group_index() + 1u) * BUILD_GROUP, args.count);
-    for (uint i = group_index() * BUILD_GROUP + thread; i < end; i += LEAVES_GROUP) own += begins_crowd(i) ? 1u : 0u;
+    for (uint i = group_index() * BUILD_GROUP + thread; i < end; i += gl_WorkGroupSize.x) own += begins_crowd(i) ? 1u : 0u;
     crowded[thread] = own;
     barrier();
     if (thread != 0u) return;
-    for (uint i = 1u; i < LEAVES_GROUP; ++i) own += crowded[i];
+    for (uint i = 1u; i < gl_WorkGroupSize.x; ++i) own += crowded[i];
     atomicAdd(AT(args.crowding, 0).crowded, own);
     memoryBarrierBuffer();
     if (atomicAdd(AT(args.crowding, 0).groups_done, 1u) + 1u != groups) return;

@@ -9,10 +9,9 @@ layout(push_constant, scalar) uniform Push { EncodeRecordsArgs args; };
 
 void main()
 {
-    if (group_index() >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index());
-    if (gl_LocalInvocationIndex >= block.count) return;
-    uint leaf = block.first + gl_LocalInvocationIndex;
+    BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
     BuildTree tree = AT(args.trees, block.tree);
+    if (group_index() >= args.block_count || gl_LocalInvocationID.x >= block.count) return;
+    uint leaf = block.first + gl_LocalInvocationID.x;
     store_record(tree.records, AT(args.places, leaf), encode_leaf(tree, leaf - tree.first));
 }

@@ -18,7 +18,7 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
 #include "shaders/shared/splits.h"
-layout(local_size_x = BUILD_GROUP) in;
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(constant_id = 0) const uint QUALITY = HIERARCHY_FAST;
 layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
 
@@ -37,18 +37,16 @@ struct Range
 
 bool is_fine; // leaves are sorted by fine codes, too
 
-uint64_t split_of(BuildTree tree, uint position, uint element, uint code, uint next_element, uint next_code)
+uint64_t split_of(BuildTree tree, uint position, uint code, uint next_code)
 {
-    uint place = position - tree.first;
     uint difference = 0u;
-    if (is_fine && code == next_code) difference = AT(args.fine_codes, element) ^ AT(args.fine_codes, next_element);
-    return make_split(code ^ next_code, difference, place);
+    if (is_fine && code == next_code)
+        difference = AT(args.fine_codes, AT(args.order, position)) ^ AT(args.fine_codes, AT(args.order, position + 1u));
+    return make_split(code ^ next_code, difference, position - tree.first);
 }
 uint64_t split_after(BuildTree tree, uint position)
 {
-    uint element = AT(args.order, position);
-    uint next = AT(args.order, position + 1u);
-    return split_of(tree, position, element, AT(args.codes, element), next, AT(args.codes, next));
+    return split_of(tree, position, AT(args.codes, position), AT(args.codes, position + 1u));
 }
 
 // The node at a split has both its halves: `range`, which may be the left one, and `other`.
@@ -100,24 +98,22 @@ void build_run(BuildTree tree, float scale, uint begin, uint end)
     uint tree_last = tree.first + tree.count - 1u;
     uint base = begin; // ranges before it have left the run
     uint64_t left = begin == tree.first ? TREE_END : split_after(tree, begin - 1u);
-    uint element = AT(args.order, begin);
-    uint code = AT(args.codes, element);
+    uint code = AT(args.codes, begin);
     Range range;
     for (uint i = begin; i < end; ++i)
     {
+        uint element = AT(args.order, i);
         range.first = i;
         range.last = i;
-        range.top.box = AT(args.boxes, element);
+        range.top.box = load_box(args.boxes, element);
         range.top.child = LEAF_BIT | ((args.leaves_are_sorted != 0u ? i : element) - tree.first);
         range.top.below = make_below(1u, 0u);
         uint64_t right = TREE_END;
         if (i != tree_last)
         {
-            uint last = element;
-            uint last_code = code;
-            element = AT(args.order, i + 1u);
-            code = AT(args.codes, element);
-            right = split_of(tree, i, last, last_code, element, code);
+            uint next_code = AT(args.codes, i + 1u);
+            right = split_of(tree, i, code, next_code);
+            code = next_code;
         }
         while (range.first != base && left < right)
         {

@@ -5,7 +5,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/swtlas/centroids.glsl"
-layout(local_size_x = LEAVES_GROUP) in;
 layout(push_constant, scalar) uniform Push { InstanceLeavesArgs args; };
 
 LeafBox place_instance(uint index)
@@ -45,7 +44,7 @@ void main()
     if (group_index() >= args.block_count) return;
     BuildBlock block = AT(args.blocks, group_index());
     LeafBox centers = empty_box();
-    for (uint i = gl_LocalInvocationIndex; i < block.count; i += LEAVES_GROUP)
+    for (uint i = gl_LocalInvocationIndex; i < block.count; i += gl_WorkGroupSize.x)
     {
         LeafBox box = place_instance(block.first + i);
         AT(args.boxes, block.first + i) = box;

@@ -4,16 +4,15 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/swtlas/centroids.glsl"
-layout(local_size_x = LEAVES_GROUP) in;
 layout(push_constant, scalar) uniform Push { TriangleLeavesArgs args; };
 
 void main()
 {
-    if (group_index() >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index());
+    BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
     BuildTree tree = AT(args.trees, block.tree);
+    if (group_index() >= args.block_count) return;
     LeafBox centers = empty_box();
-    for (uint i = gl_LocalInvocationIndex; i < block.count; i += LEAVES_GROUP)
+    for (uint i = gl_LocalInvocationID.x; i < block.count; i += gl_WorkGroupSize.x)
     {
         LeafBox box = box_of_primitive(tree, block.first + i - tree.first);
         AT(args.boxes, block.first + i) = box;

@@ -10,15 +10,14 @@ layout(push_constant, scalar) uniform Push { MortonArgs args; };
 
 void main()
 {
-    if (group_index() >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index());
-    if (gl_LocalInvocationIndex >= block.count) return;
-    uint leaf = block.first + gl_LocalInvocationIndex;
-    LeafBox box = AT(args.boxes, leaf);
+    BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
+    LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
+    if (group_index() >= args.block_count || gl_LocalInvocationID.x >= block.count) return;
+    uint leaf = block.first + gl_LocalInvocationID.x;
+    LeafBox box = load_box(args.boxes, leaf);
     uint code = INACTIVE_CODE;
     if (is_active(box))
     {
-        LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
         code = morton_code(center_of(box), bounds.lo, bounds.hi);
     }
     AT(args.codes, leaf) = code;

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <random>
 
+#include "engine/core/error.h"
 #include "tests/support/device.h"
 
 namespace twinray {
@@ -43,8 +44,10 @@ std::vector<uint> expected_values(const std::vector<uint>& keys, uint bits) {
     return values;
 }
 
-TEST_F(RadixSortTest, EqualsStableSortForManyCountsAndWidths) {
-    const RadixSort sort(context());
+class RadixSortOn : public RadixSortTest, public testing::WithParamInterface<uint> {};
+
+TEST_P(RadixSortOn, EqualsStableSortForManyCountsAndWidths) {
+    const RadixSort sort(context(), GetParam());
     std::mt19937 random(1);
     for (const std::size_t count : {1u, 2u, 63u, 64u, 500u, 2047u, 2048u, 2049u, 10'000u, 150'000u}) {
         for (const uint bits : {1u, 6u, 9u, 30u}) {
@@ -56,17 +59,28 @@ TEST_F(RadixSortTest, EqualsStableSortForManyCountsAndWidths) {
     }
 }
 
-TEST_F(RadixSortTest, EqualKeysKeepTheirOrder) {
-    const RadixSort sort(context());
+TEST_P(RadixSortOn, EqualKeysKeepTheirOrder) {
+    const RadixSort sort(context(), GetParam());
     const std::vector<uint> keys(5000, 42u);
     EXPECT_EQ(sorted_values(sort, keys, 30), expected_values(keys, 30));
 }
 
+INSTANTIATE_TEST_SUITE_P(Threads, RadixSortOn, testing::Values(0u, 1u, 2u, 5u),
+                         [](const auto& param) { return param.param ? text("cpu", param.param) : "gpu"; });
+
 TEST(RadixSortRun, IsLongWhereAProcessorRunsTheThreads) {
-    EXPECT_EQ(RadixSort::run_of(100'000'000, 0), SORT_SHORTEST_RUN);
-    EXPECT_EQ(RadixSort::run_of(0, 2), SORT_SHORTEST_RUN);
-    EXPECT_EQ(RadixSort::run_of(40'000, 2), 313u);
+    EXPECT_EQ(RadixSort::run_of(100'000'000, 0), 32u);
+    EXPECT_EQ(RadixSort::run_of(40'000, 2), 2500u);
     EXPECT_EQ(RadixSort::run_of(100'000'000, 2), SORT_LONGEST_RUN);
+}
+
+TEST(RadixSortRun, CountersHaveRoomForAllGroups) {
+    for (const uint threads : {0u, 1u, 2u, 3u, 16u, 256u})
+        for (std::uint64_t count = 2; count < 5'000'000'000; count += 1 + count / 7) {
+            const std::uint64_t counters = std::uint64_t{RadixSort::groups_of(count, threads)}
+                                           << RadixSort::digit_bits(threads);
+            EXPECT_LE(counters * sizeof(uint), RadixSort::counter_bytes(count)) << count << " on " << threads;
+        }
 }
 
 }  // namespace

@@ -126,6 +126,25 @@ TEST_P(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsTwin) {
     }
 }
 
+// Each triangle of a soup, and behind it one that is a little lower: their codes are equal, their fine codes in the
+// other order. That is no crowd, so those do not count.
+Mesh pairs_of_equal_codes(uint seed) {
+    Mesh mesh = make_soup(100, seed);
+    const auto corners = static_cast<uint>(mesh.positions.size());
+    for (uint i = 0; i < corners; ++i) mesh.positions.push_back(mesh.positions[i] - vec3(1e-5f));
+    for (std::size_t i = 0; i < 100; ++i) mesh.triangles.push_back(mesh.triangles[i] + corners);
+    return mesh;
+}
+
+TEST_P(SwBuild, EqualCodesThatAreNoCrowdKeepTheirOrder) {
+    SwTlas accel(context(), options());
+    const Mesh meshes[] = {pairs_of_equal_codes(1), pairs_of_equal_codes(2), pairs_of_equal_codes(3)};
+    std::vector<AccelHandle> handles;
+    for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
+    accel.sync();
+    for (std::size_t i = 0; i < 3; ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
+}
+
 TEST_P(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
     SwTlas accel(context(), options());
     const Mesh meshes[] = {make_soup(5, 1), equal_triangles(1000), make_soup(3, 2), equal_triangles(77)};
