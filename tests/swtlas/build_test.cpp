@@ -1,105 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <random>
 
-#include "engine/core/error.h"
-#include "engine/scene/shapes.h"
-#include "swtlas/check.h"
-#include "swtlas/check_compressed.h"
-#include "swtlas/reference.h"
-#include "swtlas/sw_tlas.h"
-#include "tests/support/device.h"
+#include "tests/support/sw_build.h"
 
 namespace twinray {
 namespace {
 
-using How = std::tuple<Layout, BuildQuality>;
+using namespace test;
 
-class SwBuild : public test::VulkanTest, public testing::WithParamInterface<How> {
-  protected:
-    BuildQuality quality() const { return std::get<BuildQuality>(GetParam()); }
-    AccelOptions options() const { return {.layout = std::get<Layout>(GetParam()), .build_quality = quality()}; }
-};
-INSTANTIATE_TEST_SUITE_P(Every, SwBuild,
-                         testing::Values(How{Layout::compressed4, BuildQuality::fast},
-                                         How{Layout::compressed4, BuildQuality::high},
-                                         How{Layout::bvh2, BuildQuality::high}, How{Layout::bvh4, BuildQuality::fast}),
-                         [](const auto& how) {
-                             return text(name_of(std::get<Layout>(how.param)), '_',
-                                         name_of(std::get<BuildQuality>(how.param)));
-                         });
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-
-// As it is built: in units of a power of two, that of the mesh which was pushed.
-std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed = nullptr) {
-    return Geometry(mesh, software_unit((pushed ? pushed : &mesh)->positions)).positions;
-}
-
-// Boxes by the leaf index that node references use: sorted order.
-std::vector<LeafBox> boxes_of(const std::vector<BvhTriangle>& triangles, const Mesh& mesh,
-                              const Mesh* pushed = nullptr) {
-    std::vector<LeafBox> boxes;
-    const std::vector<LeafBox> by_primitive = reference::leaves_triangles(built(mesh, pushed), mesh.triangles);
-    for (const BvhTriangle& triangle : triangles) boxes.push_back(by_primitive.at(triangle.primitive_index));
-    return boxes;
-}
-
-bool has_records(const SwTlas::Tree& tree) { return !tree.records.empty(); }
-
-// Of a tree whose references are the leaves' own indices, or with records.
-void expect_sound(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes, const std::string& name) {
-    const auto report = [&](const std::vector<std::string>& violations) {
-        for (const std::string& violation : violations) ADD_FAILURE() << name << ": " << violation;
-    };
-    if (!has_records(tree)) return report(check_tree(tree.bvh, tree.nodes, boxes).violations);
-    const CompressedCheck check = check_compressed(tree.bvh, tree.records, boxes);
-    report(check.violations);
-    if (tree.record_boxes.empty()) return;
-    ASSERT_EQ(tree.record_boxes.size(), tree.records.size()) << name;
-    for (const uint record : check.used) {
-        if (record == 0) continue;  // that of the root is Bvh's
-        const LeafBox &found = tree.record_boxes[record], &right = check.boxes[record];
-        EXPECT_TRUE(found.lo == right.lo && found.hi == right.hi) << name << ": box of record " << record;
-    }
-}
-
-std::vector<LeafBox> leaf_boxes(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr) {
-    return has_records(tree) ? reference::leaves_triangles(built(mesh, pushed), mesh.triangles)
-                             : boxes_of(tree.triangles, mesh, pushed);
-}
-
-void expect_sound(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr) {
-    expect_sound(tree, leaf_boxes(tree, mesh, pushed), mesh.name);
-}
-
-double sah_of(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes) {
-    if (!has_records(tree)) return check_tree(tree.bvh, tree.nodes, boxes).sah;
-    const CompressedCheck check = check_compressed(tree.bvh, tree.records, boxes);
-    return tree.record_boxes.empty() ? check.sah : check.full_sah;
-}
-
-void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh, BuildQuality quality) {
-    const std::vector<LeafBox> boxes = reference::leaves_triangles(built(mesh), mesh.triangles);
-    const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
-    const std::vector<uint> order = reference::sort(codes);
-    const reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, !has_records(tree), quality);
-    if (has_records(tree)) {
-        EXPECT_TRUE(
-            same_bytes(tree.records, reference::records_of_triangles(twin, built(mesh), mesh.triangles).records))
-            << mesh.name;
-        return;
-    }
-    EXPECT_EQ(tree.bvh.root, twin.root) << mesh.name;
-    EXPECT_TRUE(same_bytes(tree.nodes, twin.nodes)) << mesh.name;
-    EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(built(mesh), mesh.triangles, order)))
-        << mesh.name;
-}
+class SwBuild : public SwBuildTest {};
+INSTANTIATE_TEST_SUITE_P(Every, SwBuild, every_build(), name_of_build);
 
 // n copies of one triangle: all centroids equal.
 Mesh equal_triangles(std::size_t n) {
@@ -239,32 +151,6 @@ TEST_P(SwBuild, ASecondBuildIsBitIdentical) {
     EXPECT_TRUE(same_bytes(trees[0].records, trees[1].records));
 }
 
-// The scene tree over these placements of one mesh, and the boxes of its leaves by the serial twin.
-std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms) {
-    const std::vector<LeafBox> triangles = reference::leaves_triangles(mesh.positions, mesh.triangles);
-    LeafBox all = empty_box();
-    for (const LeafBox& box : triangles) all = {min(all.lo, box.lo), max(all.hi, box.hi)};
-    const SwGeometry block{
-        {all.lo, all.hi, {}, 0, static_cast<uint>(triangles.size())}, {}, {}, {}, GEOMETRY_TRIANGLES, 0};
-    std::vector<InstanceRecord> records;
-    for (const Transform& transform : transforms) {
-        records.push_back(make_instance_record(transform));
-        records.back().geometry = Ref<SwGeometry>::to(&block).address;
-    }
-    std::vector<SwInstance> instances;
-    return reference::leaves_instances(records, instances);
-}
-
-std::vector<Transform> scattered(std::size_t count, uint seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<float> place(-50, 50);
-    std::vector<Transform> transforms;
-    for (std::size_t i = 0; i < count; ++i)
-        transforms.push_back(Transform::translation({place(random), place(random), place(random)}) *
-                             Transform::scaling({1.5f, -0.25f, 3}));
-    return transforms;
-}
-
 TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
     SwTlas accel(context(), options());
     const Mesh mesh = make_soup(10, 1);
@@ -280,83 +166,6 @@ TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
         EXPECT_TRUE(same_bytes(tree.records, reference::records_of_instances(twin, 777).records));
     else
         EXPECT_TRUE(same_bytes(tree.nodes, twin.nodes));
-}
-
-void expect_same_topology(const SwTlas::Tree& after, const SwTlas::Tree& before) {
-    ASSERT_EQ(after.nodes.size(), before.nodes.size());
-    for (std::size_t i = 0; i < before.nodes.size(); ++i) {
-        EXPECT_EQ(after.nodes[i].child0, before.nodes[i].child0);
-        EXPECT_EQ(after.nodes[i].child1, before.nodes[i].child1);
-    }
-    ASSERT_EQ(after.records.size(), before.records.size());
-    for (std::size_t i = 0; i < before.records.size(); ++i) {
-        const CompressedRecord &now = after.records[i], &then = before.records[i];
-        EXPECT_EQ(is_leaf(now), is_leaf(then));
-        EXPECT_EQ(now.a.w, then.a.w);
-    }
-}
-
-void expect_leaves_of(std::span<const CompressedRecord> records, std::span<const vec3> positions,
-                      std::span<const uvec3> triangles) {
-    for (const CompressedRecord& record : records) {
-        if (!is_leaf(record)) continue;
-        const uint primitive = record.a.w & ~LEAF_BIT;
-        const CompressedRecord right =
-            encode_primitive(reference::encode_triangles(positions, triangles, std::span(&primitive, 1)).front());
-        EXPECT_EQ(std::memcmp(&record, &right, sizeof right), 0) << "primitive " << primitive;
-    }
-}
-
-TEST_P(SwBuild, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
-    const Mesh mesh = make_soup(10, 1);
-    for (const std::size_t count : {1u, 2u, 3u, 255u, 256u, 257u, 1000u}) {
-        SwTlas accel(context(), options());
-        const AccelHandle handle = accel.push(mesh, scattered(count, 1));
-        accel.sync();
-        accel.update_transforms(handle, scattered(count, 2));  // the first move rebuilds
-        accel.sync();
-        const SwTlas::Tree before = accel.download_scene();
-        const std::vector<Transform> moved = scattered(count, 3);
-        accel.update_transforms(handle, moved);
-        accel.sync();
-        const SwTlas::Tree after = accel.download_scene();
-        expect_sound(after, instance_boxes(mesh, moved), text(count, " instances"));
-        expect_same_topology(after, before);
-    }
-}
-
-TEST_P(SwBuild, ARefittedGeometryIsSoundAndKeepsItsTopology) {
-    SwTlas accel(context(), options());
-    std::vector<Mesh> meshes;
-    std::vector<AccelHandle> handles;
-    std::vector<SwTlas::Tree> before;
-    for (const uint n : {1u, 2u, 3u, 255u, 256u, 257u, 1000u}) {
-        meshes.push_back(make_soup(n, n));
-        handles.push_back(accel.push(meshes.back()));
-    }
-    const std::vector<Mesh> pushed = meshes;
-    accel.sync();
-    for (const AccelHandle handle : handles) before.push_back(accel.download_geometry(handle));
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        meshes[i].positions = make_soup(static_cast<uint>(meshes[i].triangles.size()), 77).positions;
-        if (i > 3) meshes[i].positions[100].y = NAN;
-        accel.update_vertices(handles[i], meshes[i].positions);
-    }
-    accel.sync();
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const SwTlas::Tree after = accel.download_geometry(handles[i]);
-        expect_sound(after, meshes[i], &pushed[i]);
-        expect_same_topology(after, before[i]);
-        EXPECT_EQ(after.bvh.nodes.address, before[i].bvh.nodes.address);
-        const std::vector<vec3> positions = built(meshes[i], &pushed[i]);
-        if (has_records(after)) {
-            expect_leaves_of(after.records, positions, meshes[i].triangles);
-            continue;
-        }
-        std::vector<uint> order;
-        for (const BvhTriangle& triangle : before[i].triangles) order.push_back(triangle.primitive_index);
-        EXPECT_TRUE(same_bytes(after.triangles, reference::encode_triangles(positions, meshes[i].triangles, order)));
-    }
 }
 
 // The area of all boxes, but for the root's: what a stray triangle must not change.
@@ -396,30 +205,6 @@ TEST_P(SwBuild, AStrayTriangleDoesNotSpoilTheOrderOfTheOthers) {
     expect_sound(of_many.download_geometry(handles[2]), soup);
     EXPECT_TRUE(same_bytes(of_many.download_geometry(handles[1]).records, tree.records));
     EXPECT_TRUE(same_bytes(of_many.download_geometry(handles[1]).nodes, tree.nodes));
-}
-
-TEST_P(SwBuild, TheCostOnTheDeviceIsThatOfTheChecker) {
-    for (const uint n : {1u, 2u, 3u, 256u, 257u, 258u, 1000u, 70'000u}) {
-        SwTlas accel(context(), options());
-        Mesh mesh = make_soup(n, 5, 0.1f);
-        const std::vector<Transform> transforms = scattered(std::min(n, 1000u), n);
-        const AccelHandle handle = accel.push(mesh, transforms);
-        accel.sync();
-        EXPECT_EQ(accel.sah(handle), std::nullopt) << "not measured before its vertices move";
-        const SwTlas::Tree top = accel.download_scene();
-        const double expected = sah_of(top, instance_boxes(mesh, transforms));
-        EXPECT_NEAR(*accel.sah(), expected, 1e-5 * expected) << n;
-        for (const uint seed : {6u, 7u}) {
-            mesh.positions = make_soup(n, seed, 0.1f).positions;
-            if (n > 3) mesh.positions[5].x = INFINITY;
-            accel.update_vertices(handle, mesh.positions);
-            accel.sync();
-            const SwTlas::Tree tree = accel.download_geometry(handle);
-            const double cost = sah_of(tree, leaf_boxes(tree, mesh));
-            EXPECT_NEAR(*accel.sah(handle), cost, 1e-5 * cost) << n;
-            EXPECT_EQ(accel.sah_if_ready(handle), accel.sah(handle));
-        }
-    }
 }
 
 // Triangles of many sizes and shapes, as architecture has: long walls, panels, small parts.

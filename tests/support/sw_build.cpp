@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "tests/support/sw_build.h"
+
+#include <random>
+
+namespace twinray::test {
+namespace {
+
+// Boxes by the leaf index that node references use: sorted order.
+std::vector<LeafBox> boxes_of(const std::vector<BvhTriangle>& triangles, const Mesh& mesh, const Mesh* pushed) {
+    std::vector<LeafBox> boxes;
+    const std::vector<LeafBox> by_primitive = reference::leaves_triangles(built(mesh, pushed), mesh.triangles);
+    for (const BvhTriangle& triangle : triangles) boxes.push_back(by_primitive.at(triangle.primitive_index));
+    return boxes;
+}
+
+}  // namespace
+
+std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed) {
+    return Geometry(mesh, software_unit((pushed ? pushed : &mesh)->positions)).positions;
+}
+
+void expect_sound(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes, const std::string& name) {
+    const auto report = [&](const std::vector<std::string>& violations) {
+        for (const std::string& violation : violations) ADD_FAILURE() << name << ": " << violation;
+    };
+    if (!has_records(tree)) return report(check_tree(tree.bvh, tree.nodes, boxes).violations);
+    const CompressedCheck check = check_compressed(tree.bvh, tree.records, boxes);
+    report(check.violations);
+    if (tree.record_boxes.empty()) return;
+    ASSERT_EQ(tree.record_boxes.size(), tree.records.size()) << name;
+    for (const uint record : check.used) {
+        if (record == 0) continue;  // that of the root is Bvh's
+        const LeafBox &found = tree.record_boxes[record], &right = check.boxes[record];
+        EXPECT_TRUE(found.lo == right.lo && found.hi == right.hi) << name << ": box of record " << record;
+    }
+}
+
+std::vector<LeafBox> leaf_boxes(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed) {
+    return has_records(tree) ? reference::leaves_triangles(built(mesh, pushed), mesh.triangles)
+                             : boxes_of(tree.triangles, mesh, pushed);
+}
+
+void expect_sound(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed) {
+    expect_sound(tree, leaf_boxes(tree, mesh, pushed), mesh.name);
+}
+
+double sah_of(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes) {
+    if (!has_records(tree)) return check_tree(tree.bvh, tree.nodes, boxes).sah;
+    const CompressedCheck check = check_compressed(tree.bvh, tree.records, boxes);
+    return tree.record_boxes.empty() ? check.sah : check.full_sah;
+}
+
+void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh, BuildQuality quality) {
+    const std::vector<LeafBox> boxes = reference::leaves_triangles(built(mesh), mesh.triangles);
+    const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
+    const std::vector<uint> order = reference::sort(codes);
+    const reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, !has_records(tree), quality);
+    if (has_records(tree)) {
+        EXPECT_TRUE(
+            same_bytes(tree.records, reference::records_of_triangles(twin, built(mesh), mesh.triangles).records))
+            << mesh.name;
+        return;
+    }
+    EXPECT_EQ(tree.bvh.root, twin.root) << mesh.name;
+    EXPECT_TRUE(same_bytes(tree.nodes, twin.nodes)) << mesh.name;
+    EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(built(mesh), mesh.triangles, order)))
+        << mesh.name;
+}
+
+std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms) {
+    const std::vector<LeafBox> triangles = reference::leaves_triangles(mesh.positions, mesh.triangles);
+    LeafBox all = empty_box();
+    for (const LeafBox& box : triangles) all = {min(all.lo, box.lo), max(all.hi, box.hi)};
+    const SwGeometry block{
+        {all.lo, all.hi, {}, 0, static_cast<uint>(triangles.size())}, {}, {}, {}, GEOMETRY_TRIANGLES, 0};
+    std::vector<InstanceRecord> records;
+    for (const Transform& transform : transforms) {
+        records.push_back(make_instance_record(transform));
+        records.back().geometry = Ref<SwGeometry>::to(&block).address;
+    }
+    std::vector<SwInstance> instances;
+    return reference::leaves_instances(records, instances);
+}
+
+std::vector<Transform> scattered(std::size_t count, uint seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> place(-50, 50);
+    std::vector<Transform> transforms;
+    for (std::size_t i = 0; i < count; ++i)
+        transforms.push_back(Transform::translation({place(random), place(random), place(random)}) *
+                             Transform::scaling({1.5f, -0.25f, 3}));
+    return transforms;
+}
+
+}  // namespace twinray::test

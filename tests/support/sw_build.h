@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// What tests of SwTlas' builds and refits share: each layout with a build quality, and what built trees must be.
+#pragma once
+
+#include <cstring>
+#include <tuple>
+
+#include "engine/core/error.h"
+#include "engine/scene/shapes.h"
+#include "swtlas/check.h"
+#include "swtlas/check_compressed.h"
+#include "swtlas/reference.h"
+#include "swtlas/sw_tlas.h"
+#include "tests/support/device.h"
+
+namespace twinray::test {
+
+using How = std::tuple<Layout, BuildQuality>;
+
+class SwBuildTest : public VulkanTest, public testing::WithParamInterface<How> {
+  protected:
+    BuildQuality quality() const { return std::get<BuildQuality>(GetParam()); }
+    AccelOptions options() const { return {.layout = std::get<Layout>(GetParam()), .build_quality = quality()}; }
+};
+
+inline auto every_build() {
+    return testing::Values(How{Layout::compressed4, BuildQuality::fast}, How{Layout::compressed4, BuildQuality::high},
+                           How{Layout::bvh2, BuildQuality::high}, How{Layout::bvh4, BuildQuality::fast});
+}
+inline std::string name_of_build(const testing::TestParamInfo<How>& how) {
+    return text(name_of(std::get<Layout>(how.param)), '_', name_of(std::get<BuildQuality>(how.param)));
+}
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+// As it is built: in units of a power of two, that of the mesh which was pushed.
+std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed = nullptr);
+
+// By the leaf index that references of the tree use.
+std::vector<LeafBox> leaf_boxes(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
+// The boxes of the scene tree's leaves over these placements of one mesh, by the serial twin.
+std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms);
+std::vector<Transform> scattered(std::size_t count, uint seed);
+
+inline bool has_records(const SwTlas::Tree& tree) { return !tree.records.empty(); }
+
+// Of a tree whose references are the leaves' own indices, or with records.
+void expect_sound(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes, const std::string& name);
+void expect_sound(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
+void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh, BuildQuality quality);
+double sah_of(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes);
+
+}  // namespace twinray::test

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "tests/support/sw_build.h"
+
+namespace twinray {
+namespace {
+
+using namespace test;
+
+class SwRefit : public SwBuildTest {};
+INSTANTIATE_TEST_SUITE_P(Every, SwRefit, every_build(), name_of_build);
+
+void expect_same_topology(const SwTlas::Tree& after, const SwTlas::Tree& before) {
+    ASSERT_EQ(after.nodes.size(), before.nodes.size());
+    for (std::size_t i = 0; i < before.nodes.size(); ++i) {
+        EXPECT_EQ(after.nodes[i].child0, before.nodes[i].child0);
+        EXPECT_EQ(after.nodes[i].child1, before.nodes[i].child1);
+    }
+    ASSERT_EQ(after.records.size(), before.records.size());
+    for (std::size_t i = 0; i < before.records.size(); ++i) {
+        const CompressedRecord &now = after.records[i], &then = before.records[i];
+        EXPECT_EQ(is_leaf(now), is_leaf(then));
+        EXPECT_EQ(now.a.w, then.a.w);
+    }
+}
+
+void expect_leaves_of(std::span<const CompressedRecord> records, std::span<const vec3> positions,
+                      std::span<const uvec3> triangles) {
+    for (const CompressedRecord& record : records) {
+        if (!is_leaf(record)) continue;
+        const uint primitive = record.a.w & ~LEAF_BIT;
+        const CompressedRecord right =
+            encode_primitive(reference::encode_triangles(positions, triangles, std::span(&primitive, 1)).front());
+        EXPECT_EQ(std::memcmp(&record, &right, sizeof right), 0) << "primitive " << primitive;
+    }
+}
+
+TEST_P(SwRefit, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
+    const Mesh mesh = make_soup(10, 1);
+    for (const std::size_t count : {1u, 2u, 3u, 255u, 256u, 257u, 1000u}) {
+        SwTlas accel(context(), options());
+        const AccelHandle handle = accel.push(mesh, scattered(count, 1));
+        accel.sync();
+        accel.update_transforms(handle, scattered(count, 2));  // the first move rebuilds
+        accel.sync();
+        const SwTlas::Tree before = accel.download_scene();
+        const std::vector<Transform> moved = scattered(count, 3);
+        accel.update_transforms(handle, moved);
+        accel.sync();
+        const SwTlas::Tree after = accel.download_scene();
+        expect_sound(after, instance_boxes(mesh, moved), text(count, " instances"));
+        expect_same_topology(after, before);
+    }
+}
+
+TEST_P(SwRefit, ARefittedGeometryIsSoundAndKeepsItsTopology) {
+    SwTlas accel(context(), options());
+    std::vector<Mesh> meshes;
+    std::vector<AccelHandle> handles;
+    std::vector<SwTlas::Tree> before;
+    for (const uint n : {1u, 2u, 3u, 255u, 256u, 257u, 1000u}) {
+        meshes.push_back(make_soup(n, n));
+        handles.push_back(accel.push(meshes.back()));
+    }
+    const std::vector<Mesh> pushed = meshes;
+    accel.sync();
+    for (const AccelHandle handle : handles) before.push_back(accel.download_geometry(handle));
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        meshes[i].positions = make_soup(static_cast<uint>(meshes[i].triangles.size()), 77).positions;
+        if (i > 3) meshes[i].positions[100].y = NAN;
+        accel.update_vertices(handles[i], meshes[i].positions);
+    }
+    accel.sync();
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const SwTlas::Tree after = accel.download_geometry(handles[i]);
+        expect_sound(after, meshes[i], &pushed[i]);
+        expect_same_topology(after, before[i]);
+        EXPECT_EQ(after.bvh.nodes.address, before[i].bvh.nodes.address);
+        const std::vector<vec3> positions = built(meshes[i], &pushed[i]);
+        if (has_records(after)) {
+            expect_leaves_of(after.records, positions, meshes[i].triangles);
+            continue;
+        }
+        std::vector<uint> order;
+        for (const BvhTriangle& triangle : before[i].triangles) order.push_back(triangle.primitive_index);
+        EXPECT_TRUE(same_bytes(after.triangles, reference::encode_triangles(positions, meshes[i].triangles, order)));
+    }
+}
+
+TEST_P(SwRefit, TheCostOnTheDeviceIsThatOfTheChecker) {
+    for (const uint n : {1u, 2u, 3u, 256u, 257u, 258u, 1000u, 70'000u}) {
+        SwTlas accel(context(), options());
+        Mesh mesh = make_soup(n, 5, 0.1f);
+        const std::vector<Transform> transforms = scattered(std::min(n, 1000u), n);
+        const AccelHandle handle = accel.push(mesh, transforms);
+        accel.sync();
+        EXPECT_EQ(accel.sah(handle), std::nullopt) << "not measured before its vertices move";
+        const SwTlas::Tree top = accel.download_scene();
+        const double expected = sah_of(top, instance_boxes(mesh, transforms));
+        EXPECT_NEAR(*accel.sah(), expected, 1e-5 * expected) << n;
+        for (const uint seed : {6u, 7u}) {
+            mesh.positions = make_soup(n, seed, 0.1f).positions;
+            if (n > 3) mesh.positions[5].x = INFINITY;
+            accel.update_vertices(handle, mesh.positions);
+            accel.sync();
+            const SwTlas::Tree tree = accel.download_geometry(handle);
+            const double cost = sah_of(tree, leaf_boxes(tree, mesh));
+            EXPECT_NEAR(*accel.sah(handle), cost, 1e-5 * cost) << n;
+            EXPECT_EQ(accel.sah_if_ready(handle), accel.sah(handle));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace twinray
