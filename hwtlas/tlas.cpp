@@ -57,8 +57,9 @@ TlasBuilder::Sizes TlasBuilder::sizes(std::size_t capacity) const {
 
 BuildBytes TlasBuilder::bytes(std::size_t count, std::size_t capacity) const {
     const Sizes sizes = this->sizes(capacity);
-    const std::uint64_t sort =
-        reorder_ && count ? 4 * ((count * sizeof(uint) + 15) / 16 * 16) + RadixSort::counter_bytes(count) : 0;
+    const std::uint64_t sort = reorder_ && count ? 4 * ((count * sizeof(uint) + 15) / 16 * 16) +
+                                                       RadixSort::counter_bytes(count, context_.facts())
+                                                 : 0;
     const AreaWork areas{count, {}, {}, false};
     return {sizes.structure + (reorder_ ? capacity * sizeof(HwInstance) : 0) + sizeof(HwScene),
             sizes.scratch + capacity * sizeof(InstanceRecord) + sort + areas.bytes()};
@@ -84,7 +85,8 @@ Tlas TlasBuilder::make(Commands& commands, std::size_t capacity, Ref<RefineScene
 Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) const {
     if (!reorder_ || input.count == 0) return {};
     const std::uint64_t bytes = (std::uint64_t{input.count} * sizeof(uint) + 15) / 16 * 16;
-    Buffer scratch(context_, {.name = "tlas sort scratch", .bytes = 4 * bytes + RadixSort::counter_bytes(input.count)});
+    Buffer scratch(context_, {.name = "tlas sort scratch",
+                              .bytes = 4 * bytes + RadixSort::counter_bytes(input.count, context_.facts())});
     const auto part = [&](std::uint64_t i) { return scratch.ref<uint>(i * bytes); };
     codes_.dispatch(commands, {input.records, input.bound, part(0), part(1), input.count, 0}, input.count);
     const RadixSort::Pairs sorted =

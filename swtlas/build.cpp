@@ -75,7 +75,7 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       leaves_instances_(context, leaves_stage(context, "swtlas_leaves_instances", swtlas_leaves_instances_spirv)),
       morton_(context, stage("swtlas_morton", swtlas_morton_spirv, true)),
       node_areas_(context, stage("swtlas_node_areas", swtlas_node_areas_spirv, needs.moves)),
-      crowding_(context, leaves_stage(context, "swtlas_crowding", swtlas_crowding_spirv)),
+      crowding_(context, stage("swtlas_crowding", swtlas_crowding_spirv, true)),
       fine_codes_(context, stage("swtlas_fine_codes", swtlas_fine_codes_spirv, true)),
       gather_keys_(context, stage("swtlas_gather_keys", swtlas_gather_keys_spirv, true)),
       hierarchy_(context, hierarchy_stage(context, options.build_quality)),
@@ -97,7 +97,7 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
     const BuildScratch& at = plan.scratch;
     const uint none = ordered_bits(-INFINITY), all = ordered_bits(INFINITY);
     const std::vector<CentroidBounds> empty(trees.size(), {uvec3(all), uvec3(none)});
-    const Crowding crowding{0, 0, 0, 0, {0, 1, 1}, {0, 1, 1}, {0, 1, 1}};
+    const Crowding crowding{0, {0, 1, 1}, {0, 1, 1}, {0, 1, 1}};
     const std::vector<CollapseLevel> levels(plan.collapse_levels + 2, {0, 1, 1, 0});
     const std::uint64_t base = scratch.address();
     std::vector<BuildTree> with_nodes(trees.begin(), trees.end());
@@ -111,6 +111,7 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
                                           {at.crowding, std::as_bytes(std::span(&crowding, 1))},
                                           {at.levels, std::as_bytes(std::span(levels))}};
         commands.upload_pieces(scratch, pieces);
+        commands.fill(scratch, at.crowded, trees.size() * sizeof(uint), 0);
         commands.fill(scratch, at.meeting, std::uint64_t{plan.leaf_count} * sizeof(uint), NOTHING);
     }
     return {scratch,
@@ -123,6 +124,7 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
             {plan.tree_bits ? base + at.tree_of : 0},
             {base + at.meeting},
             {base + at.counters},
+            {base + at.crowded},
             {base + at.crowding},
             {{base + at.keys[0]}, {base + at.order[0]}},
             {{base + at.keys[1]}, {base + at.order[1]}},
@@ -175,14 +177,14 @@ void Builder::record_fine_order(Commands& commands, const BuildPlan& plan, const
     };
     crowding_.dispatch_groups(
         commands,
-        {sorted.keys, sorted.values, batch.tree_of, batch.crowding, count,
+        {sorted.keys, sorted.values, batch.tree_of, batch.trees, batch.crowded, batch.crowding, count,
          std::max(batch.block_count, (count + BUILD_GROUP - 1) / BUILD_GROUP), sort_.sort_groups(count), 0},
         (count + BUILD_GROUP - 1) / BUILD_GROUP);
     const RadixSort::Pairs& begin = by_code;
-    fine_codes_.dispatch_indirect(
-        commands,
-        {batch.blocks, batch.boxes, batch.centroids, batch.fine_codes, begin.keys, begin.values, batch.block_count, 0},
-        batch.scratch, of_leaves);
+    fine_codes_.dispatch_indirect(commands,
+                                  {batch.trees, batch.blocks, batch.boxes, batch.centroids, batch.crowded,
+                                   batch.fine_codes, begin.keys, begin.values, batch.block_count, 0},
+                                  batch.scratch, of_leaves);
     RadixSort::Pairs fine = sort(begin, morton_bits);
     gather(batch.codes, fine);
     fine = sort(fine, morton_bits);

@@ -13,6 +13,7 @@ struct Builder::Batch {
     Ref<LeafBox> boxes;
     Ref<CentroidBounds> centroids;
     Uints codes, fine_codes, tree_of, meeting, counters;
+    Uints crowded;
     Ref<Crowding> crowding;
     RadixSort::Pairs pairs, spare;
     uint block_count;

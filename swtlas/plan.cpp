@@ -23,7 +23,7 @@ struct Arena {
     }
 };
 
-BuildScratch layout_scratch(const BuildPlan& plan) {
+BuildScratch layout_scratch(const BuildPlan& plan, const DeviceFacts& device) {
     const uint n = plan.leaf_count;
     Arena arena;
     BuildScratch scratch;
@@ -33,6 +33,7 @@ BuildScratch layout_scratch(const BuildPlan& plan) {
     scratch.centroids = arena.take<CentroidBounds>(plan.first.size());
     scratch.codes = arena.take<uint>(n);
     scratch.fine_codes = arena.take<uint>(n);
+    scratch.crowded = arena.take<uint>(plan.first.size());
     scratch.crowding = arena.take<Crowding>(1);
     scratch.tree_of = arena.take<uint>(plan.tree_bits ? n : 0);
     scratch.meeting = arena.take<uint>(n);
@@ -40,7 +41,7 @@ BuildScratch layout_scratch(const BuildPlan& plan) {
         scratch.keys[i] = arena.take<uint>(n);
         scratch.order[i] = arena.take<uint>(n);
     }
-    scratch.counters = arena.take<std::byte>(RadixSort::counter_bytes(n));
+    scratch.counters = arena.take<std::byte>(RadixSort::counter_bytes(n, device));
     scratch.levels = arena.take<CollapseLevel>(plan.collapse_levels + 2);
     if (!has_records(plan.layout)) {
         scratch.bytes = arena.bytes;
@@ -70,15 +71,15 @@ float software_unit(std::span<const vec3> positions) {
 }
 
 // Alone it needs no tree_of; all other parts are as long or, rounded up one by one, longer.
-std::uint64_t scratch_share(uint leaf_count, Layout layout) {
+std::uint64_t scratch_share(uint leaf_count, Layout layout, const DeviceFacts& device) {
     Arena tree_of;
     tree_of.take<uint>(leaf_count);
-    return plan_build(std::span(&leaf_count, 1), layout).scratch.bytes + tree_of.bytes;
+    return plan_build(std::span(&leaf_count, 1), layout, device).scratch.bytes + tree_of.bytes;
 }
 
 uint inner_count(uint leaf_count) { return std::max(leaf_count, 1u) - 1u; }
 
-BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout) {
+BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const DeviceFacts& device) {
     BuildPlan plan;
     plan.layout = layout;
     std::uint64_t total = 0;
@@ -94,7 +95,7 @@ BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout) {
     if (leaf_counts.size() > 1) plan.tree_bits = static_cast<uint>(std::bit_width(leaf_counts.size() - 1));
     if (!leaf_counts.empty())
         plan.collapse_levels = levels_to_collapse(*std::max_element(leaf_counts.begin(), leaf_counts.end()));
-    plan.scratch = layout_scratch(plan);
+    plan.scratch = layout_scratch(plan, device);
     return plan;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/accel/trace_desc.h"
+#include "engine/core/device_choice.h"
 #include "swtlas/structures.h"
 
 namespace twinray {
@@ -17,7 +18,7 @@ float software_unit(std::span<const vec3> positions);
 
 // Byte offsets into one scratch buffer.
 struct BuildScratch {
-    std::uint64_t trees = 0, blocks = 0, boxes = 0, centroids = 0, codes = 0, fine_codes = 0, crowding = 0;
+    std::uint64_t trees = 0, blocks = 0, boxes = 0, centroids = 0, codes = 0, fine_codes = 0, crowded = 0, crowding = 0;
     std::uint64_t tree_of = 0, meeting = 0;
     std::uint64_t keys[2] = {}, order[2] = {};
     std::uint64_t counters = 0, levels = 0;
@@ -37,10 +38,10 @@ struct BuildPlan {
 };
 
 // Throws Error if the batch has 2^32 leaves or more.
-BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout);
+BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const DeviceFacts& device);
 
 // What a tree of so many leaves adds to the scratch of its batch, at most.
-std::uint64_t scratch_share(uint leaf_count, Layout layout);
+std::uint64_t scratch_share(uint leaf_count, Layout layout, const DeviceFacts& device);
 
 uint inner_count(uint leaf_count);
 

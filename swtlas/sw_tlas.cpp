@@ -75,15 +75,16 @@ void SwTlas::record_batches(Commands& commands, std::span<const GeometryInput> i
                             const std::function<void(const Batch&, const Buffer& scratch)>& record) {
     std::vector<std::uint64_t> shares;
     for (const GeometryInput& input : inputs)
-        shares.push_back(scratch_share(static_cast<uint>(input.geometry->primitive_count()), options().layout) +
-                         source_bytes(input));
+        shares.push_back(
+            scratch_share(static_cast<uint>(input.geometry->primitive_count()), options().layout, context().facts()) +
+            source_bytes(input));
     const Batches batches = cut_into_batches(shares, scratch_budget());
     Buffer scratch(context(), {.name = "swtlas geometry scratch", .bytes = batches.scratch_bytes});
     for (const Batches::Run& run : batches.runs) {
         Batch batch{inputs.subspan(run.first, run.count)};
         for (const GeometryInput& input : batch.inputs)
             batch.counts.push_back(static_cast<uint>(input.geometry->primitive_count()));
-        batch.plan = plan_build(batch.counts, options().layout);
+        batch.plan = plan_build(batch.counts, options().layout, context().facts());
         record(batch, scratch);
     }
     commands.keep(std::move(scratch));
@@ -190,7 +191,7 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
     }
-    builder_.record_instances(commands, plan_build(std::span(&input.count, 1), options().layout),
+    builder_.record_instances(commands, plan_build(std::span(&input.count, 1), options().layout, context().facts()),
                               scene->tree(input.count), input.records, scene->instances());
     const Builder::Measured measured{
         {scene->address}, scene->records(), scene->record_boxes(), input.count, input.cost};
@@ -204,7 +205,7 @@ BuildBytes SwTlas::geometry_bytes(std::span<const GeometrySize> geometries) cons
     for (const GeometrySize& size : geometries) {
         const auto count = static_cast<uint>(size.triangles);
         bytes.structures += layout_geometry(count, options().layout).bytes;
-        shares.push_back(scratch_share(count, options().layout) + size.vertices * sizeof(vec3) +
+        shares.push_back(scratch_share(count, options().layout, context().facts()) + size.vertices * sizeof(vec3) +
                          size.triangles * sizeof(uvec3));
     }
     bytes.scratch = cut_into_batches(shares, scratch_budget()).scratch_bytes;
@@ -214,14 +215,14 @@ BuildBytes SwTlas::geometry_bytes(std::span<const GeometrySize> geometries) cons
 BuildBytes SwTlas::scene_bytes(std::size_t count, std::size_t capacity) const {
     const auto leaves = static_cast<uint>(count);
     return {layout_scene(static_cast<uint>(capacity), options().layout).bytes,
-            plan_build(std::span(&leaves, 1), options().layout).scratch.bytes +
+            plan_build(std::span(&leaves, 1), options().layout, context().facts()).scratch.bytes +
                 Builder::cost_bytes(leaves, options().layout)};
 }
 
 void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
     const auto& scene = static_cast<const SwBuiltScene&>(current);
-    builder_.record_refit(commands, plan_build(std::span(&input.count, 1), options().layout), scene.tree(input.count),
-                          input.records, scene.instances());
+    builder_.record_refit(commands, plan_build(std::span(&input.count, 1), options().layout, context().facts()),
+                          scene.tree(input.count), input.records, scene.instances());
     const Builder::Measured measured{{scene.address}, scene.records(), scene.record_boxes(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), false);
 }

@@ -26,7 +26,8 @@ HilbertOrder::HilbertOrder(Context& context)
       bits_(context, {.name = "collide centers", .bytes = sizeof(WorldBoundBits)}) {}
 
 void HilbertOrder::prepare(std::size_t count) {
-    grow(context_, scratch_, "collide sort", 4 * count * sizeof(uint) + RadixSort::counter_bytes(count));
+    grow(context_, scratch_, "collide sort",
+         4 * count * sizeof(uint) + RadixSort::counter_bytes(count, context_.facts()));
 }
 
 // By 60 bits in two stable sorts.

@@ -16,7 +16,8 @@ struct DeviceFacts {
     std::string name;
     std::string driver;
     DeviceKind kind = DeviceKind::other;
-    std::uint32_t api_version = 0;  // as VK_MAKE_API_VERSION
+    std::uint32_t api_version = 0;   // as VK_MAKE_API_VERSION
+    std::uint32_t shared_bytes = 0;  // of memory that a compute group may have
     bool has_compute_queue = false;
     bool timeline_semaphore = false;
     bool buffer_device_address = false;

@@ -87,6 +87,7 @@ DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice devic
     facts.driver = std::string(driver.driverName) + " " + driver.driverInfo;
     facts.kind = kind_of(properties.properties.deviceType);
     facts.api_version = properties.properties.apiVersion;
+    facts.shared_bytes = properties.properties.limits.maxComputeSharedMemorySize;
     facts.builds_in_input_order = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
     facts.has_compute_queue = compute_queue_family(vk, device) >= 0;
     if (facts.api_version >= VK_API_VERSION_1_2) query_features(vk, device, facts);

@@ -34,9 +34,7 @@ KernelDesc scan_kernel(uint cpu_threads) {
 
 }  // namespace
 
-RadixSort::RadixSort(Context& context)
-    : RadixSort(context,
-                context.facts().kind == DeviceKind::cpu ? std::max(1u, std::thread::hardware_concurrency()) : 0) {}
+RadixSort::RadixSort(Context& context) : RadixSort(context, cpu_threads_on(context.facts())) {}
 
 RadixSort::RadixSort(Context& context, uint cpu_threads)
     : cpu_threads_(cpu_threads),
@@ -44,10 +42,15 @@ RadixSort::RadixSort(Context& context, uint cpu_threads)
       scan_(context, scan_kernel(cpu_threads)),
       scatter_(context, sort_kernel("sort_scatter", engine_sort_scatter_spirv, cpu_threads_)) {}
 
-std::uint64_t RadixSort::counter_bytes(std::uint64_t count) {
-    return std::max(divide_up(count, SORT_GPU_BLOCK) << SORT_GPU_DIGIT_BITS, divide_up(count, SORT_CPU_BLOCK)
-                                                                                 << SORT_CPU_DIGIT_BITS) *
-           sizeof(uint);
+uint RadixSort::cpu_threads_on(const DeviceFacts& device) {
+    constexpr uint counters = CPU_GROUP << SORT_CPU_DIGIT_BITS;
+    if (device.kind != DeviceKind::cpu || device.shared_bytes < counters * sizeof(uint)) return 0;
+    return std::max(1u, std::thread::hardware_concurrency());
+}
+
+std::uint64_t RadixSort::counter_bytes(std::uint64_t count, uint cpu_threads) {
+    const uint block = cpu_threads ? SORT_CPU_BLOCK : SORT_GPU_BLOCK;
+    return (divide_up(count, block) << digit_bits(cpu_threads)) * sizeof(uint);
 }
 
 uint RadixSort::digit_bits(uint cpu_threads) { return cpu_threads ? SORT_CPU_DIGIT_BITS : SORT_GPU_DIGIT_BITS; }

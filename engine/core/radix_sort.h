@@ -17,11 +17,17 @@ class RadixSort {
         Uints keys;
         Uints values;
     };
+    // 0: the device sorts as a GPU does.
+    static uint cpu_threads_on(const DeviceFacts& device);
     // Bytes of the counter buffer that record() needs for `count` pairs.
-    static std::uint64_t counter_bytes(std::uint64_t count);
+    static std::uint64_t counter_bytes(std::uint64_t count, uint cpu_threads);
+    static std::uint64_t counter_bytes(std::uint64_t count, const DeviceFacts& device) {
+        return counter_bytes(count, cpu_threads_on(device));
+    }
 
-    // Sorts `pairs` by the lowest `bits` bits of the key, using `spare` as the other half of the ping-pong; returns
-    // which of the two holds the result. `if_counts`: dispatches as many groups as it says, see below.
+    // Sorts `pairs` by keys whose lowest `bits` bits alone may differ, using `spare` as the other half of the
+    // ping-pong; returns which of the two holds the result. `if_counts`: dispatches as many groups as it says, see
+    // below.
     struct Counts {
         const Buffer& buffer;
         std::uint64_t sort,
@@ -31,8 +37,9 @@ class RadixSort {
                  const Counts* if_counts = nullptr) const;
     uint sort_groups(std::uint64_t count) const { return groups_of(count, cpu_threads_); }
 
-    // How many items an invocation sorts: few on a GPU, which wants many of them; on a CPU so many that each thread has
-    // one group, because counters cost a group the same whatever it sorts, but no more than caches hold.
+    // How many items an invocation sorts: few on a GPU, which wants many of them; on a CPU so many that there are
+    // as many groups as threads, because counters cost a group the same whatever it sorts, or a multiple of that, as a
+    // group's items should fit caches.
     static uint run_of(std::uint64_t count, uint cpu_threads);
     static uint groups_of(std::uint64_t count, uint cpu_threads);
     static uint digit_bits(uint cpu_threads);  // sorted by in a pass

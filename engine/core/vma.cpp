@@ -14,9 +14,9 @@ namespace twinray {
 namespace {
 
 // Of the blocks that buffers are cut from. Memory that was freed is used again within a block, while a buffer of more
-// than half a block has its own, which goes back to the driver. A driver on a CPU gets it from the operating system
-// page by page, at 2.6 us each (measured on a virtual machine): as long as a build spends on the 20 triangles whose
-// scratch fits. Unused it costs nothing there.
+// than half a block has its own, which goes back to the driver. A driver on a CPU gets memory from the operating system
+// page by page, at 2.6 us each (measured on a virtual machine), when it is touched first: a block costs only what was
+// used of it, but keeps that while anything lies in it, and one empty block is kept, too.
 VkDeviceSize block_size(const VulkanFunctions& vk, VkPhysicalDevice physical_device) {
     VkPhysicalDeviceProperties2 properties{};
     properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;

@@ -78,23 +78,21 @@ struct MortonArgs
     uint reserved;
 };
 
-// Where Morton codes collide, as in a mesh with parts that are far smaller than the whole, leaves are sorted again, by fine
-// codes too: else their order would mean nothing there.
+// Where Morton codes collide, as in a mesh with parts that are far smaller than the whole, the leaves of that tree are sorted
+// again, by fine codes too: else their order would mean nothing there.
 const uint CROWD = 16u; // leaves that follow one of the same code, in order: a crowd
 
 // Written on the device, which dispatches the second sort, or nothing.
 struct Crowding
 {
-    uint crowded; // leaves that begin a crowd
-    uint groups_done;
-    uint is_fine; // 1: leaves are sorted by fine codes, too
-    uint reserved;
+    uint is_fine; // 1: some trees need fine codes; the others have 0 for them
     uint leaf_groups[3]; // of a dispatch over all leaves
     uint sort_groups[3]; // of a pass of the sort
     uint scan_groups[3];
 };
 BUFFER_OF(Crowding, 4);
 
+// `crowded`: leaves of a tree that begin a crowd.
 FUNC bool needs_fine_codes(uint crowded, uint leaf_count) { return crowded > leaf_count / 8u; }
 
 struct CrowdingArgs
@@ -102,6 +100,8 @@ struct CrowdingArgs
     Uints codes;   // in order
     Uints order;
     Uints tree_of; // by leaf; 0: a single tree
+    REF(BuildTree) trees;
+    Uints crowded; // by tree: how many leaves begin a crowd, counted until that is enough
     REF(Crowding) crowding;
     uint count;
     uint leaf_groups;
@@ -111,9 +111,11 @@ struct CrowdingArgs
 
 struct FineCodesArgs
 {
+    REF(BuildTree) trees;
     REF(BuildBlock) blocks;
     REF(LeafBox) boxes;
     REF(CentroidBounds) centroids;
+    Uints crowded;    // by tree
     Uints fine_codes; // by leaf
     Uints keys;       // the same, to be sorted
     Uints order;      // 0, 1, 2, ...

@@ -11,7 +11,7 @@ const uint SORT_GPU_GROUP = 64u;
 const uint SORT_GPU_DIGIT_BITS = 6u;
 const uint SORT_GPU_BLOCK = 2048u; // items of a group
 const uint SORT_CPU_DIGIT_BITS = 10u;
-const uint SORT_CPU_BLOCK = 8192u; // items of a group at least, if there are as many
+const uint SORT_CPU_BLOCK = 8192u; // items of a group, of two or more at least half as many
 const uint SORT_LONGEST_RUN = 8192u;
 const uint SCAN_GPU_GROUP = 256u;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The fine code of each leaf's centre within its tree's centroids.
+// The fine code of each leaf's centre within its tree's centroids; 0 in trees that need none, so that they keep their order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -17,6 +17,7 @@ void main()
     LeafBox box = AT(args.boxes, leaf);
     LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
     uint code = is_active(box) ? fine_code(center_of(box), bounds.lo, bounds.hi) : INACTIVE_CODE;
+    if (!needs_fine_codes(AT(args.crowded, block.tree), AT(args.trees, block.tree).count)) code = 0u;
     AT(args.fine_codes, leaf) = code;
     AT(args.keys, leaf) = code;
     AT(args.order, leaf) = leaf;

@@ -14,13 +14,13 @@ namespace {
 class RadixSortTest : public test::VulkanTest {
   protected:
     // Values are 0, 1, 2, ... so that they show stability.
-    std::vector<uint> sorted_values(const RadixSort& sort, const std::vector<uint>& keys, uint bits) {
+    std::vector<uint> sorted_values(const RadixSort& sort, uint cpu_threads, const std::vector<uint>& keys, uint bits) {
         const std::uint64_t bytes = keys.size() * sizeof(uint);
         std::vector<uint> values(keys.size());
         std::iota(values.begin(), values.end(), 0u);
         Buffer buffers[4];
         for (Buffer& buffer : buffers) buffer = Buffer(context(), {.name = "sort test", .bytes = bytes});
-        Buffer counters(context(), {.name = "counters", .bytes = RadixSort::counter_bytes(keys.size())});
+        Buffer counters(context(), {.name = "counters", .bytes = RadixSort::counter_bytes(keys.size(), cpu_threads)});
         Commands commands(context(), "sort test");
         {
             const auto pass = commands.pass("input");
@@ -53,7 +53,7 @@ TEST_P(RadixSortOn, EqualsStableSortForManyCountsAndWidths) {
         for (const uint bits : {1u, 6u, 9u, 30u}) {
             std::vector<uint> keys(count);
             for (uint& key : keys) key = static_cast<uint>(random()) & ((1u << bits) - 1);
-            EXPECT_EQ(sorted_values(sort, keys, bits), expected_values(keys, bits))
+            EXPECT_EQ(sorted_values(sort, GetParam(), keys, bits), expected_values(keys, bits))
                 << count << " keys of " << bits << " bits";
         }
     }
@@ -62,7 +62,7 @@ TEST_P(RadixSortOn, EqualsStableSortForManyCountsAndWidths) {
 TEST_P(RadixSortOn, EqualKeysKeepTheirOrder) {
     const RadixSort sort(context(), GetParam());
     const std::vector<uint> keys(5000, 42u);
-    EXPECT_EQ(sorted_values(sort, keys, 30), expected_values(keys, 30));
+    EXPECT_EQ(sorted_values(sort, GetParam(), keys, 30), expected_values(keys, 30));
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, RadixSortOn, testing::Values(0u, 1u, 2u, 5u),
@@ -79,7 +79,7 @@ TEST(RadixSortRun, CountersHaveRoomForAllGroups) {
         for (std::uint64_t count = 2; count < 5'000'000'000; count += 1 + count / 7) {
             const std::uint64_t counters = std::uint64_t{RadixSort::groups_of(count, threads)}
                                            << RadixSort::digit_bits(threads);
-            EXPECT_LE(counters * sizeof(uint), RadixSort::counter_bytes(count)) << count << " on " << threads;
+            EXPECT_LE(counters * sizeof(uint), RadixSort::counter_bytes(count, threads)) << count << " on " << threads;
         }
 }
 
