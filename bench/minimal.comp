@@ -10,65 +10,67 @@ layout(local_size_x = 64) in;
 layout(constant_id = QUERY_CONSTANT) const uint MINIMAL_QUERY = QUERY_CLOSEST;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };
 
-bool comes_first(TriangleHit hit, uint primitive_index, float t_min, float t_best, Hit best)
-{
-    bool is_lower = best.hit != 0u && primitive_index < best.primitive_index;
-    return hit.t > t_min && (hit.t < t_best || (hit.t == t_best && is_lower));
-}
-
 Hit closest_triangle(SwInstance instance, Ray ray)
 {
-    Hit best = miss();
-    if (!is_traceable(ray) || instance.root == NOTHING) return best;
+    bool is_traced = is_traceable(ray) && instance.root != NOTHING;
     vec3 origin = without_negative_zeros(ray.origin);
     RaySpace space = make_ray_space(origin, without_negative_zeros(ray.direction), corner_pad(origin, instance.extent));
     float t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;
     float t_best = ray.t_max;
+    float u = 0.0f;
+    float v = 0.0f;
+    uint primitive_index = NOTHING;
     HeldGroups held = no_groups();
     uint stack[TWINRAY_GROUP_STACK];
-    uint height = 1u;
-    stack[0] = BOTTOM;
+    uint height = 0u;
     uint cursor = 0u;
-    for (;;)
+    while (is_traced)
     {
         CompressedRecord record = load_record(instance.records, cursor);
+        bool descend = false;
         if (!is_leaf(record))
         {
             ChildKeys keys = enter_compressed(record, space, t_min, t_best, MINIMAL_QUERY);
-            uint count = count_entered(keys);
-            uint others = BOTTOM;
-            order_children(keys, count, first_child_of(record), cursor, others);
-            if (count > 1u) TWINRAY_PUSH_GROUP(held, stack, height, others)
-            if (count > 0u) continue;
+            sort_keys(keys);
+            uint others = group_of(keys, first_child_of(record));
+            if (keys.key1 < NO_ENTRY) TWINRAY_PUSH_GROUP(held, stack, height, others)
+            cursor = first_child_of(record) + (keys.key0 & 3u);
+            descend = keys.key0 < NO_ENTRY;
         }
         else
         {
             BvhTriangle triangle = primitive_of(record);
             TriangleHit hit;
-            if (intersect_triangle(triangle.v0, triangle.v1, triangle.v2, space, hit) &&
-                comes_first(hit, triangle.primitive_index, t_min, t_best, best))
+            if (intersect_triangle(triangle.v0, triangle.v1, triangle.v2, space, hit) && hit.t > t_min &&
+                (hit.t < t_best || (hit.t == t_best && triangle.primitive_index < primitive_index && primitive_index != NOTHING)))
             {
                 t_best = hit.t;
-                best.hit = 1u;
-                best.t = hit.t;
-                best.u = hit.u;
-                best.v = hit.v;
-                best.primitive_index = triangle.primitive_index;
-                best.custom_index = instance.custom_index_mask & 0xffffffu;
+                u = hit.u;
+                v = hit.v;
+                primitive_index = triangle.primitive_index;
                 if (MINIMAL_QUERY == QUERY_ANY) break;
             }
         }
+        if (descend) continue;
         uint group = held.first;
         if (group == BOTTOM)
         {
+            if (height == 0u) break;
             height = height - 1u;
             group = stack[height];
-            if (group == BOTTOM) break;
         }
         cursor = next_of(group);
         held.first = rest_of(group);
         if (held.first == BOTTOM) drop_group(held);
     }
+    Hit best = miss();
+    if (primitive_index == NOTHING) return best;
+    best.hit = 1u;
+    best.t = t_best;
+    best.u = u;
+    best.v = v;
+    best.primitive_index = primitive_index;
+    best.custom_index = instance.custom_index_mask & 0xffffffu;
     return best;
 }
 

@@ -71,7 +71,7 @@ class Walk {
   private:
     LeafBox visit_record(uint index, uint depth) {
         const CompressedRecord& record = records_[index];
-        if (is_leaf(record)) return visit_leaf(record.a.w & ~LEAF_BIT);
+        if (is_leaf(record)) return visit_leaf(index_in(record));
         if (depth >= DEEPEST_RECORDS) return violated(text("depth exceeds ", DEEPEST_RECORDS));
         result_.depth = std::max(result_.depth, depth + 1);
         return visit_node(index, depth);

@@ -132,7 +132,7 @@ std::vector<LeafBox> check_records(const SavedGeometry& geometry) {
     const BuildTree source = source_of(geometry.mesh);
     for (const CompressedRecord& record : geometry.records) {
         if (!is_leaf(record)) continue;
-        const uint primitive = record.a.w & ~LEAF_BIT;
+        const uint primitive = index_in(record);
         if (primitive >= primitives) fail("primitive ", primitive, " of ", primitives);
         if (const CompressedRecord right = encode_leaf(source, primitive);
             std::memcmp(&record, &right, sizeof right) != 0)

@@ -164,19 +164,19 @@ void empty_and_small(CaseRun& run) {
 }
 
 void too_many(CaseRun& run) {
-    constexpr std::size_t limit = std::size_t{1} << 24;
+    constexpr std::size_t limit = Geometry::max_primitives + 1;
     std::vector<WrongUse> uses = {
-        {"2^24 triangles", "16777215",
+        {"2^25 triangles", "33554431",
          [](AbstractAccel& accel) {
              const std::array<vec3, 3> corners{};
              accel.push(MeshView("huge", corners, std::vector<uvec3>(limit)));
          }},
-        {"2^24 boxes", "16777215", [](AbstractAccel& accel) {
+        {"2^25 boxes", "33554431", [](AbstractAccel& accel) {
              accel.push(BoxesView{"huge", std::vector<Bounds>(limit, Bounds{vec3(0), vec3(1)})});
          }}};
     if (run.amount(0, 1))  // takes 2 GiB on the host
         uses.push_back({"2^24 instances", "16777215", [](AbstractAccel& accel) {
-                            accel.push(make_box(vec3(0), vec3(1)), std::vector<Transform>(limit));
+                            accel.push(make_box(vec3(0), vec3(1)), std::vector<Transform>(max_instances + 1));
                             accel.sync();
                         }});
     expect_refused(run, uses);

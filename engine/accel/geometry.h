@@ -41,8 +41,8 @@ struct Geometry {
 
     std::size_t primitive_count() const { return kind == GEOMETRY_BOXES ? boxes.size() : triangles.size(); }
 
-    // Leaf positions have 24 bits in the bound on the tree's depth.
-    static constexpr std::size_t max_primitives = (1u << 24) - 1;
+    // Leaf positions have 25 bits in the bound on the tree's depth, and records of a tree 26 (see compressed.h).
+    static constexpr std::size_t max_primitives = (1u << 25) - 1;
 };
 
 constexpr std::size_t max_instances = (1u << 24) - 1;  // of an accelerator; what Vulkan guarantees at least

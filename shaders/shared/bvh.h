@@ -13,6 +13,7 @@
 #include "shaders/shared/instance.h"
 
 const uint LEAF_BIT = 0x80000000u;
+const uint INSTANCE_BIT = 0x40000000u; // in records
 const uint NOTHING = 0xffffffffu;
 
 // Inner nodes on a path split on ever lower bits of (30-bit Morton code, 30-bit fine code, 25-bit position).
@@ -54,10 +55,10 @@ BUFFER_OF(BvhTriangle, 8);
 // 40 bytes, see compressed.h.
 //
 // node       a: lower corner of the grid, the last 8 bits of each coordinate being the exponent of the cells' size there;
-//               w: the first child, count of children << 25
+//               w: the first child, count of children << 26
 //            b: lo.x, hi.x, lo.y, hi.y in cells, 8 bits a child      c: lo.z, hi.z
 // primitive  a: v0; w: LEAF_BIT | primitive_index      b: v1; w, c: v2
-// instance   a.w: LEAF_BIT | index
+// instance   a.w: LEAF_BIT | INSTANCE_BIT | index
 // none       0
 struct CompressedRecord
 {

@@ -11,15 +11,17 @@
 #include "shaders/shared/build.h"
 #include "shaders/shared/surface_area.h"
 
-const uint MOST_RECORDS = 1u << 25u; // a tree may have: what an entry on the stack can name; 20 million leaves
+const uint MOST_RECORDS = 1u << 26u; // a tree may have: what an entry on the stack can name; 40 million leaves
 
 // Records that a tree of so many leaves needs at most: a node with fewer than four children has leaves only, so that the most
 // nodes come from pairs of leaves, of which 3 n + 1 have n nodes above them. Those that a tree does not use are `none`.
 FUNC uint record_count(uint leaf_count) { return leaf_count == 0u ? 0u : (5u * leaf_count - 1u) / 3u; }
 FUNC uint records_below(uint leaf_count) { return leaf_count < 2u ? 0u : record_count(leaf_count) - 1u; }
-FUNC uint children_in(CompressedRecord node) { return node.a.w >> 25u; } // 0: none
+FUNC uint children_in(CompressedRecord node) { return node.a.w >> 26u; } // 0: none
 FUNC uint first_child_of(CompressedRecord node) { return node.a.w & (MOST_RECORDS - 1u); }
 FUNC bool is_leaf(CompressedRecord record) { return (record.a.w & LEAF_BIT) != 0u; }
+FUNC bool is_instance(CompressedRecord leaf) { return (leaf.a.w & INSTANCE_BIT) != 0u; }
+FUNC uint index_in(CompressedRecord leaf) { return leaf.a.w & ~(LEAF_BIT | INSTANCE_BIT); } // of the primitive or instance
 
 FUNC CompressedRecord load_record(REF(CompressedRecord) records, uint index)
 {
@@ -134,7 +136,7 @@ FUNC CompressedRecord encode_node(NodeChildren children, uint first_child)
     }
     CompressedRecord record;
     record.a = uvec4(floatBitsToUint(origin.x), floatBitsToUint(origin.y), floatBitsToUint(origin.z),
-                     first_child | children.count << 25u);
+                     first_child | children.count << 26u);
     record.b = uvec4(planes[0].x, planes[0].y, planes[1].x, planes[1].y);
     record.c = planes[2];
     return record;
@@ -161,7 +163,7 @@ FUNC CompressedRecord no_record()
 FUNC CompressedRecord encode_instance(uint index)
 {
     CompressedRecord record = no_record();
-    record.a.w = LEAF_BIT | index;
+    record.a.w = LEAF_BIT | INSTANCE_BIT | index;
     return record;
 }
 
@@ -218,7 +220,7 @@ FUNC BvhTriangle primitive_of(CompressedRecord record)
     t.v0 = vec3(uintBitsToFloat(record.a.x), uintBitsToFloat(record.a.y), uintBitsToFloat(record.a.z));
     t.v1 = vec3(uintBitsToFloat(record.b.x), uintBitsToFloat(record.b.y), uintBitsToFloat(record.b.z));
     t.v2 = vec3(uintBitsToFloat(record.b.w), uintBitsToFloat(record.c.x), uintBitsToFloat(record.c.y));
-    t.primitive_index = record.a.w & ~LEAF_BIT;
+    t.primitive_index = index_in(record);
     return t;
 }
 #endif

@@ -5,27 +5,28 @@
 #define TWINRAY_SHARED_GROUP_H
 #include "shaders/shared/visit.h"
 
-// A group: where the siblings begin (25 bits), up to three of them to visit, in order (2 bits each, the last one repeated),
-// and 1 at the top, so that no group is one of the other entries of a stack: its bottom, and where the ray leaves an instance.
+// A group: where the siblings begin (26 bits), and up to three of them to visit, the next one in the lowest bits (2 bits each,
+// the last one repeated). No siblings begin at the root, so that no group is one of the other entries of a stack: its
+// bottom, and where the ray leaves an instance.
 const uint BOTTOM = 0u;
 const uint LEAVE_INSTANCE = 1u;
 FUNC uint make_group(uint siblings, uint second, uint third, uint fourth)
 {
-    return 0x80000000u | fourth << 29u | third << 27u | second << 25u | siblings;
+    return siblings << 6u | fourth << 4u | third << 2u | second;
 }
-FUNC uint next_of(uint group) { return (group & 0x1ffffffu) + (group >> 25u & 3u); }
+FUNC uint next_of(uint group) { return (group >> 6u) + (group & 3u); }
 // Without the next one.
 FUNC uint rest_of(uint group)
 {
-    bool is_last = ((group >> 25u ^ group >> 27u) & 3u) == 0u;
-    return is_last ? BOTTOM : (group & 0xe1ffffffu) | (group >> 2u & 0x1e000000u);
+    bool is_last = ((group ^ group >> 2u) & 3u) == 0u;
+    return is_last ? BOTTOM : (group & 0xfffffff0u) | (group >> 2u & 15u);
 }
 
-// What a stack must hold in memory: a node leaves one group at most, so the deepest path of each level, the mark between them
-// and the bottom, without those that HeldGroups has. Drivers on CPUs clear all of it for each ray, so where there is no top
+// What a stack must hold in memory: a node leaves one group at most, so the deepest path of each level and the mark between
+// them, without those that HeldGroups has. Drivers on CPUs clear all of it for each ray, so where there is no top
 // level, TWINRAY_GROUP_STACK should be the lesser one.
-const uint GROUP_STACK_SIZE = 2u * DEEPEST_RECORDS + 2u - 5u;
-const uint ONE_LEVEL_STACK_SIZE = DEEPEST_RECORDS + 1u - 5u;
+const uint GROUP_STACK_SIZE = 2u * DEEPEST_RECORDS + 1u - 5u;
+const uint ONE_LEVEL_STACK_SIZE = DEEPEST_RECORDS - 5u;
 #ifndef TWINRAY_GROUP_STACK
 #define TWINRAY_GROUP_STACK GROUP_STACK_SIZE
 #endif
@@ -101,22 +102,19 @@ FUNC void sort_pair(INOUT(uint) a, INOUT(uint) b)
     a = less;
 }
 
-FUNC uint count_entered(ChildKeys keys)
-{
-    return (keys.key0 < NO_ENTRY ? 1u : 0u) + (keys.key1 < NO_ENTRY ? 1u : 0u) + (keys.key2 < NO_ENTRY ? 1u : 0u) +
-           (keys.key3 < NO_ENTRY ? 1u : 0u);
-}
-
-// The first of `count` children that are entered, and the others as a group. `siblings`: where the children begin.
-FUNC void order_children(ChildKeys keys, uint count, uint siblings, INOUT(uint) nearest, INOUT(uint) group)
+FUNC void sort_keys(INOUT(ChildKeys) keys)
 {
     sort_pair(keys.key0, keys.key1);
     sort_pair(keys.key2, keys.key3);
     sort_pair(keys.key0, keys.key2);
     sort_pair(keys.key1, keys.key3);
     sort_pair(keys.key1, keys.key2);
-    nearest = siblings + (keys.key0 & 3u);
-    keys.key2 = count > 2u ? keys.key2 : keys.key1;
-    group = make_group(siblings, keys.key1 & 3u, keys.key2 & 3u, (count > 3u ? keys.key3 : keys.key2) & 3u);
+}
+
+// All that are entered but the first, of sorted keys, as a group: two at least are entered. `siblings`: where the children begin.
+FUNC uint group_of(ChildKeys keys, uint siblings)
+{
+    uint third = keys.key2 < NO_ENTRY ? keys.key2 : keys.key1;
+    return make_group(siblings, keys.key1 & 3u, third & 3u, (keys.key3 < NO_ENTRY ? keys.key3 : third) & 3u);
 }
 #endif

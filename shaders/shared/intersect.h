@@ -252,14 +252,14 @@ FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(Tr
     float area_a = edge_function(b, c);
     float area_b = edge_function(c, a);
     float area_c = edge_function(a, b);
+    bool is_met = (area_a < 0.0f) == (area_b < 0.0f) && (area_b < 0.0f) == (area_c < 0.0f);
     if (area_a == 0.0f || area_b == 0.0f || area_c == 0.0f)
     {
         int side_a = exact_side(b, c);
-        if (side_a == 0 || side_a != exact_side(c, a) || side_a != exact_side(a, b)) return false;
+        is_met = side_a != 0 && side_a == exact_side(c, a) && side_a == exact_side(a, b);
     }
-    else if ((area_a < 0.0f) != (area_b < 0.0f) || (area_b < 0.0f) != (area_c < 0.0f)) return false;
-    hit = crossing(a, b, c, space.shear_z);
-    return true;
+    if (is_met) hit = crossing(a, b, c, space.shear_z);
+    return is_met;
 }
 
 // The same by Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997: fewer operations, but each

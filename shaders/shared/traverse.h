@@ -9,7 +9,6 @@
 // QUERY_ANY it is the first one found.
 FUNC Hit traverse(SwScene scene, Ray ray, TraceOptions options)
 {
-    if (!is_traceable(ray)) return miss();
     bool may_be_bvh2 = (options.features & FEATURE_BVH2) != 0u;
     bool may_have_records = (options.features & (FEATURE_COMPRESSED | FEATURE_BVH4)) != 0u;
     if (may_have_records && (!may_be_bvh2 || uint64_t(scene.records) != 0ul)) return traverse_records(scene, ray, options);

@@ -27,11 +27,12 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
     REF(BvhTriangle) triangles = REF(BvhTriangle)(0ul);
     InInstance inside;
     uint cursor = scene.bvh.root;
+    bool is_traced = is_traceable(ray);
     if (has_top) space = world_space(scene, ray);
-    else if (cursor != END_OF_STACK)
+    else
     {
         SwInstance instance = load_instance(scene.instances, 0u);
-        if (!is_visible(instance, options)) return search.best;
+        is_traced = is_traced && is_visible(instance, options);
         inside = enter_instance(instance, 0u, options);
         space = space_in(instance, inside, ray, options);
         nodes = instance.nodes;
@@ -43,7 +44,7 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
     uint stack[STACK_SIZE];
     uint height = 1u;
     stack[0] = END_OF_STACK;
-    while (cursor != END_OF_STACK)
+    while (is_traced && cursor != END_OF_STACK)
     {
         bool descend = false;
         if ((cursor & LEAF_BIT) == 0u)
@@ -98,6 +99,6 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
             }
         }
     }
-    return search.best;
+    return hit_of(search, scene);
 }
 #endif

@@ -18,49 +18,52 @@ FUNC ChildKeys enter_children(CompressedRecord node, REF(LeafBox) boxes, RaySpac
 FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
 {
     Search search = begin_search(ray);
-    if (scene.bvh.root == NOTHING) return search.best;
     bool has_top = (options.features & FEATURE_INSTANCES) != 0u;
     RaySpace space;
     REF(CompressedRecord) records = scene.records;
     REF(LeafBox) boxes = scene.record_boxes;
     InInstance inside;
-    if (has_top) space = world_space(scene, ray);
+    bool is_traced = is_traceable(ray);
+    if (has_top)
+    {
+        is_traced = is_traced && scene.bvh.root != NOTHING;
+        space = world_space(scene, ray);
+    }
     else
     {
         SwInstance instance = load_instance(scene.instances, 0u);
-        if (!is_visible(instance, options)) return search.best;
+        is_traced = is_traced && is_visible(instance, options);
         inside = enter_instance(instance, 0u, options);
         space = space_in(instance, inside, ray, options);
         records = instance.records;
         boxes = instance.record_boxes;
     }
-    bool in_instance = !has_top;
 
     HeldGroups held = no_groups();
     uint stack[TWINRAY_GROUP_STACK];
-    uint height = 1u;
-    stack[0] = BOTTOM;
+    uint height = 0u;
     uint cursor = 0u;
-    for (;;)
+    // Conditions on which a ray is not traced are in the loop's: drivers on CPUs run a loop in a branch more slowly.
+    while (is_traced)
     {
         CompressedRecord record = load_record(records, cursor);
         bool descend = false;
         if (!is_leaf(record))
         {
             ChildKeys keys = enter_children(record, boxes, space, search, options);
-            uint count = count_entered(keys);
-            uint others = BOTTOM;
-            order_children(keys, count, first_child_of(record), cursor, others);
-            if (count > 1u) TWINRAY_PUSH_GROUP(held, stack, height, others)
-            descend = count > 0u;
+            sort_keys(keys);
+            uint others = group_of(keys, first_child_of(record));
+            if (keys.key1 < NO_ENTRY) TWINRAY_PUSH_GROUP(held, stack, height, others)
+            cursor = first_child_of(record) + (keys.key0 & 3u);
+            descend = keys.key0 < NO_ENTRY;
         }
-        else if (!has_top || in_instance)
+        else if (!has_top || !is_instance(record))
         {
             if (visit_leaf(primitive_of(record), inside, space, options, search) && options.query == QUERY_ANY) break;
         }
         else
         {
-            uint index = record.a.w & ~LEAF_BIT;
+            uint index = index_in(record);
             SwInstance instance = load_instance(scene.instances, index);
             if (is_visible(instance, options))
             {
@@ -69,7 +72,6 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
                 records = instance.records;
                 boxes = instance.record_boxes;
                 TWINRAY_PUSH_GROUP(held, stack, height, LEAVE_INSTANCE)
-                in_instance = true;
                 cursor = 0u;
                 descend = true;
             }
@@ -78,29 +80,28 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
         uint group = held.first;
         if (group == BOTTOM)
         {
+            if (height == 0u) break;
             height = height - 1u;
             group = stack[height];
-            if (group == BOTTOM) break;
         }
         if (has_top && group == LEAVE_INSTANCE)
         {
             space = world_space(scene, ray);
             records = scene.records;
             boxes = scene.record_boxes;
-            in_instance = false;
             drop_group(held);
             group = held.first;
             if (group == BOTTOM)
             {
+                if (height == 0u) break;
                 height = height - 1u;
                 group = stack[height];
-                if (group == BOTTOM) break;
             }
         }
         cursor = next_of(group);
         held.first = rest_of(group);
         if (held.first == BOTTOM) drop_group(held);
     }
-    return search.best;
+    return hit_of(search, scene);
 }
 #endif

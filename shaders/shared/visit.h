@@ -129,14 +129,6 @@ FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, fl
     return is_met && (inside.culled == 0u || inside.culled != (hit.along ? CULL_BACK : CULL_FRONT));
 }
 
-// The order of hits: by t, then by (instance, primitive). `low`: see TriangleHit::t_low; of a limit 0.
-FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_index, float t_best, float t_best_low, Hit best)
-{
-    bool is_lower = best.hit != 0u && (instance_index < best.instance_index ||
-                    (instance_index == best.instance_index && primitive_index < best.primitive_index));
-    return hit.t < t_best ||
-           (hit.t == t_best && (hit.t_low < t_best_low || (hit.t_low == t_best_low && is_lower)));
-}
 FUNC bool comes_after(TriangleHit hit, float t_min) { return hit.t > t_min || (hit.t == t_min && hit.t_low > 0.0f); }
 
 const uint NO_ENTRY = 0x7f800000u; // infinity, and what is larger: no hit is reported there
@@ -151,45 +143,76 @@ FUNC uint place_in_order(float enter, float leave, uint query)
     return enter <= leave ? place & ~3u : NO_ENTRY;
 }
 
-// What has been found so far, and where there is more to find.
+// What has been found so far, and where there is more to find. Only what a kernel needs is ever written: the rest stays a
+// constant, which compilers see through the loop.
 struct Search
 {
-    Hit best;
     float t_min;
     float t_best;
-    float t_best_low;
+    float t_best_low; // see TriangleHit::t_low; of a limit 0
+    float u;
+    float v;
+    uint primitive_index; // NOTHING: no hit so far
+    uint instance_index;
 };
 
 FUNC Search begin_search(Ray ray)
 {
     Search search;
-    search.best = miss();
     search.t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;
     search.t_best = ray.t_max;
     search.t_best_low = 0.0f;
+    search.u = 0.0f;
+    search.v = 0.0f;
+    search.primitive_index = NOTHING;
+    search.instance_index = 0u;
     return search;
+}
+
+FUNC Hit hit_of(Search search, SwScene scene)
+{
+    Hit hit = miss();
+    if (search.primitive_index == NOTHING) return hit;
+    hit.hit = 1u;
+    hit.t = search.t_best;
+    hit.u = search.u;
+    hit.v = search.v;
+    hit.primitive_index = search.primitive_index;
+    hit.instance_index = search.instance_index;
+    hit.custom_index = AT(scene.instances, search.instance_index).custom_index_mask & 0xffffffu;
+    return hit;
+}
+
+// The order of hits: by t, then by (instance, primitive).
+FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_index, Search search, TraceOptions options)
+{
+    bool is_lower = primitive_index < search.primitive_index;
+    if ((options.features & FEATURE_INSTANCES) != 0u)
+        is_lower = instance_index < search.instance_index || (instance_index == search.instance_index && is_lower);
+    is_lower = is_lower && search.primitive_index != NOTHING;
+    if (options.level < LEVEL_CERTIFIED) return hit.t < search.t_best || (hit.t == search.t_best && is_lower);
+    return hit.t < search.t_best || (hit.t == search.t_best && (hit.t_low < search.t_best_low ||
+                                                                (hit.t_low == search.t_best_low && is_lower)));
 }
 
 // Whether the primitive is hit before all that were found.
 FUNC bool visit_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     TriangleHit hit;
-    if (!intersect_leaf(leaf, inside, space, search.t_min, search.t_best, options, hit) || !comes_after(hit, search.t_min) ||
-        !comes_before(hit, inside.index, leaf.primitive_index, search.t_best, search.t_best_low, search.best) ||
-        ((options.features & FEATURE_FILTERS) != 0u && inside.is_filtered &&
-         !accept_hit(candidate_of(inside, leaf.primitive_index, options), t_of_given(hit.t, options),
-                     vec2(hit.u, hit.v))))
-        return false;
-    search.t_best = hit.t;
-    search.t_best_low = hit.t_low;
-    search.best.hit = 1u;
-    search.best.t = hit.t;
-    search.best.u = hit.u;
-    search.best.v = hit.v;
-    search.best.primitive_index = leaf.primitive_index;
-    search.best.instance_index = inside.index;
-    search.best.custom_index = inside.custom_index;
-    return true;
+    bool is_first = intersect_leaf(leaf, inside, space, search.t_min, search.t_best, options, hit) && comes_after(hit, search.t_min) &&
+                    comes_before(hit, inside.index, leaf.primitive_index, search, options);
+    if ((options.features & FEATURE_FILTERS) != 0u && is_first && inside.is_filtered)
+        is_first = accept_hit(candidate_of(inside, leaf.primitive_index, options), t_of_given(hit.t, options), vec2(hit.u, hit.v));
+    if (is_first)
+    {
+        search.t_best = hit.t;
+        if (options.level == LEVEL_CERTIFIED) search.t_best_low = hit.t_low;
+        search.u = hit.u;
+        search.v = hit.v;
+        search.primitive_index = leaf.primitive_index;
+        if ((options.features & FEATURE_INSTANCES) != 0u) search.instance_index = inside.index;
+    }
+    return is_first;
 }
 
 FUNC bool is_visible(SwInstance instance, TraceOptions options)

@@ -59,6 +59,6 @@ void main()
     for (uint slot = slots_begin(tree, block) + gl_LocalInvocationIndex; slot < slots_end(tree, block); slot += BUILD_GROUP)
     {
         CompressedRecord record = load_record(tree.records, slot);
-        if (is_leaf(record)) climb(tree, slot, refit_leaf(tree, slot, record.a.w & ~LEAF_BIT));
+        if (is_leaf(record)) climb(tree, slot, refit_leaf(tree, slot, index_in(record)));
     }
 }

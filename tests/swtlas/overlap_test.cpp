@@ -53,7 +53,7 @@ std::set<uint> collect(const SwTlas::Tree& tree, uint reference, std::vector<Box
         children = {{{node.lo0, node.hi0}, node.child0}, {{node.lo1, node.hi1}, node.child1}};
     } else {
         const CompressedRecord& record = tree.records[reference];
-        if (is_leaf(record)) return {record.a.w & ~LEAF_BIT};
+        if (is_leaf(record)) return {index_in(record)};
         for (uint i = 0; i < children_in(record); ++i) {
             const uint child = first_child_of(record) + i;
             children.emplace_back(tree.record_boxes.empty() ? box_in_planes(record, i) : tree.record_boxes[child],

@@ -31,7 +31,7 @@ void expect_leaves_of(std::span<const CompressedRecord> records, std::span<const
                       std::span<const uvec3> triangles) {
     for (const CompressedRecord& record : records) {
         if (!is_leaf(record)) continue;
-        const uint primitive = record.a.w & ~LEAF_BIT;
+        const uint primitive = index_in(record);
         const CompressedRecord right =
             encode_primitive(reference::encode_triangles(positions, triangles, std::span(&primitive, 1)).front());
         EXPECT_EQ(std::memcmp(&record, &right, sizeof right), 0) << "primitive " << primitive;

@@ -164,7 +164,7 @@ TEST_P(SavedFile, OtherFormatsAreNamed) {
     const auto edited = [&](const std::function<void(SavedHeader&)>& edit) {
         return refusal(resealed(good, [&](SavedHeader& header, SavedEntry&) { edit(header); }));
     };
-    expect_contains(edited([](SavedHeader& h) { h.version = 9; }), "format version 9; this library reads version 4");
+    expect_contains(edited([](SavedHeader& h) { h.version = 9; }), "format version 9; this library reads version 5");
     expect_contains(edited([](SavedHeader& h) { h.byte_order = 0x04030201; }), "another byte order");
     expect_contains(edited([](SavedHeader& h) { h.node_bytes = 80; }), "its node has 80 bytes; this library's has 64");
     expect_contains(edited([](SavedHeader& h) { h.leaf_bytes = 48; }), "its leaf has 48 bytes; this library's has 40");
@@ -226,9 +226,9 @@ TEST(SavedTrees, RecordsThatCannotBeWalkedSafelyAreRefused) {
     const auto leaf_of = [](SavedGeometry& g, uint primitive) -> CompressedRecord& {
         return *std::ranges::find(g.records, LEAF_BIT | primitive, [](const CompressedRecord& r) { return r.a.w; });
     };
-    expect_contains(edited([](SavedGeometry& g) { g.records[0].a.w = 3u << 25 | 1000; }), "record 1000 of 33");
-    expect_contains(edited([](SavedGeometry& g) { g.records[0].a.w = 3u << 25; }), "record 0 is reached twice");
-    expect_contains(edited([](SavedGeometry& g) { g.records[0].a.w |= 7u << 25; }), "has 7 children");
+    expect_contains(edited([](SavedGeometry& g) { g.records[0].a.w = 3u << 26 | 1000; }), "record 1000 of 33");
+    expect_contains(edited([](SavedGeometry& g) { g.records[0].a.w = 3u << 26; }), "record 0 is reached twice");
+    expect_contains(edited([](SavedGeometry& g) { g.records[0].a.w |= 7u << 26; }), "has 7 children");
     expect_contains(edited([](SavedGeometry& g) { g.bvh.root = NOTHING; }), "the root is record");
     expect_contains(edited([](SavedGeometry& g) { g.bvh.lo.x -= 1; }), "not the union");
     expect_contains(edited([](SavedGeometry& g) { g.records[0].b.y -= 1; }), "lies in planes");
