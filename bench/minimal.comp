@@ -15,6 +15,7 @@ Hit closest_triangle(SwInstance instance, Ray ray)
     bool is_traced = is_traceable(ray) && instance.root != NOTHING;
     vec3 origin = without_negative_zeros(ray.origin);
     RaySpace space = make_ray_space(origin, without_negative_zeros(ray.direction), corner_pad(origin, instance.extent));
+    BoxRay ray_of_boxes = box_ray(space);
     float t_min = ray.t_min > 0.0f ? ray.t_min : 0.0f;
     float t_best = ray.t_max;
     float u = 0.0f;
@@ -30,7 +31,7 @@ Hit closest_triangle(SwInstance instance, Ray ray)
         bool descend = false;
         if (!is_leaf(record))
         {
-            ChildKeys keys = enter_compressed(record, space, t_min, t_best, MINIMAL_QUERY);
+            ChildKeys keys = enter_compressed(record, ray_of_boxes, t_min, t_best, MINIMAL_QUERY);
             sort_keys(keys);
             uint others = group_of(keys, first_child_of(record));
             if (keys.key1 < NO_ENTRY) TWINRAY_PUSH_GROUP(held, stack, height, others)

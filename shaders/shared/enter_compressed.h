@@ -16,18 +16,18 @@ struct SeenGrid
     uvec3 far_planes;
 };
 
-FUNC SeenGrid grid_of(CompressedRecord node, RaySpace space)
+FUNC SeenGrid grid_of(CompressedRecord node, BoxRay ray)
 {
     SeenGrid grid;
     vec3 origin = grid_origin(node);
     vec3 cell = grid_cell(node);
-    grid.near_scale = cell * space.near_inverse;
-    grid.far_scale = cell * space.far_inverse;
-    grid.near_base = (origin - space.near_origin) * space.near_inverse;
-    grid.far_base = (origin - space.far_origin) * space.far_inverse;
-    bool flip_x = space.near_inverse.x < 0.0f;
-    bool flip_y = space.near_inverse.y < 0.0f;
-    bool flip_z = space.near_inverse.z < 0.0f;
+    grid.near_scale = cell * ray.near_inverse;
+    grid.far_scale = cell * ray.far_inverse;
+    grid.near_base = (origin - ray.near_origin) * ray.near_inverse;
+    grid.far_base = (origin - ray.far_origin) * ray.far_inverse;
+    bool flip_x = ray.near_inverse.x < 0.0f;
+    bool flip_y = ray.near_inverse.y < 0.0f;
+    bool flip_z = ray.near_inverse.z < 0.0f;
     grid.near_planes = uvec3(flip_x ? node.b.y : node.b.x, flip_y ? node.b.w : node.b.z, flip_z ? node.c.y : node.c.x);
     grid.far_planes = uvec3(flip_x ? node.b.x : node.b.y, flip_y ? node.b.z : node.b.w, flip_z ? node.c.x : node.c.y);
     return grid;
@@ -38,7 +38,7 @@ FUNC float distance_along(uint planes, uint shift, float scale, float base)
     return FMA(float(planes >> shift & 0xffu), scale, base);
 }
 
-// The place of child `shift / 8` of the node in order, between t_min and t_max in t * space.t_scale: as cross_box of intersect.h.
+// The place of child `shift / 8` of the node in order, between t_min and t_max in t * ray.t_scale: as cross_box of intersect.h.
 FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, uint query)
 {
     float near_x = distance_along(grid.near_planes.x, shift, grid.near_scale.x, grid.near_base.x);
@@ -50,11 +50,11 @@ FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, uint
     return place_in_order(latest_of(t_min, near_x, near_y, near_z), earliest_of(t_max, far_x, far_y, far_z), query);
 }
 
-FUNC ChildKeys enter_compressed(CompressedRecord node, RaySpace space, float t_min, float t_max, uint query)
+FUNC ChildKeys enter_compressed(CompressedRecord node, BoxRay ray, float t_min, float t_max, uint query)
 {
-    SeenGrid grid = grid_of(node, space);
-    PRECISE float first = t_min * space.t_scale;
-    PRECISE float last = t_max * space.t_scale;
+    SeenGrid grid = grid_of(node, ray);
+    PRECISE float first = t_min * ray.t_scale;
+    PRECISE float last = t_max * ray.t_scale;
     // All four are computed, then chosen: branches cost more.
     ChildKeys keys;
     keys.key0 = enter_planes(grid, 0u, first, last, query);

@@ -18,15 +18,24 @@ struct RaySpace
 {
     vec3 origin;
     vec3 direction;
-    vec3 near_origin;
-    vec3 far_origin;
-    vec3 near_inverse; // times t_scale
-    vec3 far_inverse;
+    vec3 inverse; // of the direction, within the limit, times t_scale
+    float pad;
     float t_scale; // of t of boxes
     uint axis; // the dominant axis of the direction
     float shear_x;
     float shear_y;
     float shear_z;
+};
+
+// What tests of boxes take from it. Made from it at each node where the space changes in the loop, as among instances: that is
+// less than a loop on a CPU pays for what it carries.
+struct BoxRay
+{
+    vec3 near_origin;
+    vec3 far_origin;
+    vec3 near_inverse; // times t_scale
+    vec3 far_inverse;
+    float t_scale;
 };
 
 FUNC float reciprocal(float d)
@@ -46,6 +55,31 @@ FUNC vec3 dominant_last(vec3 v, uint axis)
     return axis == 0u ? vec3(v.y, v.z, v.x) : (axis == 1u ? vec3(v.z, v.x, v.y) : v);
 }
 
+FUNC BoxRay box_ray(RaySpace space)
+{
+#ifdef TWINRAY_NO_PADDING // a negative control: shows what the padding is for
+    const float NEAR_FACTOR = 1.0f;
+    const float FAR_FACTOR = 1.0f;
+#else
+    const float NEAR_FACTOR = 0.99999904632568359375f; // 1 - 2^-20
+    const float FAR_FACTOR = 1.00000095367431640625f;  // 1 + 2^-20
+#endif
+    vec3 inverse = space.inverse;
+    float pad = space.pad;
+    vec3 shift = vec3(inverse.x < 0.0f ? -pad : pad, inverse.y < 0.0f ? -pad : pad, inverse.z < 0.0f ? -pad : pad);
+    PRECISE vec3 near_origin = space.origin + shift;
+    PRECISE vec3 far_origin = space.origin - shift;
+    PRECISE vec3 near_inverse = inverse * NEAR_FACTOR;
+    PRECISE vec3 far_inverse = inverse * FAR_FACTOR;
+    BoxRay ray;
+    ray.near_origin = near_origin;
+    ray.far_origin = far_origin;
+    ray.near_inverse = near_inverse;
+    ray.far_inverse = far_inverse;
+    ray.t_scale = space.t_scale;
+    return ray;
+}
+
 // 1, or the power of two that brings the largest t at which a ray may meet something below 2^80. That is 2^38 pads at most times
 // the reciprocal of the direction's dominant entry.
 FUNC float scale_of_reach(float pad, float along)
@@ -58,13 +92,8 @@ FUNC float scale_of_reach(float pad, float along)
 // pad: see above; 2^-38 of the coordinates of the origin and of all boxes at least.
 FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
 {
-#ifdef TWINRAY_NO_PADDING // a negative control: shows what the padding is for
-    const float NEAR_FACTOR = 1.0f;
-    const float FAR_FACTOR = 1.0f;
+#ifdef TWINRAY_NO_PADDING
     pad = 0.0f;
-#else
-    const float NEAR_FACTOR = 0.99999904632568359375f; // 1 - 2^-20
-    const float FAR_FACTOR = 1.00000095367431640625f;  // 1 + 2^-20
 #endif
     const float LARGEST_FLOAT = uintBitsToFloat(0x7f7fffffu);
     const float STEEPEST = 1099511627776.0f; // 2^40
@@ -78,11 +107,8 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
     vec3 limit = vec3(min(STEEPEST * along, LARGEST_FLOAT));
     space.t_scale = scale_of_reach(pad, along);
     inverse = clamp(inverse, -limit, limit) * space.t_scale;
-    space.near_inverse = inverse * NEAR_FACTOR;
-    space.far_inverse = inverse * FAR_FACTOR;
-    vec3 shift = vec3(inverse.x < 0.0f ? -pad : pad, inverse.y < 0.0f ? -pad : pad, inverse.z < 0.0f ? -pad : pad);
-    space.near_origin = origin + shift;
-    space.far_origin = origin - shift;
+    space.inverse = inverse;
+    space.pad = pad;
     space.shear_x = d.x / d.z;
     space.shear_y = d.y / d.z;
     space.shear_z = 1.0f / d.z;
@@ -108,21 +134,21 @@ FUNC float earliest_of(float leave, float far_x, float far_y, float far_z)
     return far_z < leave ? far_z : leave;
 }
 
-// Where the ray enters the box and where it leaves it within [t_min, t_max], in t * space.t_scale: enter > leave where it does
+// Where the ray enters the box and where it leaves it within [t_min, t_max], in t * ray.t_scale: enter > leave where it does
 // not meet it.
-FUNC void cross_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, INOUT(float) enter, INOUT(float) leave)
+FUNC void cross_box(vec3 lo, vec3 hi, BoxRay ray, float t_min, float t_max, INOUT(float) enter, INOUT(float) leave)
 {
-    bool flip_x = space.near_inverse.x < 0.0f;
-    bool flip_y = space.near_inverse.y < 0.0f;
-    bool flip_z = space.near_inverse.z < 0.0f;
-    PRECISE float near_x = ((flip_x ? hi.x : lo.x) - space.near_origin.x) * space.near_inverse.x;
-    PRECISE float near_y = ((flip_y ? hi.y : lo.y) - space.near_origin.y) * space.near_inverse.y;
-    PRECISE float near_z = ((flip_z ? hi.z : lo.z) - space.near_origin.z) * space.near_inverse.z;
-    PRECISE float far_x = ((flip_x ? lo.x : hi.x) - space.far_origin.x) * space.far_inverse.x;
-    PRECISE float far_y = ((flip_y ? lo.y : hi.y) - space.far_origin.y) * space.far_inverse.y;
-    PRECISE float far_z = ((flip_z ? lo.z : hi.z) - space.far_origin.z) * space.far_inverse.z;
-    PRECISE float first = t_min * space.t_scale;
-    PRECISE float last = t_max * space.t_scale;
+    bool flip_x = ray.near_inverse.x < 0.0f;
+    bool flip_y = ray.near_inverse.y < 0.0f;
+    bool flip_z = ray.near_inverse.z < 0.0f;
+    PRECISE float near_x = ((flip_x ? hi.x : lo.x) - ray.near_origin.x) * ray.near_inverse.x;
+    PRECISE float near_y = ((flip_y ? hi.y : lo.y) - ray.near_origin.y) * ray.near_inverse.y;
+    PRECISE float near_z = ((flip_z ? hi.z : lo.z) - ray.near_origin.z) * ray.near_inverse.z;
+    PRECISE float far_x = ((flip_x ? lo.x : hi.x) - ray.far_origin.x) * ray.far_inverse.x;
+    PRECISE float far_y = ((flip_y ? lo.y : hi.y) - ray.far_origin.y) * ray.far_inverse.y;
+    PRECISE float far_z = ((flip_z ? lo.z : hi.z) - ray.far_origin.z) * ray.far_inverse.z;
+    PRECISE float first = t_min * ray.t_scale;
+    PRECISE float last = t_max * ray.t_scale;
     enter = latest_of(first, near_x, near_y, near_z);
     leave = earliest_of(last, far_x, far_y, far_z);
 }
@@ -130,7 +156,7 @@ FUNC void cross_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, 
 FUNC bool enter_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, INOUT(float) enter)
 {
     float leave = 0.0f;
-    cross_box(lo, hi, space, t_min, t_max, enter, leave);
+    cross_box(lo, hi, box_ray(space), t_min, t_max, enter, leave);
     return enter <= leave;
 }
 

@@ -10,11 +10,11 @@ const uint STACK_SIZE = 2u * DEEPEST_TREE + 4u;
 const uint END_OF_STACK = 0xffffffffu;   // == NOTHING: an empty scene ends at once
 const uint END_OF_INSTANCE = 0xfffffffeu;
 
-FUNC uint place_of(vec3 lo, vec3 hi, RaySpace space, Search search, uint query)
+FUNC uint place_of(vec3 lo, vec3 hi, BoxRay ray, Search search, uint query)
 {
     float enter = 0.0f;
     float leave = 0.0f;
-    cross_box(lo, hi, space, search.t_min, search.t_best, enter, leave);
+    cross_box(lo, hi, ray, search.t_min, search.t_best, enter, leave);
     return place_in_order(enter, leave, query);
 }
 
@@ -41,6 +41,7 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
     }
     bool in_instance = !has_top;
 
+    BoxRay first_ray = box_ray(space);
     uint stack[STACK_SIZE];
     uint height = 1u;
     stack[0] = END_OF_STACK;
@@ -50,8 +51,10 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
         if ((cursor & LEAF_BIT) == 0u)
         {
             BvhNode node = load_node(nodes, cursor);
-            uint place0 = place_of(node.lo0, node.hi0, space, search, options.query);
-            uint place1 = place_of(node.lo1, node.hi1, space, search, options.query);
+            BoxRay ray_of_boxes = first_ray;
+            if (has_top) ray_of_boxes = box_ray(space);
+            uint place0 = place_of(node.lo0, node.hi0, ray_of_boxes, search, options.query);
+            uint place1 = place_of(node.lo1, node.hi1, ray_of_boxes, search, options.query);
             bool hit0 = place0 < NO_ENTRY;
             bool hit1 = place1 < NO_ENTRY;
             bool first_is_0 = place0 <= place1;

@@ -6,13 +6,13 @@
 #include "shaders/shared/enter_compressed.h"
 #include "shaders/shared/enter_full.h"
 
-FUNC ChildKeys enter_children(CompressedRecord node, REF(LeafBox) boxes, RaySpace space, Search search, TraceOptions options)
+FUNC ChildKeys enter_children(CompressedRecord node, REF(LeafBox) boxes, BoxRay ray, Search search, TraceOptions options)
 {
     bool may_be_full = (options.features & FEATURE_BVH4) != 0u;
     bool may_be_compressed = (options.features & FEATURE_COMPRESSED) != 0u;
     if (may_be_full && (!may_be_compressed || uint64_t(boxes) != 0ul))
-        return enter_full(boxes, node, space, search.t_min, search.t_best, options.query);
-    return enter_compressed(node, space, search.t_min, search.t_best, options.query);
+        return enter_full(boxes, node, ray, search.t_min, search.t_best, options.query);
+    return enter_compressed(node, ray, search.t_min, search.t_best, options.query);
 }
 
 FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
@@ -39,6 +39,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
         boxes = instance.record_boxes;
     }
 
+    BoxRay first_ray = box_ray(space);
     HeldGroups held = no_groups();
     uint stack[TWINRAY_GROUP_STACK];
     uint height = 0u;
@@ -50,7 +51,9 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
         bool descend = false;
         if (!is_leaf(record))
         {
-            ChildKeys keys = enter_children(record, boxes, space, search, options);
+            BoxRay ray_of_boxes = first_ray;
+            if (has_top) ray_of_boxes = box_ray(space);
+            ChildKeys keys = enter_children(record, boxes, ray_of_boxes, search, options);
             sort_keys(keys);
             uint others = group_of(keys, first_child_of(record));
             if (keys.key1 < NO_ENTRY) TWINRAY_PUSH_GROUP(held, stack, height, others)

@@ -59,7 +59,9 @@ void push(CollapseStep found)
     if (gl_LocalInvocationID.x == 0u && pushed != 0u)
     {
         pushed_before = atomicAdd(AT(args.level, 1).count, pushed);
-        atomicMax(AT(args.level, 1).groups_x, (pushed_before + pushed + COLLAPSE_GROUP - 1u) / COLLAPSE_GROUP);
+        uint groups = (pushed_before + pushed + COLLAPSE_GROUP - 1u) / COLLAPSE_GROUP;
+        atomicMax(AT(args.level, 1).groups_x, min(groups, GROUPS_PER_ROW));
+        atomicMax(AT(args.level, 1).groups_y, (groups + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW);
     }
     barrier();
     place = place + pushed_before;

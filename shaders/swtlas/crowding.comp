@@ -18,7 +18,6 @@ bool begins_crowd(uint position)
 
 void dispatch_second_sort()
 {
-    const uint GROUPS_PER_ROW = 32768u;
     AT(args.crowding, 0).is_fine = 1u;
     AT(args.crowding, 0).leaf_groups[0] = min(args.leaf_groups, GROUPS_PER_ROW);
     AT(args.crowding, 0).leaf_groups[1] = (args.leaf_groups + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW;

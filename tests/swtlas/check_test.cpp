@@ -45,7 +45,7 @@ TEST(CompressedCheck, NamesWhatIsWrong) {
     };
     EXPECT_NE(wrong([](CompressedRecord& root) { root.b.y -= 1; }).find("lies in planes"), std::string::npos);
     EXPECT_NE(wrong([](CompressedRecord& root) { root.a.w |= 1u << 24; }).find("of 3"), std::string::npos);
-    EXPECT_NE(wrong([](CompressedRecord& root) { root.a.w |= 7u << 25; }).find("has 7 children"), std::string::npos);
+    EXPECT_NE(wrong([](CompressedRecord& root) { root.a.w |= 7u << 26; }).find("has 7 children"), std::string::npos);
     EXPECT_NE(wrong([](CompressedRecord& root) { root.a.w += 1; }), "");
 }
 

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// The words on the stack of a traversal of records.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "engine/accel/geometry.h"
+#include "swtlas/structures.h"
+
+namespace twinray {
+namespace {
+
+ChildKeys entered(std::vector<uint> children) {
+    children.resize(4, NO_ENTRY);
+    return {children[0], children[1], children[2], children[3]};
+}
+
+std::vector<uint> visited(uint group) {
+    std::vector<uint> records;
+    for (; group != BOTTOM; group = rest_of(group)) records.push_back(next_of(group));
+    return records;
+}
+
+TEST(Groups, HoldAllChildrenButTheFirstInOrder) {
+    for (const uint siblings : {1u, 3u, (1u << 25) + 5, MOST_RECORDS - 4}) {
+        EXPECT_EQ(visited(group_of(entered({2, 0}), siblings)), std::vector{siblings});
+        EXPECT_EQ(visited(group_of(entered({1, 3, 0}), siblings)), (std::vector{siblings + 3, siblings}));
+        EXPECT_EQ(visited(group_of(entered({3, 2, 1, 0}), siblings)),
+                  (std::vector{siblings + 2, siblings + 1, siblings}));
+        EXPECT_EQ(visited(group_of(entered({0, 3, 1, 2}), siblings)),
+                  (std::vector{siblings + 3, siblings + 1, siblings + 2}));
+    }
+}
+
+TEST(Groups, AreNoneOfTheOtherEntriesOfAStack) {
+    for (uint order = 0; order < 64; ++order) {
+        const uint group = make_group(1, order & 3, order >> 2 & 3, order >> 4);
+        EXPECT_NE(group, BOTTOM);
+        EXPECT_NE(group, LEAVE_INSTANCE);
+    }
+}
+
+TEST(Groups, KeysAreSortedLeastFirst) {
+    ChildKeys keys{9, NO_ENTRY | 1, 4, 7};
+    sort_keys(keys);
+    EXPECT_EQ((std::vector{keys.key0, keys.key1, keys.key2, keys.key3}), (std::vector<uint>{4, 7, 9, NO_ENTRY | 1}));
+}
+
+TEST(Groups, ANodeTellsItsFirstChildAndTheirNumber) {
+    CompressedRecord node = no_record();
+    for (const uint first : {1u, (1u << 25) + 5, MOST_RECORDS - 4}) {
+        NodeChildren children{};
+        children.count = 4;
+        node = encode_node(children, first);
+        EXPECT_EQ(first_child_of(node), first);
+        EXPECT_EQ(children_in(node), 4u);
+        EXPECT_FALSE(is_leaf(node));
+    }
+    EXPECT_LT(Geometry::max_primitives, 1u << 25);  // leaves beside heights: see make_below
+}
+
+}  // namespace
+}  // namespace twinray
