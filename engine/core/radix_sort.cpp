@@ -2,7 +2,6 @@
 #include "engine/core/radix_sort.h"
 
 #include <algorithm>
-#include <thread>
 #include <utility>
 
 #include "engine_sort_histogram.spv.h"
@@ -44,8 +43,7 @@ RadixSort::RadixSort(Context& context, uint cpu_threads)
 
 uint RadixSort::cpu_threads_on(const DeviceFacts& device) {
     constexpr uint counters = CPU_GROUP << SORT_CPU_DIGIT_BITS;
-    if (device.kind != DeviceKind::cpu || device.shared_bytes < counters * sizeof(uint)) return 0;
-    return std::max(1u, std::thread::hardware_concurrency());
+    return device.shared_bytes < counters * sizeof(uint) ? 0 : device.cpu_threads;
 }
 
 std::uint64_t RadixSort::counter_bytes(std::uint64_t count, uint cpu_threads) {

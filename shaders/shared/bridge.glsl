@@ -36,4 +36,6 @@ BUFFER_OF_WORDS(Vec4s, vec4, 4);
 // gl_WorkGroupSize has its value only after the shader's local_size declaration, which follows this include.
 #define group_index() (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x)
 #define global_index() (group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x)
+// The same after dealing groups out to `hands` (shaders/shared/workgroup.h), for kernels whose groups take unequal times.
+#define dealt_index(hands) (dealt_group(group_index(), gl_NumWorkGroups.x * gl_NumWorkGroups.y, hands) * gl_WorkGroupSize.x + gl_LocalInvocationID.x)
 #endif

@@ -5,6 +5,7 @@
 #include "shaders/shared/features.h"
 #include "shaders/shared/program.h"
 #include "shaders/shared/ray.h"
+#include "shaders/shared/workgroup.h"
 #ifdef TWINRAY_REFINED
 #include "shaders/shared/refine_scene.h"
 #endif
