@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// `twinray bench --ladder`: what each feature costs a scene that does not need it.
+// `twinray bench --ladder`: what each feature costs a scene that does not need it, in time and in memory.
 #include <iostream>
 
+#include "bench/keeping.h"
 #include "bench/ladder.h"
 #include "cli/common.h"
 #include "engine/core/error.h"
@@ -21,20 +22,23 @@ void bench_ladder(const CommonOptions& options, const std::string& scene_name, c
     std::cout << "bench " << scene.name << ": features that " << name_of(ladder_options.layout) << ' '
               << bench::level_name(ladder_options.level) << " does not need, one more on each rung, medians of "
               << ladder_options.rounds << " interleaved rounds, on " << context->facts().name << '\n';
-    const nlohmann::json base = {{"device", describe(*context)},
-                                 {"started", utc_now()},
-                                 {"git", twinray_version},
-                                 {"width", run.width},
-                                 {"seed", options.seed},
-                                 {"scene", scene.name},
-                                 {"layout", name_of(ladder_options.layout)},
-                                 {"level", bench::level_name(ladder_options.level)}};
+    const nlohmann::json base = {{"device", describe(*context)}, {"started", utc_now()}, {"git", twinray_version},
+                                 {"width", run.width},           {"seed", options.seed}, {"scene", scene.name}};
+    nlohmann::json rung_base = base;
+    rung_base.update({{"layout", name_of(ladder_options.layout)}, {"level", bench::level_name(ladder_options.level)}});
     bool agree = true;
     for (const bench::Ladder& ladder : measure_ladders(*context, scene, ladder_options, run.kinds)) {
         std::cout << '\n';
         print_ladder(std::cout, ladder);
-        for (const nlohmann::json& record : records_of(base, ladder)) append_json(options.json, record);
+        for (const nlohmann::json& record : records_of(rung_base, ladder)) append_json(options.json, record);
         agree = agree && ladder.agrees();
+    }
+    if (run.times_builds) {
+        const std::size_t triangles = bench::count_mesh_triangles(scene.scene);
+        const std::vector<bench::Keeping> keepings = measure_keepings(*context, scene, ladder_options.rounds);
+        std::cout << '\n';
+        print_keepings(std::cout, keepings, triangles);
+        for (const nlohmann::json& record : records_of(base, keepings, triangles)) append_json(options.json, record);
     }
     if (!agree) fail("bench: programs with more features than needed found other hits");
 }

@@ -193,10 +193,10 @@ FUNC float areas_in(CompressedRecord node, float unit)
 {
     if (is_leaf(node)) return 0.0f;
     float sum = 0.0f;
-    for (uint i = 0u; i < children_in(node); i = i + 1u)
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
     {
         LeafBox box = box_in_planes(node, i);
-        sum = sum + half_area(box.lo, box.hi, unit);
+        if (i < children_in(node)) sum = sum + half_area(box.lo, box.hi, unit);
     }
     return sum;
 }

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
-// The areas of the child boxes of a group's nodes.
+// The areas of the child boxes of AREA_GROUP nodes. Each invocation adds up its share of them without waiting for others, in the
+// order in which more invocations would.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/compressed.h"
 #include "shaders/shared/surface_area.h"
-layout(local_size_x = AREA_GROUP) in;
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { NodeAreasArgs args; };
+
+const uint SHARE = AREA_GROUP / gl_WorkGroupSize.x;
 
 shared float sums[AREA_GROUP];
 
-float area_of(Bvh tree, uint index)
+float area_of(Bvh tree, float unit, uint index)
 {
-    float unit = area_unit(tree.lo, tree.hi);
     if (uint64_t(args.record_boxes) != 0ul) return areas_of_boxes(load_record(args.records, index), args.record_boxes, unit);
     if (uint64_t(args.records) != 0ul) return areas_in(load_record(args.records, index), unit);
     BvhNode node = AT(tree.nodes, index);
@@ -21,16 +23,23 @@ float area_of(Bvh tree, uint index)
 
 void main()
 {
-    uint index = global_index();
-    uint thread = gl_LocalInvocationIndex;
-    sums[thread] = index < args.count ? area_of(AT(args.tree, 0), index) : 0.0f;
-    barrier();
-    for (uint stride = 1u; stride < AREA_GROUP; stride *= 2u)
+    Bvh tree = AT(args.tree, 0);
+    float unit = area_unit(tree.lo, tree.hi);
+    uint begin = gl_LocalInvocationID.x * SHARE;
+    for (uint i = begin; i < begin + SHARE; ++i)
     {
-        if (thread % (2u * stride) == 0u) sums[thread] += sums[thread + stride];
+        uint index = group_index() * AREA_GROUP + i;
+        sums[i] = index < args.count ? area_of(tree, unit, index) : 0.0f;
+    }
+    for (uint stride = 1u; stride < SHARE; stride *= 2u)
+        for (uint i = begin; i < begin + SHARE; i += 2u * stride) sums[i] += sums[i + stride];
+    barrier();
+    for (uint stride = SHARE; stride < AREA_GROUP; stride *= 2u)
+    {
+        if (begin % (2u * stride) == 0u) sums[begin] += sums[begin + stride];
         barrier();
     }
-    if (thread != 0u || index >= args.count) return;
+    if (begin != 0u || group_index() * AREA_GROUP >= args.count) return;
     AreaItem item = no_area();
     item.sum = sums[0];
     AT(args.items, group_index()) = item;

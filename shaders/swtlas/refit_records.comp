@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// New records for an old topology: each leaf climbs with its box, and of the children that arrive at a node the last goes
-// on with all.
+// New records for an old topology. Each invocation has a run of slots, whose leaves it refits one after the other; of the
+// children of a node the last one goes on with it. One loop over leaves and nodes: as one climbs, its neighbours on a CPU
+// have leaves to do.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/collapse.h"
 #include "shaders/swtlas/slots.glsl"
-layout(local_size_x = BUILD_GROUP) in;
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { RefitRecordsArgs args; };
 
 // The boxes as seen by all groups, not through caches of one.
@@ -19,9 +20,8 @@ LeafBox refit_leaf(BuildTree tree, uint slot, uint leaf)
     return box_of_primitive(tree, leaf);
 }
 
-LeafBox refit_node(BuildTree tree, uint slot, SharedBoxes boxes)
+LeafBox refit_node(BuildTree tree, uint slot, CompressedRecord node, SharedBoxes boxes)
 {
-    CompressedRecord node = load_record(tree.records, slot);
     NodeChildren children;
     children.count = children_in(node);
     UNROLL for (uint i = 0u; i < 4u; ++i)
@@ -33,32 +33,47 @@ LeafBox refit_node(BuildTree tree, uint slot, SharedBoxes boxes)
     return box_around(children);
 }
 
-void climb(BuildTree tree, uint slot, LeafBox box)
+// Leaves the box where the record's parent finds it. Gives the parent if this was the last of its children, else NOTHING.
+uint leave(BuildTree tree, uint slot, LeafBox box)
 {
-    SharedBoxes boxes = SharedBoxes(uint64_t(args.slot_boxes));
     uint base = 2u * tree.first;
-    for (uint parent = AT(args.parents, base + slot); parent != NOTHING; parent = AT(args.parents, base + slot))
+    uint parent = AT(args.parents, base + slot);
+    if (parent == NOTHING)
     {
-        boxes.items[base + slot] = box;
-        keep_box(tree, slot, box);
-        memoryBarrierBuffer();
-        if (atomicAdd(AT(args.missing, base + parent), 0xffffffffu) != 1u) return;
-        memoryBarrierBuffer();
-        slot = parent;
-        box = refit_node(tree, slot, boxes);
+        AT(tree.bvh, 0).lo = box.lo;
+        AT(tree.bvh, 0).hi = box.hi;
+        return NOTHING;
     }
-    AT(tree.bvh, 0).lo = box.lo;
-    AT(tree.bvh, 0).hi = box.hi;
+    SharedBoxes(uint64_t(args.slot_boxes)).items[base + slot] = box;
+    keep_box(tree, slot, box);
+    memoryBarrierBuffer();
+    if (atomicAdd(AT(args.missing, base + parent), 0xffffffffu) != 1u) return NOTHING;
+    memoryBarrierBuffer();
+    return parent;
 }
 
 void main()
 {
-    if (group_index() >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index());
+    BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
     BuildTree tree = AT(args.trees, block.tree);
-    for (uint slot = slots_begin(tree, block) + gl_LocalInvocationIndex; slot < slots_end(tree, block); slot += BUILD_GROUP)
+    if (group_index() >= args.block_count) return;
+    SharedBoxes boxes = SharedBoxes(uint64_t(args.slot_boxes));
+    uint last = slots_end(tree, block);
+    uint run = (last - slots_begin(tree, block) + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
+    uint next = min(slots_begin(tree, block) + gl_LocalInvocationID.x * run, last);
+    uint end = min(next + run, last);
+    uint climbed = NOTHING;
+    while (climbed != NOTHING || next < end)
     {
+        bool climbs = climbed != NOTHING;
+        uint slot = climbs ? climbed : next;
+        next += climbs ? 0u : 1u;
         CompressedRecord record = load_record(tree.records, slot);
-        if (is_leaf(record)) climb(tree, slot, refit_leaf(tree, slot, index_in(record)));
+        bool is_refitted = is_leaf(record) || climbs;
+        LeafBox box = empty_box();
+        if (is_leaf(record)) box = refit_leaf(tree, slot, index_in(record));
+        else if (climbs) box = refit_node(tree, slot, record, boxes);
+        climbed = NOTHING;
+        if (is_refitted) climbed = leave(tree, slot, box);
     }
 }

@@ -97,12 +97,21 @@ assert records and all(r["refit_ms"] > 0 and r["rebuild_ms"] > 0 for r in record
 said, records = bench("--validation", "--ladder", "--scene", "sphere:320", "--width", "16", "--rounds", "5", "--rays",
                       "incoherent,occlusion")
 for kind in KINDS[1:]:
-    rungs = [r for r in records if r["rays"] == kind]
+    rungs = [r for r in records if r.get("rays") == kind]
     assert [r["rung"] for r in rungs][:2] == ["by hand", "needed"] and len(rungs) == (10 if kind == "occlusion" else 9)
     assert all(a["features"] & b["features"] == a["features"] for a, b in zip(rungs, rungs[1:]))
     assert len({r["hits_hash"] for r in rungs}) == 1 and rungs[0]["hits_hash"] in said
     assert all(r["ns_per_ray"] > 0 and r["rounds"] == 5 for r in rungs) and rungs[1]["of_needed"] == 1
-_, records = bench("--ladder", "--scene", "instances:3x80", "--width", "16", "--layouts", "bvh2", "--rays", "primary")
+# And what is kept: the least first, vertices alone where they move or levels are refined, no layout in less.
+kept = {r["keeping"]: r for r in records if "keeping" in r}
+assert list(kept)[0] == "needed" and "bytes/triangle" in said and all(r["build_ms"] > 0 for r in kept.values())
+assert kept["needed"]["total_bytes_per_triangle"] == min(r["total_bytes_per_triangle"] for r in kept.values())
+assert {name for name, r in kept.items() if r["vertices_bytes_per_triangle"] > 0} == {
+    "vertices moved", "level refined", "level certified"}
+assert all(kept[layout]["structures_bytes_per_triangle"] > kept["needed"]["structures_bytes_per_triangle"]
+           for layout in ("layout bvh4", "layout bvh2"))
+_, records = bench("--ladder", "--no-build", "--scene", "instances:3x80", "--width", "16", "--layouts", "bvh2", "--rays",
+                   "primary")
 assert [r["rung"] for r in records] == ["needed", "+ masks", "+ culling", "+ filters", "+ boxes", "+ other layouts"]
 
 # What is wrong is said.

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "bench/keeping.h"
+
+#include "bench/figures.h"
+#include "bench/report.h"
+#include "bench/table.h"
+#include "engine/accel/scene_push.h"
+#include "swtlas/sw_tlas.h"
+
+namespace twinray::bench {
+namespace {
+
+struct Wish {
+    std::string name;
+    AccelOptions options;
+    bool moves_vertices = false;
+};
+
+std::vector<Wish> wishes_on(const DeviceFacts& device) {
+    const AccelOptions least{.can_move = false};
+    std::vector<Wish> wishes = {{"needed", least}};
+    const auto add = [&](const char* name, auto change) -> Wish& {
+        wishes.push_back({name, least});
+        change(wishes.back().options);
+        return wishes.back();
+    };
+    add("may move", [](AccelOptions& options) { options.can_move = true; });
+    add("vertices moved", [](AccelOptions&) {}).moves_vertices = true;
+    add("build quality high", [](AccelOptions& options) { options.build_quality = BuildQuality::high; });
+    add("layout bvh4", [](AccelOptions& options) { options.layout = Layout::bvh4; });
+    add("layout bvh2", [](AccelOptions& options) { options.layout = Layout::bvh2; });
+    if (SwTlas::capability_on(device, Feature::level_refined).support != Support::unsupported)
+        add("level refined", [](AccelOptions& options) { options.level = Level::refined; });
+    if (SwTlas::capability_on(device, Feature::level_certified).support != Support::unsupported)
+        add("level certified", [](AccelOptions& options) { options.level = Level::certified; });
+    return wishes;
+}
+
+double sync_ms(SwTlas& accel) {
+    accel.sync();
+    accel.wait_for_gpu();
+    double ms = 0;
+    for (const PassTiming& pass : accel.build_timings()) ms += pass.ms;
+    return ms;
+}
+
+void move_vertices(SwTlas& accel, const Scene& scene, std::span<const AccelHandle> handles) {
+    std::size_t pushed = 0;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i)
+        if (i == 0 || scene.instances[i].mesh != scene.instances[i - 1].mesh)
+            accel.update_vertices(handles[pushed++], scene.meshes[scene.instances[i].mesh].positions);
+}
+
+void measure_round(Context& context, const Scene& scene, const Wish& wish, Keeping& keeping) {
+    SwTlas accel(context, wish.options);
+    const std::vector<AccelHandle> handles = push_scene(accel, scene);
+    double ms = sync_ms(accel);
+    if (wish.moves_vertices) {
+        move_vertices(accel, scene, handles);
+        ms = sync_ms(accel);
+    }
+    keeping.build_ms.push_back(ms);
+    keeping.usage = accel.memory_usage();
+}
+
+// In the order of the columns.
+std::vector<std::pair<const char*, double>> shares_of(const MemoryUsage& usage, std::size_t triangles) {
+    const auto share = [&](std::uint64_t bytes) { return static_cast<double>(bytes) / static_cast<double>(triangles); };
+    return {{"structures", share(usage.structures())},
+            {"instances", share(usage.instances + usage.blocks)},
+            {"vertices", share(usage.vertices)},
+            {"scratch", share(usage.scratch)},
+            {"total", share(usage.total())}};
+}
+
+}  // namespace
+
+std::vector<Keeping> measure_keepings(Context& context, const BenchScene& scene, std::size_t rounds) {
+    const std::vector<Wish> wishes = wishes_on(context.facts());
+    std::vector<Keeping> keepings;
+    for (const Wish& wish : wishes) keepings.push_back({.name = wish.name, .usage = {}, .build_ms = {}});
+    for (std::size_t round = 0; round < rounds + 1; ++round)
+        for (std::size_t i = 0; i < wishes.size(); ++i) measure_round(context, scene.scene, wishes[i], keepings[i]);
+    // Drivers compile kernels in the first round.
+    for (Keeping& keeping : keepings) keeping.build_ms.erase(keeping.build_ms.begin());
+    return keepings;
+}
+
+void print_keepings(std::ostream& out, std::span<const Keeping> keepings, std::size_t triangles) {
+    std::vector<std::vector<std::string>> rows = {{"bytes/triangle"}};
+    for (const auto& [name, _] : shares_of({}, triangles)) rows.front().emplace_back(name);
+    rows.front().insert(rows.front().end(), {"build ms", "min"});
+    for (const Keeping& keeping : keepings) {
+        const Spread ms = spread_of(keeping.build_ms);
+        std::vector<std::string> row = {keeping.name};
+        for (const auto& [_, bytes] : shares_of(keeping.usage, triangles)) row.push_back(number_text(bytes, 4));
+        row.insert(row.end(), {number_text(ms.median, 3), number_text(ms.min, 3)});
+        rows.push_back(std::move(row));
+    }
+    print_table(out, rows);
+}
+
+std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<const Keeping> keepings,
+                                       std::size_t triangles) {
+    std::vector<nlohmann::json> records;
+    for (const Keeping& keeping : keepings) {
+        const Spread ms = spread_of(keeping.build_ms);
+        nlohmann::json record = base;
+        record.update({{"schema", record_schema},
+                       {"keeping", keeping.name},
+                       {"rounds", keeping.build_ms.size()},
+                       {"build_ms", ms.median},
+                       {"build_ms_min", ms.min},
+                       {"build_ms_max", ms.max}});
+        for (const auto& [name, bytes] : shares_of(keeping.usage, triangles))
+            record[std::string(name) + "_bytes_per_triangle"] = bytes;
+        records.push_back(std::move(record));
+    }
+    return records;
+}
+
+}  // namespace twinray::bench
