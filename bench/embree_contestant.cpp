@@ -3,11 +3,11 @@
 
 #include <xmmintrin.h>
 
-#include "bench/cpu_threads.h"
 #include "bench/embree_scene.h"
 #include "bench/embree_trace.h"
 #include "bench/stopwatch.h"
 #include "bench/tiles.h"
+#include "engine/core/cpu_threads.h"
 #include "engine/core/parallel.h"
 
 namespace twinray::bench {

@@ -8,7 +8,7 @@
 #include "shaders/shared/traverse_records.h"
 layout(local_size_x = 64) in;
 layout(constant_id = QUERY_CONSTANT) const uint MINIMAL_QUERY = QUERY_CLOSEST;
-layout(constant_id = HANDS_CONSTANT) const uint HANDS = 1u;
+layout(constant_id = HANDS_CONSTANT) const uint MINIMAL_HANDS = 0u;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };
 
 Hit closest_triangle(SwInstance instance, Ray ray)
@@ -78,7 +78,7 @@ Hit closest_triangle(SwInstance instance, Ray ray)
 
 void main()
 {
-    uint i = dealt_index(HANDS);
+    uint i = dealt_index(MINIMAL_HANDS);
     if (i >= ray_count(args.count, args.indirect_count)) return;
     SwScene scene = AT(REF(SwScene)(args.scene), 0);
     Hit hit = closest_triangle(AT(scene.instances, 0), AT(args.rays, i));

@@ -210,10 +210,11 @@ void add_bench(CLI::App& app, int&) {
     add_size_options(*command, options->run);
     command
         ->add_flag("--ladder", options->is_ladder,
-                   "what each feature costs that the scene does not need, on the first layout and level")
+                   "what each feature costs that the scene does not need, on the first layout and level, and what an "
+                   "accelerator keeps in memory")
         ->needs(scene);
     command->add_flag("--no-embree", options->no_embree, "leave Embree out");
-    command->add_flag("--no-build", options->no_build, "time traces alone");
+    command->add_flag("--no-build", options->no_build, "time traces alone; a ladder's, without its memory");
     add_common_options(*command, options->common);
     command->callback([options, growth] { dispatch(*options, growth->count() > 0); });
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `twinray bench --ladder`: what each feature costs a scene that does not need it, in time and in memory.
+#include <algorithm>
 #include <iostream>
 
 #include "bench/keeping.h"
@@ -34,8 +35,9 @@ void bench_ladder(const CommonOptions& options, const std::string& scene_name, c
         agree = agree && ladder.agrees();
     }
     if (run.times_builds) {
-        const std::size_t triangles = bench::count_mesh_triangles(scene.scene);
-        const std::vector<bench::Keeping> keepings = measure_keepings(*context, scene, ladder_options.rounds);
+        const std::size_t triangles = std::max<std::size_t>(bench::count_mesh_triangles(scene.scene), 1);
+        const std::vector<bench::Keeping> keepings =
+            measure_keepings(*context, scene, std::min<std::size_t>(ladder_options.rounds, 9));
         std::cout << '\n';
         print_keepings(std::cout, keepings, triangles);
         for (const nlohmann::json& record : records_of(base, keepings, triangles)) append_json(options.json, record);

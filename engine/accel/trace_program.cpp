@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "engine/accel/trace_program.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace twinray {
@@ -19,13 +18,12 @@ const Kernel<TraceArgs>& KernelProgram::kernel(Query query, Level level) const {
         kernels_[static_cast<std::size_t>(query)][static_cast<std::size_t>(level)];
     if (!kernel)
         kernel = std::make_unique<Kernel<TraceArgs>>(
-            context_,
-            KernelDesc{.name = name() + (query == Query::any ? " any" : " closest"),
-                       .spirv = level < Level::refined ? spirv_ : refined_,
-                       .constants = {{QUERY_CONSTANT, query == Query::any ? QUERY_ANY : QUERY_CLOSEST},
-                                     {HANDS_CONSTANT, std::max<std::uint32_t>(1, context_.facts().cpu_threads)},
-                                     {FEATURES_CONSTANT, features()},
-                                     {LEVEL_CONSTANT, static_cast<uint>(level)}}});
+            context_, KernelDesc{.name = name() + (query == Query::any ? " any" : " closest"),
+                                 .spirv = level < Level::refined ? spirv_ : refined_,
+                                 .constants = {{QUERY_CONSTANT, query == Query::any ? QUERY_ANY : QUERY_CLOSEST},
+                                               {HANDS_CONSTANT, context_.facts().cpu_threads},
+                                               {FEATURES_CONSTANT, features()},
+                                               {LEVEL_CONSTANT, static_cast<uint>(level)}}});
     return *kernel;
 }
 

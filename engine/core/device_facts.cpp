@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cstring>
-#include <thread>
 
+#include "engine/core/cpu_threads.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -87,7 +87,7 @@ DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice devic
     facts.name = properties.properties.deviceName;
     facts.driver = std::string(driver.driverName) + " " + driver.driverInfo;
     facts.kind = kind_of(properties.properties.deviceType);
-    if (facts.kind == DeviceKind::cpu) facts.cpu_threads = std::max(1u, std::thread::hardware_concurrency());
+    if (facts.kind == DeviceKind::cpu) facts.cpu_threads = count_cpu_threads();
     facts.api_version = properties.properties.apiVersion;
     facts.shared_bytes = properties.properties.limits.maxComputeSharedMemorySize;
     facts.builds_in_input_order = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;

@@ -8,12 +8,12 @@
 #endif
 layout(local_size_x = 64) in;
 layout(constant_id = QUERY_CONSTANT) const uint TRACE_QUERY = QUERY_CLOSEST;
-layout(constant_id = HANDS_CONSTANT) const uint HANDS = 1u;
+layout(constant_id = HANDS_CONSTANT) const uint TRACE_HANDS = 0u;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };
 
 void main()
 {
-    uint place = dealt_index(HANDS);
+    uint place = dealt_index(TRACE_HANDS);
     if (place >= ray_count(args.count, args.indirect_count)) return;
     uint i = ray_at(args.order, place);
     TraceOptions options = trace_options(args.mask, args.flags, TRACE_QUERY);

@@ -10,10 +10,9 @@ const uint GROUPS_PER_ROW = 32768u;
 const uint GROUP_SIZE_CONSTANT = 1u;
 const uint CPU_GROUP = 8u; // on a CPU: a vector's lanes; more would take turns between barriers, and leave threads without a group
 
-// Whose work group `index` of `count` does. Drivers on CPUs give each thread one stretch of a dispatch, and some stretches of
-// a picture take longer than others; so groups are dealt out to as many hands, one after the other. What is left over
-// stays where it is.
-const uint HANDS_CONSTANT = 2u;
+// Whose work group `index` of `count` does. lavapipe gives each thread one stretch of a dispatch, and some stretches of a
+// picture take longer than others; so groups are dealt out to as many hands, one after the other. What is left over
+// stays where it is, and all with fewer than two hands.
 FUNC uint dealt_group(uint index, uint count, uint hands)
 {
     if (hands < 2u) return index;

@@ -24,7 +24,7 @@ std::vector<uint> in_order(uint count) {
 }
 
 TEST(DealtGroups, AreAllOfThemOnce) {
-    for (const uint hands : {1u, 2u, 3u, 16u, 64u})
+    for (const uint hands : {0u, 1u, 2u, 3u, 16u, 64u})
         for (const uint count : {1u, 2u, 3u, 15u, 16u, 17u, 64u, 1000u, 16'384u}) {
             std::vector<uint> groups = dealt(count, hands);
             std::sort(groups.begin(), groups.end());
@@ -37,7 +37,8 @@ TEST(DealtGroups, GoToEachStretchInTurn) {
     EXPECT_EQ(dealt(8, 2), (std::vector<uint>{0, 2, 4, 6, 1, 3, 5, 7}));
 }
 
-TEST(DealtGroups, StayWhereThereIsOneHandOrFewerGroupsThanHands) {
+TEST(DealtGroups, StayWithoutTwoHandsAndWhereGroupsAreFewer) {
+    EXPECT_EQ(dealt(1000, 0), in_order(1000));
     EXPECT_EQ(dealt(1000, 1), in_order(1000));
     EXPECT_EQ(dealt(5, 16), in_order(5));
 }

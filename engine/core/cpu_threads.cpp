@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "bench/cpu_threads.h"
+#include "engine/core/cpu_threads.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <thread>
 
-namespace twinray::bench {
+namespace twinray {
 
 unsigned count_cpu_threads() {
     const char* text = std::getenv("LP_NUM_THREADS");
@@ -14,4 +14,4 @@ unsigned count_cpu_threads() {
     return std::max(1u, std::thread::hardware_concurrency());
 }
 
-}  // namespace twinray::bench
+}  // namespace twinray
