@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "bench/accel_contestant.h"
 
-#include "bench/stopwatch.h"
 #include "engine/accel/scene_push.h"
 
 namespace twinray::bench {
-namespace {
 
-// Of all passes; what the watch says, once the GPU is done, where its queue has no timestamps.
 double total_ms(const std::vector<PassTiming>& timings, const Stopwatch& watch) {
     if (timings.empty()) return watch.ms();
     double sum = 0;
     for (const PassTiming& timing : timings) sum += timing.ms;
     return sum;
 }
-
-}  // namespace
 
 BuildFigures AccelContestant::build(const Scene& scene) {
     accel_.reset();

@@ -4,9 +4,13 @@
 #include <functional>
 
 #include "bench/contestant.h"
+#include "bench/stopwatch.h"
 #include "engine/accel/abstract_accel.h"
 
 namespace twinray::bench {
+
+// Of all passes; what the watch says, once the GPU is done, where its queue has no timestamps.
+double total_ms(const std::vector<PassTiming>& timings, const Stopwatch& watch);
 
 // An accelerator of ours. Times are those of the GPU's passes.
 class AccelContestant : public Contestant {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/keeping.h"
 
+#include "bench/accel_contestant.h"
 #include "bench/figures.h"
 #include "bench/report.h"
 #include "bench/table.h"
@@ -17,31 +18,26 @@ struct Wish {
 };
 
 std::vector<Wish> wishes_on(const DeviceFacts& device) {
-    const AccelOptions least{.can_move = false};
-    std::vector<Wish> wishes = {{"needed", least}};
-    const auto add = [&](const char* name, auto change) -> Wish& {
-        wishes.push_back({name, least});
-        change(wishes.back().options);
-        return wishes.back();
+    std::vector<Wish> wishes = {
+        {"needed", {.can_move = false}},
+        {"may move", {}},
+        {"vertices moved", {.can_move = false}, true},
+        {"build quality high", {.build_quality = BuildQuality::high, .can_move = false}},
+        {"layout bvh4", {.layout = Layout::bvh4, .can_move = false}},
+        {"layout bvh2", {.layout = Layout::bvh2, .can_move = false}},
     };
-    add("may move", [](AccelOptions& options) { options.can_move = true; });
-    add("vertices moved", [](AccelOptions&) {}).moves_vertices = true;
-    add("build quality high", [](AccelOptions& options) { options.build_quality = BuildQuality::high; });
-    add("layout bvh4", [](AccelOptions& options) { options.layout = Layout::bvh4; });
-    add("layout bvh2", [](AccelOptions& options) { options.layout = Layout::bvh2; });
     if (SwTlas::capability_on(device, Feature::level_refined).support != Support::unsupported)
-        add("level refined", [](AccelOptions& options) { options.level = Level::refined; });
+        wishes.push_back({"level refined", {.level = Level::refined, .can_move = false}});
     if (SwTlas::capability_on(device, Feature::level_certified).support != Support::unsupported)
-        add("level certified", [](AccelOptions& options) { options.level = Level::certified; });
+        wishes.push_back({"level certified", {.level = Level::certified, .can_move = false}});
     return wishes;
 }
 
 double sync_ms(SwTlas& accel) {
+    const Stopwatch watch;
     accel.sync();
     accel.wait_for_gpu();
-    double ms = 0;
-    for (const PassTiming& pass : accel.build_timings()) ms += pass.ms;
-    return ms;
+    return total_ms(accel.build_timings(), watch);
 }
 
 void move_vertices(SwTlas& accel, const Scene& scene, std::span<const AccelHandle> handles) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "bench/accel_contestant.h"
 #include "bench/figures.h"
 #include "bench/hits_hash.h"
 #include "bench/report.h"
@@ -58,10 +59,10 @@ class RungContestant : public Contestant {
                       .level = level_,
                       .answer_only = true,
                       .program = program_.get()});
+        const Stopwatch watch;
         commands.submit();
-        double ms = 0;
-        for (const PassTiming& pass : commands.timings()) ms += pass.ms;
-        return ms;
+        accel_.wait_for_gpu();
+        return total_ms(commands.timings(), watch);
     }
     std::vector<Hit> hits(const RayBatch& batch) const override {
         return download<Hit>(accel_.context(), batch.on(accel_.context()).hits, batch.rays().size());

@@ -36,6 +36,7 @@ void bench_ladder(const CommonOptions& options, const std::string& scene_name, c
     }
     if (run.times_builds) {
         const std::size_t triangles = std::max<std::size_t>(bench::count_mesh_triangles(scene.scene), 1);
+        // Each round builds every one of them: beyond 9 the medians stand.
         const std::vector<bench::Keeping> keepings =
             measure_keepings(*context, scene, std::min<std::size_t>(ladder_options.rounds, 9));
         std::cout << '\n';
