@@ -101,27 +101,8 @@ std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, s
     std::vector<LeafBox> boxes;
     instances.clear();
     for (const InstanceRecord& record : records) {
-        const Rows to_world = to_world_of(record), to_object = inverse_of(to_world);
-        SwInstance instance{};
-        instance.world_to_object[0] = to_object.r0;
-        instance.world_to_object[1] = to_object.r1;
-        instance.world_to_object[2] = to_object.r2;
-        instance.root = NOTHING;
-        instance.custom_index_mask = record.custom_index_mask;
-        instance.flags = flags_of(record);
-        LeafBox box = empty_box();
-        if (record.geometry && is_usable(to_world, to_object)) {
-            const SwGeometry& geometry = *reinterpret_cast<const SwGeometry*>(record.geometry);
-            instance.nodes = geometry.bvh.nodes;
-            instance.triangles = geometry.triangles;
-            instance.records = geometry.records;
-            instance.record_boxes = geometry.record_boxes;
-            instance.root = geometry.bvh.root;
-            instance.kind = geometry.kind;
-            instance.extent = largest_coordinate(geometry.bvh.lo, geometry.bvh.hi);
-            box = box_of_instance(record, geometry.bvh.lo, geometry.bvh.hi, to_object);
-        }
-        instances.push_back(instance);
+        LeafBox box;
+        instances.push_back(place_instance(record, box));
         boxes.push_back(box);
     }
     return boxes;

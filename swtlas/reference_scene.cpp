@@ -24,6 +24,10 @@ std::size_t Scene::add_geometry(const MeshView& mesh) {
 
 void Scene::add_instance(std::size_t geometry, const InstanceRecord& record) { placed_.push_back({geometry, record}); }
 
+uint Scene::root_of(const Hierarchy& tree) const {
+    return has_records(layout_) && tree.root != NOTHING ? 0 : tree.root;
+}
+
 Ref<LeafBox> Scene::boxes_of(const Records& records) const {
     return layout_ == Layout::bvh4 ? Ref<LeafBox>::to(const_cast<LeafBox*>(records.boxes.data())) : Ref<LeafBox>{};
 }
@@ -32,7 +36,7 @@ Ref<LeafBox> Scene::boxes_of(const Records& records) const {
 std::vector<InstanceRecord> Scene::records_in_built_units() {
     for (BuiltGeometry& built : geometries_) {
         built.block.geometry = {{built.tree.box.lo, built.tree.box.hi, Ref<BvhNode>::to(built.tree.nodes.data()),
-                                 built.tree.root, static_cast<uint>(built.mesh.triangles.size())},
+                                 root_of(built.tree), static_cast<uint>(built.mesh.triangles.size())},
                                 Ref<BvhTriangle>::to(built.triangles.data()),
                                 Ref<CompressedRecord>::to(built.records.records.data()),
                                 boxes_of(built.records),
@@ -51,12 +55,12 @@ std::vector<InstanceRecord> Scene::records_in_built_units() {
 
 void Scene::build() {
     const std::vector<InstanceRecord> records = records_in_built_units();
-    const std::vector<LeafBox> boxes = leaves_instances(records, instances_);
-    const Codes codes = morton(boxes, centroids(boxes));
-    top_ = hierarchy(boxes, codes, sort(codes), false, quality_);
-    const auto count = static_cast<uint>(boxes.size());
+    instance_boxes_ = leaves_instances(records, instances_);
+    const Codes codes = morton(instance_boxes_, centroids(instance_boxes_));
+    top_ = hierarchy(instance_boxes_, codes, sort(codes), false, quality_);
+    const auto count = static_cast<uint>(instance_boxes_.size());
     if (has_records(layout_)) top_records_ = records_of_instances(top_, count);
-    header_ = {{top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), top_.root, count},
+    header_ = {{top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), root_of(top_), count},
                Ref<CompressedRecord>::to(top_records_.records.data()),
                boxes_of(top_records_),
                Ref<SwInstance>::to(instances_.data()),

@@ -37,6 +37,7 @@ class Scene {
     Tree scene_tree() const { return {header_.bvh, {}}; }
     Tree geometry_tree(std::size_t instance) const;
     const SwInstance& instance(std::size_t index) const { return instances_[index]; }
+    std::span<const LeafBox> instance_boxes() const { return instance_boxes_; }  // in world space
 
   private:
     // What InstanceRecord::geometry points at.
@@ -60,8 +61,10 @@ class Scene {
     std::vector<BuiltGeometry> geometries_;
     std::vector<std::pair<std::size_t, InstanceRecord>> placed_;
     std::vector<SwInstance> instances_;
+    std::vector<LeafBox> instance_boxes_;
     Hierarchy top_;
     Records top_records_;
+    uint root_of(const Hierarchy& tree) const;  // as it is laid out
     // Null but in layout bvh4.
     Ref<LeafBox> boxes_of(const Records& records) const;
     SwScene header_{};

@@ -16,6 +16,7 @@ using NodeWords = Words64;
 #include "shaders/shared/collapse.h"
 #include "shaders/shared/end_point_overlap.h"
 #include "shaders/shared/morton.h"
+#include "shaders/shared/place_instance.h"
 #include "shaders/shared/rotate.h"
 #include "shaders/shared/splits.h"
 #include "shaders/shared/traverse.h"

@@ -302,28 +302,4 @@ FUNC BvhTriangle without_inactive_corners(BvhTriangle t)
     t.v2 = vec3(0.0f);
     return t;
 }
-
-// A box around object_to_world applied to the box (lo, hi), widened by the rounding of this arithmetic and by how far
-// rounding moves a ray that is taken to object space and back: both are a few 2^-24 of the magnitudes involved, and
-// 2^-20 of them is added.
-FUNC LeafBox box_of_instance(InstanceRecord instance, vec3 lo, vec3 hi, Rows to_object)
-{
-    if (!(lo.x <= hi.x)) return empty_box();
-    LeafBox box = empty_box();
-    for (uint axis = 0u; axis < 3u; axis = axis + 1u)
-    {
-        vec4 row = instance.object_to_world[axis];
-        vec3 a = vec3(row.x * lo.x, row.y * lo.y, row.z * lo.z);
-        vec3 b = vec3(row.x * hi.x, row.y * hi.y, row.z * hi.z);
-        float low = row.w + (min(a.x, b.x) + min(a.y, b.y) + min(a.z, b.z));
-        float high = row.w + (max(a.x, b.x) + max(a.y, b.y) + max(a.z, b.z));
-        float reach = max(abs(row.w), max(abs(low), abs(high)));
-        vec3 size = abs(vec3(row.x, row.y, row.z));
-        reach = max(reach, dot(size, max(abs(lo), abs(hi))));
-        reach = max(reach, dot(size, vec3(abs(to_object.r0.w), abs(to_object.r1.w), abs(to_object.r2.w))));
-        box.lo[axis] = low - reach * 9.5367431640625e-07f;
-        box.hi[axis] = high + reach * 9.5367431640625e-07f;
-    }
-    return box;
-}
 #endif

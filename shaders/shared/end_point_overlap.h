@@ -4,7 +4,7 @@
 // cost apart (Aila, Karras, Laine, "On Quality Metrics of Bounding Volume Hierarchies", 2013; all costs are 1).
 #ifndef TWINRAY_SHARED_END_POINT_OVERLAP_H
 #define TWINRAY_SHARED_END_POINT_OVERLAP_H
-#include "shaders/shared/compressed.h"
+#include "shaders/shared/node_boxes.h"
 
 const uint OVERLAP_GROUP = 64u;
 const uint OVERLAP_STACK_SIZE = 3u * DEEPEST_TREE + 4u;
@@ -84,46 +84,6 @@ FUNC float area_within(BvhTriangle triangle, LeafBox box, float unit)
         polygon = cut_by_plane(polygon, axis, box.hi[axis], -1.0f);
     }
     return area_of_polygon(polygon, unit);
-}
-
-// The boxes of a node's children as rays meet them, whatever the layout, and where the children are.
-struct NodeBoxes
-{
-    LeafBox box[4];
-    uint child[4];
-    uint count;
-};
-
-FUNC NodeBoxes boxes_in(SwGeometry geometry, uint index)
-{
-    NodeBoxes node;
-    if (uint64_t(geometry.records) == 0ul)
-    {
-        BvhNode binary = load_node(geometry.bvh.nodes, index);
-        node.box[0].lo = binary.lo0;
-        node.box[0].hi = binary.hi0;
-        node.box[1].lo = binary.lo1;
-        node.box[1].hi = binary.hi1;
-        node.child[0] = binary.child0;
-        node.child[1] = binary.child1;
-        node.count = 2u;
-        return node;
-    }
-    CompressedRecord record = load_record(geometry.records, index);
-    node.count = children_in(record);
-    for (uint i = 0u; i < node.count; i = i + 1u)
-    {
-        node.child[i] = first_child_of(record) + i;
-        if (uint64_t(geometry.record_boxes) != 0ul) node.box[i] = load_box(geometry.record_boxes, first_child_of(record) + i);
-        else node.box[i] = box_in_planes(record, i);
-    }
-    return node;
-}
-
-FUNC bool is_inner_child(SwGeometry geometry, uint child)
-{
-    if (uint64_t(geometry.records) == 0ul) return (child & LEAF_BIT) == 0u;
-    return !is_leaf(load_record(geometry.records, child));
 }
 
 FUNC bool is_apart(LeafBox a, LeafBox b)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/support/sw_build.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
 namespace twinray::test {
@@ -68,28 +69,26 @@ void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh, BuildQuality qualit
         << mesh.name;
 }
 
-std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms) {
-    const std::vector<LeafBox> triangles = reference::leaves_triangles(mesh.positions, mesh.triangles);
-    LeafBox all = empty_box();
-    for (const LeafBox& box : triangles) all = {min(all.lo, box.lo), max(all.hi, box.hi)};
-    const SwGeometry block{
-        {all.lo, all.hi, {}, 0, static_cast<uint>(triangles.size())}, {}, {}, {}, GEOMETRY_TRIANGLES, 0};
-    std::vector<InstanceRecord> records;
-    for (const Transform& transform : transforms) {
-        records.push_back(make_instance_record(transform));
-        records.back().geometry = Ref<SwGeometry>::to(&block).address;
-    }
-    std::vector<SwInstance> instances;
-    return reference::leaves_instances(records, instances);
+std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms,
+                                    const AccelOptions& options) {
+    reference::Scene scene(options.layout, options.build_quality);
+    const std::size_t geometry = scene.add_geometry(mesh);
+    for (const Transform& transform : transforms) scene.add_instance(geometry, make_instance_record(transform));
+    scene.build();
+    return {scene.instance_boxes().begin(), scene.instance_boxes().end()};
 }
 
 std::vector<Transform> scattered(std::size_t count, uint seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> place(-50, 50);
     std::vector<Transform> transforms;
-    for (std::size_t i = 0; i < count; ++i)
-        transforms.push_back(Transform::translation({place(random), place(random), place(random)}) *
+    for (std::size_t i = 0; i < count; ++i) {
+        const vec3 offset(place(random), place(random), place(random));
+        const float angle = i % 2 ? place(random) : 0;
+        transforms.push_back(Transform::translation(offset) *
+                             Transform::of(glm::rotate(glm::mat4(1), angle, vec3(0.6f, 0, 0.8f))) *
                              Transform::scaling({1.5f, -0.25f, 3}));
+    }
     return transforms;
 }
 

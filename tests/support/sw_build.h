@@ -9,7 +9,7 @@
 #include "engine/scene/shapes.h"
 #include "swtlas/check.h"
 #include "swtlas/check_compressed.h"
-#include "swtlas/reference.h"
+#include "swtlas/reference_scene.h"
 #include "swtlas/sw_tlas.h"
 #include "tests/support/device.h"
 
@@ -42,7 +42,9 @@ std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed = nullptr);
 // By the leaf index that references of the tree use.
 std::vector<LeafBox> leaf_boxes(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
 // The boxes of the scene tree's leaves over these placements of one mesh, by the serial twin.
-std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms);
+std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms,
+                                    const AccelOptions& options);
+// Every other one is rotated.
 std::vector<Transform> scattered(std::size_t count, uint seed);
 
 inline bool has_records(const SwTlas::Tree& tree) { return !tree.records.empty(); }

@@ -167,7 +167,7 @@ TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
     accel.push(mesh, transforms);
     accel.sync();
     const SwTlas::Tree tree = accel.download_scene();
-    const std::vector<LeafBox> boxes = instance_boxes(mesh, transforms);
+    const std::vector<LeafBox> boxes = instance_boxes(mesh, transforms, options());
     expect_sound(tree, boxes, "instances");
     const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     const reference::Hierarchy twin = reference::hierarchy(boxes, codes, reference::sort(codes), false, quality());

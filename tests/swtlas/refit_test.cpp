@@ -51,7 +51,7 @@ TEST_P(SwRefit, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
         accel.update_transforms(handle, moved);
         accel.sync();
         const SwTlas::Tree after = accel.download_scene();
-        expect_sound(after, instance_boxes(mesh, moved), text(count, " instances"));
+        expect_sound(after, instance_boxes(mesh, moved, options()), text(count, " instances"));
         expect_same_topology(after, before);
     }
 }
@@ -99,7 +99,7 @@ TEST_P(SwRefit, TheCostOnTheDeviceIsThatOfTheChecker) {
         accel.sync();
         EXPECT_EQ(accel.sah(handle), std::nullopt) << "not measured before its vertices move";
         const SwTlas::Tree top = accel.download_scene();
-        const double expected = sah_of(top, instance_boxes(mesh, transforms));
+        const double expected = sah_of(top, instance_boxes(mesh, transforms, options()));
         EXPECT_NEAR(*accel.sah(), expected, 1e-5 * expected) << n;
         for (const uint seed : {6u, 7u}) {
             mesh.positions = make_soup(n, seed, 0.1f).positions;

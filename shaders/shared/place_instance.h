@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// An instance as traversal reads it, and the world box around it, its leaf in the top level's tree.
+//
+// Under a rotation the box around a geometry's box is up to twice as large as the one around the geometry: of a ball, 2.2
+// times the area on average. So it is made of the boxes some levels down the geometry's tree, where that can gain anything.
+#ifndef TWINRAY_SHARED_PLACE_INSTANCE_H
+#define TWINRAY_SHARED_PLACE_INSTANCE_H
+#include "shaders/shared/node_boxes.h"
+
+// How many levels of boxes below the root are looked at, of nodes with four and of nodes with two children.
+const uint CUT_LEVELS = 4u;
+const uint BINARY_CUT_LEVELS = 8u;
+const uint CUT_STACK = 3u * CUT_LEVELS; // nodes that wait: fewer in a binary tree
+
+// A box around `box` under the map, but for rounding.
+FUNC LeafBox box_under(Rows map, LeafBox box)
+{
+    LeafBox under;
+    for (uint axis = 0u; axis < 3u; axis = axis + 1u)
+    {
+        vec4 row = axis == 0u ? map.r0 : (axis == 1u ? map.r1 : map.r2);
+        vec3 a = vec3(row.x * box.lo.x, row.y * box.lo.y, row.z * box.lo.z);
+        vec3 b = vec3(row.x * box.hi.x, row.y * box.hi.y, row.z * box.hi.z);
+        under.lo[axis] = row.w + (min(a.x, b.x) + min(a.y, b.y) + min(a.z, b.z));
+        under.hi[axis] = row.w + (max(a.x, b.x) + max(a.y, b.y) + max(a.z, b.z));
+    }
+    return under;
+}
+
+// What box_under and rays lose to rounding, where these are taken to object space and back, along one axis: both are a few
+// 2^-24 of the magnitudes involved, and this is 2^-20 of them. `low`, `high`: of box_under.
+FUNC float rounding_of_instance(vec4 row, LeafBox box, Rows to_object, float low, float high)
+{
+    float reach = max(abs(row.w), max(abs(low), abs(high)));
+    vec3 size = abs(vec3(row.x, row.y, row.z));
+    reach = max(reach, dot(size, max(abs(box.lo), abs(box.hi))));
+    reach = max(reach, dot(size, vec3(abs(to_object.r0.w), abs(to_object.r1.w), abs(to_object.r2.w))));
+    return reach * 9.5367431640625e-07f;
+}
+
+FUNC bool is_along_an_axis(vec4 row)
+{
+    return uint(row.x != 0.0f) + uint(row.y != 0.0f) + uint(row.z != 0.0f) < 2u;
+}
+// Then the box around a geometry's box is that around the geometry.
+FUNC bool keeps_axes(Rows map) { return is_along_an_axis(map.r0) && is_along_an_axis(map.r1) && is_along_an_axis(map.r2); }
+
+FUNC bool is_within(LeafBox box, LeafBox outer)
+{
+    return box.lo.x >= outer.lo.x && box.lo.y >= outer.lo.y && box.lo.z >= outer.lo.z && box.hi.x <= outer.hi.x &&
+           box.hi.y <= outer.hi.y && box.hi.z <= outer.hi.z;
+}
+
+// A box around the geometry under the map, but for rounding: around its boxes CUT_LEVELS below the root, and the leaves above.
+FUNC LeafBox box_of_cut(SwGeometry geometry, Rows to_world)
+{
+    bool is_binary = uint64_t(geometry.records) == 0ul;
+    uint lowest = is_binary ? BINARY_CUT_LEVELS : CUT_LEVELS;
+    LeafBox around = empty_box();
+    uint stack[CUT_STACK];
+    uint levels[CUT_STACK];
+    uint height = 1u;
+    stack[0] = geometry.bvh.root;
+    levels[0] = 0u;
+    while (height > 0u)
+    {
+        height = height - 1u;
+        uint level = levels[height] + 1u;
+        NodeBoxes node = boxes_in(geometry, stack[height]);
+        for (uint i = 0u; i < node.count; i = i + 1u)
+        {
+            if (!is_active(node.box[i])) continue;
+            LeafBox box = box_under(to_world, node.box[i]);
+            if (is_within(box, around)) continue;
+            if (level < lowest && is_inner_child(geometry, node.child[i]))
+            {
+                stack[height] = node.child[i];
+                levels[height] = level;
+                height = height + 1u;
+                continue;
+            }
+            around.lo = min(around.lo, box.lo);
+            around.hi = max(around.hi, box.hi);
+        }
+    }
+    return around;
+}
+
+// A box around the geometry under the map, widened by rounding. Empty where the geometry's is.
+FUNC LeafBox box_of_instance(SwGeometry geometry, Rows to_world, Rows to_object)
+{
+    LeafBox box;
+    box.lo = geometry.bvh.lo;
+    box.hi = geometry.bvh.hi;
+    if (!is_active(box)) return empty_box();
+    LeafBox world = box_under(to_world, box);
+    vec3 rounding = vec3(rounding_of_instance(to_world.r0, box, to_object, world.lo.x, world.hi.x),
+                         rounding_of_instance(to_world.r1, box, to_object, world.lo.y, world.hi.y),
+                         rounding_of_instance(to_world.r2, box, to_object, world.lo.z, world.hi.z));
+    // Else products may be infinite, and their sums no numbers.
+    bool is_in_range = largest_entry(rounding) < uintBitsToFloat(0x7f800000u);
+    if (is_in_range && !keeps_axes(to_world) && is_inner_child(geometry, geometry.bvh.root))
+    {
+        // Planes of records lie farther out than the box.
+        LeafBox cut = box_of_cut(geometry, to_world);
+        world.lo = max(world.lo, cut.lo);
+        world.hi = min(world.hi, cut.hi);
+    }
+    world.lo = world.lo - rounding;
+    world.hi = world.hi + rounding;
+    return world;
+}
+
+// `record`: in built units. `box`: in world space, empty where nothing of the instance is hit.
+FUNC SwInstance place_instance(InstanceRecord record, INOUT(LeafBox) box)
+{
+    Rows to_world = to_world_of(record);
+    Rows to_object = inverse_of(to_world);
+    SwInstance instance;
+    instance.world_to_object[0] = to_object.r0;
+    instance.world_to_object[1] = to_object.r1;
+    instance.world_to_object[2] = to_object.r2;
+    instance.custom_index_mask = record.custom_index_mask;
+    instance.flags = flags_of(record);
+    instance.kind = GEOMETRY_TRIANGLES;
+    instance.root = NOTHING;
+    instance.extent = 0.0f;
+    instance.reserved = 0u;
+    box = empty_box();
+    if (record.geometry == 0ul || !is_usable(to_world, to_object)) return instance;
+    SwGeometry geometry = AT(REF(SwGeometry)(record.geometry), 0);
+    instance.nodes = geometry.bvh.nodes;
+    instance.triangles = geometry.triangles;
+    instance.records = geometry.records;
+    instance.record_boxes = geometry.record_boxes;
+    instance.root = geometry.bvh.root;
+    instance.kind = geometry.kind;
+    instance.extent = largest_coordinate(geometry.bvh.lo, geometry.bvh.hi);
+    box = box_of_instance(geometry, to_world, to_object);
+    return instance;
+}
+#endif
