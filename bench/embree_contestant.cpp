@@ -61,17 +61,16 @@ class EmbreeContestant : public Contestant {
 struct Variant {
     const char* name;
     const char* quality_name;
-    RTCBuildQuality quality;
+    RTCBuildQuality quality, geometry_quality;
     RTCSceneFlags flags = RTC_SCENE_FLAG_NONE;
     bool in_streams = false;
 };
 
+constexpr RTCBuildQuality low = RTC_BUILD_QUALITY_LOW, medium = RTC_BUILD_QUALITY_MEDIUM, high = RTC_BUILD_QUALITY_HIGH;
 constexpr Variant variants[] = {
-    {"embree8", "medium", RTC_BUILD_QUALITY_MEDIUM},
-    {"embree8 robust", "medium", RTC_BUILD_QUALITY_MEDIUM, RTC_SCENE_FLAG_ROBUST},
-    {"embree8 low", "low", RTC_BUILD_QUALITY_LOW},
-    {"embree8 high", "high", RTC_BUILD_QUALITY_HIGH},
-    {"embree stream", "medium", RTC_BUILD_QUALITY_MEDIUM, RTC_SCENE_FLAG_NONE, true},
+    {"embree8", "medium", medium, medium}, {"embree8 robust", "medium", medium, medium, RTC_SCENE_FLAG_ROBUST},
+    {"embree8 low", "low", low, low},      {"embree8 low scene", "low scene", low, medium},
+    {"embree8 high", "high", high, high},  {"embree stream", "medium", medium, medium, RTC_SCENE_FLAG_NONE, true},
 };
 
 }  // namespace
@@ -88,7 +87,9 @@ LineUp embree_line_up(const std::function<bool(const std::string&)>& is_wanted) 
                       .builder = variant.quality_name,
                       .level = variant.flags == RTC_SCENE_FLAG_ROBUST ? "robust" : "fast"};
         line_up.push_back(std::make_unique<EmbreeContestant>(
-            std::move(labels), EmbreeOptions{variant.quality, variant.flags, count_cpu_threads()}, variant.in_streams));
+            std::move(labels),
+            EmbreeOptions{variant.quality, variant.geometry_quality, variant.flags, count_cpu_threads()},
+            variant.in_streams));
     }
     return line_up;
 }

@@ -33,7 +33,7 @@ EmbreeScene::ScenePointer EmbreeScene::make_scene() const {
 }
 
 void EmbreeScene::attach(RTCScene scene, GeometryPointer geometry, uint id) const {
-    rtcSetGeometryBuildQuality(geometry.get(), options_.quality);
+    rtcSetGeometryBuildQuality(geometry.get(), options_.geometry_quality);
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(scene, geometry.get(), id);
 }

@@ -13,7 +13,8 @@
 namespace twinray::bench {
 
 struct EmbreeOptions {
-    RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;
+    RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;           // of scenes
+    RTCBuildQuality geometry_quality = RTC_BUILD_QUALITY_MEDIUM;  // in scenes of quality low
     RTCSceneFlags flags = RTC_SCENE_FLAG_NONE;
     unsigned threads = 1;
 };

@@ -166,8 +166,8 @@ TEST_F(LineUpTest, TheJudgeSeesWrongHits) {
 TEST_F(LineUpTest, EmbreeRunsWhereItWasFound) {
     if (!why_no_embree().empty()) TWINRAY_LACKS("embree", why_no_embree());
     const LineUp line_up = make_line_up(context(), nullptr, {.only = {"embree"}});
-    EXPECT_EQ(names_of(line_up),
-              (std::vector<std::string>{"embree8", "embree8 robust", "embree8 low", "embree8 high", "embree stream"}));
+    EXPECT_EQ(names_of(line_up), (std::vector<std::string>{"embree8", "embree8 robust", "embree8 low",
+                                                           "embree8 low scene", "embree8 high", "embree stream"}));
     EXPECT_TRUE(make_line_up(context(), nullptr, {.has_embree = false}).size() > 0);
 }
 
