@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "cli/common.h"
+#include "engine/core/cpu_vectors.h"
 
 namespace {
 
@@ -23,6 +24,7 @@ std::vector<std::string> reversed(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    twinray::widen_cpu_vectors();
     CLI::App app("twinray: Vulkan ray tracing with two acceleration structures that check each other", "twinray");
     app.require_subcommand(1);
     int exit_code = 0;

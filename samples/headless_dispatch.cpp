@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "engine/accel/scene_push.h"
+#include "engine/core/cpu_vectors.h"
 #include "engine/core/error.h"
 #include "engine/core/kernel.h"
 #include "headless_dispatch_hw.spv.h"
@@ -46,6 +47,7 @@ std::vector<float> sky_view(AbstractAccel& accel, const Scene& scene, Args args)
 }
 
 int main(int argc, char** argv) try {
+    widen_cpu_vectors();
     if (argc < 2) fail("usage: headless_dispatch SCENE [map.pgm]");
     const Scene scene = load_scene(argv[1]);
     const Bounds bounds = bounds_of(scene);

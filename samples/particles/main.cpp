@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "engine/core/cpu_vectors.h"
 #include "engine/core/error.h"
 #include "hwtlas/hw_tlas.h"
 #include "samples/particles/report.h"
@@ -69,6 +70,7 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
     using namespace twinray::particles;
+    twinray::widen_cpu_vectors();
     try {
         const ParsedOptions parsed = parse_options(argc, argv);
         if (parsed.exit_status) return *parsed.exit_status;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "engine/core/cpu_vectors.h"
 #include "engine/core/error.h"
 #include "samples/path_tracer/frames.h"
 #include "samples/path_tracer/merge.h"
@@ -60,6 +61,7 @@ int cross_check(const Options& options, const Ranks& ranks) {
 
 int main(int argc, char** argv) {
     using namespace twinray::path_tracer;
+    twinray::widen_cpu_vectors();
     try {
         Ranks ranks(argc, argv);
         ParsedOptions parsed = parse_options(argc, argv);
