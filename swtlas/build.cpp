@@ -2,6 +2,7 @@
 #include "swtlas/build_batch.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "swtlas_collapse.spv.h"
 #include "swtlas_crowding.spv.h"
@@ -36,9 +37,11 @@ KernelDesc specialized(KernelDesc desc, uint value) {
     return desc;
 }
 
-// Of which `gpu_group` invocations, or CPU_GROUP, make a group.
+// Of which `gpu_group` invocations make a group, on a CPU as many as a vector has lanes.
 KernelDesc grouped(const Context& context, KernelDesc desc, uint gpu_group) {
-    desc.group_size = context.facts().kind == DeviceKind::cpu ? CPU_GROUP : gpu_group;
+    const DeviceFacts& device = context.facts();
+    const uint lanes = std::clamp(std::bit_floor(device.subgroup_size), CPU_GROUP, AREA_GROUP);
+    desc.group_size = device.kind == DeviceKind::cpu ? lanes : gpu_group;
     desc.constants.push_back({GROUP_SIZE_CONSTANT, desc.group_size});
     return desc;
 }

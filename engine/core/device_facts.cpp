@@ -78,9 +78,12 @@ int compute_queue_family(const VulkanFunctions& vk, VkPhysicalDevice device) {
 DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice device) {
     VkPhysicalDeviceDriverProperties driver{};
     driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+    VkPhysicalDeviceSubgroupProperties subgroup{};
+    subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
+    subgroup.pNext = &driver;
     VkPhysicalDeviceProperties2 properties{};
     properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-    properties.pNext = &driver;
+    properties.pNext = &subgroup;
     vk.vkGetPhysicalDeviceProperties2(device, &properties);
 
     DeviceFacts facts;
@@ -88,6 +91,7 @@ DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice devic
     facts.driver = std::string(driver.driverName) + " " + driver.driverInfo;
     facts.kind = kind_of(properties.properties.deviceType);
     if (facts.kind == DeviceKind::cpu) facts.cpu_threads = count_cpu_threads();
+    facts.subgroup_size = subgroup.subgroupSize;
     facts.api_version = properties.properties.apiVersion;
     facts.shared_bytes = properties.properties.limits.maxComputeSharedMemorySize;
     facts.builds_in_input_order = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
