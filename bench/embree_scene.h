@@ -14,7 +14,7 @@ namespace twinray::bench {
 
 struct EmbreeOptions {
     RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;           // of scenes
-    RTCBuildQuality geometry_quality = RTC_BUILD_QUALITY_MEDIUM;  // in scenes of quality low
+    RTCBuildQuality geometry_quality = RTC_BUILD_QUALITY_MEDIUM;  // heeded in scenes of quality low alone
     RTCSceneFlags flags = RTC_SCENE_FLAG_NONE;
     unsigned threads = 1;
 };

@@ -37,7 +37,8 @@ KernelDesc specialized(KernelDesc desc, uint value) {
     return desc;
 }
 
-// Of which `gpu_group` invocations make a group, on a CPU as many as a vector has lanes.
+// Of which `gpu_group` invocations make a group, on a CPU as many as a vector has lanes: a power of two, as those that
+// add up in halves need, and no more than have a share of a group of areas.
 KernelDesc grouped(const Context& context, KernelDesc desc, uint gpu_group) {
     const DeviceFacts& device = context.facts();
     const uint lanes = std::clamp(std::bit_floor(device.subgroup_size), CPU_GROUP, AREA_GROUP);

@@ -53,6 +53,8 @@ class Scene {
         Records records;
         Block block = {};
     };
+    uint root_of(const Hierarchy& tree) const;            // as it is laid out
+    Ref<LeafBox> boxes_of(const Records& records) const;  // null but in layout bvh4
     std::vector<InstanceRecord> records_in_built_units();
     void build_refinement(std::span<const InstanceRecord> records);
 
@@ -64,9 +66,6 @@ class Scene {
     std::vector<LeafBox> instance_boxes_;
     Hierarchy top_;
     Records top_records_;
-    uint root_of(const Hierarchy& tree) const;  // as it is laid out
-    // Null but in layout bvh4.
-    Ref<LeafBox> boxes_of(const Records& records) const;
     SwScene header_{};
     GeometryBox bound_{};  // of the world
     std::vector<RefineInstance> refined_;

@@ -16,13 +16,21 @@ bool prefers_512_bit_vectors() {
 #endif
 }
 
-void widen_cpu_vectors() {
-    if (!prefers_512_bit_vectors() || std::getenv("LP_NATIVE_VECTOR_WIDTH")) return;
-    setenv("LP_NATIVE_VECTOR_WIDTH", "512", 0);
-    const std::filesystem::path caches = user_pipeline_folder();
+std::optional<std::filesystem::path> folder_of_wide_code(bool is_preferred, bool is_set,
+                                                         const std::filesystem::path& caches) {
+    if (!is_preferred || is_set || caches.empty()) return std::nullopt;
+    const std::filesystem::path folder = caches / "mesa-512";
     std::error_code error;
-    if (!caches.empty()) std::filesystem::create_directories(caches / "mesa-512", error);
-    if (!caches.empty() && !error) setenv("MESA_SHADER_CACHE_DIR", (caches / "mesa-512").c_str(), 0);
+    std::filesystem::create_directories(folder, error);
+    return error ? std::nullopt : std::optional(folder);
+}
+
+void widen_cpu_vectors() {
+    const bool is_set = std::getenv("LP_NATIVE_VECTOR_WIDTH") || std::getenv("MESA_SHADER_CACHE_DIR");
+    const auto folder = folder_of_wide_code(prefers_512_bit_vectors(), is_set, user_pipeline_folder());
+    if (!folder) return;
+    setenv("LP_NATIVE_VECTOR_WIDTH", "512", 1);
+    setenv("MESA_SHADER_CACHE_DIR", folder->c_str(), 1);
 }
 
 }  // namespace twinray

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // An instance as traversal reads it, and the world box around it, its leaf in the top level's tree.
 //
-// Under a rotation the box around a geometry's box is up to twice as large as the one around the geometry: of a ball, 2.2
-// times the area on average. So it is made of the boxes some levels down the geometry's tree, where that can gain anything.
+// Under a rotation the box around a geometry's box may be many times as large as the one around the geometry: of a ball, it has
+// 2.2 times the area on average. So it is made of the boxes some levels down the geometry's tree, where that can gain anything.
 #ifndef TWINRAY_SHARED_PLACE_INSTANCE_H
 #define TWINRAY_SHARED_PLACE_INSTANCE_H
 #include "shaders/shared/node_boxes.h"
@@ -10,7 +10,7 @@
 // How many levels of boxes below the root are looked at, of nodes with four and of nodes with two children.
 const uint CUT_LEVELS = 4u;
 const uint BINARY_CUT_LEVELS = 8u;
-const uint CUT_STACK = 3u * CUT_LEVELS; // nodes that wait: fewer in a binary tree
+const uint CUT_STACK = 3u * (CUT_LEVELS - 1u) + 1u; // nodes that wait: fewer in a binary tree
 
 // A box around `box` under the map, but for rounding.
 FUNC LeafBox box_under(Rows map, LeafBox box)

@@ -8,7 +8,9 @@ const uint GROUPS_PER_ROW = 32768u;
 
 // Of groups whose invocations wait for each other, or have much to do each: specialised for the device.
 const uint GROUP_SIZE_CONSTANT = 1u;
-const uint CPU_GROUP = 8u; // at least, on a CPU, whose vectors have as many lanes: more would take turns between barriers, and leave threads without a group
+// On a CPU, of sorts; of others at least, up to the lanes of its vectors: more would take turns between barriers, and leave threads
+// without a group.
+const uint CPU_GROUP = 8u;
 
 // Whose work group `index` of `count` does. lavapipe gives each thread one stretch of a dispatch, and some stretches of a
 // picture take longer than others; so groups are dealt out to as many hands, one after the other. What is left over

@@ -4,54 +4,63 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
-#include <filesystem>
 #include <optional>
 #include <string>
+
+#include "tests/scene/temp_dir.h"
 
 namespace twinray {
 namespace {
 
-std::optional<std::string> variable(const char* name) {
+using Text = std::optional<std::string>;
+
+Text variable(const char* name) {
     const char* value = std::getenv(name);
-    return value ? std::optional<std::string>(value) : std::nullopt;
-}
-void set(const char* name, const std::optional<std::string>& value) {
-    value ? setenv(name, value->c_str(), 1) : unsetenv(name);
+    return value ? Text(value) : std::nullopt;
 }
 
+constexpr std::array names = {"LP_NATIVE_VECTOR_WIDTH", "MESA_SHADER_CACHE_DIR", "XDG_CACHE_HOME", "HOME"};
+
+// With an environment of its own.
 class CpuVectors : public testing::Test {
   protected:
     CpuVectors() {
         for (std::size_t i = 0; i < names.size(); ++i) before_[i] = variable(names[i]);
         for (const char* name : names) unsetenv(name);
-        caches_ = std::filesystem::path(testing::TempDir()) / "twinray_cpu_vectors";
-        setenv("XDG_CACHE_HOME", caches_.c_str(), 1);
     }
     ~CpuVectors() override {
-        for (std::size_t i = 0; i < names.size(); ++i) set(names[i], before_[i]);
-        std::filesystem::remove_all(caches_);
+        for (std::size_t i = 0; i < names.size(); ++i)
+            before_[i] ? setenv(names[i], before_[i]->c_str(), 1) : unsetenv(names[i]);
     }
-    std::filesystem::path caches_;
+    test::TempDir caches_;
 
   private:
-    static constexpr std::array names = {"LP_NATIVE_VECTOR_WIDTH", "MESA_SHADER_CACHE_DIR", "XDG_CACHE_HOME", "HOME"};
-    std::optional<std::string> before_[names.size()];
+    std::array<Text, names.size()> before_;
 };
 
-TEST_F(CpuVectors, AreWidenedWhereTheCpuPrefersThat) {
-    widen_cpu_vectors();
-    if (!prefers_512_bit_vectors()) {
-        EXPECT_EQ(variable("LP_NATIVE_VECTOR_WIDTH"), std::nullopt);
-        EXPECT_EQ(variable("MESA_SHADER_CACHE_DIR"), std::nullopt);
-        return;
-    }
-    EXPECT_EQ(variable("LP_NATIVE_VECTOR_WIDTH"), "512");
-    EXPECT_EQ(variable("MESA_SHADER_CACHE_DIR"), caches_ / "twinray" / "mesa-512");
-    EXPECT_TRUE(std::filesystem::is_directory(caches_ / "twinray" / "mesa-512"));
+TEST_F(CpuVectors, AreWidenedWhereThatIsPreferredAndCodeHasAFolder) {
+    const auto folder = folder_of_wide_code(true, false, caches_ / "twinray");
+    ASSERT_TRUE(folder);
+    EXPECT_TRUE(std::filesystem::is_directory(*folder));
+    EXPECT_EQ(folder_of_wide_code(true, false, caches_ / "twinray"), folder) << "again";
+    EXPECT_EQ(folder_of_wide_code(false, false, caches_ / "twinray"), std::nullopt);
+    EXPECT_EQ(folder_of_wide_code(true, true, caches_ / "twinray"), std::nullopt);
+    EXPECT_EQ(folder_of_wide_code(true, false, {}), std::nullopt);
+    EXPECT_EQ(folder_of_wide_code(true, false, caches_.write("file", "no folder")), std::nullopt);
 }
 
-TEST_F(CpuVectors, KeepWhatTheUserHasSet) {
+TEST_F(CpuVectors, AreSetInTheEnvironmentWithTheFolder) {
+    setenv("XDG_CACHE_HOME", (caches_ / "").c_str(), 1);
+    widen_cpu_vectors();
+    const bool is_preferred = prefers_512_bit_vectors();
+    EXPECT_EQ(variable("LP_NATIVE_VECTOR_WIDTH"), is_preferred ? Text("512") : std::nullopt);
+    EXPECT_EQ(variable("MESA_SHADER_CACHE_DIR"), is_preferred ? Text(caches_ / "twinray" / "mesa-512") : std::nullopt);
+}
+
+TEST_F(CpuVectors, StayAsTheUserHasThem) {
+    setenv("XDG_CACHE_HOME", (caches_ / "").c_str(), 1);
     setenv("LP_NATIVE_VECTOR_WIDTH", "128", 1);
     widen_cpu_vectors();
     EXPECT_EQ(variable("LP_NATIVE_VECTOR_WIDTH"), "128");
@@ -59,13 +68,13 @@ TEST_F(CpuVectors, KeepWhatTheUserHasSet) {
     unsetenv("LP_NATIVE_VECTOR_WIDTH");
     setenv("MESA_SHADER_CACHE_DIR", "mine", 1);
     widen_cpu_vectors();
+    EXPECT_EQ(variable("LP_NATIVE_VECTOR_WIDTH"), std::nullopt) << "code of both widths would meet there";
     EXPECT_EQ(variable("MESA_SHADER_CACHE_DIR"), "mine");
 }
 
-TEST_F(CpuVectors, NeedNoFolderForCaches) {
-    unsetenv("XDG_CACHE_HOME");
+TEST_F(CpuVectors, StayWithoutAFolderForCaches) {
     widen_cpu_vectors();
-    EXPECT_EQ(variable("MESA_SHADER_CACHE_DIR"), std::nullopt);
+    EXPECT_EQ(variable("LP_NATIVE_VECTOR_WIDTH"), std::nullopt);
 }
 
 }  // namespace

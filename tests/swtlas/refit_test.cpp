@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "tests/support/sw_build.h"
 
@@ -54,6 +55,51 @@ TEST_P(SwRefit, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
         expect_sound(after, instance_boxes(mesh, moved, options()), text(count, " instances"));
         expect_same_topology(after, before);
     }
+}
+
+// All of them under the map, in float64.
+void expect_around(const SwTlas::Tree& scene, const std::vector<vec3>& points, const Transform& map, double slack) {
+    for (int axis = 0; axis < 3; ++axis) {
+        double lo = INFINITY, hi = -INFINITY;
+        for (const vec3& point : points) {
+            const double x = glm::dot(glm::dvec4(map.rows[static_cast<std::size_t>(axis)]), glm::dvec4(point, 1));
+            lo = std::min(lo, x);
+            hi = std::max(hi, x);
+        }
+        EXPECT_LE(double{scene.bvh.lo[axis]}, lo) << "axis " << axis;
+        EXPECT_GE(double{scene.bvh.hi[axis]}, hi) << "axis " << axis;
+        EXPECT_LT(scene.bvh.hi[axis] - scene.bvh.lo[axis], hi - lo + slack) << "axis " << axis;
+    }
+}
+
+TEST_P(SwRefit, ARotatedInstanceHasABoxAroundWhatItsGeometryHasBecome) {
+    const Transform map =
+        Transform::translation({3, 0, -2}) * Transform::of(glm::rotate(glm::mat4(1), 0.8f, vec3(0.6f, 0, 0.8f)));
+    Mesh ball = make_icosphere(4);
+    SwTlas accel(context(), options());
+    const AccelHandle handle = accel.push(ball, map);
+    accel.sync();
+    expect_around(accel.download_scene(), ball.positions, map, 0.5);
+    for (vec3& point : ball.positions) point = point * vec3(1, 2, 1) + vec3(0, 0.5f * point.x, 0);
+    accel.update_vertices(handle, ball.positions);
+    accel.sync();
+    expect_around(accel.download_scene(), ball.positions, map, 0.9);
+}
+
+TEST_P(SwRefit, RotatedBoxesLieInTheirBox) {
+    const Transform map = Transform::of(glm::rotate(glm::mat4(1), 0.8f, vec3(0.6f, 0, 0.8f)));
+    std::vector<Bounds> boxes;
+    std::vector<vec3> corners;
+    for (const vec3& center : make_icosphere(2).positions) {
+        boxes.push_back({center - 0.05f, center + 0.05f});
+        for (uint i = 0; i < 8; ++i)
+            corners.push_back(center + 0.05f * vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+    }
+    SwTlas accel(context(), options());
+    accel.push(BoxesView{"boxes", boxes}, map);
+    accel.sync();
+    for (vec3& corner : corners) corner *= 1 - 1e-6f;  // centres and halves were added in float32
+    expect_around(accel.download_scene(), corners, map, 0.6);
 }
 
 TEST_P(SwRefit, ARefittedGeometryIsSoundAndKeepsItsTopology) {
