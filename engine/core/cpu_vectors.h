@@ -11,7 +11,7 @@ bool prefers_512_bit_vectors();
 
 // Has Mesa's CPU driver, lavapipe, compute with vectors of 512 bits where prefers_512_bit_vectors(). Left to itself it
 // takes 256 bits, but 512 for eight addresses, and such a core runs all else more slowly beside these. With 512 bits
-// throughout, SwTlas traces rays 1.4 to 2 times as fast there and the driver's own ray queries 1.1 to 1.3 times; its
+// throughout, SwTlas traces rays 1.5 to 2 times as fast there and the driver's own ray queries 1.1 to 1.3 times; its
 // ray tracing pipelines, which HwTlas takes where there are no ray queries, 0.7 times. (On Zen 4, which computes 512
 // bits in two steps, SwTlas was as fast with either.) It is for programs that compute alone: Mesa 25.0's rasteriser
 // crashes with 512 bits.
