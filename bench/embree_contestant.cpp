@@ -68,9 +68,12 @@ struct Variant {
 
 constexpr RTCBuildQuality low = RTC_BUILD_QUALITY_LOW, medium = RTC_BUILD_QUALITY_MEDIUM, high = RTC_BUILD_QUALITY_HIGH;
 constexpr Variant variants[] = {
-    {"embree8", "medium", medium, medium}, {"embree8 robust", "medium", medium, medium, RTC_SCENE_FLAG_ROBUST},
-    {"embree8 low", "low", low, low},      {"embree8 low scene", "low scene", low, medium},
-    {"embree8 high", "high", high, high},  {"embree stream", "medium", medium, medium, RTC_SCENE_FLAG_NONE, true},
+    {"embree8", "medium", medium, medium},
+    {"embree8 robust", "medium", medium, medium, RTC_SCENE_FLAG_ROBUST},
+    {"embree8 low", "low", low, low},                 // Morton codes
+    {"embree8 low scene", "low scene", low, medium},  // binned SAH in two levels
+    {"embree8 high", "high", high, high},             // spatial splits
+    {"embree stream", "medium", medium, medium, RTC_SCENE_FLAG_NONE, true},
 };
 
 }  // namespace
