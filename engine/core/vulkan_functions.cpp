@@ -3,6 +3,10 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -13,6 +17,16 @@ PFN_vkGetInstanceProcAddr open_system_loader() {
     void* loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!loader) fail("no Vulkan loader: libvulkan.so.1 cannot be opened (Debian: apt-get install libvulkan1)");
     return reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(loader, "vkGetInstanceProcAddr"));
+}
+
+std::vector<VkLayerProperties> installed_layers(const VulkanFunctions& vk) {
+    if (!vk.vkEnumerateInstanceLayerProperties) return {};  // a host's lookup may know its own instance only
+    std::uint32_t count = 0;
+    vk.vkEnumerateInstanceLayerProperties(&count, nullptr);
+    std::vector<VkLayerProperties> layers(count);
+    vk.vkEnumerateInstanceLayerProperties(&count, layers.data());
+    layers.resize(count);
+    return layers;
 }
 
 }  // namespace
@@ -29,6 +43,16 @@ void VulkanFunctions::load_instance(VkInstance instance) {
     TWINRAY_INSTANCE_FUNCTIONS(TWINRAY_LOAD)
     TWINRAY_DEBUG_FUNCTIONS(TWINRAY_LOAD)
 #undef TWINRAY_LOAD
+    if (!vkCmdBeginDebugUtilsLabelEXT || labels_are_safe(installed_layers(*this))) return;
+    vkCmdBeginDebugUtilsLabelEXT = nullptr;
+    vkCmdEndDebugUtilsLabelEXT = nullptr;
+}
+
+bool labels_are_safe(std::span<const VkLayerProperties> layers) {
+    return std::ranges::none_of(layers, [](const VkLayerProperties& layer) {
+        return std::string_view(layer.layerName) == "VK_LAYER_KHRONOS_validation" &&
+               layer.specVersion < VK_MAKE_API_VERSION(0, 1, 3, 243);
+    });
 }
 
 void VulkanFunctions::load_device(VkDevice device) {

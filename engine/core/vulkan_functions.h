@@ -5,6 +5,8 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <span>
+
 #define TWINRAY_GLOBAL_FUNCTIONS(F)           \
     F(vkCreateInstance)                       \
     F(vkEnumerateInstanceExtensionProperties) \
@@ -107,9 +109,15 @@ struct VulkanFunctions {
 
     // get_instance_proc_addr null: opens the system's Vulkan loader. Throws Error if there is none.
     void load_global(PFN_vkGetInstanceProcAddr get_instance_proc_addr);
+    // Without debug labels where an installed validation layer would crash by them: see labels_are_safe.
     void load_instance(VkInstance instance);
     void load_device(VkDevice device);
 };
+
+// False where one of the layers is the Khronos validation layer of before 1.3.243. It forgets the labels of a destroyed
+// command buffer on a thread of its own without its lock, by the handle, which a new command buffer may have by then:
+// the heap is corrupted, seldom (issue 5172 of Vulkan-ValidationLayers).
+bool labels_are_safe(std::span<const VkLayerProperties> layers);
 
 // Throws Error naming the action and the VkResult unless result is VK_SUCCESS.
 void vk_check(VkResult result, const char* action);
