@@ -158,7 +158,7 @@ void add_collide(CLI::App& app, int&) {
     command->add_flag_callback(
         "--weld", [options] { options->contacts.shared = Shared::by_position; },
         "with --self: vertices at one position are one, as where faces have normals of their own");
-    command->add_option("--max-pairs", options->max_pairs, "of boxes that overlap: 16 bytes of device memory each")
+    command->add_option("--max-pairs", options->max_pairs, "of boxes that overlap: 17 bytes of device memory each")
         ->check(CLI::Range(std::uint64_t{1}, PairSearch::most_pairs))
         ->capture_default_str();
     add_picture_options(*command, options->pictures,

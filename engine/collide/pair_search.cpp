@@ -78,7 +78,7 @@ DevicePairs PairSearch::find(const Query& query, const std::string& action) {
     const std::uint64_t total = run(query, room, 0);
     if (total > max_pairs_)
         fail(action, ": ", total, " pairs of boxes overlap; at most ", max_pairs_,
-             " are allowed, see set_max_pairs(): a pair takes up to 16 bytes of device memory");
+             " are allowed, see set_max_pairs(): a pair takes up to 17 bytes of device memory");
     if (total > room) {
         reserve(total);
         room = total;

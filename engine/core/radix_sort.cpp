@@ -46,9 +46,20 @@ uint RadixSort::cpu_threads_on(const DeviceFacts& device) {
     return device.shared_bytes < counters * sizeof(uint) ? 0 : device.cpu_threads;
 }
 
+// Room for the counters of as many groups as groups_of() says, or more, and for what they keep. Subadditive, as shares
+// of a batch are added up.
 std::uint64_t RadixSort::counter_bytes(std::uint64_t count, uint cpu_threads) {
-    const uint block = cpu_threads ? SORT_CPU_BLOCK : SORT_GPU_BLOCK;
-    return (divide_up(count, block) << digit_bits(cpu_threads)) * sizeof(uint);
+    const std::uint64_t blocks = cpu_threads ? std::min(divide_up(count, SORT_CPU_BLOCK),
+                                                        divide_up(count, CPU_GROUP * SORT_LONGEST_RUN) + cpu_threads)
+                                             : divide_up(count, SORT_GPU_BLOCK);
+    const std::uint64_t most_kept = cpu_threads ? divide_up(count, sizeof(uint)) * sizeof(uint) : 0;
+    return (blocks << digit_bits(cpu_threads)) * sizeof(uint) + most_kept;
+}
+
+std::uint64_t RadixSort::kept_bytes(std::uint64_t count, uint cpu_threads) {
+    const std::uint64_t bytes =
+        (std::uint64_t{groups_of(count, cpu_threads)} * CPU_GROUP << digit_bits(cpu_threads)) * sizeof(uint);
+    return cpu_threads && bytes <= count ? bytes : 0;
 }
 
 uint RadixSort::digit_bits(uint cpu_threads) { return cpu_threads ? SORT_CPU_DIGIT_BITS : SORT_GPU_DIGIT_BITS; }
@@ -74,10 +85,11 @@ RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare,
         else
             kernel.dispatch_groups(commands, args, groups);
     };
+    const std::uint64_t behind = counters.address + (std::uint64_t{blocks} << digit_bits(cpu_threads_)) * sizeof(uint);
+    const Uints kept{kept_bytes(count, cpu_threads_) ? behind : 0};
     for (uint shift = 0; shift < bits; shift += digit_bits(cpu_threads_)) {
-        const SortArgs args{pairs.keys,   pairs.values, spare.keys,
-                            spare.values, counters,     count,
-                            shift,        blocks,       run_of(count, cpu_threads_)};
+        const SortArgs args{pairs.keys, pairs.values, spare.keys, spare.values, counters,
+                            kept,       count,        shift,      blocks,       run_of(count, cpu_threads_)};
         dispatch(histogram_, args, blocks, &Counts::sort);
         dispatch(scan_, ScanArgs{counters, blocks << digit_bits(cpu_threads_), 0}, 1, &Counts::scan);
         dispatch(scatter_, args, blocks, &Counts::sort);

@@ -43,6 +43,9 @@ class RadixSort {
     static uint run_of(std::uint64_t count, uint cpu_threads);
     static uint groups_of(std::uint64_t count, uint cpu_threads);
     static uint digit_bits(uint cpu_threads);  // sorted by in a pass
+    // Of what the histogram of a pass keeps for its scatter, which would else count again: on a CPU, where that is a
+    // byte an item at most; else 0.
+    static std::uint64_t kept_bytes(std::uint64_t count, uint cpu_threads);
 
   private:
     uint cpu_threads_;  // 0: a GPU

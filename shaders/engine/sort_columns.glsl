@@ -12,6 +12,12 @@ const uint DIGITS = 1u << DIGIT_BITS;
 
 shared uint columns[DIGITS * THREADS]; // [digit][thread]
 
+Uints kept_columns(SortArgs args)
+{
+    return Uints(uint64_t(args.kept) + uint64_t(group_index()) * uint64_t(DIGITS * THREADS * 4u));
+}
+bool keeps_columns(SortArgs args) { return uint64_t(args.kept) != 0ul; }
+
 uint slot_of(SortArgs args, uint key)
 {
     return (key >> args.shift & (DIGITS - 1u)) * THREADS + gl_LocalInvocationID.x;

@@ -11,10 +11,16 @@ void main()
     if (group_index() >= args.block_count) return;
     uint begin = run_begin(args);
     count_digits(args, begin, min(begin + args.run, args.count));
+    Uints kept = kept_columns(args);
+    bool keeps = keeps_columns(args);
     for (uint digit = gl_LocalInvocationID.x; digit < DIGITS; digit += THREADS)
     {
         uint sum = 0u;
-        for (uint t = 0u; t < THREADS; ++t) sum += columns[digit * THREADS + t];
+        for (uint slot = digit * THREADS; slot < (digit + 1u) * THREADS; ++slot)
+        {
+            if (keeps) AT(kept, slot) = sum;
+            sum += columns[slot];
+        }
         AT(args.counts, digit * args.block_count + group_index()) = sum;
     }
 }

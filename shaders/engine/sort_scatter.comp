@@ -9,13 +9,15 @@ layout(push_constant, scalar) uniform Push { SortArgs args; };
 // Where the items of each digit and thread go.
 void place_digits()
 {
+    Uints kept = kept_columns(args);
+    bool is_kept = keeps_columns(args);
     for (uint digit = gl_LocalInvocationID.x; digit < DIGITS; digit += THREADS)
     {
         uint place = AT(args.counts, digit * args.block_count + group_index());
-        for (uint t = 0u; t < THREADS; ++t)
+        for (uint slot = digit * THREADS; slot < (digit + 1u) * THREADS; ++slot)
         {
-            uint count = columns[digit * THREADS + t];
-            columns[digit * THREADS + t] = place;
+            uint count = is_kept ? 0u : columns[slot];
+            columns[slot] = is_kept ? place + AT(kept, slot) : place;
             place += count;
         }
     }
@@ -27,7 +29,7 @@ void main()
     if (group_index() >= args.block_count) return;
     uint begin = run_begin(args);
     uint end = min(begin + args.run, args.count);
-    count_digits(args, begin, end);
+    if (!keeps_columns(args)) count_digits(args, begin, end);
     place_digits();
     for (uint i = begin; i < end; ++i)
     {

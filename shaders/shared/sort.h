@@ -23,6 +23,7 @@ struct SortArgs
     Uints keys_out;
     Uints values_out;
     Uints counts;
+    Uints kept; // [block][digit][thread]: where the thread's items begin among those of the block's digit; 0: counted again
     uint count;
     uint shift;
     uint block_count;

@@ -13,23 +13,31 @@ namespace {
 
 class RadixSortTest : public test::VulkanTest {
   protected:
+    enum class Groups { from_host, from_device, none_from_device };
     // Values are 0, 1, 2, ... so that they show stability.
-    std::vector<uint> sorted_values(const RadixSort& sort, uint cpu_threads, const std::vector<uint>& keys, uint bits) {
+    std::vector<uint> sorted_values(const RadixSort& sort, uint cpu_threads, const std::vector<uint>& keys, uint bits,
+                                    Groups from = Groups::from_host) {
         const std::uint64_t bytes = keys.size() * sizeof(uint);
         std::vector<uint> values(keys.size());
         std::iota(values.begin(), values.end(), 0u);
         Buffer buffers[4];
         for (Buffer& buffer : buffers) buffer = Buffer(context(), {.name = "sort test", .bytes = bytes});
         Buffer counters(context(), {.name = "counters", .bytes = RadixSort::counter_bytes(keys.size(), cpu_threads)});
+        const uint some = from == Groups::none_from_device ? 0u : 1u;
+        const uint groups[] = {some * sort.sort_groups(keys.size()), 1, 1, some, 1, 1};
+        Buffer told(context(), {.name = "told", .bytes = sizeof(groups)});
+        const RadixSort::Counts counts{told, 0, 3 * sizeof(uint)};
         Commands commands(context(), "sort test");
         {
             const auto pass = commands.pass("input");
+            commands.upload(told, std::span<const uint>(groups));
             commands.upload(buffers[0], std::span(keys));
             commands.upload(buffers[1], std::span<const uint>(values));
         }
-        const RadixSort::Pairs result = sort.record(commands, {{buffers[0].address()}, {buffers[1].address()}},
-                                                    {{buffers[2].address()}, {buffers[3].address()}},
-                                                    {counters.address()}, static_cast<uint>(keys.size()), bits);
+        const RadixSort::Pairs result =
+            sort.record(commands, {{buffers[0].address()}, {buffers[1].address()}},
+                        {{buffers[2].address()}, {buffers[3].address()}}, {counters.address()},
+                        static_cast<uint>(keys.size()), bits, from == Groups::from_host ? nullptr : &counts);
         commands.submit();
         const bool in_place = result.values.address == buffers[1].address();
         return download<uint>(context(), buffers[in_place ? 1 : 3], keys.size());
@@ -49,7 +57,7 @@ class RadixSortOn : public RadixSortTest, public testing::WithParamInterface<uin
 TEST_P(RadixSortOn, EqualsStableSortForManyCountsAndWidths) {
     const RadixSort sort(context(), GetParam());
     std::mt19937 random(1);
-    for (const std::size_t count : {1u, 2u, 63u, 64u, 500u, 2047u, 2048u, 2049u, 10'000u, 150'000u}) {
+    for (const std::size_t count : {1u, 2u, 63u, 64u, 500u, 2047u, 2048u, 2049u, 10'000u, 200'000u}) {
         for (const uint bits : {1u, 6u, 9u, 30u}) {
             std::vector<uint> keys(count);
             for (uint& key : keys) key = static_cast<uint>(random()) & ((1u << bits) - 1);
@@ -63,6 +71,20 @@ TEST_P(RadixSortOn, EqualKeysKeepTheirOrder) {
     const RadixSort sort(context(), GetParam());
     const std::vector<uint> keys(5000, 42u);
     EXPECT_EQ(sorted_values(sort, GetParam(), keys, 30), expected_values(keys, 30));
+}
+
+TEST_P(RadixSortOn, DevicesMaySayThatItIsWantedOrNot) {
+    const RadixSort sort(context(), GetParam());
+    std::mt19937 random(2);
+    for (const std::size_t count : {3000u, 200'000u}) {
+        std::vector<uint> keys(count), untouched(count);
+        for (uint& key : keys) key = static_cast<uint>(random()) >> 2;
+        std::iota(untouched.begin(), untouched.end(), 0u);
+        EXPECT_EQ(sorted_values(sort, GetParam(), keys, 30, Groups::from_device), expected_values(keys, 30));
+        // An odd number of passes would end in the spare.
+        const uint even = 2 * RadixSort::digit_bits(GetParam());
+        EXPECT_EQ(sorted_values(sort, GetParam(), keys, even, Groups::none_from_device), untouched);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, RadixSortOn, testing::Values(0u, 1u, 2u, 5u),
@@ -79,8 +101,25 @@ TEST(RadixSortRun, CountersHaveRoomForAllGroups) {
         for (std::uint64_t count = 2; count < 5'000'000'000; count += 1 + count / 7) {
             const std::uint64_t counters = std::uint64_t{RadixSort::groups_of(count, threads)}
                                            << RadixSort::digit_bits(threads);
-            EXPECT_LE(counters * sizeof(uint), RadixSort::counter_bytes(count, threads)) << count << " on " << threads;
+            EXPECT_LE(counters * sizeof(uint) + RadixSort::kept_bytes(count, threads),
+                      RadixSort::counter_bytes(count, threads))
+                << count << " on " << threads;
         }
+}
+
+TEST(RadixSortRun, ManySortsNeedNoFewerCountersThanOneOfAll) {
+    for (const uint threads : {0u, 1u, 2u, 5u})
+        for (std::uint64_t a = 1; a < 1'000'000; a += 1 + a / 3)
+            for (std::uint64_t b = 1; b < 1'000'000; b += 1 + b / 3)
+                EXPECT_LE(RadixSort::counter_bytes(a + b, threads),
+                          RadixSort::counter_bytes(a, threads) + RadixSort::counter_bytes(b, threads))
+                    << a << " and " << b << " on " << threads;
+}
+
+TEST(RadixSortRun, KeepsColumnsWhereItemsAreMany) {
+    EXPECT_EQ(RadixSort::kept_bytes(100'000'000, 0), 0u);
+    EXPECT_EQ(RadixSort::kept_bytes(40'000, 2), 0u);
+    EXPECT_EQ(RadixSort::kept_bytes(150'000, 2), 4u * 8 * 1024 * sizeof(uint));
 }
 
 }  // namespace
