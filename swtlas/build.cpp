@@ -77,7 +77,7 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       areas_(context),
       leaves_triangles_(context, leaves_stage(context, "swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
       leaves_instances_(context, leaves_stage(context, "swtlas_leaves_instances", swtlas_leaves_instances_spirv)),
-      morton_(context, stage("swtlas_morton", swtlas_morton_spirv, true)),
+      morton_(context, grouped(context, stage("swtlas_morton", swtlas_morton_spirv, true), BUILD_GROUP)),
       node_areas_(context,
                   grouped(context, stage("swtlas_node_areas", swtlas_node_areas_spirv, needs.moves), AREA_GROUP)),
       crowding_(context, stage("swtlas_crowding", swtlas_crowding_spirv, true)),
@@ -88,7 +88,9 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS, needs.records)),
       collapse_level_(context, collapse_stage(COLLAPSE_LEVEL, needs.records)),
       collapse_rest_(context, collapse_stage(COLLAPSE_REST, needs.records)),
-      encode_records_(context, stage("swtlas_encode_records", swtlas_encode_records_spirv, needs.records)),
+      encode_records_(
+          context,
+          grouped(context, stage("swtlas_encode_records", swtlas_encode_records_spirv, needs.records), BUILD_GROUP)),
       record_parents_(context,
                       stage("swtlas_record_parents", swtlas_record_parents_spirv, needs.records && needs.moves)),
       refit_records_(
@@ -226,12 +228,8 @@ void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::s
     leaves_triangles_.dispatch_groups(
         commands, {batch.trees, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0}, batch.block_count);
     const RadixSort::Pairs sorted = record_order(commands, plan, batch);
-    if (has_records(plan.layout)) {
-        record_hierarchy(commands, batch, sorted, false);
-        record_collapse(commands, plan, batch);
-        return;
-    }
     record_hierarchy(commands, batch, sorted, true);
+    if (has_records(plan.layout)) return record_collapse(commands, plan, batch, sorted);
     encode_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, sorted.values, batch.block_count, 0},
                                       batch.block_count);
 }
@@ -241,23 +239,27 @@ void Builder::record_instances(Commands& commands, const BuildPlan& plan, const 
     if (plan.leaf_count == 0) return;
     Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = plan.scratch.bytes});
     const Batch batch = begin_instances(commands, plan, tree, records, instances, scratch);
-    record_hierarchy(commands, batch, record_order(commands, plan, batch), false);
-    if (has_records(plan.layout)) record_collapse(commands, plan, batch);
+    const RadixSort::Pairs sorted = record_order(commands, plan, batch);
+    record_hierarchy(commands, batch, sorted, has_records(plan.layout));
+    if (has_records(plan.layout)) record_collapse(commands, plan, batch, sorted);
     commands.keep(std::move(scratch));
 }
 
-// Levels share the scratch of the sort, which is done: a level has half as many items as there are leaves at most. The
-// codes are done, too.
-void Builder::record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+// Places lie where the codes were, which are done.
+void Builder::record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch,
+                              const RadixSort::Pairs& sorted) const {
     record_levels(commands, plan, batch);
-    encode_records_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.codes, batch.block_count, 0},
-                                    batch.block_count);
+    encode_records_.dispatch_groups(
+        commands, {batch.trees, batch.blocks, sorted.values, batch.codes, batch.block_count, 0}, batch.block_count);
 }
 
+// The items of two levels lie where the boxes were, which are done, too: an item has two leaves at least.
 void Builder::record_levels(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+    static_assert(sizeof(CollapseItem) <= sizeof(LeafBox));
     const auto pass = commands.pass(collapse_level_.name());
     const auto tree_count = static_cast<uint>(plan.first.size());
-    const std::uint64_t items[] = {batch.pairs.keys.address, batch.spare.keys.address};
+    const std::uint64_t most_items = plan.leaf_count / 2;
+    const std::uint64_t items[] = {batch.boxes.address, batch.boxes.address + most_items * sizeof(CollapseItem)};
     const auto level_at = [&](uint level) { return plan.scratch.levels + level * sizeof(CollapseLevel); };
     const auto args = [&](uint level) {
         return CollapseArgs{batch.trees,

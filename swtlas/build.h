@@ -59,7 +59,8 @@ class Builder {
                            const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const;
     void record_hierarchy(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
                           bool leaves_are_sorted) const;
-    void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
+    void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch,
+                         const RadixSort::Pairs& sorted) const;
     void record_levels(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_climb(Commands& commands, const Batch& batch) const;
     void record_records_climb(Commands& commands, const BuildPlan& plan, const Batch& batch) const;

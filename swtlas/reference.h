@@ -40,7 +40,7 @@ std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::
                                           std::span<const uint> order);
 
 // The records of layouts compressed4 and bvh4, and the boxes of bvh4, for a tree whose references are the leaves' own
-// indices.
+// indices. (The kernels' binary trees refer to places in the order; their records are the same.)
 struct Records {
     std::vector<CompressedRecord> records;
     std::vector<LeafBox> boxes;

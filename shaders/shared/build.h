@@ -214,7 +214,8 @@ struct EncodeRecordsArgs
 {
     REF(BuildTree) trees;
     REF(BuildBlock) blocks;
-    Uints places; // by leaf: its slot
+    Uints order;
+    Uints places; // by place in the order: the leaf's slot
     uint block_count;
     uint reserved;
 };

@@ -19,6 +19,24 @@ struct CollapseItem
 };
 BUFFER_OF(CollapseItem, 4);
 
+FUNC CollapseItem load_item(REF(CollapseItem) items, uint index)
+{
+    Words64 words = Words64(uint64_t(items) + uint64_t(index) * 16ul);
+    uint64_t w0 = AT(words, 0), w1 = AT(words, 1);
+    CollapseItem item;
+    item.tree = UINTS(w0).x;
+    item.place = UINTS(w0).y;
+    item.record = UINTS(w1).x;
+    item.below = UINTS(w1).y;
+    return item;
+}
+FUNC void store_item(REF(CollapseItem) items, uint index, CollapseItem item)
+{
+    Words64 words = Words64(uint64_t(items) + uint64_t(index) * 16ul);
+    AT(words, 0) = WORD(item.tree, item.place);
+    AT(words, 1) = WORD(item.record, item.below);
+}
+
 // How many items a level has; begins with what an indirect dispatch reads.
 struct CollapseLevel
 {
@@ -47,7 +65,7 @@ struct CollapseArgs
     REF(CollapseItem) items;
     REF(CollapseItem) next_items;
     REF(CollapseLevel) level; // the next one follows
-    Uints places;             // by leaf: where its record goes
+    Uints places;             // by leaf, as nodes refer to it: where its record goes
     uint tree_count;
     uint reserved;
 };
@@ -95,9 +113,7 @@ FUNC void open_widest(REF(BvhNode) nodes, float unit, uint tallest, INOUT(NodeCh
     if (widest < 4u) open_child(nodes, node, widest, children);
 }
 
-// The children of the node of four that a binary node becomes. It has two levels more than its children may have at most,
-// so that none is too tall once two are opened.
-FUNC NodeChildren children_of(REF(BvhNode) nodes, uint place)
+FUNC NodeChildren no_children()
 {
     NodeChildren children;
     UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
@@ -106,6 +122,15 @@ FUNC NodeChildren children_of(REF(BvhNode) nodes, uint place)
         children.box[i] = empty_box();
         children.below[i] = 0u;
     }
+    children.count = 0u;
+    return children;
+}
+
+// The children of the node of four that a binary node becomes. It has two levels more than its children may have at most,
+// so that none is too tall once two are opened.
+FUNC NodeChildren children_of(REF(BvhNode) nodes, uint place)
+{
+    NodeChildren children = no_children();
     children.count = 1u;
     open_child(nodes, node_at(place), 0u, children);
     LeafBox around = box_around(children);
@@ -128,10 +153,19 @@ FUNC CollapseStep no_step()
     return step;
 }
 
-// Writes the node of an item, and where the leaves among its children go.
-FUNC CollapseStep collapse(BuildTree tree, Uints places, CollapseItem item)
+FUNC bool is_inner(uint child) { return (child & LEAF_BIT) == 0u; }
+
+// How many items write_node makes.
+FUNC uint inner_among(NodeChildren children)
 {
-    NodeChildren children = children_of(tree.nodes, item.place);
+    uint count = 0u;
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u) count = count + (is_inner(children.child[i]) ? 1u : 0u);
+    return count;
+}
+
+// Writes the node of an item, whose children_of() these are, and where the leaves among them go.
+FUNC CollapseStep write_node(BuildTree tree, Uints places, CollapseItem item, NodeChildren children)
+{
     store_record(tree.records, item.record, encode_node(children, item.below));
     CollapseStep step = no_step();
     uint below = item.below + children.count;
@@ -142,7 +176,7 @@ FUNC CollapseStep collapse(BuildTree tree, Uints places, CollapseItem item)
         leaves = leaves + leaves_in(children.below[i]);
         keep_box(tree, item.below + i, children.box[i]);
         uint child = children.child[i];
-        step.is_inner[i] = (child & LEAF_BIT) == 0u;
+        step.is_inner[i] = is_inner(child);
         if (!step.is_inner[i])
         {
             AT(places, tree.first + (child & ~LEAF_BIT)) = item.below + i;
@@ -157,6 +191,11 @@ FUNC CollapseStep collapse(BuildTree tree, Uints places, CollapseItem item)
     for (uint end = item.below + records_below(leaves); below < end; below = below + 1u)
         store_record(tree.records, below, no_record());
     return step;
+}
+
+FUNC CollapseStep collapse(BuildTree tree, Uints places, CollapseItem item)
+{
+    return write_node(tree, places, item, children_of(tree.nodes, item.place));
 }
 
 // The item of a tree's root, if that is an inner node.

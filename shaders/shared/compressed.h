@@ -71,16 +71,17 @@ FUNC float origin_below(float limit, uint exponent)
 }
 
 // A plane in cells from the origin, moved outwards by a 256th of a cell at least: a traversal that computes with a plane's
-// distance from the ray in float32 is off by less than 2^-14 cells near it, and by its own padding far from it.
+// distance from the ray in float32 is off by less than 2^-14 cells near it, and by its own padding far from it. By way of
+// signed integers: see cell_of in morton.h.
 FUNC uint cell_below(float plane, float origin, float per_unit)
 {
     PRECISE float cells = (plane - origin) * per_unit - 0.00390625f;
-    return uint(clamp(floor(cells), 0.0f, 255.0f));
+    return uint(int(clamp(cells, 0.0f, 255.0f)));
 }
 FUNC uint cell_above(float plane, float origin, float per_unit)
 {
     PRECISE float cells = (plane - origin) * per_unit + 0.00390625f;
-    return uint(clamp(ceil(cells), 0.0f, 255.0f));
+    return uint(int(ceil(clamp(cells, 0.0f, 255.0f))));
 }
 
 // Only ever indexed by constants, so that drivers keep it in registers.

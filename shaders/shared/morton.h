@@ -23,7 +23,7 @@ FUNC uint cell_of(float x, float lo, float hi)
     PRECISE float scaled = offset / extent * 1048576.0f;
     scaled = scaled > 0.0f ? scaled : 0.0f;
     scaled = scaled < 1048575.0f ? scaled : 1048575.0f;
-    return uint(scaled);
+    return uint(int(scaled)); // drivers on CPUs convert to signed integers by vectors, to unsigned ones by the lane
 }
 
 FUNC uint morton_code(vec3 point, vec3 lo, vec3 hi)

@@ -33,25 +33,9 @@ void collapse_all(CollapseItem item)
     }
 }
 
-CollapseStep step_of(uint i)
+// Where the group's next `count` items go. Barriers come before what a level writes: they would wait for it.
+uint reserve(uint count)
 {
-    if (STEP == COLLAPSE_ROOTS)
-    {
-        if (i < args.tree_count) return begin_collapse(AT(args.trees, i), args.places, i);
-    }
-    else if (i < AT(args.level, 0).count)
-    {
-        CollapseItem item = AT(args.items, i);
-        if (STEP == COLLAPSE_LEVEL) return collapse(AT(args.trees, item.tree), args.places, item);
-        collapse_all(item);
-    }
-    return no_step();
-}
-
-void push(CollapseStep found)
-{
-    uint count = 0u;
-    UNROLL for (uint i = 0u; i < 4u; i = i + 1u) count = count + (found.is_inner[i] ? 1u : 0u);
     if (gl_LocalInvocationID.x == 0u) pushed = 0u;
     barrier();
     uint place = atomicAdd(pushed, count);
@@ -64,17 +48,41 @@ void push(CollapseStep found)
         atomicMax(AT(args.level, 1).groups_y, (groups + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW);
     }
     barrier();
-    place = place + pushed_before;
+    return place + pushed_before;
+}
+
+void push(CollapseStep found, uint place)
+{
     UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
     {
         if (!found.is_inner[i]) continue;
-        AT(args.next_items, place) = found.items[i];
+        store_item(args.next_items, place, found.items[i]);
         place = place + 1u;
     }
 }
 
+void begin(uint index)
+{
+    CollapseStep found = no_step();
+    if (index < args.tree_count) found = begin_collapse(AT(args.trees, index), args.places, index);
+    push(found, reserve(found.is_inner[0] ? 1u : 0u));
+}
+
+void do_level(uint index)
+{
+    bool is_item = index < AT(args.level, 0).count;
+    CollapseItem item = load_item(args.items, is_item ? index : 0u);
+    BuildTree tree = AT(args.trees, item.tree);
+    NodeChildren children = no_children();
+    if (is_item) children = children_of(tree.nodes, item.place);
+    uint place = reserve(inner_among(children));
+    if (is_item) push(write_node(tree, args.places, item, children), place);
+}
+
 void main()
 {
-    CollapseStep found = step_of(global_index());
-    if (STEP != COLLAPSE_REST) push(found);
+    uint index = global_index();
+    if (STEP == COLLAPSE_ROOTS) begin(index);
+    else if (STEP == COLLAPSE_LEVEL) do_level(index);
+    else if (index < AT(args.level, 0).count) collapse_all(load_item(args.items, index));
 }

@@ -5,23 +5,26 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
 #include "shaders/shared/splits.h"
-layout(local_size_x = BUILD_GROUP) in;
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { MortonArgs args; };
 
 void main()
 {
     BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
     LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
-    if (group_index() >= args.block_count || gl_LocalInvocationID.x >= block.count) return;
-    uint leaf = block.first + gl_LocalInvocationID.x;
-    LeafBox box = load_box(args.boxes, leaf);
-    uint code = INACTIVE_CODE;
-    if (is_active(box))
+    if (group_index() >= args.block_count) return;
+    for (uint i = gl_LocalInvocationID.x; i < block.count; i += gl_WorkGroupSize.x)
     {
-        code = morton_code(center_of(box), bounds.lo, bounds.hi);
+        uint leaf = block.first + i;
+        LeafBox box = load_box(args.boxes, leaf);
+        uint code = INACTIVE_CODE;
+        if (is_active(box))
+        {
+            code = morton_code(center_of(box), bounds.lo, bounds.hi);
+        }
+        AT(args.codes, leaf) = code;
+        AT(args.keys, leaf) = code;
+        AT(args.order, leaf) = leaf;
+        if (uint64_t(args.tree_of) != 0ul) AT(args.tree_of, leaf) = block.tree;
     }
-    AT(args.codes, leaf) = code;
-    AT(args.keys, leaf) = code;
-    AT(args.order, leaf) = leaf;
-    if (uint64_t(args.tree_of) != 0ul) AT(args.tree_of, leaf) = block.tree;
 }
