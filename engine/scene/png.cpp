@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/png.h"
 
+#include <vector>
+
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 
@@ -12,14 +14,16 @@
 namespace twinray {
 
 void write_png(const std::filesystem::path& file, uint width, uint height, std::span<const Rgb> pixels) {
-    const auto write = [](void* target, void* data, int size) {
-        const std::span piece(static_cast<const std::byte*>(data), static_cast<std::size_t>(size));
-        write_file(*static_cast<const std::filesystem::path*>(target), std::span(&piece, 1));
+    const auto keep = [](void* bytes, void* data, int size) {  // must not throw: stb would leak what it has encoded
+        const auto* begin = static_cast<const std::byte*>(data);
+        static_cast<std::vector<std::byte>*>(bytes)->assign(begin, begin + size);
     };
     const int w = static_cast<int>(width), h = static_cast<int>(height);
-    std::filesystem::path target = file;
-    if (stbi_write_png_to_func(write, &target, w, h, 3, pixels.data(), 3 * w) == 0)
+    std::vector<std::byte> encoded;
+    if (stbi_write_png_to_func(keep, &encoded, w, h, 3, pixels.data(), 3 * w) == 0)
         fail("'", file.string(), "': a picture of ", width, " x ", height, " pixels cannot be encoded");
+    const std::span<const std::byte> piece = encoded;
+    write_file(file, std::span(&piece, 1));
 }
 
 }  // namespace twinray

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <span>
 
 namespace twinray {
 namespace {
@@ -25,7 +27,8 @@ Bytes pipelines_of(const VkPhysicalDeviceProperties& driver, std::size_t bytes) 
         sizeof header, VK_PIPELINE_CACHE_HEADER_VERSION_ONE, driver.vendorID, driver.deviceID, {}};
     std::memcpy(header.pipelineCacheUUID, driver.pipelineCacheUUID, VK_UUID_SIZE);
     Bytes data(bytes, 42);
-    std::memcpy(data.data(), &header, std::min(bytes, sizeof header));
+    const std::span<const std::byte> head = std::as_bytes(std::span(&header, 1));
+    std::ranges::copy(head.first(std::min(bytes, head.size())), reinterpret_cast<std::byte*>(data.data()));
     return data;
 }
 
