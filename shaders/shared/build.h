@@ -279,8 +279,8 @@ FUNC LeafBox box_of_triangle(BvhTriangle t)
 {
     if (!is_active_triangle(t.v0, t.v1, t.v2)) return empty_box();
     LeafBox box;
-    box.lo = min(t.v0, min(t.v1, t.v2));
-    box.hi = max(t.v0, max(t.v1, t.v2));
+    box.lo = lesser_of(t.v0, lesser_of(t.v1, t.v2));
+    box.hi = greater_of(t.v0, greater_of(t.v1, t.v2));
     return box;
 }
 

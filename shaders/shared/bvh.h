@@ -27,6 +27,17 @@ struct LeafBox
 };
 BUFFER_OF(LeafBox, 4);
 
+// Without NaN, and by comparisons: for what min and max make of NaN, drivers on CPUs take up to eight operations a number.
+FUNC vec3 lesser_of(vec3 a, vec3 b) { return vec3(a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z); }
+FUNC vec3 greater_of(vec3 a, vec3 b) { return vec3(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z); }
+FUNC LeafBox around_both(LeafBox a, LeafBox b)
+{
+    LeafBox box;
+    box.lo = lesser_of(a.lo, b.lo);
+    box.hi = greater_of(a.hi, b.hi);
+    return box;
+}
+
 // 64 bytes. Child boxes lie in the parent, so that one fetch decides both. A box is empty where lo > hi.
 struct BvhNode
 {

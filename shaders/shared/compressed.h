@@ -99,8 +99,7 @@ FUNC LeafBox box_around(NodeChildren children)
     UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
     {
         if (i >= children.count) continue;
-        around.lo = min(around.lo, children.box[i].lo);
-        around.hi = max(around.hi, children.box[i].hi);
+        around = around_both(around, children.box[i]);
     }
     return around;
 }

@@ -46,8 +46,7 @@ FUNC void put_half(NodeWords nodes, uint node, uint side, NodeHalf half_node)
 FUNC NodeHalf joined_half(NodeHalf a, NodeHalf b, uint node)
 {
     NodeHalf both;
-    both.box.lo = min(a.box.lo, b.box.lo);
-    both.box.hi = max(a.box.hi, b.box.hi);
+    both.box = around_both(a.box, b.box);
     both.child = node;
     both.below = make_below(leaves_in(a.below) + leaves_in(b.below), 1u + max(height_in(a.below), height_in(b.below)));
     return both;
@@ -84,10 +83,7 @@ FUNC float area_of(LeafBox box, float scale)
 }
 FUNC float area_around(NodeHalf a, NodeHalf b, float scale)
 {
-    LeafBox box;
-    box.lo = min(a.box.lo, b.box.lo);
-    box.hi = max(a.box.hi, b.box.hi);
-    return area_of(box, scale);
+    return area_of(around_both(a.box, b.box), scale);
 }
 // For trees with leaf centres from lo to hi: areas are near 1 at most, or 0.
 FUNC float area_scale(vec3 lo, vec3 hi)
