@@ -50,7 +50,7 @@ struct TopDown {
         NodeHalf both = joined_half(left, right, node);
         if (quality == BuildQuality::high && is_rotated(both))
             both.below = make_below(leaves_in(both.below),
-                                    rotate(words, node, left, right, highest_below(split_after(split)), scale));
+                                    rotate(words, node, highest_below(split_after(split)), scale));
         return both;
     }
 };

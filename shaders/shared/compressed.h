@@ -10,6 +10,7 @@
 #define TWINRAY_SHARED_COMPRESSED_H
 #include "shaders/shared/build.h"
 #include "shaders/shared/surface_area.h"
+#include "shaders/shared/whole.h"
 
 const uint MOST_RECORDS = 1u << 26u; // a tree may have: what an entry on the stack can name; 40 million leaves
 
@@ -70,18 +71,23 @@ FUNC float origin_below(float limit, uint exponent)
     return uintBitsToFloat(moved < 256u ? 0x80000000u | exponent : moved - 256u);
 }
 
+FUNC float cell_within(float cells)
+{
+    float from_zero = cells > 0.0f ? cells : 0.0f;
+    return from_zero < 255.0f ? from_zero : 255.0f;
+}
+
 // A plane in cells from the origin, moved outwards by a 256th of a cell at least: a traversal that computes with a plane's
-// distance from the ray in float32 is off by less than 2^-14 cells near it, and by its own padding far from it. By way of
-// signed integers: see cell_of in morton.h.
+// distance from the ray in float32 is off by less than 2^-14 cells near it, and by its own padding far from it.
 FUNC uint cell_below(float plane, float origin, float per_unit)
 {
     PRECISE float cells = (plane - origin) * per_unit - 0.00390625f;
-    return uint(int(clamp(cells, 0.0f, 255.0f)));
+    return whole_number(floor(cell_within(cells)));
 }
 FUNC uint cell_above(float plane, float origin, float per_unit)
 {
     PRECISE float cells = (plane - origin) * per_unit + 0.00390625f;
-    return uint(int(ceil(clamp(cells, 0.0f, 255.0f))));
+    return whole_number(ceil(cell_within(cells)));
 }
 
 // Only ever indexed by constants, so that drivers keep it in registers.

@@ -2,6 +2,7 @@
 // 30-bit Morton codes: 10 bits an axis, x in the highest bit of each triple. A fine code is that of the next 10 bits an axis.
 #ifndef TWINRAY_SHARED_MORTON_H
 #define TWINRAY_SHARED_MORTON_H
+#include "shaders/shared/whole.h"
 
 // ........ ........ ......98 76543210  ->  ....9..8 ..7..6.. 5..4..3. .2..1..0
 FUNC uint spread_bits(uint x)
@@ -13,8 +14,7 @@ FUNC uint spread_bits(uint x)
     return x;
 }
 
-// The cell of a coordinate in [lo, hi] cut into 2^20; 0 where the interval has no length. The clamp comes before the
-// conversion to integer, which is undefined out of range.
+// The cell of a coordinate in [lo, hi] cut into 2^20; 0 where the interval has no length.
 FUNC uint cell_of(float x, float lo, float hi)
 {
     PRECISE float extent = hi - lo;
@@ -23,7 +23,7 @@ FUNC uint cell_of(float x, float lo, float hi)
     PRECISE float scaled = offset / extent * 1048576.0f;
     scaled = scaled > 0.0f ? scaled : 0.0f;
     scaled = scaled < 1048575.0f ? scaled : 1048575.0f;
-    return uint(int(scaled)); // drivers on CPUs convert to signed integers by vectors, to unsigned ones by the lane
+    return whole_number(floor(scaled));
 }
 
 FUNC uint morton_code(vec3 point, vec3 lo, vec3 hi)

@@ -108,33 +108,8 @@ FUNC void keep_better(INOUT(float) best, INOUT(uint) best_move, float gain, uint
     best_move = is_better ? move : best_move;
 }
 
-// `up`, the child of `other` on `side`, and `moved`, the sibling of `other` on `moved_side`, change places.
-FUNC Rotated lift(NodeWords nodes, uint node, NodeHalf moved, uint moved_side, NodeHalf up, NodeHalf stays, uint other, uint side)
-{
-    put_half(nodes, node, moved_side, up);
-    put_half(nodes, node, 1u - moved_side, joined_half(moved, stays, other));
-    put_half(nodes, other, side, moved);
-    Rotated done;
-    done.node0 = other;
-    done.node1 = NOTHING;
-    return done;
-}
-
-// The child `p` of a, on `side`, and the first child `q` of b change places.
-FUNC Rotated exchange(NodeWords nodes, uint node, uint a, NodeHalf p, uint side, NodeHalf stays_a, uint b, NodeHalf q, NodeHalf stays_b)
-{
-    put_half(nodes, node, 0u, joined_half(q, stays_a, a));
-    put_half(nodes, node, 1u, joined_half(p, stays_b, b));
-    put_half(nodes, a, side, q);
-    put_half(nodes, b, 0u, p);
-    Rotated done;
-    done.node0 = a;
-    done.node1 = b;
-    return done;
-}
-
 // Rotates a node with children a and b where that gains most, if it gains and leaves the node within `limit` nodes of height.
-FUNC Rotated rotate_once(NodeWords nodes, uint node, NodeHalf a, NodeHalf b, uint limit, float scale)
+FUNC Rotated rotate_node(NodeWords nodes, uint node, NodeHalf a, NodeHalf b, uint limit, float scale)
 {
     NodeHalf a0 = a, a1 = a, b0 = b, b1 = b;
     float area_a = area_of(a.box, scale);
@@ -163,65 +138,121 @@ FUNC Rotated rotate_once(NodeWords nodes, uint node, NodeHalf a, NodeHalf b, uin
         keep_better(best, move, both - area_around(a0, b0, scale) - area_around(a1, b1, scale), 5u,
                     max(height_above(a0, b0), height_above(a1, b1)) < limit);
     }
+    Rotated done;
+    done.node0 = NOTHING;
+    done.node1 = NOTHING;
+    if (move == NOTHING) return done;
+    // One child's child on `side` goes up, and what was beside it, or in an exchange its child, down in its place.
+    bool is_of_b = move < 2u;
+    bool is_exchange = move > 3u;
+    bool is_second = (move & 1u) != 0u;
     uint side = move & 1u;
-    if (move < 4u)
+    NodeHalf first = either(is_of_b, b0, a0);
+    NodeHalf second = either(is_of_b, b1, a1);
+    NodeHalf up = either(is_second, second, first);
+    NodeHalf stays = either(is_second, first, second);
+    NodeHalf down = either(is_of_b, a, either(is_exchange, b0, b));
+    done.node0 = is_of_b ? b.child : a.child;
+    put_half(nodes, done.node0, side, down);
+    put_half(nodes, node, is_of_b ? 1u : 0u, joined_half(down, stays, done.node0));
+    if (is_exchange)
     {
-        bool is_b = move < 2u;
-        NodeHalf first = either(is_b, b0, a0);
-        NodeHalf second = either(is_b, b1, a1);
-        return lift(nodes, node, either(is_b, a, b), is_b ? 0u : 1u, either(side == 0u, first, second),
-                    either(side == 0u, second, first), is_b ? b.child : a.child, side);
+        done.node1 = b.child;
+        put_half(nodes, b.child, 0u, up);
+        up = joined_half(up, b1, b.child);
     }
-    if (move != NOTHING)
-        return exchange(nodes, node, a.child, either(side == 0u, a0, a1), side, either(side == 0u, a1, a0), b.child, b0, b1);
-    Rotated none;
-    none.node0 = NOTHING;
-    none.node1 = NOTHING;
-    return none;
+    put_half(nodes, node, is_of_b ? 0u : 1u, up);
+    return done;
 }
 
-// Rotates a node with children a and b, whose subtrees are finished. Returns its height: `limit` at most, if it was. Below
-// the node no subtree becomes higher; heights told of them are theirs at most.
-FUNC uint rotate(NodeWords nodes, uint node, NodeHalf a, NodeHalf b, uint limit, float scale)
+// A rotation of `node` and of what it changes below. Done a node at a time, so that where invocations go through a program
+// together none waits for one that has more nodes to rotate.
+struct Rotation
 {
-    uint waiting[ROTATE_LEVELS + 2u]; // node | levels that it may be followed << 28
-    uint count = 0u;
-    uint levels = ROTATE_LEVELS;
-    uint at = node;
-    uint highest = limit;
-    uint turns = 0u; // in which the node itself was rotated
-    for (;;)
+    uint node;
+    uint limit;  // of the node's height
+    uint turns;  // in which the node itself was rotated
+    uint next;   // the node to rotate next; NOTHING: all are
+    uint levels; // that changes of the next one are followed down
+    uint waiting[ROTATE_LEVELS + 1u]; // node | levels << 28, the next first; NOTHING: no more. Indexed by constants alone
+};
+
+FUNC Rotation no_rotation()
+{
+    Rotation rotation;
+    rotation.node = NOTHING;
+    rotation.limit = 0u;
+    rotation.turns = 0u;
+    rotation.next = NOTHING;
+    rotation.levels = 0u;
+    UNROLL for (uint i = 0u; i < ROTATE_LEVELS + 1u; i = i + 1u) rotation.waiting[i] = NOTHING;
+    return rotation;
+}
+
+// Of a node with both its halves, whose subtrees are finished, which then has a height of `limit` at most, if it had. Below the
+// node no subtree becomes higher; heights told of them are theirs at most.
+FUNC Rotation rotation_of(uint node, uint limit)
+{
+    Rotation rotation = no_rotation();
+    rotation.node = node;
+    rotation.limit = limit;
+    rotation.next = node;
+    rotation.levels = ROTATE_LEVELS;
+    return rotation;
+}
+
+FUNC void wait_for(INOUT(Rotation) rotation, uint node)
+{
+    uint moved = node | rotation.levels << 28u;
+    UNROLL for (uint i = 0u; i < ROTATE_LEVELS + 1u; i = i + 1u)
     {
-        Rotated done = rotate_once(nodes, at, a, b, highest, scale);
-        bool has_changed = done.node0 != NOTHING;
-        turns = turns + (has_changed && at == node ? 1u : 0u);
-        if (has_changed && levels > 0u)
-        {
-            waiting[count] = done.node0 | levels << 28u;
-            count = count + 1u;
-            if (done.node1 != NOTHING)
-            {
-                waiting[count] = done.node1 | levels << 28u;
-                count = count + 1u;
-            }
-        }
-        if (count == 0u && (turns != 1u || at == node)) break;
-        if (count == 0u)
-        {
-            at = node;
-            levels = ROTATE_LEVELS;
-            turns = 2u;
-        }
-        else
-        {
-            count = count - 1u;
-            at = waiting[count] & 0xfffffffu;
-            levels = (waiting[count] >> 28u) - 1u;
-        }
-        a = get_half(nodes, at, 0u);
-        b = get_half(nodes, at, 1u);
-        highest = at == node ? limit : height_above(a, b);
+        uint here = rotation.waiting[i];
+        rotation.waiting[i] = moved;
+        moved = here;
     }
+}
+
+FUNC void choose_next(INOUT(Rotation) rotation)
+{
+    uint waiting = rotation.waiting[0];
+    if (waiting != NOTHING)
+    {
+        rotation.next = waiting & 0xfffffffu;
+        rotation.levels = (waiting >> 28u) - 1u;
+        UNROLL for (uint i = 0u; i < ROTATE_LEVELS; i = i + 1u) rotation.waiting[i] = rotation.waiting[i + 1u];
+        rotation.waiting[ROTATE_LEVELS] = NOTHING;
+    }
+    else if (rotation.turns == 1u)
+    {
+        rotation.next = rotation.node;
+        rotation.levels = ROTATE_LEVELS;
+        rotation.turns = 2u;
+    }
+    else rotation.next = NOTHING;
+}
+
+FUNC void rotate_next(NodeWords nodes, INOUT(Rotation) rotation, float scale)
+{
+    NodeHalf a = get_half(nodes, rotation.next, 0u);
+    NodeHalf b = get_half(nodes, rotation.next, 1u);
+    bool is_top = rotation.next == rotation.node;
+    Rotated done = rotate_node(nodes, rotation.next, a, b, is_top ? rotation.limit : height_above(a, b), scale);
+    if (done.node0 != NOTHING)
+    {
+        rotation.turns = rotation.turns + (is_top ? 1u : 0u);
+        if (rotation.levels > 0u)
+        {
+            wait_for(rotation, done.node0);
+            if (done.node1 != NOTHING) wait_for(rotation, done.node1);
+        }
+    }
+    choose_next(rotation);
+}
+// All at once. Returns the node's height.
+FUNC uint rotate(NodeWords nodes, uint node, uint limit, float scale)
+{
+    Rotation rotation = rotation_of(node, limit);
+    while (rotation.next != NOTHING) rotate_next(nodes, rotation, scale);
     return height_of(nodes, node);
 }
 #endif

@@ -10,9 +10,9 @@
 //     split     0    2    0               and [0, 1] meets [2, 3] at node 1.
 //
 // An invocation has a run of leaves. A range that is to be joined with one to its right waits in the left half of their
-// node; within a run the next ranges find it there. A range that reaches over the end of its run climbs: of the two that
-// meet at a node the first leaves its own far end in meeting[] and stops; the second finds it there and goes on with both.
-// A range writes its half of the node before the exchange.
+// node; within a run the next ranges find it there. Ranges that reach over the ends of their run climb once the run is
+// done: of the two that meet at a node the first leaves its own far end in meeting[] and stops; the second finds it there
+// and goes on with both. A range writes its half of the node before the exchange.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -27,6 +27,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) coherent buffer No
 #include "shaders/shared/rotate.h"
 
 const uint64_t TREE_END = ~0ul; // the split beside the first and the last leaf
+const uint MOST_STEPS = 2u;     // of a run for one rotation
 
 struct Range
 {
@@ -49,24 +50,27 @@ uint64_t split_after(BuildTree tree, uint position)
     return split_of(tree, position, AT(args.codes, position), AT(args.codes, position + 1u));
 }
 
-// The node at a split has both its halves: `range`, which may be the left one, and `other`.
-void join(NodeWords nodes, inout Range range, bool is_left, NodeHalf other, uint node, uint64_t split, float scale)
+// The node at a split has both its halves, `top` and `other`, and becomes the top. Returns the rotation that this asks for.
+Rotation join(inout NodeHalf top, NodeHalf other, uint node, uint64_t split)
 {
-    NodeHalf own = range.top;
-    range.top = joined_half(own, other, node);
-    if (QUALITY == HIERARCHY_HIGH && is_rotated(range.top))
-    {
-        uint height = rotate(nodes, node, is_left ? own : other, is_left ? other : own, highest_below(split), scale);
-        range.top.below = make_below(leaves_in(range.top.below), height);
-    }
+    top = joined_half(top, other, node);
+    if (QUALITY == HIERARCHY_HIGH && is_rotated(top)) return rotation_of(node, highest_below(split));
+    return no_rotation();
 }
 
-void finish(BuildTree tree, Range root)
+// The next one of the rotation of `top`.
+void rotate_one(NodeWords nodes, inout Rotation rotation, inout NodeHalf top, float scale)
 {
-    AT(tree.bvh, 0).root = root.top.child;
+    rotate_next(nodes, rotation, scale);
+    if (rotation.next == NOTHING) top.below = make_below(leaves_in(top.below), height_of(nodes, rotation.node));
+}
+
+void finish(BuildTree tree, NodeHalf root)
+{
+    AT(tree.bvh, 0).root = root.child;
     AT(tree.bvh, 0).leaf_count = tree.count;
-    AT(tree.bvh, 0).lo = root.top.box.lo;
-    AT(tree.bvh, 0).hi = root.top.box.hi;
+    AT(tree.bvh, 0).lo = root.box.lo;
+    AT(tree.bvh, 0).hi = root.box.hi;
 }
 
 void climb(BuildTree tree, NodeWords nodes, float scale, Range range)
@@ -84,70 +88,123 @@ void climb(BuildTree tree, NodeWords nodes, float scale, Range range)
         uint other = atomicExchange(AT(args.meeting, split), joins_right ? range.first : range.last);
         if (other == NOTHING) return;
         memoryBarrierBuffer();
-        join(nodes, range, joins_right, get_half(nodes, node, joins_right ? 1u : 0u), node, min(left, right), scale);
+        Rotation rotation = join(range.top, get_half(nodes, node, joins_right ? 1u : 0u), node, min(left, right));
+        while (rotation.next != NOTHING) rotate_one(nodes, rotation, range.top, scale);
         if (joins_right) range.last = other;
         else range.first = other;
     }
-    finish(tree, range);
+    finish(tree, range.top);
 }
 
-// The leaves begin .. end - 1.
+// A run's leaves, begin .. end - 1, and how far it has come.
+struct Run
+{
+    uint begin;
+    uint end;
+    uint base;       // ranges before it are to be joined with some before the run
+    uint first;      // the range at hand: its leaves, first .. place,
+    uint place;
+    NodeHalf top;    // its tree
+    uint64_t left;   // and the splits beside it
+    uint64_t right;
+    bool takes_leaf; // it is still to be begun, with the leaf at `place`
+    uint code;       // of the leaf at `place`, then of the one after it
+};
+
+Run first_run(BuildTree tree, uint begin, uint end)
+{
+    Run run;
+    run.begin = begin;
+    run.end = end;
+    run.base = begin;
+    run.place = begin;
+    run.code = AT(args.codes, begin);
+    run.takes_leaf = true;
+    run.left = begin == tree.first ? TREE_END : split_after(tree, begin - 1u);
+    return run;
+}
+
+void take_leaf(BuildTree tree, inout Run run)
+{
+    uint element = AT(args.order, run.place);
+    run.takes_leaf = false;
+    run.first = run.place;
+    run.top.box = load_box(args.boxes, element);
+    run.top.child = LEAF_BIT | ((args.leaves_are_sorted != 0u ? run.place : element) - tree.first);
+    run.top.below = make_below(1u, 0u);
+    run.right = TREE_END;
+    if (run.place != tree.first + tree.count - 1u)
+    {
+        uint next_code = AT(args.codes, run.place + 1u);
+        run.right = split_of(tree, run.place, run.code, next_code);
+        run.code = next_code;
+    }
+}
+
+// Joins the range with the one before it, if that is next, or else leaves it and takes another leaf. A range that waits for
+// one after it has the split before it in the half that is still free.
+Rotation advance(BuildTree tree, NodeWords nodes, inout Run run)
+{
+    if (run.takes_leaf) take_leaf(tree, run);
+    if (run.left == TREE_END && run.right == TREE_END)
+    {
+        run.place = run.end;
+        return no_rotation();
+    }
+    bool joins_left = run.left < run.right;
+    uint node = (joins_left ? run.first - 1u : run.place) - tree.first;
+    uint64_t before = AT(nodes, node * 8u + 4u);
+    put_half(nodes, node, joins_left ? 1u : 0u, run.top);
+    if (joins_left && run.first != run.base)
+    {
+        NodeHalf waiting = get_half(nodes, node, 0u);
+        uint64_t split = run.left;
+        run.left = before;
+        run.first = run.first - leaves_in(waiting.below);
+        return join(run.top, waiting, node, split);
+    }
+    if (joins_left) run.base = run.place + 1u;
+    else if (run.place + 1u != run.end) AT(nodes, node * 8u + 4u) = run.left;
+    run.left = run.right;
+    run.place = run.place + 1u;
+    run.takes_leaf = true;
+    return no_rotation();
+}
+
+// Joins the run's ranges with those of other runs: the first ones, which wait in right halves, from the left, the others,
+// in left ones, from the right.
+void join_ranges(BuildTree tree, NodeWords nodes, float scale, Run run)
+{
+    uint from = run.begin;
+    uint to = run.end;
+    while (from != to)
+    {
+        bool is_first = from != run.base;
+        Range range;
+        range.top = get_half(nodes, (is_first ? from : to) - 1u - tree.first, is_first ? 1u : 0u);
+        uint count = leaves_in(range.top.below);
+        range.first = is_first ? from : to - count;
+        range.last = range.first + count - 1u;
+        from = from + (is_first ? count : 0u);
+        to = to - (is_first ? 0u : count);
+        climb(tree, nodes, scale, range);
+    }
+}
+
+// The leaves begin .. end - 1. In each turn of the loop an invocation takes some leaves or joins, but stops where there is
+// a node to rotate, and rotates one: where invocations go through a program together, each waits little for the others.
 void build_run(BuildTree tree, float scale, uint begin, uint end)
 {
     NodeWords nodes = NodeWords(uint64_t(tree.nodes));
-    uint tree_last = tree.first + tree.count - 1u;
-    uint base = begin; // ranges before it have left the run
-    uint64_t left = begin == tree.first ? TREE_END : split_after(tree, begin - 1u);
-    uint code = AT(args.codes, begin);
-    Range range;
-    for (uint i = begin; i < end; ++i)
+    Run run = first_run(tree, begin, end);
+    Rotation rotation = no_rotation();
+    while (run.place != end)
     {
-        uint element = AT(args.order, i);
-        range.first = i;
-        range.last = i;
-        range.top.box = load_box(args.boxes, element);
-        range.top.child = LEAF_BIT | ((args.leaves_are_sorted != 0u ? i : element) - tree.first);
-        range.top.below = make_below(1u, 0u);
-        uint64_t right = TREE_END;
-        if (i != tree_last)
-        {
-            uint next_code = AT(args.codes, i + 1u);
-            right = split_of(tree, i, code, next_code);
-            code = next_code;
-        }
-        while (range.first != base && left < right)
-        {
-            uint node = range.first - 1u - tree.first;
-            NodeHalf waiting = get_half(nodes, node, 0u);
-            uint64_t split = left;
-            left = AT(nodes, node * 8u + 4u);
-            put_half(nodes, node, 1u, range.top);
-            join(nodes, range, false, waiting, node, split, scale);
-            range.first = range.first - leaves_in(waiting.below);
-        }
-        if (left <= right)
-        {
-            climb(tree, nodes, scale, range);
-            base = i + 1u;
-        }
-        else if (i + 1u != end)
-        {
-            put_half(nodes, i - tree.first, 0u, range.top);
-            AT(nodes, (i - tree.first) * 8u + 4u) = left; // in the half that is still free
-        }
-        left = right;
+        for (uint i = 0u; i < MOST_STEPS && run.place != end && rotation.next == NOTHING; ++i) rotation = advance(tree, nodes, run);
+        if (rotation.next != NOTHING) rotate_one(nodes, rotation, run.top, scale);
     }
-    // What is left waits for ranges of the next run.
-    for (uint first = end; first != base; first = range.first)
-    {
-        if (first != end)
-        {
-            range.top = get_half(nodes, first - 1u - tree.first, 0u);
-            range.first = first - leaves_in(range.top.below);
-            range.last = first - 1u;
-        }
-        climb(tree, nodes, scale, range);
-    }
+    if (begin == tree.first && end == tree.first + tree.count) finish(tree, run.top);
+    else join_ranges(tree, nodes, scale, run);
 }
 
 void main()
