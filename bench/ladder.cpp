@@ -83,7 +83,7 @@ TraceProgramCode minimal_program() {
 std::unique_ptr<TraceProgram> program_of(const AbstractAccel& accel, const std::string& name, uint features,
                                          const TraceProgramCode& code) {
     return std::make_unique<KernelProgram>(accel.context(), accel.view().accel, features, name, code.software,
-                                           code.software_refined);
+                                           code.software_refined, true);
 }
 
 LineUp line_up_of(AbstractAccel& accel, Level level, Query query) {

@@ -6,7 +6,7 @@
 #include "shaders/shared/bridge.glsl"
 #define TWINRAY_GROUP_STACK ONE_LEVEL_STACK_SIZE
 #include "shaders/shared/traverse_records.h"
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = RAY_GROUP_CONSTANT) in;
 layout(constant_id = QUERY_CONSTANT) const uint MINIMAL_QUERY = QUERY_CLOSEST;
 layout(constant_id = HANDS_CONSTANT) const uint MINIMAL_HANDS = 0u;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };
@@ -78,10 +78,17 @@ Hit closest_triangle(SwInstance instance, Ray ray)
 
 void main()
 {
-    uint i = dealt_index(MINIMAL_HANDS);
-    if (i >= ray_count(args.count, args.indirect_count)) return;
+    uint count = ray_count(args.count, args.indirect_count);
+    uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+    uint size = gl_WorkGroupSize.x;
+    uint run = MINIMAL_HANDS == 0u ? 1u : run_of_blocks(count, size, groups);
+    uint first = dealt_group(group_index(), groups, MINIMAL_HANDS) * run * size + gl_LocalInvocationID.x;
     SwScene scene = AT(REF(SwScene)(args.scene), 0);
-    Hit hit = closest_triangle(AT(scene.instances, 0), AT(args.rays, i));
-    if (MINIMAL_QUERY == QUERY_CLOSEST) AT(args.hits, i) = hit;
-    else AT(args.hits, i).hit = hit.hit;
+    for (uint k = 0u; k < run && first + k * size < count; ++k)
+    {
+        uint i = first + k * size;
+        Hit hit = closest_triangle(AT(scene.instances, 0), AT(args.rays, i));
+        if (MINIMAL_QUERY == QUERY_CLOSEST) AT(args.hits, i) = hit;
+        else AT(args.hits, i).hit = hit.hit;
+    }
 }

@@ -75,7 +75,7 @@ std::unique_ptr<TraceProgram> HwTlas::create_program(const TraceProgramCode* cod
     return std::make_unique<KernelProgram>(
         context(), id(), features, code ? code->name : "hwtlas_trace",
         code ? code->ray_query : std::span<const std::uint32_t>(hwtlas_trace_query_spirv),
-        code ? code->ray_query_refined : std::span<const std::uint32_t>(hwtlas_trace_query_refined_spirv));
+        code ? code->ray_query_refined : std::span<const std::uint32_t>(hwtlas_trace_query_refined_spirv), false);
 }
 
 const char* HwTlas::trace_path() const { return context().facts().ray_query ? "ray query" : "ray tracing pipeline"; }

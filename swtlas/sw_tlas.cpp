@@ -231,7 +231,7 @@ std::unique_ptr<TraceProgram> SwTlas::create_program(const TraceProgramCode* cod
     return std::make_unique<KernelProgram>(
         context(), id(), features, code ? code->name : "swtlas_trace",
         code ? code->software : std::span<const std::uint32_t>(swtlas_trace_spirv),
-        code ? code->software_refined : std::span<const std::uint32_t>(swtlas_trace_refined_spirv));
+        code ? code->software_refined : std::span<const std::uint32_t>(swtlas_trace_refined_spirv), true);
 }
 
 SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Checks in SPIR-V that the compiler may not contract what watertightness rests on: in every function that comes from
-shaders/shared/{exact,intersect,refine,transform,certified,exact_double,orient,world_corner}.h, each sum, difference, product and quotient of floats is NoContraction.
+shaders/shared/{exact,ray_space,intersect,refine,transform,certified,exact_double,orient,world_corner}.h, each sum, difference, product and quotient of floats is NoContraction.
 Usage: check_precise.py ROOT MODULE.spv...; prints each function with an operation that is not, and exits with 1; else how
 many operations it has seen in which functions."""
 import pathlib
@@ -9,7 +9,8 @@ import re
 import struct
 import sys
 
-HEADERS = ["exact.h", "intersect.h", "refine.h", "transform.h", "certified.h", "exact_double.h", "orient.h", "world_corner.h"]
+HEADERS = ["exact.h", "ray_space.h", "intersect.h", "refine.h", "transform.h", "certified.h", "exact_double.h", "orient.h",
+           "world_corner.h"]
 # Not decided by bits that two triangles must share.
 EXEMPT = {
     "intersect_triangle_fast": "level fast promises nothing at edges",

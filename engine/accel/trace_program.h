@@ -49,11 +49,19 @@ class TraceProgram {
     std::string name_;
 };
 
-// A compute kernel, one invocation a ray.
+// How trace.comp is launched for so many rays. An invocation has one ray, but on a CPU, by software, a group is one
+// vector and has up to 1024 rays in a row; each thread gets 16 groups if it can, so that none waits long for another.
+struct RayGroups {
+    uint size;  // invocations
+    std::uint64_t count;
+};
+RayGroups groups_for_rays(std::uint64_t rays, const DeviceFacts& device, bool is_software);
+
+// A compute kernel.
 class KernelProgram final : public TraceProgram {
   public:
     KernelProgram(Context& context, std::uint64_t accel, uint features, std::string name,
-                  std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> refined);
+                  std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> refined, bool is_software);
     void prepare(Query query, Level level) const override { kernel(query, level); }
     void record(Commands& commands, const TraceArgs& args, Query query, Level level) const override;
 
@@ -61,7 +69,8 @@ class KernelProgram final : public TraceProgram {
     const Kernel<TraceArgs>& kernel(Query query, Level level) const;
 
     Context& context_;
-    std::span<const std::uint32_t> spirv_, refined_;                                    // up to watertight, and above
+    std::span<const std::uint32_t> spirv_, refined_;  // up to watertight, and above
+    bool is_software_;
     mutable std::array<std::array<std::unique_ptr<Kernel<TraceArgs>>, 4>, 2> kernels_;  // by query and level
 };
 

@@ -130,7 +130,7 @@ std::vector<std::string> robust_faults(const FloatFacts& facts) {
     std::vector<std::string> faults;
     if (facts.product_ulp > 0.5) faults.push_back(text("products are wrong by up to ", facts.product_ulp, " ulp"));
     if (facts.sum_ulp > 0.5) faults.push_back(text("sums are wrong by up to ", facts.sum_ulp, " ulp"));
-    // What the padding of boxes allows for (shaders/shared/intersect.h).
+    // What the padding of boxes allows for (shaders/shared/ray_space.h).
     if (facts.quotient_ulp > 2.5) faults.push_back(text("quotients are wrong by up to ", facts.quotient_ulp, " ulp"));
     if (facts.contracts_precise) faults.emplace_back("precise products are contracted");
     if (!facts.error_free_products) faults.emplace_back("the rounding error of products is not found");

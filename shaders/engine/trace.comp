@@ -1,24 +1,31 @@
 // SPDX-License-Identifier: MIT
-// Traces a batch of rays, one per invocation: a kernel like those of users.
+// Traces a batch of rays: a kernel like those of users. An invocation has one ray, or on a CPU a run of them (groups_for_rays in
+// engine/accel/trace_program.h), neighbours of which find in the caches what those before them met.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/query.glsl"
 #ifdef TWINRAY_PROGRAM
 #include "twinray_program.glsl"
 #endif
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = RAY_GROUP_CONSTANT) in;
 layout(constant_id = QUERY_CONSTANT) const uint TRACE_QUERY = QUERY_CLOSEST;
 layout(constant_id = HANDS_CONSTANT) const uint TRACE_HANDS = 0u;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };
 
 void main()
 {
-    uint place = dealt_index(TRACE_HANDS);
-    if (place >= ray_count(args.count, args.indirect_count)) return;
-    uint i = ray_at(args.order, place);
+    uint count = ray_count(args.count, args.indirect_count);
+    uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+    uint size = gl_WorkGroupSize.x;
+    uint run = TRACE_HANDS == 0u ? 1u : run_of_blocks(count, size, groups);
+    uint first = dealt_group(group_index(), groups, TRACE_HANDS) * run * size + gl_LocalInvocationID.x;
     TraceOptions options = trace_options(args.mask, args.flags, TRACE_QUERY);
     options.user_data = args.user_data;
-    Hit hit = trace(args.scene, AT(args.rays, i), options);
-    if ((TRACE_FEATURES & FEATURE_HITS) != 0u) AT(args.hits, i) = hit;
-    else AT(args.hits, i).hit = hit.hit;
+    for (uint k = 0u; k < run && first + k * size < count; ++k)
+    {
+        uint i = ray_at(args.order, first + k * size);
+        Hit hit = trace(args.scene, AT(args.rays, i), options);
+        if ((TRACE_FEATURES & FEATURE_HITS) != 0u) AT(args.hits, i) = hit;
+        else AT(args.hits, i).hit = hit.hit;
+    }
 }

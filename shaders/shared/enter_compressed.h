@@ -38,7 +38,7 @@ FUNC float distance_along(uint planes, uint shift, float scale, float base)
     return FMA(float(planes >> shift & 0xffu), scale, base);
 }
 
-// The place of child `shift / 8` of the node in order, between t_min and t_max in t * ray.t_scale: as cross_box of intersect.h.
+// The place of child `shift / 8` of the node in order, between t_min and t_max in t * ray.t_scale: as cross_box of ray_space.h.
 FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, uint query)
 {
     float near_x = distance_along(grid.near_planes.x, shift, grid.near_scale.x, grid.near_base.x);

@@ -6,17 +6,16 @@
 
 const float HALF_ULP = 5.9604644775390625e-08f; // u = 2^-24, the unit roundoff of float32
 
+// A number with the first 12 bits of its significand. What is left has 12, too, so that products of two parts are exact.
+FUNC float high_part(float x) { return uintBitsToFloat(floatBitsToUint(x) & 0xfffff000u); }
+
 // The rounding error of the product p = fl(a b): a b = p + error, exactly, barring over- and underflow.
-// Dekker, "A floating-point technique for extending the available precision", 1971, with Veltkamp's splitting.
+// Dekker, "A floating-point technique for extending the available precision", 1971, but numbers are cut, not rounded, in two.
 FUNC float product_error(float a, float b, float p)
 {
-    PRECISE float a_scaled = 4097.0f * a;
-    PRECISE float a_rest = a_scaled - a;
-    PRECISE float a_high = a_scaled - a_rest;
+    float a_high = high_part(a);
+    float b_high = high_part(b);
     PRECISE float a_low = a - a_high;
-    PRECISE float b_scaled = 4097.0f * b;
-    PRECISE float b_rest = b_scaled - b;
-    PRECISE float b_high = b_scaled - b_rest;
     PRECISE float b_low = b - b_high;
     PRECISE float high_high = a_high * b_high;
     PRECISE float high_low = a_high * b_low;
@@ -80,7 +79,7 @@ FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing, INOUT(floa
     return s2;
 }
 
-// The same, rounded once; above 2^115, where products cannot be split, the plain sum.
+// The same, rounded once; where something overflows, the plain sum.
 FUNC float accurate_dot(vec3 a, vec3 b, float c)
 {
     float missing = 0.0f;

@@ -25,8 +25,9 @@ const uint LEVEL_REFINED = 2u;    // and float64 for t, u, v of the hit
 const uint LEVEL_CERTIFIED = 3u;  // float64 decides what is hit, and first
 
 // Ids of the specialisation constants.
-const uint QUERY_CONSTANT = 0u;      // QUERY_* of a batch kernel
-const uint FEATURES_CONSTANT = 100u; // of every kernel that includes twinray/query.glsl
+const uint QUERY_CONSTANT = 0u;       // QUERY_* of a batch kernel
+const uint FEATURES_CONSTANT = 100u;  // of every kernel that includes twinray/query.glsl
 const uint LEVEL_CONSTANT = 101u;
-const uint HANDS_CONSTANT = 102u;    // of a batch kernel: see dealt_group
+const uint HANDS_CONSTANT = 102u;     // of a batch kernel: see dealt_group
+const uint RAY_GROUP_CONSTANT = 103u; // of a batch kernel: invocations of a group
 #endif

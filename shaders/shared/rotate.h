@@ -145,8 +145,8 @@ FUNC Rotated rotate_node(NodeWords nodes, uint node, NodeHalf a, NodeHalf b, uin
     // One child's child on `side` goes up, and what was beside it, or in an exchange its child, down in its place.
     bool is_of_b = move < 2u;
     bool is_exchange = move > 3u;
-    bool is_second = (move & 1u) != 0u;
     uint side = move & 1u;
+    bool is_second = side == 1u;
     NodeHalf first = either(is_of_b, b0, a0);
     NodeHalf second = either(is_of_b, b1, a1);
     NodeHalf up = either(is_second, second, first);
@@ -248,6 +248,7 @@ FUNC void rotate_next(NodeWords nodes, INOUT(Rotation) rotation, float scale)
     }
     choose_next(rotation);
 }
+
 // All at once. Returns the node's height.
 FUNC uint rotate(NodeWords nodes, uint node, uint limit, float scale)
 {

@@ -129,7 +129,11 @@ FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, fl
     return is_met && (inside.culled == 0u || inside.culled != (hit.along ? CULL_BACK : CULL_FRONT));
 }
 
-FUNC bool comes_after(TriangleHit hit, float t_min) { return hit.t > t_min || (hit.t == t_min && hit.t_low > 0.0f); }
+FUNC bool comes_after(TriangleHit hit, float t_min, TraceOptions options)
+{
+    if (options.level < LEVEL_CERTIFIED) return hit.t > t_min;
+    return hit.t > t_min || (hit.t == t_min && hit.t_low > 0.0f);
+}
 
 const uint NO_ENTRY = 0x7f800000u; // infinity, and what is larger: no hit is reported there
 
@@ -199,7 +203,8 @@ FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_inde
 FUNC bool visit_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     TriangleHit hit;
-    bool is_first = intersect_leaf(leaf, inside, space, search.t_min, search.t_best, options, hit) && comes_after(hit, search.t_min) &&
+    bool is_first = intersect_leaf(leaf, inside, space, search.t_min, search.t_best, options, hit) &&
+                    comes_after(hit, search.t_min, options) &&
                     comes_before(hit, inside.index, leaf.primitive_index, search, options);
     if ((options.features & FEATURE_FILTERS) != 0u && is_first && inside.is_filtered)
         is_first = accept_hit(candidate_of(inside, leaf.primitive_index, options), t_of_given(hit.t, options), vec2(hit.u, hit.v));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// From floats to integers.
 #ifndef TWINRAY_SHARED_WHOLE_H
 #define TWINRAY_SHARED_WHOLE_H
 

@@ -21,4 +21,11 @@ FUNC uint dealt_group(uint index, uint count, uint hands)
     uint share = max(count / hands, 1u);
     return index < share * hands ? index % share * hands + index / share : index;
 }
+
+// How many of `items` that come in blocks of `size` each of `groups` does, one block after the other.
+FUNC uint run_of_blocks(uint items, uint size, uint groups)
+{
+    uint blocks = items / size + (items % size == 0u ? 0u : 1u);
+    return blocks / groups + (blocks % groups == 0u ? 0u : 1u);
+}
 #endif

@@ -52,7 +52,7 @@ FUNC float dot_below(vec3 a, vec3 b, float c)
     float missing = 0.0f;
     float missing_size = 0.0f;
     PRECISE float sum = doubled_dot(a, b, c, missing, missing_size);
-    // Veltkamp's splitting overflows near the end of the range; then plain rounding and a wide step must do.
+    // Errors of what overflows are unknown; then plain rounding and a wide step must do.
     if (!(abs(missing) < uintBitsToFloat(0x7f800000u))) return sum - abs(sum) * 2.384185791015625e-07f;
     PRECISE float lowest = missing - missing_size * 4.76837158203125e-07f; // 2^-21: 8 roundings
     PRECISE float result = sum + lowest;

@@ -2,8 +2,8 @@
 // Topology and boxes in one bottom-up pass: after Apetrei, "Fast and Simple Agglomerative LBVH Construction", 2014.
 //
 // Sorted leaves i and i + 1 are separated by their split: the highest bit in which their codes differ, or, where the
-// codes are equal, their fine codes, if they are sorted by those, or their positions. A finished range [first, last] is joined with the neighbour across the lower of
-// the splits at its ends, and the inner node is named after that split:
+// codes are equal, their fine codes, if they are sorted by those, or their positions. A finished range [first, last] is
+// joined with the neighbour across the lower of the splits at its ends, and the inner node is named after that split:
 //
 //     leaf    0    1    2    3            split 1 is the highest: node 1 is the root.
 //     code  000  001  100  101            leaf 0 meets leaf 1 at node 0, leaf 2 meets leaf 3 at node 2,
@@ -27,7 +27,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) coherent buffer No
 #include "shaders/shared/rotate.h"
 
 const uint64_t TREE_END = ~0ul; // the split beside the first and the last leaf
-const uint MOST_STEPS = 2u;     // of a run for one rotation
+const uint MOST_STEPS = 2u;     // leaves or joins in one turn of a run
 
 struct Range
 {
@@ -48,6 +48,10 @@ uint64_t split_of(BuildTree tree, uint position, uint code, uint next_code)
 uint64_t split_after(BuildTree tree, uint position)
 {
     return split_of(tree, position, AT(args.codes, position), AT(args.codes, position + 1u));
+}
+uint64_t split_before(BuildTree tree, uint position)
+{
+    return position == tree.first ? TREE_END : split_after(tree, position - 1u);
 }
 
 // The node at a split has both its halves, `top` and `other`, and becomes the top. Returns the rotation that this asks for.
@@ -78,7 +82,7 @@ void climb(BuildTree tree, NodeWords nodes, float scale, Range range)
     uint tree_last = tree.first + tree.count - 1u;
     while (range.first != tree.first || range.last != tree_last)
     {
-        uint64_t left = range.first == tree.first ? TREE_END : split_after(tree, range.first - 1u);
+        uint64_t left = split_before(tree, range.first);
         uint64_t right = range.last == tree_last ? TREE_END : split_after(tree, range.last);
         bool joins_right = right < left;
         uint split = joins_right ? range.last : range.first - 1u;
@@ -120,7 +124,7 @@ Run first_run(BuildTree tree, uint begin, uint end)
     run.place = begin;
     run.code = AT(args.codes, begin);
     run.takes_leaf = true;
-    run.left = begin == tree.first ? TREE_END : split_after(tree, begin - 1u);
+    run.left = split_before(tree, begin);
     return run;
 }
 
@@ -141,8 +145,7 @@ void take_leaf(BuildTree tree, inout Run run)
     }
 }
 
-// Joins the range with the one before it, if that is next, or else leaves it and takes another leaf. A range that waits for
-// one after it has the split before it in the half that is still free.
+// Joins the range with the one before it, if that is next, or else leaves it and takes another leaf.
 Rotation advance(BuildTree tree, NodeWords nodes, inout Run run)
 {
     if (run.takes_leaf) take_leaf(tree, run);
@@ -153,18 +156,16 @@ Rotation advance(BuildTree tree, NodeWords nodes, inout Run run)
     }
     bool joins_left = run.left < run.right;
     uint node = (joins_left ? run.first - 1u : run.place) - tree.first;
-    uint64_t before = AT(nodes, node * 8u + 4u);
     put_half(nodes, node, joins_left ? 1u : 0u, run.top);
     if (joins_left && run.first != run.base)
     {
         NodeHalf waiting = get_half(nodes, node, 0u);
         uint64_t split = run.left;
-        run.left = before;
         run.first = run.first - leaves_in(waiting.below);
+        run.left = split_before(tree, run.first);
         return join(run.top, waiting, node, split);
     }
     if (joins_left) run.base = run.place + 1u;
-    else if (run.place + 1u != run.end) AT(nodes, node * 8u + 4u) = run.left;
     run.left = run.right;
     run.place = run.place + 1u;
     run.takes_leaf = true;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// How groups are dealt out to the threads of a CPU.
+// How work is shared among groups, and groups among the threads of a CPU.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
 #include <vector>
 
-#include "engine/accel/trace_args.h"
+#include "engine/accel/trace_program.h"
 
 namespace twinray {
 namespace {
@@ -41,6 +41,79 @@ TEST(DealtGroups, StayWithoutTwoHandsAndWhereGroupsAreFewer) {
     EXPECT_EQ(dealt(1000, 0), in_order(1000));
     EXPECT_EQ(dealt(1000, 1), in_order(1000));
     EXPECT_EQ(dealt(5, 16), in_order(5));
+}
+
+TEST(RunsOfBlocks, HoldAllItemsAndLeaveNoGroupWithoutNeed) {
+    for (const uint items : {0u, 1u, 15u, 16u, 17u, 1000u, 262'144u, 4'294'967'295u})
+        for (const uint size : {8u, 16u, 64u})
+            for (const uint groups : {1u, 2u, 7u, 32u, 4096u}) {
+                const std::uint64_t run = run_of_blocks(items, size, groups),
+                                    least = std::uint64_t{items} / size / groups;
+                EXPECT_GE(run * groups * size, items) << items << " by " << size << " in " << groups;
+                EXPECT_LE(run, least + 1) << items << " by " << size << " in " << groups;
+            }
+    EXPECT_EQ(run_of_blocks(64, 64, 1), 1u);
+    EXPECT_EQ(run_of_blocks(65, 64, 1), 2u);
+}
+
+// As Kernel::dispatch_groups launches them, and as trace.comp finds its rays.
+std::uint64_t launched(std::uint64_t groups) {
+    return groups <= GROUPS_PER_ROW ? groups : (groups + GROUPS_PER_ROW - 1) / GROUPS_PER_ROW * GROUPS_PER_ROW;
+}
+
+TEST(GroupsForRays, TraceEachRayOnce) {
+    DeviceFacts cpu;
+    cpu.subgroup_size = 8;
+    cpu.cpu_threads = 3;
+    for (const uint rays : {1u, 7u, 8u, 9u, 500u, 1024u, 4097u, 100'000u}) {
+        const RayGroups launch = groups_for_rays(rays, cpu, true);
+        const auto groups = static_cast<uint>(launched(launch.count));
+        for (const uint count : {rays, rays / 3, 0u}) {  // the device may know of fewer
+            std::vector<uint> traced(count, 0);
+            const uint run = run_of_blocks(count, launch.size, groups);
+            for (uint i = 0; i < groups * launch.size; ++i) {
+                const uint group = dealt_group(i / launch.size, groups, cpu.cpu_threads);
+                const uint first = group * run * launch.size + i % launch.size;
+                for (uint k = 0; k < run && first + k * launch.size < count; ++k) ++traced[first + k * launch.size];
+            }
+            EXPECT_EQ(traced, std::vector<uint>(count, 1)) << count << " of " << rays;
+        }
+    }
+}
+
+TEST(GroupsForRays, CountInThirtyTwoBits) {
+    DeviceFacts cpu;
+    for (const uint lanes : {4u, 8u, 16u})
+        for (const uint threads : {1u, 2u, 64u}) {
+            cpu.subgroup_size = lanes;
+            cpu.cpu_threads = threads;
+            const RayGroups launch = groups_for_rays(UINT32_MAX, cpu, true);
+            const std::uint64_t groups = launched(launch.count);
+            const std::uint64_t run = run_of_blocks(UINT32_MAX, launch.size, static_cast<uint>(groups));
+            EXPECT_LE(groups * run * launch.size, std::uint64_t{1} << 32)
+                << lanes << " lanes, " << threads << " threads";
+        }
+}
+
+TEST(GroupsForRays, AreOneForSixtyFourButOnCpusBySoftware) {
+    DeviceFacts gpu, cpu;
+    gpu.subgroup_size = 32;
+    cpu.subgroup_size = 16;
+    cpu.cpu_threads = 2;
+    for (const bool is_software : {false, true}) {
+        EXPECT_EQ(groups_for_rays(1000, gpu, is_software).size, 64u);
+        EXPECT_EQ(groups_for_rays(1000, gpu, is_software).count, 16u);
+    }
+    EXPECT_EQ(groups_for_rays(1000, cpu, false).count, 16u);
+    EXPECT_EQ(groups_for_rays(1000, cpu, true).size, 16u);
+    EXPECT_EQ(groups_for_rays(1'000'000, cpu, true).count, 977u) << "1024 rays each";
+    EXPECT_EQ(groups_for_rays(10'000, cpu, true).count, 32u) << "16 for each thread";
+    EXPECT_EQ(groups_for_rays(40, cpu, true).count, 3u) << "no more than there are vectors of rays";
+    EXPECT_EQ(groups_for_rays(1, cpu, true).count, 1u);
+    cpu.subgroup_size = 6;
+    EXPECT_EQ(groups_for_rays(1, cpu, true).size, 4u) << "a power of two";
+    cpu.subgroup_size = 0;
+    EXPECT_EQ(groups_for_rays(1, cpu, true).size, 1u);
 }
 
 }  // namespace
