@@ -42,15 +42,26 @@ Hit closest_triangle(SwInstance instance, Ray ray)
         else
         {
             BvhTriangle triangle = primitive_of(record);
-            TriangleHit hit;
-            if (intersect_triangle(triangle.v0, triangle.v1, triangle.v2, space, hit) && hit.t > t_min &&
-                (hit.t < t_best || (hit.t == t_best && triangle.primitive_index < primitive_index && primitive_index != NOTHING)))
+            if (MINIMAL_QUERY == QUERY_ANY)
             {
-                t_best = hit.t;
-                u = hit.u;
-                v = hit.v;
-                primitive_index = triangle.primitive_index;
-                if (MINIMAL_QUERY == QUERY_ANY) break;
+                bool along = false;
+                if (triangle_occludes(triangle.v0, triangle.v1, triangle.v2, space, t_min, t_best, along))
+                {
+                    primitive_index = triangle.primitive_index;
+                    break;
+                }
+            }
+            else
+            {
+                TriangleHit hit;
+                if (intersect_triangle(triangle.v0, triangle.v1, triangle.v2, space, hit) && hit.t > t_min &&
+                    (hit.t < t_best || (hit.t == t_best && triangle.primitive_index < primitive_index && primitive_index != NOTHING)))
+                {
+                    t_best = hit.t;
+                    u = hit.u;
+                    v = hit.v;
+                    primitive_index = triangle.primitive_index;
+                }
             }
         }
         if (descend) continue;
@@ -87,8 +98,8 @@ void main()
     for (uint k = 0u; k < run && first + k * size < count; ++k)
     {
         uint i = first + k * size;
-        Hit hit = closest_triangle(AT(scene.instances, 0), AT(args.rays, i));
-        if (MINIMAL_QUERY == QUERY_CLOSEST) AT(args.hits, i) = hit;
+        Hit hit = closest_triangle(AT(scene.instances, 0), load_ray(args.rays, i));
+        if (MINIMAL_QUERY == QUERY_CLOSEST) store_hit(args.hits, i, hit);
         else AT(args.hits, i).hit = hit.hit;
     }
 }

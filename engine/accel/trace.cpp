@@ -61,9 +61,11 @@ void AbstractAccel::check_desc(const AccelView& view, const TraceDesc& desc) con
     if (view.accel != id_) fail(name_, ": trace: the view belongs to another accelerator");
     if (view.revision != revision_)
         fail(name_, ": trace: stale view of revision ", view.revision, "; the accelerator is at ", revision_);
-    if (desc.rays.address % 4 || desc.hits.address % 4 || desc.indirect_count.address % 4)
-        fail(name_, ": trace: rays at ", desc.rays.address, ", hits at ", desc.hits.address, " and indirect count at ",
-             desc.indirect_count.address, " must be aligned to 4 bytes");
+    if (desc.rays.address % 8 || desc.hits.address % 8)
+        fail(name_, ": trace: rays at ", desc.rays.address, " and hits at ", desc.hits.address,
+             " must be aligned to 8 bytes");
+    if (desc.indirect_count.address % 4)
+        fail(name_, ": trace: indirect count at ", desc.indirect_count.address, " must be aligned to 4 bytes");
     if (desc.count > UINT32_MAX) fail(name_, ": trace: ", desc.count, " rays; at most ", UINT32_MAX, " in one call");
     if (const Capability level = capability(feature_of(desc.level)); level.support == Support::unsupported)
         fail(name_, ": trace: ", name_of(level.feature), " is unsupported: ", level.note);

@@ -78,10 +78,11 @@ enum class Cull : std::uint8_t { none, back, front };
 constexpr uint flags_of(Cull cull) { return cull == Cull::none ? 0 : cull == Cull::back ? CULL_BACK : CULL_FRONT; }
 
 struct TraceDesc {
-    Ref<Ray> rays = {};  // device address of count rays, 4-byte aligned
-    Ref<Hit> hits = {};  // device address of count hits, written
+    Ref<Ray> rays = {};  // device address of count rays, 8-byte aligned
+    Ref<Hit> hits = {};  // device address of count hits, 8-byte aligned; written
     std::uint64_t count = 0;
-    Uints indirect_count = {};  // device address of a uint, or 0: traces min(count, that many) rays, hits beyond stay
+    // Device address of a uint, 4-byte aligned, or 0: traces min(count, that many) rays; hits beyond stay.
+    Uints indirect_count = {};
     Query query = Query::closest;
     std::uint8_t mask = 0xff;
     Cull cull = Cull::none;

@@ -24,8 +24,8 @@ void main()
     for (uint k = 0u; k < run && first + k * size < count; ++k)
     {
         uint i = ray_at(args.order, first + k * size);
-        Hit hit = trace(args.scene, AT(args.rays, i), options);
-        if ((TRACE_FEATURES & FEATURE_HITS) != 0u) AT(args.hits, i) = hit;
+        Hit hit = trace(args.scene, load_ray(args.rays, i), options);
+        if ((TRACE_FEATURES & FEATURE_HITS) != 0u) store_hit(args.hits, i, hit);
         else AT(args.hits, i).hit = hit.hit;
     }
 }

@@ -19,9 +19,11 @@
     layout(buffer_reference, scalar, buffer_reference_align = alignment) buffer name { T items[]; }
 #define FEATURE(id, name) layout(constant_id = id) const bool name = true;
 
-// Reads the two floats that lie in one 64-bit word, low word first.
-#define FLOATS(word) uintBitsToFloat(unpackUint2x32(word))
-#define UINTS(word) unpackUint2x32(word)
+// The two numbers that lie in one 64-bit word, the low one first. That one by way of the upper half: where a vector holds a word
+// in two places, drivers on CPUs take five operations for the lower halves.
+uvec2 uints_of(uint64_t word) { return uvec2(unpackUint2x32(word << 32u).y, unpackUint2x32(word).y); }
+#define FLOATS(word) uintBitsToFloat(uints_of(word))
+#define UINTS(word) uints_of(word)
 #define WORD(low, high) packUint2x32(uvec2(low, high))
 // For where either rounding will do.
 #define FMA(a, b, c) fma(a, b, c)

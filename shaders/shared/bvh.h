@@ -141,14 +141,15 @@ FUNC BvhNode load_node(REF(BvhNode) nodes, uint index)
     uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3);
     uint64_t w4 = AT(words, 4), w5 = AT(words, 5), w6 = AT(words, 6), w7 = AT(words, 7);
     BvhNode node;
-    node.lo0 = vec3(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x);
-    node.child0 = UINTS(w1).y;
-    node.hi0 = vec3(FLOATS(w2).x, FLOATS(w2).y, FLOATS(w3).x);
-    node.below0 = UINTS(w3).y;
-    node.lo1 = vec3(FLOATS(w4).x, FLOATS(w4).y, FLOATS(w5).x);
-    node.child1 = UINTS(w5).y;
-    node.hi1 = vec3(FLOATS(w6).x, FLOATS(w6).y, FLOATS(w7).x);
-    node.below1 = UINTS(w7).y;
+    uvec2 u1 = UINTS(w1), u3 = UINTS(w3), u5 = UINTS(w5), u7 = UINTS(w7);
+    node.lo0 = vec3(FLOATS(w0), uintBitsToFloat(u1.x));
+    node.child0 = u1.y;
+    node.hi0 = vec3(FLOATS(w2), uintBitsToFloat(u3.x));
+    node.below0 = u3.y;
+    node.lo1 = vec3(FLOATS(w4), uintBitsToFloat(u5.x));
+    node.child1 = u5.y;
+    node.hi1 = vec3(FLOATS(w6), uintBitsToFloat(u7.x));
+    node.below1 = u7.y;
     return node;
 }
 
@@ -158,17 +159,18 @@ FUNC SwInstance load_instance(REF(SwInstance) instances, uint index)
     uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4), w5 = AT(words, 5);
     uint64_t w10 = AT(words, 10), w11 = AT(words, 11), w12 = AT(words, 12);
     SwInstance instance;
-    instance.world_to_object[0] = vec4(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x, FLOATS(w1).y);
-    instance.world_to_object[1] = vec4(FLOATS(w2).x, FLOATS(w2).y, FLOATS(w3).x, FLOATS(w3).y);
-    instance.world_to_object[2] = vec4(FLOATS(w4).x, FLOATS(w4).y, FLOATS(w5).x, FLOATS(w5).y);
+    instance.world_to_object[0] = vec4(FLOATS(w0), FLOATS(w1));
+    instance.world_to_object[1] = vec4(FLOATS(w2), FLOATS(w3));
+    instance.world_to_object[2] = vec4(FLOATS(w4), FLOATS(w5));
     instance.nodes = REF(BvhNode)(AT(words, 6));
     instance.triangles = REF(BvhTriangle)(AT(words, 7));
     instance.records = REF(CompressedRecord)(AT(words, 8));
     instance.record_boxes = REF(LeafBox)(AT(words, 9));
-    instance.root = UINTS(w10).x;
-    instance.custom_index_mask = UINTS(w10).y;
-    instance.flags = UINTS(w11).x;
-    instance.kind = UINTS(w11).y;
+    uvec2 root_mask = UINTS(w10), flags_kind = UINTS(w11);
+    instance.root = root_mask.x;
+    instance.custom_index_mask = root_mask.y;
+    instance.flags = flags_kind.x;
+    instance.kind = flags_kind.y;
     instance.extent = FLOATS(w12).x;
     instance.reserved = 0u;
     return instance;
@@ -178,9 +180,10 @@ FUNC LeafBox load_box(REF(LeafBox) boxes, uint index)
 {
     Words64 words = Words64(uint64_t(boxes) + uint64_t(index) * 24ul);
     uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2);
+    vec2 f1 = FLOATS(w1);
     LeafBox box;
-    box.lo = vec3(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x);
-    box.hi = vec3(FLOATS(w1).y, FLOATS(w2).x, FLOATS(w2).y);
+    box.lo = vec3(FLOATS(w0), f1.x);
+    box.hi = vec3(f1.y, FLOATS(w2));
     return box;
 }
 
@@ -188,11 +191,13 @@ FUNC BvhTriangle load_triangle(REF(BvhTriangle) triangles, uint index)
 {
     Words64 words = Words64(uint64_t(triangles) + uint64_t(index) * 40ul);
     uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4);
+    vec2 f1 = FLOATS(w1);
+    uvec2 u4 = UINTS(w4);
     BvhTriangle triangle;
-    triangle.v0 = vec3(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x);
-    triangle.v1 = vec3(FLOATS(w1).y, FLOATS(w2).x, FLOATS(w2).y);
-    triangle.v2 = vec3(FLOATS(w3).x, FLOATS(w3).y, FLOATS(w4).x);
-    triangle.primitive_index = UINTS(w4).y;
+    triangle.v0 = vec3(FLOATS(w0), f1.x);
+    triangle.v1 = vec3(f1.y, FLOATS(w2));
+    triangle.v2 = vec3(FLOATS(w3), uintBitsToFloat(u4.x));
+    triangle.primitive_index = u4.y;
     return triangle;
 }
 #endif

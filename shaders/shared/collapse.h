@@ -22,12 +22,12 @@ BUFFER_OF(CollapseItem, 4);
 FUNC CollapseItem load_item(REF(CollapseItem) items, uint index)
 {
     Words64 words = Words64(uint64_t(items) + uint64_t(index) * 16ul);
-    uint64_t w0 = AT(words, 0), w1 = AT(words, 1);
+    uvec2 u0 = UINTS(AT(words, 0)), u1 = UINTS(AT(words, 1));
     CollapseItem item;
-    item.tree = UINTS(w0).x;
-    item.place = UINTS(w0).y;
-    item.record = UINTS(w1).x;
-    item.below = UINTS(w1).y;
+    item.tree = u0.x;
+    item.place = u0.y;
+    item.record = u1.x;
+    item.below = u1.y;
     return item;
 }
 FUNC void store_item(REF(CollapseItem) items, uint index, CollapseItem item)

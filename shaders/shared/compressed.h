@@ -24,18 +24,15 @@ FUNC bool is_leaf(CompressedRecord record) { return (record.a.w & LEAF_BIT) != 0
 FUNC bool is_instance(CompressedRecord leaf) { return (leaf.a.w & INSTANCE_BIT) != 0u; }
 FUNC uint index_in(CompressedRecord leaf) { return leaf.a.w & ~(LEAF_BIT | INSTANCE_BIT); } // of the primitive or instance
 
-// By way of the upper half: where a vector holds a word in two places, drivers on CPUs take five operations for the lower halves.
-FUNC uint lower_half(uint64_t word) { return UINTS(word << 32u).y; }
-
 FUNC CompressedRecord load_record(REF(CompressedRecord) records, uint index)
 {
     // In 64-bit components: drivers on CPUs pay per component, not per byte.
     Words64 words = Words64(uint64_t(records) + uint64_t(index) * 40ul);
     uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4);
     CompressedRecord record;
-    record.a = uvec4(lower_half(w0), UINTS(w0).y, lower_half(w1), UINTS(w1).y);
-    record.b = uvec4(lower_half(w2), UINTS(w2).y, lower_half(w3), UINTS(w3).y);
-    record.c = uvec2(lower_half(w4), UINTS(w4).y);
+    record.a = uvec4(UINTS(w0), UINTS(w1));
+    record.b = uvec4(UINTS(w2), UINTS(w3));
+    record.c = UINTS(w4);
     return record;
 }
 FUNC void store_record(REF(CompressedRecord) records, uint index, CompressedRecord record)

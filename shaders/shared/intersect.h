@@ -121,22 +121,47 @@ FUNC bool is_any_zero(float a, float b, float c)
     return min(min(floatBitsToUint(a) << 1u, floatBitsToUint(b) << 1u), floatBitsToUint(c) << 1u) < 0x1000000u;
 }
 
-// Whether the ray's line meets the triangle (a, b, c), and where. No interval test.
+// A triangle as a ray sees it: its sheared corners, and twice the signed areas between the ray and its edges.
+struct SeenTriangle
+{
+    vec3 a;
+    vec3 b;
+    vec3 c;
+    float area_a;
+    float area_b;
+    float area_c;
+};
+
+FUNC SeenTriangle seen_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space)
+{
+    SeenTriangle seen;
+    seen.a = sheared(v0, space);
+    seen.b = sheared(v1, space);
+    seen.c = sheared(v2, space);
+    seen.area_a = edge_function(seen.b, seen.c);
+    seen.area_b = edge_function(seen.c, seen.a);
+    seen.area_c = edge_function(seen.a, seen.b);
+    return seen;
+}
+
+// Whether the ray's line meets it.
+FUNC bool is_around_ray(SeenTriangle seen)
+{
+    bool is_met = (seen.area_a < 0.0f) == (seen.area_b < 0.0f) && (seen.area_b < 0.0f) == (seen.area_c < 0.0f);
+    if (is_any_zero(seen.area_a, seen.area_b, seen.area_c))
+    {
+        int side_a = exact_side(seen.b, seen.c);
+        is_met = side_a != 0 && side_a == exact_side(seen.c, seen.a) && side_a == exact_side(seen.a, seen.b);
+    }
+    return is_met;
+}
+
+// Whether the ray's line meets the triangle (v0, v1, v2), and where. No interval test.
 FUNC bool intersect_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space, INOUT(TriangleHit) hit)
 {
-    vec3 a = sheared(v0, space);
-    vec3 b = sheared(v1, space);
-    vec3 c = sheared(v2, space);
-    float area_a = edge_function(b, c);
-    float area_b = edge_function(c, a);
-    float area_c = edge_function(a, b);
-    bool is_met = (area_a < 0.0f) == (area_b < 0.0f) && (area_b < 0.0f) == (area_c < 0.0f);
-    if (is_any_zero(area_a, area_b, area_c))
-    {
-        int side_a = exact_side(b, c);
-        is_met = side_a != 0 && side_a == exact_side(c, a) && side_a == exact_side(a, b);
-    }
-    if (is_met) hit = crossing(a, b, c, space.shear_z);
+    SeenTriangle seen = seen_triangle(v0, v1, v2, space);
+    bool is_met = is_around_ray(seen);
+    if (is_met) hit = crossing(seen.a, seen.b, seen.c, space.shear_z);
     return is_met;
 }
 

@@ -11,7 +11,7 @@ struct Ray
     vec3 direction;
     float t_max;      // may be +infinity
 };
-BUFFER_OF(Ray, 4);
+BUFFER_OF(Ray, 8);
 
 // What a ray met. The point is (1-u-v) v0 + u v1 + v v2. A miss has hit = 0, t = -1 and zeros.
 struct Hit
@@ -25,7 +25,7 @@ struct Hit
     uint instance_index;  // position in the accelerator's instance array
     uint flags;           // 0, kept for later use
 };
-BUFFER_OF(Hit, 4);
+BUFFER_OF(Hit, 8);
 
 const uint QUERY_CLOSEST = 0u; // the hit with smallest t, then lowest (instance, primitive)
 const uint QUERY_ANY = 1u;     // whichever hit is found first
@@ -54,6 +54,27 @@ FUNC Hit miss()
     hit.instance_index = 0u;
     hit.flags = 0u;
     return hit;
+}
+
+// In 64-bit components: drivers on CPUs pay per component, not per byte.
+FUNC Ray load_ray(REF(Ray) rays, uint index)
+{
+    Words64 words = Words64(uint64_t(rays) + uint64_t(index) * 32ul);
+    vec2 z_min = FLOATS(AT(words, 1)), z_max = FLOATS(AT(words, 3));
+    Ray ray;
+    ray.origin = vec3(FLOATS(AT(words, 0)), z_min.x);
+    ray.t_min = z_min.y;
+    ray.direction = vec3(FLOATS(AT(words, 2)), z_max.x);
+    ray.t_max = z_max.y;
+    return ray;
+}
+FUNC void store_hit(REF(Hit) hits, uint index, Hit hit)
+{
+    Words64 words = Words64(uint64_t(hits) + uint64_t(index) * 32ul);
+    AT(words, 0) = WORD(hit.hit, floatBitsToUint(hit.t));
+    AT(words, 1) = WORD(hit.primitive_index, hit.custom_index);
+    AT(words, 2) = WORD(floatBitsToUint(hit.u), floatBitsToUint(hit.v));
+    AT(words, 3) = WORD(hit.instance_index, hit.flags);
 }
 
 FUNC bool is_finite(vec3 v)

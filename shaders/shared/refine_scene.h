@@ -41,7 +41,7 @@ FUNC GivenMesh load_given_mesh(REF(RefineInstance) instances, uint index)
     {
         uint64_t xy = AT(words, 2u * row);
         uint64_t zw = AT(words, 2u * row + 1u);
-        mesh.object_to_world[row] = vec4(FLOATS(xy).x, FLOATS(xy).y, FLOATS(zw).x, FLOATS(zw).y);
+        mesh.object_to_world[row] = vec4(FLOATS(xy), FLOATS(zw));
     }
     mesh.positions = Floats(AT(words, 6));
     mesh.indices = Uints(AT(words, 7));

@@ -26,11 +26,12 @@ FUNC NodeHalf get_half(NodeWords nodes, uint node, uint side)
 {
     uint at = node * 8u + side * 4u;
     uint64_t w0 = AT(nodes, at), w1 = AT(nodes, at + 1u), w2 = AT(nodes, at + 2u), w3 = AT(nodes, at + 3u);
+    uvec2 u1 = UINTS(w1), u3 = UINTS(w3);
     NodeHalf found;
-    found.box.lo = vec3(FLOATS(w0).x, FLOATS(w0).y, FLOATS(w1).x);
-    found.box.hi = vec3(FLOATS(w2).x, FLOATS(w2).y, FLOATS(w3).x);
-    found.child = UINTS(w1).y;
-    found.below = UINTS(w3).y;
+    found.box.lo = vec3(FLOATS(w0), uintBitsToFloat(u1.x));
+    found.box.hi = vec3(FLOATS(w2), uintBitsToFloat(u3.x));
+    found.child = u1.y;
+    found.below = u3.y;
     return found;
 }
 FUNC void put_half(NodeWords nodes, uint node, uint side, NodeHalf half_node)

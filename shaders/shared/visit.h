@@ -4,6 +4,7 @@
 #define TWINRAY_SHARED_VISIT_H
 #include "shaders/shared/bvh.h"
 #include "shaders/shared/intersect.h"
+#include "shaders/shared/occlude.h"
 #include "shaders/shared/trace.h"
 #include "shaders/shared/transform.h"
 #ifdef TWINRAY_REFINED
@@ -200,7 +201,7 @@ FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_inde
 }
 
 // Whether the primitive is hit before all that were found.
-FUNC bool visit_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
+FUNC bool find_in_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     TriangleHit hit;
     bool is_first = intersect_leaf(leaf, inside, space, search.t_min, search.t_best, options, hit) &&
@@ -217,6 +218,31 @@ FUNC bool visit_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceO
         search.primitive_index = leaf.primitive_index;
         if ((options.features & FEATURE_INSTANCES) != 0u) search.instance_index = inside.index;
     }
+    return is_first;
+}
+
+FUNC bool leaf_occludes(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
+{
+    bool along = false;
+    bool occludes = triangle_occludes(leaf.v0, leaf.v1, leaf.v2, space, search.t_min, search.t_best, along);
+    if ((options.features & FEATURE_CULLING) != 0u)
+        occludes = occludes && (inside.culled == 0u || inside.culled != (along ? CULL_BACK : CULL_FRONT));
+    if (occludes) search.primitive_index = leaf.primitive_index;
+    if ((options.features & FEATURE_INSTANCES) != 0u && occludes) search.instance_index = inside.index;
+    return occludes;
+}
+
+// The same; of triangles alone, if no more than the answer is wanted, without t, u, v.
+FUNC bool visit_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
+{
+    const uint NEEDS_HIT = FEATURE_HITS | FEATURE_FILTERS | FEATURE_BOXES;
+    // Each by itself: so that compilers see constants.
+    bool is_any = options.query == QUERY_ANY;
+    bool is_answer_enough = (options.features & NEEDS_HIT) == 0u;
+    bool is_exact = options.level == LEVEL_WATERTIGHT || options.level == LEVEL_REFINED;
+    bool is_first = false;
+    if (is_any && is_answer_enough && is_exact) is_first = leaf_occludes(leaf, inside, space, options, search);
+    else is_first = find_in_leaf(leaf, inside, space, options, search);
     return is_first;
 }
 

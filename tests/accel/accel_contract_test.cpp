@@ -376,7 +376,8 @@ TEST_P(Accel, TraceRefusesAddressesAndCountsItCannotServe) {
     Commands commands(context(), "refused");
     const std::pair<TraceDesc, const char*> cases[] = {
         {{.rays = {18}, .hits = {16}, .count = 1}, "rays at 18"},
-        {{.rays = {16}, .hits = {17}, .count = 1}, "hits at 17"},
+        {{.rays = {20}, .hits = {16}, .count = 1}, "rays at 20 and hits at 16 must be aligned to 8 bytes"},
+        {{.rays = {16}, .hits = {20}, .count = 1}, "hits at 20"},
         {{.rays = {16}, .hits = {16}, .count = 1, .indirect_count = {2}}, "indirect count at 2"},
         {{.rays = {0}, .hits = {16}, .count = 1}, "address of rays or hits is 0"},
         {{.rays = {16}, .hits = {0}, .count = 1}, "address of rays or hits is 0"},

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// The test without a distance gives the answer of the test with one, however near to the ends of the ray.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "swtlas/structures.h"
+
+namespace twinray {
+namespace {
+
+struct Case {
+    std::array<vec3, 3> corners;
+    vec3 origin, direction;
+};
+
+class Cases {
+  public:
+    // A ray through a point of a triangle, or near it; flat ones and long ones too.
+    Case next(float scale) {
+        const float thickness = std::ldexp(1.0f, -static_cast<int>(random_() % 30u));
+        const vec3 middle = 4.0f * point();
+        Case made{};
+        for (vec3& corner : made.corners) corner = scale * (middle + point() * vec3(1, 1, thickness));
+        made.origin = scale * (random_() % 4 == 0 ? middle + 1e-3f * point() : 4.0f * point());
+        const vec3 weights = abs(point()) + vec3(1e-3f);
+        const vec3 target = (weights.x * made.corners[0] + weights.y * made.corners[1] + weights.z * made.corners[2]) /
+                            (weights.x + weights.y + weights.z);
+        made.direction = target - made.origin;
+        if (random_() % 2) made.direction = made.direction * std::ldexp(1.0f, static_cast<int>(random_() % 21u) - 10);
+        if (random_() % 5 == 0) made.direction = -made.direction;
+        return made;
+    }
+
+  private:
+    vec3 point() { return vec3(unit_(random_), unit_(random_), unit_(random_)); }
+
+    std::mt19937 random_{11};
+    std::uniform_real_distribution<float> unit_{-1, 1};
+};
+
+struct Counts {
+    std::size_t met = 0, decided = 0, faults = 0;
+};
+
+void compare(const Case& made, float t_min, float t_max, Counts& counts) {
+    const RaySpace space = make_ray_space(made.origin, made.direction, 0);
+    const auto& [a, b, c] = made.corners;
+    TriangleHit hit{};
+    const bool is_met = intersect_triangle(a, b, c, space, hit);
+    const bool expected = is_met && hit.t > t_min && hit.t < t_max;
+    bool along = false;
+    if (triangle_occludes(a, b, c, space, t_min, t_max, along) != expected || (expected && along != hit.along))
+        ++counts.faults;
+    const PlaceOfHit place = place_of_hit(seen_triangle(a, b, c, space), space.shear_z, t_min, t_max);
+    counts.met += is_met;
+    counts.decided += is_met && (place.is_behind || (place.is_after && place.is_before));
+}
+
+// Intervals that end at t, or one or a few roundings from it; and those that do not.
+Counts compare_all(float scale, bool at_ends, int rays = 200'000) {
+    Counts counts;
+    Cases cases;
+    for (int i = 0; i < rays; ++i) {
+        const Case made = cases.next(scale);
+        const RaySpace space = make_ray_space(made.origin, made.direction, 0);
+        TriangleHit hit{};
+        if (!intersect_triangle(made.corners[0], made.corners[1], made.corners[2], space, hit)) continue;
+        if (!at_ends) {
+            compare(made, 0, INFINITY, counts);
+            compare(made, 0.5f * std::abs(hit.t), 2 * std::abs(hit.t), counts);
+            compare(made, 2 * std::abs(hit.t), INFINITY, counts);
+            continue;
+        }
+        for (float end = hit.t, step = 0; step < 3; ++step, end = std::nextafter(end, INFINITY)) {
+            compare(made, std::fmax(end, 0.0f), INFINITY, counts);
+            compare(made, 0, end, counts);
+        }
+        for (const float factor : {1 - 0x1p-20f, 1 - 0x1p-22f, 1 + 0x1p-22f, 1 + 0x1p-20f}) {
+            compare(made, std::fmax(hit.t * factor, 0.0f), INFINITY, counts);
+            compare(made, 0, hit.t * factor, counts);
+        }
+    }
+    return counts;
+}
+
+TEST(Occlude, AgreesWithTheHitOfTheTriangle) {
+    for (const float scale : {1.0f, 0x1p-40f, 0x1p40f}) {
+        EXPECT_EQ(compare_all(scale, false).faults, 0u) << scale;
+        EXPECT_EQ(compare_all(scale, true).faults, 0u) << scale;
+    }
+}
+
+TEST(Occlude, AgreesAtTheEndsOfTheRange) {
+    std::size_t decided = 0, left = 0;
+    for (const int exponent :
+         {-126, -110, -90, -62, -50, -30, -27, -25, -23, -21, -18, 28, 30, 43, 50, 57, 62, 80, 120})
+        for (const bool at_ends : {false, true}) {
+            const Counts counts = compare_all(std::ldexp(1.0f, exponent), at_ends, 20'000);
+            EXPECT_EQ(counts.faults, 0u) << exponent;
+            decided += counts.decided;
+            left += counts.met - counts.decided;
+        }
+    EXPECT_GT(decided, 100'000u);
+    EXPECT_GT(left, 100'000u);
+}
+
+// crossing() takes shares of the corners' z before it divides by the direction: they may be among the smallest floats
+// where t is not.
+TEST(Occlude, AgreesWhereOnlyTheDepthIsSmall) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    Counts counts;
+    for (int i = 0; i < 100'000; ++i) {
+        const auto corner = [&] { return vec3(unit(random), unit(random), unit(random) * 0x1p-142f); };
+        const Case made{
+            {corner(), corner(), corner()}, vec3(0.1f * unit(random), 0.1f * unit(random), 0), vec3(0, 0, -0x1p-120f)};
+        for (const float t_min : {0.0f, 0x1p-24f, 0x1p-22f}) compare(made, t_min, INFINITY, counts);
+    }
+    EXPECT_GT(counts.met, 10'000u);
+    EXPECT_EQ(counts.faults, 0u);
+}
+
+// Of directions of length 1 and coordinates of 2^43 areas times t overflow, their bound does not.
+TEST(Occlude, AgreesWhereAreasTimesDistancesOverflow) {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    Counts counts;
+    for (int i = 0; i < 200'000; ++i) {
+        const auto corner = [&] { return vec3(unit(random), unit(random), unit(random)) * 0x1p43f; };
+        const Case made{{corner(), corner(), corner()}, 0.1f * corner(), normalize(corner())};
+        for (const float t_min : {0.0f, 0x1p40f, 0x1p41f}) compare(made, t_min, INFINITY, counts);
+    }
+    EXPECT_GT(counts.met, 10'000u);
+    EXPECT_EQ(counts.faults, 0u);
+}
+
+TEST(Occlude, SeldomNeedsTheDistance) {
+    const Counts counts = compare_all(1, false);
+    EXPECT_GT(counts.met, 100'000u);
+    EXPECT_GT(static_cast<double>(counts.decided), 0.97 * static_cast<double>(counts.met));
+}
+
+// All three areas are 0 in float32, and (2^-22)^2 in truth.
+TEST(Occlude, TellsTheSideOfATriangleWhoseAreasRoundToZero) {
+    constexpr float step = 0x1p-22f;
+    const RaySpace space = make_ray_space(vec3(0), vec3(0, 0, 1), 0);
+    const vec3 a(1 + step, 1, 1), b(1 + 2 * step, 1 + step, 1), c(-(2 + 3 * step), -(2 + step), 1);
+    for (const bool turned : {false, true}) {
+        TriangleHit hit{};
+        ASSERT_TRUE(intersect_triangle(a, turned ? c : b, turned ? b : c, space, hit));
+        bool along = turned;
+        EXPECT_TRUE(triangle_occludes(a, turned ? c : b, turned ? b : c, space, 0, INFINITY, along));
+        EXPECT_EQ(along, !turned);
+        EXPECT_EQ(hit.along, !turned);
+    }
+}
+
+}  // namespace
+}  // namespace twinray
