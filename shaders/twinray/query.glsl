@@ -77,7 +77,9 @@ bool closest_hit(uint64_t accel, Ray ray, out Hit hit) { return closest_hit(acce
 // Whether anything lies on the ray.
 bool any_hit(uint64_t accel, Ray ray, uint mask, uint flags)
 {
-    return trace(accel, ray, trace_options(mask, flags, QUERY_ANY)).hit != 0u;
+    TraceOptions options = trace_options(mask, flags, QUERY_ANY);
+    options.features &= ~FEATURE_HITS;
+    return trace(accel, ray, options).hit != 0u;
 }
 bool any_hit(uint64_t accel, Ray ray) { return any_hit(accel, ray, 0xffu, 0u); }
 #endif
