@@ -22,7 +22,7 @@ Hit closest_triangle(SwInstance instance, Ray ray)
     float u = 0.0f;
     float v = 0.0f;
     uint primitive_index = NOTHING;
-    HeldGroups held = no_groups();
+    HeldGroups held = hold_none(BOTTOM);
     uint stack[TWINRAY_GROUP_STACK];
     uint height = 0u;
     uint cursor = 0u;
@@ -54,27 +54,28 @@ Hit closest_triangle(SwInstance instance, Ray ray)
             else
             {
                 TriangleHit hit;
-                if (intersect_triangle(triangle.v0, triangle.v1, triangle.v2, space, hit) && hit.t > t_min &&
-                    (hit.t < t_best || (hit.t == t_best && triangle.primitive_index < primitive_index && primitive_index != NOTHING)))
+                if (intersect_triangle(triangle.v0, triangle.v1, triangle.v2, space, hit))
                 {
-                    t_best = hit.t;
-                    u = hit.u;
-                    v = hit.v;
-                    primitive_index = triangle.primitive_index;
+                    bool is_lower = triangle.primitive_index < primitive_index && primitive_index != NOTHING;
+                    if (hit.t > t_min && (hit.t < t_best || (hit.t == t_best && is_lower)))
+                    {
+                        t_best = hit.t;
+                        u = hit.u;
+                        v = hit.v;
+                        primitive_index = triangle.primitive_index;
+                    }
                 }
             }
         }
-        if (descend) continue;
-        uint group = held.first;
-        if (group == BOTTOM)
+        if (!descend)
         {
-            if (height == 0u) break;
-            height = height - 1u;
-            group = stack[height];
+            uint group = held.first;
+            TWINRAY_FETCH_GROUP(held, stack, height, group)
+            if (group == BOTTOM) break;
+            cursor = next_of(group);
+            held.first = rest_of(group);
+            if (held.first == EMPTY_GROUP) drop_group(held);
         }
-        cursor = next_of(group);
-        held.first = rest_of(group);
-        if (held.first == BOTTOM) drop_group(held);
     }
     Hit best = miss();
     if (primitive_index == NOTHING) return best;

@@ -6,20 +6,21 @@
 #include "shaders/shared/visit.h"
 
 // A group: where the siblings begin (26 bits), and up to three of them to visit, the next one in the lowest bits (2 bits each,
-// the last one repeated). No siblings begin at the root, so that no group is one of the other entries of a stack: its
-// bottom, and where the ray leaves an instance.
-const uint BOTTOM = 0u;
-const uint LEAVE_INSTANCE = 1u;
+// the last one repeated). No siblings begin at the root, so that no group is one of these.
+const uint EMPTY_GROUP = 0u;
+const uint BOTTOM = 1u;         // of the stack
+const uint IN_MEMORY = 2u;      // what comes next lies in memory
+const uint LEAVE_INSTANCE = 3u; // where the ray leaves an instance; an entry of the stack, as are groups
 FUNC uint make_group(uint siblings, uint second, uint third, uint fourth)
 {
     return siblings << 6u | fourth << 4u | third << 2u | second;
 }
 FUNC uint next_of(uint group) { return (group >> 6u) + (group & 3u); }
-// Without the next one.
+// Without the next one; EMPTY_GROUP: there is no other.
 FUNC uint rest_of(uint group)
 {
     bool is_last = ((group ^ group >> 2u) & 3u) == 0u;
-    return is_last ? BOTTOM : (group & 0xfffffff0u) | (group >> 2u & 15u);
+    return is_last ? EMPTY_GROUP : (group & 0xfffffff0u) | (group >> 2u & 15u);
 }
 
 // What a stack must hold in memory: a node leaves one group at most, so the deepest path of each level and the mark between
@@ -32,7 +33,7 @@ const uint ONE_LEVEL_STACK_SIZE = DEEPEST_RECORDS - 5u;
 #endif
 
 // What is on top of a stack of groups and LEAVE_INSTANCE lies in registers, the last one first: most come and go without a trip
-// to memory. BOTTOM: there are no more.
+// to memory. Registers without an entry hold `below`.
 struct HeldGroups
 {
     uint first;
@@ -40,16 +41,18 @@ struct HeldGroups
     uint third;
     uint fourth;
     uint fifth;
+    uint below; // where entries lie in memory IN_MEMORY, else BOTTOM
 };
 
-FUNC HeldGroups no_groups()
+FUNC HeldGroups hold_none(uint below)
 {
     HeldGroups held;
-    held.first = BOTTOM;
-    held.second = BOTTOM;
-    held.third = BOTTOM;
-    held.fourth = BOTTOM;
-    held.fifth = BOTTOM;
+    held.first = below;
+    held.second = below;
+    held.third = below;
+    held.fourth = below;
+    held.fifth = below;
+    held.below = below;
     return held;
 }
 
@@ -68,7 +71,7 @@ FUNC void drop_group(INOUT(HeldGroups) held)
     held.second = held.third;
     held.third = held.fourth;
     held.fourth = held.fifth;
-    held.fifth = BOTTOM;
+    held.fifth = held.below;
 }
 
 // Pushes a group. If five are held already, the last of them goes to `memory`, a uint[TWINRAY_GROUP_STACK] that holds `height`
@@ -77,12 +80,23 @@ FUNC void drop_group(INOUT(HeldGroups) held)
 // take a quarter of a ray's time.
 #define TWINRAY_PUSH_GROUP(held, memory, height, group)                    \
     {                                                                      \
-        if (held.fifth != BOTTOM)                                          \
+        if (held.fifth >= LEAVE_INSTANCE)                                  \
         {                                                                  \
             if (height < TWINRAY_GROUP_STACK) memory[height] = held.fifth; \
             height = height + 1u;                                          \
+            held.below = IN_MEMORY;                                        \
         }                                                                  \
         hold_group(held, group);                                           \
+    }
+
+// Fetches `group`, which is held.first, from `memory` if it lies there. That a register tells, and not `height`: drivers on CPUs
+// go through memory for all lanes where one enters the block, and so none enters it that is done.
+#define TWINRAY_FETCH_GROUP(held, memory, height, group)     \
+    if (group == IN_MEMORY)                                  \
+    {                                                        \
+        height = height - 1u;                                \
+        group = memory[height];                              \
+        held = hold_none(height == 0u ? BOTTOM : IN_MEMORY); \
     }
 
 // Where the children of a node come in order, the least first (see place_in_order), each with its number in the last two bits;

@@ -102,7 +102,8 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
     space.axis = dominant_axis(direction);
     vec3 d = dominant_last(direction, space.axis);
     vec3 inverse = vec3(reciprocal(direction.x), reciprocal(direction.y), reciprocal(direction.z));
-    float along = abs(reciprocal(d.z));
+    float of_dominant = dominant_last(inverse, space.axis).z;
+    float along = abs(of_dominant);
     vec3 limit = vec3(min(STEEPEST * along, LARGEST_FLOAT));
     space.t_scale = scale_of_reach(pad, along);
     inverse = clamp(inverse, -limit, limit) * space.t_scale;
@@ -110,7 +111,7 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
     space.pad = pad;
     space.shear_x = d.x / d.z;
     space.shear_y = d.y / d.z;
-    space.shear_z = 1.0f / d.z;
+    space.shear_z = of_dominant;
     return space;
 }
 

@@ -40,7 +40,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
     }
 
     BoxRay first_ray = box_ray(space);
-    HeldGroups held = no_groups();
+    HeldGroups held = hold_none(BOTTOM);
     uint stack[TWINRAY_GROUP_STACK];
     uint height = 0u;
     uint cursor = 0u;
@@ -79,31 +79,24 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
                 descend = true;
             }
         }
-        if (descend) continue;
-        uint group = held.first;
-        if (group == BOTTOM)
+        if (!descend)
         {
-            if (height == 0u) break;
-            height = height - 1u;
-            group = stack[height];
-        }
-        if (has_top && group == LEAVE_INSTANCE)
-        {
-            space = world_space(scene, ray);
-            records = scene.records;
-            boxes = scene.record_boxes;
-            drop_group(held);
-            group = held.first;
-            if (group == BOTTOM)
+            uint group = held.first;
+            TWINRAY_FETCH_GROUP(held, stack, height, group)
+            if (has_top && group == LEAVE_INSTANCE)
             {
-                if (height == 0u) break;
-                height = height - 1u;
-                group = stack[height];
+                space = world_space(scene, ray);
+                records = scene.records;
+                boxes = scene.record_boxes;
+                drop_group(held);
+                group = held.first;
+                TWINRAY_FETCH_GROUP(held, stack, height, group)
             }
+            if (group == BOTTOM) break;
+            cursor = next_of(group);
+            held.first = rest_of(group);
+            if (held.first == EMPTY_GROUP) drop_group(held);
         }
-        cursor = next_of(group);
-        held.first = rest_of(group);
-        if (held.first == BOTTOM) drop_group(held);
     }
     return hit_of(search, scene);
 }

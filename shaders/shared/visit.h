@@ -204,19 +204,21 @@ FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_inde
 FUNC bool find_in_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     TriangleHit hit;
-    bool is_first = intersect_leaf(leaf, inside, space, search.t_min, search.t_best, options, hit) &&
-                    comes_after(hit, search.t_min, options) &&
-                    comes_before(hit, inside.index, leaf.primitive_index, search, options);
-    if ((options.features & FEATURE_FILTERS) != 0u && is_first && inside.is_filtered)
-        is_first = accept_hit(candidate_of(inside, leaf.primitive_index, options), t_of_given(hit.t, options), vec2(hit.u, hit.v));
-    if (is_first)
+    bool is_first = false;
+    if (intersect_leaf(leaf, inside, space, search.t_min, search.t_best, options, hit))
     {
-        search.t_best = hit.t;
-        if (options.level == LEVEL_CERTIFIED) search.t_best_low = hit.t_low;
-        search.u = hit.u;
-        search.v = hit.v;
-        search.primitive_index = leaf.primitive_index;
-        if ((options.features & FEATURE_INSTANCES) != 0u) search.instance_index = inside.index;
+        is_first = comes_after(hit, search.t_min, options) && comes_before(hit, inside.index, leaf.primitive_index, search, options);
+        if ((options.features & FEATURE_FILTERS) != 0u && is_first && inside.is_filtered)
+            is_first = accept_hit(candidate_of(inside, leaf.primitive_index, options), t_of_given(hit.t, options), vec2(hit.u, hit.v));
+        if (is_first)
+        {
+            search.t_best = hit.t;
+            if (options.level == LEVEL_CERTIFIED) search.t_best_low = hit.t_low;
+            search.u = hit.u;
+            search.v = hit.v;
+            search.primitive_index = leaf.primitive_index;
+            if ((options.features & FEATURE_INSTANCES) != 0u) search.instance_index = inside.index;
+        }
     }
     return is_first;
 }

@@ -2,6 +2,9 @@
 // The words on the stack of a traversal of records.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <random>
 #include <vector>
 
 #include "engine/accel/geometry.h"
@@ -17,7 +20,7 @@ ChildKeys entered(std::vector<uint> children) {
 
 std::vector<uint> visited(uint group) {
     std::vector<uint> records;
-    for (; group != BOTTOM; group = rest_of(group)) records.push_back(next_of(group));
+    for (; group != EMPTY_GROUP; group = rest_of(group)) records.push_back(next_of(group));
     return records;
 }
 
@@ -35,9 +38,49 @@ TEST(Groups, HoldAllChildrenButTheFirstInOrder) {
 TEST(Groups, AreNoneOfTheOtherEntriesOfAStack) {
     for (uint order = 0; order < 64; ++order) {
         const uint group = make_group(1, order & 3, order >> 2 & 3, order >> 4);
-        EXPECT_NE(group, BOTTOM);
-        EXPECT_NE(group, LEAVE_INSTANCE);
+        for (const uint other : {EMPTY_GROUP, BOTTOM, IN_MEMORY, LEAVE_INSTANCE}) EXPECT_NE(group, other);
     }
+}
+
+// A stack as traversals have it, of entries one word each.
+class Stack {
+  public:
+    void push(uint entry){TWINRAY_PUSH_GROUP(held_, memory_, height_, entry)} uint pop() {  // BOTTOM: there is none
+        uint group = held_.first;
+        TWINRAY_FETCH_GROUP(held_, memory_, height_, group)
+        if (group != BOTTOM) drop_group(held_);
+        return group;
+    }
+    uint height() const { return height_; }
+
+  private:
+    HeldGroups held_ = hold_none(BOTTOM);
+    std::array<uint, GROUP_STACK_SIZE> memory_{};
+    uint height_ = 0;
+};
+
+TEST(Groups, ComeFromTheStackInTheOrderOfAStack) {
+    std::mt19937 random(5);
+    Stack stack;
+    std::vector<uint> expected;
+    std::size_t highest = 0, empty = 0;
+    for (int turn = 0; turn < 100'000; ++turn) {
+        const bool is_growing = turn / 300 % 2 == 0;
+        if (expected.size() < GROUP_STACK_SIZE + 5 && random() % 4 < (is_growing ? 3u : 1u)) {
+            expected.push_back(turn % 9 == 0 ? LEAVE_INSTANCE : make_group(static_cast<uint>(turn) + 1, 0, 0, 0));
+            stack.push(expected.back());
+        } else {
+            const uint last = expected.empty() ? BOTTOM : expected.back();
+            ASSERT_EQ(stack.pop(), last) << turn;
+            if (expected.empty())
+                ++empty;
+            else
+                expected.pop_back();
+        }
+        highest = std::max<std::size_t>(highest, stack.height());
+    }
+    EXPECT_EQ(highest, GROUP_STACK_SIZE);
+    EXPECT_GT(empty, 100u);
 }
 
 TEST(Groups, KeysAreSortedLeastFirst) {
