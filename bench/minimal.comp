@@ -30,12 +30,13 @@ Hit closest_triangle(SwInstance instance, Ray ray)
     {
         CompressedRecord record = load_record(instance.records, cursor);
         bool descend = false;
+        uint pushed = EMPTY_GROUP;
         if (!is_leaf(record))
         {
             ChildKeys keys = enter_compressed(record, ray_of_boxes, t_min, t_best, MINIMAL_QUERY);
             sort_keys(keys);
             uint others = group_of(keys, first_child_of(record));
-            if (keys.key1 < NO_ENTRY) TWINRAY_PUSH_GROUP(held, stack, height, others)
+            pushed = keys.key1 < NO_ENTRY ? others : EMPTY_GROUP;
             cursor = first_child_of(record) + (keys.key0 & 3u);
             descend = keys.key0 < NO_ENTRY;
         }
@@ -74,8 +75,9 @@ Hit closest_triangle(SwInstance instance, Ray ray)
             if (group == BOTTOM) break;
             cursor = next_of(group);
             held.first = rest_of(group);
-            if (held.first == EMPTY_GROUP) drop_group(held);
         }
+        TWINRAY_MAKE_ROOM(held, stack, height, pushed)
+        shift_groups(held, pushed);
     }
     Hit best = miss();
     if (primitive_index == NOTHING) return best;

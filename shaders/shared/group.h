@@ -56,15 +56,6 @@ FUNC HeldGroups hold_none(uint below)
     return held;
 }
 
-FUNC void hold_group(INOUT(HeldGroups) held, uint group)
-{
-    held.fifth = held.fourth;
-    held.fourth = held.third;
-    held.third = held.second;
-    held.second = held.first;
-    held.first = group;
-}
-
 FUNC void drop_group(INOUT(HeldGroups) held)
 {
     held.first = held.second;
@@ -74,19 +65,34 @@ FUNC void drop_group(INOUT(HeldGroups) held)
     held.fifth = held.below;
 }
 
-// Pushes a group. If five are held already, the last of them goes to `memory`, a uint[TWINRAY_GROUP_STACK] that holds `height`
-// entries. A macro, since drivers on CPUs copy an array that is passed to a function, and a ray would take twice as long. The
+// Drops the first group if it is EMPTY_GROUP, then puts `pushed` on top if it is not. Once an iteration, and each number from others as
+// they still are: drivers on CPUs pay for whatever changes in a loop, and twice for what is needed once it has changed.
+FUNC void shift_groups(INOUT(HeldGroups) held, uint pushed)
+{
+    bool pushes = pushed != EMPTY_GROUP;
+    bool drops = held.first == EMPTY_GROUP;
+    held.first = drops ? held.second : held.first;
+    held.second = drops ? held.third : held.second;
+    held.third = drops ? held.fourth : held.third;
+    held.fourth = drops ? held.fifth : held.fourth;
+    held.fifth = drops ? held.below : held.fifth;
+    held.fifth = pushes ? held.fourth : held.fifth;
+    held.fourth = pushes ? held.third : held.fourth;
+    held.third = pushes ? held.second : held.third;
+    held.second = pushes ? held.first : held.second;
+    held.first = pushes ? pushed : held.first;
+}
+
+// Before shift_groups() pushes a group: if five are held already, the last of them goes to `memory`, a uint[TWINRAY_GROUP_STACK] that
+// holds `height` entries. A macro, since drivers on CPUs copy an array that is passed to a function, and a ray would take twice as long. The
 // inner condition always holds: it makes the block too long for these drivers to run it for all lanes under a mask, which can
 // take a quarter of a ray's time.
-#define TWINRAY_PUSH_GROUP(held, memory, height, group)                    \
+#define TWINRAY_MAKE_ROOM(held, memory, height, pushed)                    \
+    if (pushed != EMPTY_GROUP && held.fifth >= LEAVE_INSTANCE)             \
     {                                                                      \
-        if (held.fifth >= LEAVE_INSTANCE)                                  \
-        {                                                                  \
-            if (height < TWINRAY_GROUP_STACK) memory[height] = held.fifth; \
-            height = height + 1u;                                          \
-            held.below = IN_MEMORY;                                        \
-        }                                                                  \
-        hold_group(held, group);                                           \
+        if (height < TWINRAY_GROUP_STACK) memory[height] = held.fifth;     \
+        height = height + 1u;                                              \
+        held.below = IN_MEMORY;                                            \
     }
 
 // Fetches `group`, which is held.first, from `memory` if it lies there. That a register tells, and not `height`: drivers on CPUs

@@ -49,6 +49,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
     {
         CompressedRecord record = load_record(records, cursor);
         bool descend = false;
+        uint pushed = EMPTY_GROUP;
         if (!is_leaf(record))
         {
             BoxRay ray_of_boxes = first_ray;
@@ -56,7 +57,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
             ChildKeys keys = enter_children(record, boxes, ray_of_boxes, search, options);
             sort_keys(keys);
             uint others = group_of(keys, first_child_of(record));
-            if (keys.key1 < NO_ENTRY) TWINRAY_PUSH_GROUP(held, stack, height, others)
+            pushed = keys.key1 < NO_ENTRY ? others : EMPTY_GROUP;
             cursor = first_child_of(record) + (keys.key0 & 3u);
             descend = keys.key0 < NO_ENTRY;
         }
@@ -74,7 +75,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
                 space = space_in(instance, inside, ray, options);
                 records = instance.records;
                 boxes = instance.record_boxes;
-                TWINRAY_PUSH_GROUP(held, stack, height, LEAVE_INSTANCE)
+                pushed = LEAVE_INSTANCE;
                 cursor = 0u;
                 descend = true;
             }
@@ -95,8 +96,9 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
             if (group == BOTTOM) break;
             cursor = next_of(group);
             held.first = rest_of(group);
-            if (held.first == EMPTY_GROUP) drop_group(held);
         }
+        TWINRAY_MAKE_ROOM(held, stack, height, pushed)
+        shift_groups(held, pushed);
     }
     return hit_of(search, scene);
 }

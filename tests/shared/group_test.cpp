@@ -45,15 +45,26 @@ TEST(Groups, AreNoneOfTheOtherEntriesOfAStack) {
 // A stack as traversals have it, of entries one word each.
 class Stack {
   public:
-    void push(uint entry){TWINRAY_PUSH_GROUP(held_, memory_, height_, entry)} uint pop() {  // BOTTOM: there is none
+    void push(uint entry) { shift(entry); }
+    uint pop() {  // BOTTOM: there is none
         uint group = held_.first;
-        TWINRAY_FETCH_GROUP(held_, memory_, height_, group)
-        if (group != BOTTOM) drop_group(held_);
+        TWINRAY_FETCH_GROUP(held_, memory_, height_, group);
+        if (group == BOTTOM) return group;
+        if (group == LEAVE_INSTANCE)
+            drop_group(held_);
+        else
+            held_.first = EMPTY_GROUP;
+        shift(EMPTY_GROUP);
         return group;
     }
     uint height() const { return height_; }
 
   private:
+    void shift(uint pushed) {
+        TWINRAY_MAKE_ROOM(held_, memory_, height_, pushed);
+        shift_groups(held_, pushed);
+    }
+
     HeldGroups held_ = hold_none(BOTTOM);
     std::array<uint, GROUP_STACK_SIZE> memory_{};
     uint height_ = 0;
