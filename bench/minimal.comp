@@ -23,6 +23,7 @@ Hit closest_triangle(SwInstance instance, Ray ray)
     float v = 0.0f;
     uint primitive_index = NOTHING;
     HeldGroups held = hold_none(BOTTOM);
+    GroupWindow window = empty_window();
     uint stack[TWINRAY_GROUP_STACK];
     uint height = 0u;
     uint cursor = 0u;
@@ -71,12 +72,12 @@ Hit closest_triangle(SwInstance instance, Ray ray)
         if (!descend)
         {
             uint group = held.first;
-            TWINRAY_FETCH_GROUP(held, stack, height, group)
+            TWINRAY_FETCH_GROUP(held, window, stack, height, group)
             if (group == BOTTOM) break;
             cursor = next_of(group);
             held.first = rest_of(group);
         }
-        TWINRAY_MAKE_ROOM(held, stack, height, pushed)
+        TWINRAY_MAKE_ROOM(held, window, stack, height, pushed)
         shift_groups(held, pushed);
     }
     Hit best = miss();

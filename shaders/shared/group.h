@@ -9,8 +9,9 @@
 // the last one repeated). No siblings begin at the root, so that no group is one of these.
 const uint EMPTY_GROUP = 0u;
 const uint BOTTOM = 1u;         // of the stack
-const uint IN_MEMORY = 2u;      // what comes next lies in memory
-const uint LEAVE_INSTANCE = 3u; // where the ray leaves an instance; an entry of the stack, as are groups
+const uint IN_WINDOW = 2u;      // what comes next lies in a GroupWindow
+const uint IN_MEMORY = 3u;      // what comes next lies in memory
+const uint LEAVE_INSTANCE = 4u; // where the ray leaves an instance; an entry of the stack, as are groups
 FUNC uint make_group(uint siblings, uint second, uint third, uint fourth)
 {
     return siblings << 6u | fourth << 4u | third << 2u | second;
@@ -24,16 +25,17 @@ FUNC uint rest_of(uint group)
 }
 
 // What a stack must hold in memory: a node leaves one group at most, so the deepest path of each level and the mark between
-// them, without those that HeldGroups has. Drivers on CPUs clear all of it for each ray, so where there is no top
+// them, without those that HeldGroups and GroupWindow have. Drivers on CPUs clear all of it for each ray, so where there is no top
 // level, TWINRAY_GROUP_STACK should be the lesser one.
-const uint GROUP_STACK_SIZE = 2u * DEEPEST_RECORDS + 1u - 5u;
-const uint ONE_LEVEL_STACK_SIZE = DEEPEST_RECORDS - 5u;
+const uint WINDOW_SIZE = 8u;
+const uint GROUP_STACK_SIZE = 2u * DEEPEST_RECORDS + 1u - 5u - WINDOW_SIZE;
+const uint ONE_LEVEL_STACK_SIZE = DEEPEST_RECORDS - 5u - WINDOW_SIZE;
 #ifndef TWINRAY_GROUP_STACK
 #define TWINRAY_GROUP_STACK GROUP_STACK_SIZE
 #endif
 
 // What is on top of a stack of groups and LEAVE_INSTANCE lies in registers, the last one first: most come and go without a trip
-// to memory. Registers without an entry hold `below`.
+// to the others. Registers without an entry hold `below`.
 struct HeldGroups
 {
     uint first;
@@ -41,7 +43,7 @@ struct HeldGroups
     uint third;
     uint fourth;
     uint fifth;
-    uint below; // where entries lie in memory IN_MEMORY, else BOTTOM
+    uint below; // where the entry below these lies: BOTTOM, IN_WINDOW or IN_MEMORY
 };
 
 FUNC HeldGroups hold_none(uint below)
@@ -83,26 +85,68 @@ FUNC void shift_groups(INOUT(HeldGroups) held, uint pushed)
     held.first = pushes ? pushed : held.first;
 }
 
-// Before shift_groups() pushes a group: if five are held already, the last of them goes to `memory`, a uint[TWINRAY_GROUP_STACK] that
-// holds `height` entries. A macro, since drivers on CPUs copy an array that is passed to a function, and a ray would take twice as long. The
-// inner condition always holds: it makes the block too long for these drivers to run it for all lanes under a mask, which can
-// take a quarter of a ray's time.
-#define TWINRAY_MAKE_ROOM(held, memory, height, pushed)                    \
+// The entries below those held, in registers that are found by comparison: drivers on CPUs write and read an array lane by lane.
+struct GroupWindow
+{
+    uint entries[WINDOW_SIZE];
+    uint count;
+};
+
+FUNC GroupWindow empty_window()
+{
+    GroupWindow window;
+    UNROLL for (uint i = 0u; i < WINDOW_SIZE; i = i + 1u) window.entries[i] = EMPTY_GROUP;
+    window.count = 0u;
+    return window;
+}
+
+FUNC void push_entry(INOUT(GroupWindow) window, uint entry)
+{
+    UNROLL for (uint i = 0u; i < WINDOW_SIZE; i = i + 1u) window.entries[i] = window.count == i ? entry : window.entries[i];
+    window.count = window.count + 1u;
+}
+
+FUNC uint pop_entry(INOUT(GroupWindow) window)
+{
+    uint entry = window.entries[0];
+    UNROLL for (uint i = 1u; i < WINDOW_SIZE; i = i + 1u) entry = window.count > i ? window.entries[i] : entry;
+    window.count = window.count - 1u;
+    return entry;
+}
+
+// Before shift_groups() pushes a group: if five are held already, the last of them goes to the window, or if that is full, to `memory`, a
+// uint[TWINRAY_GROUP_STACK] that holds `height` entries. A macro, since drivers on CPUs copy an array that is passed to a function, and a
+// ray would take twice as long. The innermost condition always holds: it makes the block too long for these drivers to run it for all
+// lanes under a mask, which can take a quarter of a ray's time.
+#define TWINRAY_MAKE_ROOM(held, window, memory, height, pushed)            \
     if (pushed != EMPTY_GROUP && held.fifth >= LEAVE_INSTANCE)             \
     {                                                                      \
-        if (height < TWINRAY_GROUP_STACK) memory[height] = held.fifth;     \
-        height = height + 1u;                                              \
-        held.below = IN_MEMORY;                                            \
+        if (window.count == WINDOW_SIZE)                                   \
+        {                                                                  \
+            if (height < TWINRAY_GROUP_STACK) memory[height] = held.fifth; \
+            height = height + 1u;                                          \
+            held.below = IN_MEMORY;                                        \
+        }                                                                  \
+        else                                                               \
+        {                                                                  \
+            push_entry(window, held.fifth);                                \
+            held.below = IN_WINDOW;                                        \
+        }                                                                  \
     }
 
-// Fetches `group`, which is held.first, from `memory` if it lies there. That a register tells, and not `height`: drivers on CPUs
-// go through memory for all lanes where one enters the block, and so none enters it that is done.
-#define TWINRAY_FETCH_GROUP(held, memory, height, group)     \
-    if (group == IN_MEMORY)                                  \
-    {                                                        \
-        height = height - 1u;                                \
-        group = memory[height];                              \
-        held = hold_none(height == 0u ? BOTTOM : IN_MEMORY); \
+// Fetches `group`, which is held.first, if it lies elsewhere. That a register tells, and no count: drivers on CPUs go through memory
+// for all lanes where one enters the block, and so none enters it that is done.
+#define TWINRAY_FETCH_GROUP(held, window, memory, height, group)   \
+    if (group == IN_WINDOW)                                        \
+    {                                                              \
+        group = pop_entry(window);                                 \
+        held = hold_none(window.count == 0u ? BOTTOM : IN_WINDOW); \
+    }                                                              \
+    if (group == IN_MEMORY)                                        \
+    {                                                              \
+        height = height - 1u;                                      \
+        group = memory[height];                                    \
+        held = hold_none(height == 0u ? IN_WINDOW : IN_MEMORY);    \
     }
 
 // Where the children of a node come in order, the least first (see place_in_order), each with its number in the last two bits;

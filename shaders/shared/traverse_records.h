@@ -41,6 +41,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
 
     BoxRay first_ray = box_ray(space);
     HeldGroups held = hold_none(BOTTOM);
+    GroupWindow window = empty_window();
     uint stack[TWINRAY_GROUP_STACK];
     uint height = 0u;
     uint cursor = 0u;
@@ -83,7 +84,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
         if (!descend)
         {
             uint group = held.first;
-            TWINRAY_FETCH_GROUP(held, stack, height, group)
+            TWINRAY_FETCH_GROUP(held, window, stack, height, group)
             if (has_top && group == LEAVE_INSTANCE)
             {
                 space = world_space(scene, ray);
@@ -91,13 +92,13 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
                 boxes = scene.record_boxes;
                 drop_group(held);
                 group = held.first;
-                TWINRAY_FETCH_GROUP(held, stack, height, group)
+                TWINRAY_FETCH_GROUP(held, window, stack, height, group)
             }
             if (group == BOTTOM) break;
             cursor = next_of(group);
             held.first = rest_of(group);
         }
-        TWINRAY_MAKE_ROOM(held, stack, height, pushed)
+        TWINRAY_MAKE_ROOM(held, window, stack, height, pushed)
         shift_groups(held, pushed);
     }
     return hit_of(search, scene);

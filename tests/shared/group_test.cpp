@@ -38,7 +38,7 @@ TEST(Groups, HoldAllChildrenButTheFirstInOrder) {
 TEST(Groups, AreNoneOfTheOtherEntriesOfAStack) {
     for (uint order = 0; order < 64; ++order) {
         const uint group = make_group(1, order & 3, order >> 2 & 3, order >> 4);
-        for (const uint other : {EMPTY_GROUP, BOTTOM, IN_MEMORY, LEAVE_INSTANCE}) EXPECT_NE(group, other);
+        for (const uint other : {EMPTY_GROUP, BOTTOM, IN_WINDOW, IN_MEMORY, LEAVE_INSTANCE}) EXPECT_NE(group, other);
     }
 }
 
@@ -48,7 +48,7 @@ class Stack {
     void push(uint entry) { shift(entry); }
     uint pop() {  // BOTTOM: there is none
         uint group = held_.first;
-        TWINRAY_FETCH_GROUP(held_, memory_, height_, group);
+        TWINRAY_FETCH_GROUP(held_, window_, memory_, height_, group);
         if (group == BOTTOM) return group;
         if (group == LEAVE_INSTANCE)
             drop_group(held_);
@@ -61,11 +61,12 @@ class Stack {
 
   private:
     void shift(uint pushed) {
-        TWINRAY_MAKE_ROOM(held_, memory_, height_, pushed);
+        TWINRAY_MAKE_ROOM(held_, window_, memory_, height_, pushed);
         shift_groups(held_, pushed);
     }
 
     HeldGroups held_ = hold_none(BOTTOM);
+    GroupWindow window_ = empty_window();
     std::array<uint, GROUP_STACK_SIZE> memory_{};
     uint height_ = 0;
 };
@@ -77,7 +78,7 @@ TEST(Groups, ComeFromTheStackInTheOrderOfAStack) {
     std::size_t highest = 0, empty = 0;
     for (int turn = 0; turn < 100'000; ++turn) {
         const bool is_growing = turn / 300 % 2 == 0;
-        if (expected.size() < GROUP_STACK_SIZE + 5 && random() % 4 < (is_growing ? 3u : 1u)) {
+        if (expected.size() < GROUP_STACK_SIZE + WINDOW_SIZE + 5 && random() % 4 < (is_growing ? 3u : 1u)) {
             expected.push_back(turn % 9 == 0 ? LEAVE_INSTANCE : make_group(static_cast<uint>(turn) + 1, 0, 0, 0));
             stack.push(expected.back());
         } else {
