@@ -72,7 +72,10 @@ Hit closest_triangle(SwInstance instance, Ray ray)
         if (!descend)
         {
             uint group = held.first;
-            TWINRAY_FETCH_GROUP(held, window, stack, height, group)
+            if (lies_elsewhere(group))
+            {
+                TWINRAY_FETCH_GROUP(held, window, stack, height, group)
+            }
             if (group == BOTTOM) break;
             cursor = next_of(group);
             held.first = rest_of(group);

@@ -19,7 +19,7 @@
 
 namespace twinray {
 
-constexpr uint saved_version = 5;
+constexpr uint saved_version = 6;
 
 struct SavedHeader {
     char magic[8];

@@ -50,7 +50,7 @@ FUNC void store_record(REF(CompressedRecord) records, uint index, CompressedReco
 FUNC uint cell_exponent(float lo, float hi)
 {
     const float LONGEST = 0.003968253968f;              // 1 / 252
-    const float STEPS = 6.103515625e-05f;               // 2^-14
+    const float STEPS = 0.0001220703125f;               // 2^-13
     const float ROUNDINGS = 4.76837158203125e-07f;      // 2^-21
     float largest = max(abs(lo), abs(hi));
     PRECISE float size = (hi - lo + largest * STEPS) * LONGEST;
@@ -60,15 +60,16 @@ FUNC uint cell_exponent(float lo, float hi)
 FUNC float cell_size(uint exponent) { return uintBitsToFloat(exponent << 23u); }
 FUNC float cells_per_unit(uint exponent) { return uintBitsToFloat((254u - exponent) << 23u); }
 
-// The largest number that is not above `limit` and whose last 8 bits are an exponent: 2^-14 of it lower at most.
+// The largest number that is not above `limit` and whose last 9 bits are an exponent: 2^-13 of it lower at most. The first of them is
+// 0, so that a shift leaves nothing but the exponent.
 FUNC float origin_below(float limit, uint exponent)
 {
     uint bits = floatBitsToUint(limit);
     bool is_negative = (bits & 0x80000000u) != 0u;
-    uint moved = (bits & 0xffffff00u) | exponent;
-    if (is_negative) return uintBitsToFloat(moved < bits ? moved + 256u : moved);
+    uint moved = (bits & 0xfffffe00u) | exponent;
+    if (is_negative) return uintBitsToFloat(moved < bits ? moved + 512u : moved);
     if (moved <= bits) return uintBitsToFloat(moved);
-    return uintBitsToFloat(moved < 256u ? 0x80000000u | exponent : moved - 256u);
+    return uintBitsToFloat(moved < 512u ? 0x80000000u | exponent : moved - 512u);
 }
 
 FUNC float cell_within(float cells)
@@ -78,7 +79,7 @@ FUNC float cell_within(float cells)
 }
 
 // A plane in cells from the origin, moved outwards by a 256th of a cell at least: a traversal that computes with a plane's
-// distance from the ray in float32 is off by less than 2^-14 cells near it, and by its own padding far from it.
+// distance from the ray in float32 is off by less than 2^-10 cells near it, and by its own padding far from it.
 FUNC uint cell_below(float plane, float origin, float per_unit)
 {
     PRECISE float cells = (plane - origin) * per_unit - 0.00390625f;
@@ -179,7 +180,7 @@ FUNC vec3 grid_origin(CompressedRecord node)
 }
 FUNC vec3 grid_cell(CompressedRecord node)
 {
-    return vec3(cell_size(node.a.x & 0xffu), cell_size(node.a.y & 0xffu), cell_size(node.a.z & 0xffu));
+    return vec3(cell_size(node.a.x), cell_size(node.a.y), cell_size(node.a.z));
 }
 
 // The box of a node's child as rays meet it.

@@ -5,11 +5,11 @@
 #include "shaders/shared/compressed.h"
 #include "shaders/shared/group.h"
 
-// The grid of a node as a ray sees it: along each axis the distance of a plane is plane * scale + base.
+// The grid of a node as a ray sees it: along each axis the distance of a plane is plane * scale + base. The scale is that of near planes
+// for all: it leaves far ones 2^-20 of at most 255 cells nearer, and they are a 256th of a cell farther off than they must be.
 struct SeenGrid
 {
-    vec3 near_scale;
-    vec3 far_scale;
+    vec3 scale;
     vec3 near_base;
     vec3 far_base;
     uvec3 near_planes; // of the four children, 8 bits each
@@ -21,8 +21,7 @@ FUNC SeenGrid grid_of(CompressedRecord node, BoxRay ray)
     SeenGrid grid;
     vec3 origin = grid_origin(node);
     vec3 cell = grid_cell(node);
-    grid.near_scale = cell * ray.near_inverse;
-    grid.far_scale = cell * ray.far_inverse;
+    grid.scale = cell * ray.near_inverse;
     grid.near_base = (origin - ray.near_origin) * ray.near_inverse;
     grid.far_base = (origin - ray.far_origin) * ray.far_inverse;
     bool flip_x = ray.near_inverse.x < 0.0f;
@@ -39,15 +38,15 @@ FUNC float distance_along(uint planes, uint shift, float scale, float base)
 }
 
 // The place of child `shift / 8` of the node in order, between t_min and t_max in t * ray.t_scale: as cross_box of ray_space.h.
-FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, uint query)
+FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, bool is_there, uint query)
 {
-    float near_x = distance_along(grid.near_planes.x, shift, grid.near_scale.x, grid.near_base.x);
-    float near_y = distance_along(grid.near_planes.y, shift, grid.near_scale.y, grid.near_base.y);
-    float near_z = distance_along(grid.near_planes.z, shift, grid.near_scale.z, grid.near_base.z);
-    float far_x = distance_along(grid.far_planes.x, shift, grid.far_scale.x, grid.far_base.x);
-    float far_y = distance_along(grid.far_planes.y, shift, grid.far_scale.y, grid.far_base.y);
-    float far_z = distance_along(grid.far_planes.z, shift, grid.far_scale.z, grid.far_base.z);
-    return place_in_order(latest_of(t_min, near_x, near_y, near_z), earliest_of(t_max, far_x, far_y, far_z), query);
+    float near_x = distance_along(grid.near_planes.x, shift, grid.scale.x, grid.near_base.x);
+    float near_y = distance_along(grid.near_planes.y, shift, grid.scale.y, grid.near_base.y);
+    float near_z = distance_along(grid.near_planes.z, shift, grid.scale.z, grid.near_base.z);
+    float far_x = distance_along(grid.far_planes.x, shift, grid.scale.x, grid.far_base.x);
+    float far_y = distance_along(grid.far_planes.y, shift, grid.scale.y, grid.far_base.y);
+    float far_z = distance_along(grid.far_planes.z, shift, grid.scale.z, grid.far_base.z);
+    return place_in_order(latest_of(t_min, near_x, near_y, near_z), earliest_of(t_max, far_x, far_y, far_z), is_there, query);
 }
 
 FUNC ChildKeys enter_compressed(CompressedRecord node, BoxRay ray, float t_min, float t_max, uint query)
@@ -56,15 +55,13 @@ FUNC ChildKeys enter_compressed(CompressedRecord node, BoxRay ray, float t_min, 
     PRECISE float first = t_min * ray.t_scale;
     PRECISE float last = t_max * ray.t_scale;
     // All four are computed, then chosen: branches cost more.
-    ChildKeys keys;
-    keys.key0 = enter_planes(grid, 0u, first, last, query);
-    keys.key1 = enter_planes(grid, 8u, first, last, query) | 1u;
-    keys.key2 = enter_planes(grid, 16u, first, last, query) | 2u;
-    keys.key3 = enter_planes(grid, 24u, first, last, query) | 3u;
-    // Boxes that are not there may be entered, too: a ray's padding can be wider than the grid.
+    // Boxes that are not there may be crossed, too: a ray's padding can be wider than the grid.
     uint children = children_in(node);
-    keys.key2 = children > 2u ? keys.key2 : NO_ENTRY;
-    keys.key3 = children > 3u ? keys.key3 : NO_ENTRY;
+    ChildKeys keys;
+    keys.key0 = enter_planes(grid, 0u, first, last, true, query);
+    keys.key1 = enter_planes(grid, 8u, first, last, true, query) | 1u;
+    keys.key2 = enter_planes(grid, 16u, first, last, children > 2u, query) | 2u;
+    keys.key3 = enter_planes(grid, 24u, first, last, children > 3u, query) | 3u;
     return keys;
 }
 #endif

@@ -11,7 +11,7 @@ FUNC uint enter_full_box(REF(LeafBox) boxes, uint record, BoxRay ray, float t_mi
     float enter = 0.0f;
     float leave = 0.0f;
     cross_box(box.lo, box.hi, ray, t_min, t_max, enter, leave);
-    return place_in_order(enter, leave, query);
+    return place_in_order(enter, leave, true, query);
 }
 
 FUNC ChildKeys enter_full(REF(LeafBox) boxes, CompressedRecord node, BoxRay ray, float t_min, float t_max, uint query)

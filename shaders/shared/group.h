@@ -8,10 +8,9 @@
 // A group: where the siblings begin (26 bits), and up to three of them to visit, the next one in the lowest bits (2 bits each,
 // the last one repeated). No siblings begin at the root, so that no group is one of these.
 const uint EMPTY_GROUP = 0u;
-const uint BOTTOM = 1u;         // of the stack
-const uint IN_WINDOW = 2u;      // what comes next lies in a GroupWindow
-const uint IN_MEMORY = 3u;      // what comes next lies in memory
-const uint LEAVE_INSTANCE = 4u; // where the ray leaves an instance; an entry of the stack, as are groups
+const uint BOTTOM = 1u;    // of the stack
+const uint IN_WINDOW = 2u; // what comes next lies in a GroupWindow
+const uint IN_MEMORY = 3u; // what comes next lies in memory
 FUNC uint make_group(uint siblings, uint second, uint third, uint fourth)
 {
     return siblings << 6u | fourth << 4u | third << 2u | second;
@@ -24,18 +23,18 @@ FUNC uint rest_of(uint group)
     return is_last ? EMPTY_GROUP : (group & 0xfffffff0u) | (group >> 2u & 15u);
 }
 
-// What a stack must hold in memory: a node leaves one group at most, so the deepest path of each level and the mark between
-// them, without those that HeldGroups and GroupWindow have. Drivers on CPUs clear all of it for each ray, so where there is no top
-// level, TWINRAY_GROUP_STACK should be the lesser one.
+// What a stack must hold in memory: a node leaves one group at most, so the deepest path of each level, without those that
+// HeldGroups and GroupWindow have. Drivers on CPUs clear all of it for each ray, so where there is no top level,
+// TWINRAY_GROUP_STACK should be the lesser one.
 const uint WINDOW_SIZE = 8u;
-const uint GROUP_STACK_SIZE = 2u * DEEPEST_RECORDS + 1u - 5u - WINDOW_SIZE;
+const uint GROUP_STACK_SIZE = 2u * DEEPEST_RECORDS - 5u - WINDOW_SIZE;
 const uint ONE_LEVEL_STACK_SIZE = DEEPEST_RECORDS - 5u - WINDOW_SIZE;
 #ifndef TWINRAY_GROUP_STACK
 #define TWINRAY_GROUP_STACK GROUP_STACK_SIZE
 #endif
 
-// What is on top of a stack of groups and LEAVE_INSTANCE lies in registers, the last one first: most come and go without a trip
-// to the others. Registers without an entry hold `below`.
+// What is on top of a stack of groups lies in registers, the last one first: most come and go without a trip to the others.
+// Registers without an entry hold `below`.
 struct HeldGroups
 {
     uint first;
@@ -58,15 +57,6 @@ FUNC HeldGroups hold_none(uint below)
     return held;
 }
 
-FUNC void drop_group(INOUT(HeldGroups) held)
-{
-    held.first = held.second;
-    held.second = held.third;
-    held.third = held.fourth;
-    held.fourth = held.fifth;
-    held.fifth = held.below;
-}
-
 // Drops the first group if it is EMPTY_GROUP, then puts `pushed` on top if it is not. Once an iteration, and each number from others as
 // they still are: drivers on CPUs pay for whatever changes in a loop, and twice for what is needed once it has changed.
 FUNC void shift_groups(INOUT(HeldGroups) held, uint pushed)
@@ -83,6 +73,12 @@ FUNC void shift_groups(INOUT(HeldGroups) held, uint pushed)
     held.third = pushes ? held.second : held.third;
     held.second = pushes ? held.first : held.second;
     held.first = pushes ? pushed : held.first;
+}
+
+// How many groups the stack has after shift_groups(), of `waiting` before.
+FUNC uint waiting_after(HeldGroups held, uint pushed, uint waiting)
+{
+    return waiting + uint(pushed != EMPTY_GROUP) - uint(held.first == EMPTY_GROUP);
 }
 
 // The entries below those held, in registers that are found by comparison: drivers on CPUs write and read an array lane by lane.
@@ -119,7 +115,7 @@ FUNC uint pop_entry(INOUT(GroupWindow) window)
 // ray would take twice as long. The innermost condition always holds: it makes the block too long for these drivers to run it for all
 // lanes under a mask, which can take a quarter of a ray's time.
 #define TWINRAY_MAKE_ROOM(held, window, memory, height, pushed)            \
-    if (pushed != EMPTY_GROUP && held.fifth >= LEAVE_INSTANCE)             \
+    if (pushed != EMPTY_GROUP && held.fifth > IN_MEMORY)                   \
     {                                                                      \
         if (window.count == WINDOW_SIZE)                                   \
         {                                                                  \
@@ -133,6 +129,9 @@ FUNC uint pop_entry(INOUT(GroupWindow) window)
             held.below = IN_WINDOW;                                        \
         }                                                                  \
     }
+
+// Whether a group is below those held.
+FUNC bool lies_elsewhere(uint group) { return group == IN_WINDOW || group == IN_MEMORY; }
 
 // Fetches `group`, which is held.first, if it lies elsewhere. That a register tells, and no count: drivers on CPUs go through memory
 // for all lanes where one enters the block, and so none enters it that is done.

@@ -54,6 +54,13 @@ FUNC vec3 dominant_last(vec3 v, uint axis)
     return axis == 0u ? vec3(v.y, v.z, v.x) : (axis == 1u ? vec3(v.z, v.x, v.y) : v);
 }
 
+// x, or the nearest of -limit and limit. By comparisons: see latest_of.
+FUNC float within(float x, float limit)
+{
+    float above = -limit > x ? -limit : x;
+    return limit < above ? limit : above;
+}
+
 FUNC BoxRay box_ray(RaySpace space)
 {
 #ifdef TWINRAY_NO_PADDING // a negative control: shows what the padding is for
@@ -65,11 +72,12 @@ FUNC BoxRay box_ray(RaySpace space)
 #endif
     vec3 inverse = space.inverse;
     float pad = space.pad;
-    vec3 shift = vec3(inverse.x < 0.0f ? -pad : pad, inverse.y < 0.0f ? -pad : pad, inverse.z < 0.0f ? -pad : pad);
-    PRECISE vec3 near_origin = space.origin + shift;
-    PRECISE vec3 far_origin = space.origin - shift;
     PRECISE vec3 near_inverse = inverse * NEAR_FACTOR;
     PRECISE vec3 far_inverse = inverse * FAR_FACTOR;
+    // Of the near inverse, whose signs tests of boxes ask for.
+    vec3 shift = vec3(near_inverse.x < 0.0f ? -pad : pad, near_inverse.y < 0.0f ? -pad : pad, near_inverse.z < 0.0f ? -pad : pad);
+    PRECISE vec3 near_origin = space.origin + shift;
+    PRECISE vec3 far_origin = space.origin - shift;
     BoxRay ray;
     ray.near_origin = near_origin;
     ray.far_origin = far_origin;
@@ -104,10 +112,11 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
     vec3 inverse = vec3(reciprocal(direction.x), reciprocal(direction.y), reciprocal(direction.z));
     float of_dominant = dominant_last(inverse, space.axis).z;
     float along = abs(of_dominant);
-    vec3 limit = vec3(min(STEEPEST * along, LARGEST_FLOAT));
+    float limit = STEEPEST * along;
+    limit = limit < LARGEST_FLOAT ? limit : LARGEST_FLOAT;
     space.t_scale = scale_of_reach(pad, along);
-    inverse = clamp(inverse, -limit, limit) * space.t_scale;
-    space.inverse = inverse;
+    inverse = vec3(within(inverse.x, limit), within(inverse.y, limit), within(inverse.z, limit));
+    space.inverse = inverse * space.t_scale;
     space.pad = pad;
     space.shear_x = d.x / d.z;
     space.shear_y = d.y / d.z;

@@ -15,7 +15,7 @@ FUNC uint place_of(vec3 lo, vec3 hi, BoxRay ray, Search search, uint query)
     float enter = 0.0f;
     float leave = 0.0f;
     cross_box(lo, hi, ray, search.t_min, search.t_best, enter, leave);
-    return place_in_order(enter, leave, query);
+    return place_in_order(enter, leave, true, query);
 }
 
 FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
@@ -102,6 +102,6 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
             }
         }
     }
-    return hit_of(search, scene);
+    return hit_of(search, scene, inside.custom_index, options);
 }
 #endif

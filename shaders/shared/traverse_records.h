@@ -15,6 +15,8 @@ FUNC ChildKeys enter_children(CompressedRecord node, REF(LeafBox) boxes, BoxRay 
     return enter_compressed(node, ray, search.t_min, search.t_best, options.query);
 }
 
+const uint IN_NO_INSTANCE = 0xffffffffu; // more groups than a stack ever has
+
 FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
 {
     Search search = begin_search(ray);
@@ -44,6 +46,8 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
     GroupWindow window = empty_window();
     uint stack[TWINRAY_GROUP_STACK];
     uint height = 0u;
+    uint waiting = 0u;             // groups on the stack
+    uint outside = IN_NO_INSTANCE; // how many were there when the ray entered the instance that it is in
     uint cursor = 0u;
     // Conditions on which a ray is not traced are in the loop's: drivers on CPUs run a loop in a branch more slowly.
     while (is_traced)
@@ -76,22 +80,23 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
                 space = space_in(instance, inside, ray, options);
                 records = instance.records;
                 boxes = instance.record_boxes;
-                pushed = LEAVE_INSTANCE;
+                outside = waiting;
                 cursor = 0u;
                 descend = true;
             }
         }
         if (!descend)
         {
-            uint group = held.first;
-            TWINRAY_FETCH_GROUP(held, window, stack, height, group)
-            if (has_top && group == LEAVE_INSTANCE)
+            if (has_top && waiting == outside)
             {
                 space = world_space(scene, ray);
                 records = scene.records;
                 boxes = scene.record_boxes;
-                drop_group(held);
-                group = held.first;
+                outside = IN_NO_INSTANCE;
+            }
+            uint group = held.first;
+            if (has_top || lies_elsewhere(group))
+            {
                 TWINRAY_FETCH_GROUP(held, window, stack, height, group)
             }
             if (group == BOTTOM) break;
@@ -99,8 +104,9 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
             held.first = rest_of(group);
         }
         TWINRAY_MAKE_ROOM(held, window, stack, height, pushed)
+        if (has_top) waiting = waiting_after(held, pushed, waiting);
         shift_groups(held, pushed);
     }
-    return hit_of(search, scene);
+    return hit_of(search, scene, inside.custom_index, options);
 }
 #endif

@@ -141,11 +141,11 @@ const uint NO_ENTRY = 0x7f800000u; // infinity, and what is larger: no hit is re
 // Where among its siblings a box comes that the ray crosses from `enter` to `leave`, the least first; the last two bits are free.
 // The nearest is first; where any hit will do, that in which the ray is longest, as most may be hit there. (Larger boxes
 // first, for rays unknown: Nah, Manocha, "SATO: Surface Area Traversal Order for Shadow Ray Tracing", 2014.)
-FUNC uint place_in_order(float enter, float leave, uint query)
+FUNC uint place_in_order(float enter, float leave, bool is_there, uint query)
 {
     uint longest_first = 0x7f000000u - min(floatBitsToUint(leave - enter), 0x7e000000u);
     uint place = query == QUERY_ANY ? longest_first : floatBitsToUint(enter);
-    return enter <= leave ? place & ~3u : NO_ENTRY;
+    return is_there && enter <= leave ? place & ~3u : NO_ENTRY;
 }
 
 // What has been found so far, and where there is more to find. Only what a kernel needs is ever written: the rest stays a
@@ -174,7 +174,8 @@ FUNC Search begin_search(Ray ray)
     return search;
 }
 
-FUNC Hit hit_of(Search search, SwScene scene)
+// custom_index: of a scene of one instance.
+FUNC Hit hit_of(Search search, SwScene scene, uint custom_index, TraceOptions options)
 {
     Hit hit = miss();
     if (search.primitive_index == NOTHING) return hit;
@@ -184,7 +185,9 @@ FUNC Hit hit_of(Search search, SwScene scene)
     hit.v = search.v;
     hit.primitive_index = search.primitive_index;
     hit.instance_index = search.instance_index;
-    hit.custom_index = AT(scene.instances, search.instance_index).custom_index_mask & 0xffffffu;
+    hit.custom_index = custom_index;
+    if ((options.features & FEATURE_INSTANCES) != 0u)
+        hit.custom_index = AT(scene.instances, search.instance_index).custom_index_mask & 0xffffffu;
     return hit;
 }
 

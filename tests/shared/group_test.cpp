@@ -38,7 +38,7 @@ TEST(Groups, HoldAllChildrenButTheFirstInOrder) {
 TEST(Groups, AreNoneOfTheOtherEntriesOfAStack) {
     for (uint order = 0; order < 64; ++order) {
         const uint group = make_group(1, order & 3, order >> 2 & 3, order >> 4);
-        for (const uint other : {EMPTY_GROUP, BOTTOM, IN_WINDOW, IN_MEMORY, LEAVE_INSTANCE}) EXPECT_NE(group, other);
+        for (const uint other : {EMPTY_GROUP, BOTTOM, IN_WINDOW, IN_MEMORY}) EXPECT_NE(group, other);
     }
 }
 
@@ -50,18 +50,17 @@ class Stack {
         uint group = held_.first;
         TWINRAY_FETCH_GROUP(held_, window_, memory_, height_, group);
         if (group == BOTTOM) return group;
-        if (group == LEAVE_INSTANCE)
-            drop_group(held_);
-        else
-            held_.first = EMPTY_GROUP;
+        held_.first = EMPTY_GROUP;
         shift(EMPTY_GROUP);
         return group;
     }
     uint height() const { return height_; }
+    uint waiting() const { return waiting_; }
 
   private:
     void shift(uint pushed) {
         TWINRAY_MAKE_ROOM(held_, window_, memory_, height_, pushed);
+        waiting_ = waiting_after(held_, pushed, waiting_);
         shift_groups(held_, pushed);
     }
 
@@ -69,6 +68,7 @@ class Stack {
     GroupWindow window_ = empty_window();
     std::array<uint, GROUP_STACK_SIZE> memory_{};
     uint height_ = 0;
+    uint waiting_ = 0;
 };
 
 TEST(Groups, ComeFromTheStackInTheOrderOfAStack) {
@@ -79,7 +79,7 @@ TEST(Groups, ComeFromTheStackInTheOrderOfAStack) {
     for (int turn = 0; turn < 100'000; ++turn) {
         const bool is_growing = turn / 300 % 2 == 0;
         if (expected.size() < GROUP_STACK_SIZE + WINDOW_SIZE + 5 && random() % 4 < (is_growing ? 3u : 1u)) {
-            expected.push_back(turn % 9 == 0 ? LEAVE_INSTANCE : make_group(static_cast<uint>(turn) + 1, 0, 0, 0));
+            expected.push_back(make_group(static_cast<uint>(turn) + 1, 0, 0, 0));
             stack.push(expected.back());
         } else {
             const uint last = expected.empty() ? BOTTOM : expected.back();
@@ -89,6 +89,7 @@ TEST(Groups, ComeFromTheStackInTheOrderOfAStack) {
             else
                 expected.pop_back();
         }
+        ASSERT_EQ(stack.waiting(), expected.size()) << turn;
         highest = std::max<std::size_t>(highest, stack.height());
     }
     EXPECT_EQ(highest, GROUP_STACK_SIZE);
@@ -112,6 +113,20 @@ TEST(Groups, ANodeTellsItsFirstChildAndTheirNumber) {
         EXPECT_FALSE(is_leaf(node));
     }
     EXPECT_LT(Geometry::max_primitives, 1u << 25);  // leaves beside heights: see make_below
+}
+
+// From far away the padding of a ray is wider than the grid of a node: all boxes in it are crossed.
+TEST(Groups, ARayFromAfarEntersTheChildrenThatAreThereAndNoOther) {
+    const Ray ray{vec3(-1e7f, 0.5f, 0.5f), 0.0f, vec3(1.0f, 0.0f, 0.0f), INFINITY};
+    const BoxRay prepared = box_ray(make_ray_space(ray.origin, ray.direction, corner_pad(ray.origin, 1.0f)));
+    for (uint count = 2; count <= 4; ++count) {
+        NodeChildren children{};
+        children.count = count;
+        for (uint i = 0; i < count; ++i) children.box[i] = {vec3(0.2f * float(i)), vec3(0.2f * float(i) + 0.1f)};
+        const ChildKeys keys = enter_compressed(encode_node(children, 1), prepared, 0.0f, INFINITY, QUERY_CLOSEST);
+        const std::array all = {keys.key0, keys.key1, keys.key2, keys.key3};
+        for (uint i = 0; i < 4; ++i) EXPECT_EQ(all[i] < NO_ENTRY, i < count) << i << " of " << count;
+    }
 }
 
 }  // namespace
