@@ -50,7 +50,7 @@ FUNC void store_record(REF(CompressedRecord) records, uint index, CompressedReco
 FUNC uint cell_exponent(float lo, float hi)
 {
     const float LONGEST = 0.003968253968f;              // 1 / 252
-    const float STEPS = 0.0001220703125f;               // 2^-13
+    const float STEPS = 6.103515625e-05f;               // 2^-14
     const float ROUNDINGS = 4.76837158203125e-07f;      // 2^-21
     float largest = max(abs(lo), abs(hi));
     PRECISE float size = (hi - lo + largest * STEPS) * LONGEST;
@@ -60,7 +60,7 @@ FUNC uint cell_exponent(float lo, float hi)
 FUNC float cell_size(uint exponent) { return uintBitsToFloat(exponent << 23u); }
 FUNC float cells_per_unit(uint exponent) { return uintBitsToFloat((254u - exponent) << 23u); }
 
-// The largest number that is not above `limit` and whose last 9 bits are an exponent: 2^-13 of it lower at most. The first of them is
+// The largest number that is not above `limit` and whose last 9 bits are an exponent: 2^-14 of it lower at most. The first of them is
 // 0, so that a shift leaves nothing but the exponent.
 FUNC float origin_below(float limit, uint exponent)
 {

@@ -57,7 +57,7 @@ FUNC HeldGroups hold_none(uint below)
     return held;
 }
 
-// Drops the first group if it is EMPTY_GROUP, then puts `pushed` on top if it is not. Once an iteration, and each number from others as
+// Drops the first group if it is EMPTY_GROUP, or puts `pushed` on top if that is not; never both. Once an iteration, and each number from others as
 // they still are: drivers on CPUs pay for whatever changes in a loop, and twice for what is needed once it has changed.
 FUNC void shift_groups(INOUT(HeldGroups) held, uint pushed)
 {

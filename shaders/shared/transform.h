@@ -62,7 +62,7 @@ FUNC vec3 doubled_cross(vec3 a, vec3 b, INOUT(vec3) missing)
     return vec3(x, y, z);
 }
 
-// By a comparison: of what is no number max() promises nothing, and drivers on CPUs pay for a promise of their own.
+// b where either is no number, of which max() promises nothing, while drivers on CPUs pay for a promise of their own.
 FUNC float greater_of(float a, float b) { return a > b ? a : b; }
 FUNC float largest_entry(vec3 v) { return greater_of(abs(v.x), greater_of(abs(v.y), abs(v.z))); }
 FUNC float largest_coordinate(vec3 lo, vec3 hi) { return greater_of(largest_entry(lo), largest_entry(hi)); }

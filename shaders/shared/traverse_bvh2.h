@@ -28,7 +28,11 @@ FUNC Hit traverse_bvh2(SwScene scene, Ray ray, TraceOptions options)
     InInstance inside;
     uint cursor = scene.bvh.root;
     bool is_traced = is_traceable(ray);
-    if (has_top) space = world_space(scene, ray);
+    if (has_top)
+    {
+        space = world_space(scene, ray);
+        inside.custom_index = 0u;
+    }
     else
     {
         SwInstance instance = load_instance(scene.instances, 0u);

@@ -30,6 +30,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
     {
         is_traced = is_traced && scene.bvh.root != NOTHING;
         space = world_space(scene, ray);
+        inside.custom_index = 0u;
     }
     else
     {
@@ -95,6 +96,7 @@ FUNC Hit traverse_records(SwScene scene, Ray ray, TraceOptions options)
                 outside = IN_NO_INSTANCE;
             }
             uint group = held.first;
+            // Among instances some ray nearly always has one elsewhere, and another branch would be one more.
             if (has_top || lies_elsewhere(group))
             {
                 TWINRAY_FETCH_GROUP(held, window, stack, height, group)

@@ -87,7 +87,7 @@ TEST(Compressed, OriginsKeepAnExponentAndLieCloseBelow) {
         const float origin = origin_below(limit, exponent);
         EXPECT_EQ(floatBitsToUint(origin) & 0x1ffu, exponent) << limit;
         EXPECT_LE(origin, limit) << exponent;
-        EXPECT_LE(double{limit} - double{origin}, std::ldexp(std::abs(double{limit}), -13) + 0x1p-140) << exponent;
+        EXPECT_LE(double{limit} - double{origin}, std::ldexp(std::abs(double{limit}), -14) + 0x1p-140) << exponent;
     }
 }
 
