@@ -6,6 +6,7 @@
 #include "shaders/shared/bridge.glsl"
 #define TWINRAY_GROUP_STACK ONE_LEVEL_STACK_SIZE
 #include "shaders/shared/traverse_records.h"
+#include "shaders/shared/turns.h"
 layout(local_size_x = 64, local_size_x_id = RAY_GROUP_CONSTANT) in;
 layout(constant_id = QUERY_CONSTANT) const uint MINIMAL_QUERY = QUERY_CLOSEST;
 layout(constant_id = HANDS_CONSTANT) const uint MINIMAL_HANDS = 0u;
@@ -102,9 +103,17 @@ void main()
     uint run = MINIMAL_HANDS == 0u ? 1u : run_of_blocks(count, size, groups);
     uint first = dealt_group(group_index(), groups, MINIMAL_HANDS) * run * size + gl_LocalInvocationID.x;
     SwScene scene = AT(REF(SwScene)(args.scene), 0);
+    bool has_turns = MINIMAL_HANDS != 0u && MINIMAL_QUERY == QUERY_CLOSEST;
+    Turns turns = turns_as_given();
     for (uint k = 0u; k < run && first + k * size < count; ++k)
     {
         uint i = first + k * size;
+        if (has_turns)
+        {
+            uint taken = k & (TURNS - 1u);
+            if (taken == 0u) turns = turns_of(args, i, size, min(run - k, TURNS), count);
+            i = first + (k - taken + next_turn(turns, taken)) * size;
+        }
         Hit hit = closest_triangle(AT(scene.instances, 0), load_ray(args.rays, i));
         if (MINIMAL_QUERY == QUERY_CLOSEST) store_hit(args.hits, i, hit);
         else AT(args.hits, i).hit = hit.hit;

@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/query.glsl"
+#include "shaders/shared/turns.h"
 #ifdef TWINRAY_PROGRAM
 #include "twinray_program.glsl"
 #endif
@@ -21,9 +22,18 @@ void main()
     uint first = dealt_group(group_index(), groups, TRACE_HANDS) * run * size + gl_LocalInvocationID.x;
     TraceOptions options = trace_options(args.mask, args.flags, TRACE_QUERY);
     options.user_data = args.user_data;
+    bool has_turns = TRACE_HANDS != 0u && TRACE_QUERY == QUERY_CLOSEST;
+    Turns turns = turns_as_given();
     for (uint k = 0u; k < run && first + k * size < count; ++k)
     {
-        uint i = ray_at(args.order, first + k * size);
+        uint place = first + k * size;
+        if (has_turns)
+        {
+            uint taken = k & (TURNS - 1u);
+            if (taken == 0u) turns = turns_of(args, place, size, min(run - k, TURNS), count);
+            place = first + (k - taken + next_turn(turns, taken)) * size;
+        }
+        uint i = ray_at(args.order, place);
         Hit hit = trace(args.scene, load_ray(args.rays, i), options);
         if ((TRACE_FEATURES & FEATURE_HITS) != 0u) store_hit(args.hits, i, hit);
         else AT(args.hits, i).hit = hit.hit;
