@@ -25,8 +25,7 @@ const uint NO_RAY = 0xffffffe0u; // and more: keys of turns that have none
 FUNC uint part_of_key(float x) { return ordered_bits(x) >> (32u - PART_BITS); }
 FUNC uint turn_key(vec3 direction, uint turn)
 {
-    uint z = min(part_of_key(direction.z), (1u << PART_BITS) - 2u); // less than NO_RAY, whatever a NaN has for bits
-    return z << (PART_BITS + TURN_BITS) | part_of_key(direction.x) << TURN_BITS | turn;
+    return part_of_key(direction.z) << (PART_BITS + TURN_BITS) | part_of_key(direction.x) << TURN_BITS | turn;
 }
 
 // A step of a bitonic sort (Batcher, "Sorting networks and their applications", 1968): keys that lie `gap` apart are put in order, the
