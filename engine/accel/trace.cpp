@@ -32,6 +32,9 @@ void AbstractAccel::trace(Commands& commands, const AccelView& view, const Trace
     check_desc(view, desc);
     if (desc.count == 0) return;
     if (!desc.rays.address || !desc.hits.address) fail(name_, ": trace: the address of rays or hits is 0");
+    const std::uint64_t bytes = desc.count * sizeof(Ray), rays = desc.rays.address, hits = desc.hits.address;
+    if ((rays < hits ? hits - rays : rays - hits) < bytes)
+        fail(name_, ": trace: ", bytes, " bytes of rays at ", rays, " and of hits at ", hits, " must not overlap");
     const TraceProgram& program = program_for(desc);
     const TraceArgs args{.scene = view.scene,
                          .rays = desc.rays,

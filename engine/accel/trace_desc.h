@@ -79,7 +79,7 @@ constexpr uint flags_of(Cull cull) { return cull == Cull::none ? 0 : cull == Cul
 
 struct TraceDesc {
     Ref<Ray> rays = {};  // device address of count rays, 8-byte aligned
-    Ref<Hit> hits = {};  // device address of count hits, 8-byte aligned; written
+    Ref<Hit> hits = {};  // device address of count hits, 8-byte aligned, apart from the rays; written in no order
     std::uint64_t count = 0;
     // Device address of a uint, 4-byte aligned, or 0: traces min(count, that many) rays; hits beyond stay.
     Uints indirect_count = {};

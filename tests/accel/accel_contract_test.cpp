@@ -381,6 +381,8 @@ TEST_P(Accel, TraceRefusesAddressesAndCountsItCannotServe) {
         {{.rays = {16}, .hits = {16}, .count = 1, .indirect_count = {2}}, "indirect count at 2"},
         {{.rays = {0}, .hits = {16}, .count = 1}, "address of rays or hits is 0"},
         {{.rays = {16}, .hits = {0}, .count = 1}, "address of rays or hits is 0"},
+        {{.rays = {64}, .hits = {88}, .count = 1}, "32 bytes of rays at 64 and of hits at 88 must not overlap"},
+        {{.rays = {88}, .hits = {32}, .count = 2}, "64 bytes of rays at 88 and of hits at 32 must not overlap"},
         {{.rays = {16}, .hits = {16}, .count = 1ull << 32}, "4294967296 rays; at most 4294967295"},
     };
     for (const auto& [desc, expected] : cases) {
