@@ -108,12 +108,7 @@ void main()
     for (uint k = 0u; k < run && first + k * size < count; ++k)
     {
         uint i = first + k * size;
-        if (has_turns)
-        {
-            uint taken = k & (TURNS - 1u);
-            if (taken == 0u) turns = turns_of(args, i, size, min(run - k, TURNS), count);
-            i = first + (k - taken + next_turn(turns, taken)) * size;
-        }
+        if (has_turns) i = ray_of_turn(turns, args, first, k, run, size, count);
         Hit hit = closest_triangle(AT(scene.instances, 0), load_ray(args.rays, i));
         if (MINIMAL_QUERY == QUERY_CLOSEST) store_hit(args.hits, i, hit);
         else AT(args.hits, i).hit = hit.hit;

@@ -27,12 +27,7 @@ void main()
     for (uint k = 0u; k < run && first + k * size < count; ++k)
     {
         uint place = first + k * size;
-        if (has_turns)
-        {
-            uint taken = k & (TURNS - 1u);
-            if (taken == 0u) turns = turns_of(args, place, size, min(run - k, TURNS), count);
-            place = first + (k - taken + next_turn(turns, taken)) * size;
-        }
+        if (has_turns) place = ray_of_turn(turns, args, first, k, run, size, count);
         uint i = ray_at(args.order, place);
         Hit hit = trace(args.scene, load_ray(args.rays, i), options);
         if ((TRACE_FEATURES & FEATURE_HITS) != 0u) store_hit(args.hits, i, hit);

@@ -142,4 +142,12 @@ FUNC Turns turns_of(TraceArgs args, uint first, uint size, uint turns, uint coun
     sort_turns(keys);
     return turns_in_order(keys);
 }
+
+// The number of the ray to trace in turn k of a run of `run` turns that begins at ray `first`, which is asked for from 0 on.
+FUNC uint ray_of_turn(INOUT(Turns) turns, TraceArgs args, uint first, uint k, uint run, uint size, uint count)
+{
+    uint taken = k & (TURNS - 1u);
+    if (taken == 0u) turns = turns_of(args, first + k * size, size, min(run - k, TURNS), count);
+    return first + (k - taken + next_turn(turns, taken)) * size;
+}
 #endif
