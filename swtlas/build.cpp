@@ -47,13 +47,25 @@ KernelDesc grouped(const Context& context, KernelDesc desc, uint gpu_group) {
     return desc;
 }
 
+KernelDesc loading_ahead(const Context& context, KernelDesc desc) {
+    desc.constants.push_back({LOADS_AHEAD_CONSTANT, context.facts().kind == DeviceKind::cpu});
+    return desc;
+}
+
 KernelDesc leaves_stage(const Context& context, const char* name, std::span<const std::uint32_t> spirv) {
     return grouped(context, stage(name, spirv, true), LEAVES_GROUP);
 }
 
 KernelDesc hierarchy_stage(const Context& context, BuildQuality quality) {
-    return specialized(grouped(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv, true), BUILD_GROUP),
+    const KernelDesc desc =
+        grouped(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv, true), BUILD_GROUP);
+    return specialized(loading_ahead(context, desc),
                        quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST);
+}
+
+KernelDesc encode_stage(const Context& context, bool is_needed) {
+    const KernelDesc desc = stage("swtlas_encode_records", swtlas_encode_records_spirv, is_needed);
+    return loading_ahead(context, grouped(context, desc, BUILD_GROUP));
 }
 
 KernelDesc collapse_stage(uint step, bool is_needed) {
@@ -80,7 +92,7 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       morton_(context, grouped(context, stage("swtlas_morton", swtlas_morton_spirv, true), BUILD_GROUP)),
       node_areas_(context,
                   grouped(context, stage("swtlas_node_areas", swtlas_node_areas_spirv, needs.moves), AREA_GROUP)),
-      crowding_(context, stage("swtlas_crowding", swtlas_crowding_spirv, true)),
+      crowding_(context, grouped(context, stage("swtlas_crowding", swtlas_crowding_spirv, true), BUILD_GROUP)),
       fine_codes_(context, stage("swtlas_fine_codes", swtlas_fine_codes_spirv, true)),
       gather_keys_(context, stage("swtlas_gather_keys", swtlas_gather_keys_spirv, true)),
       hierarchy_(context, hierarchy_stage(context, options.build_quality)),
@@ -88,9 +100,7 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS, needs.records)),
       collapse_level_(context, collapse_stage(COLLAPSE_LEVEL, needs.records)),
       collapse_rest_(context, collapse_stage(COLLAPSE_REST, needs.records)),
-      encode_records_(
-          context,
-          grouped(context, stage("swtlas_encode_records", swtlas_encode_records_spirv, needs.records), BUILD_GROUP)),
+      encode_records_(context, encode_stage(context, needs.records)),
       record_parents_(context,
                       stage("swtlas_record_parents", swtlas_record_parents_spirv, needs.records && needs.moves)),
       refit_records_(

@@ -8,12 +8,14 @@
 
 namespace twinray {
 
+inline constexpr std::uint64_t cache_line_bytes = 64;
+
 struct BufferDesc {
     std::string name;         // required: shows in errors, debuggers and validation messages
     std::uint64_t bytes = 0;  // 0 is allowed and gives an empty buffer with address 0
     Memory memory = Memory::device;
     VkBufferUsageFlags usage = 0;  // beyond storage, transfer and device address
-    std::uint64_t alignment = 16;  // of the device address; a power of two
+    std::uint64_t alignment = cache_line_bytes;  // of the device address; a power of two
 };
 
 // A named range of device memory. Move-only; when destroyed it is freed after all work submitted so far.

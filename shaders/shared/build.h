@@ -250,7 +250,7 @@ FUNC vec3 center_of(LeafBox box)
 
 FUNC void keep_box(BuildTree tree, uint record, LeafBox box)
 {
-    if (uint64_t(tree.record_boxes) != 0ul) AT(tree.record_boxes, record) = box;
+    if (uint64_t(tree.record_boxes) != 0ul) store_box(tree.record_boxes, record, box);
 }
 
 FUNC bool has_instances(BuildTree tree) { return uint64_t(tree.positions) == 0ul; }

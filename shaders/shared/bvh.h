@@ -187,6 +187,14 @@ FUNC LeafBox load_box(REF(LeafBox) boxes, uint index)
     return box;
 }
 
+FUNC void store_box(REF(LeafBox) boxes, uint index, LeafBox box)
+{
+    Words64 words = Words64(uint64_t(boxes) + uint64_t(index) * 24ul);
+    AT(words, 0) = WORD(floatBitsToUint(box.lo.x), floatBitsToUint(box.lo.y));
+    AT(words, 1) = WORD(floatBitsToUint(box.lo.z), floatBitsToUint(box.hi.x));
+    AT(words, 2) = WORD(floatBitsToUint(box.hi.y), floatBitsToUint(box.hi.z));
+}
+
 FUNC BvhTriangle load_triangle(REF(BvhTriangle) triangles, uint index)
 {
     Words64 words = Words64(uint64_t(triangles) + uint64_t(index) * 40ul);

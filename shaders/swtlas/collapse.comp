@@ -9,9 +9,6 @@ layout(local_size_x = COLLAPSE_GROUP) in;
 layout(constant_id = 0) const uint STEP = COLLAPSE_LEVEL;
 layout(push_constant, scalar) uniform Push { CollapseArgs args; };
 
-shared uint pushed;
-shared uint pushed_before;
-
 // Of one subtree, depth first.
 void collapse_all(CollapseItem item)
 {
@@ -33,22 +30,17 @@ void collapse_all(CollapseItem item)
     }
 }
 
-// Where the group's next `count` items go. Barriers come before what a level writes: they would wait for it.
+// Where the next level has room for `count` more items.
 uint reserve(uint count)
 {
-    if (gl_LocalInvocationID.x == 0u) pushed = 0u;
-    barrier();
-    uint place = atomicAdd(pushed, count);
-    barrier();
-    if (gl_LocalInvocationID.x == 0u && pushed != 0u)
-    {
-        pushed_before = atomicAdd(AT(args.level, 1).count, pushed);
-        uint groups = (pushed_before + pushed + COLLAPSE_GROUP - 1u) / COLLAPSE_GROUP;
-        atomicMax(AT(args.level, 1).groups_x, min(groups, GROUPS_PER_ROW));
-        atomicMax(AT(args.level, 1).groups_y, (groups + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW);
-    }
-    barrier();
-    return place + pushed_before;
+    if (count == 0u) return 0u;
+    uint place = atomicAdd(AT(args.level, 1).count, count);
+    uint groups_before = (place + COLLAPSE_GROUP - 1u) / COLLAPSE_GROUP;
+    uint groups = (place + count + COLLAPSE_GROUP - 1u) / COLLAPSE_GROUP;
+    if (groups == groups_before) return place;
+    atomicMax(AT(args.level, 1).groups_x, min(groups, GROUPS_PER_ROW));
+    atomicMax(AT(args.level, 1).groups_y, (groups + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW);
+    return place;
 }
 
 void push(CollapseStep found, uint place)
@@ -63,26 +55,29 @@ void push(CollapseStep found, uint place)
 
 void begin(uint index)
 {
-    CollapseStep found = no_step();
-    if (index < args.tree_count) found = begin_collapse(AT(args.trees, index), args.places, index);
+    if (index >= args.tree_count) return;
+    CollapseStep found = begin_collapse(AT(args.trees, index), args.places, index);
     push(found, reserve(found.is_inner[0] ? 1u : 0u));
 }
 
-void do_level(uint index)
+void do_item(CollapseItem item)
 {
-    bool is_item = index < AT(args.level, 0).count;
-    CollapseItem item = load_item(args.items, is_item ? index : 0u);
     BuildTree tree = AT(args.trees, item.tree);
-    NodeChildren children = no_children();
-    if (is_item) children = children_of(tree.nodes, item.place);
-    uint place = reserve(inner_among(children));
-    if (is_item) push(write_node(tree, args.places, item, children), place);
+    NodeChildren children = children_of(tree.nodes, item.place);
+    uint place = reserve(inner_among(children)); // before all writes, which an atomic operation waits for on CPUs
+    push(write_node(tree, args.places, item, children), place);
 }
 
 void main()
 {
     uint index = global_index();
-    if (STEP == COLLAPSE_ROOTS) begin(index);
-    else if (STEP == COLLAPSE_LEVEL) do_level(index);
-    else if (index < AT(args.level, 0).count) collapse_all(load_item(args.items, index));
+    if (STEP == COLLAPSE_ROOTS)
+    {
+        begin(index);
+        return;
+    }
+    if (index >= AT(args.level, 0).count) return;
+    CollapseItem item = load_item(args.items, index);
+    if (STEP == COLLAPSE_LEVEL) do_item(item);
+    else collapse_all(item);
 }

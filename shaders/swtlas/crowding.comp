@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
-layout(local_size_x = BUILD_GROUP) in;
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { CrowdingArgs args; };
 
 uint tree_at(uint position) { return uint64_t(args.tree_of) == 0ul ? 0u : AT(args.tree_of, AT(args.order, position)); }
@@ -26,12 +26,19 @@ void dispatch_second_sort()
     AT(args.crowding, 0).scan_groups[0] = 1u;
 }
 
-void main()
+void count_if_crowd(uint position)
 {
-    uint position = global_index();
     if (!begins_crowd(position)) return;
     uint tree = tree_at(position);
     uint leaf_count = AT(args.trees, tree).count;
     if (needs_fine_codes(AT(args.crowded, tree), leaf_count)) return;
     if (needs_fine_codes(atomicAdd(AT(args.crowded, tree), 1u) + 1u, leaf_count)) dispatch_second_sort();
+}
+
+void main()
+{
+    uint begin = group_index() * BUILD_GROUP;
+    if (begin >= args.count) return;
+    uint end = min(begin + BUILD_GROUP, args.count);
+    for (uint i = begin + gl_LocalInvocationID.x; i < end; i += gl_WorkGroupSize.x) count_if_crowd(i);
 }

@@ -4,14 +4,31 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/collapse.h"
+#include "shaders/swtlas/ahead.glsl"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { EncodeRecordsArgs args; };
+
+// The indices of a block's triangles.
+void load_ahead(BuildBlock block, BuildTree tree)
+{
+    uint found = 0u;
+    uint last = block.first + block.count - 1u;
+    uint stride = gl_WorkGroupSize.x;
+    for (uint first = block.first + gl_LocalInvocationID.x; first <= last; first += LOADS_ABREAST * stride)
+    {
+        uint triangles[LOADS_ABREAST];
+        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) triangles[i] = AT(args.order, min(first + i * stride, last)) - tree.first;
+        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) found ^= AT(tree.indices, 3u * triangles[i]);
+    }
+    keep_loads(found);
+}
 
 void main()
 {
     BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
     BuildTree tree = AT(args.trees, block.tree);
     if (group_index() >= args.block_count) return;
+    if (LOADS_AHEAD && !has_boxes(tree)) load_ahead(block, tree);
     for (uint i = gl_LocalInvocationID.x; i < block.count; i += gl_WorkGroupSize.x)
     {
         uint position = block.first + i;

@@ -18,6 +18,7 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
 #include "shaders/shared/splits.h"
+#include "shaders/swtlas/ahead.glsl"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(constant_id = 0) const uint QUALITY = HIERARCHY_FAST;
 layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
@@ -192,11 +193,26 @@ void join_ranges(BuildTree tree, NodeWords nodes, float scale, Run run)
     }
 }
 
+// The codes and boxes of the leaves begin .. end - 1.
+void load_ahead(uint begin, uint end)
+{
+    uint found = 0u;
+    for (uint first = begin; first < end; first += LOADS_ABREAST)
+    {
+        uint elements[LOADS_ABREAST];
+        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) elements[i] = AT(args.order, min(first + i, end - 1u));
+        found ^= AT(args.codes, first);
+        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) found ^= floatBitsToUint(AT(args.boxes, elements[i]).hi.z);
+    }
+    keep_loads(found);
+}
+
 // The leaves begin .. end - 1. In each turn of the loop an invocation takes some leaves or joins, but stops where there is
 // a node to rotate, and rotates one: where invocations go through a program together, each waits little for the others.
 void build_run(BuildTree tree, float scale, uint begin, uint end)
 {
     NodeWords nodes = NodeWords(uint64_t(tree.nodes));
+    if (LOADS_AHEAD) load_ahead(begin, end);
     Run run = first_run(tree, begin, end);
     Rotation rotation = no_rotation();
     while (run.place != end)

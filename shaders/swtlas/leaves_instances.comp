@@ -18,7 +18,7 @@ void main()
         uint index = block.first + i;
         LeafBox box = empty_box();
         AT(args.instances, index) = place_instance(in_built_units(AT(args.records, index)), box);
-        AT(args.boxes, index) = box;
+        store_box(args.boxes, index, box);
         add_center(centers, box);
     }
     add_centroids(args.centroids, block.tree, centers);

@@ -15,7 +15,7 @@ void main()
     for (uint i = gl_LocalInvocationID.x; i < block.count; i += gl_WorkGroupSize.x)
     {
         LeafBox box = box_of_primitive(tree, block.first + i - tree.first);
-        AT(args.boxes, block.first + i) = box;
+        store_box(args.boxes, block.first + i, box);
         add_center(centers, box);
     }
     add_centroids(args.centroids, block.tree, centers);

@@ -16,6 +16,6 @@ void main()
     BuildTree tree = AT(args.trees, block.tree);
     uint place = leaf - tree.first;
     BvhTriangle triangle = fetch_primitive(tree, AT(tree.triangles, place).primitive_index);
-    AT(args.boxes, leaf) = box_of_triangle(triangle);
+    store_box(args.boxes, leaf, box_of_triangle(triangle));
     AT(tree.triangles, place) = without_inactive_corners(triangle);
 }
