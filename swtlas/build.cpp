@@ -57,10 +57,8 @@ KernelDesc leaves_stage(const Context& context, const char* name, std::span<cons
 }
 
 KernelDesc hierarchy_stage(const Context& context, BuildQuality quality) {
-    const KernelDesc desc =
-        grouped(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv, true), BUILD_GROUP);
-    return specialized(loading_ahead(context, desc),
-                       quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST);
+    const KernelDesc desc = grouped(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv, true), BUILD_GROUP);
+    return specialized(loading_ahead(context, desc), quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST);
 }
 
 KernelDesc encode_stage(const Context& context, bool is_needed) {
@@ -247,7 +245,7 @@ void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::s
 void Builder::record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
                                Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
     if (plan.leaf_count == 0) return;
-    Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = plan.scratch.bytes});
+    Buffer scratch = build_scratch(commands.context(), plan);
     const Batch batch = begin_instances(commands, plan, tree, records, instances, scratch);
     const RadixSort::Pairs sorted = record_order(commands, plan, batch);
     record_hierarchy(commands, batch, sorted, has_records(plan.layout));

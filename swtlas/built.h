@@ -13,7 +13,9 @@ struct SwTlas::SwBuiltGeometry : BuiltGeometry {
 
     SwBuiltGeometry(Context& context, const Geometry& geometry, Layout of_trees)
         : layout(layout_geometry(static_cast<uint>(geometry.primitive_count()), of_trees)),
-          buffer(context, {.name = "SwTlas geometry '" + geometry.name + "'", .bytes = layout.bytes}) {
+          buffer(context, {.name = "SwTlas geometry '" + geometry.name + "'",
+                           .bytes = layout.bytes,
+                           .alignment = cache_line_bytes}) {
         bytes = layout.bytes;
     }
     // Null where there are none.

@@ -12,7 +12,8 @@
 namespace twinray {
 namespace {
 
-// Hands out regions that begin at lines of caches, one after the other: a node in two lines would cost two misses.
+// Hands out regions that begin at lines of caches, if the buffer does, one after the other: a node in two lines would
+// cost two misses.
 struct Arena {
     std::uint64_t bytes = 0;
 

@@ -80,7 +80,7 @@ void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, s
 void Builder::record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
                            Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
     if (plan.leaf_count == 0) return;
-    Buffer scratch(commands.context(), {.name = "swtlas build scratch", .bytes = plan.scratch.bytes});
+    Buffer scratch = build_scratch(commands.context(), plan);
     const Batch batch = begin_instances(commands, plan, tree, records, instances, scratch);
     if (has_records(plan.layout))
         record_records_climb(commands, plan, batch);

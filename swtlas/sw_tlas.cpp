@@ -79,7 +79,7 @@ void SwTlas::record_batches(Commands& commands, std::span<const GeometryInput> i
             scratch_share(static_cast<uint>(input.geometry->primitive_count()), options().layout, context().facts()) +
             source_bytes(input));
     const Batches batches = cut_into_batches(shares, scratch_budget());
-    Buffer scratch(context(), {.name = "swtlas geometry scratch", .bytes = batches.scratch_bytes});
+    Buffer scratch(context(), {.name = "swtlas geometry scratch", .bytes = batches.scratch_bytes, .alignment = cache_line_bytes});
     for (const Batches::Run& run : batches.runs) {
         Batch batch{inputs.subspan(run.first, run.count)};
         for (const GeometryInput& input : batch.inputs)
@@ -179,7 +179,8 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
         made = std::make_unique<SwBuiltScene>();
         made->capacity = capacity;
         made->layout = layout_scene(static_cast<uint>(capacity), options().layout);
-        made->buffer = Buffer(context(), {.name = "SwTlas scene", .bytes = made->layout.bytes});
+        made->buffer = Buffer(
+            context(), {.name = "SwTlas scene", .bytes = made->layout.bytes, .alignment = cache_line_bytes});
         made->address = made->buffer.address();
         made->bytes = made->buffer.bytes();
         scene = made.get();

@@ -8,6 +8,7 @@
 
 namespace twinray {
 
+// Of the alignment of what is read a whole line at a time, on all CPUs that matter and most GPUs.
 inline constexpr std::uint64_t cache_line_bytes = 64;
 
 struct BufferDesc {
@@ -15,7 +16,7 @@ struct BufferDesc {
     std::uint64_t bytes = 0;  // 0 is allowed and gives an empty buffer with address 0
     Memory memory = Memory::device;
     VkBufferUsageFlags usage = 0;  // beyond storage, transfer and device address
-    std::uint64_t alignment = cache_line_bytes;  // of the device address; a power of two
+    std::uint64_t alignment = 16;  // of the device address; a power of two
 };
 
 // A named range of device memory. Move-only; when destroyed it is freed after all work submitted so far.

@@ -44,7 +44,15 @@ struct Ref {
     static Ref to(const T* host) { return {reinterpret_cast<std::uint64_t>(host)}; }
 };
 
-using Words64 = Ref<std::uint64_t>;
+// The words of any structure, which others read and write as what they are.
+struct Words64 {
+    using Word [[gnu::may_alias]] = std::uint64_t;
+    std::uint64_t address = 0;
+
+    Word& operator[](std::size_t i) const { return reinterpret_cast<Word*>(address)[i]; }
+    explicit operator std::uint64_t() const { return address; }
+};
+
 using Floats = Ref<float>;
 using Uints = Ref<uint>;
 using Vec4s = Ref<vec4>;

@@ -30,7 +30,7 @@ void collapse_all(CollapseItem item)
     }
 }
 
-// Where the next level has room for `count` more items.
+// Where the next level has room for `count` more items. Whoever begins its last group so far says how many groups it has.
 uint reserve(uint count)
 {
     if (count == 0u) return 0u;

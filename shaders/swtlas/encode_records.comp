@@ -12,12 +12,15 @@ layout(push_constant, scalar) uniform Push { EncodeRecordsArgs args; };
 void load_ahead(BuildBlock block, BuildTree tree)
 {
     uint found = 0u;
-    uint last = block.first + block.count - 1u;
     uint stride = gl_WorkGroupSize.x;
-    for (uint first = block.first + gl_LocalInvocationID.x; first <= last; first += LOADS_ABREAST * stride)
+    for (uint first = gl_LocalInvocationID.x; first < block.count; first += LOADS_ABREAST * stride)
     {
         uint triangles[LOADS_ABREAST];
-        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) triangles[i] = AT(args.order, min(first + i * stride, last)) - tree.first;
+        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i)
+        {
+            uint place = min(first + i * stride, block.count - 1u);
+            triangles[i] = AT(args.order, block.first + place) - tree.first;
+        }
         UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) found ^= AT(tree.indices, 3u * triangles[i]);
     }
     keep_loads(found);

@@ -197,11 +197,11 @@ void join_ranges(BuildTree tree, NodeWords nodes, float scale, Run run)
 void load_ahead(uint begin, uint end)
 {
     uint found = 0u;
-    for (uint first = begin; first < end; first += LOADS_ABREAST)
+    for (uint first = 0u; first < end - begin; first += LOADS_ABREAST)
     {
         uint elements[LOADS_ABREAST];
-        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) elements[i] = AT(args.order, min(first + i, end - 1u));
-        found ^= AT(args.codes, first);
+        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) elements[i] = AT(args.order, min(begin + first + i, end - 1u));
+        found ^= AT(args.codes, begin + first);
         UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) found ^= floatBitsToUint(AT(args.boxes, elements[i]).hi.z);
     }
     keep_loads(found);

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// Plans of builds: where their memory lies, and that shares of a batch make room for it.
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "engine/core/buffer.h"
+#include "engine/core/radix_sort.h"
+#include "swtlas/plan.h"
+
+#include <gtest/gtest.h>
+
+namespace twinray {
+namespace {
+
+struct Region {
+    const char* name;
+    std::uint64_t begin, bytes;
+};
+
+// All that a build has at one time. Places of leaves' records lie where the codes were, and items where the boxes were.
+std::vector<Region> regions_of(const BuildPlan& plan, const DeviceFacts& device) {
+    const BuildScratch& at = plan.scratch;
+    const std::uint64_t n = plan.leaf_count, trees = plan.first.size();
+    std::vector<Region> regions = {{"trees", at.trees, trees * sizeof(BuildTree)},
+                                   {"blocks", at.blocks, plan.blocks.size() * sizeof(BuildBlock)},
+                                   {"boxes", at.boxes, n * sizeof(LeafBox)},
+                                   {"centroids", at.centroids, trees * sizeof(CentroidBounds)},
+                                   {"codes", at.codes, n * sizeof(uint)},
+                                   {"fine codes", at.fine_codes, n * sizeof(uint)},
+                                   {"crowded", at.crowded, trees * sizeof(uint)},
+                                   {"crowding", at.crowding, sizeof(Crowding)},
+                                   {"tree of", at.tree_of, plan.tree_bits ? n * sizeof(uint) : 0},
+                                   {"meeting", at.meeting, n * sizeof(uint)},
+                                   {"counters", at.counters, RadixSort::counter_bytes(n, device)},
+                                   {"levels", at.levels, (plan.collapse_levels + 2) * sizeof(CollapseLevel)}};
+    for (int i = 0; i < 2; ++i) {
+        regions.push_back({"keys", at.keys[i], n * sizeof(uint)});
+        regions.push_back({"order", at.order[i], n * sizeof(uint)});
+    }
+    if (has_records(plan.layout)) regions.push_back({"nodes", at.nodes, n * sizeof(BvhNode)});
+    return regions;
+}
+
+void expect_apart(std::vector<Region> regions, std::uint64_t bytes) {
+    std::sort(regions.begin(), regions.end(), [](const Region& a, const Region& b) {
+        return a.begin != b.begin ? a.begin < b.begin : a.bytes < b.bytes;
+    });
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        const Region& region = regions[i];
+        EXPECT_EQ(region.begin % cache_line_bytes, 0u) << region.name;
+        const std::uint64_t limit = i + 1 < regions.size() ? regions[i + 1].begin : bytes;
+        EXPECT_LE(region.begin + region.bytes, limit) << region.name;
+    }
+}
+
+DeviceFacts facts_of(DeviceKind kind) {
+    DeviceFacts facts;
+    facts.kind = kind;
+    facts.cpu_threads = kind == DeviceKind::cpu ? 2 : 0;
+    facts.shared_bytes = 64 << 10;
+    facts.subgroup_size = 16;
+    return facts;
+}
+
+class BuildPlans : public testing::TestWithParam<std::tuple<DeviceKind, Layout>> {};
+INSTANTIATE_TEST_SUITE_P(On, BuildPlans,
+                         testing::Combine(testing::Values(DeviceKind::cpu, DeviceKind::discrete),
+                                          testing::Values(Layout::compressed4, Layout::bvh4, Layout::bvh2)));
+
+TEST_P(BuildPlans, RegionsBeginAtLinesOfCachesLieApartAndFitTheSumOfShares) {
+    const auto& [kind, layout] = GetParam();
+    const DeviceFacts device = facts_of(kind);
+    std::mt19937 random(1);
+    for (int round = 0; round < 300; ++round) {
+        std::vector<uint> counts(1 + random() % 20);
+        for (uint& count : counts) count = static_cast<uint>(random()) % (1u << random() % 18);
+        const BuildPlan plan = plan_build(counts, layout, device);
+        expect_apart(regions_of(plan, device), plan.scratch.bytes);
+        std::uint64_t shares = 0;
+        for (const uint count : counts) shares += scratch_share(count, layout, device);
+        EXPECT_LE(plan.scratch.bytes, shares) << counts.size() << " trees";
+    }
+}
+
+TEST_P(BuildPlans, BlocksCoverEachTreeOnce) {
+    const auto& [kind, layout] = GetParam();
+    const std::vector<uint> counts = {0, 1, BUILD_GROUP, 0, BUILD_GROUP + 1, 3 * BUILD_GROUP - 1, 5};
+    const BuildPlan plan = plan_build(counts, layout, facts_of(kind));
+    uint next = 0;
+    std::vector<uint> covered(counts.size());
+    for (const BuildBlock& block : plan.blocks) {
+        EXPECT_EQ(block.first, next);
+        EXPECT_GE(block.count, 1u) << "kernels count on it";
+        EXPECT_LE(block.count, BUILD_GROUP);
+        covered[block.tree] += block.count;
+        next += block.count;
+    }
+    EXPECT_EQ(next, plan.leaf_count);
+    EXPECT_EQ(covered, counts);
+}
+
+TEST_P(BuildPlans, PartsOfGeometriesAndScenesBeginAtLinesOfCaches) {
+    const Layout layout = std::get<Layout>(GetParam());
+    for (const uint count : {0u, 1u, 2u, 7u, 1000u}) {
+        const GeometryLayout geometry = layout_geometry(count, layout);
+        for (const std::uint64_t offset : {geometry.nodes, geometry.triangles, geometry.records, geometry.record_boxes})
+            EXPECT_EQ(offset % cache_line_bytes, 0u) << count;
+        const SceneLayout scene = layout_scene(count, layout);
+        for (const std::uint64_t offset : {scene.nodes, scene.instances, scene.records, scene.record_boxes})
+            EXPECT_EQ(offset % cache_line_bytes, 0u) << count;
+    }
+}
+
+}  // namespace
+}  // namespace twinray
