@@ -79,7 +79,9 @@ void SwTlas::record_batches(Commands& commands, std::span<const GeometryInput> i
             scratch_share(static_cast<uint>(input.geometry->primitive_count()), options().layout, context().facts()) +
             source_bytes(input));
     const Batches batches = cut_into_batches(shares, scratch_budget());
-    Buffer scratch(context(), {.name = "swtlas geometry scratch", .bytes = batches.scratch_bytes, .alignment = cache_line_bytes});
+    Buffer scratch(context(), {.name = "swtlas geometry scratch",
+                               .bytes = batches.scratch_bytes,
+                               .alignment = cache_line_bytes});
     for (const Batches::Run& run : batches.runs) {
         Batch batch{inputs.subspan(run.first, run.count)};
         for (const GeometryInput& input : batch.inputs)
