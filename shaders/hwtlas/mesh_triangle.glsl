@@ -13,9 +13,10 @@ struct MeshTriangle
 MeshTriangle load_triangle(HwTrianglesArgs mesh, uint triangle)
 {
     MeshTriangle t;
-    t.v0 = load_position(mesh.positions, AT(mesh.indices, triangle * 3u));
-    t.v1 = load_position(mesh.positions, AT(mesh.indices, triangle * 3u + 1u));
-    t.v2 = load_position(mesh.positions, AT(mesh.indices, triangle * 3u + 2u));
+    uvec3 corners = load_indices(mesh.indices, triangle);
+    t.v0 = load_position(mesh.positions, corners.x);
+    t.v1 = load_position(mesh.positions, corners.y);
+    t.v2 = load_position(mesh.positions, corners.z);
     t.is_active = is_active_triangle(t.v0, t.v1, t.v2);
     return t;
 }

@@ -267,9 +267,10 @@ FUNC BvhTriangle fetch_primitive(BuildTree tree, uint primitive)
         triangle.primitive_index = primitive;
         return triangle;
     }
-    triangle.v0 = load_position(tree.positions, AT(tree.indices, primitive * 3u));
-    triangle.v1 = load_position(tree.positions, AT(tree.indices, primitive * 3u + 1u));
-    triangle.v2 = load_position(tree.positions, AT(tree.indices, primitive * 3u + 2u));
+    uvec3 corners = load_indices(tree.indices, primitive);
+    triangle.v0 = load_position(tree.positions, corners.x);
+    triangle.v1 = load_position(tree.positions, corners.y);
+    triangle.v2 = load_position(tree.positions, corners.z);
     triangle.primitive_index = primitive;
     return triangle;
 }

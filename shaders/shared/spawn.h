@@ -67,9 +67,10 @@ FUNC Placement placement_of(InstanceRecord instance) { return placement_of(to_wo
 FUNC Corners corners_of(Floats positions, Uints indices, uint primitive_index)
 {
     Corners corners;
-    corners.a = load_position(positions, AT(indices, 3u * primitive_index));
-    corners.b = load_position(positions, AT(indices, 3u * primitive_index + 1u));
-    corners.c = load_position(positions, AT(indices, 3u * primitive_index + 2u));
+    uvec3 places = load_indices(indices, primitive_index);
+    corners.a = load_position(positions, places.x);
+    corners.b = load_position(positions, places.y);
+    corners.c = load_position(positions, places.z);
     return corners;
 }
 

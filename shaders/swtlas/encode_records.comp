@@ -21,7 +21,9 @@ void load_ahead(BuildBlock block, BuildTree tree)
             uint place = min(first + i * stride, block.count - 1u);
             triangles[i] = AT(args.order, block.first + place) - tree.first;
         }
-        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) found ^= AT(tree.indices, 3u * triangles[i]);
+        uint corners[LOADS_ABREAST];
+        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) corners[i] = AT(tree.indices, 3u * triangles[i]);
+        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) found ^= floatBitsToUint(AT(tree.positions, 3u * corners[i]));
     }
     keep_loads(found);
 }
