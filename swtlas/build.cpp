@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "swtlas_collapse.spv.h"
+#include "swtlas_collapse_subtrees.spv.h"
 #include "swtlas_crowding.spv.h"
 #include "swtlas_encode_records.spv.h"
 #include "swtlas_encode_triangles.spv.h"
@@ -66,6 +67,11 @@ KernelDesc encode_stage(const Context& context, bool is_needed) {
     return loading_ahead(context, grouped(context, desc, BUILD_GROUP));
 }
 
+KernelDesc subtrees_stage(const Context& context, bool is_needed) {
+    const KernelDesc desc = stage("swtlas_collapse_subtrees", swtlas_collapse_subtrees_spirv, is_needed);
+    return loading_ahead(context, grouped(context, desc, COLLAPSE_GROUP));
+}
+
 KernelDesc collapse_stage(uint step, bool is_needed) {
     return specialized(stage("swtlas_collapse", swtlas_collapse_spirv, is_needed, COLLAPSE_GROUP), step);
 }
@@ -97,7 +103,7 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv, needs.binary)),
       collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS, needs.records)),
       collapse_level_(context, collapse_stage(COLLAPSE_LEVEL, needs.records)),
-      collapse_rest_(context, collapse_stage(COLLAPSE_REST, needs.records)),
+      collapse_subtrees_(context, subtrees_stage(context, needs.records)),
       encode_records_(context, encode_stage(context, needs.records)),
       record_parents_(context,
                       stage("swtlas_record_parents", swtlas_record_parents_spirv, needs.records && needs.moves)),
@@ -261,31 +267,34 @@ void Builder::record_collapse(Commands& commands, const BuildPlan& plan, const B
         commands, {batch.trees, batch.blocks, sorted.values, batch.codes, batch.block_count, 0}, batch.block_count);
 }
 
-// The items of two levels lie where the boxes were, which are done, too: an item has two leaves at least.
+// Lists of items lie where the boxes were, which are done, too.
 void Builder::record_levels(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
-    static_assert(sizeof(CollapseItem) <= sizeof(LeafBox));
+    const CollapseLists lists = collapse_lists(plan.leaf_count);
     const auto pass = commands.pass(collapse_level_.name());
-    const auto tree_count = static_cast<uint>(plan.first.size());
-    const std::uint64_t most_items = plan.leaf_count / 2;
-    const std::uint64_t items[] = {batch.boxes.address, batch.boxes.address + most_items * sizeof(CollapseItem)};
+    const auto list = [&](std::uint64_t first) {
+        return Ref<CollapseItem>{batch.boxes.address + first * sizeof(CollapseItem)};
+    };
     const auto level_at = [&](uint level) { return plan.scratch.levels + level * sizeof(CollapseLevel); };
+    const std::uint64_t subtree_level = level_at(plan.collapse_levels + 1);
     const auto args = [&](uint level) {
         return CollapseArgs{batch.trees,
-                            {items[level % 2]},
-                            {items[(level + 1) % 2]},
+                            list(lists.level[level % 2]),
+                            list(lists.level[(level + 1) % 2]),
+                            list(lists.subtrees),
+                            list(lists.queues),
                             {batch.scratch.address() + level_at(level)},
+                            {batch.scratch.address() + subtree_level},
                             batch.codes,
-                            tree_count,
-                            0};
+                            static_cast<uint>(plan.first.size()),
+                            level < plan.collapse_levels ? plan.subtree_leaves : NOTHING};
     };
-    collapse_roots_.dispatch(commands, args(0), tree_count);
+    collapse_roots_.dispatch(commands, args(0), plan.first.size());
     for (uint level = 1; level <= plan.collapse_levels; ++level) {
         commands.barrier();
         collapse_level_.dispatch_indirect(commands, args(level), batch.scratch, level_at(level));
     }
     commands.barrier();
-    const uint last = plan.collapse_levels + 1;
-    collapse_rest_.dispatch_indirect(commands, args(last), batch.scratch, level_at(last));
+    collapse_subtrees_.dispatch_indirect(commands, args(0), batch.scratch, subtree_level);
 }
 
 }  // namespace twinray

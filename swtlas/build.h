@@ -77,7 +77,7 @@ class Builder {
     Kernel<GatherKeysArgs> gather_keys_;
     Kernel<HierarchyArgs> hierarchy_;
     Kernel<EncodeTrianglesArgs> encode_triangles_;
-    Kernel<CollapseArgs> collapse_roots_, collapse_level_, collapse_rest_;
+    Kernel<CollapseArgs> collapse_roots_, collapse_level_, collapse_subtrees_;
     Kernel<EncodeRecordsArgs> encode_records_;
     Kernel<RecordParentsArgs> record_parents_;
     Kernel<RefitRecordsArgs> refit_records_;

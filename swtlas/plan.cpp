@@ -59,11 +59,15 @@ BuildScratch layout_scratch(const BuildPlan& plan, const DeviceFacts& device) {
     return scratch;
 }
 
-// A tree of four children a node is half as deep as a balanced binary one; Morton codes make it deeper. Small trees are
-// not worth a dispatch a level.
-uint levels_to_collapse(uint leaf_count) {
-    return leaf_count <= BUILD_GROUP ? 0 : std::min(static_cast<uint>(std::bit_width(leaf_count)), DEEPEST_TREE);
+// A tree of four children a node is half as deep as a balanced binary one; Morton codes make it deeper. What a group
+// can do is not worth a dispatch a level.
+uint levels_to_collapse(uint leaf_count, uint subtree_leaves) {
+    return leaf_count <= subtree_leaves ? 0 : std::min(static_cast<uint>(std::bit_width(leaf_count)), DEEPEST_TREE);
 }
+
+// On a CPU as many as fit a core's second cache with their records, half a MiB; on a GPU fewer, so that there are many
+// groups.
+uint leaves_of_subtrees(const DeviceFacts& device) { return device.kind == DeviceKind::cpu ? 4096 : 1024; }
 
 }  // namespace
 
@@ -95,10 +99,22 @@ BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const Dev
     }
     plan.leaf_count = static_cast<uint>(total);
     if (leaf_counts.size() > 1) plan.tree_bits = static_cast<uint>(std::bit_width(leaf_counts.size() - 1));
+    plan.subtree_leaves = leaves_of_subtrees(device);
     if (!leaf_counts.empty())
-        plan.collapse_levels = levels_to_collapse(*std::max_element(leaf_counts.begin(), leaf_counts.end()));
+        plan.collapse_levels =
+            levels_to_collapse(*std::max_element(leaf_counts.begin(), leaf_counts.end()), plan.subtree_leaves);
     plan.scratch = layout_scratch(plan, device);
     return plan;
+}
+
+CollapseLists collapse_lists(uint leaf_count) {
+    const std::uint64_t large = most_large_items(leaf_count);
+    CollapseLists lists;
+    lists.level[1] = large;
+    lists.subtrees = 2 * large;
+    lists.queues = lists.subtrees + most_subtrees(leaf_count);
+    lists.end = lists.queues + queue_begin(leaf_count, 0);
+    return lists;
 }
 
 GeometryLayout layout_geometry(uint triangle_count, Layout layout) {

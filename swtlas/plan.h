@@ -33,6 +33,7 @@ struct BuildPlan {
     uint leaf_count = 0;             // of the batch
     uint tree_bits = 0;              // bits of the largest tree index; 0 = one tree, no sort by tree
     uint collapse_levels = 0;        // below the roots that are collapsed one by one; the rest goes by subtrees
+    uint subtree_leaves = 0;         // of a subtree that a group collapses whole, at most, while there are levels left
     Layout layout = Layout::compressed4;
     BuildScratch scratch;
 };
@@ -42,6 +43,12 @@ BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const Dev
 
 // What a tree of so many leaves adds to the scratch of its batch, at most.
 std::uint64_t scratch_share(uint leaf_count, Layout layout, const DeviceFacts& device);
+
+// Where lists of items of collapsing begin, and the last one ends, in items, for which n boxes have room for 3 n / 2.
+struct CollapseLists {
+    std::uint64_t level[2] = {}, subtrees = 0, queues = 0, end = 0;
+};
+CollapseLists collapse_lists(uint leaf_count);
 
 uint inner_count(uint leaf_count);
 

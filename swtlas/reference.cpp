@@ -76,13 +76,13 @@ Records records_of(const Hierarchy& tree, BuildTree input) {
     std::vector<CollapseItem> waiting;
     const auto push = [&](const CollapseStep& step) {
         for (int i = 0; i < 4; ++i)
-            if (step.is_inner[i]) waiting.push_back(step.items[i]);
+            if (step.leaves[i] != 0) waiting.push_back(step.items[i]);
     };
     push(begin_collapse(input, places_ref, 0));
     while (!waiting.empty()) {
         const CollapseItem item = waiting.back();
         waiting.pop_back();
-        push(twinray::collapse(input, places_ref, item));
+        push(write_node(input, places_ref, item, children_of(input.nodes, item.place)));
     }
     for (uint leaf = 0; leaf < input.count; ++leaf) store_record(input.records, places[leaf], encode_leaf(input, leaf));
     return made;

@@ -13,6 +13,13 @@
 namespace twinray {
 namespace {
 
+// Builds mark a record that no node leads to by one word; with 0 in the others, equal trees are equal bytes.
+std::vector<CompressedRecord> with_clear_gaps(std::vector<CompressedRecord> records) {
+    for (CompressedRecord& record : records)
+        if (is_none(record)) record = no_record();
+    return records;
+}
+
 Bvh empty_bvh(std::uint64_t nodes) { return {vec3(INFINITY), vec3(-INFINITY), {nodes}, NOTHING, 0}; }
 
 }  // namespace
@@ -243,7 +250,7 @@ SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {
     const GeometryLayout& layout = built.layout;
     return {bvh, download<BvhNode>(context(), built.buffer, layout.node_count, layout.nodes),
             download<BvhTriangle>(context(), built.buffer, layout.triangle_count, layout.triangles),
-            download<CompressedRecord>(context(), built.buffer, layout.record_count, layout.records),
+            with_clear_gaps(download<CompressedRecord>(context(), built.buffer, layout.record_count, layout.records)),
             download<LeafBox>(context(), built.buffer, layout.box_count, layout.record_boxes)};
 }
 
@@ -254,7 +261,8 @@ SwTlas::Tree SwTlas::download_scene() const {
     return {bvh,
             download<BvhNode>(context(), built.buffer, of_them.node_count, built.layout.nodes),
             {},
-            download<CompressedRecord>(context(), built.buffer, of_them.record_count, built.layout.records),
+            with_clear_gaps(
+                download<CompressedRecord>(context(), built.buffer, of_them.record_count, built.layout.records)),
             download<LeafBox>(context(), built.buffer, of_them.box_count, built.layout.record_boxes)};
 }
 

@@ -144,6 +144,10 @@ void Context::create_device(const ContextDesc& desc) {
     facts_ = facts[static_cast<std::size_t>(choice.index)];
     facts_.ray_query &= desc.use_ray_query;
     facts_.ray_tracing_pipeline &= desc.use_ray_tracing_pipeline;
+    if (!desc.use_cpu_kernels && facts_.kind == DeviceKind::cpu) {
+        facts_.kind = DeviceKind::other;
+        facts_.cpu_threads = 0;
+    }
     queue_family_ = static_cast<std::uint32_t>(compute_queue_family(vk_, physical_device_));
     api_version_ = std::min(facts_.api_version, std::uint32_t{VK_API_VERSION_1_3});
 

@@ -70,7 +70,7 @@ BUFFER_OF(BvhTriangle, 8);
 //            b: lo.x, hi.x, lo.y, hi.y in cells, 8 bits a child      c: lo.z, hi.z
 // primitive  a: v0; w: LEAF_BIT | primitive_index      b: v1; w, c: v2
 // instance   a.w: LEAF_BIT | INSTANCE_BIT | index
-// none       0
+// none       a.w: 0
 struct CompressedRecord
 {
     uvec4 a;

@@ -57,18 +57,31 @@ const uint COLLAPSE_GROUP = 64u;
 // Specialisations of the kernel.
 const uint COLLAPSE_ROOTS = 0u; // makes the items of the roots
 const uint COLLAPSE_LEVEL = 1u; // does a level and makes the items of the next
-const uint COLLAPSE_REST = 2u;  // does all that is left
 
+// Items of subtrees that are small enough for a group leave the levels, and wait for collapse_subtrees.
 struct CollapseArgs
 {
     REF(BuildTree) trees;
     REF(CollapseItem) items;
     REF(CollapseItem) next_items;
-    REF(CollapseLevel) level; // the next one follows
-    Uints places;             // by leaf, as nodes refer to it: where its record goes
+    REF(CollapseItem) subtrees;
+    REF(CollapseItem) queues;        // of their groups, see queue_begin
+    REF(CollapseLevel) level;        // the next one follows
+    REF(CollapseLevel) subtree_level;
+    Uints places;                    // by leaf, as nodes refer to it: where its record goes
     uint tree_count;
-    uint reserved;
+    uint subtree_leaves;             // a subtree has at most
 };
+
+// Of n leaves in all trees, n / LARGE_SHARE items at most are of subtrees with LARGE_SHARE leaves or more, and n / 2 of any that
+// lie apart.
+const uint LARGE_SHARE = 12u;
+FUNC uint64_t most_large_items(uint leaf_count) { return uint64_t(leaf_count / LARGE_SHARE); }
+FUNC uint64_t most_subtrees(uint leaf_count) { return uint64_t(leaf_count / 2u); }
+
+// The queue of a subtree of n leaves takes its (2 n - 1) / 3 nodes at most, half as many as it has records below it: where that
+// of the one with records from `below` on begins, and, with the number of leaves and 0, where all end.
+FUNC uint64_t queue_begin(uint tree_first, uint below) { return uint64_t(tree_first) * 5ul / 6ul + uint64_t(below / 2u); }
 
 FUNC void set_child(INOUT(NodeChildren) children, uint at, uint child, vec3 lo, vec3 hi, uint below)
 {
@@ -143,24 +156,22 @@ FUNC NodeChildren children_of(REF(BvhNode) nodes, uint place)
 struct CollapseStep
 {
     CollapseItem items[4]; // of the children
-    bool is_inner[4];      // only these have one
+    uint leaves[4];        // below them; 0: there is no item
 };
 
 FUNC CollapseStep no_step()
 {
     CollapseStep step;
-    UNROLL for (uint i = 0u; i < 4u; i = i + 1u) step.is_inner[i] = false;
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u) step.leaves[i] = 0u;
     return step;
 }
 
 FUNC bool is_inner(uint child) { return (child & LEAF_BIT) == 0u; }
 
-// How many items write_node makes.
-FUNC uint inner_among(NodeChildren children)
+// Below child i, if that becomes an item, else 0.
+FUNC uint leaves_of_item(NodeChildren children, uint i)
 {
-    uint count = 0u;
-    UNROLL for (uint i = 0u; i < 4u; i = i + 1u) count = count + (is_inner(children.child[i]) ? 1u : 0u);
-    return count;
+    return is_inner(children.child[i]) ? leaves_in(children.below[i]) : 0u;
 }
 
 // Writes the node of an item, whose children_of() these are, and where the leaves among them go.
@@ -176,8 +187,8 @@ FUNC CollapseStep write_node(BuildTree tree, Uints places, CollapseItem item, No
         leaves = leaves + leaves_in(children.below[i]);
         keep_box(tree, item.below + i, children.box[i]);
         uint child = children.child[i];
-        step.is_inner[i] = is_inner(child);
-        if (!step.is_inner[i])
+        step.leaves[i] = leaves_of_item(children, i);
+        if (step.leaves[i] == 0u)
         {
             AT(places, tree.first + (child & ~LEAF_BIT)) = item.below + i;
             continue;
@@ -189,13 +200,8 @@ FUNC CollapseStep write_node(BuildTree tree, Uints places, CollapseItem item, No
         below = below + records_below(leaves_in(children.below[i]));
     }
     for (uint end = item.below + records_below(leaves); below < end; below = below + 1u)
-        store_record(tree.records, below, no_record());
+        store_no_record(tree.records, below);
     return step;
-}
-
-FUNC CollapseStep collapse(BuildTree tree, Uints places, CollapseItem item)
-{
-    return write_node(tree, places, item, children_of(tree.nodes, item.place));
 }
 
 // The item of a tree's root, if that is an inner node.
@@ -205,12 +211,12 @@ FUNC CollapseStep begin_collapse(BuildTree tree, Uints places, uint index)
     uint root = AT(tree.bvh, 0).root;
     if (root == NOTHING) return step;
     AT(tree.bvh, 0).root = 0u;
-    step.is_inner[0] = (root & LEAF_BIT) == 0u;
+    step.leaves[0] = is_inner(root) ? tree.count : 0u;
     step.items[0].tree = index;
     step.items[0].place = make_place(root, 0u);
     step.items[0].record = 0u;
     step.items[0].below = 1u;
-    if (!step.is_inner[0]) AT(places, tree.first) = 0u;
+    if (!is_inner(root)) AT(places, tree.first) = 0u;
     return step;
 }
 

@@ -20,6 +20,7 @@ FUNC uint record_count(uint leaf_count) { return leaf_count == 0u ? 0u : (5u * l
 FUNC uint records_below(uint leaf_count) { return leaf_count < 2u ? 0u : record_count(leaf_count) - 1u; }
 FUNC uint children_in(CompressedRecord node) { return node.a.w >> 26u; } // 0: none
 FUNC uint first_child_of(CompressedRecord node) { return node.a.w & (MOST_RECORDS - 1u); }
+FUNC bool is_none(CompressedRecord record) { return record.a.w == 0u; }
 FUNC bool is_leaf(CompressedRecord record) { return (record.a.w & LEAF_BIT) != 0u; }
 FUNC bool is_instance(CompressedRecord leaf) { return (leaf.a.w & INSTANCE_BIT) != 0u; }
 FUNC uint index_in(CompressedRecord leaf) { return leaf.a.w & ~(LEAF_BIT | INSTANCE_BIT); } // of the primitive or instance
@@ -43,6 +44,12 @@ FUNC void store_record(REF(CompressedRecord) records, uint index, CompressedReco
     AT(words, 2) = WORD(record.b.x, record.b.y);
     AT(words, 3) = WORD(record.b.z, record.b.w);
     AT(words, 4) = WORD(record.c.x, record.c.y);
+}
+
+// Where no node leads to; the other words are as they were.
+FUNC void store_no_record(REF(CompressedRecord) records, uint index)
+{
+    AT(Words64(uint64_t(records) + uint64_t(index) * 40ul), 1) = 0ul;
 }
 
 // The exponent of the smallest power of two by which lo..hi is 252 cells long at most, with what origin_below may lie farther

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Binary trees become trees of four children a node, level by level: the items of one level leave those of the next.
-// Begun once per tree; the last dispatch does what is left, each invocation a subtree.
+// Binary trees become trees of four children a node, level by level: the items of one level leave those of the next, and
+// those of subtrees that a group can do whole. Begun once per tree.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -9,75 +9,79 @@ layout(local_size_x = COLLAPSE_GROUP) in;
 layout(constant_id = 0) const uint STEP = COLLAPSE_LEVEL;
 layout(push_constant, scalar) uniform Push { CollapseArgs args; };
 
-// Of one subtree, depth first.
-void collapse_all(CollapseItem item)
+// Of the next level and of subtrees: how many items, or where in their lists.
+struct ItemLists
 {
-    CollapseItem stack[3u * DEEPEST_RECORDS];
-    uint height = 0u;
-    BuildTree tree = AT(args.trees, item.tree);
-    for (;;)
-    {
-        CollapseStep done = collapse(tree, args.places, item);
-        UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
-        {
-            if (!done.is_inner[i]) continue;
-            stack[height] = done.items[i];
-            height = height + 1u;
-        }
-        if (height == 0u) return;
-        height = height - 1u;
-        item = stack[height];
-    }
+    uint next;
+    uint subtrees;
+};
+
+bool is_subtree(uint leaves) { return leaves <= args.subtree_leaves; }
+
+void count_item(inout ItemLists counts, uint leaves)
+{
+    if (leaves == 0u) return;
+    counts.next += is_subtree(leaves) ? 0u : 1u;
+    counts.subtrees += is_subtree(leaves) ? 1u : 0u;
 }
 
-// Where the next level has room for `count` more items. Whoever begins its last group so far says how many groups it has.
-uint reserve(uint count)
+// Where a list has room for `count` more items, of which a group does `share`. Whoever begins its last group so far says how
+// many groups it has.
+uint reserve(REF(CollapseLevel) list, uint count, uint share)
 {
     if (count == 0u) return 0u;
-    uint place = atomicAdd(AT(args.level, 1).count, count);
-    uint groups_before = (place + COLLAPSE_GROUP - 1u) / COLLAPSE_GROUP;
-    uint groups = (place + count + COLLAPSE_GROUP - 1u) / COLLAPSE_GROUP;
+    uint place = atomicAdd(AT(list, 0).count, count);
+    uint groups_before = (place + share - 1u) / share;
+    uint groups = (place + count + share - 1u) / share;
     if (groups == groups_before) return place;
-    atomicMax(AT(args.level, 1).groups_x, min(groups, GROUPS_PER_ROW));
-    atomicMax(AT(args.level, 1).groups_y, (groups + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW);
+    atomicMax(AT(list, 0).groups_x, min(groups, GROUPS_PER_ROW));
+    atomicMax(AT(list, 0).groups_y, (groups + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW);
     return place;
 }
 
-void push(CollapseStep found, uint place)
+ItemLists reserve(ItemLists counts)
+{
+    const uint64_t LEVEL_BYTES = 16ul;
+    ItemLists places;
+    places.next = reserve(REF(CollapseLevel)(uint64_t(args.level) + LEVEL_BYTES), counts.next, COLLAPSE_GROUP);
+    places.subtrees = reserve(args.subtree_level, counts.subtrees, 1u);
+    return places;
+}
+
+void push(CollapseStep found, ItemLists places)
 {
     UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
     {
-        if (!found.is_inner[i]) continue;
-        store_item(args.next_items, place, found.items[i]);
-        place = place + 1u;
+        if (found.leaves[i] == 0u) continue;
+        if (is_subtree(found.leaves[i])) store_item(args.subtrees, places.subtrees, found.items[i]);
+        else store_item(args.next_items, places.next, found.items[i]);
+        count_item(places, found.leaves[i]);
     }
 }
 
 void begin(uint index)
 {
-    if (index >= args.tree_count) return;
     CollapseStep found = begin_collapse(AT(args.trees, index), args.places, index);
-    push(found, reserve(found.is_inner[0] ? 1u : 0u));
+    ItemLists counts = ItemLists(0u, 0u);
+    count_item(counts, found.leaves[0]);
+    push(found, reserve(counts));
 }
 
 void do_item(CollapseItem item)
 {
     BuildTree tree = AT(args.trees, item.tree);
     NodeChildren children = children_of(tree.nodes, item.place);
-    uint place = reserve(inner_among(children)); // before all writes, which an atomic operation waits for on CPUs
-    push(write_node(tree, args.places, item, children), place);
+    ItemLists counts = ItemLists(0u, 0u);
+    UNROLL for (uint i = 0u; i < 4u; i = i + 1u) count_item(counts, leaves_of_item(children, i));
+    ItemLists places = reserve(counts); // before all writes, which an atomic operation waits for on CPUs
+    push(write_node(tree, args.places, item, children), places);
 }
 
 void main()
 {
     uint index = global_index();
-    if (STEP == COLLAPSE_ROOTS)
-    {
-        begin(index);
-        return;
-    }
-    if (index >= AT(args.level, 0).count) return;
-    CollapseItem item = load_item(args.items, index);
-    if (STEP == COLLAPSE_LEVEL) do_item(item);
-    else collapse_all(item);
+    uint count = STEP == COLLAPSE_ROOTS ? args.tree_count : AT(args.level, 0).count;
+    if (index >= count) return;
+    if (STEP == COLLAPSE_ROOTS) begin(index);
+    else do_item(load_item(args.items, index));
 }

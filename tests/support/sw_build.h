@@ -15,20 +15,32 @@
 
 namespace twinray::test {
 
-using How = std::tuple<Layout, BuildQuality>;
+enum class KernelShape { of_device, of_gpu };
+using How = std::tuple<Layout, BuildQuality, KernelShape>;
 
 class SwBuildTest : public VulkanTest, public testing::WithParamInterface<How> {
   protected:
     BuildQuality quality() const { return std::get<BuildQuality>(GetParam()); }
     AccelOptions options() const { return {.layout = std::get<Layout>(GetParam()), .build_quality = quality()}; }
+    ContextDesc context_desc() const override {
+        ContextDesc desc;
+        desc.use_cpu_kernels = std::get<KernelShape>(GetParam()) == KernelShape::of_device;
+        return desc;
+    }
 };
 
 inline auto every_build() {
-    return testing::Values(How{Layout::compressed4, BuildQuality::fast}, How{Layout::compressed4, BuildQuality::high},
-                           How{Layout::bvh2, BuildQuality::high}, How{Layout::bvh4, BuildQuality::fast});
+    using enum KernelShape;
+    return testing::Values(How{Layout::compressed4, BuildQuality::fast, of_device},
+                           How{Layout::compressed4, BuildQuality::high, of_device},
+                           How{Layout::bvh2, BuildQuality::high, of_device},
+                           How{Layout::bvh4, BuildQuality::fast, of_device},
+                           How{Layout::compressed4, BuildQuality::high, of_gpu},
+                           How{Layout::bvh2, BuildQuality::fast, of_gpu});
 }
 inline std::string name_of_build(const testing::TestParamInfo<How>& how) {
-    return text(name_of(std::get<Layout>(how.param)), '_', name_of(std::get<BuildQuality>(how.param)));
+    return text(name_of(std::get<Layout>(how.param)), '_', name_of(std::get<BuildQuality>(how.param)),
+                std::get<KernelShape>(how.param) == KernelShape::of_gpu ? "_as_on_a_gpu" : "");
 }
 
 template <class T>

@@ -94,6 +94,20 @@ TEST_P(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
     }
 }
 
+TEST_P(SwBuild, TreesOfABatchWithLevelsAndSubtreesAreEqualToTheirTwins) {
+    const uint most = plan_build({}, Layout::compressed4, context().facts()).subtree_leaves;
+    SwTlas accel(context(), options());
+    std::vector<Mesh> meshes;
+    std::vector<AccelHandle> handles;
+    for (const uint n : {most - 1, 3u, 5 * most, most, 2u, most + 1, 7u}) {
+        meshes.push_back(make_soup(n, n, 0.05f));
+        handles.push_back(accel.push(meshes.back()));
+    }
+    accel.sync();
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+        expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
+}
+
 TEST_P(SwBuild, LargeMeshesAreSound) {
     for (const uint n : {100'000u, 1'000'000u}) {
         SwTlas accel(context(), options());
@@ -161,20 +175,22 @@ TEST_P(SwBuild, ASecondBuildIsBitIdentical) {
 }
 
 TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
-    SwTlas accel(context(), options());
-    const Mesh mesh = make_soup(10, 1);
-    const std::vector<Transform> transforms = scattered(777, 3);
-    accel.push(mesh, transforms);
-    accel.sync();
-    const SwTlas::Tree tree = accel.download_scene();
-    const std::vector<LeafBox> boxes = instance_boxes(mesh, transforms, options());
-    expect_sound(tree, boxes, "instances");
-    const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
-    const reference::Hierarchy twin = reference::hierarchy(boxes, codes, reference::sort(codes), false, quality());
-    if (has_records(tree))
-        EXPECT_TRUE(same_bytes(tree.records, reference::records_of_instances(twin, 777).records));
-    else
-        EXPECT_TRUE(same_bytes(tree.nodes, twin.nodes));
+    for (const uint n : {777u, 9000u}) {
+        SwTlas accel(context(), options());
+        const Mesh mesh = make_soup(10, 1);
+        const std::vector<Transform> transforms = scattered(n, 3);
+        accel.push(mesh, transforms);
+        accel.sync();
+        const SwTlas::Tree tree = accel.download_scene();
+        const std::vector<LeafBox> boxes = instance_boxes(mesh, transforms, options());
+        expect_sound(tree, boxes, "instances");
+        const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
+        const reference::Hierarchy twin = reference::hierarchy(boxes, codes, reference::sort(codes), false, quality());
+        if (has_records(tree))
+            EXPECT_TRUE(same_bytes(tree.records, reference::records_of_instances(twin, n).records)) << n;
+        else
+            EXPECT_TRUE(same_bytes(tree.nodes, twin.nodes)) << n;
+    }
 }
 
 // The area of all boxes, but for the root's: what a stray triangle must not change.

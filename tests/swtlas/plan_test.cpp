@@ -18,7 +18,7 @@ struct Region {
     std::uint64_t begin, bytes;
 };
 
-// All that a build has at one time. Places of leaves' records lie where the codes were, and items where the boxes were.
+// All that a build has at one time. Places of leaves' records lie where the codes were.
 std::vector<Region> regions_of(const BuildPlan& plan, const DeviceFacts& device) {
     const BuildScratch& at = plan.scratch;
     const std::uint64_t n = plan.leaf_count, trees = plan.first.size();
@@ -81,6 +81,31 @@ TEST_P(BuildPlans, RegionsBeginAtLinesOfCachesLieApartAndFitTheSumOfShares) {
         for (const uint count : counts) shares += scratch_share(count, layout, device);
         EXPECT_LE(plan.scratch.bytes, shares) << counts.size() << " trees";
     }
+}
+
+TEST_P(BuildPlans, ListsOfItemsFitWhereTheBoxesWere) {
+    const auto& [kind, layout] = GetParam();
+    for (uint n = 1; n < 300; ++n) {
+        const CollapseLists lists = collapse_lists(n);
+        EXPECT_LE(lists.end * sizeof(CollapseItem), n * sizeof(LeafBox)) << n;
+        EXPECT_LE(n / 2, lists.queues - lists.subtrees) << "subtrees of two leaves or more";
+        const uint large = plan_build(std::span(&n, 1), layout, facts_of(kind)).subtree_leaves + 1;
+        EXPECT_LE(n / large, lists.level[1] - lists.level[0]) << n;
+        EXPECT_LE(n / large, lists.subtrees - lists.level[1]) << n;
+    }
+}
+
+TEST(CollapseQueues, OfSubtreesAndTreesLieApart) {
+    for (uint leaves = 2; leaves < 5000; ++leaves)
+        for (uint tree_first = 0; tree_first < 7; ++tree_first) {
+            const uint most_nodes = (2 * leaves - 1) / 3;
+            for (uint below = 1; below < 4; ++below)
+                EXPECT_GE(queue_begin(tree_first, below + records_below(leaves)),
+                          queue_begin(tree_first, below) + most_nodes)
+                    << leaves << " leaves, records from " << below << " on";
+            EXPECT_LE(queue_begin(tree_first, record_count(leaves)), queue_begin(tree_first + leaves, 0)) << leaves;
+        }
+    EXPECT_EQ(queue_begin(4'000'000'000, 0), 3'333'333'333) << "beyond what 32 bits hold on the way";
 }
 
 TEST_P(BuildPlans, BlocksCoverEachTreeOnce) {
