@@ -134,11 +134,10 @@ void MovingBlasBuilder::record_order(Commands& commands, Batch& batch) const {
         const SortScratch& sort = batch.sorts[i];
         HwTrianglesArgs& args = batch.args[i];
         args.keys = sort.part(0);
-        args.order = sort.part(1);
         codes_.dispatch(commands, args, args.count);
         const RadixSort::Pairs sorted =
-            sort_.record(commands, {sort.part(0), sort.part(1)}, {sort.part(2), sort.part(3)}, sort.part(4), args.count,
-                         morton_bits);
+            sort_.record_places(commands, args.keys, {sort.part(0), sort.part(1)}, {sort.part(2), sort.part(3)},
+                                sort.part(4), args.count, morton_bits);
         args.order = sorted.values;
     }
 }

@@ -88,9 +88,9 @@ Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) cons
     Buffer scratch(context_, {.name = "tlas sort scratch",
                               .bytes = 4 * bytes + RadixSort::counter_bytes(input.count, context_.facts())});
     const auto part = [&](std::uint64_t i) { return scratch.ref<uint>(i * bytes); };
-    codes_.dispatch(commands, {input.records, input.bound, part(0), part(1), input.count, 0}, input.count);
-    const RadixSort::Pairs sorted =
-        sort_.record(commands, {part(0), part(1)}, {part(2), part(3)}, part(4), input.count, morton_bits);
+    codes_.dispatch(commands, {input.records, input.bound, part(0), input.count, 0}, input.count);
+    const RadixSort::Pairs sorted = sort_.record_places(commands, part(0), {part(0), part(1)}, {part(2), part(3)},
+                                                        part(4), input.count, morton_bits);
     commands.keep(std::move(scratch));
     return sorted.values;
 }

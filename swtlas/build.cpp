@@ -57,6 +57,10 @@ KernelDesc leaves_stage(const Context& context, const char* name, std::span<cons
     return grouped(context, stage(name, spirv, true), LEAVES_GROUP);
 }
 
+KernelDesc morton_stage(const Context& context) {
+    return loading_ahead(context, grouped(context, stage("swtlas_morton", swtlas_morton_spirv, true), BUILD_GROUP));
+}
+
 KernelDesc hierarchy_stage(const Context& context, BuildQuality quality) {
     const KernelDesc desc = grouped(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv, true), BUILD_GROUP);
     return specialized(loading_ahead(context, desc), quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST);
@@ -93,7 +97,7 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       areas_(context),
       leaves_triangles_(context, leaves_stage(context, "swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
       leaves_instances_(context, leaves_stage(context, "swtlas_leaves_instances", swtlas_leaves_instances_spirv)),
-      morton_(context, grouped(context, stage("swtlas_morton", swtlas_morton_spirv, true), BUILD_GROUP)),
+      morton_(context, morton_stage(context)),
       node_areas_(context,
                   grouped(context, stage("swtlas_node_areas", swtlas_node_areas_spirv, needs.moves), AREA_GROUP)),
       crowding_(context, grouped(context, stage("swtlas_crowding", swtlas_crowding_spirv, true), BUILD_GROUP)),
@@ -166,12 +170,11 @@ Builder::Batch Builder::begin_instances(Commands& commands, const BuildPlan& pla
 }
 
 RadixSort::Pairs Builder::record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
-    const MortonArgs args{batch.blocks,  batch.boxes,       batch.centroids,
-                          batch.codes,   batch.pairs.keys,  batch.pairs.values,
-                          batch.tree_of, batch.block_count, 0};
-    morton_.dispatch_groups(commands, args, batch.block_count);
-    const RadixSort::Pairs by_code =
-        sort_.record(commands, batch.pairs, batch.spare, batch.counters, plan.leaf_count, morton_bits);
+    morton_.dispatch_groups(
+        commands, {batch.blocks, batch.boxes, batch.centroids, batch.codes, batch.tree_of, batch.block_count, 0},
+        batch.block_count);
+    const RadixSort::Pairs by_code = sort_.record_places(commands, batch.codes, batch.pairs, batch.spare,
+                                                         batch.counters, plan.leaf_count, morton_bits);
     RadixSort::Pairs sorted = by_code;
     if (plan.tree_bits != 0) {
         gather_keys_.dispatch(commands, {batch.tree_of, sorted.values, sorted.keys, plan.leaf_count, 0},
@@ -207,9 +210,10 @@ void Builder::record_fine_order(Commands& commands, const BuildPlan& plan, const
     const RadixSort::Pairs& begin = by_code;
     fine_codes_.dispatch_indirect(commands,
                                   {batch.trees, batch.blocks, batch.boxes, batch.centroids, batch.crowded,
-                                   batch.fine_codes, begin.keys, begin.values, batch.block_count, 0},
+                                   batch.fine_codes, batch.block_count, 0},
                                   batch.scratch, of_leaves);
-    RadixSort::Pairs fine = sort(begin, morton_bits);
+    RadixSort::Pairs fine = sort_.record_places(commands, batch.fine_codes, begin, batch.other(begin), batch.counters,
+                                                count, morton_bits, &counts);
     gather(batch.codes, fine);
     fine = sort(fine, morton_bits);
     if (plan.tree_bits == 0) return;

@@ -48,10 +48,11 @@ RadixSort::Pairs RaySort::record(Commands& commands, const Buffer& scratch, Ref<
     }
     constexpr uint rays_of_group = WORLD_BOUND_GROUP * RAYS_IN_BOX;
     const uint groups = (count - 1) / rays_of_group + 1;
-    const RayOrderArgs args{rays, indirect_count, columns.box, columns.pairs.keys, columns.pairs.values, count, groups};
+    const RayOrderArgs args{rays, indirect_count, columns.box, columns.pairs.keys, count, groups};
     box_.dispatch_groups(commands, args, groups);
     keys_.dispatch(commands, args, count);
-    return sort_.record(commands, columns.pairs, columns.spare, columns.counters, count, RAY_KEY_BITS);
+    return sort_.record_places(commands, columns.pairs.keys, columns.pairs, columns.spare, columns.counters, count,
+                               RAY_KEY_BITS);
 }
 
 }  // namespace twinray

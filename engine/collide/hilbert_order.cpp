@@ -48,15 +48,16 @@ Uints HilbertOrder::record(Commands& commands, Ref<TreeBox> boxes, uint count) c
     centers_.dispatch_groups(commands, args, args.group_count);
     RadixSort::Pairs pairs{column(scratch_, count, 0), column(scratch_, count, 1)};
     RadixSort::Pairs spare{column(scratch_, count, 2), column(scratch_, count, 3)};
-    for (args.is_coarse = 0; args.is_coarse < 2; ++args.is_coarse) {
-        args.keys = pairs.keys;
-        args.order = pairs.values;
-        codes_.dispatch(commands, args, count);
-        const RadixSort::Pairs sorted =
-            sort_.record(commands, pairs, spare, column(scratch_, count, 4), count, code_bits);
-        if (sorted.values.address != pairs.values.address) std::swap(pairs, spare);
-    }
-    return pairs.values;
+    const Uints counters = column(scratch_, count, 4);
+    args.keys = pairs.keys;
+    codes_.dispatch(commands, args, count);
+    const RadixSort::Pairs fine = sort_.record_places(commands, pairs.keys, pairs, spare, counters, count, code_bits);
+    if (fine.values.address != pairs.values.address) std::swap(pairs, spare);
+    args.is_coarse = 1;
+    args.keys = pairs.keys;
+    args.order = pairs.values;
+    codes_.dispatch(commands, args, count);
+    return sort_.record(commands, pairs, spare, counters, count, code_bits).values;
 }
 
 }  // namespace twinray

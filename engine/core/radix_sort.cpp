@@ -23,6 +23,12 @@ KernelDesc sort_kernel(const char* name, std::span<const std::uint32_t> spirv, u
             .constants = {{GROUP_SIZE_CONSTANT, size}, {DIGIT_BITS_CONSTANT, RadixSort::digit_bits(cpu_threads)}}};
 }
 
+KernelDesc scatter_kernel(uint cpu_threads, bool values_are_places) {
+    KernelDesc desc = sort_kernel("sort_scatter", engine_sort_scatter_spirv, cpu_threads);
+    desc.constants.push_back({PLACES_CONSTANT, values_are_places});
+    return desc;
+}
+
 KernelDesc scan_kernel(uint cpu_threads) {
     const uint size = cpu_threads ? CPU_GROUP : SCAN_GPU_GROUP;
     return {.name = "sort_scan",
@@ -39,7 +45,8 @@ RadixSort::RadixSort(Context& context, uint cpu_threads)
     : cpu_threads_(cpu_threads),
       histogram_(context, sort_kernel("sort_histogram", engine_sort_histogram_spirv, cpu_threads_)),
       scan_(context, scan_kernel(cpu_threads)),
-      scatter_(context, sort_kernel("sort_scatter", engine_sort_scatter_spirv, cpu_threads_)) {}
+      scatter_(context, scatter_kernel(cpu_threads, false)),
+      scatter_places_(context, scatter_kernel(cpu_threads, true)) {}
 
 uint RadixSort::cpu_threads_on(const DeviceFacts& device) {
     constexpr uint counters = CPU_GROUP << SORT_CPU_DIGIT_BITS;
@@ -78,6 +85,20 @@ uint RadixSort::groups_of(std::uint64_t count, uint cpu_threads) {
 RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
                                    std::uint32_t bits, const Counts* if_counts) const {
     if (count < 2) return pairs;
+    return record_passes(commands, scatter_, pairs.keys, pairs, spare, counters, count, bits, if_counts);
+}
+
+// One item is sorted, too: its value is to be written.
+RadixSort::Pairs RadixSort::record_places(Commands& commands, Uints keys, Pairs pairs, Pairs spare, Uints counters,
+                                          std::uint32_t count, std::uint32_t bits, const Counts* if_counts) const {
+    if (count == 0) return pairs;
+    return record_passes(commands, scatter_places_, keys, pairs, spare, counters, count, count == 1 ? 1 : bits,
+                         if_counts);
+}
+
+RadixSort::Pairs RadixSort::record_passes(Commands& commands, const Kernel<SortArgs>& first_scatter, Uints keys,
+                                          Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
+                                          std::uint32_t bits, const Counts* if_counts) const {
     const uint blocks = sort_groups(count);
     const auto dispatch = [&](const auto& kernel, const auto& args, uint groups, std::uint64_t Counts::*offset) {
         if (if_counts)
@@ -88,11 +109,19 @@ RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare,
     const std::uint64_t behind = counters.address + (std::uint64_t{blocks} << digit_bits(cpu_threads_)) * sizeof(uint);
     const Uints kept{kept_bytes(count, cpu_threads_) ? behind : 0};
     for (uint shift = 0; shift < bits; shift += digit_bits(cpu_threads_)) {
-        const SortArgs args{pairs.keys, pairs.values, spare.keys, spare.values, counters,
-                            kept,       count,        shift,      blocks,       run_of(count, cpu_threads_)};
+        const SortArgs args{shift == 0 ? keys : pairs.keys,
+                            pairs.values,
+                            spare.keys,
+                            spare.values,
+                            counters,
+                            kept,
+                            count,
+                            shift,
+                            blocks,
+                            run_of(count, cpu_threads_)};
         dispatch(histogram_, args, blocks, &Counts::sort);
         dispatch(scan_, ScanArgs{counters, blocks << digit_bits(cpu_threads_), 0}, 1, &Counts::scan);
-        dispatch(scatter_, args, blocks, &Counts::sort);
+        dispatch(shift == 0 ? first_scatter : scatter_, args, blocks, &Counts::sort);
         std::swap(pairs, spare);
     }
     return pairs;

@@ -35,6 +35,10 @@ class RadixSort {
     };
     Pairs record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count, std::uint32_t bits,
                  const Counts* if_counts = nullptr) const;
+    // The same of pairs whose values are 0, 1, 2, ..., which need not have been written. `keys` are not changed, unless
+    // they are those of `pairs`.
+    Pairs record_places(Commands& commands, Uints keys, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
+                        std::uint32_t bits, const Counts* if_counts = nullptr) const;
     uint sort_groups(std::uint64_t count) const { return groups_of(count, cpu_threads_); }
 
     // How many items an invocation sorts: few on a GPU, which wants many of them; on a CPU so many that there are
@@ -48,10 +52,13 @@ class RadixSort {
     static std::uint64_t kept_bytes(std::uint64_t count, uint cpu_threads);
 
   private:
+    Pairs record_passes(Commands& commands, const Kernel<SortArgs>& first_scatter, Uints keys, Pairs pairs, Pairs spare,
+                        Uints counters, std::uint32_t count, std::uint32_t bits, const Counts* if_counts) const;
+
     uint cpu_threads_;  // 0: a GPU
     Kernel<SortArgs> histogram_;
     Kernel<ScanArgs> scan_;
-    Kernel<SortArgs> scatter_;
+    Kernel<SortArgs> scatter_, scatter_places_;
 };
 
 }  // namespace twinray

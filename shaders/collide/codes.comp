@@ -14,8 +14,7 @@ void main()
     uint i = global_index();
     if (i >= args.count) return;
     uint index = i;
-    if (args.is_coarse == 0u) AT(args.order, i) = i;
-    else index = AT(args.order, i);
+    if (args.is_coarse != 0u) index = AT(args.order, i);
     WorldBoundBits bits = AT(args.bits, 0);
     vec3 lo = vec3(from_ordered_bits(bits.lo.x), from_ordered_bits(bits.lo.y), from_ordered_bits(bits.lo.z));
     vec3 hi = vec3(from_ordered_bits(bits.hi.x), from_ordered_bits(bits.hi.y), from_ordered_bits(bits.hi.z));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What rays are sorted by, and their places before that.
+// What rays are sorted by.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -15,5 +15,4 @@ void main()
     uint key = LAST_RAY_KEY;
     if (i < ray_count(args.count, args.indirect_count)) key = ray_key(AT(args.rays, i), box_of(AT(args.box, 0)));
     AT(args.keys, i) = key;
-    AT(args.order, i) = i;
 }

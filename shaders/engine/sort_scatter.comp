@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/engine/sort_columns.glsl"
+layout(constant_id = PLACES_CONSTANT) const bool VALUES_ARE_PLACES = false;
 layout(push_constant, scalar) uniform Push { SortArgs args; };
 
 // Where the items of each digit and thread go.
@@ -24,6 +25,12 @@ void place_digits()
     barrier();
 }
 
+uint value_at(uint place)
+{
+    if (VALUES_ARE_PLACES) return place;
+    return AT(args.values_in, place);
+}
+
 void main()
 {
     if (group_index() >= args.block_count) return;
@@ -38,6 +45,6 @@ void main()
         uint to = columns[slot];
         columns[slot] = to + 1u;
         AT(args.keys_out, to) = key;
-        AT(args.values_out, to) = AT(args.values_in, i);
+        AT(args.values_out, to) = value_at(i);
     }
 }

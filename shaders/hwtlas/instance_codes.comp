@@ -25,5 +25,4 @@ void main()
     uint index = global_index();
     if (index >= args.count) return;
     AT(args.keys, index) = code_of(in_built_units(AT(args.records, index)));
-    AT(args.order, index) = index;
 }

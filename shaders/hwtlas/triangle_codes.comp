@@ -22,5 +22,4 @@ void main()
     HwGeometry geometry = AT(args.geometry, 0);
     AT(args.keys, index) =
         triangle.is_active ? morton_code(box.lo * 0.5f + box.hi * 0.5f, geometry.lo, geometry.hi) : LAST;
-    AT(args.order, index) = index;
 }

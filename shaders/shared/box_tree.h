@@ -22,7 +22,7 @@ struct HilbertOrderArgs
     REF(TreeBox) boxes;
     REF(WorldBoundBits) bits; // around the centres
     Uints keys;
-    Uints order;
+    Uints order; // by the finer bits; read for the others
     uint count;
     uint group_count; // of the kernel that finds the box of the centres
     uint is_coarse;   // codes: 0 of the finer 30 bits, 1 of the others

@@ -71,8 +71,6 @@ struct MortonArgs
     REF(LeafBox) boxes;
     REF(CentroidBounds) centroids;
     Uints codes;   // by leaf
-    Uints keys;    // the same, to be sorted
-    Uints order;   // 0, 1, 2, ...
     Uints tree_of; // by leaf; 0 = not wanted (a single tree)
     uint block_count;
     uint reserved;
@@ -117,8 +115,6 @@ struct FineCodesArgs
     REF(CentroidBounds) centroids;
     Uints crowded;    // by tree
     Uints fine_codes; // by leaf
-    Uints keys;       // the same, to be sorted
-    Uints order;      // 0, 1, 2, ...
     uint block_count;
     uint reserved;
 };

@@ -38,7 +38,6 @@ struct HwCodesArgs
     REF(InstanceRecord) records;
     REF(WorldBound) bound;
     Uints keys;
-    Uints order;
     uint count;
     uint reserved;
 };

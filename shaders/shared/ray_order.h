@@ -18,7 +18,6 @@ struct RayOrderArgs
     Uints indirect_count; // see TraceArgs
     REF(WorldBoundBits) box; // around the origins
     Uints keys;
-    Uints order;
     uint count;
     uint group_count; // of the kernel that finds the box
 };

@@ -9,18 +9,19 @@ layout(constant_id = LOADS_AHEAD_CONSTANT) const bool LOADS_AHEAD = false;
 
 const uint LOADS_ABREAST = 8u;
 
-// A word of each of so many lines of 64 bytes from an address on, shared out among a group's invocations.
-uint load_lines(uint64_t begin, uint count, uint group_size)
-{
-    uint found = 0u;
-    for (uint first = gl_LocalInvocationID.x; first < count; first += LOADS_ABREAST * group_size)
-        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) found ^= AT(Uints(begin), 16u * min(first + i * group_size, count - 1u));
-    return found;
-}
-
 // Of what loads ahead have found, so that no driver leaves them out. The barrier changes nothing, should it ever come to that.
 void keep_loads(uint found)
 {
     if (found == 0x5eed5eedu) memoryBarrierBuffer();
+}
+
+// All words from an address on, a multiple of 4 bytes, by one of each line of 64, shared out among a group's invocations.
+void load_lines(uint64_t begin, uint bytes, uint group_size)
+{
+    uint found = 0u;
+    uint count = (bytes + 63u) / 64u;
+    for (uint first = gl_LocalInvocationID.x; first < count; first += LOADS_ABREAST * group_size)
+        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) found ^= AT(Uints(begin), 16u * min(first + i * group_size, count - 1u));
+    keep_loads(found);
 }
 #endif

@@ -34,9 +34,8 @@ void load_ahead(BuildTree tree, CollapseItem root)
     uint leaves = left + leaves_in(node.below1);
     uint first = node_at(root.place) + 1u - min(left, node_at(root.place) + 1u);
     uint nodes = min(leaves - 1u, tree.count - 1u - first);
-    uint record_lines = (records_below(leaves) * 40u + 63u) / 64u;
-    keep_loads(load_lines(uint64_t(tree.nodes) + uint64_t(first) * 64ul, nodes, gl_WorkGroupSize.x) ^
-               load_lines(uint64_t(tree.records) + uint64_t(root.below) * 40ul, record_lines, gl_WorkGroupSize.x));
+    load_lines(uint64_t(tree.nodes) + uint64_t(first) * 64ul, nodes * 64u, gl_WorkGroupSize.x);
+    load_lines(uint64_t(tree.records) + uint64_t(root.below) * 40ul, records_below(leaves) * 40u, gl_WorkGroupSize.x);
 }
 
 void do_item(BuildTree tree, QueueWords queue, CollapseItem item)

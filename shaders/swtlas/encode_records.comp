@@ -8,11 +8,13 @@
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { EncodeRecordsArgs args; };
 
-// The indices of a block's triangles.
+// A block's part of the order, places, and of its triangles the indices and a vertex.
 void load_ahead(BuildBlock block, BuildTree tree)
 {
-    uint found = 0u;
     uint stride = gl_WorkGroupSize.x;
+    load_lines(uint64_t(args.order) + uint64_t(block.first) * 4ul, block.count * 4u, stride);
+    load_lines(uint64_t(args.places) + uint64_t(block.first) * 4ul, block.count * 4u, stride);
+    uint found = 0u;
     for (uint first = gl_LocalInvocationID.x; first < block.count; first += LOADS_ABREAST * stride)
     {
         uint triangles[LOADS_ABREAST];

@@ -19,6 +19,4 @@ void main()
     uint code = is_active(box) ? fine_code(center_of(box), bounds.lo, bounds.hi) : INACTIVE_CODE;
     if (!needs_fine_codes(AT(args.crowded, block.tree), AT(args.trees, block.tree).count)) code = 0u;
     AT(args.fine_codes, leaf) = code;
-    AT(args.keys, leaf) = code;
-    AT(args.order, leaf) = leaf;
 }

@@ -5,6 +5,7 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
 #include "shaders/shared/splits.h"
+#include "shaders/swtlas/ahead.glsl"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { MortonArgs args; };
 
@@ -13,6 +14,7 @@ void main()
     BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
     LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
     if (group_index() >= args.block_count) return;
+    if (LOADS_AHEAD) load_lines(uint64_t(args.boxes) + uint64_t(block.first) * 24ul, block.count * 24u, gl_WorkGroupSize.x);
     for (uint i = gl_LocalInvocationID.x; i < block.count; i += gl_WorkGroupSize.x)
     {
         uint leaf = block.first + i;
@@ -23,8 +25,6 @@ void main()
             code = morton_code(center_of(box), bounds.lo, bounds.hi);
         }
         AT(args.codes, leaf) = code;
-        AT(args.keys, leaf) = code;
-        AT(args.order, leaf) = leaf;
         if (uint64_t(args.tree_of) != 0ul) AT(args.tree_of, leaf) = block.tree;
     }
 }

@@ -14,13 +14,14 @@ namespace {
 class RadixSortTest : public test::VulkanTest {
   protected:
     enum class Groups { from_host, from_device, none_from_device };
-    // Values are 0, 1, 2, ... so that they show stability.
+    enum class Values { given, places };
+    // Values are 0, 1, 2, ... so that they show stability, or, where these are meant, others that must not be read.
     std::vector<uint> sorted_values(const RadixSort& sort, uint cpu_threads, const std::vector<uint>& keys, uint bits,
-                                    Groups from = Groups::from_host) {
+                                    Groups from = Groups::from_host, Values kind = Values::given) {
         const std::uint64_t bytes = keys.size() * sizeof(uint);
         std::vector<uint> values(keys.size());
-        std::iota(values.begin(), values.end(), 0u);
-        Buffer buffers[4];
+        std::iota(values.begin(), values.end(), kind == Values::given ? 0u : 7u);
+        Buffer buffers[5];
         for (Buffer& buffer : buffers) buffer = Buffer(context(), {.name = "sort test", .bytes = bytes});
         Buffer counters(context(), {.name = "counters", .bytes = RadixSort::counter_bytes(keys.size(), cpu_threads)});
         const uint some = from == Groups::none_from_device ? 0u : 1u;
@@ -31,14 +32,21 @@ class RadixSortTest : public test::VulkanTest {
         {
             const auto pass = commands.pass("input");
             commands.upload(told, std::span<const uint>(groups));
-            commands.upload(buffers[0], std::span(keys));
+            if (kind == Values::given) commands.upload(buffers[0], std::span(keys));
+            commands.upload(buffers[4], std::span(keys));
             commands.upload(buffers[1], std::span<const uint>(values));
         }
+        const RadixSort::Pairs pairs{{buffers[0].address()}, {buffers[1].address()}};
+        const RadixSort::Pairs spare{{buffers[2].address()}, {buffers[3].address()}};
+        const auto count = static_cast<uint>(keys.size());
+        const RadixSort::Counts* const if_counts = from == Groups::from_host ? nullptr : &counts;
+        const Uints apart{buffers[4].address()};
         const RadixSort::Pairs result =
-            sort.record(commands, {{buffers[0].address()}, {buffers[1].address()}},
-                        {{buffers[2].address()}, {buffers[3].address()}}, {counters.address()},
-                        static_cast<uint>(keys.size()), bits, from == Groups::from_host ? nullptr : &counts);
+            kind == Values::given
+                ? sort.record(commands, pairs, spare, {counters.address()}, count, bits, if_counts)
+                : sort.record_places(commands, apart, pairs, spare, {counters.address()}, count, bits, if_counts);
         commands.submit();
+        EXPECT_EQ(download<uint>(context(), buffers[4], keys.size()), keys);
         const bool in_place = result.values.address == buffers[1].address();
         return download<uint>(context(), buffers[in_place ? 1 : 3], keys.size());
     }
@@ -65,6 +73,19 @@ TEST_P(RadixSortOn, EqualsStableSortForManyCountsAndWidths) {
                 << count << " keys of " << bits << " bits";
         }
     }
+}
+
+TEST_P(RadixSortOn, SortsPlacesByKeysThatStay) {
+    const RadixSort sort(context(), GetParam());
+    std::mt19937 random(3);
+    for (const std::size_t count : {1u, 2u, 500u, 200'000u})
+        for (const uint bits : {1u, 12u, 30u}) {
+            std::vector<uint> keys(count);
+            for (uint& key : keys) key = static_cast<uint>(random()) & ((1u << bits) - 1);
+            EXPECT_EQ(sorted_values(sort, GetParam(), keys, bits, Groups::from_host, Values::places),
+                      expected_values(keys, bits))
+                << count << " keys of " << bits << " bits";
+        }
 }
 
 TEST_P(RadixSortOn, EqualKeysKeepTheirOrder) {
@@ -98,7 +119,7 @@ TEST(RadixSortRun, IsLongWhereAProcessorRunsTheThreads) {
 
 TEST(RadixSortRun, CountersHaveRoomForAllGroups) {
     for (const uint threads : {0u, 1u, 2u, 3u, 16u, 256u})
-        for (std::uint64_t count = 2; count < 5'000'000'000; count += 1 + count / 7) {
+        for (std::uint64_t count = 1; count < 5'000'000'000; count += 1 + count / 7) {
             const std::uint64_t counters = std::uint64_t{RadixSort::groups_of(count, threads)}
                                            << RadixSort::digit_bits(threads);
             EXPECT_LE(counters * sizeof(uint) + RadixSort::kept_bytes(count, threads),
