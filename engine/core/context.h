@@ -28,7 +28,8 @@ struct ContextDesc {
     bool validation = false;  // the Khronos layer, with synchronisation validation; messages go to the log and are kept
     bool use_ray_query = true;             // false: leave the extension disabled although the device has it
     bool use_ray_tracing_pipeline = true;  // likewise
-    bool use_cpu_kernels = true;           // false: a CPU's driver gets kernels shaped as for a GPU; for tests of them
+    bool use_cpu_kernels = true;           // false: for tests, a CPU's driver gets kernels shaped as for a GPU; facts()
+                                           // then say that it is of kind `other`
     PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;  // null: open the system's loader
     std::filesystem::path pipeline_folder =
         {};        // keeps compiled pipelines between runs, see PipelineStore; empty: none does

@@ -36,7 +36,7 @@ class RadixSort {
     Pairs record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count, std::uint32_t bits,
                  const Counts* if_counts = nullptr) const;
     // The same of pairs whose values are 0, 1, 2, ..., which need not have been written. `keys` are not changed, unless
-    // they are those of `pairs`.
+    // they are those of `pairs`; they must not be those of `spare`. At least one bit.
     Pairs record_places(Commands& commands, Uints keys, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
                         std::uint32_t bits, const Counts* if_counts = nullptr) const;
     uint sort_groups(std::uint64_t count) const { return groups_of(count, cpu_threads_); }

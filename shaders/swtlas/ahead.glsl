@@ -15,7 +15,7 @@ void keep_loads(uint found)
     if (found == 0x5eed5eedu) memoryBarrierBuffer();
 }
 
-// All words from an address on, a multiple of 4 bytes, by one of each line of 64, shared out among a group's invocations.
+// So many bytes from an address on, but perhaps the last few, by a word of each 64, shared out among a group's invocations.
 void load_lines(uint64_t begin, uint bytes, uint group_size)
 {
     uint found = 0u;

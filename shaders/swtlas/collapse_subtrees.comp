@@ -74,6 +74,7 @@ void main()
         uint end = min(begin + gl_WorkGroupSize.x, queued);
         if (begin == end) return;
         barrier(); // all have read it before any adds to it
+        memoryBarrierBuffer();
         uint mine = begin + gl_LocalInvocationID.x;
         if (mine < end) do_item(tree, queue, get_item(queue, mine));
         begin = end;

@@ -14,7 +14,7 @@ namespace {
 class RadixSortTest : public test::VulkanTest {
   protected:
     enum class Groups { from_host, from_device, none_from_device };
-    enum class Values { given, places };
+    enum class Values { given, places, places_by_own_keys };
     // Values are 0, 1, 2, ... so that they show stability, or, where these are meant, others that must not be read.
     std::vector<uint> sorted_values(const RadixSort& sort, uint cpu_threads, const std::vector<uint>& keys, uint bits,
                                     Groups from = Groups::from_host, Values kind = Values::given) {
@@ -32,7 +32,7 @@ class RadixSortTest : public test::VulkanTest {
         {
             const auto pass = commands.pass("input");
             commands.upload(told, std::span<const uint>(groups));
-            if (kind == Values::given) commands.upload(buffers[0], std::span(keys));
+            if (kind != Values::places) commands.upload(buffers[0], std::span(keys));
             commands.upload(buffers[4], std::span(keys));
             commands.upload(buffers[1], std::span<const uint>(values));
         }
@@ -40,11 +40,11 @@ class RadixSortTest : public test::VulkanTest {
         const RadixSort::Pairs spare{{buffers[2].address()}, {buffers[3].address()}};
         const auto count = static_cast<uint>(keys.size());
         const RadixSort::Counts* const if_counts = from == Groups::from_host ? nullptr : &counts;
-        const Uints apart{buffers[4].address()};
+        const Uints by = kind == Values::places ? Uints{buffers[4].address()} : pairs.keys;
         const RadixSort::Pairs result =
             kind == Values::given
                 ? sort.record(commands, pairs, spare, {counters.address()}, count, bits, if_counts)
-                : sort.record_places(commands, apart, pairs, spare, {counters.address()}, count, bits, if_counts);
+                : sort.record_places(commands, by, pairs, spare, {counters.address()}, count, bits, if_counts);
         commands.submit();
         EXPECT_EQ(download<uint>(context(), buffers[4], keys.size()), keys);
         const bool in_place = result.values.address == buffers[1].address();
@@ -82,9 +82,10 @@ TEST_P(RadixSortOn, SortsPlacesByKeysThatStay) {
         for (const uint bits : {1u, 12u, 30u}) {
             std::vector<uint> keys(count);
             for (uint& key : keys) key = static_cast<uint>(random()) & ((1u << bits) - 1);
-            EXPECT_EQ(sorted_values(sort, GetParam(), keys, bits, Groups::from_host, Values::places),
-                      expected_values(keys, bits))
-                << count << " keys of " << bits << " bits";
+            for (const Groups from : {Groups::from_host, Groups::from_device})
+                for (const Values kind : {Values::places, Values::places_by_own_keys})
+                    EXPECT_EQ(sorted_values(sort, GetParam(), keys, bits, from, kind), expected_values(keys, bits))
+                        << count << " keys of " << bits << " bits";
         }
 }
 

@@ -108,6 +108,36 @@ TEST_P(SwBuild, TreesOfABatchWithLevelsAndSubtreesAreEqualToTheirTwins) {
         expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
 }
 
+// A triangle beside each power of two, along the axes in turn, and behind these `count` that lie close together.
+Mesh chain_before_a_clump(uint depth, uint count) {
+    Mesh mesh = make_soup(count, 9, 0.01f);
+    for (vec3& position : mesh.positions) position *= std::ldexp(1.0f, -20);
+    for (uint i = 0; i < depth; ++i) {
+        vec3 center(0);
+        center[static_cast<int>(2 - i % 3)] = std::ldexp(1.0f, -static_cast<int>(i / 3));
+        const auto first = static_cast<uint>(mesh.positions.size());
+        for (const vec3& corner : {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)})
+            mesh.positions.push_back(center + corner * std::ldexp(1.0f, -25));
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    return mesh;
+}
+
+TEST_P(SwBuild, ALargeSubtreeIsLeftBelowTheLastLevel) {
+    const uint most = plan_build({}, Layout::compressed4, context().facts()).subtree_leaves;
+    const Mesh mesh = chain_before_a_clump(57, most + 300);
+    const auto count = static_cast<uint>(mesh.triangles.size());
+    SwTlas accel(context(), options());
+    const AccelHandle handle = accel.push(mesh);
+    accel.sync();
+    const SwTlas::Tree tree = accel.download_geometry(handle);
+    expect_sound(tree, mesh);
+    expect_twin(tree, mesh, quality());
+    if (!has_records(tree) || quality() == BuildQuality::high) return;  // rotations make it less deep
+    const uint levels = plan_build(std::span(&count, 1), Layout::compressed4, context().facts()).collapse_levels;
+    EXPECT_GT(check_compressed(tree.bvh, tree.records, leaf_boxes(tree, mesh)).depth, levels + 10);
+}
+
 TEST_P(SwBuild, LargeMeshesAreSound) {
     for (const uint n : {100'000u, 1'000'000u}) {
         SwTlas accel(context(), options());
