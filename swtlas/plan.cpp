@@ -108,11 +108,11 @@ BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const Dev
 }
 
 CollapseLists collapse_lists(uint leaf_count) {
-    const std::uint64_t large = most_large_items(leaf_count);
+    const std::uint64_t large = leaf_count / fewest_large_leaves;
     CollapseLists lists;
     lists.level[1] = large;
     lists.subtrees = 2 * large;
-    lists.queues = lists.subtrees + most_subtrees(leaf_count);
+    lists.queues = lists.subtrees + leaf_count / 2;  // that lie apart, of two leaves at least
     lists.end = lists.queues + queue_begin(leaf_count, 0);
     return lists;
 }

@@ -44,6 +44,9 @@ BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const Dev
 // What a tree of so many leaves adds to the scratch of its batch, at most.
 std::uint64_t scratch_share(uint leaf_count, Layout layout, const DeviceFacts& device);
 
+// The fewest leaves of an item that may be in a list of a level: 1 / so many of all leaves have room there.
+constexpr uint fewest_large_leaves = 12;
+
 // Where lists of items of collapsing begin, and the last one ends, in items, for which n boxes have room for 3 n / 2.
 struct CollapseLists {
     std::uint64_t level[2] = {}, subtrees = 0, queues = 0, end = 0;

@@ -19,10 +19,12 @@ struct CollapseItem
 };
 BUFFER_OF(CollapseItem, 4);
 
-FUNC CollapseItem load_item(REF(CollapseItem) items, uint index)
+// The words of an item.
+FUNC uint64_t first_word(CollapseItem item) { return WORD(item.tree, item.place); }
+FUNC uint64_t second_word(CollapseItem item) { return WORD(item.record, item.below); }
+FUNC CollapseItem item_of(uint64_t first, uint64_t second)
 {
-    Words64 words = Words64(uint64_t(items) + uint64_t(index) * 16ul);
-    uvec2 u0 = UINTS(AT(words, 0)), u1 = UINTS(AT(words, 1));
+    uvec2 u0 = UINTS(first), u1 = UINTS(second);
     CollapseItem item;
     item.tree = u0.x;
     item.place = u0.y;
@@ -30,11 +32,17 @@ FUNC CollapseItem load_item(REF(CollapseItem) items, uint index)
     item.below = u1.y;
     return item;
 }
+
+FUNC CollapseItem load_item(REF(CollapseItem) items, uint index)
+{
+    Words64 words = Words64(uint64_t(items) + uint64_t(index) * 16ul);
+    return item_of(AT(words, 0), AT(words, 1));
+}
 FUNC void store_item(REF(CollapseItem) items, uint index, CollapseItem item)
 {
     Words64 words = Words64(uint64_t(items) + uint64_t(index) * 16ul);
-    AT(words, 0) = WORD(item.tree, item.place);
-    AT(words, 1) = WORD(item.record, item.below);
+    AT(words, 0) = first_word(item);
+    AT(words, 1) = second_word(item);
 }
 
 // How many items a level has; begins with what an indirect dispatch reads.
@@ -72,12 +80,6 @@ struct CollapseArgs
     uint tree_count;
     uint subtree_leaves;             // a subtree has at most
 };
-
-// Of n leaves in all trees, n / LARGE_SHARE items at most are of subtrees with LARGE_SHARE leaves or more, and n / 2 of any that
-// lie apart.
-const uint LARGE_SHARE = 12u;
-FUNC uint64_t most_large_items(uint leaf_count) { return uint64_t(leaf_count / LARGE_SHARE); }
-FUNC uint64_t most_subtrees(uint leaf_count) { return uint64_t(leaf_count / 2u); }
 
 // The queue of a subtree of n leaves takes its (2 n - 1) / 3 nodes at most, half as many as it has records below it: where that
 // of the one with records from `below` on begins, and, with the number of leaves and 0, where all end.

@@ -16,15 +16,11 @@ shared uint queued; // how many items ever were
 
 void put_item(QueueWords queue, uint at, CollapseItem item)
 {
-    AT(queue, 2u * at) = WORD(item.tree, item.place);
-    AT(queue, 2u * at + 1u) = WORD(item.record, item.below);
+    AT(queue, 2u * at) = first_word(item);
+    AT(queue, 2u * at + 1u) = second_word(item);
 }
 
-CollapseItem get_item(QueueWords queue, uint at)
-{
-    uvec2 u0 = UINTS(AT(queue, 2u * at)), u1 = UINTS(AT(queue, 2u * at + 1u));
-    return CollapseItem(u0.x, u0.y, u1.x, u1.y);
-}
+CollapseItem get_item(QueueWords queue, uint at) { return item_of(AT(queue, 2u * at), AT(queue, 2u * at + 1u)); }
 
 // Where rotations have moved nodes, these are other ones of the tree.
 void load_ahead(BuildTree tree, CollapseItem root)

@@ -10,7 +10,19 @@ namespace {
 
 using namespace test;
 
-class SwBuild : public SwBuildTest {};
+class SwBuild : public SwBuildTest {
+  protected:
+    // The tree of a mesh alone, which is sound and equal to its twin.
+    SwTlas::Tree checked_tree(const Mesh& mesh) {
+        SwTlas accel(context(), options());
+        const AccelHandle handle = accel.push(mesh);
+        accel.sync();
+        SwTlas::Tree tree = accel.download_geometry(handle);
+        expect_sound(tree, mesh);
+        expect_twin(tree, mesh, quality());
+        return tree;
+    }
+};
 INSTANTIATE_TEST_SUITE_P(Every, SwBuild, every_build(), name_of_build);
 
 // n copies of one triangle: all centroids equal.
@@ -127,12 +139,7 @@ TEST_P(SwBuild, ALargeSubtreeIsLeftBelowTheLastLevel) {
     const uint most = plan_build({}, Layout::compressed4, context().facts()).subtree_leaves;
     const Mesh mesh = chain_before_a_clump(57, most + 300);
     const auto count = static_cast<uint>(mesh.triangles.size());
-    SwTlas accel(context(), options());
-    const AccelHandle handle = accel.push(mesh);
-    accel.sync();
-    const SwTlas::Tree tree = accel.download_geometry(handle);
-    expect_sound(tree, mesh);
-    expect_twin(tree, mesh, quality());
+    const SwTlas::Tree tree = checked_tree(mesh);
     if (!has_records(tree) || quality() == BuildQuality::high) return;  // rotations make it less deep
     const uint levels = plan_build(std::span(&count, 1), Layout::compressed4, context().facts()).collapse_levels;
     EXPECT_GT(check_compressed(tree.bvh, tree.records, leaf_boxes(tree, mesh)).depth, levels + 10);
@@ -151,13 +158,8 @@ TEST_P(SwBuild, LargeMeshesAreSound) {
 }
 
 TEST_P(SwBuild, EqualCentroidsAreSplitByPosition) {
-    SwTlas accel(context(), options());
     const Mesh mesh = equal_triangles(1000);
-    const AccelHandle handle = accel.push(mesh);
-    accel.sync();
-    const SwTlas::Tree tree = accel.download_geometry(handle);
-    expect_sound(tree, mesh);
-    expect_twin(tree, mesh, quality());
+    const SwTlas::Tree tree = checked_tree(mesh);
     const std::vector<LeafBox> boxes = leaf_boxes(tree, mesh);
     EXPECT_LE(has_records(tree) ? check_compressed(tree.bvh, tree.records, boxes).depth
                                 : check_tree(tree.bvh, tree.nodes, boxes).depth,
@@ -170,12 +172,7 @@ TEST_P(SwBuild, NonFiniteTrianglesAreInactiveAndKeepTheirIndex) {
         const float bad[] = {NAN, INFINITY, -INFINITY};
         mesh.positions[3 * i + i % 3][static_cast<int>(i / 7 % 3)] = bad[i % 3];
     }
-    SwTlas accel(context(), options());
-    const AccelHandle handle = accel.push(mesh);
-    accel.sync();
-    const SwTlas::Tree tree = accel.download_geometry(handle);
-    expect_sound(tree, mesh);
-    expect_twin(tree, mesh, quality());
+    const SwTlas::Tree tree = checked_tree(mesh);
     EXPECT_TRUE(std::isfinite(tree.bvh.lo.x) && std::isfinite(tree.bvh.hi.x));
 }
 

@@ -89,10 +89,10 @@ TEST_P(BuildPlans, ListsOfItemsFitWhereTheBoxesWere) {
         const CollapseLists lists = collapse_lists(n);
         EXPECT_LE(lists.end * sizeof(CollapseItem), n * sizeof(LeafBox)) << n;
         EXPECT_LE(n / 2, lists.queues - lists.subtrees) << "subtrees of two leaves or more";
-        EXPECT_LE(n / LARGE_SHARE, lists.level[1] - lists.level[0]) << n;
-        EXPECT_LE(n / LARGE_SHARE, lists.subtrees - lists.level[1]) << n;
+        EXPECT_LE(n / fewest_large_leaves, lists.level[1] - lists.level[0]) << n;
+        EXPECT_LE(n / fewest_large_leaves, lists.subtrees - lists.level[1]) << n;
     }
-    EXPECT_LE(LARGE_SHARE, plan_build({}, layout, facts_of(kind)).subtree_leaves + 1) << "what levels are for";
+    EXPECT_LE(fewest_large_leaves, plan_build({}, layout, facts_of(kind)).subtree_leaves + 1) << "what levels are for";
 }
 
 TEST(CollapseQueues, OfSubtreesAndTreesLieApart) {
