@@ -42,7 +42,7 @@ fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/lib.sh
 
-build release
+build release path_tracer twinray_cli
 scene=${scene:-$(choose_scene)}
 mkdir -p "$out"
 

@@ -2,6 +2,7 @@
 #include "engine/scene/gltf_accessor.h"
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 
 namespace twinray {
@@ -72,7 +73,8 @@ void apply_sparse(const GltfFile& file, const tinygltf::Accessor& accessor, std:
     if (!is_unsigned) file.fail(object, " sparse: indices have component type ", sparse.indices.componentType);
     if (sparse.count < 0 || std::size_t(sparse.count) > accessor.count)
         file.fail(object, " sparse: count ", sparse.count, " is not within 0 and the accessor's ", accessor.count);
-    if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0)
+    // Of type int in tinygltf 2.5, of an unsigned one in later versions.
+    if (std::int64_t(sparse.indices.byteOffset) < 0 || std::int64_t(sparse.values.byteOffset) < 0)
         file.fail(object, " sparse: negative byteOffset");
 
     const std::size_t count = std::size_t(sparse.count);
