@@ -19,6 +19,8 @@ else()
     set(TWINRAY_SHADER_FOLDERS ${TWINRAY_INCLUDE_DIR} ${TWINRAY_INCLUDE_DIR}/.. CACHE INTERNAL "")
 endif()
 
+set(TWINRAY_SPIRV_HEADER_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/TwinraySpirvHeader.cmake CACHE INTERNAL "")
+
 function(twinray_compile_shader target name input)
     if(NOT TWINRAY_GLSLANG_VALIDATOR)
         message(FATAL_ERROR "twinray: shader ${name} needs glslangValidator (Debian: apt-get install glslang-tools)")
@@ -34,8 +36,9 @@ function(twinray_compile_shader target name input)
     add_custom_command(
         OUTPUT ${module} ${header}
         COMMAND ${TWINRAY_GLSLANG_VALIDATOR} ${flags} --depfile ${module}.d -o ${module} ${input}
-        COMMAND ${TWINRAY_GLSLANG_VALIDATOR} ${flags} --vn ${name}_spirv -o ${header} ${input}
-        DEPENDS ${input}
+        COMMAND ${CMAKE_COMMAND} -DMODULE=${module} -DNAME=${name}_spirv -DHEADER=${header}
+                -P ${TWINRAY_SPIRV_HEADER_SCRIPT}
+        DEPENDS ${input} ${TWINRAY_SPIRV_HEADER_SCRIPT}
         DEPFILE ${module}.d
         COMMENT "shader ${name}"
         VERBATIM)

@@ -32,7 +32,7 @@ configure_package_config_file(cmake/twinrayConfig.cmake.in ${generated_dir}/twin
 write_basic_package_version_file(${generated_dir}/twinrayConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${generated_dir}/twinrayConfig.cmake ${generated_dir}/twinrayConfigVersion.cmake
         DESTINATION ${package_dir})
-install(FILES cmake/TwinrayShaders.cmake DESTINATION ${package_dir})
+install(FILES cmake/TwinrayShaders.cmake cmake/TwinraySpirvHeader.cmake DESTINATION ${package_dir})
 
 # Relative to the file itself, so that an installed tree can be moved.
 file(RELATIVE_PATH prefix_from_pc ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
