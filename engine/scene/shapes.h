@@ -28,4 +28,8 @@ Mesh make_soup(uint triangle_count, uint seed, float size = 0.1f);
 // ceiling, a metal box and a glass sphere; with a camera that sees all of it.
 Scene cornell_box_scene();
 
+// 1200 glazed and golden beads in the spiral of a sunflower on a table, seen from above at an aspect of 16 : 9; without
+// lights, for a sky.
+Scene sunflower_scene();
+
 }  // namespace twinray

@@ -26,7 +26,8 @@ Scene load_any(const Options& options) {
     const std::string builtin = "builtin:", name = options.scene.string();
     if (name.rfind(builtin, 0) != 0) return load_scene(options.scene);
     if (name == builtin + "cornell-box") return cornell_box_scene();
-    fail("'", name, "': unknown; there is builtin:cornell-box");
+    if (name == builtin + "sunflower") return sunflower_scene();
+    fail("'", name, "': unknown; there are builtin:cornell-box and builtin:sunflower");
 }
 
 Scene load(const Options& options) {
