@@ -1,35 +1,64 @@
-# twinray::twinray: the parts as one object file, in which only namespace twinray is global. A host may then bring its
-# own Vulkan Memory Allocator, stb or tinygltf, of whatever version; and an inline function of our headers that the
-# host compiles with its own options (-ffast-math) never replaces the one that the library was tested with.
-set(parts twinray_engine twinray_swtlas twinray_hwtlas)
-set_target_properties(${parts} PROPERTIES POSITION_INDEPENDENT_CODE ON INTERPROCEDURAL_OPTIMIZATION OFF)
-foreach(part ${parts})
-    # Without the first, position-independent code does not inline what another library could replace. The sections
-    # let a host that links with --gc-sections leave out what it does not use, as from an archive of many objects.
-    # Without the last, variables of inline functions stay global whatever objcopy is told.
-    target_compile_options(${part} PRIVATE
-        "$<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition;-ffunction-sections;-fdata-sections>"
-        $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-gnu-unique>)
-    list(APPEND objects $<TARGET_OBJECTS:${part}>)
-endforeach()
+# twinray::core, ::scene, ::reference, ::analysis and ::report, and twinray::twinray, all that is built. Each is its parts
+# as one object file, in which only namespace twinray is global. A host may then bring its own Vulkan Memory Allocator, stb
+# or tinygltf, of whatever version; and an inline function of our headers that the host compiles with its own options
+# (-ffast-math) never replaces the one that the library was tested with.
+set(TWINRAY_LIBRARIES "")
+set(TWINRAY_PARTS "")
 
-set(merge ${PROJECT_SOURCE_DIR}/cmake/merge_objects.sh)
-set(library ${PROJECT_BINARY_DIR}/twinray.o)
-add_custom_command(
-    OUTPUT ${library}
-    COMMAND ${merge} ${CMAKE_LINKER} ${CMAKE_NM} ${CMAKE_OBJCOPY} ${library} ${objects}
-    DEPENDS ${merge} ${objects}
-    COMMENT "Merging twinray.o"
-    COMMAND_EXPAND_LISTS VERBATIM)
+# twinray_add_library(<name> PARTS <part>... SEES <name>... USES <library of others>...)
+function(twinray_add_library name)
+    cmake_parse_arguments(arg "" "" "PARTS;SEES;USES" ${ARGN})
+    list(TRANSFORM arg_PARTS REPLACE ".+" "twinray_\\0_part")
+    list(TRANSFORM arg_SEES REPLACE ".+" "twinray_\\0")
+    set_target_properties(${arg_PARTS} PROPERTIES POSITION_INDEPENDENT_CODE ON INTERPROCEDURAL_OPTIMIZATION OFF)
+    set(objects "")
+    foreach(part ${arg_PARTS})
+        # Without the first, position-independent code does not inline what another library could replace. The sections
+        # let a host that links with --gc-sections leave out what it does not use, as from an archive of many objects.
+        # Without the last, variables of inline functions stay global whatever objcopy is told.
+        target_compile_options(${part} PRIVATE
+            "$<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition;-ffunction-sections;-fdata-sections>"
+            $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-gnu-unique>)
+        list(APPEND objects $<TARGET_OBJECTS:${part}>)
+    endforeach()
 
-add_library(twinray ${library})
+    set(merge ${PROJECT_SOURCE_DIR}/cmake/merge_objects.sh)
+    set(library ${PROJECT_BINARY_DIR}/twinray_${name}.o)
+    add_custom_command(
+        OUTPUT ${library}
+        COMMAND ${merge} ${CMAKE_LINKER} ${CMAKE_NM} ${CMAKE_OBJCOPY} ${library} ${objects}
+        DEPENDS ${merge} ${objects}
+        COMMENT "Merging twinray_${name}.o"
+        COMMAND_EXPAND_LISTS VERBATIM)
+
+    add_library(twinray_${name} ${library})
+    add_library(twinray::${name} ALIAS twinray_${name})
+    set_target_properties(twinray_${name} PROPERTIES
+        EXPORT_NAME ${name}
+        LINKER_LANGUAGE CXX
+        VERSION ${PROJECT_VERSION}
+        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+    target_compile_features(twinray_${name} PUBLIC cxx_std_20)
+    target_include_directories(twinray_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+    target_link_libraries(twinray_${name} PUBLIC ${arg_SEES} Vulkan::Headers glm::glm Threads::Threads PRIVATE ${arg_USES})
+    set(TWINRAY_LIBRARIES ${TWINRAY_LIBRARIES} twinray_${name} PARENT_SCOPE)
+    set(TWINRAY_PARTS ${TWINRAY_PARTS} ${arg_PARTS} PARENT_SCOPE)
+endfunction()
+
+twinray_add_library(core PARTS core swtlas hwtlas USES ZLIB::ZLIB ${CMAKE_DL_LIBS})
+if(TWINRAY_SCENE)
+    twinray_add_library(scene PARTS scene SEES core USES OpenEXR::OpenEXR assimp::assimp ZLIB::ZLIB)
+endif()
+if(TWINRAY_REFERENCE)
+    twinray_add_library(reference PARTS reference SEES core)
+endif()
+if(TWINRAY_ANALYSIS)
+    twinray_add_library(analysis PARTS analysis SEES scene)
+endif()
+if(TWINRAY_REPORT)
+    twinray_add_library(report PARTS report SEES analysis)
+endif()
+
+add_library(twinray INTERFACE)
 add_library(twinray::twinray ALIAS twinray)
-set_target_properties(twinray PROPERTIES
-    LINKER_LANGUAGE CXX
-    VERSION ${PROJECT_VERSION}
-    SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-target_compile_features(twinray PUBLIC cxx_std_20)
-target_include_directories(twinray PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
-target_link_libraries(twinray
-    PUBLIC Vulkan::Headers glm::glm Threads::Threads
-    PRIVATE OpenEXR::OpenEXR assimp::assimp ZLIB::ZLIB ${CMAKE_DL_LIBS})
+target_link_libraries(twinray INTERFACE ${TWINRAY_LIBRARIES})

@@ -9,7 +9,6 @@ namespace twinray {
 namespace {
 
 constexpr uint max_depth = DEEPEST_TREE;
-constexpr std::size_t max_violations = 20;
 
 bool same(vec3 a, vec3 b) { return a == b; }
 
@@ -19,9 +18,9 @@ double half_area(const LeafBox& box) {
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-class Walk {
+class BinaryWalk {
   public:
-    Walk(std::span<const BvhNode> nodes, std::span<const LeafBox> leaf_boxes, TreeCheck& result)
+    BinaryWalk(std::span<const BvhNode> nodes, std::span<const LeafBox> leaf_boxes, TreeCheck& result)
         : nodes_(nodes),
           leaf_boxes_(leaf_boxes),
           result_(result),
@@ -95,7 +94,7 @@ class Walk {
 
 TreeCheck check_tree(const Bvh& bvh, std::span<const BvhNode> nodes, std::span<const LeafBox> leaf_boxes) {
     TreeCheck result;
-    Walk walk(nodes, leaf_boxes, result);
+    BinaryWalk walk(nodes, leaf_boxes, result);
     if (bvh.leaf_count != leaf_boxes.size())
         walk.violated(text("the tree has ", bvh.leaf_count, " leaves, not ", leaf_boxes.size()));
     if (leaf_boxes.empty()) {

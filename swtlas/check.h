@@ -9,6 +9,8 @@
 
 namespace twinray {
 
+inline constexpr std::size_t max_violations = 20;  // that a check tells
+
 struct TreeCheck {
     std::vector<std::string> violations;  // one sentence each, at most 20
     uint depth = 0;                       // inner nodes on the longest path

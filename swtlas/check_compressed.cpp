@@ -8,7 +8,6 @@
 namespace twinray {
 namespace {
 
-constexpr std::size_t max_violations = 20;
 constexpr double least_margin = 1.0 / 512;  // of a cell: half of what is added, the rest may round
 
 double half_area(glm::dvec3 lo, glm::dvec3 hi) {
@@ -30,9 +29,10 @@ Planes planes_of(const CompressedRecord& node, uint child) {
             origin + cell * glm::dvec3(plane(node.b.y), plane(node.b.w), plane(node.c.y)), cell};
 }
 
-class Walk {
+class CompressedWalk {
   public:
-    Walk(std::span<const CompressedRecord> records, std::span<const LeafBox> leaf_boxes, CompressedCheck& result)
+    CompressedWalk(std::span<const CompressedRecord> records, std::span<const LeafBox> leaf_boxes,
+                   CompressedCheck& result)
         : records_(records),
           leaf_boxes_(leaf_boxes),
           result_(result),
@@ -117,7 +117,7 @@ class Walk {
 CompressedCheck check_compressed(const Bvh& bvh, std::span<const CompressedRecord> records,
                                  std::span<const LeafBox> leaf_boxes) {
     CompressedCheck result;
-    Walk walk(records, leaf_boxes, result);
+    CompressedWalk walk(records, leaf_boxes, result);
     if (bvh.leaf_count != leaf_boxes.size())
         walk.violated(text("the tree has ", bvh.leaf_count, " leaves, not ", leaf_boxes.size()));
     if (leaf_boxes.empty()) {

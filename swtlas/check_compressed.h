@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "swtlas/check.h"
 #include "swtlas/structures.h"
 
 namespace twinray {

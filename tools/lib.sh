@@ -20,13 +20,13 @@ section_end() {
     section_start=
 }
 
-# Installs the packages and builds the targets, or all; the working directory is the checkout. TWINRAY_WERROR=ON in the
-# environment makes warnings errors.
-build() { # preset [target...]
+# Installs the packages and builds; the working directory is the checkout. TWINRAY_WERROR=ON in the environment makes
+# warnings errors.
+build() { # preset [what tools/setup.sh takes]
     section "Packages"
-    tools/setup.sh
+    tools/setup.sh "${@:2}"
     section "Configure ($1)"
     cmake --preset "$1" ${TWINRAY_WERROR+-DTWINRAY_WERROR="$TWINRAY_WERROR"}
     section "Build ($1)"
-    cmake --build --preset "$1" ${2+--target "${@:2}"}
+    cmake --build --preset "$1"
 }

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs the Debian packages that twinray needs, and nothing else.
-#   tools/setup.sh           install; does nothing if everything is there
+#   tools/setup.sh           install all; does nothing if everything is there
+#   tools/setup.sh demo      install what path_tracer needs, and no more
 #   tools/setup.sh --undo    remove the apt configuration that it wrote
 #   SKIP_APT=1               install nothing, whatever is missing
 # On Debian 12 (bookworm) two things are not in the release itself: a Mesa whose CPU driver traces rays (from
@@ -9,12 +10,13 @@
 # that let through these packages and nothing else. On Debian 13 (trixie) no configuration is written.
 set -euo pipefail
 
+demo_packages=(
+    g++ cmake ninja-build libvulkan-dev libvulkan-memory-allocator-dev mesa-vulkan-drivers glslang-tools
+    libglm-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev libopenexr-dev libassimp-dev zlib1g-dev
+)
 packages=(
-    g++ cmake ninja-build pkg-config python3-minimal
-    libvulkan-dev libvulkan-volk-dev libvulkan-memory-allocator-dev
-    mesa-vulkan-drivers vulkan-tools vulkan-validationlayers glslang-tools spirv-tools
-    libglm-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev libgtest-dev
-    libopenexr-dev libassimp-dev zlib1g-dev libgmp-dev libeigen3-dev assimp-testmodels
+    "${demo_packages[@]}" pkg-config python3-minimal libvulkan-volk-dev vulkan-tools vulkan-validationlayers spirv-tools
+    libgtest-dev libgmp-dev libeigen3-dev assimp-testmodels
 )
 if [[ $(uname -m) == x86_64 ]]; then packages+=(libembree-dev); fi # twinray bench measures it, too
 oldest_mesa=24 # the first whose lavapipe has acceleration structures and ray queries
@@ -180,8 +182,9 @@ main() {
         undo
         return
         ;;
+    demo) packages=("${demo_packages[@]}") ;;
     '') ;;
-    *) die "unknown option '$1'; usage: tools/setup.sh [--undo]" ;;
+    *) die "unknown option '$1'; usage: tools/setup.sh [demo|--undo]" ;;
     esac
     if [[ ${SKIP_APT-} == 1 ]]; then
         say "SKIP_APT=1, installs nothing"

@@ -29,7 +29,7 @@ Axes axes_of(dvec3 direction) {
 }
 
 // What lies between the least and the largest coordinates on the axes.
-struct Extent {
+struct PlaneExtent {
     dvec3 lo = dvec3(INFINITY), hi = dvec3(-INFINITY);  // across, up, along
     double largest = 0;                                 // coordinate in world space
 
@@ -38,20 +38,20 @@ struct Extent {
         lo = min(lo, place), hi = max(hi, place);
         largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     }
-    void include(const Extent& other) {
+    void include(const PlaneExtent& other) {
         lo = min(lo, other.lo), hi = max(hi, other.hi);
         largest = std::max(largest, other.largest);
     }
     bool is_empty() const { return !(lo.x <= hi.x); }
 };
 
-Extent extent_of(const Scene& scene, const Axes& axes) {
-    Extent all;
+PlaneExtent extent_of(const Scene& scene, const Axes& axes) {
+    PlaneExtent all;
     std::mutex mutex;
     for (const Instance& instance : scene.instances) {
         const Mesh& mesh = scene.meshes[instance.mesh];
         parallel_for(mesh.triangles.size(), [&](std::size_t begin, std::size_t end) {
-            Extent some;
+            PlaneExtent some;
             for (std::size_t i = begin; i < end; ++i) {
                 const uvec3 t = mesh.triangles[i];
                 const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
@@ -84,7 +84,7 @@ RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc) {
     if (desc.side < 1 || desc.side > largest_side)
         fail("ray grid: ", desc.side, " cells a side; 1 to ", largest_side, " can be");
     const Axes axes = axes_of(desc.direction);
-    const Extent extent = extent_of(scene, axes);
+    const PlaneExtent extent = extent_of(scene, axes);
     if (extent.is_empty()) return {};
     const dvec3 size = extent.hi - extent.lo;
     // A twentieth of the scene stays between it and the plane. Origins and what an accelerator makes of them are off by

@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint most_pixels = 900;
 constexpr std::size_t most_ticks = 8;
-constexpr int tick_length = 6, gap = 6;
+constexpr int axis_tick = 6, label_gap = 6;
 
 // Means over the entries of a pixel, row 0 first; 0 where there are none.
 std::vector<double> means_of(std::size_t size, std::span<const MatrixEntry> entries, uint entries_a_pixel) {
@@ -39,16 +39,17 @@ Raster colored(const std::vector<double>& means, const ValueScale& scale, const 
 Raster with_numbers(const Raster& matrix, std::size_t size, const MatrixLayout& layout) {
     const std::vector<Tick> ticks = ValueScale::linear(0, static_cast<double>(size)).ticks(most_ticks);
     const int side = static_cast<int>(layout.pixels);
-    const int left = text_width(std::to_string(size)) + tick_length + gap, below = tick_length + gap + text_height;
+    const int left = text_width(std::to_string(size)) + axis_tick + label_gap,
+              below = axis_tick + label_gap + text_height;
     Raster raster(static_cast<uint>(left + side + 1), static_cast<uint>(1 + side + below));
     paste(raster, matrix, left, 1);
     outline(raster, {left - 1, 0, side + 2, side + 2}, ink);
     for (const Tick& tick : ticks) {
         const int offset = static_cast<int>(std::lround(tick.position * side)), width = text_width(tick.label);
-        fill(raster, {left - 1 - tick_length, 1 + offset, tick_length, 1}, ink);
-        draw_text(raster, left - tick_length - gap - width, std::clamp(offset - 6, 0, side - 14), tick.label);
-        fill(raster, {left + offset, side + 1, 1, tick_length}, ink);
-        draw_text(raster, std::clamp(left + offset - width / 2, 0, left + side - width), side + tick_length + gap,
+        fill(raster, {left - 1 - axis_tick, 1 + offset, axis_tick, 1}, ink);
+        draw_text(raster, left - axis_tick - label_gap - width, std::clamp(offset - 6, 0, side - 14), tick.label);
+        fill(raster, {left + offset, side + 1, 1, axis_tick}, ink);
+        draw_text(raster, std::clamp(left + offset - width / 2, 0, left + side - width), side + axis_tick + label_gap,
                   tick.label);
     }
     return raster;

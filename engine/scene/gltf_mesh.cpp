@@ -50,11 +50,6 @@ std::vector<int> accessors_of(const Primitive& primitive) {
     return accessors;
 }
 
-template <class T>
-void append(std::vector<T>& all, const std::vector<T>& part) {
-    all.insert(all.end(), part.begin(), part.end());
-}
-
 // Puts the primitives of one mesh together.
 class MeshReader {
   public:

@@ -84,11 +84,6 @@ std::size_t normalize_weights(VertexMotion& motion) {
     return weightless;
 }
 
-template <class T>
-void append(std::vector<T>& all, const std::vector<T>& part) {
-    all.insert(all.end(), part.begin(), part.end());
-}
-
 // Those of `width` values a vertex.
 template <class T>
 std::vector<T> picked(const std::vector<T>& values, std::size_t width, const std::vector<uint>& vertices) {

@@ -23,6 +23,10 @@ MotionLayout motion_layout(const GltfFile& file, const std::vector<const tinyglt
 VertexMotion read_gltf_motion(GltfFile& file, const tinygltf::Primitive& primitive, const MotionLayout& layout,
                               std::size_t vertex_count, const std::string& object);
 
+template <class T>
+void append(std::vector<T>& all, const std::vector<T>& part) {
+    all.insert(all.end(), part.begin(), part.end());
+}
 void append(VertexMotion& all, const VertexMotion& part);
 // Of some vertices.
 VertexMotion picked(const VertexMotion& motion, const std::vector<uint>& vertices);

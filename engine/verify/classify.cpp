@@ -7,12 +7,11 @@
 #include "engine/core/error.h"
 #include "engine/verify/certainty.h"
 #include "engine/verify/coverage.h"
+#include "engine/verify/geometry64.h"
 #include "engine/core/parallel.h"
 
 namespace twinray {
 namespace {
-
-constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 // One ray and one accelerator.
 class Judge {

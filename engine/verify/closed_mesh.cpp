@@ -2,7 +2,6 @@
 #include "engine/verify/closed_mesh.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "engine/core/error.h"
 #include "engine/verify/draws.h"
@@ -13,7 +12,6 @@ namespace twinray {
 namespace {
 
 using glm::dvec3;
-constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 using Corner = std::array<float, 3>;  // ordered by comparing numbers, so that -0 equals 0
 

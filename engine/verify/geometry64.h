@@ -2,6 +2,7 @@
 // One mesh as the referee holds it: the active triangles and a hierarchy over them, in object space.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "engine/verify/triangle64.h"
 
 namespace twinray {
+
+inline constexpr double unlimited = std::numeric_limits<double>::infinity();  // end of an interval of t
 
 // A ray in a geometry's object space, prepared for its boxes and triangles.
 struct ObjectRay {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/verify/draws.h"
+#include "engine/verify/geometry64.h"
 #include "engine/core/parallel.h"
 #include "engine/verify/tube.h"
 
@@ -11,7 +12,6 @@ namespace twinray {
 namespace {
 
 using glm::dvec3;
-constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 // Whether a float32 kernel may find a triangle behind the origin that lies before it, or the other way round.
 bool is_undecided_at_origin(const ClosedMesh& mesh, const Ray& ray) {

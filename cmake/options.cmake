@@ -1,0 +1,15 @@
+# What an option needs of the others: one clear word where they contradict each other.
+function(twinray_option_needs option)
+    foreach(needed ${ARGN})
+        if(${option} AND NOT ${needed})
+            message(FATAL_ERROR "twinray: ${option}=ON needs ${needed}=ON")
+        endif()
+    endforeach()
+endfunction()
+
+twinray_option_needs(TWINRAY_ANALYSIS TWINRAY_SCENE)
+twinray_option_needs(TWINRAY_REPORT TWINRAY_ANALYSIS)
+twinray_option_needs(TWINRAY_BUILD_PATH_TRACER TWINRAY_SCENE TWINRAY_REFERENCE)
+twinray_option_needs(TWINRAY_BUILD_SAMPLES TWINRAY_SCENE TWINRAY_REFERENCE TWINRAY_ANALYSIS)
+twinray_option_needs(TWINRAY_BUILD_CLI TWINRAY_SCENE TWINRAY_REFERENCE TWINRAY_ANALYSIS TWINRAY_REPORT)
+twinray_option_needs(TWINRAY_BUILD_TESTS TWINRAY_BUILD_PATH_TRACER TWINRAY_BUILD_CLI TWINRAY_BUILD_SAMPLES)
