@@ -2,59 +2,77 @@
 #include "cli/number_lines.h"
 
 #include <algorithm>
-#include <charconv>
+#include <cmath>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/scene/words.h"
 
 namespace twinray::cli {
 namespace {
 
-bool is_gap(char c) { return c == ',' || c == ' ' || c == '\t' || c == '\r'; }
+// Not by read_file, since what another program writes may come through a pipe.
+Bytes bytes_of(const std::filesystem::path& file, const std::string& what) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in || std::filesystem::is_directory(file)) fail(what, " '", file.string(), "' cannot be read");
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
 
+// Up to a comment. A comma in a line with semicolons is a decimal point, as spreadsheets write it in half of Europe,
+// and no number has one here.
 std::vector<std::string_view> fields_of(std::string_view line) {
+    line = line.substr(0, line.find('#'));
+    const char separator = line.find(';') == line.npos ? ',' : ';';
     std::vector<std::string_view> fields;
-    for (std::size_t at = 0; at < line.size();) {
-        std::size_t end = at;
-        while (end < line.size() && !is_gap(line[end])) ++end;
-        if (end > at) fields.push_back(line.substr(at, end - at));
-        at = end + 1;
+    while (!line.empty()) {
+        std::string_view between = line.substr(0, line.find(separator));
+        line.remove_prefix(std::min(between.size() + 1, line.size()));
+        for (std::string_view word = cut_word(between); !word.empty(); word = cut_word(between)) fields.push_back(word);
     }
     return fields;
 }
 
-std::optional<double> number_of(std::string_view field) {
-    if (field.starts_with('+')) field.remove_prefix(1);
-    double number = 0;
-    const auto [after, error] = std::from_chars(field.data(), field.data() + field.size(), number);
-    if (error != std::errc{} || after != field.data() + field.size()) return std::nullopt;
-    return number;
+// Names of columns, and no number that is written in some other way.
+bool is_heading(const std::vector<std::string_view>& fields) {
+    return std::string_view("0123456789+-.").find(fields[0][0]) == std::string_view::npos &&
+           std::ranges::none_of(fields, [](std::string_view field) { return number_of(field).has_value(); });
+}
+
+// One that is no number, or beyond those of double, is of no use in any of these files.
+std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view>& fields) {
+    std::vector<double> numbers;
+    for (const std::string_view field : fields) {
+        const std::optional<double> number = number_of(field);
+        if (!number || !std::isfinite(*number)) return std::nullopt;
+        numbers.push_back(*number);
+    }
+    return numbers;
 }
 
 }  // namespace
 
 void read_number_lines(const std::filesystem::path& file, const std::string& what, const std::string& fields,
                        const std::function<void(std::span<const double>, std::size_t)>& take) {
-    std::ifstream in(file);
-    if (!in || std::filesystem::is_directory(file)) fail(what, " '", file.string(), "' cannot be read");
+    const Bytes bytes = bytes_of(file, what);
     const auto count = static_cast<std::size_t>(1 + std::count(fields.begin(), fields.end(), ','));
-    std::string line;
-    for (std::size_t number = 1; std::getline(in, line); ++number) {
-        constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-        if (number == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
+    std::string_view rest = text_of(bytes, file.string());
+    bool is_first = true, has_any = false;
+    for (std::size_t line_number = 1; !rest.empty(); ++line_number) {
+        const std::string_view line = cut_line(rest);
         const std::vector<std::string_view> words = fields_of(line);
-        if (words.empty() || words[0].starts_with('#')) continue;
-        std::vector<double> numbers;
-        for (const std::string_view word : words)
-            if (const std::optional<double> value = number_of(word)) numbers.push_back(*value);
-        if (numbers.size() == count && words.size() == count)
-            take(numbers, number);
-        else if (number != 1 || !numbers.empty())
-            fail(what, " '", file.string(), "', line ", number, ": '", line.substr(0, 40), "' is not ", fields);
+        if (words.empty() || (std::exchange(is_first, false) && is_heading(words))) continue;
+        const std::optional<std::vector<double>> numbers = numbers_of(words);
+        if (!numbers || numbers->size() != count)
+            fail(what, " '", file.string(), "', line ", line_number, ": '", line.substr(0, 40), "' is not ", fields);
+        take(*numbers, line_number);
+        has_any = true;
     }
+    if (!has_any) fail(what, " '", file.string(), "' has no line ", fields);
 }
 
 }  // namespace twinray::cli

@@ -9,9 +9,10 @@
 
 namespace twinray::cli {
 
-// Takes each line that holds the numbers of `fields` ("x,y,z"), between commas or blanks, and its number, from 1. Left
-// out are a first line without any number, empty lines and those that begin with #. Throws Error that names `what` and
-// the file where it cannot be read, and the line where that is anything else.
+// Takes each line that holds the numbers of `fields` ("x,y,z"), between commas, semicolons or blanks, and its number,
+// from 1. Left out are empty lines, what follows a #, and a heading: the first line that says anything, where no word
+// of it is a number and the first does not begin as one. Throws Error that names `what` and the file where it cannot be
+// read or has none, and the line where that is anything else; numbers are finite.
 void read_number_lines(const std::filesystem::path& file, const std::string& what, const std::string& fields,
                        const std::function<void(std::span<const double>, std::size_t)>& take);
 

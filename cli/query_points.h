@@ -28,7 +28,7 @@ struct QueryPointOptions {
 // At most one of --points, --random, --grid.
 void add_query_point_options(CLI::App& command, QueryPointOptions& options);
 
-// x,y,z a line; a first line that begins with a letter is passed over.
+// x,y,z a line, under a heading or none.
 std::vector<glm::dvec3> read_points(const std::filesystem::path& file);
 
 }  // namespace twinray::cli

@@ -16,7 +16,6 @@ std::vector<SunPosition> read_sun(const std::filesystem::path& file) {
     read_number_lines(file, "sun file", "x,y,z,hours", [&](std::span<const double> n, std::size_t) {
         positions.push_back({.direction = {n[0], n[1], n[2]}, .hours = n[3]});
     });
-    if (positions.empty()) fail("sun file '", file.string(), "' has no line x,y,z,hours");
     return positions;
 }
 

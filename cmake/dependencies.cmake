@@ -7,7 +7,6 @@ find_package(ZLIB REQUIRED)
 
 if(TWINRAY_SCENE)
     find_package(OpenEXR CONFIG REQUIRED)
-    find_package(assimp CONFIG REQUIRED)
     find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
     find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 endif()

@@ -47,7 +47,7 @@ endfunction()
 
 twinray_add_library(core PARTS core swtlas hwtlas USES ZLIB::ZLIB ${CMAKE_DL_LIBS})
 if(TWINRAY_SCENE)
-    twinray_add_library(scene PARTS scene SEES core USES OpenEXR::OpenEXR assimp::assimp ZLIB::ZLIB)
+    twinray_add_library(scene PARTS scene SEES core USES OpenEXR::OpenEXR ZLIB::ZLIB)
 endif()
 if(TWINRAY_REFERENCE)
     twinray_add_library(reference PARTS reference SEES core)

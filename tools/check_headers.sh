@@ -19,7 +19,7 @@ mapfile -t headers < <(cd "$folder" && find engine swtlas hwtlas -name '*.h' ! -
 printf '#include "%s"\n' "${headers[@]}" >"$work/all.cpp"
 "$cxx" -std=c++20 -I"$folder" -fsyntax-only -Wall -Wextra -Werror -MD -MF "$work/all.d" "$work/all.cpp"
 
-private='/(vk_mem_alloc|stb_[a-z_]*|tiny_gltf[a-z_0-9]*|zlib|gmp(xx)?)\.h|/(assimp|OpenEXR|Imath|nlohmann)/'
+private='/(vk_mem_alloc|stb_[a-z_]*|tiny_gltf[a-z_0-9]*|zlib|gmp(xx)?)\.h|/(OpenEXR|Imath|nlohmann)/'
 if leaks=$(grep -oE "[^ ]*($private)[^ ]*" "$work/all.d"); then
     printf '%s\n' "$leaks"
     echo "check_headers: the private headers above are reached from public ones" >&2

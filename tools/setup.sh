@@ -12,7 +12,7 @@ set -euo pipefail
 
 demo_packages=(
     g++ cmake ninja-build libvulkan-dev libvulkan-memory-allocator-dev mesa-vulkan-drivers glslang-tools
-    libglm-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev libopenexr-dev libassimp-dev zlib1g-dev
+    libglm-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev libopenexr-dev zlib1g-dev
 )
 packages=(
     "${demo_packages[@]}" pkg-config python3-minimal libvulkan-volk-dev vulkan-tools vulkan-validationlayers spirv-tools

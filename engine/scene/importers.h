@@ -4,7 +4,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include "engine/scene/scene.h"
 
@@ -16,7 +15,10 @@ Scene import_gltf(const std::filesystem::path& file);
 // .ply.
 Scene import_ply(const std::filesystem::path& file);
 
-// .obj and .stl, by Assimp. `format` is the suffix without its dot and without .gz.
-Scene import_assimp(const std::filesystem::path& file, const std::string& format);
+// .obj, with the .mtl files and images that it names.
+Scene import_obj(const std::filesystem::path& file);
+
+// .stl, text and binary; told apart by their content.
+Scene import_stl(const std::filesystem::path& file);
 
 }  // namespace twinray

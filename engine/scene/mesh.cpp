@@ -10,6 +10,8 @@ bool is_finite(vec3 point) { return std::isfinite(point.x) && std::isfinite(poin
 
 }  // namespace
 
+vec3 normal_or_none(const dvec3& normal) { return is_finite(vec3(normal)) ? vec3(normal) : vec3(0); }
+
 Bounds bounds_of(const MeshView& mesh) {
     Bounds bounds;
     for (const uvec3& triangle : mesh.triangles)

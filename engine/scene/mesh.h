@@ -30,7 +30,7 @@ struct Mesh {
     std::string name;
     std::vector<vec3> positions;
     std::vector<uvec3> triangles;
-    std::vector<vec3> normals;
+    std::vector<vec3> normals;   // 0 where there is none: shading takes the triangle's own
     std::vector<vec4> tangents;  // xyz and the sign of the bitangent, as glTF
     std::vector<vec2> uvs;
     std::vector<uint> materials;
@@ -48,6 +48,9 @@ struct MeshView {
         : name(mesh_name), positions(points), triangles(corners) {}
     MeshView(const Mesh& mesh) : MeshView(mesh.name, mesh.positions, mesh.triangles) {}
 };
+
+// A normal from a file, or 0, that is none, where one of its components is no number or infinite.
+vec3 normal_or_none(const dvec3& normal);
 
 // Box of the finite vertices that triangles use.
 Bounds bounds_of(const MeshView& mesh);

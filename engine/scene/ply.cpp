@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// .ply files. Assimp reads them too, but crashes on damaged headers and rounds numbers loosely.
+// .ply files, text and binary, with faces or strips of triangles.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 
 #include "engine/core/error.h"
 #include "engine/scene/importers.h"
+#include "engine/scene/passed_over.h"
 #include "engine/scene/ply_header.h"
 #include "engine/scene/polygon.h"
+#include "engine/scene/words.h"
 
 namespace twinray {
 namespace {
@@ -21,7 +21,7 @@ class PlyValues {
     PlyValues(const Bytes& bytes, const PlyHeader& header, const std::string& object)
         : bytes_(bytes), format_(header.format), position_(header.size), object_(object) {}
 
-    double next(PlyType type) { return format_ == PlyHeader::Format::ascii ? next_word(type) : next_binary(type); }
+    double next(PlyType type) { return format_ == PlyHeader::Format::ascii ? next_word() : next_binary(type); }
 
     // The length of a list that the rest of the file may hold.
     std::size_t next_count(PlyType type) {
@@ -59,34 +59,17 @@ class PlyValues {
         return static_cast<double>(value);
     }
 
-    double next_word(PlyType type) {
-        const auto is_space = [](std::uint8_t c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
-        while (position_ < bytes_.size() && is_space(bytes_[position_])) ++position_;
-        if (position_ == bytes_.size()) fail_truncated();
-        const char* first = reinterpret_cast<const char*>(bytes_.data()) + position_;
-        const char* last = reinterpret_cast<const char*>(bytes_.data()) + bytes_.size();
-        if (*first == '+') ++first;
-        // A float is rounded once, from its digits.
-        const auto [end, value] = type == PlyType::f32 ? parsed<float>(first, last) : parsed<double>(first, last);
-        if (!end || (end != last && !is_space(static_cast<std::uint8_t>(*end))))
-            fail("'", object_, "': '", std::string(first, std::min(last, first + 20)), "' at byte ", position_,
-                 " is not a number");
-        position_ = static_cast<std::size_t>(end - reinterpret_cast<const char*>(bytes_.data()));
-        return value;
-    }
-
-    template <class T>
-    static std::pair<const char*, double> parsed(const char* first, const char* last) {
-        T value = 0;
-        const auto [end, error] = std::from_chars(first, last, value);
-        if (error == std::errc::result_out_of_range) return {end, out_of_range(first, end)};
-        return {error == std::errc() ? end : nullptr, static_cast<double>(value)};
-    }
-
-    // from_chars leaves the value alone beyond the type's range; what is too large is infinite, too small is 0.
-    static double out_of_range(const char* first, const char* end) {
-        const double value = std::strtod(std::string(first, end).c_str(), nullptr);
-        return std::abs(value) < 1 ? 0.0 : std::copysign(static_cast<double>(INFINITY), value);
+    // As its digits say, though its type may have fewer.
+    double next_word() {
+        const std::string_view text(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
+        std::string_view rest = text.substr(position_);
+        const std::string_view word = cut_word(rest);
+        if (word.empty()) fail_truncated();
+        const std::optional<double> number = number_of(word);
+        if (!number)
+            fail("'", object_, "': '", word.substr(0, 20), "' at byte ", word.data() - text.data(), " is not a number");
+        position_ = text.size() - rest.size();
+        return *number;
     }
 
     [[noreturn]] void fail_truncated() const { fail("'", object_, "': the PLY body is truncated"); }
@@ -102,14 +85,21 @@ bool is_any_of(const std::string& name, std::initializer_list<const char*> names
 }
 
 // Where a vertex property goes: 0-2 position, 3-5 normal, 6-7 texture coordinates, 8 nowhere.
+constexpr std::size_t nowhere = 8;
+
 std::size_t slot_of(const PlyProperty& property) {
-    constexpr std::size_t nowhere = 8;
     if (property.count_type) return nowhere;
     const std::array<std::initializer_list<const char*>, nowhere> names = {
         {{"x"}, {"y"}, {"z"}, {"nx"}, {"ny"}, {"nz"}, {"u", "s", "texture_u"}, {"v", "t", "texture_v"}}};
     for (std::size_t i = 0; i < nowhere; ++i)
         if (is_any_of(property.name, names[i])) return i;
     return nowhere;
+}
+
+bool holds_faces(const PlyElement& element) { return is_any_of(element.name, {"face", "tristrips"}); }
+
+bool holds_corners(const PlyElement& element, const PlyProperty& property) {
+    return holds_faces(element) && property.count_type && is_any_of(property.name, {"vertex_indices", "vertex_index"});
 }
 
 class PlyReader {
@@ -125,41 +115,54 @@ class PlyReader {
                 read_faces(element);
         check_corners();
         triangulate();
+        mesh_.positions.assign(positions_.begin(), positions_.end());
         return std::move(mesh_);
     }
 
-    std::size_t skipped() const { return skipped_; }
+    std::vector<std::string> warnings() const {
+        std::vector<std::string> sentences = cutter_.warnings("face");
+        if (!passed_over_.empty())
+            sentences.push_back("passed over elements and properties of the header: " + passed_over_.list());
+        return sentences;
+    }
 
   private:
     void read_vertices(const PlyElement& element) {
         std::array<bool, 9> has{};
         std::vector<std::size_t> slots;
-        for (const PlyProperty& property : element.properties) has[slots.emplace_back(slot_of(property))] = true;
+        for (const PlyProperty& property : element.properties) {
+            has[slots.emplace_back(slot_of(property))] = true;
+            if (slots.back() == nowhere) passed_over_.add(property.name, property.line);
+        }
         if (!has[0] || !has[1] || !has[2]) fail("'", object_, "': its vertices have no x, y and z");
         for (std::size_t i = 0; i < element.count; ++i) {
-            std::array<float, 9> v{};
+            std::array<double, 9> v{};
             for (std::size_t p = 0; p < slots.size(); ++p) v[slots[p]] = read_property(element.properties[p]);
-            mesh_.positions.emplace_back(v[0], v[1], v[2]);
-            if (has[3] && has[4] && has[5]) mesh_.normals.emplace_back(v[3], v[4], v[5]);
+            positions_.emplace_back(v[0], v[1], v[2]);
+            if (has[3] && has[4] && has[5]) mesh_.normals.push_back(normal_or_none({v[3], v[4], v[5]}));
             if (has[6] && has[7]) mesh_.uvs.emplace_back(v[6], 1 - v[7]);  // v points up here and down in glTF
         }
     }
 
-    float read_property(const PlyProperty& property) {
-        if (!property.count_type) return static_cast<float>(values_.next(property.type));
+    double read_property(const PlyProperty& property) {
+        if (!property.count_type) return values_.next(property.type);
         for (std::size_t left = values_.next_count(*property.count_type); left > 0; --left) values_.next(property.type);
         return 0;
     }
 
     // Any other element too, of which nothing is kept.
     void read_faces(const PlyElement& element) {
+        const bool has_strips = element.name == "tristrips";
+        if (!holds_faces(element)) passed_over_.add(element.name, element.line);
+        for (const PlyProperty& property : element.properties)
+            if (holds_faces(element) && !holds_corners(element, property))
+                passed_over_.add(property.name, property.line);
         for (std::size_t i = 0; i < element.count; ++i)
             for (const PlyProperty& property : element.properties)
-                if (element.name == "face" && property.count_type &&
-                    is_any_of(property.name, {"vertex_indices", "vertex_index"}))
-                    read_polygon(property);
-                else
+                if (!holds_corners(element, property))
                     read_property(property);
+                else
+                    has_strips ? read_strips(property) : read_polygon(property);
     }
 
     void read_polygon(const PlyProperty& property) {
@@ -168,28 +171,45 @@ class PlyReader {
         corner_counts_.push_back(count);
     }
 
+    // -1 begins a new one. Every second triangle of a strip is turned, so that all face one way.
+    void read_strips(const PlyProperty& property) {
+        std::vector<double> strip;
+        for (std::size_t left = values_.next_count(*property.count_type); left > 0; --left) {
+            const double corner = values_.next(property.type);
+            if (corner == -1) {
+                strip.clear();
+                continue;
+            }
+            strip.push_back(corner);
+            const std::size_t n = strip.size();
+            if (n < 3) continue;
+            const bool is_turned = n % 2 == 0;
+            corners_.insert(corners_.end(),
+                            {strip[n - 3], strip[is_turned ? n - 1 : n - 2], strip[is_turned ? n - 2 : n - 1]});
+            corner_counts_.push_back(3);
+        }
+    }
+
     // After all elements, since nothing says that the vertices come first.
     void check_corners() const {
         std::size_t at = 0;
         for (std::size_t face = 0; face < corner_counts_.size(); at += corner_counts_[face++])
             for (std::size_t i = 0; i < corner_counts_[face]; ++i)
                 if (const double c = corners_[at + i];
-                    !(c >= 0) || c >= static_cast<double>(mesh_.positions.size()) || c != std::floor(c))
+                    !(c >= 0) || c >= static_cast<double>(positions_.size()) || c != std::floor(c))
                     fail("'", object_, "': face ", face, " has vertex index ", c, ", but there are only ",
-                         mesh_.positions.size(), " vertices");
+                         positions_.size(), " vertices");
     }
 
     void triangulate() {
-        std::size_t at = 0;
-        for (const std::size_t count : corner_counts_) {
-            std::vector<uint> polygon;
-            for (std::size_t i = 0; i < count; ++i) polygon.push_back(static_cast<uint>(corners_[at + i]));
-            at += count;
-            if (count < 3) ++skipped_;
-            if (count == 3) mesh_.triangles.emplace_back(polygon[0], polygon[1], polygon[2]);
-            if (count <= 3) continue;
-            const std::vector<uvec3> triangles = triangulate_polygon(mesh_.positions, polygon);
-            mesh_.triangles.insert(mesh_.triangles.end(), triangles.begin(), triangles.end());
+        std::size_t first = 0;
+        std::vector<dvec3> outline;
+        for (std::size_t face = 0; face < corner_counts_.size(); first += corner_counts_[face++]) {
+            const auto corner = [&](std::size_t i) { return static_cast<uint>(corners_[first + i]); };
+            outline.clear();
+            for (std::size_t i = 0; i < corner_counts_[face]; ++i) outline.push_back(positions_[corner(i)]);
+            for (const uvec3& t : cutter_.cut(outline, face))
+                mesh_.triangles.emplace_back(corner(t.x), corner(t.y), corner(t.z));
         }
     }
 
@@ -197,9 +217,11 @@ class PlyReader {
     PlyHeader header_;
     PlyValues values_;
     Mesh mesh_;
+    std::vector<dvec3> positions_;
     std::vector<double> corners_;  // of all faces, unchecked
     std::vector<std::size_t> corner_counts_;
-    std::size_t skipped_ = 0;
+    FaceCutter cutter_;
+    PassedOver passed_over_;
 };
 
 }  // namespace
@@ -211,8 +233,7 @@ Scene import_ply(const std::filesystem::path& file) {
     Mesh mesh = reader.read();
     mesh.name = file.stem().string();
     mesh.materials.assign(mesh.triangles.size(), 0);
-    if (reader.skipped())
-        scene.warnings.push_back(text("skipped ", reader.skipped(), " faces of fewer than 3 corners"));
+    scene.warnings = reader.warnings();
     if (mesh.triangles.empty()) fail("'", file.string(), "': has ", mesh.positions.size(), " vertices but no faces");
     scene.instances.push_back({mesh.name, 0, {}});
     scene.meshes.push_back(std::move(mesh));

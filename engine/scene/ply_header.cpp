@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/ply_header.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <sstream>
 
 #include "engine/core/error.h"
+#include "engine/scene/words.h"
 
 namespace twinray {
 namespace {
@@ -28,8 +30,9 @@ bool read_format(std::istringstream& words, PlyHeader& header) {
     return format == "ascii" || header.format != PlyHeader::Format::ascii;
 }
 
-bool read_element(std::istringstream& words, PlyHeader& header) {
+bool read_element(std::istringstream& words, std::size_t line, PlyHeader& header) {
     PlyElement element;
+    element.line = line;
     std::string count;
     words >> element.name >> count;
     if (count.empty() || count.size() > 12 || count.find_first_not_of("0123456789") != std::string::npos) return false;
@@ -38,8 +41,9 @@ bool read_element(std::istringstream& words, PlyHeader& header) {
     return true;
 }
 
-bool read_property(std::istringstream& words, PlyHeader& header) {
+bool read_property(std::istringstream& words, std::size_t line, PlyHeader& header) {
     PlyProperty property;
+    property.line = line;
     std::string type, count_type;
     words >> type;
     if (type == "list") words >> count_type >> type;
@@ -54,13 +58,13 @@ bool read_property(std::istringstream& words, PlyHeader& header) {
     return true;
 }
 
-bool read_line(const std::string& line, PlyHeader& header) {
+bool read_line(const std::string& line, std::size_t number, PlyHeader& header) {
     std::istringstream words(line);
     std::string keyword;
     words >> keyword;
     if (keyword == "format") return read_format(words, header);
-    if (keyword == "element") return read_element(words, header);
-    if (keyword == "property") return read_property(words, header);
+    if (keyword == "element") return read_element(words, number, header);
+    if (keyword == "property") return read_property(words, number, header);
     // Blender 2.47 forgot the word "comment"; from the first element on, a line must be understood.
     return header.elements.empty() || keyword == "comment" || keyword == "obj_info";
 }
@@ -86,21 +90,24 @@ std::size_t size_of(PlyType type) {
 }
 
 PlyHeader parse_ply_header(const Bytes& bytes, const std::string& object) {
-    PlyHeader header;
-    if (bytes.size() < 4 || std::string(bytes.begin(), bytes.begin() + 3) != "ply")
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (!text.starts_with("ply") || text.size() < 4)
         fail("'", object, "': not a PLY file (it does not start with 'ply')");
-    for (std::size_t line_number = 1; header.size < bytes.size(); ++line_number) {
-        std::string line;
-        while (header.size < bytes.size() && bytes[header.size] != '\n')
-            line += static_cast<char>(bytes[header.size++]);
-        ++header.size;
-        if (line.ends_with('\r')) line.pop_back();
+    // As the first line ends, so do all. Were it told by each, a body after CR that begins with the byte 10 would lose
+    // it.
+    const std::size_t first_end = text.find_first_of("\r\n");
+    const bool ends_in_cr = first_end != text.npos && text[first_end] == '\r' && text.substr(first_end + 1, 1) != "\n";
+    const char line_end = ends_in_cr ? '\r' : '\n';
+    PlyHeader header;
+    for (std::size_t line_number = 1; header.size < text.size(); ++line_number) {
+        const std::size_t end = std::min(text.find(line_end, header.size), text.size());
+        const std::string line(trimmed(text.substr(header.size, end - header.size)));
+        header.size = std::min(end + 1, text.size());
         if (line == "end_header") {
-            const std::size_t body_size = bytes.size() - std::min(bytes.size(), header.size);
-            check_counts(header, body_size, object);
+            check_counts(header, text.size() - header.size, object);
             return header;
         }
-        if (!read_line(line, header))
+        if (!read_line(line, line_number, header))
             fail("'", object, "': PLY header line ", line_number, " '", line.substr(0, 60), "' is not understood");
     }
     fail("'", object, "': the PLY header has no end_header");

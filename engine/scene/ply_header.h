@@ -17,11 +17,12 @@ struct PlyProperty {
     std::string name;
     PlyType type = PlyType::f32;
     std::optional<PlyType> count_type;  // set: a list, which starts with its length
+    std::size_t line = 0;               // of the header, from 1
 };
 
 struct PlyElement {
     std::string name;
-    std::size_t count = 0;
+    std::size_t count = 0, line = 0;
     std::vector<PlyProperty> properties;
 };
 

@@ -1,15 +1,35 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/core/shader_bridge.h"
 
 namespace twinray {
 
-// Cuts a simple polygon, convex or not, into corner_count - 2 triangles of the same winding. `corners` index
-// `positions`. What is not simple, or has over 256 corners, is cut as a fan.
-std::vector<uvec3> triangulate_polygon(std::span<const vec3> positions, std::span<const uint> corners);
+struct Triangulation {
+    std::vector<uvec3> triangles;  // of corner numbers, two fewer than corners
+    bool overlaps = false;         // the polygon crosses itself, so that some triangles are turned over
+};
+
+// Cuts a polygon, convex or not, into triangles of its winding that cover it once. Its outline may touch itself, as
+// where a hole is reached by a slit. What crosses itself ends as a fan.
+Triangulation triangulate_polygon(std::span<const dvec3> corners);
+
+// The faces of a file, cut one after the other, and what was wrong with them.
+class FaceCutter {
+  public:
+    // Of corner numbers, until the next call; none of fewer than 3 corners. `number`: by which warnings name the face.
+    const std::vector<uvec3>& cut(std::span<const dvec3> corners, std::size_t number);
+    // A sentence for each kind of fault; `unit`: what faces are numbered by, "line" or "face".
+    std::vector<std::string> warnings(const std::string& unit) const;
+
+  private:
+    std::vector<uvec3> triangles_;
+    std::size_t short_ = 0, overlapping_ = 0, first_overlapping_ = 0;
+};
 
 }  // namespace twinray

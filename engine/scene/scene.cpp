@@ -15,7 +15,8 @@ Scene read_by_suffix(const std::filesystem::path& file) {
     if (suffix == ".gltf" || suffix == ".glb") return import_gltf(file);
     const std::string inner = suffix == ".gz" ? lower_suffix(file.stem()) : suffix;
     if (inner == ".ply") return import_ply(file);
-    if (inner == ".obj" || inner == ".stl") return import_assimp(file, inner.substr(1));
+    if (inner == ".obj") return import_obj(file);
+    if (inner == ".stl") return import_stl(file);
     fail("'", file.string(), "': unknown suffix '", suffix == ".gz" ? inner + suffix : suffix,
          "'; scenes are .gltf, .glb, .obj, .ply or .stl, the last three also with .gz");
 }

@@ -124,7 +124,7 @@ struct Scene {
     std::vector<std::string> warnings;  // what was skipped or replaced, one clear sentence each
 };
 
-// Loads .gltf, .glb (tinygltf), .ply, or .obj, .stl (Assimp), the last three also with .gz, chosen by the suffix.
+// Loads .gltf, .glb (by tinygltf), .obj, .ply or .stl, the last three also with .gz, chosen by the suffix.
 // Throws Error naming the file, the object and the limit on anything that cannot be rendered faithfully.
 Scene load_scene(const std::filesystem::path& file);
 

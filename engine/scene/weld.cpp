@@ -5,6 +5,8 @@
 #include <bit>
 #include <unordered_map>
 
+#include "engine/core/error.h"
+
 namespace twinray {
 namespace {
 
@@ -63,6 +65,14 @@ Mesh weld_equal_vertices(const Mesh& mesh) {
     }
     for (const uvec3& t : mesh.triangles) welded.triangles.emplace_back(moved_to[t.x], moved_to[t.y], moved_to[t.z]);
     return welded;
+}
+
+Mesh weld_corners(Mesh mesh) {
+    if (mesh.positions.size() > UINT32_MAX) fail("mesh '", mesh.name, "': has over 2^32 corners");
+    const uint count = static_cast<uint>(mesh.positions.size() / 3);
+    mesh.triangles.clear();
+    for (uint i = 0; i < count; ++i) mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+    return weld_equal_vertices(mesh);
 }
 
 }  // namespace twinray

@@ -10,4 +10,8 @@ namespace twinray {
 // Triangles keep their order and number, those that are or become degenerate included.
 Mesh weld_equal_vertices(const Mesh& mesh);
 
+// The same for vertices of which each three are a triangle; those of `mesh` are not looked at. Throws Error naming the
+// mesh where there are over 2^32 vertices.
+Mesh weld_corners(Mesh mesh);
+
 }  // namespace twinray

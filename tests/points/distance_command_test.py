@@ -1,5 +1,5 @@
-#!/ usr / bin / env python3
-#SPDX - License - Identifier : MIT
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Runs `twinray distance` as a user does. Usage: distance_command_test.py TWINRAY"""
 import json
 import pathlib
@@ -21,7 +21,7 @@ def run(*arguments, status=0):
 def lines(name):
     return (here / name).read_text().splitlines()
 
-#A tetrahedron with its fronts outward, and the same without its last face.
+# A tetrahedron with its fronts outward, and the same without its last face.
 def ply(name, faces):
     (here / name).write_text("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
                              f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
@@ -60,8 +60,19 @@ assert "is not closed" in run("open.ply", "--random", "5", "--signed", status=1)
 assert "line 2: '1,2' is not x,y,z" in run("solid.ply", "--points", "bad.csv", status=1)
 (here / "bad.csv").write_text("i1,0,0\n1,2,3\n")
 assert "line 1: 'i1,0,0' is not x,y,z" in run("solid.ply", "--points", "bad.csv", status=1)
-(here / "good.csv").write_text("\ufeffx,y,z\r\n+1,2 3\r\n", encoding="utf-8")
-assert run("solid.ply", "--points", "good.csv").startswith("1 points")
+for text in ("\ufeffx,y,z\r\n+1,2 3\r\n", "# of a survey\n\nx,y,z\n1,2,3 # behind\n", "x;y;z\n1; 2;3.0\n", "1;2;3", "\u00c4,b,c\n1,2,3\n",
+             "x,y,z\r1,2,3\r"):
+    (here / "good.csv").write_text(text, encoding="utf-8", newline="")
+    assert run("solid.ply", "--points", "good.csv").startswith("1 points"), text
+for text, fault in (("1|2|3\n", "line 1: '1|2|3' is not x,y,z"), ("0,5;1;2\n", "line 1: '0,5;1;2' is not x,y,z"),
+                    ("x,y,z\nu,v,w\n1,2,3\n", "line 2: 'u,v,w' is not x,y,z"), ("x;y;z\n1,2;3\n", "line 2: '1,2;3' is not x,y,z"),
+                    ("nan,0,0\n", "line 1: 'nan,0,0' is not x,y,z"), ("1,2,3\n1e999,0,0\n", "line 2: '1e999,0,0' is not x,y,z"),
+                    ("x,y,z\n# nothing\n", "has no line x,y,z"), ("", "has no line x,y,z")):
+    (here / "bad.csv").write_text(text)
+    said = run("solid.ply", "--points", "bad.csv", status=1)
+    assert "points file 'bad.csv'" in said and fault in said, (text, said)
+(here / "bad.csv").write_text("x,y,z\n1,2,3\n", encoding="utf-16")
+assert "'bad.csv': not a text file in ASCII or UTF-8" in run("solid.ply", "--points", "bad.csv", status=1)
 assert "points file 'none.csv'" in run("solid.ply", "--points", "none.csv", status=1)
 assert ".csv or .npz" in run("solid.ply", "--random", "5", "-o", "out.txt", status=1)
 run("solid.ply", status=2)

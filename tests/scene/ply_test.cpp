@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "engine/scene/polygon.h"
 #include "engine/scene/scene.h"
 #include "tests/scene/packed_bytes.h"
 #include "tests/scene/temp_dir.h"
@@ -42,10 +41,9 @@ TEST(Ply, AsciiKeepsVerticesTrianglesAndTheirOrder) {
     EXPECT_EQ(scene.materials.size(), 1u);
 }
 
-TEST(Ply, NumbersAreRoundedOnceAndBeyondFloatAreInfiniteOrZero) {
+TEST(Ply, NumbersAreAsTheirDigitsSayAndBeyondFloatInfiniteOrZero) {
     const Mesh mesh =
-        load(ply(3, "0.1 1.00000005960464477539062500000001 +3\n1e60 -1e60 1e-60\nnan inf -inf\n", 1, "3 0 1 2\n"))
-            .meshes[0];
+        load(ply(3, "0.1 1.00000005960465 +3\n1e60 -1e999 1e-999\nnan inf -inf\n", 1, "3 0 1 2\n")).meshes[0];
     EXPECT_EQ(mesh.positions[0], vec3(0.1f, 1.00000012f, 3));
     EXPECT_EQ(mesh.positions[1], vec3(INFINITY, -INFINITY, 0));
     EXPECT_TRUE(std::isnan(mesh.positions[2].x));
@@ -105,12 +103,16 @@ TEST(Ply, AListIsNoTextureCoordinate) {
 }
 
 TEST(Ply, FacesMayComeBeforeVerticesAndOtherElementsAreSkipped) {
-    const Mesh mesh = load("ply\nformat ascii 1.0\nelement face 1\n" + FACE_LIST +
-                           "element edge 2\nproperty int a\nproperty list uchar int vertex_index\nelement vertex 3\n" +
-                           POSITIONS + "end_header\n3 0 1 2\n5 2 6 7\n8 0\n" + TRIANGLE)
-                          .meshes[0];
-    EXPECT_EQ(mesh.triangles, (std::vector<uvec3>{{0, 1, 2}}));
-    EXPECT_EQ(mesh.positions[2], vec3(0, 1, 0));
+    const Scene scene =
+        load("ply\nformat ascii 1.0\nelement face 1\nproperty uchar flags\n" + FACE_LIST +
+             "element edge 2\nproperty int a\nproperty list uchar int vertex_index\nelement vertex 3\n" + POSITIONS +
+             "property uchar red\nend_header\n0 3 0 1 2\n5 2 6 7\n8 0\n0 0 0 255\n1 0 0 255\n0 1 0 255\n");
+    EXPECT_EQ(scene.meshes[0].triangles, (std::vector<uvec3>{{0, 1, 2}}));
+    EXPECT_EQ(scene.meshes[0].positions[2], vec3(0, 1, 0));
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    expect_contains(
+        scene.warnings[0],
+        "passed over elements and properties of the header: 'flags' (line 4), 'edge' (line 6), 'red' (line 13)");
 }
 
 TEST(Ply, GzipIsUnpacked) {
@@ -149,6 +151,75 @@ TEST(Ply, HeaderFaultsAreNamed) {
     expect_error(replaced("face 1", "face 999999999999"), "999999999999 elements 'face' do not fit");
 }
 
+std::string replaced(std::string all, const std::string& from, const std::string& to) {
+    for (std::size_t at = all.find(from); at != all.npos; at = all.find(from, at + to.size()))
+        all.replace(at, from.size(), to);
+    return all;
+}
+
+TEST(Ply, AHeaderEndsItsLinesAsTheFirstOneDoes) {
+    const std::string file = ply(3, TRIANGLE, 1, "3 0 1 2\n");
+    for (const char* end : {"\r", "\r\n", " \n"})
+        EXPECT_EQ(count_triangles(load(replaced(file, "\n", end))), 1u) << end;
+    expect_error(replaced(replaced(file, "property list", "propety list"), "\n", "\r"), "line 9 'propety list");
+    // A body whose first byte is 10 belongs to no line end.
+    std::string binary = replaced(binary_ply(false), "\r\n", "\r");
+    const double ten = 0x0.000000000000ap-1022;  // its lowest byte
+    std::memcpy(binary.data() + binary.find("end_header\r") + 11, &ten, sizeof ten);
+    ASSERT_EQ(binary[binary.find("end_header\r") + 11], '\n');
+    EXPECT_EQ(load(binary).meshes[0].positions[1], vec3(1, 0, -0.25f));
+}
+
+// The strips of `lists`, of which there are `count`, about two squares.
+std::string strips(int count, const std::string& lists) {
+    return text("ply\nformat ascii 1.0\nelement vertex 8\n", POSITIONS, "element tristrips ", count,
+                "\nproperty list int int vertex_indices\nend_header\n",
+                "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 0 0\n3 0 0\n2 1 0\n3 1 0\n", lists);
+}
+
+TEST(Ply, StripsBecomeTrianglesThatFaceOneWay) {
+    const std::vector<uvec3> squares = {{0, 1, 2}, {1, 3, 2}, {4, 5, 6}, {5, 7, 6}};
+    for (const std::string& file : {strips(1, "9 0 1 2 3 -1 4 5 6 7\n"), strips(2, "4 0 1 2 3\n5 4 5 6 7 -1\n"),
+                                    strips(1, "15 -1 -1 0 1 2 3 -1 0 1 -1 4 5 6 7 -1\n")}) {
+        const Scene scene = load(file);
+        EXPECT_EQ(scene.meshes[0].triangles, squares);
+        EXPECT_TRUE(scene.warnings.empty()) << joined(scene.warnings);
+    }
+    expect_error(strips(1, "4 0 1 2 8\n"), "face 1 has vertex index 8, but there are only 8 vertices");
+    expect_error(strips(1, "4 0 1 2 -2\n"), "face 1 has vertex index -2");
+    expect_error(strips(1, "2 0 1\n"), "has 8 vertices but no faces");
+}
+
+TEST(Ply, ANormalThatIsNoNumberIsNone) {
+    const Mesh mesh = load("ply\nformat ascii 1.0\nelement vertex 3\n" + POSITIONS +
+                           "property float nx\nproperty float ny\nproperty float nz\nelement face 1\n" + FACE_LIST +
+                           "end_header\n0 0 0 0 0 1\n1 0 0 nan nan nan\n0 1 0 -1.#IND 0 1\n3 0 1 2\n")
+                          .meshes[0];
+    EXPECT_EQ(mesh.normals, (std::vector<vec3>{{0, 0, 1}, vec3(0), vec3(0)}));
+}
+
+TEST(Ply, APolygonOfManyCornersIsCoveredOnceAndACrossingOneTold) {
+    std::string vertices, face = "802";
+    for (int i = 0; i < 401; ++i) vertices += text(i, ' ', i % 2 + 2, " 0\n");
+    for (int i = 400; i >= 0; --i) vertices += text(i, ' ', i % 2, " 0\n");
+    for (int i = 0; i < 802; ++i) face += text(' ', i);
+    const std::string list = "property list ushort int vertex_indices\n";
+    const Scene scene = load(replaced(ply(802, vertices, 1, face + "\n"), FACE_LIST, list));
+    double area = 0;
+    for (const uvec3& t : scene.meshes[0].triangles) {
+        const std::vector<vec3>& p = scene.meshes[0].positions;
+        const float part = cross(p[t.y] - p[t.x], p[t.z] - p[t.x]).z / 2;
+        EXPECT_LE(part, 0);
+        area -= part;
+    }
+    EXPECT_EQ(area, 800);
+    EXPECT_TRUE(scene.warnings.empty()) << joined(scene.warnings);
+    const Scene crossing = load(ply(4, "0 0 0\n1 0 0\n0 1 0\n1 1 0\n", 2, "3 0 1 2\n4 0 1 2 3\n"));
+    ASSERT_EQ(crossing.warnings.size(), 1u);
+    expect_contains(crossing.warnings[0],
+                    "1 faces cross themselves, so that their triangles overlap (the first: face 1)");
+}
+
 TEST(Ply, BodyFaultsAreNamed) {
     expect_error(ply(3, TRIANGLE, 1, "3 0 1 3\n"), "face 0 has vertex index 3, but there are only 3 vertices");
     expect_error(ply(3, TRIANGLE, 2, "3 0 1 2\n3 0 1 -1\n"), "face 1 has vertex index -1");
@@ -161,69 +232,6 @@ TEST(Ply, BodyFaultsAreNamed) {
     expect_error(ply(3, TRIANGLE, 0, ""), "has 3 vertices but no faces");
     const std::string binary = binary_ply(false);
     expect_error(binary.substr(0, binary.size() - 1), "truncated");
-}
-
-double area_facing_z(const std::vector<vec3>& positions, const std::vector<uvec3>& triangles) {
-    double area = 0;
-    for (const uvec3& t : triangles) {
-        const double part = cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x]).z / 2;
-        EXPECT_GE(part, 0);
-        area += part;
-    }
-    return area;
-}
-
-TEST(Polygon, ConcaveOnesAreCutInsideThemselves) {
-    const std::vector<vec3> arrow = {{0, 0, 0}, {2, 1, 0}, {0, 2, 0}, {1, 1, 0}};
-    const std::vector<uint> all = {0, 1, 2, 3};
-    for (std::size_t first = 0; first < 4; ++first) {  // wherever the list starts
-        std::vector<uint> corners = all;
-        std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(first), corners.end());
-        const auto triangles = triangulate_polygon(arrow, corners);
-        EXPECT_EQ(triangles.size(), 2u);
-        EXPECT_DOUBLE_EQ(area_facing_z(arrow, triangles), 1);
-    }
-    const auto reversed = triangulate_polygon(arrow, std::vector<uint>{3, 2, 1, 0});
-    ASSERT_EQ(reversed.size(), 2u);
-    for (const uvec3& t : reversed) EXPECT_LT(cross(arrow[t.y] - arrow[t.x], arrow[t.z] - arrow[t.x]).z, 0);
-    const std::vector<vec3> star = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {3, 1, 0}, {0, 4, 0}, {1, 1, 0}};
-    const auto triangles = triangulate_polygon(star, std::vector<uint>{0, 1, 2, 3, 4, 5});
-    EXPECT_EQ(triangles.size(), 4u);
-    EXPECT_DOUBLE_EQ(area_facing_z(star, triangles), 8);
-}
-
-TEST(Polygon, WindingIsKeptInEveryPlane) {
-    for (int axis = 0; axis < 3; ++axis)
-        for (const float side : {1.0f, -1.0f}) {
-            std::vector<vec3> positions(4, vec3(0));
-            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-            positions[1][u] = positions[2][u] = 1;
-            positions[2][v] = positions[3][v] = side;
-            for (const uvec3& t : triangulate_polygon(positions, std::vector<uint>{0, 1, 2, 3}))
-                EXPECT_EQ(cross(positions[t.y] - positions[t.x], positions[t.z] - positions[t.x])[axis], side);
-        }
-}
-
-TEST(Polygon, WhatHasNoEarIsCutAsAFan) {
-    const std::vector<vec3> degenerate(5, vec3(1));
-    EXPECT_EQ(triangulate_polygon(degenerate, std::vector<uint>{0, 1, 2, 3, 4}),
-              (std::vector<uvec3>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
-    const std::vector<vec3> broken(4, vec3(NAN));
-    EXPECT_EQ(triangulate_polygon(broken, std::vector<uint>{0, 1, 2, 3}).size(), 2u);
-}
-
-TEST(Polygon, OnesOfVeryManyCornersAreCutAsAFan) {
-    std::vector<vec3> circle;
-    std::vector<uint> corners;
-    for (uint i = 0; i < 300; ++i) {
-        const float angle = static_cast<float>(i) * 0.02f;
-        circle.emplace_back(std::cos(angle), std::sin(angle), 0);
-        corners.push_back(i);
-    }
-    circle[1] = vec3(0);  // turns outwards, so that no ear would be cut there
-    const auto triangles = triangulate_polygon(circle, corners);
-    EXPECT_EQ(triangles.size(), 298u);
-    EXPECT_EQ(triangles[0], uvec3(0, 1, 2));
 }
 
 }  // namespace
