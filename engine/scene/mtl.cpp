@@ -49,7 +49,7 @@ Texture cut_texture_options(std::string_view& rest, std::size_t line, PassedOver
         const std::string_view option = cut_word(after);
         if (option == "-s" || option == "-o") {
             const std::array<float, 3> uvw = cut_numbers(after, 3, option == "-s" ? 1 : 0);
-            (option == "-s" ? scale : offset) = {uvw[0], uvw[1]};
+            (option == "-s" ? scale : offset) = vec2(uvw[0], uvw[1]);
         } else if (option == "-clamp") {
             if (cut_word(after) == "on") texture.wrap_u = texture.wrap_v = Wrap::clamp_to_edge;
         } else if (option == "-t" || option == "-mm") {
