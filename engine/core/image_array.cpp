@@ -23,22 +23,22 @@ VkImageView create_view(Context& context, VkImage image, VkFormat format) {
 }  // namespace
 
 Samplers::~Samplers() {
-    for (const auto& [modes, sampler] : samplers_)
+    for (const auto& [kind, sampler] : samplers_)
         context_.retire([&vk = context_.vk(), device = context_.device(), sampler = sampler] {
             vk.vkDestroySampler(device, sampler, nullptr);
         });
 }
 
-VkSampler Samplers::get(VkSamplerAddressMode wrap_u, VkSamplerAddressMode wrap_v) {
-    if (const auto found = samplers_.find({wrap_u, wrap_v}); found != samplers_.end()) return found->second;
+VkSampler Samplers::get(VkSamplerAddressMode wrap_u, VkSamplerAddressMode wrap_v, VkFilter filter) {
+    if (const auto found = samplers_.find({wrap_u, wrap_v, filter}); found != samplers_.end()) return found->second;
     VkSamplerCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
-    info.magFilter = info.minFilter = VK_FILTER_LINEAR;
+    info.magFilter = info.minFilter = filter;
     info.addressModeU = wrap_u;
     info.addressModeV = wrap_v;
     VkSampler sampler = VK_NULL_HANDLE;
     vk_check(context_.vk().vkCreateSampler(context_.device(), &info, nullptr, &sampler), "create a sampler");
-    return samplers_[{wrap_u, wrap_v}] = sampler;
+    return samplers_[{wrap_u, wrap_v, filter}] = sampler;
 }
 
 // A variable count takes no more than it has; the limit is for update-after-bind descriptors, of which devices have at

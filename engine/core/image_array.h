@@ -5,12 +5,13 @@
 #include <map>
 #include <span>
 #include <string>
+#include <tuple>
 
 #include "engine/core/commands.h"
 
 namespace twinray {
 
-// Bilinear samplers, one for each pair of address modes that is asked for: devices have few (4000 at least).
+// Samplers of one level, one for each kind that is asked for: devices have few (4000 at least).
 class Samplers {
   public:
     explicit Samplers(Context& context) : context_(context) {}
@@ -18,11 +19,11 @@ class Samplers {
     Samplers(const Samplers&) = delete;
     Samplers& operator=(const Samplers&) = delete;
 
-    VkSampler get(VkSamplerAddressMode wrap_u, VkSamplerAddressMode wrap_v);
+    VkSampler get(VkSamplerAddressMode wrap_u, VkSamplerAddressMode wrap_v, VkFilter filter);
 
   private:
     Context& context_;
-    std::map<std::pair<VkSamplerAddressMode, VkSamplerAddressMode>, VkSampler> samplers_;
+    std::map<std::tuple<VkSamplerAddressMode, VkSamplerAddressMode, VkFilter>, VkSampler> samplers_;
 };
 
 struct SampledImageDesc {

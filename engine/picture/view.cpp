@@ -114,7 +114,8 @@ Camera frame_scene(const Scene& scene, float aspect, const std::optional<vec3>& 
 
 ImagePlane image_plane(const Camera& camera, float aspect) {
     const bool is_orthographic = camera.orthographic_half_height.has_value();
-    const float half_height = is_orthographic ? *camera.orthographic_half_height : std::tan(camera.vertical_fov / 2);
+    const float frame_height = is_orthographic ? *camera.orthographic_half_height : std::tan(camera.vertical_fov / 2);
+    const float half_height = frame_height * std::max(1.0f, camera.aspect.value_or(aspect) / aspect);
     const Transform& frame = camera.camera_to_world;
     return {.origin = column(frame, 3),
             .right = normalize(column(frame, 0)) * (half_height * aspect),

@@ -21,6 +21,7 @@ struct ImagePlane {
     vec3 origin, right, up, forward;  // `forward` is as long as 1, and the three are perpendicular
     bool is_orthographic;
 };
+// All of the camera's frame is seen, whatever the picture's aspect, and what is beside it.
 ImagePlane image_plane(const Camera& camera, float aspect);
 
 // Its `t` is the depth along `forward`.

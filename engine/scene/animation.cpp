@@ -44,8 +44,12 @@ Pose pose_of(const Rig& rig, Locals&& locals) {
     pose.weights = std::move(locals.weights);
     for (std::size_t i = 0; i < rig.nodes.size(); ++i) {
         const Rig::Node& node = rig.nodes[i];
+        const auto parent = static_cast<std::size_t>(node.parent);
         const glm::dmat4 local = node.is_fixed ? node.matrix : matrix_of(locals.places[i]);
-        pose.nodes.push_back(node.parent < 0 ? local : pose.nodes[static_cast<std::size_t>(node.parent)] * local);
+        const glm::dmat4 axes = node.is_fixed ? node.matrix : frame_of(locals.places[i]);
+        pose.nodes.push_back(node.parent < 0 ? local : pose.nodes[parent] * local);
+        pose.frames.push_back(node.parent < 0 ? axes : pose.frames[parent] * axes);
+        pose.frames.back()[3] = pose.nodes.back()[3];
     }
     return pose;
 }
@@ -59,6 +63,13 @@ glm::dmat4 matrix_of(const Trs& trs) {
         matrix[3][i] = trs.translation[i];
     }
     return matrix;
+}
+
+glm::dmat4 frame_of(const Trs& trs) {
+    Trs grown = trs;
+    for (int i = 0; i < 3; ++i)
+        if (trs.scale[i] == 0) grown.scale[i] = 1;
+    return matrix_of(grown);
 }
 
 TimeRange range_of(const Animation& animation) {
@@ -82,6 +93,10 @@ Pose pose_at(const Rig& rig, const Animation& animation, double seconds) {
 
 glm::dmat4 matrix_of(const Pose& pose, const Rig::Place& place) {
     return place.node < 0 ? place.local : pose.nodes[static_cast<std::size_t>(place.node)] * place.local;
+}
+
+glm::dmat4 frame_of(const Pose& pose, const Rig::Place& place) {
+    return place.node < 0 ? place.local : pose.frames[static_cast<std::size_t>(place.node)] * place.local;
 }
 
 std::vector<Transform> joint_transforms(const Skin& skin, const Pose& pose) {

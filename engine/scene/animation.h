@@ -10,7 +10,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "engine/core/transform.h"
-#include "engine/scene/mesh.h"
+#include "engine/scene/scene.h"
 
 namespace twinray {
 
@@ -21,6 +21,8 @@ struct Trs {
     glm::dvec3 scale = glm::dvec3(1);
 };
 glm::dmat4 matrix_of(const Trs& trs);
+// With 1 in place of scales of 0: the axes that are left when it has shrunk to nothing.
+glm::dmat4 frame_of(const Trs& trs);
 
 enum class Interpolation : std::uint8_t { linear, step, cubic_spline };
 
@@ -111,11 +113,19 @@ struct Rig {
     std::vector<Skin> skins;
     std::vector<DeformedMesh> meshes;
     std::vector<Place> instances, cameras, lights;  // by index in Scene
+    // An instance that is flat at rest, without an inverse, until an animation scales its node: show_hidden() of
+    // engine/scene/pose_scene.h gives it a place in the scene.
+    struct Hidden {
+        Instance instance;
+        Place place;
+    };
+    std::vector<Hidden> hidden;
 };
 
 // Of each node of a rig.
 struct Pose {
     std::vector<glm::dmat4> nodes;             // to world space
+    std::vector<glm::dmat4> frames;            // the same with axes that scales of 0 leave: of cameras and lights
     std::vector<std::vector<double>> weights;  // of morph targets
 };
 Pose rest_pose(const Rig& rig);
@@ -123,6 +133,8 @@ Pose rest_pose(const Rig& rig);
 Pose pose_at(const Rig& rig, const Animation& animation, double seconds);
 
 glm::dmat4 matrix_of(const Pose& pose, const Rig::Place& place);
+// Of a camera or light: what a node scales to 0 keeps its axes, since glTF keeps scales from both.
+glm::dmat4 frame_of(const Pose& pose, const Rig::Place& place);
 // By joint: from the mesh as it was bound to world space. Rounded once; not finite where the pose is not.
 std::vector<Transform> joint_transforms(const Skin& skin, const Pose& pose);
 

@@ -30,11 +30,6 @@ Blend blend_of(const VertexMotion& motion, std::size_t vertex, std::span<const T
 
 dmat3 cofactors(const dmat3& m) { return {cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])}; }
 
-dvec3 unit_or_zero(dvec3 v) {
-    const double length = glm::length(v);
-    return length > 0 ? v / length : dvec3(0);
-}
-
 dvec3 displaced(dvec3 value, const std::vector<MorphTarget>& targets, std::vector<vec3> MorphTarget::*part,
                 std::size_t vertex, std::span<const double> weights) {
     for (std::size_t i = 0; i < targets.size(); ++i)

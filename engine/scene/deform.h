@@ -11,7 +11,7 @@ namespace twinray {
 
 // weights: of the morph targets, as many as `motion` has. joints: joint_transforms(); empty without skin. Normals go by
 // the cofactors of the blended matrix, so that they keep to the triangles' winding, and tangents by the matrix itself;
-// both become unit vectors, or 0 where they have no length.
+// both become unit vectors, or 0 where they have no direction.
 MeshVertices deformed(const MeshVertices& base, const VertexMotion& motion, std::span<const double> weights,
                       std::span<const Transform> joints);
 

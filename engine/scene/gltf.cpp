@@ -14,7 +14,7 @@ Scene import_gltf(const std::filesystem::path& path) {
     Scene scene;
     const std::vector<GltfNode> nodes = flatten_nodes(file);
     Rig rig = read_gltf_rig(file, nodes);
-    std::vector<GltfInstance> instances = read_gltf_instances(file, nodes);
+    std::vector<GltfInstance> instances = read_gltf_instances(file, nodes, rig);
     rig.cameras = read_gltf_cameras(file, nodes, scene);
     rig.lights = read_gltf_lights(file, nodes, scene);
     read_gltf_materials(file, scene);

@@ -47,9 +47,20 @@ void copy_elements(const GltfFile& file, const Layout& layout, std::uint8_t* tar
         std::memcpy(target + i * layout.size, bytes.data() + layout.offset + i * layout.stride, layout.size);
 }
 
-std::size_t stride_of(const GltfFile& file, int view, std::size_t element_size, const std::string& object) {
-    view_bytes(file, view, object);  // that the view exists
+// Vectors of vertices lie on multiples of 4 bytes (glTF 2.0, 3.6.2.4). Some writers pad them and do not give the
+// stride, without which they would be tightly packed: the view is then as long as the padded ones are.
+bool is_padded(const tinygltf::Accessor& accessor, std::size_t element_size, std::size_t view_size) {
+    const std::size_t padded = (element_size + 3) / 4 * 4;
+    return accessor.type != TINYGLTF_TYPE_SCALAR && accessor.byteOffset == 0 && padded != element_size &&
+           view_size / padded == accessor.count && view_size % padded == 0;
+}
+
+std::size_t stride_of(const GltfFile& file, const tinygltf::Accessor& accessor, std::size_t element_size,
+                      const std::string& object) {
+    const int view = accessor.bufferView;
+    const std::size_t view_size = view_bytes(file, view, object).size();
     const std::size_t stride = file.model.bufferViews[std::size_t(view)].byteStride;
+    if (stride == 0 && is_padded(accessor, element_size, view_size)) return (element_size + 3) / 4 * 4;
     if (stride != 0 && stride < element_size)
         file.fail(object, ": byteStride ", stride, " of bufferView ", view, " is less than an element's ", element_size,
                   " bytes");
@@ -120,8 +131,8 @@ Elements gather(const GltfFile& file, int index, int components, const std::stri
             file.fail(object, ": accessor ", index, " has no bufferView but count ", accessor.count, ", over 2^24");
         elements.bytes.resize(accessor.count * size);
     } else {
-        const Layout layout{accessor.bufferView, accessor.byteOffset,
-                            stride_of(file, accessor.bufferView, size, object), size, accessor.count};
+        const Layout layout{accessor.bufferView, accessor.byteOffset, stride_of(file, accessor, size, object), size,
+                            accessor.count};
         if (accessor.count > view_bytes(file, accessor.bufferView, object).size())
             file.fail(object, ": accessor ", index, " has count ", accessor.count, ", more than bufferView ",
                       accessor.bufferView, " has bytes");

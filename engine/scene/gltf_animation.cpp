@@ -135,6 +135,22 @@ class AnimationReader {
     std::map<std::tuple<std::uint64_t, uint, bool>, uint> keyframes_;
 };
 
+const json& member_of(const json& object, const char* key) {
+    static const json none;
+    const auto found = object.is_object() ? object.find(key) : object.end();
+    return found == object.end() ? none : *found;
+}
+
+// By KHR_animation_pointer, whose channels name no node.
+bool shows_and_hides_nodes(const json& animation) {
+    const json& channels = member_of(animation, "channels");
+    return std::ranges::any_of(channels, [](const json& channel) {
+        const json& extensions = member_of(member_of(channel, "target"), "extensions");
+        const json& extension = member_of(extensions, "KHR_animation_pointer");
+        return extension.is_object() && json_string(extension, "pointer").ends_with("/KHR_node_visibility/visible");
+    });
+}
+
 // Without the file's name, which begins it.
 std::string fault_of(const GltfFile& file, const Error& error) {
     const std::string message = error.what(), prefix = text("'", file.path.string(), "': ");
@@ -152,6 +168,9 @@ std::vector<Animation> read_gltf_animations(GltfFile& file, const Rig& rig, cons
             if (!sources[i].is_object()) file.fail("is not an object");
             animation.name = json_string(sources[i], "name");
             AnimationReader(file, rig, flat, sources[i], animation).read();
+            if (shows_and_hides_nodes(sources[i]))
+                file.warn(gltf_name("animation", i, animation.name) +
+                          ": shows and hides nodes, which stay as they are at rest");
         } catch (const Error& error) {
             animation.keyframes.clear();
             animation.channels.clear();

@@ -25,6 +25,7 @@ bool is_supported(const std::string& extension) {
                                                          "KHR_materials_volume",
                                                          "KHR_materials_variants",
                                                          "KHR_mesh_quantization",
+                                                         "KHR_node_visibility",
                                                          "KHR_texture_transform"};
     return supported.contains(extension);
 }

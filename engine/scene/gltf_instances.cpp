@@ -56,7 +56,21 @@ class Placements {
     std::vector<vec4> rotations_;
 };
 
-void add_instances(GltfFile& file, const std::vector<GltfNode>& nodes, std::size_t index,
+// By node: whether an animation scales it or one above it.
+std::vector<bool> scaled_nodes(const Rig& rig) {
+    std::vector<bool> scaled(rig.nodes.size());
+    for (const Animation& animation : rig.animations)
+        for (const Animation::Channel& channel : animation.channels)
+            if (channel.path == Animation::Channel::Path::scale) scaled[channel.node] = true;
+    for (std::size_t i = 0; i < scaled.size(); ++i)
+        if (const std::int32_t parent = rig.nodes[i].parent; parent >= 0 && scaled[std::size_t(parent)])
+            scaled[i] = true;
+    return scaled;
+}
+
+bool is_flat(const Transform& transform) { return !fault_of(transform).empty(); }
+
+void add_instances(GltfFile& file, const std::vector<GltfNode>& nodes, std::size_t index, bool is_scaled,
                    std::vector<GltfInstance>& instances) {
     const GltfNode& node = nodes[index];
     const tinygltf::Node& source = file.model.nodes[node.index];
@@ -73,24 +87,32 @@ void add_instances(GltfFile& file, const std::vector<GltfNode>& nodes, std::size
         placed.place = {is_skinned ? -1 : static_cast<std::int32_t>(index), placements.matrix(i)};
         placed.instance.name = source.name.empty() ? object : source.name;
         placed.instance.mesh = static_cast<uint>(source.mesh);
+        const Transform local = rounded_transform(file, placed.place.local, object);
         placed.instance.transform =
-            rounded_transform(file, is_skinned ? placed.place.local : node.world * placed.place.local, object);
-        if (determinant(placed.instance.transform) == 0)
-            ++singular;
-        else
-            instances.push_back(std::move(placed));
+            is_skinned ? local : rounded_transform(file, node.world * placed.place.local, object);
+        if (is_flat(placed.instance.transform)) {
+            if (!is_scaled || is_flat(local)) {
+                ++singular;
+                continue;
+            }
+            placed.is_hidden = true;
+            placed.instance.transform = {};
+        }
+        instances.push_back(std::move(placed));
     }
     if (singular)
         file.warn(text(node.name, ": skipped ", singular, " of ", placements.count(),
-                       " placements, whose transform flattens the mesh (determinant 0)"));
+                       " placements, whose transform flattens the mesh"));
 }
 
 }  // namespace
 
-std::vector<GltfInstance> read_gltf_instances(GltfFile& file, const std::vector<GltfNode>& nodes) {
+std::vector<GltfInstance> read_gltf_instances(GltfFile& file, const std::vector<GltfNode>& nodes, const Rig& rig) {
+    const std::vector<bool> scaled = scaled_nodes(rig);
     std::vector<GltfInstance> instances;
     for (std::size_t i = 0; i < nodes.size(); ++i)
-        if (file.model.nodes[nodes[i].index].mesh != -1) add_instances(file, nodes, i, instances);
+        if (file.model.nodes[nodes[i].index].mesh != -1 && nodes[i].is_visible)
+            add_instances(file, nodes, i, scaled[i], instances);
     return instances;
 }
 

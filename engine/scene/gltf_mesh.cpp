@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/gltf_mesh.h"
 
+#include <algorithm>
 #include <map>
 
 #include "engine/scene/gltf_accessor.h"
 #include "engine/scene/gltf_variants.h"
+#include "engine/scene/gltf_vertices.h"
 
 namespace twinray {
 namespace {
 
 using tinygltf::Primitive;
-
-int attribute_of(const Primitive& primitive, const char* name) {
-    const auto found = primitive.attributes.find(name);
-    return found == primitive.attributes.end() ? -1 : found->second;
-}
 
 bool makes_triangles(const Primitive& primitive) {
     return attribute_of(primitive, "POSITION") >= 0 &&
@@ -38,39 +35,19 @@ std::vector<uvec3> assemble(const std::vector<uint>& corners, int mode) {
     return triangles;
 }
 
-// All that a vertex is made from.
-std::vector<int> accessors_of(const Primitive& primitive) {
-    std::vector<int> accessors;
-    for (const char* name : {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0"})
-        accessors.push_back(attribute_of(primitive, name));
-    for (const auto& [name, accessor] : primitive.attributes)
-        if (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")) accessors.push_back(accessor);
-    for (const auto& target : primitive.targets)
-        for (const auto& [name, accessor] : target) accessors.push_back(accessor);
-    return accessors;
-}
-
 // Puts the primitives of one mesh together.
 class MeshReader {
   public:
-    MeshReader(GltfFile& file, std::size_t index, uint default_material, bool is_skinned)
+    MeshReader(GltfFile& file, std::size_t index, const std::vector<Material>& materials, bool is_skinned)
         : file_(file),
           source_(file.model.meshes[index]),
           name_(gltf_name("mesh", index, source_.name)),
-          default_material_(default_material) {
+          materials_(materials) {
         mesh_.name = source_.name.empty() ? text("mesh ", index) : source_.name;
         std::vector<const Primitive*> shown;
-        for (const Primitive& primitive : source_.primitives) {
-            if (!makes_triangles(primitive)) continue;
-            shown.push_back(&primitive);
-            has_normals_ |= attribute_of(primitive, "NORMAL") >= 0;
-            has_uvs_ |= attribute_of(primitive, "TEXCOORD_0") >= 0;
-            // Shading derives tangents where a mesh has none, so all or none is right and a mixture is not.
-            has_tangents_ &= attribute_of(primitive, "TANGENT") >= 0 && attribute_of(primitive, "NORMAL") >= 0;
-        }
-        layout_ = motion_layout(file, shown, name_, is_skinned);
-        layout_.normals &= has_normals_;
-        layout_.tangents &= has_tangents_;
+        for (const Primitive& primitive : source_.primitives)
+            if (makes_triangles(primitive)) shown.push_back(&primitive);
+        layout_ = vertex_layout(file, shown, name_, is_skinned);
     }
 
     GltfMesh read() {
@@ -86,50 +63,16 @@ class MeshReader {
     }
 
   private:
-    // The arrays of one primitive, with the attributes that the mesh as a whole has.
-    struct Vertices {
-        std::vector<vec3> positions, normals;
-        std::vector<vec4> tangents;
-        std::vector<vec2> uvs;
-        VertexMotion motion;
-    };
-
     // Where a primitive's vertices lie in mesh_.
     struct Part {
         uint base = 0;
         std::size_t count = 0;
     };
 
-    template <int N>
-    std::vector<glm::vec<N, float>> read_attribute(const Primitive& primitive, const char* name,
-                                                   std::size_t vertex_count, const std::string& object) const {
-        const int accessor = attribute_of(primitive, name);
-        if (accessor < 0) return std::vector<glm::vec<N, float>>(vertex_count, glm::vec<N, float>(0));
-        auto values = read_vectors<N>(file_, accessor, text(object, " ", name));
-        if (values.size() != vertex_count)
-            file_.fail(object, ": ", name, " has ", values.size(), " elements, but POSITION has ", vertex_count);
-        return values;
-    }
-
-    Vertices read_vertices(const Primitive& primitive, const std::string& object) {
-        Vertices v;
-        v.positions = read_vectors<3>(file_, attribute_of(primitive, "POSITION"), object + " POSITION");
-        const std::size_t count = v.positions.size();
-        if (has_normals_) v.normals = read_attribute<3>(primitive, "NORMAL", count, object);
-        if (has_uvs_) v.uvs = read_attribute<2>(primitive, "TEXCOORD_0", count, object);
-        if (has_tangents_) v.tangents = read_attribute<4>(primitive, "TANGENT", count, object);
-        v.motion = read_gltf_motion(file_, primitive, layout_, count, object);
-        return v;
-    }
-
-    uint append_vertices(const Vertices& vertices) {
+    uint append_vertices(const GltfVertices& vertices) {
         const std::size_t base = mesh_.positions.size();
         if (base + vertices.positions.size() > UINT32_MAX) file_.fail(name_, ": has over 2^32 vertices");
-        append(mesh_.positions, vertices.positions);
-        append(mesh_.normals, vertices.normals);
-        append(mesh_.tangents, vertices.tangents);
-        append(mesh_.uvs, vertices.uvs);
-        append(motion_, vertices.motion);
+        append(mesh_, motion_, vertices);
         return static_cast<uint>(base);
     }
 
@@ -150,7 +93,8 @@ class MeshReader {
 
     void add(const Primitive& primitive, const std::string& object) {
         note_what_is_ignored(primitive);
-        if (has_normals_ && attribute_of(primitive, "NORMAL") < 0) return add_flat(primitive, object);
+        note_missing_uvs(primitive, object);
+        if (layout_.normals && attribute_of(primitive, "NORMAL") < 0) return add_flat(primitive, object);
         const Part part = shared_part(primitive, object);
         add_triangles(read_triangles(primitive, part.count, object), part.base, primitive, object);
     }
@@ -158,39 +102,34 @@ class MeshReader {
     Part shared_part(const Primitive& primitive, const std::string& object) {
         const std::vector<int> key = accessors_of(primitive);
         if (const auto found = parts_.find(key); found != parts_.end()) return found->second;
-        const Vertices vertices = read_vertices(primitive, object);
+        const GltfVertices vertices = read_gltf_vertices(file_, primitive, layout_, object);
         return parts_[key] = {append_vertices(vertices), vertices.positions.size()};
     }
 
     // A flat face needs corners of its own.
     void add_flat(const Primitive& primitive, const std::string& object) {
-        const Vertices shared = read_vertices(primitive, object);
-        Vertices own;
-        std::vector<uvec3> own_triangles;
+        const GltfVertices shared = read_gltf_vertices(file_, primitive, layout_, object);
         std::vector<uint> corners;
-        for (const uvec3& t : read_triangles(primitive, shared.positions.size(), object)) {
-            const uint first = static_cast<uint>(own.positions.size());
-            own_triangles.emplace_back(first, first + 1, first + 2);
+        for (const uvec3& t : read_triangles(primitive, shared.positions.size(), object))
             corners.insert(corners.end(), {t.x, t.y, t.z});
-            const vec3 a = shared.positions[t.x], b = shared.positions[t.y], c = shared.positions[t.z];
-            const glm::dvec3 across = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
-            const double length = glm::length(across);
-            own.positions.insert(own.positions.end(), {a, b, c});
-            own.normals.insert(own.normals.end(), 3, length > 0 ? vec3(across / length) : vec3(0, 0, 1));
-            if (has_uvs_) own.uvs.insert(own.uvs.end(), {shared.uvs[t.x], shared.uvs[t.y], shared.uvs[t.z]});
+        GltfVertices own = picked(shared, corners);
+        std::vector<uvec3> own_triangles;
+        for (uint i = 0; i + 2 < own.positions.size(); i += 3) {
+            const glm::dvec3 a(own.positions[i]), b(own.positions[i + 1]), c(own.positions[i + 2]);
+            const glm::dvec3 normal = unit_or_zero(glm::cross(b - a, c - a));
+            std::fill_n(&own.normals[i], 3, normal == glm::dvec3(0) ? vec3(0, 0, 1) : vec3(normal));
+            own_triangles.emplace_back(i, i + 1, i + 2);
         }
-        own.motion = picked(shared.motion, corners);
         add_triangles(own_triangles, append_vertices(own), primitive, object);
     }
 
     void add_triangles(const std::vector<uvec3>& triangles, uint base, const Primitive& primitive,
                        const std::string& object) {
-        const std::size_t material_count = file_.model.materials.size();
-        if (primitive.material >= 0 && std::size_t(primitive.material) >= material_count)
-            file_.fail(name_, ": material ", primitive.material, " does not exist; the file has ", material_count);
+        if (primitive.material >= 0 && std::size_t(primitive.material) >= materials_.size())
+            file_.fail(name_, ": material ", primitive.material, " does not exist; the file has ", materials_.size());
         for (const uvec3& triangle : triangles) mesh_.triangles.push_back(triangle + base);
         const std::size_t before = mesh_.materials.size();
-        const uint material = primitive.material < 0 ? default_material_ : static_cast<uint>(primitive.material);
+        const uint material = static_cast<uint>(primitive.material < 0 ? materials_.size() : primitive.material);
         mesh_.materials.resize(mesh_.triangles.size(), material);
         add_variants(read_variant_materials(file_, primitive, object), before);
     }
@@ -208,17 +147,32 @@ class MeshReader {
     }
 
     void note_what_is_ignored(const Primitive& primitive) {
-        if (attribute_of(primitive, "COLOR_0") >= 0) file_.warn("vertex colours (COLOR_0) are ignored");
+        if (attribute_of(primitive, "COLOR_1") >= 0) file_.warn("vertex colours other than COLOR_0 are ignored");
+        for (const auto& target : primitive.targets)
+            for (const auto& [name, accessor] : target)
+                if (name.starts_with("COLOR_") || name.starts_with("TEXCOORD_"))
+                    file_.warn("colours and texture coordinates of morph targets are ignored");
+    }
+
+    void note_missing_uvs(const Primitive& primitive, const std::string& object) {
+        if (primitive.material < 0 || std::size_t(primitive.material) >= materials_.size()) return;
+        const Material& material = materials_[std::size_t(primitive.material)];
+        for (const Texture* texture : textures_of(material)) {
+            const std::string wanted = text("TEXCOORD_", texture->uv_set);
+            if (texture->image < 0 || attribute_of(primitive, wanted) >= 0) continue;
+            const bool has_first = attribute_of(primitive, "TEXCOORD_0") >= 0;
+            file_.warn(text(object, ": lacks the ", wanted, " of material '", material.name, "', whose textures show ",
+                            has_first ? "by TEXCOORD_0" : "one texel"));
+        }
     }
 
     GltfFile& file_;
     const tinygltf::Mesh& source_;
     std::string name_;
-    uint default_material_;
-    bool has_normals_ = false, has_uvs_ = false, has_tangents_ = true;
+    const std::vector<Material>& materials_;
     // Primitives often share one vertex buffer and differ in their indices; it is appended once.
     std::map<std::vector<int>, Part> parts_;
-    MotionLayout layout_;
+    VertexLayout layout_;
     Mesh mesh_;
     VertexMotion motion_;
     std::vector<std::vector<uint>> variants_;
@@ -226,8 +180,8 @@ class MeshReader {
 
 }  // namespace
 
-GltfMesh read_gltf_mesh(GltfFile& file, std::size_t index, uint default_material, bool is_skinned) {
-    return MeshReader(file, index, default_material, is_skinned).read();
+GltfMesh read_gltf_mesh(GltfFile& file, std::size_t index, const std::vector<Material>& materials, bool is_skinned) {
+    return MeshReader(file, index, materials, is_skinned).read();
 }
 
 }  // namespace twinray

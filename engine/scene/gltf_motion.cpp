@@ -84,16 +84,6 @@ std::size_t normalize_weights(VertexMotion& motion) {
     return weightless;
 }
 
-// Those of `width` values a vertex.
-template <class T>
-std::vector<T> picked(const std::vector<T>& values, std::size_t width, const std::vector<uint>& vertices) {
-    std::vector<T> result;
-    if (values.empty()) return result;
-    for (const uint vertex : vertices)
-        for (std::size_t i = 0; i < width; ++i) result.push_back(values[vertex * width + i]);
-    return result;
-}
-
 }  // namespace
 
 MotionLayout motion_layout(const GltfFile& file, const std::vector<const Primitive*>& primitives,

@@ -28,7 +28,17 @@ void append(std::vector<T>& all, const std::vector<T>& part) {
     all.insert(all.end(), part.begin(), part.end());
 }
 void append(VertexMotion& all, const VertexMotion& part);
-// Of some vertices.
+
+// Of some vertices, which have `width` values each.
+template <class T>
+std::vector<T> picked(const std::vector<T>& values, std::size_t width, const std::vector<uint>& vertices) {
+    std::vector<T> result;
+    if (values.empty()) return result;
+    result.reserve(vertices.size() * width);
+    for (const uint vertex : vertices)
+        for (std::size_t i = 0; i < width; ++i) result.push_back(values[vertex * width + i]);
+    return result;
+}
 VertexMotion picked(const VertexMotion& motion, const std::vector<uint>& vertices);
 
 // Throws Error naming the vertex where a weight belongs to a joint that the skin does not have.

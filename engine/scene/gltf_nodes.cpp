@@ -61,12 +61,16 @@ void check_roots(const GltfFile& file, const std::vector<int>& roots, const std:
     }
 }
 
-std::vector<int> shown_roots(const GltfFile& file, const std::vector<int>& parents) {
+// Scenes are alternatives: without a default the first one is shown.
+std::vector<int> shown_roots(GltfFile& file, const std::vector<int>& parents) {
     const auto& scenes = file.model.scenes;
-    const int shown = file.model.defaultScene;
+    const int shown = file.model.defaultScene == -1 && !scenes.empty() ? 0 : file.model.defaultScene;
     if (shown != -1) {
         if (shown < 0 || std::size_t(shown) >= scenes.size())
             file.fail("scene ", shown, ", the default, does not exist; the file has ", scenes.size(), " scenes");
+        if (file.model.defaultScene == -1 && scenes.size() > 1)
+            file.warn(text("none of the ", scenes.size(), " scenes is the default; ",
+                           gltf_name("scene", 0, scenes[0].name), " is shown"));
         check_roots(file, scenes[std::size_t(shown)].nodes, parents);
         return scenes[std::size_t(shown)].nodes;
     }
@@ -78,11 +82,14 @@ std::vector<int> shown_roots(const GltfFile& file, const std::vector<int>& paren
 
 glm::dmat4 read_matrix(const GltfFile& file, const std::vector<double>& numbers, const std::string& object) {
     if (numbers.size() != 16) file.fail(object, ": matrix has ", numbers.size(), " numbers instead of 16");
-    glm::dmat4 matrix;
-    for (std::size_t i = 0; i < 16; ++i) matrix[int(i / 4)][int(i % 4)] = numbers[i];
-    if (matrix[0][3] != 0 || matrix[1][3] != 0 || matrix[2][3] != 0 || matrix[3][3] != 1)
-        file.fail(object, ": the last row of its matrix is not 0 0 0 1");
-    return matrix;
+    return affine_matrix(file, std::span<const double, 16>(numbers), object + ": matrix");
+}
+
+bool is_visible(const GltfFile& file, std::size_t index, const std::string& object) {
+    const tinygltf::Value* extension = find_extension(file.model.nodes[index].extensions, "KHR_node_visibility");
+    const tinygltf::Value* visible = extension ? find_member(*extension, "visible") : nullptr;
+    if (visible && !visible->IsBool()) file.fail(object, ": KHR_node_visibility visible is neither true nor false");
+    return !visible || visible->Get<bool>();
 }
 
 Rig::Node read_local(const GltfFile& file, std::size_t index, std::int32_t parent, const std::string& object) {
@@ -103,6 +110,21 @@ void check_length(const GltfFile& file, const std::vector<double>& list, std::si
 }
 
 }  // namespace
+
+// Exporters multiply float matrices, inverses among them: a condition number of 1000 leaves 14 of their 24 bits.
+glm::dmat4 affine_matrix(const GltfFile& file, std::span<const double, 16> entries, const std::string& object) {
+    constexpr double rounding = 0x1p-14;
+    glm::dmat4 matrix;
+    for (std::size_t i = 0; i < 16; ++i) {
+        if (!std::isfinite(entries[i])) file.fail(object, " has the entry ", entries[i]);
+        matrix[int(i / 4)][int(i % 4)] = entries[i];
+    }
+    const double a = matrix[0][3], b = matrix[1][3], c = matrix[2][3], d = matrix[3][3];
+    if (!(std::max({std::abs(a), std::abs(b), std::abs(c), std::abs(d - 1)}) <= rounding))
+        file.fail(object, ": the last row is ", a, ' ', b, ' ', c, ' ', d, ", not 0 0 0 1");
+    matrix[0][3] = matrix[1][3] = matrix[2][3] = 0;
+    return matrix / d;
+}
 
 Trs read_trs(const GltfFile& file, const std::vector<double>& translation, const std::vector<double>& rotation,
              const std::vector<double>& scale, const std::string& object) {
@@ -131,16 +153,24 @@ Transform rounded_transform(const GltfFile& file, const glm::dmat4& matrix, cons
     return transform;
 }
 
-std::vector<GltfNode> flatten_nodes(const GltfFile& file) {
+std::vector<GltfNode> flatten_nodes(GltfFile& file) {
     const auto& nodes = file.model.nodes;
     const std::vector<int> parents = find_parents(file);
     check_tree(file, parents);
     std::vector<GltfNode> flat;
     const auto add = [&](int index, std::int32_t parent) {
-        GltfNode node{std::size_t(index), node_name(file, std::size_t(index)), {}, glm::dmat4(1)};
+        GltfNode node{std::size_t(index), node_name(file, std::size_t(index)), {}, glm::dmat4(1), glm::dmat4(1)};
         node.local = read_local(file, node.index, parent, node.name);
         node.world = node.local.is_fixed ? node.local.matrix : matrix_of(node.local.rest);
-        if (parent >= 0) node.world = flat[std::size_t(parent)].world * node.world;
+        node.frame = node.local.is_fixed ? node.local.matrix : frame_of(node.local.rest);
+        node.is_visible = is_visible(file, node.index, node.name);
+        if (parent >= 0) {
+            const GltfNode& above = flat[std::size_t(parent)];
+            node.world = above.world * node.world;
+            node.frame = above.frame * node.frame;
+            node.is_visible &= above.is_visible;
+        }
+        node.frame[3] = node.world[3];
         rounded_transform(file, node.world, node.name);
         flat.push_back(std::move(node));
     };

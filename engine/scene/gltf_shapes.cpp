@@ -34,12 +34,7 @@ std::set<uint> nodes_with_driven_weights(const Rig& rig) {
 class ShapeReader {
   public:
     ShapeReader(GltfFile& file, const std::vector<GltfInstance>& instances, Scene& scene, Rig& rig)
-        : file_(file),
-          scene_(scene),
-          rig_(rig),
-          rest_(rest_pose(rig)),
-          driven_(nodes_with_driven_weights(rig)),
-          default_material_(static_cast<uint>(scene.materials.size())) {
+        : file_(file), scene_(scene), rig_(rig), rest_(rest_pose(rig)), driven_(nodes_with_driven_weights(rig)) {
         for (const std::string& name : read_variant_names(file)) scene_.variants.push_back({name, {}});
         for (const GltfInstance& placed : instances)
             if (placed.skin >= 0) skinned_.insert(placed.instance.mesh);
@@ -59,7 +54,7 @@ class ShapeReader {
     uint read(const Shape& shape, uint node) {
         const auto [known, is_new] = sources_.try_emplace(shape.mesh);
         GltfMesh& source = known->second;
-        if (is_new) source = read_gltf_mesh(file_, shape.mesh, default_material_, skinned_.contains(shape.mesh));
+        if (is_new) source = read_gltf_mesh(file_, shape.mesh, scene_.materials, skinned_.contains(shape.mesh));
         if (source.mesh.triangles.empty()) return EMPTY;
         const uint mesh = static_cast<uint>(scene_.meshes.size());
         for (std::size_t i = 0; i < source.variants.size(); ++i)
@@ -93,7 +88,6 @@ class ShapeReader {
     Rig& rig_;
     Pose rest_;
     std::set<uint> driven_, skinned_;  // nodes; meshes of the file
-    uint default_material_;
     std::map<uint, GltfMesh> sources_;
     std::map<Shape, uint> shapes_;
 };
@@ -106,6 +100,10 @@ void read_gltf_shapes(GltfFile& file, std::vector<GltfInstance> instances, Scene
     std::erase_if(instances, [](const GltfInstance& placed) { return placed.instance.mesh == EMPTY; });
     std::ranges::stable_sort(instances, {}, [](const GltfInstance& placed) { return placed.instance.mesh; });
     for (GltfInstance& placed : instances) {
+        if (placed.is_hidden) {
+            rig.hidden.push_back({std::move(placed.instance), placed.place});
+            continue;
+        }
         scene.instances.push_back(std::move(placed.instance));
         rig.instances.push_back(placed.place);
     }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
-
 #include "engine/scene/gltf_accessor.h"
 #include "engine/scene/gltf_json.h"
 #include "engine/scene/gltf_rig.h"
@@ -26,29 +24,21 @@ std::vector<uint> read_joints(const GltfFile& file, const json& source, const st
     return result;
 }
 
-// Files round even the entry that should be 1, so the matrix is taken as the projective map that it says.
-glm::dmat4 read_matrix(const GltfFile& file, const float* entries, const std::string& object) {
-    glm::dmat4 matrix;
-    for (int i = 0; i < 16; ++i) {
-        if (!std::isfinite(entries[i])) file.fail(object, " has the entry ", entries[i]);
-        matrix[i / 4][i % 4] = static_cast<double>(entries[i]);
-    }
-    if (matrix[0][3] != 0 || matrix[1][3] != 0 || matrix[2][3] != 0 || matrix[3][3] == 0)
-        file.fail(object, ": its last row is not 0 0 0 1");
-    return matrix / matrix[3][3];
-}
-
 std::vector<glm::dmat4> read_inverse_binds(const GltfFile& file, const json& source, std::size_t count,
                                            const std::string& object) {
     if (!source.contains("inverseBindMatrices")) return std::vector<glm::dmat4>(count, glm::dmat4(1));
     const auto accessor = json_count(source, "inverseBindMatrices");
     const std::string name = object + ": inverseBindMatrices";
     if (!accessor || *accessor > INT32_MAX) file.fail(name, " is not a non-negative integer");
-    const std::vector<float> entries = read_floats(file, static_cast<int>(*accessor), 16, name);
+    const std::vector<float> floats = read_floats(file, static_cast<int>(*accessor), 16, name);
+    const std::vector<double> entries(floats.begin(), floats.end());
     if (entries.size() / 16 < count)
         file.fail(name, " has ", entries.size() / 16, " matrices, but there are ", count, " joints");
     std::vector<glm::dmat4> matrices;
-    for (std::size_t i = 0; i < count; ++i) matrices.push_back(read_matrix(file, &entries[16 * i], text(name, " ", i)));
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto matrix = std::span(entries).subspan(16 * i).first<16>();
+        matrices.push_back(affine_matrix(file, matrix, text(name, " ", i)));
+    }
     return matrices;
 }
 

@@ -46,19 +46,21 @@ Texture GltfTextures::read(int texture, int texcoord, const tinygltf::ExtensionM
         file_.fail(object, ": texture ", texture, " does not exist; the file has ", textures.size());
     Texture result;
     result.image = image_of(textures[std::size_t(texture)], object);
-    set_wrap(result, textures[std::size_t(texture)].sampler, object);
+    set_sampler(result, textures[std::size_t(texture)].sampler, object);
     if (const tinygltf::Value* transform = find_extension(extensions, "KHR_texture_transform")) {
         set_transform(result, *transform);
-        texcoord = static_cast<int>(number_of(*transform, "texCoord", texcoord));
+        if (const int own = index_of(*transform, "texCoord"); own >= 0) texcoord = own;
     }
-    if (texcoord != 0) file_.warn(text(object, ": asks for TEXCOORD_", texcoord, ", shown with TEXCOORD_0"));
+    if (texcoord != 0 && texcoord != 1)
+        file_.warn(text(object, ": asks for TEXCOORD_", texcoord, ", shown with TEXCOORD_0"));
+    result.uv_set = texcoord == 1 ? 1 : 0;
     return result;
 }
 
 Texture GltfTextures::read(const tinygltf::Value& parent, const std::string& key, const std::string& object) {
     const tinygltf::Value* reference = find_member(parent, key);
     if (!reference) return {};
-    const int texcoord = static_cast<int>(number_of(*reference, "texCoord", 0));
+    const int texcoord = std::max(index_of(*reference, "texCoord"), 0);
     return read(index_of(*reference, "index"), texcoord, extensions_of(*reference), text(object, " ", key));
 }
 
@@ -93,13 +95,15 @@ Image GltfTextures::decode(std::size_t index) const {
     return decode_image(view_bytes(file_, image.bufferView, name), name);
 }
 
-void GltfTextures::set_wrap(Texture& result, int sampler, const std::string& object) const {
+// A picture has one level, so that minFilter is of no effect.
+void GltfTextures::set_sampler(Texture& result, int sampler, const std::string& object) const {
     if (sampler == -1) return;
     const auto& samplers = file_.model.samplers;
     if (sampler < 0 || std::size_t(sampler) >= samplers.size())
         file_.fail(object, ": sampler ", sampler, " does not exist; the file has ", samplers.size());
     result.wrap_u = wrap_of(samplers[std::size_t(sampler)].wrapS);
     result.wrap_v = wrap_of(samplers[std::size_t(sampler)].wrapT);
+    if (samplers[std::size_t(sampler)].magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) result.filter = Filter::nearest;
 }
 
 }  // namespace twinray

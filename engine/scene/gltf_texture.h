@@ -25,7 +25,7 @@ class GltfTextures {
   private:
     std::int32_t image_of(const tinygltf::Texture& texture, const std::string& object);
     Image decode(std::size_t image) const;
-    void set_wrap(Texture& result, int sampler, const std::string& object) const;
+    void set_sampler(Texture& result, int sampler, const std::string& object) const;
 
     GltfFile& file_;
     std::vector<Image>& images_;

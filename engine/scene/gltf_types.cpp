@@ -47,10 +47,10 @@ std::optional<Kind> kind_of(const std::string& key) {
         std::set<std::string_view> names;
     };
     static const Keys all[] = {
-        {Kind::index,
-         {"buffer", "bufferView", "byteLength", "byteOffset", "byteStride", "camera",   "componentType", "count",
-          "index",  "material",   "mesh",       "mode",       "NORMAL",     "POSITION", "sampler",       "scene",
-          "source", "TANGENT",    "texCoord",   "TEXCOORD_0", "JOINTS_0",   "JOINTS_1", "WEIGHTS_0",     "WEIGHTS_1"}},
+        {Kind::index, {"buffer",  "bufferView", "byteLength", "byteOffset", "byteStride", "camera",     "componentType",
+                       "count",   "index",      "material",   "mesh",       "mode",       "NORMAL",     "POSITION",
+                       "sampler", "scene",      "source",     "TANGENT",    "texCoord",   "TEXCOORD_0", "TEXCOORD_1",
+                       "COLOR_0", "JOINTS_0",   "JOINTS_1",   "WEIGHTS_0",  "WEIGHTS_1"}},
         {Kind::number, {"metallicFactor", "roughnessFactor"}},
         {Kind::indices, {"children"}},
         {Kind::numbers, {"baseColorFactor", "emissiveFactor", "matrix", "rotation", "translation"}},

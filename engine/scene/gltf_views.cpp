@@ -35,7 +35,7 @@ std::optional<Light::Kind> kind_of(const std::string& type) {
 // False where it was skipped.
 bool add_light(GltfFile& file, const GltfNode& node, const tinygltf::Light& source, Scene& scene) {
     const std::optional<Light::Kind> kind = kind_of(source.type);
-    const std::optional<glm::dmat4> frame = unscaled(node.world);
+    const std::optional<glm::dmat4> frame = unscaled(node.frame);
     if (!kind || !frame) {
         file.warn(text(node.name, ": skipped its light, ",
                        kind ? "whose frame has no extent" : "of unknown type '" + source.type + "'"));
@@ -68,7 +68,7 @@ std::vector<Rig::Place> read_gltf_cameras(GltfFile& file, const std::vector<Gltf
         const tinygltf::Camera& source = cameras[std::size_t(index)];
         Camera camera;
         camera.name = name_or(source.name, node.name);
-        const std::optional<glm::dmat4> frame = unscaled(node.world);
+        const std::optional<glm::dmat4> frame = unscaled(node.frame);
         if (!frame || !set_lens(source, camera)) {
             file.warn(node.name + ": skipped its camera, whose frame or field of view is empty");
             continue;
@@ -87,7 +87,7 @@ std::vector<Rig::Place> read_gltf_lights(GltfFile& file, const std::vector<GltfN
         const GltfNode& node = nodes[i];
         const auto& extensions = file.model.nodes[node.index].extensions;
         const tinygltf::Value* extension = find_extension(extensions, "KHR_lights_punctual");
-        if (!extension || !find_member(*extension, "light")) continue;
+        if (!extension || !find_member(*extension, "light") || !node.is_visible) continue;
         const int index = index_of(*extension, "light");
         if (index < 0 || std::size_t(index) >= lights.size())
             file.fail(node.name, ": light ", index, " does not exist; the file has ", lights.size());

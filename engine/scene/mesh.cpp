@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/mesh.h"
 
+#include <algorithm>
+
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -35,6 +37,16 @@ std::size_t count_non_finite_triangles(const MeshView& mesh) {
             !is_finite(mesh.positions[triangle.z]))
             ++count;
     return count;
+}
+
+dvec3 unit_or_zero(dvec3 v) {
+    const double length = glm::length(v);
+    return length > 0 && std::isfinite(length) ? v / length : dvec3(0);
+}
+
+std::size_t count_undirected_normals(const Mesh& mesh) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(mesh.normals, [](vec3 normal) { return unit_or_zero(dvec3(normal)) == dvec3(0); }));
 }
 
 }  // namespace twinray

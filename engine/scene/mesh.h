@@ -24,8 +24,8 @@ struct Bounds {
 };
 
 // An indexed triangle mesh with what shading needs. Triangle i keeps its index i everywhere.
-// normals, tangents and uvs are empty or have one entry per position; materials is empty (all 0) or has one
-// entry per triangle, an index into Scene::materials.
+// normals, tangents, uvs, second_uvs and colors are empty or have one entry per position; materials is empty (all 0) or
+// has one entry per triangle, an index into Scene::materials.
 struct Mesh {
     std::string name;
     std::vector<vec3> positions;
@@ -33,8 +33,12 @@ struct Mesh {
     std::vector<vec3> normals;   // 0 where there is none: shading takes the triangle's own
     std::vector<vec4> tangents;  // xyz and the sign of the bitangent, as glTF
     std::vector<vec2> uvs;
+    std::vector<vec2> second_uvs;
+    std::vector<vec4> colors;  // linear, from 0 to 1: factors of the base colour and its alpha
     std::vector<uint> materials;
 
+    // Texture coordinates as Texture::uv_set names them; the first stand in for a second set that the mesh lacks.
+    const std::vector<vec2>& uv_set(uint set) const { return set == 1 && !second_uvs.empty() ? second_uvs : uvs; }
     uint material(std::size_t triangle) const { return materials.empty() ? 0 : materials[triangle]; }
 };
 
@@ -60,5 +64,11 @@ void check_indices(const MeshView& mesh);
 
 // Triangles with a NaN or infinite coordinate; accelerators treat them as inactive.
 std::size_t count_non_finite_triangles(const MeshView& mesh);
+
+// Of length 1; 0 where it has no direction: it is 0, or an entry is NaN or infinite.
+dvec3 unit_or_zero(dvec3 v);
+
+// Normals without a direction.
+std::size_t count_undirected_normals(const Mesh& mesh);
 
 }  // namespace twinray

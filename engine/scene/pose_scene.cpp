@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/pose_scene.h"
 
+#include <algorithm>
+
 namespace twinray {
 
 std::optional<glm::dmat4> unscaled(const glm::dmat4& world) {
@@ -27,9 +29,21 @@ void pose_scene(Scene& scene, const Pose& pose) {
     for (std::size_t i = 0; i < scene.instances.size(); ++i)
         scene.instances[i].transform = transform_of(matrix_of(pose, rig.instances[i]));
     for (std::size_t i = 0; i < scene.cameras.size(); ++i)
-        if (const auto frame = unscaled(matrix_of(pose, rig.cameras[i]))) place_camera(scene.cameras[i], *frame);
+        if (const auto frame = unscaled(frame_of(pose, rig.cameras[i]))) place_camera(scene.cameras[i], *frame);
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
-        if (const auto frame = unscaled(matrix_of(pose, rig.lights[i]))) place_light(scene.lights[i], *frame);
+        if (const auto frame = unscaled(frame_of(pose, rig.lights[i]))) place_light(scene.lights[i], *frame);
+}
+
+void show_hidden(Scene& scene) {
+    if (!scene.rig || scene.rig->hidden.empty()) return;
+    auto rig = std::make_shared<Rig>(*scene.rig);
+    for (Rig::Hidden& hidden : rig->hidden) {
+        const auto next = std::ranges::upper_bound(scene.instances, hidden.instance.mesh, {}, &Instance::mesh);
+        rig->instances.insert(rig->instances.begin() + (next - scene.instances.begin()), hidden.place);
+        scene.instances.insert(next, std::move(hidden.instance));
+    }
+    rig->hidden.clear();
+    scene.rig = std::move(rig);
 }
 
 }  // namespace twinray

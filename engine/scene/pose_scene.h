@@ -23,4 +23,8 @@ void place_camera(Camera& camera, const glm::dmat4& frame);
 // engine/scene/deform.h.
 void pose_scene(Scene& scene, const Pose& pose);
 
+// Gives the hidden instances of a rig, if there are any, a place in the scene, before it is pushed into an accelerator
+// and played: until the first pose_scene() they stand at the identity.
+void show_hidden(Scene& scene);
+
 }  // namespace twinray

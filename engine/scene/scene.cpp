@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
+#include "engine/scene/animation.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/importers.h"
 
@@ -33,15 +34,20 @@ void add_default_material(Scene& scene) {
 
 // What every loaded scene promises, whichever reader it came from.
 void complete(Scene& scene, const std::filesystem::path& file) {
-    if (scene.instances.empty())
+    const bool has_hidden = scene.rig && !scene.rig->hidden.empty();
+    if (scene.instances.empty() && !has_hidden)
         fail("'", file.string(), "': holds no triangles to place",
              scene.warnings.empty() ? std::string() : text(" (", scene.warnings.front(), ")"));
+    if (scene.instances.empty()) scene.warnings.push_back("at rest nothing is shown: all has a scale of 0");
     add_default_material(scene);
     std::ranges::stable_sort(scene.instances, {}, &Instance::mesh);
     for (const Mesh& mesh : scene.meshes) {
         if (const std::size_t count = count_non_finite_triangles(mesh))
             scene.warnings.push_back(text("mesh '", mesh.name, "': ", count, " of ", mesh.triangles.size(),
                                           " triangles have a NaN or infinite coordinate and stay inactive"));
+        if (const std::size_t count = count_undirected_normals(mesh))
+            scene.warnings.push_back(text("mesh '", mesh.name, "': ", count, " of ", mesh.normals.size(),
+                                          " normals are 0, NaN or infinite; triangles show their own there"));
     }
 }
 
@@ -55,6 +61,15 @@ Bounds transformed(const Bounds& box, const Transform& transform) {
 }
 
 }  // namespace
+
+std::array<const Texture*, 13> textures_of(const Material& material) {
+    return {
+        &material.base_color_texture,       &material.metallic_roughness_texture, &material.emission_texture,
+        &material.normal_texture,           &material.transmission_texture,       &material.specular_texture,
+        &material.specular_color_texture,   &material.clearcoat_texture,          &material.clearcoat_roughness_texture,
+        &material.clearcoat_normal_texture, &material.sheen_color_texture,        &material.sheen_roughness_texture,
+        &material.anisotropy_texture};
+}
 
 Scene load_scene(const std::filesystem::path& file) {
     try {

@@ -2,6 +2,7 @@
 // A scene as loaded from a file: meshes, their instances and what is needed to shade and view them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -24,12 +25,15 @@ struct Image {
 };
 
 enum class Wrap : std::uint8_t { repeat, clamp_to_edge, mirrored_repeat };
+enum class Filter : std::uint8_t { linear, nearest };  // of texels that are magnified
 
 // An image with its sampling: uv' = rotation/scale/offset of KHR_texture_transform applied to the mesh's uv.
 struct Texture {
     std::int32_t image = -1;  // index into Scene::images, -1 = none
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
+    Filter filter = Filter::linear;
+    uint uv_set = 0;  // of the mesh, 0 or 1: see Mesh::uv_set
     // uv' = (row0 . (u, v, 1), row1 . (u, v, 1))
     vec3 uv_row0 = vec3(1, 0, 0);
     vec3 uv_row1 = vec3(0, 1, 0);
@@ -70,6 +74,9 @@ struct Material {
             sheen_roughness_texture = {}, anisotropy_texture = {};
 };
 
+// All textures of a material, those without an image too.
+std::array<const Texture*, 13> textures_of(const Material& material);
+
 // One placement of a mesh in the world.
 struct Instance {
     std::string name;
@@ -95,7 +102,7 @@ struct Camera {
     std::string name;
     Transform camera_to_world;
     float vertical_fov = 0.8f;                      // radians; perspective
-    std::optional<float> aspect;                    // width / height when the file states one
+    std::optional<float> aspect;                    // width / height of its frame, when the file states one
     std::optional<float> orthographic_half_height;  // set: orthographic, in world units
 };
 

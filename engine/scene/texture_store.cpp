@@ -121,18 +121,22 @@ void TextureStore::record_upload(Commands& commands, std::size_t place, const Im
         commands.upload(is_reused ? texture.texels : made.back().texels, std::span(image.rgba));
 }
 
+VkSampler TextureStore::sampler_of(const TextureOptions& options) {
+    return samplers_.get(address_mode(options.wrap_u), address_mode(options.wrap_v),
+                         options.filter == Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
+}
+
 TextureStore::Made TextureStore::make(std::size_t place, const Image& image) {
     Made made{place, image.width, image.height, {}, {}};
     const Texture& texture = textures_[place];
     const std::string name = name_ + ": " + texture.name;
     if (has_images())
         made.image = SampledImage(
-            context_,
-            {.name = name,
-             .width = image.width,
-             .height = image.height,
-             .format = texture.options.is_srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
-             .sampler = samplers_.get(address_mode(texture.options.wrap_u), address_mode(texture.options.wrap_v))});
+            context_, {.name = name,
+                       .width = image.width,
+                       .height = image.height,
+                       .format = texture.options.is_srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
+                       .sampler = sampler_of(texture.options)});
     else
         made.texels = Buffer(context_, {.name = name, .bytes = image.rgba.size()});
     return made;
@@ -150,8 +154,13 @@ SetStorage::Staged TextureStore::stage_records(Commands& commands, const std::ve
     record_values_.resize(size());
     for (const Made& one : made) {
         const TextureOptions& options = textures_[one.place].options;
-        record_values_[one.place] = {one.texels.ref<uint>(),    one.width,       one.height, wrap_word(options.wrap_u),
-                                     wrap_word(options.wrap_v), options.is_srgb, 0};
+        record_values_[one.place] = {one.texels.ref<uint>(),
+                                     one.width,
+                                     one.height,
+                                     wrap_word(options.wrap_u),
+                                     wrap_word(options.wrap_v),
+                                     options.is_srgb,
+                                     options.filter == Filter::nearest};
         records_.note_update(0, static_cast<uint>(one.place));
     }
     const std::span<const std::byte> bytes[] = {std::as_bytes(std::span(record_values_))};

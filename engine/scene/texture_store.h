@@ -27,6 +27,7 @@ struct TextureOptions {
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
     bool is_srgb = false;
+    Filter filter = Filter::linear;
     bool operator==(const TextureOptions&) const = default;
 };
 
@@ -96,6 +97,7 @@ class TextureStore {
     void check_image(const Image& image, const char* action) const;
     Staged stage(Commands& commands);
     void record_upload(Commands& commands, std::size_t place, const Image& image, std::vector<Made>& made);
+    VkSampler sampler_of(const TextureOptions& options);
     Made make(std::size_t place, const Image& image);
     ImageArray array_with(const std::vector<Made>& made) const;
     SetStorage::Staged stage_records(Commands& commands, const std::vector<Made>& made);

@@ -10,8 +10,8 @@
 namespace twinray {
 namespace {
 
-// Position, normal, tangent and uv; what a mesh lacks stays 0.
-using Key = std::array<float, 12>;
+// Position, normal, tangent, both uvs and color; what a mesh lacks stays 0.
+using Key = std::array<float, 18>;
 
 struct HashBits {
     std::size_t operator()(const Key& key) const {
@@ -55,6 +55,8 @@ Mesh weld_equal_vertices(const Mesh& mesh) {
         put(key, 3, mesh.normals, i);
         put(key, 6, mesh.tangents, i);
         put(key, 10, mesh.uvs, i);
+        put(key, 12, mesh.second_uvs, i);
+        put(key, 14, mesh.colors, i);
         const auto [entry, is_new] = firsts.try_emplace(key, static_cast<uint>(welded.positions.size()));
         moved_to[i] = entry->second;
         if (!is_new) continue;
@@ -62,6 +64,8 @@ Mesh weld_equal_vertices(const Mesh& mesh) {
         copy(welded.normals, mesh.normals, i);
         copy(welded.tangents, mesh.tangents, i);
         copy(welded.uvs, mesh.uvs, i);
+        copy(welded.second_uvs, mesh.second_uvs, i);
+        copy(welded.colors, mesh.colors, i);
     }
     for (const uvec3& t : mesh.triangles) welded.triangles.emplace_back(moved_to[t.x], moved_to[t.y], moved_to[t.z]);
     return welded;

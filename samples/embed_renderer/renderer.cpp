@@ -103,6 +103,7 @@ FrameData Renderer::frame_data(const Stage& stage, const Options& options) const
     const float diagonal = glm::length(stage.bounds.size());
     FrameData data{};
     data.instances = scene_.instances();
+    data.extras = scene_.extras();
     data.materials = scene_.materials();
     data.textures = scene_.textures();
     data.camera = path_tracer::camera_rays(chosen_camera(stage, options), aspect);

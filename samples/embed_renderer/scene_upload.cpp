@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "samples/embed_renderer/scene_upload.h"
 
+#include <algorithm>
+
 #include "samples/path_tracer/surface_records.h"
 
 namespace twinray::embed_renderer {
@@ -9,6 +11,7 @@ SceneBuffers::SceneBuffers(const Device& device, Context& context, const Scene& 
     : device_(device), textures_(context, "textures", TextureStorage::buffers) {
     path_tracer::TextureList list;
     instances_ = add_instances(scene);
+    extras_ = add_extras(scene);
     materials_ = add(path_tracer::material_records(scene, list));
     path_tracer::push_textures(textures_, scene, list);
     textures_.sync();
@@ -47,6 +50,17 @@ Ref<SurfaceInstance> SceneBuffers::add_instances(const Scene& scene) {
         records.push_back(record);
         triangle_counts_.push_back(static_cast<uint>(scene.meshes[instance.mesh].triangles.size()));
     }
+    return add(records);
+}
+
+// Null where no mesh has any.
+Ref<VertexExtras> SceneBuffers::add_extras(const Scene& scene) {
+    const auto has_any = [](const Mesh& mesh) { return !mesh.colors.empty() || !mesh.second_uvs.empty(); };
+    if (std::ranges::none_of(scene.meshes, has_any)) return {};
+    std::vector<VertexExtras> of_meshes, records;
+    for (const Mesh& mesh : scene.meshes)
+        of_meshes.push_back({{add(mesh.second_uvs).address}, {add(mesh.colors).address}});
+    for (const Instance& instance : scene.instances) records.push_back(of_meshes[instance.mesh]);
     return add(records);
 }
 

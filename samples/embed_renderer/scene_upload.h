@@ -15,6 +15,7 @@ class SceneBuffers {
     SceneBuffers(const Device& device, Context& context, const Scene& scene);
 
     Ref<SurfaceInstance> instances() const { return instances_; }
+    Ref<VertexExtras> extras() const { return extras_; }
     Ref<SurfaceMaterial> materials() const { return materials_; }
     TextureTable textures() const { return textures_.view(); }
     // By instance.
@@ -28,11 +29,13 @@ class SceneBuffers {
     template <class T>
     Ref<T> add(const std::vector<T>& values);
     Ref<SurfaceInstance> add_instances(const Scene& scene);
+    Ref<VertexExtras> add_extras(const Scene& scene);
 
     const Device& device_;
     std::vector<HostBuffer> buffers_;
     std::vector<Upload> uploads_;
     Ref<SurfaceInstance> instances_;
+    Ref<VertexExtras> extras_;
     Ref<SurfaceMaterial> materials_;
     TextureStore textures_;  // twinray's, in the renderer's memory, too
     std::vector<uint> triangle_counts_;

@@ -9,6 +9,7 @@ namespace twinray::embed_renderer {
 using path_tracer::CameraRays;
 using path_tracer::SurfaceInstance;
 using path_tracer::SurfaceMaterial;
+using path_tracer::VertexExtras;
 
 #include "engine/core/bridge_begin.h"
 #include "shaders/embed_renderer/frame.h"

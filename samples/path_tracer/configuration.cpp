@@ -31,7 +31,8 @@ class Sum {
 
 std::string geometry_sum(const Scene& scene) {
     Sum sum;
-    for (const Mesh& mesh : scene.meshes) sum.add(vertex_records(mesh)).add(triangle_records(mesh));
+    for (const Mesh& mesh : scene.meshes)
+        sum.add(vertex_records(mesh)).add(mesh.second_uvs).add(mesh.colors).add(triangle_records(mesh));
     std::vector<SurfaceInstance> instances;
     std::vector<uint> meshes, overrides;
     for (const Instance& instance : scene.instances) {
@@ -48,7 +49,7 @@ std::string image_sum(const Scene& scene, const TextureList& list) {
     std::vector<uint> sampled;
     for (const auto& [image, options] : list.textures)
         sampled.insert(sampled.end(), {image, static_cast<uint>(options.wrap_u), static_cast<uint>(options.wrap_v),
-                                       static_cast<uint>(options.is_srgb)});
+                                       static_cast<uint>(options.is_srgb), static_cast<uint>(options.filter)});
     sum.add(sampled);
     for (const Image& image : scene.images) sum.add(std::vector<uint>{image.width, image.height}).add(image.rgba);
     return sum.hex();

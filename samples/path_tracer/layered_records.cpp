@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/layered_records.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -64,14 +65,12 @@ std::vector<LayeredMaterial> layered_records(const Scene& scene, TextureList& te
 }
 
 bool has_texture(const Material& material) {
-    for (const Texture* texture :
-         {&material.base_color_texture, &material.metallic_roughness_texture, &material.emission_texture,
-          &material.normal_texture, &material.transmission_texture, &material.specular_texture,
-          &material.specular_color_texture, &material.clearcoat_texture, &material.clearcoat_roughness_texture,
-          &material.clearcoat_normal_texture, &material.sheen_color_texture, &material.sheen_roughness_texture,
-          &material.anisotropy_texture})
-        if (texture->image >= 0) return true;
-    return false;
+    return std::ranges::any_of(textures_of(material), [](const Texture* texture) { return texture->image >= 0; });
+}
+
+bool has_second_uvs(const Material& material) {
+    return std::ranges::any_of(textures_of(material),
+                               [](const Texture* texture) { return texture->image >= 0 && texture->uv_set == 1; });
 }
 
 }  // namespace twinray::path_tracer

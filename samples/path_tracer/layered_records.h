@@ -13,5 +13,7 @@ uint layers_of(const Material& material);
 std::vector<LayeredMaterial> layered_records(const Scene& scene, TextureList& textures);
 
 bool has_texture(const Material& material);
+// Whether a texture of it takes the second texture coordinates.
+bool has_second_uvs(const Material& material);
 
 }  // namespace twinray::path_tracer

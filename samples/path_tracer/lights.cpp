@@ -24,13 +24,13 @@ float texel_luminance(const Image& image, vec2 uv) {
 
 // Mean of the emission texture over a triangle, estimated; never 0, so that every emissive triangle can be chosen.
 float mean_texture(const Scene& scene, const Texture& texture, const Mesh& mesh, const uvec3& triangle) {
-    if (texture.image < 0 || mesh.uvs.empty()) return 1;
+    const std::vector<vec2>& uvs = mesh.uv_set(texture.uv_set);
+    if (texture.image < 0 || uvs.empty()) return 1;
     constexpr vec2 points[] = {{1 / 3.f, 1 / 3.f}, {0.6f, 0.2f},  {0.2f, 0.6f}, {0.2f, 0.2f},
                                {0.45f, 0.45f},     {0.1f, 0.45f}, {0.45f, 0.1f}};
     float sum = 0;
     for (const vec2 p : points) {
-        const vec2 uv =
-            mesh.uvs[triangle.x] * (1 - p.x - p.y) + mesh.uvs[triangle.y] * p.x + mesh.uvs[triangle.z] * p.y;
+        const vec2 uv = uvs[triangle.x] * (1 - p.x - p.y) + uvs[triangle.y] * p.x + uvs[triangle.z] * p.y;
         const vec3 affine(uv, 1);
         sum += texel_luminance(scene.images[static_cast<std::size_t>(texture.image)],
                                {dot(texture.uv_row0, affine), dot(texture.uv_row1, affine)});

@@ -15,16 +15,34 @@ constexpr std::pair<uint, uint> needs_of_layers[] = {{LAYER_SPECULAR, PT_HAS_SPE
                                                      {LAYER_ANISOTROPY, PT_HAS_ANISOTROPY},
                                                      {LAYER_VOLUME, PT_HAS_VOLUME}};
 
+// By material: whether an instance of a mesh that `counts` shows it.
+template <class Counts>
+std::vector<bool> materials_shown(const Scene& scene, const Counts& counts) {
+    std::vector<bool> used(scene.materials.size());
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        if (!counts(mesh)) continue;
+        if (instance.material) used[*instance.material] = true;
+        for (std::size_t i = 0; !instance.material && i < mesh.triangles.size(); ++i) used[mesh.material(i)] = true;
+    }
+    return used;
+}
+
 // What every kind needs: each kernel samples all lights, of which some may have textures or be transparent.
-uint needs_of_lights(const Scene& scene, const std::vector<bool>& used) {
+uint needs_of_lights(const Scene& scene, const std::vector<bool>& used, const std::vector<bool>& colored) {
     uint needs = 0;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         if (!used[i] || largest(material.emission) <= 0) continue;
         const bool is_transparent = material.alpha_mode != AlphaMode::opaque;
         if (is_transparent) needs |= 1u << PT_HAS_ALPHA;
-        if (material.emission_texture.image >= 0 || (is_transparent && material.base_color_texture.image >= 0))
+        for (const Texture& texture :
+             {material.emission_texture, is_transparent ? material.base_color_texture : Texture()}) {
+            if (texture.image < 0) continue;
             needs |= 1u << PT_HAS_TEXTURES;
+            if (texture.uv_set == 1) needs |= 1u << PT_HAS_SECOND_UVS;
+        }
+        if (is_transparent && colored[i]) needs |= 1u << PT_HAS_COLORS;
     }
     return needs;
 }
@@ -57,19 +75,14 @@ void merge(MaterialKinds& kinds, std::size_t kept, std::size_t removed) {
 }  // namespace
 
 std::vector<bool> used_materials(const Scene& scene) {
-    std::vector<bool> used(scene.materials.size());
-    for (const Instance& instance : scene.instances) {
-        const Mesh& mesh = scene.meshes[instance.mesh];
-        if (instance.material) used[*instance.material] = true;
-        for (std::size_t i = 0; !instance.material && i < mesh.triangles.size(); ++i) used[mesh.material(i)] = true;
-    }
-    return used;
+    return materials_shown(scene, [](const Mesh&) { return true; });
 }
 
 uint needs_of(const Material& material) {
     uint needs = 0;
     if (material.alpha_mode != AlphaMode::opaque) needs |= 1u << PT_HAS_ALPHA;
     if (has_texture(material)) needs |= 1u << PT_HAS_TEXTURES;
+    if (has_second_uvs(material)) needs |= 1u << PT_HAS_SECOND_UVS;
     if (material.transmission > 0) needs |= 1u << PT_HAS_GLASS;
     for (const auto& [layer, need] : needs_of_layers)
         if (layers_of(material) & layer) needs |= 1u << need;
@@ -85,9 +98,12 @@ uint MaterialKinds::all_needs() const {
 MaterialKinds kinds_of(const Scene& scene) {
     MaterialKinds kinds;
     const std::vector<bool> used = used_materials(scene);
-    const uint common = needs_of_lights(scene, used);
-    for (std::size_t i = 0; i < scene.materials.size(); ++i)
-        kinds.of.push_back(used[i] ? index_of(kinds.needs, common | needs_of(scene.materials[i])) : 0);
+    const std::vector<bool> colored = materials_shown(scene, [](const Mesh& mesh) { return !mesh.colors.empty(); });
+    const uint common = needs_of_lights(scene, used, colored);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const uint needs = common | needs_of(scene.materials[i]) | uint{colored[i]} << PT_HAS_COLORS;
+        kinds.of.push_back(used[i] ? index_of(kinds.needs, needs) : 0);
+    }
     while (kinds.needs.size() > most_material_kinds) {
         const auto [kept, removed] = closest(kinds.needs);
         merge(kinds, kept, removed);
@@ -100,7 +116,8 @@ std::string name_of_needs(uint needs) {
     const std::pair<uint, const char*> names[] = {{PT_HAS_ALPHA, "alpha"},   {PT_HAS_TEXTURES, "textures"},
                                                   {PT_HAS_GLASS, "glass"},   {PT_HAS_SPECULAR, "specular"},
                                                   {PT_HAS_COAT, "coat"},     {PT_HAS_SHEEN, "sheen"},
-                                                  {PT_HAS_VOLUME, "volume"}, {PT_HAS_ANISOTROPY, "anisotropy"}};
+                                                  {PT_HAS_VOLUME, "volume"}, {PT_HAS_ANISOTROPY, "anisotropy"},
+                                                  {PT_HAS_COLORS, "colors"}, {PT_HAS_SECOND_UVS, "second uvs"}};
     std::string result;
     for (const auto& [id, name] : names)
         if (needs >> id & 1) result += (result.empty() ? "" : ", ") + std::string(name);

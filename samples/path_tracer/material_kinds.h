@@ -15,10 +15,10 @@ constexpr std::size_t most_material_kinds = 4;
 std::vector<bool> used_materials(const Scene& scene);
 
 // What materials can need of the kernel that shades them.
-constexpr uint material_needs[] = {PT_HAS_ALPHA, PT_HAS_TEXTURES, PT_HAS_GLASS,      PT_HAS_SPECULAR,
-                                   PT_HAS_COAT,  PT_HAS_SHEEN,    PT_HAS_ANISOTROPY, PT_HAS_VOLUME};
+constexpr uint material_needs[] = {PT_HAS_ALPHA, PT_HAS_TEXTURES,   PT_HAS_GLASS,  PT_HAS_SPECULAR, PT_HAS_COAT,
+                                   PT_HAS_SHEEN, PT_HAS_ANISOTROPY, PT_HAS_VOLUME, PT_HAS_COLORS,   PT_HAS_SECOND_UVS};
 
-// One bit for each of material_needs: 1 << PT_HAS_ALPHA and the like.
+// One bit for each of material_needs: 1 << PT_HAS_ALPHA and the like. All but colors, which are of meshes.
 uint needs_of(const Material& material);
 
 struct MaterialKinds {

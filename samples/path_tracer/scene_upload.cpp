@@ -56,6 +56,7 @@ void DeviceScene::upload_all(Commands& commands, const Scene& scene, const Local
                              const EnvironmentMap* map) {
     TextureList textures;
     upload_meshes(commands, scene);
+    upload_extras(commands, scene);
     record_.instances = upload_instances(commands, scene, lights);
     record_.materials = upload(commands, "materials", material_records(scene, textures));
     if (features_.has_layers())
@@ -113,6 +114,21 @@ void DeviceScene::upload_meshes(Commands& commands, const Scene& scene) {
     for (const Mesh& mesh : scene.meshes)
         meshes_.push_back({upload(commands, "vertices of '" + mesh.name + "'", vertex_records(mesh)),
                            upload(commands, "triangles of '" + mesh.name + "'", triangle_records(mesh))});
+}
+
+void DeviceScene::upload_extras(Commands& commands, const Scene& scene) {
+    const bool has_colors = features_.some(PT_HAS_COLORS), has_second_uvs = features_.some(PT_HAS_SECOND_UVS);
+    if (!has_colors && !has_second_uvs) return;
+    std::vector<VertexExtras> of_meshes, records;
+    for (const Mesh& mesh : scene.meshes) {
+        VertexExtras& extras = of_meshes.emplace_back();
+        if (has_colors && !mesh.colors.empty())
+            extras.colors = {upload(commands, "colors of '" + mesh.name + "'", mesh.colors).address};
+        if (has_second_uvs && !mesh.second_uvs.empty())
+            extras.second_uvs = {upload(commands, "second uvs of '" + mesh.name + "'", mesh.second_uvs).address};
+    }
+    for (const Instance& instance : scene.instances) records.push_back(of_meshes[instance.mesh]);
+    record_.extras = upload(commands, "extras of vertices", records);
 }
 
 Ref<SurfaceInstance> DeviceScene::upload_instances(Commands& commands, const Scene& scene, const LocalLights& lights) {

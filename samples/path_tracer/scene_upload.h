@@ -60,6 +60,7 @@ class DeviceScene {
     template <class T>
     Ref<T> upload_moving(Commands& commands, const std::string& name, const std::vector<T>& values);
     void upload_meshes(Commands& commands, const Scene& scene);
+    void upload_extras(Commands& commands, const Scene& scene);
     Ref<SurfaceInstance> upload_instances(Commands& commands, const Scene& scene, const LocalLights& lights);
     void upload_lights(Commands& commands, const LocalLights& lights);
     void upload_textures(const Scene& scene, const TextureList& list);

@@ -45,13 +45,17 @@ const Animation& find_animation(const std::vector<Animation>& animations, const 
 }
 
 const Animation* chosen_animation(const SequenceOptions& options, const Scene& scene) {
-    if (!scene.rig) {
-        if (options.turntable && options.animation.empty()) return nullptr;
+    if (!options.plays_animation()) return nullptr;
+    if (!scene.rig)
         fail("--frames ", *options.frames, ": the scene has no animations; --turntable takes the camera round it");
-    }
-    const std::vector<Animation>& animations = scene.rig->animations;
-    if (options.animation.empty()) return options.turntable ? nullptr : &find_animation(animations, "0");
-    return &find_animation(animations, options.animation);
+    return &find_animation(scene.rig->animations, options.animation.empty() ? "0" : options.animation);
+}
+
+std::vector<Instance> instances_at(const Scene& scene, const Pose& pose) {
+    std::vector<Instance> instances = scene.instances;
+    for (std::size_t i = 0; i < instances.size(); ++i)
+        instances[i].transform = transform_of(matrix_of(pose, scene.rig->instances[i]));
+    return instances;
 }
 
 }  // namespace
@@ -89,7 +93,10 @@ Scene swept(const Scene& scene, const Sequence& sequence) {
     all.meshes = scene.meshes;
     all.instances = scene.instances;
     all.materials = scene.materials;
-    const uint moments = sequence.animation ? std::min(sequence.frames, most_moments) : 0;
+    if (!sequence.animation) return all;
+    const std::vector<Instance> at_rest = instances_at(scene, rest_pose(*scene.rig));
+    all.instances = at_rest;
+    const uint moments = std::min(sequence.frames, most_moments);
     for (uint i = 0; i < moments; ++i) {
         const uint frame = static_cast<uint>(std::uint64_t{i} * sequence.frames / moments);
         const Pose pose = pose_at(*scene.rig, *sequence.animation, sequence.time_of(frame));
@@ -100,15 +107,14 @@ Scene swept(const Scene& scene, const Sequence& sequence) {
             all.meshes.push_back(scene.meshes[mesh.mesh]);
             all.meshes.back().positions = deformed(*scene.rig, mesh, pose).positions;
         }
-        for (std::size_t k = 0; k < scene.instances.size(); ++k) {
-            Instance moved = scene.instances[k];
-            moved.transform = transform_of(matrix_of(pose, scene.rig->instances[k]));
-            moved.mesh = shapes[moved.mesh];
-            const bool has_moved =
-                moved.mesh != scene.instances[k].mesh || moved.transform != scene.instances[k].transform;
-            if (has_moved && fault_of(moved.transform).empty()) all.instances.push_back(std::move(moved));
+        std::vector<Instance> moved = instances_at(scene, pose);
+        for (std::size_t k = 0; k < moved.size(); ++k) {
+            moved[k].mesh = shapes[moved[k].mesh];
+            const bool has_moved = moved[k].mesh != at_rest[k].mesh || moved[k].transform != at_rest[k].transform;
+            if (has_moved) all.instances.push_back(std::move(moved[k]));
         }
     }
+    std::erase_if(all.instances, [](const Instance& instance) { return !fault_of(instance.transform).empty(); });
     return all;
 }
 

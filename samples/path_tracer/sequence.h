@@ -20,6 +20,7 @@ struct SequenceOptions {
     bool turntable = false;
 
     bool is_wanted() const { return frames.has_value(); }
+    bool plays_animation() const { return is_wanted() && (!turntable || !animation.empty()); }
 };
 
 // What moves, and when.

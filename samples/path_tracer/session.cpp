@@ -8,6 +8,7 @@
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
+#include "engine/scene/pose_scene.h"
 #include "engine/scene/shapes.h"
 #include "engine/scene/variants.h"
 #include "hwtlas/hw_tlas.h"
@@ -32,6 +33,7 @@ Scene load_any(const Options& options) {
 
 Scene load(const Options& options) {
     Scene scene = load_any(options);
+    if (options.sequence.plays_animation()) show_hidden(scene);
     if (!options.variant.empty()) apply_variant(scene, options.variant);
     return scene;
 }

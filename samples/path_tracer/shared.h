@@ -35,8 +35,8 @@ constexpr uint LAYERS = ~0u;  // in kernels specialisation constants
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(SurfaceVertex) == 48 && sizeof(SurfaceTriangle) == 16 && sizeof(SurfaceInstance) == 120);
-static_assert(sizeof(SurfaceMaterial) == 196 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 176);
-static_assert(sizeof(LayeredMaterial) == 300 && sizeof(WaveData) == 280);
+static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 184);
+static_assert(sizeof(LayeredMaterial) == 332 && sizeof(VertexExtras) == 16 && sizeof(WaveData) == 280);
 static_assert(sizeof(KindQueue) == 16 && sizeof(Disagreement) == 104);
 static_assert(sizeof(FilmPixel) == 72 && sizeof(FirstSurface) == 40);
 }  // namespace twinray::path_tracer

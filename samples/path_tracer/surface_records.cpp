@@ -4,6 +4,20 @@
 namespace twinray::path_tracer {
 namespace {
 
+// Of the first map that needs tangents.
+uint tangent_uv_set(const Material& material) {
+    for (const Texture* map :
+         {&material.normal_texture, &material.clearcoat_normal_texture, &material.anisotropy_texture})
+        if (map->image >= 0) return map->uv_set;
+    return 0;
+}
+
+// Without a direction: none.
+vec4 tangent_record(vec4 tangent) {
+    const vec3 direction(unit_or_zero(dvec3(tangent)));
+    return direction == vec3(0) ? vec4(0) : vec4(direction, tangent.w < 0 ? -1 : 1);
+}
+
 SurfaceMaterial material_record(const Material& material, TextureList& textures) {
     SurfaceMaterial record{};
     uint flags = 0;
@@ -15,6 +29,7 @@ SurfaceMaterial material_record(const Material& material, TextureList& textures)
     if (material.alpha_mode == AlphaMode::blend) flags |= MATERIAL_BLENDED;
     if (material.double_sided) flags |= MATERIAL_TWO_SIDED;
     if (material.unlit) flags |= MATERIAL_UNLIT;
+    if (tangent_uv_set(material) == 1) flags |= MATERIAL_SECOND_TANGENTS;
     record.base_texture = slot(material.base_color_texture, MATERIAL_BASE_TEXTURE, true);
     record.roughness_texture = slot(material.metallic_roughness_texture, MATERIAL_ROUGHNESS_TEXTURE);
     record.emission_texture = slot(material.emission_texture, MATERIAL_EMISSION_TEXTURE, true);
@@ -38,9 +53,9 @@ std::vector<SurfaceVertex> vertex_records(const Mesh& mesh) {
     std::vector<SurfaceVertex> records(mesh.positions.size());
     for (std::size_t i = 0; i < records.size(); ++i) {
         records[i].position = mesh.positions[i];
-        records[i].normal = mesh.normals.empty() ? vec3(0) : mesh.normals[i];
+        records[i].normal = mesh.normals.empty() ? vec3(0) : vec3(unit_or_zero(dvec3(mesh.normals[i])));
         records[i].uv = mesh.uvs.empty() ? vec2(0) : mesh.uvs[i];
-        records[i].tangent = mesh.tangents.empty() ? vec4(0) : mesh.tangents[i];
+        records[i].tangent = mesh.tangents.empty() ? vec4(0) : tangent_record(mesh.tangents[i]);
     }
     return records;
 }

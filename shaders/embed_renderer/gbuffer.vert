@@ -5,8 +5,9 @@
 #include "shaders/embed_renderer/includes.glsl"
 layout(push_constant, scalar) uniform Push { RasterArgs args; };
 layout(location = 0) out vec3 normal;
-layout(location = 1) out vec2 uv;
+layout(location = 1) out vec4 uv; // both sets
 layout(location = 2) flat out uvec2 ids;
+layout(location = 3) out vec3 color;
 
 // Depth is near / z: 1 at the near plane, 0 at infinity.
 vec4 projected(vec3 position)
@@ -24,7 +25,8 @@ void main()
     uint primitive = uint(gl_VertexIndex) / 3u;
     SurfaceInstance instance = AT(AT(args.frame, 0).instances, gl_InstanceIndex);
     uvec3 corners = AT(instance.triangles, primitive).vertices;
-    SurfaceVertex vertex = AT(instance.vertices, corners[uint(gl_VertexIndex) % 3u]);
+    uint index = corners[uint(gl_VertexIndex) % 3u];
+    SurfaceVertex vertex = AT(instance.vertices, index);
     vec3 object_normal = vertex.normal;
     if (object_normal == vec3(0.0))
     {
@@ -33,6 +35,13 @@ void main()
     }
     gl_Position = projected(transform_point(to_world_of(instance), vertex.position));
     normal = normalize(transposed_times(to_object_of(instance), object_normal));
-    uv = vertex.uv;
+    uv = vec4(vertex.uv, vertex.uv);
+    color = vec3(1.0);
+    if (uint64_t(AT(args.frame, 0).extras) != 0ul)
+    {
+        VertexExtras extras = AT(AT(args.frame, 0).extras, gl_InstanceIndex);
+        uv.zw = second_uv_of(extras, index, vertex.uv);
+        color = color_of(extras, index).rgb;
+    }
     ids = uvec2(gl_InstanceIndex, primitive);
 }

@@ -8,6 +8,7 @@
 #include "shaders/shared/spawn.h"
 #include "twinray/textures.glsl"
 #include "shaders/path_tracer/scene.h"
+#include "shaders/path_tracer/extras.glsl"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/shared/random.h"
 #include "shaders/path_tracer/weights.h"

@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
+#include "shaders/shared/ray.h"
 #include "shaders/shared/transform.h"
 #include "shaders/shared/deform.h"
 layout(local_size_x = 64) in;
@@ -51,7 +52,7 @@ float largest_of(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 vec3 unit_or_zero(vec3 v)
 {
     float largest = largest_of(v);
-    return largest > 0.0 ? normalize(v / largest) : vec3(0.0);
+    return largest > 0.0 && is_finite(v) ? normalize(v / largest) : vec3(0.0);
 }
 
 // The linear part in units of its largest entry, for directions: products of its entries then stay within float.

@@ -21,6 +21,7 @@
 #include "shaders/path_tracer/bsdf_sheen.h"
 #include "shaders/path_tracer/bsdf_coat.h"
 #include "shaders/path_tracer/bsdf.h"
+#include "shaders/path_tracer/extras.glsl"
 #include "shaders/path_tracer/surface.glsl"
 #include "shaders/path_tracer/material.glsl"
 #include "shaders/path_tracer/layers.glsl"

@@ -92,7 +92,8 @@ LightSample sample_environment(Environment env, vec2 u)
 LightSample sample_local(SceneData scene, Emitter emitter, vec3 from, vec2 u)
 {
     Placement placement = load_placement(scene.instances, emitter.instance);
-    TriangleData data = load_triangle_data(AT(scene.instances, emitter.instance), emitter.primitive);
+    TriangleData data = load_triangle_data(scene, emitter.instance, emitter.primitive);
+    data.material = emitter.material;
     Surface surface = surface_at(data, placement, sample_triangle(u));
     uint flags = AT(scene.materials, emitter.material).flags;
     float density = AT(AT(scene.instances, emitter.instance).emitter_density, emitter.primitive);
@@ -104,7 +105,7 @@ LightSample sample_local(SceneData scene, Emitter emitter, vec3 from, vec2 u)
     light.radiance = emitted(scene, emitter.material, flags, surface.uv, cosine > 0.0);
     if (HAS_ALPHA)
         light.radiance *= opacity(flags, AT(scene.materials, emitter.material).alpha_cutoff,
-                                  base_color(scene, emitter.material, flags, surface.uv).a);
+                                  base_color(scene, surface, flags).a);
     light.pdf = (1.0 - scene.environment.chance) * density * distance2 / abs(cosine);
     light.is_delta = false;
     light.has_target = true;

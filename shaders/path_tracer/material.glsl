@@ -3,25 +3,30 @@
 #ifndef TWINRAY_PATH_TRACER_MATERIAL_GLSL
 #define TWINRAY_PATH_TRACER_MATERIAL_GLSL
 
-vec4 sample_color(SceneData scene, TextureSlot slot, vec2 uv)
+vec2 slot_uv(TextureSlot slot, TextureCoordinates uv)
 {
-    return sample_texture(scene.textures, slot.texture, transformed_uv(slot, uv));
+    return transformed_uv(slot, HAS_SECOND_UVS && slot.uv_set != 0u ? uv.second : uv.first);
 }
 
-vec4 sample_data(SceneData scene, TextureSlot slot, vec2 uv)
+vec4 sample_color(SceneData scene, TextureSlot slot, TextureCoordinates uv)
 {
-    return sample_linear_texture(scene.textures, slot.texture, transformed_uv(slot, uv));
+    return sample_texture(scene.textures, slot.texture, slot_uv(slot, uv));
 }
 
-vec4 base_color(SceneData scene, uint material, uint flags, vec2 uv)
+vec4 sample_data(SceneData scene, TextureSlot slot, TextureCoordinates uv)
 {
-    vec4 color = AT(scene.materials, material).base_color;
+    return sample_linear_texture(scene.textures, slot.texture, slot_uv(slot, uv));
+}
+
+vec4 base_color(SceneData scene, Surface surface, uint flags)
+{
+    vec4 color = AT(scene.materials, surface.material).base_color * surface.color;
     if (HAS_TEXTURES && (flags & MATERIAL_BASE_TEXTURE) != 0u)
-        color *= sample_color(scene, AT(scene.materials, material).base_texture, uv);
+        color *= sample_color(scene, AT(scene.materials, surface.material).base_texture, surface.uv);
     return color;
 }
 
-vec3 emission(SceneData scene, uint material, uint flags, vec2 uv)
+vec3 emission(SceneData scene, uint material, uint flags, TextureCoordinates uv)
 {
     vec3 color = AT(scene.materials, material).emission;
     if (HAS_TEXTURES && (flags & MATERIAL_EMISSION_TEXTURE) != 0u && largest(color) > 0.0)
@@ -30,7 +35,7 @@ vec3 emission(SceneData scene, uint material, uint flags, vec2 uv)
 }
 
 // Radiance leaving the surface on the given side.
-vec3 emitted(SceneData scene, uint material, uint flags, vec2 uv, bool is_front)
+vec3 emitted(SceneData scene, uint material, uint flags, TextureCoordinates uv, bool is_front)
 {
     if (!is_front && (flags & MATERIAL_TWO_SIDED) == 0u) return vec3(0.0);
     return emission(scene, material, flags, uv);

@@ -22,12 +22,14 @@ const uint PT_HAS_SHEEN = 11u;
 const uint PT_HAS_ANISOTROPY = 12u;
 const uint PT_HAS_VOLUME = 13u;
 const uint PT_HAS_MEDIA = 14u;       // some material of the scene bounds a volume, in which a path may be anywhere
+const uint PT_HAS_COLORS = 15u;      // vertices have colors
+const uint PT_HAS_SECOND_UVS = 16u;  // some texture takes the second texture coordinates
 
 const uint STRATEGY_MIS = 0u;    // both of the following, weighted by the power heuristic
 const uint STRATEGY_LIGHTS = 1u; // sample lights only
 const uint STRATEGY_BSDF = 2u;   // sample the surface only: punctual lights are never found
 
-// 48 bytes. normal (0, 0, 0): none, shade flat. tangent.w 0: none, derive from uv.
+// 48 bytes. normal: unit, or 0 for none: that of the triangle stands in. tangent: unit, or 0 for none: derive from uv.
 struct SurfaceVertex
 {
     vec3 position;
@@ -55,10 +57,19 @@ struct SurfaceInstance
 };
 BUFFER_OF(SurfaceInstance, 8);
 
+// What vertices of a mesh have beyond SurfaceVertex; null: not these. By Hit::instance_index.
+struct VertexExtras
+{
+    Words64 second_uvs; // vec2
+    Words64 colors;     // vec4, linear
+};
+BUFFER_OF(VertexExtras, 8);
+
 // A texture and where a material samples it.
 struct TextureSlot
 {
     TextureRef texture;
+    uint uv_set; // 0 or 1: which of the texture coordinates
     vec3 row0; // uv' = (row0 . (u, v, 1), row1 . (u, v, 1))
     vec3 row1;
 };
@@ -77,6 +88,7 @@ const uint MATERIAL_ROUGHNESS_TEXTURE = 32u;
 const uint MATERIAL_EMISSION_TEXTURE = 64u;
 const uint MATERIAL_NORMAL_TEXTURE = 128u;
 const uint MATERIAL_TRANSMISSION_TEXTURE = 256u;
+const uint MATERIAL_SECOND_TANGENTS = 512u; // tangents are derived from the second texture coordinates
 
 struct SurfaceMaterial
 {
@@ -207,6 +219,7 @@ struct Environment
 struct SceneData
 {
     REF(SurfaceInstance) instances;
+    REF(VertexExtras) extras; // null: no mesh has any
     REF(SurfaceMaterial) materials;
     REF(LayeredMaterial) layered; // null: no material has layers
     Uints material_kinds; // of the materials; null where all are of one

@@ -173,7 +173,7 @@ void shade(PathState path, Ray ray, Hit hit)
     vertex.number = path.progress & 0xffffu;
     uint flags = AT(AT(wave.scene, 0).materials, vertex.surface.material).flags;
     vec2 part = unit_floats(pair_of(vertex, PAIR_PART));
-    vec4 color = base_color(AT(wave.scene, 0), vertex.surface.material, flags, vertex.surface.uv);
+    vec4 color = base_color(AT(wave.scene, 0), vertex.surface, flags);
     if (HAS_ALPHA)
     {
         float cutoff = AT(AT(wave.scene, 0).materials, vertex.surface.material).alpha_cutoff;

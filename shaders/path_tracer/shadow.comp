@@ -16,7 +16,7 @@ void pass(Ray ray, vec3 contribution, uint pixel, Hit hit)
     uint flags = AT(scene.materials, surface.material).flags;
     if ((flags & (MATERIAL_MASKED | MATERIAL_BLENDED)) == 0u) return;
     float cutoff = AT(scene.materials, surface.material).alpha_cutoff;
-    float passed = 1.0 - opacity(flags, cutoff, base_color(scene, surface.material, flags, surface.uv).a);
+    float passed = 1.0 - opacity(flags, cutoff, base_color(scene, surface, flags).a);
     if (passed <= 0.0) return;
     if (args.is_last != 0u)
     {

@@ -4,6 +4,12 @@
 #ifndef TWINRAY_PATH_TRACER_SURFACE_GLSL
 #define TWINRAY_PATH_TRACER_SURFACE_GLSL
 
+struct TextureCoordinates
+{
+    vec2 first;
+    vec2 second; // the first where a mesh has no others
+};
+
 struct Surface
 {
     SurfacePoint point;
@@ -12,13 +18,16 @@ struct Surface
     vec3 normal;        // shading normal, unit, on the side of point.normal
     vec3 tangent;       // world, for normal maps; not normalised
     vec3 bitangent;
-    vec2 uv;
+    TextureCoordinates uv;
+    vec4 color;         // of the vertices, linear
     uint material;
 };
 
 struct TriangleData
 {
     SurfaceVertex corner[3];
+    vec2 second_uv[3];
+    vec4 color[3];
     uint material;
 };
 
@@ -36,8 +45,20 @@ SurfaceVertex load_vertex(REF(SurfaceVertex) vertices, uint index)
     return vertex;
 }
 
-TriangleData load_triangle_data(SurfaceInstance instance, uint primitive)
+void load_extras(inout TriangleData data, SceneData scene, uint instance, uvec3 vertices)
 {
+    if (!HAS_COLORS && !HAS_SECOND_UVS) return;
+    VertexExtras extras = AT(scene.extras, instance);
+    UNROLL for (uint i = 0u; i < 3u; i++)
+    {
+        if (HAS_SECOND_UVS) data.second_uv[i] = second_uv_of(extras, vertices[i], data.corner[i].uv);
+        if (HAS_COLORS) data.color[i] = color_of(extras, vertices[i]);
+    }
+}
+
+TriangleData load_triangle_data(SceneData scene, uint instance_index, uint primitive)
+{
+    SurfaceInstance instance = AT(scene.instances, instance_index);
     Words64 words = Words64(uint64_t(instance.triangles) + uint64_t(primitive) * 16ul);
     uvec2 low = UINTS(AT(words, 0)), high = UINTS(AT(words, 1));
     TriangleData data;
@@ -45,6 +66,7 @@ TriangleData load_triangle_data(SurfaceInstance instance, uint primitive)
     data.corner[1] = load_vertex(instance.vertices, low.y);
     data.corner[2] = load_vertex(instance.vertices, high.x);
     data.material = high.y;
+    load_extras(data, scene, instance_index, uvec3(low, high.x));
     return data;
 }
 
@@ -92,39 +114,68 @@ Corners corners_of(TriangleData data)
     return corners;
 }
 
-vec3 vertex_normal(TriangleData data, vec2 at)
+vec3 weights_of(vec2 at) { return vec3(1.0 - at.x - at.y, at); }
+
+bool has_normal(SurfaceVertex vertex) { return vertex.normal != vec3(0.0); }
+
+vec3 corner_normal(SurfaceVertex vertex, vec3 of_triangle) { return has_normal(vertex) ? vertex.normal : of_triangle; }
+
+vec3 vertex_normal(TriangleData data, SurfacePoint point, vec2 at)
 {
-    return data.corner[0].normal * (1.0 - at.x - at.y) + data.corner[1].normal * at.x + data.corner[2].normal * at.y;
+    vec3 weights = weights_of(at);
+    return corner_normal(data.corner[0], point.normal_object) * weights.x +
+           corner_normal(data.corner[1], point.normal_object) * weights.y +
+           corner_normal(data.corner[2], point.normal_object) * weights.z;
 }
 
-vec2 interpolated_uv(TriangleData data, vec2 at)
+TextureCoordinates interpolated_uv(TriangleData data, vec2 at)
 {
-    return data.corner[0].uv * (1.0 - at.x - at.y) + data.corner[1].uv * at.x + data.corner[2].uv * at.y;
+    vec3 weights = weights_of(at);
+    TextureCoordinates uv;
+    uv.first = data.corner[0].uv * weights.x + data.corner[1].uv * weights.y + data.corner[2].uv * weights.z;
+    uv.second = uv.first;
+    if (HAS_SECOND_UVS)
+        uv.second = data.second_uv[0] * weights.x + data.second_uv[1] * weights.y + data.second_uv[2] * weights.z;
+    return uv;
+}
+
+vec4 interpolated_color(TriangleData data, vec2 at)
+{
+    if (!HAS_COLORS) return vec4(1.0);
+    vec3 weights = weights_of(at);
+    return data.color[0] * weights.x + data.color[1] * weights.y + data.color[2] * weights.z;
 }
 
 vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placement, vec2 at)
 {
-    vec3 normal = vertex_normal(data, at);
+    if (!has_normal(data.corner[0]) && !has_normal(data.corner[1]) && !has_normal(data.corner[2])) return point.normal;
+    vec3 normal = vertex_normal(data, point, at);
     if (dot(normal, normal) == 0.0) return point.normal;
     normal = normalize(transposed_times(placement.to_object, normal));
     // Files with vertex normals against their winding exist; the winding decides what is the front.
     return dot(normal, point.normal) < 0.0 ? -normal : normal;
 }
 
-// Tangents of the file, else by the derivatives of uv. glTF's bitangent points to smaller v (up in the picture).
-void set_tangents(inout Surface surface, TriangleData data, vec2 at)
+// Tangents of the file where they are any, else by the derivatives of uv. glTF's bitangent points to smaller v (up in the
+// picture).
+void set_tangents(inout Surface surface, TriangleData data, uint flags, vec2 at)
 {
-    if (data.corner[0].tangent.w != 0.0)
+    vec3 weights = weights_of(at);
+    vec4 along = data.corner[0].tangent * weights.x + data.corner[1].tangent * weights.y +
+                 data.corner[2].tangent * weights.z;
+    vec3 tangent = along.xyz;
+    vec3 bitangent = cross(vertex_normal(data, surface.point, at), tangent) * (along.w < 0.0 ? -1.0 : 1.0);
+    if (dot(bitangent, bitangent) > 0.0)
     {
-        vec3 tangent = data.corner[0].tangent.xyz * (1.0 - at.x - at.y) + data.corner[1].tangent.xyz * at.x +
-                       data.corner[2].tangent.xyz * at.y;
-        vec3 bitangent = cross(vertex_normal(data, at), tangent) * data.corner[0].tangent.w;
         surface.tangent = transform_vector(surface.placement.to_world, tangent);
         surface.bitangent = transform_vector(surface.placement.to_world, bitangent);
         return;
     }
-    vec2 du = data.corner[1].uv - data.corner[0].uv;
-    vec2 dv = data.corner[2].uv - data.corner[0].uv;
+    vec2 uv0 = data.corner[0].uv, uv1 = data.corner[1].uv, uv2 = data.corner[2].uv;
+    if (HAS_SECOND_UVS && (flags & MATERIAL_SECOND_TANGENTS) != 0u)
+        uv0 = data.second_uv[0], uv1 = data.second_uv[1], uv2 = data.second_uv[2];
+    vec2 du = uv1 - uv0;
+    vec2 dv = uv2 - uv0;
     vec3 edge1 = data.corner[1].position - data.corner[0].position;
     vec3 edge2 = data.corner[2].position - data.corner[0].position;
     float handedness = du.x * dv.y - du.y * dv.x < 0.0 ? -1.0 : 1.0;
@@ -138,6 +189,7 @@ Surface surface_at(TriangleData data, Placement placement, vec2 at)
     surface.placement = placement;
     surface.point = surface_point(placement, corners_of(data), at);
     surface.uv = interpolated_uv(data, at);
+    surface.color = interpolated_color(data, at);
     surface.material = data.material;
     surface.normal = interpolated_normal(data, surface.point, placement, at);
     return surface;
@@ -146,12 +198,13 @@ Surface surface_at(TriangleData data, Placement placement, vec2 at)
 Surface surface_of(SceneData scene, Ray ray, Hit hit)
 {
     Placement placement = load_placement(scene.instances, hit.instance_index);
-    TriangleData data = load_triangle_data(AT(scene.instances, hit.instance_index), hit.primitive_index);
+    TriangleData data = load_triangle_data(scene, hit.instance_index, hit.primitive_index);
     vec3 at = crossing_of(ray, placement, corners_of(data));
     Surface surface = surface_at(data, placement, at.xy);
     surface.material = material_of(hit.custom_index, data.material);
     surface.t = at.z;
-    if (HAS_TEXTURES || (LAYERS & LAYER_ANISOTROPY) != 0u) set_tangents(surface, data, at.xy);
+    if (HAS_TEXTURES || (LAYERS & LAYER_ANISOTROPY) != 0u)
+        set_tangents(surface, data, AT(scene.materials, surface.material).flags, at.xy);
     return surface;
 }
 #endif

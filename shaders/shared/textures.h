@@ -24,7 +24,7 @@ struct TextureRecord
     uint wrap_u; // TEXTURE_*
     uint wrap_v;
     uint is_srgb;
-    uint reserved;
+    uint is_nearest; // not filtered
 };
 BUFFER_OF(TextureRecord, 8);
 

@@ -41,7 +41,7 @@ vec4 fetch_texel(TextureTable table, TextureRef ref, ivec2 at)
     return texelFetch(TWINRAY_IMAGE(ref), clamp(at, ivec2(0), textureSize(TWINRAY_IMAGE(ref), 0) - 1), 0);
 }
 
-// Bilinear, with the precision of the device's samplers.
+// Bilinear, with the precision of the device's samplers, or the nearest texel, as the texture was pushed.
 vec4 sample_texture(TextureTable table, TextureRef ref, vec2 uv)
 {
     if (!has_texture(table, ref)) return vec4(1.0);
@@ -94,13 +94,13 @@ vec4 fetch_texel(TextureTable table, TextureRef ref, ivec2 at)
     return texture_texel(record, uint(inside.x), uint(inside.y), record.is_srgb != 0u);
 }
 
-// Bilinear in float32, after decoding.
+// Bilinear in float32, after decoding; the nearest texel by weights of 0 and 1.
 vec4 texture_filtered(TextureRecord record, vec2 uv, bool is_srgb)
 {
     vec2 at = vec2(texture_wrapped(uv.x, record.wrap_u) * float(record.width),
                    texture_wrapped(uv.y, record.wrap_v) * float(record.height)) - 0.5;
     vec2 low = floor(at);
-    vec2 weight = at - low;
+    vec2 weight = record.is_nearest != 0u ? step(0.5, at - low) : at - low;
     uint x0 = texture_neighbour(int(low.x), record.width, record.wrap_u);
     uint x1 = texture_neighbour(int(low.x) + 1, record.width, record.wrap_u);
     uint y0 = texture_neighbour(int(low.y), record.height, record.wrap_v);

@@ -62,6 +62,24 @@ TEST(CameraRays, OrthographicRaysAreParallel) {
     EXPECT_EQ(rays.forward, vec3(0, 0, -1));
 }
 
+// All of a frame is seen at the scale of its tighter side, and more beside it.
+TEST(CameraRays, PicturesOfAnotherAspectShowAllOfTheFrame) {
+    for (const bool is_orthographic : {false, true})
+        for (const float frame : {0.5f, 1.0f, 2.0f})
+            for (const float aspect : {0.25f, 1.0f, 1.5f, 3.0f}) {
+                Camera camera;
+                camera.aspect = frame;
+                if (is_orthographic) camera.orthographic_half_height = 2.0f;
+                const float half = is_orthographic ? 2 : std::tan(camera.vertical_fov / 2);
+                const CameraRays rays = camera_rays(camera, aspect);
+                EXPECT_NEAR(rays.right.x / rays.up.y, aspect, 1e-6f);  // not stretched
+                const float over = std::min(rays.right.x / (half * frame), rays.up.y / half);
+                EXPECT_NEAR(over, 1, 1e-6f) << frame << " in " << aspect;
+                camera.aspect.reset();
+                EXPECT_EQ(camera_rays(camera, aspect).up.y, half) << "without a frame the height is what is seen";
+            }
+}
+
 TEST(AutomaticExposure, BringsTheMeanToMiddleGrey) {
     Picture picture{2, 2, {vec3(0), vec3(2), vec3(8), vec3(4)}};
     EXPECT_NEAR(std::exp2(automatic_exposure(picture)) * 4, 0.18f, 1e-5f);

@@ -90,10 +90,39 @@ TEST(MaterialKinds, LayersAreNeeds) {
     EXPECT_EQ(needs_of(mapped), textures | 1u << PT_HAS_COAT);
 }
 
+// Of meshes, by the materials that show them; of lights all kernels need them where alpha tells what arrives.
+TEST(MaterialKinds, ColorsAreNeedsOfWhatIsSeenOnColoredMeshes) {
+    constexpr uint colors = 1u << PT_HAS_COLORS;
+    Scene scene = scene_with({0, 0, glass});
+    scene.meshes[1].colors.assign(4, vec4(1));
+    EXPECT_EQ(kinds_of(scene).needs, (std::vector<uint>{0, colors, glass}));
+    scene.instances[1].material = 2;
+    EXPECT_EQ(kinds_of(scene).needs, (std::vector<uint>{0, colors | glass}));
+    scene = scene_with({0, alpha});
+    scene.meshes[1].colors.assign(4, vec4(1));
+    scene.materials[1].emission = vec3(1);
+    EXPECT_EQ(kinds_of(scene).needs, (std::vector<uint>{alpha | colors}));
+}
+
+TEST(MaterialKinds, SecondTextureCoordinatesAreNeedsOfTextures) {
+    constexpr uint second = 1u << PT_HAS_SECOND_UVS;
+    Scene scene = scene_with({0, textures});
+    scene.meshes[0].second_uvs.assign(4, vec2(0));
+    scene.meshes[1].second_uvs.assign(4, vec2(0));
+    EXPECT_EQ(kinds_of(scene).needs, (std::vector<uint>{0, textures}));
+    scene.materials[0].normal_texture.uv_set = 1;  // of no image
+    EXPECT_EQ(kinds_of(scene).needs, (std::vector<uint>{0, textures}));
+    scene.materials[1].normal_texture.uv_set = 1;
+    EXPECT_EQ(kinds_of(scene).needs, (std::vector<uint>{0, textures | second}));
+    scene.materials[1].emission = vec3(1);
+    scene.materials[1].emission_texture = {.image = 0, .uv_set = 1};
+    EXPECT_EQ(kinds_of(scene).needs, (std::vector<uint>{textures | second}));
+}
+
 TEST(MaterialKinds, HaveNames) {
     EXPECT_EQ(name_of_needs(0), "plain");
     EXPECT_EQ(name_of_needs(textures | glass), "textures, glass");
-    EXPECT_EQ(std::size(material_needs), 8u);
+    EXPECT_EQ(std::size(material_needs), 10u);
     for (const uint need : material_needs) EXPECT_NE(name_of_needs(1u << need), "plain") << need;
 }
 

@@ -3,6 +3,7 @@
 #include "samples/path_tracer/moving_scene.h"
 
 #include <cstring>
+#include <limits>
 
 #include "engine/core/error.h"
 #include "engine/scene/deform.h"
@@ -106,6 +107,48 @@ TEST_F(MovingSceneTest, ALampThatVanishesShinesNoMore) {
     const Pictures dark = pictures(scene, pose, false);
     EXPECT_GT(statistics(dark.before).mean, 0);
     EXPECT_EQ(statistics(dark.after).mean, 0);
+}
+
+// The box, which stands nowhere at rest, grows.
+TEST_F(MovingSceneTest, WhatIsHiddenAtRestAppears) {
+    Scene scene = moving_scene();
+    auto rig = std::make_shared<Rig>(*scene.rig);
+    rig->nodes[2].rest.scale = dvec3(0);
+    rig->hidden = {{scene.instances[2], rig->instances[2]}};
+    rig->instances.pop_back();
+    rig->animations[0].keyframes[2] = keyframes(3, {0, 0, 0, 1, 2, 1});
+    rig->animations[0].channels = {{2, Animation::Channel::Path::scale, 2}};
+    scene.instances.pop_back();
+    scene.rig = rig;
+    show_hidden(scene);
+    const auto at = [&](double seconds) {
+        return pictures(scene, pose_at(*scene.rig, scene.rig->animations[0], seconds), false);
+    };
+    const Pictures none = at(0), grown = at(1);
+    EXPECT_TRUE(same_bits(none.after, none.expected));
+    EXPECT_TRUE(same_bits(grown.after, grown.expected));
+    EXPECT_FALSE(same_bits(none.after, grown.after));
+}
+
+// Normals that targets and skins leave without a direction.
+TEST_F(MovingSceneTest, NormalsThatVanishAreThoseOfTheTriangle) {
+    for (const float left : {0.0f, std::numeric_limits<float>::quiet_NaN()}) {
+        Scene scene = moving_scene();
+        scene.meshes[0].normals.assign(4, vec3(0, 1, 0));
+        auto rig = std::make_shared<Rig>(*scene.rig);
+        rig->nodes[0].weights = {1};
+        DeformedMesh floor{0, 0, -1, {scene.meshes[0].positions, scene.meshes[0].normals, {}}, {}};
+        floor.motion.targets = {{std::vector<vec3>(4, vec3(0)), std::vector<vec3>(4, vec3(left, -1, 0)), {}}};
+        rig->meshes.push_back(floor);
+        scene.rig = rig;
+        scene.meshes[0].normals.assign(4, normalize(vec3(0.5f, 1, 0)));
+        Scene flat = scene;
+        flat.meshes[0].normals.clear();
+        const Pose pose = rest_pose(*rig);
+        const Pictures found = pictures(scene, pose, false), expected = pictures(flat, pose, false);
+        EXPECT_FALSE(same_bits(found.before, expected.before));
+        EXPECT_TRUE(same_bits(found.after, expected.expected));
+    }
 }
 
 TEST_F(MovingSceneTest, LightInASceneThatWasDarkIsRefused) {

@@ -105,5 +105,28 @@ TEST(Sequence, WhatIsSweptHoldsAllMoments) {
     EXPECT_EQ(bounds_of(all).hi, vec3(7, 1, 1));
 }
 
+// A box that is hidden at rest and grows at x = 100: where it stands until it is played does not count.
+TEST(Sequence, WhatIsSweptHoldsWhatGrowsFromNothing) {
+    Scene scene = carried_box();
+    scene.instances.push_back({"seed", 0, Transform::translation({0, -50, 0})});
+    auto rig = std::make_shared<Rig>(*scene.rig);
+    rig->nodes.push_back({.name = "seed", .rest = {.translation = {100, 0, 0}, .scale = {0, 0, 0}}, .weights = {}});
+    rig->instances.push_back({.node = 1});
+    rig->animations[0].keyframes.push_back({Interpolation::linear, false, 3, {1, 3}, {0, 0, 0, 2, 2, 2}});
+    rig->animations[0].channels.push_back({1, Animation::Channel::Path::scale, 1});
+    scene.rig = rig;
+    const Scene all = swept(scene, make_sequence({.frames = 2}, scene));  // at 1 s and 2 s
+    EXPECT_EQ(bounds_of(all).lo, vec3(0));
+    EXPECT_EQ(bounds_of(all).hi, vec3(101, 1, 1));
+    for (const Instance& instance : all.instances) EXPECT_EQ(fault_of(instance.transform), "");
+}
+
+TEST(Sequence, HiddenInstancesAreOfAnimationsThatPlay) {
+    EXPECT_FALSE(SequenceOptions{}.plays_animation());
+    EXPECT_TRUE(SequenceOptions{.frames = 1}.plays_animation());
+    EXPECT_FALSE((SequenceOptions{.frames = 1, .turntable = true}).plays_animation());
+    EXPECT_TRUE((SequenceOptions{.frames = 1, .animation = "0", .turntable = true}).plays_animation());
+}
+
 }  // namespace
 }  // namespace twinray::path_tracer

@@ -115,6 +115,33 @@ VertexMotion two_joints(float first_weight) {
     return motion;
 }
 
+// Frames keep the axes of what has shrunk to nothing; where it stands is that of nodes.
+TEST(Pose, FramesOutliveScalesOfZero) {
+    Rig rig;
+    rig.nodes.resize(2);
+    rig.nodes[0].rest = {.translation = {1, 2, 3}, .scale = {0, 2, 0}};
+    rig.nodes[1].parent = 0;
+    rig.nodes[1].rest = {.translation = {5, 5, 5}, .rotation = {0, 0, 1, 1}, .scale = {3, 1, 1}};
+    const Pose pose = rest_pose(rig);
+    const Rig::Place place{.node = 1};
+    EXPECT_EQ(matrix_of(pose, place)[3], glm::dvec4(1, 12, 3, 1));
+    const glm::dmat4 frame = frame_of(pose, place);
+    EXPECT_EQ(frame[3], glm::dvec4(1, 12, 3, 1));
+    EXPECT_NEAR(glm::length(frame[0] - glm::dvec4(0, 6, 0, 0)), 0, 1e-12);
+    EXPECT_NEAR(glm::length(frame[1] - glm::dvec4(-1, 0, 0, 0)), 0, 1e-12);
+    EXPECT_EQ(frame[2], glm::dvec4(0, 0, 1, 0));
+}
+
+TEST(Deform, DirectionsThatAreNoNumbersBecomeZero) {
+    MeshVertices base;
+    base.positions.assign(3, vec3(0));
+    base.normals = {{NAN, 0, 0}, {INFINITY, 0, 0}, {0, 0, 3e38f}};
+    base.tangents = {{0, NAN, 0, -1}, {0, -INFINITY, 1, 1}, {0, 1e-45f, 0, 1}};
+    const MeshVertices moved = deformed(base, {}, {}, {});
+    EXPECT_EQ(moved.normals, (std::vector<vec3>{vec3(0), vec3(0), vec3(0, 0, 1)}));
+    EXPECT_EQ(moved.tangents, (std::vector<vec4>{{0, 0, 0, -1}, {0, 0, 0, 1}, {0, 1, 0, 1}}));
+}
+
 TEST(Deform, VerticesLieBetweenWhereTheirJointsWouldCarryThem) {
     const Transform joints[] = {Transform::translation({4, 0, 0}), Transform::scaling({1, 3, 1})};
     const MeshVertices moved = deformed(triangle(), two_joints(0.25f), {}, joints);

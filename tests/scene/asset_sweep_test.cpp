@@ -33,7 +33,8 @@ void expect_consistent(const Scene& scene) {
     for (const Mesh& mesh : scene.meshes) {
         EXPECT_NO_THROW(check_indices(mesh));
         EXPECT_FALSE(mesh.triangles.empty());
-        for (const std::size_t size : {mesh.normals.size(), mesh.tangents.size(), mesh.uvs.size()})
+        for (const std::size_t size :
+             {mesh.normals.size(), mesh.tangents.size(), mesh.uvs.size(), mesh.second_uvs.size(), mesh.colors.size()})
             EXPECT_TRUE(size == 0 || size == mesh.positions.size());
         ASSERT_EQ(mesh.materials.size(), mesh.triangles.size());
         for (const uint material : mesh.materials) ASSERT_LT(material, scene.materials.size());

@@ -143,6 +143,22 @@ TEST_F(DeformerTest, DirectionsWithoutLengthAreZero) {
     EXPECT_EQ(found.tangents[5], vec4(0, 0, 0, -1));
 }
 
+TEST_F(DeformerTest, DirectionsThatAreNoNumbersAreZero) {
+    const auto rig = random_rig(make_icosphere(1), 4);
+    rig->meshes[0].base.normals[5].y = NAN;
+    rig->meshes[0].base.normals[6] = vec3(0, INFINITY, 0);
+    rig->meshes[0].base.tangents[5].x = -INFINITY;
+    rig->meshes[0].base.tangents[6].z = NAN;
+    Deformer deformer(context(), rig);
+    run(context(), deformer, rest_pose(*rig));
+    const MeshVertices found = downloaded(context(), deformer);
+    for (const std::size_t vertex : {5u, 6u}) {
+        EXPECT_EQ(found.normals[vertex], vec3(0)) << vertex;
+        EXPECT_EQ(found.tangents[vertex], vec4(0, 0, 0, -1)) << vertex;
+    }
+    EXPECT_NEAR(length(found.normals[7]), 1, 1e-6);
+}
+
 // The accelerators read what the deformer wrote.
 class Deformed : public test::AccelTest {};
 TWINRAY_OVER_EVERY_ACCEL(Deformed);

@@ -75,6 +75,16 @@ TEST(GltfSkin, WeightsAreNormalisedAndCornersWithoutAnyFollowTheFirstJoint) {
     EXPECT_TRUE(has_warning(scene, "1 vertices have no weights and follow the skin's first joint"));
 }
 
+TEST(GltfSkin, TheLastRowOfAnInverseBindMatrixMayBeRounded) {
+    GltfBuilder gltf = skinned_triangle();
+    const std::vector<vec3> exact = gltf.load().meshes[0].positions;
+    gltf.root["skins"][0]["inverseBindMatrices"] =
+        gltf.add_floats("MAT4", {1, 0, 0, 1e-17f, 0, 1, 0, -2e-9f, 0, 0, 1, 1e-12f, 0, 0,  0, 1,
+                                 1, 0, 0, 0,      0, 1, 0, 0,      0, 0, 1, 0,      0, -1, 0, 0.9999999f});
+    const std::vector<vec3> found = gltf.load().meshes[0].positions;
+    for (std::size_t i = 0; i < 3; ++i) expect_near(found[i], exact[i]);
+}
+
 TEST(GltfMorph, NodesShowTheirWeightsAndShareAMeshWhereTheyAreEqual) {
     GltfBuilder gltf = one_triangle();
     gltf.primitive()["targets"] = {{{"POSITION", gltf.add_floats("VEC3", {0, 0, 0, 1, 0, 0, 0, 0, 4})}},
@@ -122,6 +132,85 @@ TEST(GltfAnimation, InstancesCamerasAndLightsMoveWithTheirNodes) {
     expect_near(transform_point(scene.cameras[0].camera_to_world, vec3(0, 0, -1)), {5, 2, 0});
     expect_near(scene.lights[0].position, {5, 1, 0});
     expect_near(scene.lights[0].direction, {0, 1, 0});
+}
+
+// The triangle, and a box of it on a node without size at rest, of which an animation drives the scale or its parent's.
+GltfBuilder growing_triangle(int driven) {
+    GltfBuilder gltf = one_triangle();
+    gltf.add_node({{"name", "pot"}, {"translation", {3, 0, 0}}, {"children", {2}}});
+    gltf.append("nodes", {{"name", "plant"}, {"mesh", 0}});
+    gltf.root["nodes"][std::size_t(driven)]["scale"] = {0, 0, 0};
+    const int times = gltf.add_floats("SCALAR", {0, 1}), sizes = gltf.add_floats("VEC3", {0, 0, 0, 2, 2, 2});
+    gltf.root["animations"] = {{{"samplers", {{{"input", times}, {"output", sizes}}}},
+                                {"channels", {{{"sampler", 0}, {"target", {{"node", driven}, {"path", "scale"}}}}}}}};
+    return gltf;
+}
+
+TEST(GltfAnimation, WhatGrowsFromNothingIsHiddenAtRest) {
+    for (const int driven : {1, 2}) {
+        SCOPED_TRACE(driven);
+        Scene scene = growing_triangle(driven).load();
+        EXPECT_TRUE(scene.warnings.empty());
+        ASSERT_EQ(scene.instances.size(), 1u);
+        EXPECT_EQ(scene.instances[0].name, "node");
+        ASSERT_EQ(scene.rig->hidden.size(), 1u);
+        const Rig& as_loaded = *scene.rig;
+        const auto keep = scene.rig;
+        show_hidden(scene);
+        EXPECT_EQ(as_loaded.hidden.size(), 1u);  // others may hold it
+        EXPECT_TRUE(scene.rig->hidden.empty());
+        ASSERT_EQ(scene.instances.size(), 2u);
+        EXPECT_EQ(scene.instances[1].name, "plant");
+        pose_scene(scene, rest_pose(*scene.rig));
+        EXPECT_EQ(determinant(scene.instances[1].transform), 0);
+        pose_scene(scene, pose_at(*scene.rig, scene.rig->animations[0], 0.5));
+        EXPECT_EQ(scene.instances[0].transform, Transform());
+        EXPECT_EQ(scene.instances[1].transform, Transform::translation({3, 0, 0}));
+    }
+}
+
+// Of several meshes: instances stay grouped by mesh.
+TEST(GltfAnimation, HiddenInstancesTakeTheirPlaceAmongThoseOfTheirMesh) {
+    GltfBuilder gltf = growing_triangle(2);
+    gltf.append("meshes", gltf.root["meshes"][0]);
+    gltf.add_node({{"name", "last"}, {"mesh", 1}});
+    Scene scene = gltf.load();
+    show_hidden(scene);
+    ASSERT_EQ(scene.instances.size(), 3u);
+    EXPECT_EQ(scene.instances[1].name, "plant");
+    EXPECT_EQ(scene.instances[2].name, "last");
+    pose_scene(scene, pose_at(*scene.rig, scene.rig->animations[0], 1));
+    EXPECT_EQ(scene.instances[1].transform.rows[0], vec4(2, 0, 0, 3));
+    EXPECT_EQ(scene.instances[2].transform, Transform());
+}
+
+TEST(GltfAnimation, WhatNothingScalesIsSkipped) {
+    GltfBuilder gltf = growing_triangle(2);
+    animation(gltf)["channels"][0]["target"]["node"] = 0;
+    const Scene scene = gltf.load();
+    EXPECT_TRUE(has_warning(scene, "node 2 'plant': skipped 1 of 1 placements"));
+    EXPECT_TRUE(scene.rig->hidden.empty());
+}
+
+// As stop-motion has it, where each frame is a node that is shown for a moment.
+TEST(GltfAnimation, AllMayBeHiddenAtRest) {
+    GltfBuilder gltf = growing_triangle(1);
+    gltf.root["nodes"][0].erase("mesh");
+    Scene scene = gltf.load();
+    EXPECT_TRUE(scene.instances.empty());
+    EXPECT_TRUE(has_warning(scene, "at rest nothing is shown"));
+    show_hidden(scene);
+    EXPECT_EQ(scene.instances.size(), 1u);
+}
+
+TEST(GltfAnimation, VisibilityThatAnAnimationDrivesStaysWithAWarning) {
+    GltfBuilder gltf = skinned_triangle();
+    const json pointer = {{"pointer", "/nodes/0/extensions/KHR_node_visibility/visible"}};
+    animation(gltf)["channels"].push_back(
+        {{"sampler", 0}, {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", pointer}}}}}});
+    const Scene scene = gltf.load();
+    EXPECT_TRUE(has_warning(scene, "animation 0 'kick': shows and hides nodes, which stay as they are at rest"));
+    EXPECT_EQ(scene.rig->animations[0].fault, "");
 }
 
 TEST(GltfVariants, MaterialsAreThoseOfTheirMappings) {
@@ -179,7 +268,7 @@ const Fault shape_faults[] = {
      "inverseBindMatrices 0 has the entry nan"},
     {"InverseBindProjects",
      [](auto& g) { skin(g)["inverseBindMatrices"] = g.add_floats("MAT4", std::vector<float>(32, 1)); },
-     "its last row is not 0 0 0 1"},
+     "inverseBindMatrices 0: the last row is 1 1 1 1, not 0 0 0 1"},
     {"NoWeights", [](auto& g) { g.primitive()["attributes"].erase("WEIGHTS_0"); }, "has no JOINTS_0 and WEIGHTS_0"},
     {"NegativeWeight",
      [](auto& g) {

@@ -154,7 +154,19 @@ const Fault object_faults[] = {
      },
      "translation has 2 numbers instead of 3"},
     {"ProjectiveMatrix", [](auto& g) { node(g)["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; },
-     "the last row of its matrix is not 0 0 0 1"},
+     "matrix: the last row is 1 0 0 1, not 0 0 0 1"},
+    {"VisibilityIsNoBool", [](auto& g) { node(g)["extensions"]["KHR_node_visibility"]["visible"] = 1; },
+     "node 0 'node': KHR_node_visibility visible is neither true nor false"},
+    {"ColorsAreVec2",
+     [](auto& g) { g.primitive()["attributes"]["COLOR_0"] = g.add_floats("VEC2", std::vector<float>(6)); },
+     "COLOR_0: accessor 2 is not of type VEC3"},
+    {"TooFewColors",
+     [](auto& g) { g.primitive()["attributes"]["COLOR_0"] = g.add_floats("VEC4", std::vector<float>(8)); },
+     "COLOR_0 has 2 elements, but POSITION has 3"},
+    {"TooFewSecondUvs",
+     [](auto& g) { g.primitive()["attributes"]["TEXCOORD_1"] = g.add_floats("VEC2", std::vector<float>(4)); },
+     "TEXCOORD_1 has 2 elements, but POSITION has 3"},
+    {"NoSuchColors", [](auto& g) { g.primitive()["attributes"]["COLOR_0"] = 77; }, "accessor 77 does not exist"},
     {"InfiniteTransform",
      [](auto& g) {
          node(g)["translation"] = {1e39, 0, 0};
@@ -255,7 +267,8 @@ TEST(GltfFile, AppearanceExtensionsMayBeRequiredAndAreSkippedWithAWarning) {
     GltfBuilder gltf = one_triangle();
     gltf.root["extensionsRequired"] = {"KHR_materials_iridescence"};
     gltf.root["extensionsUsed"] = {"KHR_materials_iridescence", "KHR_texture_transform"};
-    EXPECT_EQ(gltf.load().warnings, std::vector<std::string>{"shown without the glTF extensions KHR_materials_iridescence"});
+    EXPECT_EQ(gltf.load().warnings,
+              std::vector<std::string>{"shown without the glTF extensions KHR_materials_iridescence"});
 }
 
 }  // namespace

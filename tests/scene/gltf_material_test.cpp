@@ -255,10 +255,61 @@ TEST(GltfMaterial, TextureTransformsTurnAsTheKhronosSampleDoes) {
     EXPECT_NEAR(glm::length(all.uv_row1 - vec3(-2, 0, -0.25f)), 0, 1e-6);
 }
 
-TEST(GltfMaterial, AnotherTexcoordSetIsReplacedWithAWarning) {
+// Of each texture by itself, those of extensions, too; KHR_texture_transform has the last word.
+TEST(GltfMaterial, TexturesNameTheirSetOfTextureCoordinates) {
+    const auto texture = [](int set) { return json{{"index", 0}, {"texCoord", set}}; };
+    json moved = texture(0);
+    moved["extensions"]["KHR_texture_transform"]["texCoord"] = 1;
+    GltfBuilder gltf = textured_triangle({{"pbrMetallicRoughness", {{"baseColorTexture", moved}}},
+                                          {"normalTexture", texture(1)},
+                                          {"occlusionTexture", texture(1)},
+                                          {"emissiveTexture", texture(0)},
+                                          {"extensions",
+                                           {{"KHR_materials_transmission", {{"transmissionTexture", texture(1)}}},
+                                            {"KHR_materials_sheen", {{"sheenColorTexture", moved}}},
+                                            {"KHR_materials_clearcoat", {{"clearcoatNormalTexture", texture(1)}}}}}});
+    for (const char* name : {"TEXCOORD_0", "TEXCOORD_1"})
+        gltf.primitive()["attributes"][name] = gltf.add_floats("VEC2", std::vector<float>(6));
+    const Scene scene = gltf.load();
+    EXPECT_TRUE(scene.warnings.empty()) << testing::PrintToString(scene.warnings);
+    const Material& material = scene.materials[0];
+    EXPECT_EQ(material.base_color_texture.uv_set, 1u);
+    EXPECT_EQ(material.normal_texture.uv_set, 1u);
+    EXPECT_EQ(material.emission_texture.uv_set, 0u);
+    EXPECT_EQ(material.transmission_texture.uv_set, 1u);
+    EXPECT_EQ(material.sheen_color_texture.uv_set, 1u);
+    EXPECT_EQ(material.clearcoat_normal_texture.uv_set, 1u);
+}
+
+TEST(GltfMaterial, TextureCoordinatesThatAreNotThereAreNamed) {
     GltfBuilder gltf = with_base_color_texture();
-    gltf.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 1;
-    EXPECT_TRUE(has_warning(gltf.load(), "material 0 baseColorTexture: asks for TEXCOORD_1"));
+    const char* lacks = "mesh 0 'tri' primitive 0: lacks the TEXCOORD_";
+    json& set = gltf.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"];
+    set = 2;
+    EXPECT_TRUE(has_warning(gltf.load(), "material 0 baseColorTexture: asks for TEXCOORD_2, shown with TEXCOORD_0"));
+    set = 1;
+    EXPECT_TRUE(has_warning(gltf.load(), lacks + std::string("1 of material 'material 0', whose textures show one")));
+    gltf.primitive()["attributes"]["TEXCOORD_0"] = gltf.add_floats("VEC2", std::vector<float>(6));
+    EXPECT_TRUE(
+        has_warning(gltf.load(), lacks + std::string("1 of material 'material 0', whose textures show by TEX")));
+    gltf.primitive()["attributes"]["TEXCOORD_1"] = gltf.primitive()["attributes"]["TEXCOORD_0"];
+    EXPECT_TRUE(gltf.load().warnings.empty());
+    gltf.primitive()["attributes"].erase("TEXCOORD_0");
+    EXPECT_TRUE(gltf.load().warnings.empty());
+    set = 0;
+    EXPECT_TRUE(has_warning(gltf.load(), lacks + std::string("0 of material 'material 0', whose textures show one")));
+}
+
+TEST(GltfMaterial, FiltersComeFromTheSampler) {
+    GltfBuilder gltf = with_base_color_texture();
+    gltf.root["textures"][0]["sampler"] = 0;
+    const auto filter = [&](const json& sampler) {
+        gltf.root["samplers"] = {sampler};
+        return gltf.load().materials[0].base_color_texture.filter;
+    };
+    EXPECT_EQ(filter({{"magFilter", 9728}, {"minFilter", 9987}}), Filter::nearest);
+    EXPECT_EQ(filter({{"magFilter", 9729}, {"minFilter", 9728}}), Filter::linear);
+    EXPECT_EQ(filter({{"minFilter", 9728}}), Filter::linear);
 }
 
 // Loads an image that cannot be shown and expects a checkerboard and a warning with this text.

@@ -51,14 +51,106 @@ TEST(GltfNodes, OnlyTheDefaultSceneIsShown) {
     EXPECT_EQ(gltf.load().instances.size(), 1u);
 }
 
-TEST(GltfNodes, WithoutADefaultSceneAllRootsAreShownWithTheirChildren) {
+TEST(GltfNodes, WithoutADefaultTheFirstSceneIsShown) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root.erase("scene");
+    gltf.append("nodes", {{"name", "other"}, {"mesh", 0}});
+    Scene scene = gltf.load();
+    ASSERT_EQ(scene.instances.size(), 1u);
+    EXPECT_EQ(scene.instances[0].name, "node");
+    EXPECT_TRUE(scene.warnings.empty());
+    gltf.root["scenes"].push_back({{"nodes", {1}}});
+    scene = gltf.load();
+    ASSERT_EQ(scene.instances.size(), 1u);
+    EXPECT_EQ(scene.instances[0].name, "node");
+    EXPECT_TRUE(has_warning(scene, "none of the 2 scenes is the default; scene 0 is shown"));
+    gltf.root["scene"] = 1;
+    scene = gltf.load();
+    ASSERT_EQ(scene.instances.size(), 1u);
+    EXPECT_EQ(scene.instances[0].name, "other");
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(GltfNodes, WithoutScenesAllRootsAreShownWithTheirChildren) {
     GltfBuilder gltf = one_triangle();
     gltf.root.erase("scene");
     gltf.append("nodes", {{"mesh", 0}, {"children", {2}}});
     gltf.append("nodes", {{"mesh", 0}});
-    EXPECT_EQ(gltf.load().instances.size(), 3u);
-    gltf.root.erase("scenes");
-    EXPECT_EQ(gltf.load().instances.size(), 3u);
+    for (const json& scenes : {json::array(), json()}) {
+        gltf.root["scenes"] = scenes;
+        if (scenes.is_null()) gltf.root.erase("scenes");
+        EXPECT_EQ(gltf.load().instances.size(), 3u);
+    }
+}
+
+// What KHR_node_visibility hides with all that is below it: meshes and lights, not cameras.
+TEST(GltfNodes, HiddenNodesShowNothingAndHideWhatIsBelow) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["extensionsUsed"] = gltf.root["extensionsRequired"] = {"KHR_node_visibility", "KHR_lights_punctual"};
+    gltf.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+    gltf.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+    const auto extensions = [](const json& visibility) {
+        return json{{"KHR_node_visibility", visibility}, {"KHR_lights_punctual", {{"light", 0}}}};
+    };
+    const json hidden = {{"visible", false}}, shown = {{"visible", true}};
+    gltf.add_node({{"name", "hidden"}, {"mesh", 0}, {"extensions", extensions(hidden)}, {"children", {4}}});
+    gltf.add_node({{"name", "shown"}, {"mesh", 0}, {"extensions", extensions(shown)}});
+    gltf.add_node({{"name", "unsaid"}, {"mesh", 0}, {"extensions", extensions(json::object())}});
+    gltf.append("nodes", {{"mesh", 0}, {"camera", 0}, {"extensions", extensions(shown)}});
+    const Scene scene = gltf.load();
+    ASSERT_EQ(scene.instances.size(), 3u);
+    EXPECT_EQ(scene.instances[1].name, "shown");
+    EXPECT_EQ(scene.instances[2].name, "unsaid");
+    EXPECT_EQ(scene.lights.size(), 2u);
+    EXPECT_EQ(scene.cameras.size(), 1u);
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(GltfNodes, TheLastRowOfAMatrixMayBeRounded) {
+    GltfBuilder gltf = one_triangle();
+    json& matrix = gltf.root["nodes"][0]["matrix"];
+    matrix = {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 5, 6, 7, 1};
+    const Transform exact = gltf.load().instances[0].transform;
+    for (const double last : {0.9999999, 1.0000001, 1 + 0x1p-15}) {
+        matrix[15] = last;
+        const Scene scene = gltf.load();
+        EXPECT_TRUE(scene.warnings.empty());
+        for (std::size_t row = 0; row < 3; ++row)
+            for (int i = 0; i < 4; ++i)
+                EXPECT_NEAR(scene.instances[0].transform.rows[row][i], exact.rows[row][i] / float(last), 1e-6) << last;
+    }
+    matrix[15] = 1;
+    for (const std::size_t entry : {3u, 7u, 11u}) {
+        matrix[entry] = entry == 7 ? -2e-9 : 1e-17;
+        EXPECT_EQ(gltf.load().instances[0].transform, exact);
+    }
+    for (const auto& [entry, value] : {std::pair{3, 1e-3}, {7, -1e-4}, {11, 1.0}, {15, 0.999}, {15, 0.0}, {15, -1.0}}) {
+        json wrong = matrix;
+        wrong[std::size_t(entry)] = value;
+        GltfBuilder bent = gltf;
+        bent.root["nodes"][0]["matrix"] = wrong;
+        expect_contains(bent.error(), "node 0 'node': matrix: the last row is ");
+    }
+}
+
+// glTF keeps scales from cameras and lights, those of 0, too: what stands on a node that is shrunk to nothing has the
+// node's place and turn.
+TEST(GltfNodes, CamerasAndLightsOfNodesWithoutSizeStandAndTurnWithThem) {
+    GltfBuilder gltf = one_triangle();
+    gltf.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", json::object()}}};
+    gltf.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+    gltf.add_node({{"translation", {1, 2, 3}}, {"scale", {0, 0, 0}}, {"children", {2}}});
+    gltf.append("nodes", {{"translation", {9, 9, 9}},  // of which nothing is left
+                          {"rotation", {0, 1, 0, 0}},
+                          {"camera", 0},
+                          {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    const Scene scene = gltf.load();
+    EXPECT_TRUE(scene.warnings.empty());
+    ASSERT_EQ(scene.lights.size(), 1u);
+    EXPECT_EQ(scene.lights[0].position, vec3(1, 2, 3));
+    EXPECT_EQ(scene.lights[0].direction, vec3(0, 0, 1));
+    ASSERT_EQ(scene.cameras.size(), 1u);
+    EXPECT_EQ(scene.cameras[0].camera_to_world, (Transform{{vec4(-1, 0, 0, 1), vec4(0, 1, 0, 2), vec4(0, 0, -1, 3)}}));
 }
 
 TEST(GltfNodes, AThousandLevelsAreFine) {

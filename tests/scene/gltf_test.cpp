@@ -130,6 +130,20 @@ TEST(Gltf, AccessorsHonourOffsetAndStride) {
     EXPECT_EQ(gltf.load().meshes[0].positions, (std::vector<vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
+// The stride that the file does not give is told by the length of the view; a longer one says nothing.
+TEST(Gltf, PaddedVectorsWithoutAStrideAreReadAsTheyLie) {
+    GltfBuilder gltf = one_triangle();
+    const int accessor = gltf.add<std::uint16_t>("VEC4", 5123, {1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0});
+    gltf.root["accessors"][std::size_t(accessor)]["type"] = "VEC3";
+    gltf.primitive()["attributes"]["POSITION"] = accessor;
+    EXPECT_EQ(gltf.load().meshes[0].positions, (std::vector<vec3>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}));
+    gltf.root["bufferViews"].back()["byteLength"] = 20;
+    EXPECT_EQ(gltf.load().meshes[0].positions, (std::vector<vec3>{{1, 2, 3}, {0, 4, 5}, {6, 0, 7}}));
+    gltf.root["bufferViews"].back()["byteLength"] = 24;
+    gltf.root["bufferViews"].back()["byteStride"] = 8;
+    EXPECT_EQ(gltf.load().meshes[0].positions, (std::vector<vec3>{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}));
+}
+
 TEST(Gltf, QuantizedPositionsKeepOrNormaliseTheirIntegers) {
     GltfBuilder gltf = one_triangle();
     gltf.root["extensionsRequired"] = {"KHR_mesh_quantization"};
@@ -195,9 +209,100 @@ TEST(Gltf, NonFiniteVerticesStayAndAreCounted) {
 
 TEST(Gltf, WhatIsIgnoredIsSaidOnce) {
     GltfBuilder gltf = one_triangle();
-    gltf.primitive()["attributes"]["COLOR_0"] = 0;
+    gltf.primitive()["attributes"]["COLOR_1"] = 0;
     gltf.root["meshes"][0]["primitives"].push_back(gltf.primitive());
-    EXPECT_EQ(gltf.load().warnings.size(), 1u);
+    const Scene scene = gltf.load();
+    EXPECT_EQ(scene.warnings, std::vector<std::string>{"vertex colours other than COLOR_0 are ignored"});
+}
+
+TEST(Gltf, TargetsMoveNoColoursAndSayso) {
+    GltfBuilder gltf = one_triangle();
+    gltf.primitive()["targets"] = {{{"POSITION", 0}, {"COLOR_0", 0}}, {{"TEXCOORD_0", 0}}};
+    EXPECT_EQ(gltf.load().warnings,
+              std::vector<std::string>{"colours and texture coordinates of morph targets are ignored"});
+}
+
+// 3 or 4 components, float or normalised integers of 8 and 16 bits.
+TEST(Gltf, VertexColoursAreTakenAsTheyAre) {
+    GltfBuilder gltf = one_triangle();
+    const auto colors = [&](int accessor, bool is_normalized) {
+        if (is_normalized) gltf.root["accessors"][std::size_t(accessor)]["normalized"] = true;
+        gltf.primitive()["attributes"]["COLOR_0"] = accessor;
+        const Scene scene = gltf.load();
+        EXPECT_TRUE(scene.warnings.empty());
+        return scene.meshes[0].colors;
+    };
+    const std::vector<vec4> opaque = {{0.25f, 0.5f, 0.75f, 1}, {0, 0, 0, 1}, {1, 1, 1, 1}};
+    EXPECT_EQ(colors(gltf.add_floats("VEC3", {0.25f, 0.5f, 0.75f, 0, 0, 0, 1, 1, 1}), false), opaque);
+    EXPECT_EQ(colors(gltf.add_floats("VEC4", {0.25f, 0.5f, 0.75f, 1, 0, 0, 0, 1, 1, 1, 1, 1}), false), opaque);
+    const std::vector<vec4> clear = {{1, 0, 0.2f, 0.2f}, {0, 0.2f, 0, 0}, {1, 1, 1, 1}};
+    EXPECT_EQ(colors(gltf.add<std::uint8_t>("VEC4", 5121, {255, 0, 51, 51, 0, 51, 0, 0, 255, 255, 255, 255}), true),
+              clear);
+    EXPECT_EQ(colors(gltf.add<std::uint16_t>("VEC4", 5123,
+                                             {65535, 0, 13107, 13107, 0, 13107, 0, 0, 65535, 65535, 65535, 65535}),
+                     true),
+              clear);
+    EXPECT_EQ(colors(gltf.add_floats("VEC3", {-1, 0.5f, 2, INFINITY, -INFINITY, 1e-40f, 0, 0, 0}), false),
+              (std::vector<vec4>{{0, 0.5f, 1, 1}, {1, 0, 1e-40f, 1}, {0, 0, 0, 1}}));
+}
+
+TEST(Gltf, ColoursThatAreNoNumbersAreWhiteWithACount) {
+    GltfBuilder gltf = one_triangle();
+    gltf.primitive()["attributes"]["COLOR_0"] = gltf.add_floats("VEC3", {NAN, 0.5f, 0, 0, 0, 0, NAN, NAN, NAN});
+    const Scene scene = gltf.load();
+    EXPECT_EQ(scene.meshes[0].colors, (std::vector<vec4>{{1, 0.5f, 0, 1}, {0, 0, 0, 1}, {1, 1, 1, 1}}));
+    EXPECT_TRUE(has_warning(scene, "mesh 0 'tri' primitive 0 COLOR_0: 4 numbers are NaN, and taken as 1"));
+}
+
+TEST(Gltf, MeshesWithoutColoursOrSecondTextureCoordinatesHaveNone) {
+    const Mesh mesh = one_triangle().load().meshes[0];
+    EXPECT_TRUE(mesh.colors.empty());
+    EXPECT_TRUE(mesh.second_uvs.empty());
+}
+
+// What a primitive lacks: colours are white, the second texture coordinates the first.
+TEST(Gltf, PrimitivesOfOneMeshMayDifferInTheirAttributes) {
+    GltfBuilder gltf = one_triangle();
+    json other = gltf.primitive();
+    gltf.primitive()["attributes"]["TEXCOORD_0"] = gltf.add_floats("VEC2", {1, 2, 3, 4, 5, 6});
+    other["attributes"]["TEXCOORD_1"] = gltf.add_floats("VEC2", {7, 8, 9, 10, 11, 12});
+    other["attributes"]["COLOR_0"] = gltf.add_floats("VEC3", {1, 0, 0, 0, 1, 0, 0, 0, 1});
+    gltf.root["meshes"][0]["primitives"].push_back(other);
+    other["attributes"]["NORMAL"] = gltf.add_floats("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1});
+    for (const bool has_corners_of_its_own : {false, true}) {
+        if (has_corners_of_its_own) gltf.root["meshes"][0]["primitives"].push_back(other);
+        const Mesh mesh = gltf.load().meshes[0];
+        const std::size_t count = has_corners_of_its_own ? 9 : 6;
+        ASSERT_EQ(mesh.positions.size(), count);
+        ASSERT_EQ(mesh.uvs.size(), count);
+        ASSERT_EQ(mesh.second_uvs.size(), count);
+        ASSERT_EQ(mesh.colors.size(), count);
+        EXPECT_EQ(mesh.uvs[1], vec2(3, 4));
+        EXPECT_EQ(mesh.second_uvs[1], vec2(3, 4));
+        EXPECT_EQ(mesh.colors[1], vec4(1));
+        EXPECT_EQ(mesh.uvs[4], vec2(0));
+        EXPECT_EQ(mesh.second_uvs[4], vec2(9, 10));
+        EXPECT_EQ(mesh.colors[4], vec4(0, 1, 0, 1));
+    }
+}
+
+// Colours and second texture coordinates are of the vertex, too: primitives that differ in them share none.
+TEST(Gltf, VerticesThatDifferInColourAreNotShared) {
+    GltfBuilder gltf = one_triangle();
+    json other = gltf.primitive();
+    other["attributes"]["COLOR_0"] = gltf.add_floats("VEC3", std::vector<float>(9, 0.5f));
+    gltf.root["meshes"][0]["primitives"].push_back(other);
+    other["attributes"]["TEXCOORD_1"] = gltf.add_floats("VEC2", std::vector<float>(6, 0.5f));
+    gltf.root["meshes"][0]["primitives"].push_back(other);
+    EXPECT_EQ(gltf.load().meshes[0].positions.size(), 9u);
+}
+
+TEST(Gltf, NormalsWithoutADirectionAreCounted) {
+    GltfBuilder gltf = one_triangle();
+    gltf.primitive()["attributes"]["NORMAL"] = gltf.add_floats("VEC3", {0, 0, 0, NAN, 0, 1, 0, 0, 1e-20f});
+    EXPECT_TRUE(has_warning(gltf.load(), "mesh 'tri': 2 of 3 normals are 0, NaN or infinite"));
+    gltf.primitive()["attributes"]["NORMAL"] = gltf.add_floats("VEC3", {0, 0, -INFINITY, 0, 0, 1e30f, 0, 0, 1});
+    EXPECT_TRUE(has_warning(gltf.load(), "mesh 'tri': 1 of 3 normals are 0, NaN or infinite"));
 }
 
 TEST(Gltf, FaultsOfSkinsThatNothingUsesDoNotMatter) {

@@ -65,6 +65,30 @@ TEST(Weld, VerticesThatDifferInAnyAttributeStayApart) {
     EXPECT_EQ(weld_equal_vertices(mesh).uvs, (std::vector<vec2>{{0, 0}, {1, 0}}));
     mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 1, 0}};
     EXPECT_EQ(weld_equal_vertices(mesh).positions.size(), 3u);
+    mesh.uvs.clear(), mesh.normals.clear();
+    mesh.second_uvs = {{0, 0}, {1, 0}, {0, 0}};
+    EXPECT_EQ(weld_equal_vertices(mesh).second_uvs, (std::vector<vec2>{{0, 0}, {1, 0}}));
+    mesh.colors = {vec4(1), vec4(1), vec4(1, 1, 1, 0)};
+    EXPECT_EQ(weld_equal_vertices(mesh).colors, mesh.colors);
+}
+
+TEST(Mesh, TheFirstTextureCoordinatesStandInForTheSecond) {
+    Mesh mesh = mesh_of({{0, 0, 0}}, {});
+    mesh.uvs = {{1, 2}};
+    EXPECT_EQ(mesh.uv_set(0), mesh.uvs);
+    EXPECT_EQ(mesh.uv_set(1), mesh.uvs);
+    mesh.second_uvs = {{3, 4}};
+    EXPECT_EQ(mesh.uv_set(0), mesh.uvs);
+    EXPECT_EQ(mesh.uv_set(1), mesh.second_uvs);
+}
+
+TEST(Mesh, DirectionsAreUnitVectorsOrNone) {
+    const dvec3 up(0, 0, 1), none(0);
+    EXPECT_EQ(unit_or_zero({0, 0, 1e-45}), up);
+    EXPECT_EQ(unit_or_zero({0, 0, 3e38}), up);
+    EXPECT_EQ(unit_or_zero({0, 0, 0}), none);
+    EXPECT_EQ(unit_or_zero({0, 0, INFINITY}), none);
+    EXPECT_EQ(unit_or_zero({1, NAN, 0}), none);
 }
 
 TEST(Scene, BoundsAndCountsFollowTheInstances) {

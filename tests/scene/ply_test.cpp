@@ -93,6 +93,14 @@ TEST(Ply, NormalsAndTextureCoordinatesAreTakenFromAnyPlace) {
     EXPECT_EQ(mesh.uvs[0], vec2(0.5f, 0.75f));  // v up in .ply, down here
 }
 
+TEST(Ply, NormalsWithoutADirectionAreCounted) {
+    const Scene scene = load("ply\nformat ascii 1.0\nelement vertex 3\n" + POSITIONS +
+                             "property float nx\nproperty float ny\nproperty float nz\nelement face 1\n" + FACE_LIST +
+                             "end_header\n0 0 0 0 0 0\n1 0 0 nan 0 1\n0 1 0 0 0 2\n3 0 1 2\n");
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    expect_contains(scene.warnings[0], "2 of 3 normals are 0, NaN or infinite; triangles show their own there");
+}
+
 TEST(Ply, AListIsNoTextureCoordinate) {
     const Mesh mesh = load("ply\nformat ascii 1.0\nelement vertex 3\n" + POSITIONS +
                            "property list uchar float u\nproperty float v\nelement face 1\n" + FACE_LIST +

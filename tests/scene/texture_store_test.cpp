@@ -128,8 +128,10 @@ int inside(int i, int size, Wrap wrap) {
     return in_period < size ? in_period : 2 * size - 1 - in_period;
 }
 
-vec4 bilinear(const Image& image, const TextureOptions& options, vec2 uv) {
-    const vec2 at = uv * vec2(image.width, image.height) - 0.5f, low = floor(at), weight = at - low;
+vec4 filtered(const Image& image, const TextureOptions& options, vec2 uv) {
+    const bool is_nearest = options.filter == Filter::nearest;
+    const vec2 at = uv * vec2(image.width, image.height) - (is_nearest ? 0.0f : 0.5f);
+    const vec2 low = floor(at), weight = is_nearest ? vec2(0) : at - low;
     const auto texel = [&](int dx, int dy) {
         return texel_of(image, inside(static_cast<int>(low.x) + dx, static_cast<int>(image.width), options.wrap_u),
                         inside(static_cast<int>(low.y) + dy, static_cast<int>(image.height), options.wrap_v),
@@ -137,6 +139,12 @@ vec4 bilinear(const Image& image, const TextureOptions& options, vec2 uv) {
     };
     return glm::mix(glm::mix(texel(0, 0), texel(1, 0), weight.x), glm::mix(texel(0, 1), texel(1, 1), weight.x),
                     weight.y);
+}
+
+// Nearer than the 8 bits in which samplers tell texels apart.
+bool is_near_an_edge(const Image& image, vec2 uv) {
+    const vec2 at = uv * vec2(image.width, image.height), off = abs(at - glm::round(at));
+    return std::min(off.x, off.y) < 0.01f;
 }
 
 void expect_near(vec4 value, vec4 expected, float tolerance, const std::string& what) {
@@ -149,9 +157,9 @@ TEST_P(Textures, KernelsFindSizesTexelsAndFilteredColours) {
     std::vector<TextureOptions> options;
     std::vector<TextureQuestion> questions;
     std::mt19937 random(7);
-    for (uint i = 0; i < 18; ++i) {
+    for (uint i = 0; i < 36; ++i) {
         images.push_back(random_image(1 + static_cast<uint>(random() % 9), 1 + static_cast<uint>(random() % 9), i));
-        options.push_back({wraps[i % 3], wraps[i / 3 % 3], i >= 9});
+        options.push_back({wraps[i % 3], wraps[i / 3 % 3], i / 9 % 2 == 1, i < 18 ? Filter::linear : Filter::nearest});
         const TextureRef texture = store().push(images[i], options[i]);
         EXPECT_EQ(texture.number, i + 1);
         for (int k = 0; k < 40; ++k) {
@@ -173,7 +181,9 @@ TEST_P(Textures, KernelsFindSizesTexelsAndFilteredColours) {
         const int x = inside(question.x, static_cast<int>(image.width), Wrap::clamp_to_edge);
         const int y = inside(question.y, static_cast<int>(image.height), Wrap::clamp_to_edge);
         expect_near(answers[i].texel, texel_of(image, x, y, how.is_srgb), decoding, image.name);
-        expect_near(answers[i].color, bilinear(image, how, question.uv), precision, image.name);
+        const bool is_nearest = how.filter == Filter::nearest;
+        if (is_nearest && store().has_images() && is_near_an_edge(image, question.uv)) continue;
+        expect_near(answers[i].color, filtered(image, how, question.uv), is_nearest ? decoding : precision, image.name);
     }
 }
 

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+// Colours, second texture coordinates, normals and tangents of vertices as kernels load them.
+#include <limits>
+
+#include "tests/samples/render.h"
+
+namespace twinray::path_tracer {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+
+// Corners at (-1, -1), (-1, 1), (1, 1) and (1, -1) in x and z; up is +y.
+Mesh floor_quad() { return make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}); }
+
+Scene scene_of(const Mesh& mesh, const Material& material) {
+    Scene scene;
+    add(scene, mesh, material);
+    return scene;
+}
+
+// From above, seeing the square from -half to half around `at`; -x is right.
+Shot from_above(vec2 at, float half, uint width = 1, uint samples = 1) {
+    Camera camera = look({at.x, 2, at.y}, {at.x, 0, at.y}, 1);
+    camera.orthographic_half_height = half;
+    Shot shot;
+    shot.settings.width = width;
+    shot.settings.height = 1;
+    shot.settings.samples = samples;
+    shot.settings.filter = FILTER_BOX;
+    shot.settings.camera = camera_rays(camera, 1);
+    return shot;
+}
+
+class VertexAttributes : public test::VulkanTest {
+  protected:
+    // What an unlit surface shows at a point.
+    vec3 seen(const Scene& scene, vec2 at) { return render(context(), scene, from_above(at, 1e-5f)).rgb[0]; }
+
+    // The shading normal at a point.
+    vec3 normal_at(const Scene& scene, vec2 at) {
+        const Shot shot = from_above(at, 1e-5f);
+        const DeviceScene device_scene(context(), scene, collect_lights(scene), nullptr);
+        Renderer renderer(context(), device_scene, shot.settings);
+        SwTlas accel(context());
+        push_scene(accel, scene);
+        const FirstSurface first = renderer.first_surfaces(accel)[0];
+        EXPECT_EQ(first.count, samples_of_first_surfaces);
+        return first.normal / static_cast<float>(first.count);
+    }
+};
+
+void expect_near(vec3 found, vec3 expected, float tolerance, const char* what = "") {
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], tolerance) << what << ' ' << i;
+}
+
+Material unlit(vec4 color = vec4(1)) { return {.name = "unlit", .base_color = color, .unlit = true}; }
+
+TEST_F(VertexAttributes, ColoursMultiplyTheBaseColourAndAreLinearBetweenCorners) {
+    Mesh mesh = floor_quad();
+    mesh.colors = {{0, 0.5f, 1, 1}, {0, 0.5f, 1, 1}, {1, 0.5f, 0, 1}, {1, 0.5f, 0, 1}};
+    const Picture picture = render(context(), scene_of(mesh, unlit({1, 0.5f, 0.25f, 1})), from_above({0, 0}, 1, 8, 64));
+    for (uint i = 0; i < 8; ++i) {
+        const float x = 1 - (static_cast<float>(i) + 0.5f) / 8;
+        expect_near(picture.rgb[i], vec3(x, 0.5f, 1 - x) * vec3(1, 0.5f, 0.25f), 0.01f);
+    }
+}
+
+// A mesh with colours beside one without, and one material for both: kernels have the code, the mesh has no buffer.
+TEST_F(VertexAttributes, MeshesWithoutColoursAreAsTheirMaterial) {
+    Mesh colored = floor_quad();
+    colored.colors.assign(4, vec4(0, 1, 0, 1));
+    Scene scene = scene_of(floor_quad(), unlit());
+    add(scene, colored, unlit(), Transform::translation({2, 0, 0}));
+    scene.meshes[1].materials = scene.meshes[0].materials;
+    expect_near(seen(scene, {0.3f, 0.2f}), vec3(1), 0);
+    expect_near(seen(scene, {2.3f, 0.2f}), {0, 1, 0}, 0);
+}
+
+TEST_F(VertexAttributes, AlphaOfColoursMasks) {
+    Mesh mesh = floor_quad();
+    mesh.colors = {vec4(0), vec4(0), vec4(1), vec4(1)};
+    for (vec4& color : mesh.colors) color = vec4(1, 1, 1, color.w);
+    Material material = unlit();
+    material.alpha_mode = AlphaMode::mask;
+    Scene scene = scene_of(mesh, material);
+    add(scene, make_quad({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}), unlit({1, 0, 0, 1}));
+    expect_near(seen(scene, {-0.05f, 0.2f}), {1, 0, 0}, 0);
+    expect_near(seen(scene, {0.05f, 0.2f}), vec3(1), 0);
+    scene.materials[0].alpha_mode = AlphaMode::opaque;
+    expect_near(seen(scene, {-0.05f, 0.2f}), vec3(1), 0);
+}
+
+// A lamp above a floor, both 2 x 2, one apart: what of its light arrives is its alpha, however it is found.
+TEST_F(VertexAttributes, AlphaOfColoursDimsLampsAndShadows) {
+    const double expected = 0.554126423979571987;  // of an opaque lamp, in path_tracer_test.cpp
+    Mesh veil = make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2});
+    veil.colors.assign(4, vec4(1, 1, 1, 0.25f));
+    Material lamp_of_glass = lamp(1), glass = lambert(0);
+    lamp_of_glass.alpha_mode = glass.alpha_mode = AlphaMode::blend;
+    Scene scene = scene_of(floor_quad(), lambert(1));
+    add(scene, veil, lamp_of_glass);
+    Shot shot;
+    shot.settings.max_depth = 1;
+    shot.settings.samples = 256;
+    shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+    for (const uint strategy : {STRATEGY_LIGHTS, STRATEGY_BSDF}) {
+        shot.settings.strategy = strategy;
+        expect_mean(render(context(), scene, shot), 0.25 * expected, "a lamp");
+    }
+    scene = scene_of(floor_quad(), lambert(1));
+    add(scene, veil, glass, Transform::translation({0, -0.25f, 0}));
+    add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
+    shot.settings.strategy = STRATEGY_LIGHTS;
+    expect_mean(render(context(), scene, shot), 0.75 * expected, "a shadow");
+}
+
+// A red and a green texel.
+Image red_and_green() { return {"red and green", 2, 1, {255, 0, 0, 255, 0, 255, 0, 255}}; }
+
+TEST_F(VertexAttributes, EachTextureTakesItsOwnCoordinates) {
+    Mesh mesh = floor_quad();
+    mesh.uvs.assign(4, vec2(0.25f, 0.5f));
+    mesh.second_uvs.assign(4, vec2(0.75f, 0.5f));
+    Material material = unlit();
+    material.base_color_texture.image = 0;
+    Scene scene = scene_of(mesh, material);
+    scene.images = {red_and_green()};
+    expect_near(seen(scene, {0, 0.3f}), {1, 0, 0}, 0);
+    scene.materials[0].base_color_texture.uv_set = 1;
+    expect_near(seen(scene, {0, 0.3f}), {0, 1, 0}, 0);
+    scene.materials[0].base_color_texture.uv_row0 = vec3(1, 0, 0.5f);
+    expect_near(seen(scene, {0, 0.3f}), {1, 0, 0}, 0);
+    scene.materials[0].base_color_texture.uv_row0 = vec3(1, 0, 0);
+    scene.meshes[0].uvs.clear();
+    expect_near(seen(scene, {0, 0.3f}), {0, 1, 0}, 0, "a mesh with the second alone");
+    scene.meshes[0].second_uvs.clear();
+    scene.meshes[0].uvs.assign(4, vec2(0.75f, 0.5f));
+    expect_near(seen(scene, {0, 0.3f}), {0, 1, 0}, 0, "a mesh with the first alone");
+}
+
+// Light that is chosen by what its texture shows there: dark where the first coordinates are.
+TEST_F(VertexAttributes, LampsShineByTheSecondCoordinates) {
+    Mesh mesh = make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2});
+    mesh.uvs.assign(4, vec2(0.25f, 0.5f));
+    mesh.second_uvs.assign(4, vec2(0.75f, 0.5f));
+    Material material = lamp(1);
+    material.emission_texture = {.image = 0, .uv_set = 1};
+    Scene scene = scene_of(floor_quad(), lambert(1));
+    add(scene, mesh, material);
+    scene.images = {{"black and white", 2, 1, {0, 0, 0, 255, 255, 255, 255, 255}}};
+    const LocalLights lights = collect_lights(scene);
+    EXPECT_NEAR(lights.densities[1][0], 0.25f, 1e-6f);
+    scene.materials[1].emission_texture.uv_set = 0;
+    add(scene, mesh, lamp(1));
+    EXPECT_LT(collect_lights(scene).densities[1][0], 0.01f);
+    scene.materials[1].emission_texture.uv_set = 1;
+    scene.instances.pop_back();
+    Shot shot;
+    shot.settings.max_depth = 1;
+    shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+    expect_mean(render(context(), scene, shot), 0.554126423979571987, "lamp");
+}
+
+TEST_F(VertexAttributes, TheNearestTexelIsShownUnfiltered) {
+    Mesh mesh = floor_quad();
+    mesh.uvs = {{0, 0.5f}, {0, 0.5f}, {1, 0.5f}, {1, 0.5f}};
+    Material material = unlit();
+    material.base_color_texture = {.image = 0, .wrap_u = Wrap::clamp_to_edge, .filter = Filter::nearest};
+    Scene scene = scene_of(mesh, material);
+    scene.images = {red_and_green()};
+    expect_near(seen(scene, {-0.02f, 0.3f}), {1, 0, 0}, 0);
+    expect_near(seen(scene, {0.02f, 0.3f}), {0, 1, 0}, 0);
+    scene.materials[0].base_color_texture.filter = Filter::linear;
+    expect_near(seen(scene, {0.02f, 0.3f}), {0.48f, 0.52f, 0}, 1e-3f);
+}
+
+TEST_F(VertexAttributes, NormalsWithoutADirectionAreThoseOfTheTriangle) {
+    Mesh mesh = floor_quad();
+    Scene scene = scene_of(mesh, lambert(0.5f));
+    Shot shot = from_above({0, 0}, 1, 16, 16);
+    shot.environment = sky(1);
+    shot.settings.strategy = STRATEGY_BSDF;  // without noise
+    for (const vec3 none : {vec3(0), vec3(nan), vec3(infinity, 0, 0), vec3(0, nan, 1)}) {
+        scene.meshes[0].normals.assign(4, none);
+        expect_near(normal_at(scene, {0.3f, 0.2f}), {0, 1, 0}, 1e-6f);
+        for (const vec3& pixel : render(context(), scene, shot).rgb) expect_near(pixel, vec3(0.5f), 1e-5f);
+    }
+}
+
+// Of the triangle of corners 0, 1 and 2, in its middle.
+TEST_F(VertexAttributes, ACornerWithoutADirectionTakesTheTriangles) {
+    const vec3 tilted(0.6f, 0.8f, 0);
+    Scene scene = scene_of(floor_quad(), lambert(0.5f));
+    for (const vec3 none : {vec3(0), vec3(nan), vec3(0, 0, -infinity)}) {
+        scene.meshes[0].normals = {none, tilted, tilted, none};
+        const vec3 expected = normalize(2.0f * tilted + vec3(0, 1, 0));
+        expect_near(normal_at(scene, {-1 / 3.0f, 1 / 3.0f}), expected, 1e-5f);
+    }
+}
+
+// Lengths do not count.
+TEST_F(VertexAttributes, NormalsOfAnyLengthAreDirections) {
+    const vec3 tilted(0.6f, 0.8f, 0), up(0, 1, 0);
+    Scene scene = scene_of(floor_quad(), lambert(0.5f));
+    for (const float length : {1e-30f, 1e-3f, 1e20f, 3e38f}) {
+        scene.meshes[0].normals = {up * length, tilted, tilted * length, up};
+        expect_near(normal_at(scene, {-1 / 3.0f, 1 / 3.0f}), normalize(2.0f * tilted + up), 1e-5f);
+    }
+}
+
+// Against the winding, with a corner that has none: never black.
+TEST_F(VertexAttributes, NormalsAgainstTheWindingAreTurned) {
+    Scene scene = scene_of(floor_quad(), lambert(0.5f));
+    scene.meshes[0].normals = {vec3(nan), vec3(0, -1, 0), vec3(0, -1, 0), vec3(0, -1, 0)};
+    Shot shot = from_above({0, 0}, 1, 16, 16);
+    shot.environment = sky(1);
+    shot.settings.strategy = STRATEGY_BSDF;  // without noise
+    for (const vec3& pixel : render(context(), scene, shot).rgb) expect_near(pixel, vec3(0.5f), 1e-5f);
+}
+
+// A normal map of (0.6, 0, 0.8) along the texture's u.
+Scene mapped_floor(uint uv_set) {
+    Mesh mesh = floor_quad();
+    mesh.uvs = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};         // u along x, v along z
+    mesh.second_uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};  // u along z, v along -x
+    Material material = lambert(0.5f);
+    material.normal_texture = {.image = 0, .uv_set = uv_set};
+    Scene scene = scene_of(mesh, material);
+    scene.images = {{"tilted", 1, 1, {204, 128, 230, 255}}};
+    return scene;
+}
+
+TEST_F(VertexAttributes, TangentsAreDerivedFromTheCoordinatesOfTheMap) {
+    expect_near(normal_at(mapped_floor(0), {0.3f, 0.2f}), {0.6f, 0.8f, 0}, 0.01f);
+    Scene scene = mapped_floor(1);
+    expect_near(normal_at(scene, {0.3f, 0.2f}), {0, 0.8f, 0.6f}, 0.01f);
+    scene.meshes[0].second_uvs.clear();
+    expect_near(normal_at(scene, {0.3f, 0.2f}), {0.6f, 0.8f, 0}, 0.01f);
+}
+
+TEST_F(VertexAttributes, TangentsWithoutADirectionAreDerived) {
+    Scene scene = mapped_floor(0);
+    const vec4 along_z(0, 0, 1, -1);
+    scene.meshes[0].tangents.assign(4, along_z);
+    expect_near(normal_at(scene, {0.3f, 0.2f}), {0, 0.8f, 0.6f}, 0.01f, "tangents of the file");
+    for (const vec4 none : {vec4(0), vec4(nan), vec4(0, infinity, 0, 1), vec4(0, 0, 0, -1), vec4(0, 3, 0, 1)}) {
+        scene.meshes[0].tangents.assign(4, none);
+        expect_near(normal_at(scene, {0.3f, 0.2f}), {0.6f, 0.8f, 0}, 0.01f);
+        scene.meshes[0].tangents = {none, along_z, along_z, along_z};
+        if (none.y != 3) expect_near(normal_at(scene, {0.3f, 0.2f}), {0, 0.8f, 0.6f}, 0.01f, "one corner without");
+    }
+}
+
+TEST_F(VertexAttributes, WhatASceneLacksTakesNoMemory) {
+    Mesh mesh = floor_quad();
+    const Scene plain = scene_of(mesh, unlit());
+    mesh.colors.assign(4, vec4(1));
+    mesh.second_uvs.assign(4, vec2(0));
+    const Scene colored = scene_of(mesh, unlit());
+    const auto bytes = [&](const Scene& scene) {
+        return DeviceScene(context(), scene, collect_lights(scene), nullptr).device_bytes();
+    };
+    // Second coordinates that no texture takes are not there.
+    EXPECT_EQ(bytes(colored), bytes(plain) + 4 * sizeof(vec4) + sizeof(VertexExtras));
+}
+
+}  // namespace
+}  // namespace twinray::path_tracer
