@@ -55,14 +55,14 @@ void write(const IlluminationOptions& options, const Illumination& result) {
     csv.close();
 }
 
-// Of each face the value of its group. Estimated shares of small faces may exceed 1, which colours do not.
+// Of each face the value of its group.
 ScenePicture picture_of(const IlluminationOptions& options, const Faces& faces, const Illumination& result) {
     const std::string what = name_in(measures, options.measure);
     std::vector<double> values;
     for (const uint group : faces.groups(options.groups.by)) {
         const LitArea& lit = result.groups[group];
-        const double unit = unit_of(lit, options.measure), value = unit > 0 ? lit.area / unit : NAN;
-        values.push_back(options.measure == Measure::area ? value : std::min(value, 1.0));
+        const double unit = unit_of(lit, options.measure);
+        values.push_back(unit > 0 ? lit.area / unit : NAN);
     }
     ScenePicture picture = picture_of_values(options.analysis.pictures, values, what);
     const std::vector<double>& d = options.grid.direction;

@@ -78,7 +78,8 @@ void run_sky(const AnalysisOptions& analysis, const SkyOptions& options, Sides s
     const double seconds = seconds_of([&] {
         Progress progress(what, faces.count() * samples * std::max<std::size_t>(sun.size(), 1), analysis.common.quiet);
         const SkyRaysDesc desc{.samples = samples, .sides = sides, .seed = analysis.common.seed, .progress = &progress};
-        light = options.sky ? sky_light(*analysed.accel, faces, {options.up[0], options.up[1], options.up[2]}, desc)
+        light = options.sky ? sky_light(*analysed.accel, analysed.scene, faces,
+                                        {options.up[0], options.up[1], options.up[2]}, desc)
                             : sun_hours(*analysed.accel, analysed.scene, faces, sun, desc);
     });
     if (!analysis.output.empty()) write(analysis.output, what, light);

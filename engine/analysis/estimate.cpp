@@ -18,6 +18,12 @@ double mean_of(const Replicates& values) {
 
 }  // namespace
 
+Estimate within(const Interval& possible, double value, const Interval& interval_95) {
+    const double inside = std::clamp(value, possible.low, possible.high);
+    return {inside,
+            {std::clamp(interval_95.low, possible.low, inside), std::clamp(interval_95.high, inside, possible.high)}};
+}
+
 Estimate scattered(const Replicates& values) {
     const double mean = mean_of(values);
     double squares = 0;
@@ -35,24 +41,19 @@ const Interval& Estimator::rate(std::uint64_t events, std::uint64_t rays) {
 }
 
 // `value` is `events` of so many rays as make it that fraction: not of `rays` where faces of a group weigh differently.
-Interval Estimator::counted(double value, std::uint64_t events, std::uint64_t rays) {
+const Interval& Estimator::counted(double value, std::uint64_t events, std::uint64_t rays) {
     if (events == 0 || events == rays) return rate(events, rays);
     const auto trials = static_cast<std::uint64_t>(std::llround(static_cast<double>(events) / value));
-    const Interval& interval = rate(events, std::max(trials, events));
-    return {std::min(interval.low, value), std::max(interval.high, value)};
+    return rate(events, std::max(trials, events));
 }
 
 Estimate Estimator::operator()(const Replicates& fractions, std::uint64_t events, std::uint64_t rays) {
-    if (events < fewest_events || rays - events < fewest_events) {
-        const double mean = mean_of(fractions);
-        return {mean, counted(mean, events, rays)};
-    }
-    Estimate estimate = scattered(fractions);
-    Interval& interval = estimate.interval_95;
+    constexpr Interval fraction = {0, 1};
+    const auto [mean, scatter] = scattered(fractions);
+    if (events < fewest_events || rays - events < fewest_events)
+        return within(fraction, mean, counted(mean, events, rays));
     const double unseen = rate(0, rays).high;
-    interval = {std::max(0.0, std::min(interval.low, estimate.value - unseen)),
-                std::min(1.0, std::max(interval.high, estimate.value + unseen))};
-    return estimate;
+    return within(fraction, mean, {std::min(scatter.low, mean - unseen), std::max(scatter.high, mean + unseen)});
 }
 
 }  // namespace twinray

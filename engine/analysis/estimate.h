@@ -22,6 +22,10 @@ struct Estimate {
     double half_width() const { return (interval_95.high - interval_95.low) / 2; }
 };
 
+// What is known of a value that cannot be but within `possible`: neither it nor its interval leaves that, and the
+// interval holds it.
+Estimate within(const Interval& possible, double value, const Interval& interval_95);
+
 // The mean of replicates, with Student's 95 % interval for their scatter.
 Estimate scattered(const Replicates& values);
 
@@ -37,7 +41,7 @@ class Estimator {
 
   private:
     const Interval& rate(std::uint64_t events, std::uint64_t rays);
-    Interval counted(double value, std::uint64_t events, std::uint64_t rays);
+    const Interval& counted(double value, std::uint64_t events, std::uint64_t rays);
 
     std::map<std::pair<std::uint64_t, std::uint64_t>, Interval> rates_;
 };

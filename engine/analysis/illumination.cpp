@@ -2,6 +2,7 @@
 #include "engine/analysis/illumination.h"
 
 #include "analysis_count_faces.spv.h"
+#include "engine/analysis/estimate.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 
@@ -84,13 +85,16 @@ std::vector<GroupCount> count_hits(AbstractAccel& accel, const RayGridPlan& plan
 }
 
 void estimate(LitArea& lit, const GroupCount& count, const RayGridPlan& plan) {
-    lit.area = static_cast<double>(lit.hits) * plan.cell_area;
-    lit.interval = {0, lit.unobstructed};
-    if (plan.grid.points != GRID_AT_RANDOM) return;
-    const Interval hits = paired_count_interval_95(lit.hits, count.odd, plan.ray_count);
-    // No more light than without shadows; but of few rays more may hit than their share, which is then what is told.
-    lit.interval.high = std::max(std::min(hits.high * plan.cell_area, lit.unobstructed), lit.area);
-    lit.interval.low = std::min(hits.low * plan.cell_area, lit.interval.high);
+    // No more light than without shadows, though more rays may hit than are its share.
+    const Interval possible = {0, lit.unobstructed};
+    Interval interval = possible;
+    if (plan.grid.points == GRID_AT_RANDOM) {
+        const Interval hits = paired_count_interval_95(lit.hits, count.odd, plan.ray_count);
+        interval = {hits.low * plan.cell_area, hits.high * plan.cell_area};
+    }
+    const Estimate area = within(possible, static_cast<double>(lit.hits) * plan.cell_area, interval);
+    lit.area = area.value;
+    lit.interval = area.interval_95;
 }
 
 }  // namespace

@@ -23,8 +23,10 @@ struct IlluminationDesc {
 // Areas are projected: as seen along the light, what it would give to a plane across it. Divided by the cosine that is
 // area of the face itself.
 struct LitArea {
-    std::uint64_t hits = 0;   // rays whose closest hit it is
-    double area = 0;          // hits times the area of a cell; unbiased with GridPoints::random
+    // Rays whose closest hit it is. Times the area of a cell that is an unbiased area with GridPoints::random: what
+    // sums over groups are made of.
+    std::uint64_t hits = 0;
+    double area = 0;          // that, but no more than `unobstructed`
     Interval interval;        // of `area`, 95 %; with GridPoints::centers all that is possible
     double unobstructed = 0;  // the area if nothing else were there
     double surface = 0;       // of the faces themselves, in world space

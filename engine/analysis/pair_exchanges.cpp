@@ -88,14 +88,14 @@ void sample(std::vector<Sampling>& samplings, PairSampler& sampler) {
     }
 }
 
-KnownExchange exchange_of(const PlannedPair& pair, const Estimate& sampled) {
+// Neither gets more than it sends in all.
+KnownExchange exchange_of(const PlannedPair& pair, const Estimate& sampled, const std::vector<double>& areas) {
     const auto [flow, error, evaluations] = pair.contour;
-    return {pair.i,
-            pair.j,
-            flow + sampled.value,
-            std::max(0.0, flow - error + sampled.interval_95.low),
-            flow + error + sampled.interval_95.high,
-            pair.sampled.empty() ? PairEstimator::contour : PairEstimator::area};
+    const auto [value, interval] =
+        within({0, std::min(areas[pair.i], areas[pair.j])}, flow + sampled.value,
+               {flow - error + sampled.interval_95.low, flow + error + sampled.interval_95.high});
+    const PairEstimator by = pair.sampled.empty() ? PairEstimator::contour : PairEstimator::area;
+    return {pair.i, pair.j, value, interval.low, interval.high, by};
 }
 
 }  // namespace
@@ -104,7 +104,8 @@ PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Scene& scene, const
                                  const ViewFactorOptions& options, PairEstimator estimator, Progress* progress) {
     const std::vector<std::vector<uint>> members = faces.members(options.grouping);
     const PairPlan plan = plan_pairs(FacePolygons(scene), members, {estimator, options.sides, options.rays}, progress);
-    std::vector<Sampling> samplings = samplings_of(plan, faces.areas_of(members), options);
+    const std::vector<double> areas = faces.areas_of(members);
+    std::vector<Sampling> samplings = samplings_of(plan, areas, options);
     if (!samplings.empty()) {
         accel.sync();
         PairSampler sampler(accel, faces, options.sides, options.sequence, options.seed);
@@ -120,7 +121,7 @@ PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Scene& scene, const
             result.rays += sampling->sums.rays();
             ++sampling;
         }
-        result.known.push_back(exchange_of(pair, sampled));
+        result.known.push_back(exchange_of(pair, sampled, areas));
     }
     return result;
 }

@@ -212,15 +212,18 @@ class Projection {
 
     // `old`: what was counted; null where no ray told, which leaves up to `unseen`.
     static void carry_interval(const ViewFactor* old, float unseen, ViewFactor& factor) {
-        factor.low = std::max(0.0f, factor.value - (old ? old->value - old->low : factor.value));
-        factor.high = std::min(1.0f, factor.value + (old ? old->high - old->value : unseen));
+        const float low = factor.value - (old ? old->value - old->low : factor.value);
+        const float high = factor.value + (old ? old->high - old->value : unseen);
+        const auto [value, interval] = within({0, 1}, factor.value, {low, high});
+        factor.value = static_cast<float>(value);
+        factor.low = static_cast<float>(interval.low);
+        factor.high = static_cast<float>(interval.high);
         if (old) factor.by = old->by;
     }
 
     static void shift(Estimate& estimate, double value) {
         const double by = value - estimate.value;
-        estimate = {value,
-                    {std::max(0.0, estimate.interval_95.low + by), std::min(1.0, estimate.interval_95.high + by)}};
+        estimate = within({0, 1}, value, {estimate.interval_95.low + by, estimate.interval_95.high + by});
     }
 
     const std::vector<ViewFactorRow>& rows_;

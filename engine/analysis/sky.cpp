@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/analysis/sky.h"
 
+#include "engine/analysis/estimate.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 
@@ -43,17 +44,31 @@ void add_possible(std::vector<HoursOfFace>& sums, const Scene& scene, const Face
     });
 }
 
+// What an unobstructed face receives of the sky.
+double open_sky(dvec3 area_vector, dvec3 zenith, Sides sides) {
+    return sides == Sides::both ? 1 : (1 + dot(glm::normalize(area_vector), zenith)) / 2;
+}
+
+Received received(std::uint64_t free_rays, double possible, double value, const Interval& interval) {
+    const Estimate estimate = within({0, possible}, value, interval);
+    return {free_rays, estimate.value, estimate.interval_95};
+}
+
 }  // namespace
 
-SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc) {
+SkyLight sky_light(AbstractAccel& accel, const Scene& scene, const Faces& faces, dvec3 zenith,
+                   const SkyRaysDesc& desc) {
+    check_faces(scene, faces);
+    const dvec3 up = unit_direction(zenith);
     const SkyRays rays(accel, faces, desc);
     SkyLight light{.faces = std::vector<Received>(faces.count()), .ray_count = faces.count() * desc.samples};
-    const std::vector<GroupCount> counts = rays.free_to_sky(unit_direction(zenith));
+    const std::vector<GroupCount> counts = rays.free_to_sky(up);
     for (std::size_t face = 0; face < counts.size(); ++face) {
         if (faces.areas()[face] == 0) continue;
         const double samples = desc.samples;
         const Interval free = paired_count_interval_95(counts[face].hits, counts[face].odd, desc.samples);
-        light.faces[face] = {counts[face].hits, counts[face].hits / samples, {free.low / samples, free.high / samples}};
+        light.faces[face] = received(counts[face].hits, open_sky(area_vector(scene, faces[face]), up, desc.sides),
+                                     counts[face].hits / samples, {free.low / samples, free.high / samples});
     }
     return light;
 }
@@ -77,8 +92,7 @@ SkyLight sun_hours(AbstractAccel& accel, const Scene& scene, const Faces& faces,
         if (faces.areas()[face] == 0) continue;
         const HoursOfFace& sum = sums[face];
         const double margin = paired_margin(sum.squared_differences, most, 0.05);
-        const double high = std::min(sum.hours + margin, sum.possible);
-        light.faces[face] = {sum.free_rays, sum.hours, {std::clamp(sum.hours - margin, 0.0, high), high}};
+        light.faces[face] = received(sum.free_rays, sum.possible, sum.hours, {sum.hours - margin, sum.hours + margin});
     }
     return light;
 }

@@ -20,9 +20,10 @@ struct SkyLight {
 
 // What light of the same radiance from everywhere above the horizon brings to each face, mean over its points, in
 // units of what it brings to an unobstructed horizontal plane: of its front the sky view factor, which is (1 + cos) / 2
-// for an unobstructed face tilted by an angle; of both sides together 1 for any such face. `desc.samples` rays a face,
-// stratified by direction. Throws Error for a zenith that is 0 or not finite, and where SkyRays does.
-SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc);
+// for an unobstructed face tilted by an angle, and never more; of both sides together 1 for any such face.
+// `desc.samples` rays a face, stratified by direction. Throws Error for a zenith that is 0 or not finite, and where
+// SkyRays does.
+SkyLight sky_light(AbstractAccel& accel, const Scene& scene, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc);
 
 // Light for so many hours.
 struct SunPosition {

@@ -47,6 +47,13 @@ uint needs_of_lights(const Scene& scene, const std::vector<bool>& used, const st
     return needs;
 }
 
+bool is_glass(const Material& material) {
+    const bool is_metal = material.metallic >= 1 && material.metallic_roughness_texture.image < 0;
+    return material.transmission > 0 && !is_metal && !material.unlit;
+}
+
+bool is_smooth(const Material& material) { return material.roughness * material.roughness < SMOOTH_ALPHA; }
+
 uint index_of(std::vector<uint>& kinds, uint needs) {
     const auto place = std::find(kinds.begin(), kinds.end(), needs);
     if (place == kinds.end()) kinds.push_back(needs);
@@ -76,6 +83,15 @@ void merge(MaterialKinds& kinds, std::size_t kept, std::size_t removed) {
 
 std::vector<bool> used_materials(const Scene& scene) {
     return materials_shown(scene, [](const Mesh&) { return true; });
+}
+
+bool may_be_pane(const Material& material) {
+    const bool may_be_smooth = is_smooth(material) || material.metallic_roughness_texture.image >= 0;
+    return is_glass(material) && material.thickness <= 0 && may_be_smooth;
+}
+
+bool may_be_other_glass(const Material& material) {
+    return is_glass(material) && (material.thickness > 0 || !is_smooth(material) || material.anisotropy > 0);
 }
 
 uint needs_of(const Material& material) {

@@ -18,6 +18,11 @@ std::vector<bool> used_materials(const Scene& scene);
 constexpr uint material_needs[] = {PT_HAS_ALPHA, PT_HAS_TEXTURES,   PT_HAS_GLASS,  PT_HAS_SPECULAR, PT_HAS_COAT,
                                    PT_HAS_SHEEN, PT_HAS_ANISOTROPY, PT_HAS_VOLUME, PT_HAS_COLORS,   PT_HAS_SECOND_UVS};
 
+// Whether it is somewhere a smooth wall without thickness, which light passes straight on.
+bool may_be_pane(const Material& material);
+// Whether it is somewhere glass that is no such wall.
+bool may_be_other_glass(const Material& material);
+
 // One bit for each of material_needs: 1 << PT_HAS_ALPHA and the like. All but colors, which are of meshes.
 uint needs_of(const Material& material);
 

@@ -29,7 +29,7 @@ void receive(std::span<std::byte> bytes, int from) {
 
 // What is sent first. The pixels and the words of the block set follow.
 struct Summary {
-    std::uint64_t path_rays, shadow_rays, non_finite, cut, words;
+    std::uint64_t path_rays, shadow_rays, non_finite, words;
 };
 
 template <class T>
@@ -63,7 +63,7 @@ void Ranks::gather(Film& film, RenderStats& stats) const {
     if (count_ == 1) return;
     if (index_ > 0) {
         std::vector<uint> words = film.blocks.words();
-        Summary summary{stats.path_rays, stats.shadow_rays, stats.non_finite, stats.cut, words.size()};
+        Summary summary{stats.path_rays, stats.shadow_rays, stats.non_finite, words.size()};
         send(std::as_writable_bytes(std::span(&summary, 1)));
         send(bytes_of(film.pixels));
         send(bytes_of(words));
@@ -80,7 +80,7 @@ void Ranks::gather(Film& film, RenderStats& stats) const {
         other.blocks = BlockSet(std::move(words));
         film.merge(other, "rank 0", "rank " + std::to_string(rank));
         stats.path_rays += summary.path_rays, stats.shadow_rays += summary.shadow_rays;
-        stats.non_finite += summary.non_finite, stats.cut += summary.cut;
+        stats.non_finite += summary.non_finite;
     }
 }
 

@@ -26,6 +26,7 @@ std::vector<SpecializationConstant> constants_of(const SceneFeatures& features, 
                                                      {PT_STRATEGY, strategy},
                                                      {PT_HAS_AOVS, has_aovs},
                                                      {PT_HAS_MEDIA, features.some(PT_HAS_VOLUME)},
+                                                     {PT_HAS_PANES, features.panes},
                                                      {PT_HAS_QUEUES, features.kinds.needs.size() > 1}};
     for (const uint need : material_needs) constants.push_back({need, needs >> need & 1});
     return constants;
@@ -213,18 +214,18 @@ void Renderer::shade(Commands& commands, const Tracing& tracing, const Batch& ba
 }
 
 void Renderer::shadow_rounds(const Tracing& tracing, uint count) {
-    const bool has_alpha = scene_.features().some(PT_HAS_ALPHA);
+    const bool may_pass = scene_.features().passes_shadows();
     for (uint round = 0; count > 0; ++round) {
-        const uint turn = has_alpha ? round % 2 : 0;
+        const uint turn = may_pass ? round % 2 : 0;
         Commands commands(context_, "path tracer shadows");
         trace(commands, tracing,
               {.rays = waves_.shadow_rays(turn),
                .hits = waves_.hits(),
                .count = count,
-               .query = has_alpha ? Query::closest : Query::any},
+               .query = may_pass ? Query::closest : Query::any},
               waves_.shadow_pixels(turn));
         clear_appended(commands);
-        shadow_.dispatch(commands, {waves_.data(0, turn), count, round == MAX_SHADOW_PASSES}, count);
+        shadow_.dispatch(commands, {waves_.data(0, turn), count}, count);
         stats_.shadow_rays += count;
         count = run(commands, tracing).shadows;
     }
@@ -249,7 +250,6 @@ Counters Renderer::run(Commands& commands, const Tracing& tracing) {
     Counters counters;
     std::memcpy(&counters, counters_readback_.mapped(), sizeof counters);
     stats_.non_finite = counters.non_finite;
-    stats_.cut = counters.cut;
     if (tracing.observer) tracing.observer->collect();
     return counters;
 }

@@ -38,7 +38,6 @@ struct RenderStats {
     std::uint64_t path_rays = 0;    // camera rays and scattered ones, counted again behind each surface passed
     std::uint64_t shadow_rays = 0;  // likewise
     std::uint64_t non_finite = 0;   // contributions dropped as NaN or infinite
-    std::uint64_t cut = 0;          // rays ended after MAX_PASSES or MAX_SHADOW_PASSES transparent surfaces
     double seconds = 0;             // of rendering
     std::map<std::string, double> pass_ms = {};  // the device's time by pass, where RenderSettings::is_timed
 };

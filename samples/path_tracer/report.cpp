@@ -45,7 +45,6 @@ nlohmann::json render_json(const Options& options, const Session& session, const
                    {"path_rays", stats.path_rays},
                    {"shadow_rays", stats.shadow_rays},
                    {"non_finite", stats.non_finite},
-                   {"cut", stats.cut},
                    {"build_ms", build_ms(accel)},
                    {"seconds", stats.seconds},
                    {"mrays_per_s", mega_rays_per_second(stats)}});
@@ -124,14 +123,14 @@ std::string features_text(const SceneFeatures& features) {
     for (const uint need : material_needs) note(features.some(need), name_of_needs(1u << need));
     note(features.environment, "environment");
     note(features.local_lights, "local lights");
+    note(features.panes, "panes");
     note(features.kinds.needs.size() > 1, "queues by kind");
     return "shaded as: " + kinds + "; left out: " + (absent.empty() ? "nothing" : absent);
 }
 
 void print_stats(const Session& session, const AbstractAccel& accel, const RenderStats& stats) {
-    std::printf("rays: %llu of paths, %llu of shadows, %llu cut off behind transparent surfaces\n",
-                static_cast<unsigned long long>(stats.path_rays), static_cast<unsigned long long>(stats.shadow_rays),
-                static_cast<unsigned long long>(stats.cut));
+    std::printf("rays: %llu of paths, %llu of shadows\n", static_cast<unsigned long long>(stats.path_rays),
+                static_cast<unsigned long long>(stats.shadow_rays));
     std::printf("%s\n", features_text(session.device_scene->features()).c_str());
     for (const auto& [pass, ms] : stats.pass_ms) std::printf("device time: %9.1f ms  %s\n", ms, pass.c_str());
     constexpr double mib = 1 << 20;
@@ -182,10 +181,6 @@ void report_render(const Options& options, const Session& session, const Abstrac
     if (!options.json.empty()) write_line(options.json, record.dump() + "\n", std::ios::app);
     if (options.stats) print_stats(session, accel, stats);
     if (options.quiet) return;
-    if (stats.cut)
-        std::fprintf(stderr,
-                     "path_tracer: %llu rays met more transparent surfaces than are followed (%u, shadows %u)\n",
-                     static_cast<unsigned long long>(stats.cut), MAX_PASSES, MAX_SHADOW_PASSES);
     const std::string resumed =
         rendering.resumed_samples > 0 ? text(" (", rendering.resumed_samples, " resumed)") : std::string();
     if (frame) std::fputs(frame_text(*frame).c_str(), stdout);

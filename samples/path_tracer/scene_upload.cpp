@@ -11,6 +11,9 @@ SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const E
     features.kinds = kinds_of(scene);
     features.environment = environment && !environment->is_black();
     features.local_lights = !lights.empty();
+    const std::vector<bool> used = used_materials(scene);
+    for (std::size_t i = 0; i < scene.materials.size(); ++i)
+        features.panes |= used[i] && may_be_pane(scene.materials[i]);
     return features;
 }
 
@@ -19,7 +22,7 @@ SceneFeatures all_features(const Scene& scene) {
     features.kinds.needs = {0};
     for (const uint need : material_needs) features.kinds.needs[0] |= 1u << need;
     features.kinds.of.resize(scene.materials.size());
-    features.environment = features.local_lights = true;
+    features.environment = features.local_lights = features.panes = true;
     return features;
 }
 

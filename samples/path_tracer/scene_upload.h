@@ -21,9 +21,12 @@ struct SceneFeatures {
     MaterialKinds kinds;
     bool environment = false;
     bool local_lights = false;
+    bool panes = false;
 
     // Whether some material needs it; need: PT_HAS_ALPHA and the like.
     bool some(uint need) const { return kinds.all_needs() >> need & 1; }
+    // Whether shadow rays pass any surface.
+    bool passes_shadows() const { return panes || some(PT_HAS_ALPHA); }
     bool has_layers() const {
         return some(PT_HAS_SPECULAR) || some(PT_HAS_COAT) || some(PT_HAS_SHEEN) || some(PT_HAS_ANISOTROPY) ||
                some(PT_HAS_VOLUME);

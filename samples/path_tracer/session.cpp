@@ -14,6 +14,7 @@
 #include "hwtlas/hw_tlas.h"
 #include "samples/path_tracer/camera.h"
 #include "samples/path_tracer/film_file.h"
+#include "samples/path_tracer/stopped_lights.h"
 #include "swtlas/sw_tlas.h"
 
 namespace twinray::path_tracer {
@@ -170,8 +171,8 @@ Session make_session(const Options& options, const Ranks& ranks) {
     Session session;
     session.scene = load(options);
     if (!options.quiet)
-        for (const std::string& warning : session.scene.warnings)
-            std::fprintf(stderr, "path_tracer: %s\n", warning.c_str());
+        for (const std::vector<std::string>& warnings : {session.scene.warnings, stopped_lights(session.scene)})
+            for (const std::string& warning : warnings) std::fprintf(stderr, "path_tracer: %s\n", warning.c_str());
     session.rules = make_rules(options);
     session.shard = make_shard(options, ranks);
     session.settings = make_settings(options, session.scene);

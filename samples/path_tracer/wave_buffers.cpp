@@ -27,8 +27,8 @@ WaveBuffers::WaveBuffers(Context& context, const DeviceScene& scene, Ref<Radianc
         rays_.push_back(array_of<Ray>(context, "rays", capacity));
         paths_.emplace_back(context, "paths", capacity);
         if (scene.features().some(PT_HAS_VOLUME)) media_.push_back(array_of<uint>(context, "media of paths", capacity));
-        // Shadow rays take a second round only behind transparent surfaces.
-        if (turn == 1 && !scene.features().some(PT_HAS_ALPHA)) break;
+        // Shadow rays take a second round only behind what they pass.
+        if (turn == 1 && !scene.features().passes_shadows()) break;
         shadow_rays_.push_back(array_of<Ray>(context, "shadow rays", capacity));
         shadows_.emplace_back(context, "shadows", capacity);
     }

@@ -7,7 +7,7 @@
 namespace twinray::path_tracer {
 
 // The arrays of waves on the device. Path rays take turns between two sets of arrays, of which the other one is what
-// the next wave is appended to; so do shadow rays where the scene has transparent surfaces, else theirs is one.
+// the next wave is appended to; so do shadow rays where they may pass surfaces, else theirs is one.
 class WaveBuffers {
   public:
     // Of up to `capacity` rays of each sort, none appended. The scene and the sums must outlive it.

@@ -113,6 +113,12 @@ FUNC BsdfChoice choose(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
     return base;
 }
 
+// What passes a pane of the light from wo: what choose() lets pass, on average.
+FUNC vec3 passed_by_pane(Bsdf bsdf, vec3 wo)
+{
+    return bsdf.diffuse * ((1.0f - fresnel_dielectric(wo.z, bsdf.eta)) * under_layers(bsdf, wo, -wo));
+}
+
 FUNC BsdfSample sample_bsdf(Bsdf bsdf, vec3 wo, float lobe, vec2 u)
 {
     BsdfChoice choice = choose(bsdf, wo, lobe, u);

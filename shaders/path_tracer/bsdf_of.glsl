@@ -15,8 +15,8 @@ Bsdf glass_of(SceneData scene, Surface surface, vec3 color, float roughness, boo
     return bsdf;
 }
 
-// Where a material transmits in part, `choice` decides which part is met.
-Bsdf bsdf_of(SceneData scene, Surface surface, uint flags, vec3 color, bool is_front, float choice)
+// As x and y.
+vec2 roughness_and_metallic(SceneData scene, Surface surface, uint flags)
 {
     float metallic = AT(scene.materials, surface.material).metallic;
     float roughness = AT(scene.materials, surface.material).roughness;
@@ -27,17 +27,28 @@ Bsdf bsdf_of(SceneData scene, Surface surface, uint flags, vec3 color, bool is_f
         roughness *= map.g;
         metallic *= map.b;
     }
-    if (HAS_GLASS)
-    {
-        float transmission = AT(scene.materials, surface.material).transmission;
-        if (HAS_TEXTURES && (flags & MATERIAL_TRANSMISSION_TEXTURE) != 0u)
-            transmission *= sample_data(scene, AT(scene.materials, surface.material).transmission_texture, surface.uv).r;
-        if (choice < transmission * (1.0 - metallic)) return glass_of(scene, surface, color, roughness, is_front);
-    }
+    return vec2(roughness, metallic);
+}
+
+// The part of a surface that is glass.
+float glass_part(SceneData scene, Surface surface, uint flags, float metallic)
+{
+    float transmission = AT(scene.materials, surface.material).transmission;
+    if (HAS_TEXTURES && (flags & MATERIAL_TRANSMISSION_TEXTURE) != 0u)
+        transmission *= sample_data(scene, AT(scene.materials, surface.material).transmission_texture, surface.uv).r;
+    return transmission * (1.0 - metallic);
+}
+
+// Where a material transmits in part, `choice` decides which part is met.
+Bsdf bsdf_of(SceneData scene, Surface surface, uint flags, vec3 color, bool is_front, float choice)
+{
+    vec2 factors = roughness_and_metallic(scene, surface, flags);
+    if (HAS_GLASS && choice < glass_part(scene, surface, flags, factors.y))
+        return glass_of(scene, surface, color, factors.x, is_front);
     float ior = AT(scene.materials, surface.material).ior;
-    Bsdf bsdf = opaque_of(color, metallic, roughness, ior);
+    Bsdf bsdf = opaque_of(color, factors.y, factors.x, ior);
     if ((LAYERS & LAYER_SPECULAR) == 0u) return bsdf;
     vec4 specular = specular_of(scene, surface);
-    return with_specular(bsdf, color, metallic, ior, specular.a, specular.rgb);
+    return with_specular(bsdf, color, factors.y, ior, specular.a, specular.rgb);
 }
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// glTF's metallic-roughness surface: a Lambertian base below microfacets. Needs bsdf_record.h.
+// glTF's metallic-roughness surface: a Lambertian base below microfacets. Needs bsdf_albedo.h.
 #ifndef TWINRAY_PATH_TRACER_BSDF_OPAQUE_H
 #define TWINRAY_PATH_TRACER_BSDF_OPAQUE_H
 
@@ -30,14 +30,6 @@ FUNC vec3 schlick(Bsdf bsdf, float cosine)
     return bsdf.f0 + (vec3(bsdf.f90) - bsdf.f0) * schlick_weight(cosine);
 }
 
-// What the interface lets through to the diffuse part. Where it is colored, what it keeps of its strongest color is
-// kept of all, else the diffuse part would have the complement (as KHR_materials_specular says).
-FUNC vec3 under_interface(Bsdf bsdf, vec3 fresnel)
-{
-    if (has_layer(bsdf, LAYER_SPECULAR)) return vec3(1.0f - largest(fresnel));
-    return vec3(1.0f) - fresnel;
-}
-
 // Chance of sampling the specular lobe instead of the diffuse one.
 FUNC float specular_chance(Bsdf bsdf, float cosine)
 {
@@ -50,16 +42,15 @@ FUNC BsdfValue evaluate_opaque(Bsdf bsdf, vec3 wo, vec3 wi)
 {
     BsdfValue value = no_value();
     if (wi.z <= 0.0f) return value;
-    vec3 h = normalize(wo + wi);
-    vec3 fresnel = schlick(bsdf, dot(wo, h));
     float chance = specular_chance(bsdf, wo.z);
-    value.f = under_interface(bsdf, fresnel) * bsdf.diffuse * (wi.z / PI);
+    value.f = under_interface(bsdf, wo, wi) * bsdf.diffuse * (wi.z / PI);
     value.pdf = (1.0f - chance) * wi.z / PI;
     if (!is_smooth(bsdf))
     {
+        vec3 h = normalize(wo + wi);
         float lambda_o = facet_lambda(bsdf, wo);
         float density = facet_density(bsdf, h) / (4.0f * wo.z);
-        value.f = value.f + fresnel * (density / (1.0f + lambda_o + facet_lambda(bsdf, wi)));
+        value.f = value.f + schlick(bsdf, dot(wo, h)) * (density / (1.0f + lambda_o + facet_lambda(bsdf, wi)));
         value.pdf = value.pdf + chance * density / (1.0f + lambda_o);
     }
     return value;

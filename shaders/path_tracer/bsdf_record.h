@@ -102,6 +102,9 @@ FUNC bool is_smooth(Bsdf bsdf)
     return bsdf.alpha < SMOOTH_ALPHA || (bsdf.is_glass && bsdf.eta == 1.0f && !is_thin(bsdf));
 }
 
+// What passes it goes straight on.
+FUNC bool is_pane(Bsdf bsdf) { return is_thin(bsdf) && is_smooth(bsdf); }
+
 // Microfacets of the base, with or without a grain.
 FUNC vec3 along_grain(Bsdf bsdf, vec3 w)
 {

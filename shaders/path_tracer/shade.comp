@@ -49,17 +49,12 @@ void add_emission(Vertex vertex, Ray ray, Hit hit, uint flags)
     add(vertex.path.pixel, vertex.path.throughput * radiance * found_weight(vertex.path.pdf, other));
 }
 
-// The same ray behind a transparent surface.
+// The same ray behind a surface that is transparent here, or a pane. Shadow rays pass these, too, so that the light that the ray
+// finds still counts as found by its last scattering.
 void pass(Vertex vertex, Ray ray)
 {
-    if (vertex.number - (vertex.path.progress >> 16u) >= MAX_PASSES)
-    {
-        atomicAdd(AT(wave.counters, 0).cut, 1u);
-        return;
-    }
-    ray.t_min = passing_t(vertex.surface.point, vertex.surface.placement, ray, vertex.surface.t);
-    vertex.path.progress += 1u;
-    go_on(ray, vertex.path);
+    vertex.path.progress = with_surface_met(vertex.path.progress);
+    go_on(behind(ray, vertex.surface), vertex.path);
 }
 
 bool is_above(Vertex vertex, vec3 direction)
@@ -103,7 +98,7 @@ void light_directly(Vertex vertex)
     AT(wave.shadows.pixel, slot) = vertex.path.pixel;
 }
 
-void scatter(Vertex vertex)
+void scatter(Vertex vertex, Ray met_by)
 {
     vec2 lobe_and_roulette = unit_floats(pair_of(vertex, PAIR_LOBE));
     float lobe = lobe_and_roulette.x;
@@ -124,6 +119,13 @@ void scatter(Vertex vertex)
     if ((onwards.wi.z > 0.0) != is_above(vertex, direction)) return;
     PathState path = vertex.path;
     path.throughput *= onwards.weight;
+    if (is_pane(vertex.bsdf) && onwards.wi.z < 0.0)
+    {
+        vertex.path.throughput = path.throughput;
+        if (largest(path.throughput) > 0.0) pass(vertex, met_by);
+        return;
+    }
+    if (path.progress >> 16u >= args.max_depth) return;
     if (path.progress >> 16u >= ROULETTE_DEPTH)
     {
         // Never less than the throughput: what survives would weigh more and more, and where little is absorbed the mean
@@ -134,7 +136,7 @@ void scatter(Vertex vertex)
     }
     if (!(largest(path.throughput) > 0.0)) return;
     path.pdf = onwards.pdf;
-    path.progress += 0x10001u;
+    path.progress = with_surface_met(path.progress) + 0x10000u;
     path.medium = medium_towards(vertex, onwards.wi);
     Ray ray;
     ray.origin = spawn_position(vertex.surface.point, (onwards.wi.z > 0.0) == vertex.is_front);
@@ -183,21 +185,27 @@ void shade(PathState path, Ray ray, Hit hit)
             return;
         }
     }
-    if (HAS_AOVS && path.progress >> 16u == 0u) note_first(vertex, hit, flags, color.rgb);
+    if (HAS_AOVS)
+    {
+        note_first(vertex, hit, flags, color.rgb);
+        return;
+    }
     if ((flags & MATERIAL_UNLIT) != 0u)
     {
         add(path.pixel, path.throughput * color.rgb);
         return;
     }
     add_emission(vertex, ray, hit, flags);
-    if (path.progress >> 16u >= args.max_depth) return;
+    bool is_last = path.progress >> 16u >= args.max_depth;
+    if (is_last && !HAS_GLASS) return;
     vertex.normal = shading_normal(AT(wave.scene, 0), vertex.surface, flags, vertex.wo);
     vertex.bsdf = bsdf_of(AT(wave.scene, 0), vertex.surface, flags, color.rgb, vertex.is_front, part.y);
     if (LAYERS != 0u)
         set_layers(vertex.bsdf, AT(wave.scene, 0), vertex.surface, vertex.normal, vertex.wo, vertex.is_front);
+    if (is_last && !is_pane(vertex.bsdf)) return; // panes are passed at any depth, as by shadow rays
     bool samples_lights = STRATEGY != STRATEGY_BSDF && (HAS_ENVIRONMENT || HAS_LOCAL_LIGHTS);
-    if (samples_lights && scatters(vertex.bsdf)) light_directly(vertex);
-    scatter(vertex);
+    if (samples_lights && !is_last && scatters(vertex.bsdf)) light_directly(vertex);
+    scatter(vertex, ray);
 }
 
 void main()

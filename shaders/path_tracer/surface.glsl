@@ -207,4 +207,11 @@ Surface surface_of(SceneData scene, Ray ray, Hit hit)
         set_tangents(surface, data, AT(scene.materials, surface.material).flags, at.xy);
     return surface;
 }
+
+// The ray as it goes on behind a surface that it met. Its t_min grows with each, so that every ray gets through.
+Ray behind(Ray ray, Surface surface)
+{
+    ray.t_min = passing_t(surface.point, surface.placement, ray, max(surface.t, ray.t_min));
+    return ray;
+}
 #endif

@@ -5,15 +5,13 @@
 
 const uint PATH_GROUP = 64u;
 
-// Transparent surfaces that one path, and one shadow ray, may pass; beyond it they count as opaque and black.
-const uint MAX_PASSES = 32u;
-const uint MAX_SHADOW_PASSES = 8u;
-
 // What the path of a ray carries. throughput: of light along it. pdf: density by solid angle with which the ray was
-// sampled; 0: it could not have been found as light. pixel: of the film. progress: low half: surfaces met, which number
-// the random dimensions; high half: scatterings of them.
+// sampled; 0: it could not have been found as light. pixel: of the film. progress: low half: surfaces met, modulo 2^16,
+// which number the random dimensions; high half: scatterings of them.
 #define PATH_FIELDS(X, P) X(P, 0, vec3, throughput) X(P, 1, float, pdf) X(P, 2, uint, pixel) X(P, 3, uint, progress)
 TWINRAY_SOA_VIEW(PathQueue, PATH_FIELDS)
+
+FUNC uint with_surface_met(uint progress) { return (progress & 0xffff0000u) | ((progress + 1u) & 0xffffu); }
 
 // What a shadow ray adds to its pixel if nothing blocks it.
 #define SHADOW_FIELDS(X, P) X(P, 0, vec3, contribution) X(P, 1, uint, pixel)
@@ -34,7 +32,6 @@ struct Counters
     uint paths;      // appended for the next wave
     uint shadows;    // appended for the next shadow wave
     uint non_finite; // contributions dropped as NaN or infinite
-    uint cut;        // rays ended after passing too many transparent surfaces
 };
 BUFFER_OF(Counters, 4);
 
@@ -108,7 +105,6 @@ struct ShadowArgs
 {
     REF(WaveData) wave;
     uint count;
-    uint is_last; // rays that are not through after this round end
 };
 
 // A ray on which two accelerators name different hits.

@@ -124,7 +124,9 @@ TEST_P(CentroidRulesTest, WrongUseSaysWhatIsWrong) {
               std::string::npos);
     const Scene vast = scene_of({make_quad(vec3(-3.4e38f, 0, 0), vec3(3.4e38f, 0, 0), vec3(0, 3e38f, 0))});
     fill(vast);
-    EXPECT_NE(error_of([&] { centroid(accel(), vast, along({1, 0, 0.1}, 9)); }).find("float32 ends"),
+    EXPECT_NE(error_of([&] {
+                  centroid(accel(), vast, along({1, 0, 0.1}, 9));
+              }).find("float32 ends"),
               std::string::npos);
 }
 

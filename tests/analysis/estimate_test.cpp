@@ -12,6 +12,33 @@
 namespace twinray {
 namespace {
 
+TEST(Within, NothingLeavesWhatIsPossibleAndIntervalsHoldTheirValues) {
+    const auto expect = [](double value, const Interval& interval, double right, const Interval& right_interval) {
+        const Estimate estimate = within({1, 3}, value, interval);
+        EXPECT_EQ(estimate.value, right) << value;
+        EXPECT_EQ(estimate.interval_95, right_interval) << value << ": " << interval.low << ", " << interval.high;
+    };
+    expect(2, {1.5, 2.5}, 2, {1.5, 2.5});
+    expect(2, {0, 4}, 2, {1, 3});
+    expect(3.5, {2, 3.75}, 3, {2, 3});
+    expect(3.5, {3.25, 3.75}, 3, {3, 3});
+    expect(0.5, {0.25, 0.75}, 1, {1, 1});
+    expect(2, {2.25, 2.5}, 2, {2, 2.5});
+    expect(2, {1.25, 1.5}, 2, {1.25, 2});
+}
+
+// Weights of rays are rounded, so that their sum may be, too.
+TEST(Estimator, OfAllRaysIsNoMoreThanAll) {
+    Replicates fractions;
+    fractions.fill(1 + 0x1p-50);
+    for (const std::uint64_t events : {16000u, 15000u}) {
+        const Estimate estimate = Estimator()(fractions, events, 16000);
+        EXPECT_EQ(estimate.value, 1) << events;
+        EXPECT_EQ(estimate.interval_95.high, 1) << events;
+        EXPECT_LT(estimate.interval_95.low, 1) << events;
+    }
+}
+
 TEST(Estimator, OfManyEventsIsStudentsInterval) {
     Replicates fractions;
     for (std::size_t i = 0; i < replicate_count; ++i) fractions[i] = i % 2 ? 0.3 : 0.2;
@@ -33,7 +60,9 @@ TEST(Estimator, OfReplicatesThatAgreeLeavesRoomForWhatNoRaySaw) {
 
 TEST(Estimator, OfFewEventsIsThatOfCounts) {
     Estimator estimate;
-    const Estimate never = estimate({}, 0, 16000), always = estimate(Replicates{}, 16000, 16000);
+    Replicates all;
+    all.fill(1);
+    const Estimate never = estimate({}, 0, 16000), always = estimate(all, 16000, 16000);
     EXPECT_EQ(never.interval_95, rate_interval_95(0, 16000));
     EXPECT_GT(never.interval_95.high, 2e-4);
     EXPECT_EQ(always.interval_95, rate_interval_95(16000, 16000));

@@ -41,7 +41,7 @@ TEST_P(IlluminationTest, AreasOfSquaresAreWhatIsSeenOfThem) {
     for (uint face = 0; face < 6; ++face) {
         const LitArea& seen = result.groups[face];
         EXPECT_NEAR(seen.area, exact[face], 0.01) << face;
-        EXPECT_EQ(seen.area, static_cast<double>(seen.hits) * result.cell_area);
+        EXPECT_EQ(seen.area, std::min(static_cast<double>(seen.hits) * result.cell_area, seen.unobstructed));
         EXPECT_LE(seen.interval.low, exact[face] * (1 + 1e-6)) << face;
         EXPECT_GE(seen.interval.high, exact[face] * (1 - 1e-6)) << face;
         EXPECT_LT(seen.interval.high - seen.interval.low, 0.05) << face;
@@ -126,6 +126,32 @@ TEST_P(IlluminationTest, EveryAcceleratorCountsTheSameHits) {
     EXPECT_LT((total.high - total.low) / expected.cell_area, 250);
 }
 
+// A square and a roof. More rays may meet a face than are its share, but no more light.
+TEST_P(IlluminationRulesTest, WhatIsLitWhollyIsNotLitMore) {
+    const Scene scene = scene_of({square(0), make_quad(vec3(3, 0, 0), vec3(1, 0, 1), vec3(0, 1, 0)),
+                                  make_quad(vec3(4, 0, 1), vec3(1, 0, -1), vec3(0, 1, 0))});
+    fill(scene);
+    const Faces faces(context(), scene);
+    uint more = 0;  // rays than their share
+    for (const uint side : {7u, 30u, 50u})
+        for (const GridPoints points : {GridPoints::random, GridPoints::centers})
+            for (const FaceGrouping by : {FaceGrouping::face, FaceGrouping::mesh}) {
+                IlluminationDesc desc = along({0, 0, -1}, side);
+                desc.grid.points = points;
+                desc.by = by;
+                Illumination result = illuminate(accel(), scene, faces, desc);
+                result.groups.push_back(result.total);
+                for (const LitArea& lit : result.groups) {
+                    more += static_cast<double>(lit.hits) * result.cell_area > lit.unobstructed;
+                    EXPECT_LE(lit.fraction(), 1);
+                    EXPECT_LE(lit.interval.low, lit.area);
+                    EXPECT_GE(lit.interval.high, lit.area);
+                    EXPECT_EQ(lit.interval.high, lit.unobstructed);
+                }
+            }
+    EXPECT_GT(more, 10u);
+}
+
 // 150 squares at random places behind a plate that hides some of them, small and large against the cells.
 TEST_P(IlluminationRulesTest, IntervalsCoverAndEstimatesHaveNoBias) {
     const Scene scene = scene_of({square(0), make_quad(vec3(0.3125f, 0.1875f, 1), vec3(1, 0, 0), vec3(0, 0.45f, 0)),
@@ -143,7 +169,7 @@ TEST_P(IlluminationRulesTest, IntervalsCoverAndEstimatesHaveNoBias) {
         const Illumination result = illuminate(accel(), scene, faces, desc);
         for (int i = 0; i < 3; ++i) {
             const LitArea& seen = result.groups[i];
-            sum[i] += seen.area;
+            sum[i] += static_cast<double>(seen.hits) * result.cell_area;
             width[i] += (seen.interval.high - seen.interval.low) / runs;
             missed[i] += seen.interval.low > exact[i] * (1 + 1e-6) || seen.interval.high < exact[i] * (1 - 1e-6);
         }

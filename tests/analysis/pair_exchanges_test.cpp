@@ -72,6 +72,23 @@ TEST_P(PairExchangesTest, IntervalsOfAreasHoldTheTruthAsOftenAsTheyShould) {
     }
 }
 
+// Of faces that see hardly anything else, rays may tell more than there is.
+TEST_P(PairExchangesTest, NoFaceSendsMoreThanItHas) {
+    const Scene scene = test::parallel_squares(0.03f);
+    fill(scene);
+    bool is_cut = false;
+    for (uint seed = 1; seed <= 5; ++seed) {
+        const ViewFactorOptions options{.grouping = FaceGrouping::mesh, .rays = 1024, .seed = seed};
+        for (const KnownExchange& exchange : exchanges(scene, options, PairEstimator::area).known) {
+            EXPECT_LE(exchange.high, 1);
+            EXPECT_LE(exchange.flow, exchange.high);
+            EXPECT_GE(exchange.flow, exchange.low);
+            is_cut |= exchange.high == 1;
+        }
+    }
+    EXPECT_TRUE(is_cut);
+}
+
 // A square at half the height of parallel squares with a hole of 1/16 in its middle, and further out than they are.
 Mesh pierced_plate() {
     Mesh mesh;

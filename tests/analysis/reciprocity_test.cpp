@@ -92,6 +92,7 @@ TEST(Projection, FulfilsBothAndComesNearerToTheTruth) {
                 EXPECT_GE(factor.value, 0);
                 EXPECT_LE(factor.low, factor.value);
                 EXPECT_GE(factor.high, factor.value);
+                EXPECT_LE(factor.high, 1);
             }
     }
     EXPECT_LT(after, 0.6 * before) << "two directions tell more than one, and sums more still";

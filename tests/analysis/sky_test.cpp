@@ -12,7 +12,7 @@ class SkyTest : public AnalysisTest {
   protected:
     SkyLight sky(const Scene& scene, const SkyRaysDesc& desc) {
         fill(scene);
-        return sky_light(accel(), Faces(context(), scene), zenith, desc);
+        return sky_light(accel(), scene, Faces(context(), scene), zenith, desc);
     }
     SkyLight hours(const Scene& scene, const std::vector<SunPosition>& positions, const SkyRaysDesc& desc) {
         fill(scene);
@@ -41,7 +41,10 @@ TEST_P(SkyRulesTest, UnobstructedFacesSeeWhatTheirTiltLets) {
         const SkyLight front = sky(scene, {.samples = 1500, .sides = Sides::front});
         EXPECT_EQ(front.ray_count, 3000u);
         const SkyLight both = sky(scene, {.samples = 1500, .sides = Sides::both});
-        for (const Received& face : front.faces) expect_covers(face, (1 + cosine) / 2, 0.05);
+        for (const Received& face : front.faces) {
+            expect_covers(face, (1 + cosine) / 2, 0.05);
+            EXPECT_LE(face.interval.high, (1 + cosine) / 2 + 1e-7);
+        }
         for (const Received& face : both.faces) EXPECT_EQ(face.value, 1);
     }
 }
@@ -93,7 +96,8 @@ TEST_P(SkyTest, EveryAcceleratorCountsTheSame) {
     SwTlas software(context());
     push_scene(software, scene);
     const SkyRaysDesc desc{.samples = 33, .sides = Sides::front};
-    const SkyLight expected = sky_light(software, Faces(context(), scene), zenith, desc), result = sky(scene, desc);
+    const SkyLight expected = sky_light(software, scene, Faces(context(), scene), zenith, desc),
+                   result = sky(scene, desc);
     ASSERT_EQ(result.faces.size(), 640u);
     for (std::size_t face = 0; face < 640; ++face)
         EXPECT_EQ(result.faces[face].free_rays, expected.faces[face].free_rays) << face;
@@ -103,14 +107,14 @@ TEST_P(SkyRulesTest, IntervalsCoverAndEstimatesHaveNoBias) {
     const Scene scene = scene_of({square(0), make_quad(vec3(0.5f, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0))});
     fill(scene);
     const Faces faces(context(), scene);
-    const double exact = sky_light(accel(), faces, zenith, {.samples = 1u << 18, .seed = 9}).faces[0].value;
+    const double exact = sky_light(accel(), scene, faces, zenith, {.samples = 1u << 18, .seed = 9}).faces[0].value;
     const std::vector<SunPosition> positions = {{{0, 0, -1}, 2}, {{-1, 0, -1}, 3}};
     double sky_sum = 0, hours_sum = 0;
     int missed = 0;
     constexpr int runs = 100;
     for (int run = 0; run < runs; ++run) {
         const SkyRaysDesc desc{.samples = 101, .sides = Sides::front, .seed = 100u + run};
-        const Received of_sky = sky_light(accel(), faces, zenith, desc).faces[0];
+        const Received of_sky = sky_light(accel(), scene, faces, zenith, desc).faces[0];
         const Received of_sun = sun_hours(accel(), scene, faces, positions, desc).faces[0];
         sky_sum += of_sky.value, hours_sum += of_sun.value;
         missed += of_sky.interval.low > exact || of_sky.interval.high < exact;
@@ -119,6 +123,15 @@ TEST_P(SkyRulesTest, IntervalsCoverAndEstimatesHaveNoBias) {
     EXPECT_LE(missed, 10);
     EXPECT_NEAR(sky_sum / runs, exact, 0.012);
     EXPECT_NEAR(hours_sum / runs, 2.75, 0.03);
+}
+
+// 11 times 0.1 / 11 is more than 0.1, as rounded.
+TEST_P(SkyRulesTest, NoFaceHasMoreHoursThanThereAre) {
+    const std::vector<SunPosition> positions = {{{0, 0, -1}, 0.1}};
+    for (const Received& face : hours(scene_of({square(0)}), positions, {.samples = 11}).faces) {
+        EXPECT_EQ(face.value, 0.1);
+        EXPECT_EQ(face.interval.high, 0.1);
+    }
 }
 
 TEST_P(SkyRulesTest, PositionsOfTheSunHavePointsOfTheirOwn) {
@@ -170,9 +183,11 @@ TEST_P(SkyRulesTest, WrongUseSaysWhatIsWrong) {
     EXPECT_NE(error({{0, 0, 1}, 1}, 1048577).find("1048577 of each"), std::string::npos);
     EXPECT_EQ(error({{0, 0, 1e-200}, 0}, 1), "");
     const Faces faces(context(), scene);
-    EXPECT_NE(error_of([&] { sky_light(accel(), faces, dvec3(0), {}); }).find("must be finite"), std::string::npos);
+    EXPECT_NE(error_of([&] { sky_light(accel(), scene, faces, dvec3(0), {}); }).find("must be finite"),
+              std::string::npos);
     fill(scene_of({square(0), square(1)}));
-    EXPECT_NE(error_of([&] { sky_light(accel(), faces, zenith, {}); }).find("it has 2 instances"), std::string::npos);
+    EXPECT_NE(error_of([&] { sky_light(accel(), scene, faces, zenith, {}); }).find("it has 2 instances"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -30,6 +30,30 @@ inline Bsdf glass(float alpha, float eta) {
     return bsdf;
 }
 
+inline Bsdf with_coat(Bsdf bsdf, float coat, float alpha, vec3 normal = {0, 0, 1}) {
+    bsdf.layers |= LAYER_COAT;
+    bsdf.coat = coat;
+    bsdf.coat_alpha = alpha;
+    bsdf.coat_normal = normal;
+    return bsdf;
+}
+
+inline Bsdf with_sheen(Bsdf bsdf, vec3 color, float roughness) {
+    bsdf.layers |= LAYER_SHEEN;
+    bsdf.sheen = color;
+    bsdf.sheen_roughness = roughness;
+    return bsdf;
+}
+
+inline Bsdf with_grain(Bsdf bsdf, float alpha_grain, float turns) {
+    bsdf.layers |= LAYER_ANISOTROPY;
+    bsdf.alpha_grain = alpha_grain;
+    bsdf.grain = unit_circle(turns);
+    return bsdf;
+}
+
+inline Bsdf white() { return opaque(vec3(1), vec3(0), 0, 1); }
+
 inline vec3 direction(float cosine, float turns = 0) {
     const vec2 circle = unit_circle(turns) * sqrt(1 - cosine * cosine);
     return {circle.x, circle.y, cosine};
@@ -45,6 +69,12 @@ double mean_of_samples(const Bsdf& bsdf, vec3 wo, const Value& value, uint count
         sum += static_cast<double>(value(sample_bsdf(bsdf, wo, lobe, u)));
     }
     return sum / count;
+}
+
+// What it returns of uniform light from wo's side and all others.
+inline double albedo_of(const Bsdf& bsdf, vec3 wo) {
+    return mean_of_samples(
+        bsdf, wo, [](const BsdfSample& s) { return s.weight.x; }, samples / 4);
 }
 
 // Integral of `value(wi)` over the whole sphere of directions.

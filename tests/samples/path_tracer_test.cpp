@@ -125,6 +125,32 @@ TEST_F(PathTracer, ABlendedSurfaceDimsLightByItsAlpha) {
     expect_mean(render(context(), scene, shot), std::pow(0.75, 6), "and before the camera");
 }
 
+// Leaves, hair and fences: 100 sheets of one material before the light, and the camera.
+TEST_F(PathTracer, AnyNumberOfTransparentSurfacesIsPassed) {
+    for (const float alpha : {0.0f, 0.02f})
+        for (const AlphaMode mode : {AlphaMode::blend, AlphaMode::mask}) {
+            Scene scene;
+            add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+            scene.lights = {
+                {.name = "light", .kind = Light::Kind::directional, .color = vec3(PI), .direction = {0, -1, 0}}};
+            Material screen = lambert(0);
+            screen.base_color.w = alpha;
+            screen.alpha_mode = mode;
+            add(scene, make_quad({-5, 1, -5}, {0, 0, 10}, {10, 0, 0}), screen);
+            for (int i = 1; i < 100; ++i)
+                scene.instances.push_back({"sheet", 1, Transform::translation({0, 0.01f * static_cast<float>(i), 0})});
+            Shot shot;
+            shot.settings.max_depth = 1;
+            const double passed = mode == AlphaMode::blend ? std::pow(1 - static_cast<double>(alpha), 100) : 1;
+            shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+            shot.settings.samples = 1;
+            EXPECT_NEAR(statistics(render(context(), scene, shot)).mean, passed, 1e-4) << "before the light";
+            shot.settings.camera = camera_rays(look({0, 9, 0}, vec3(0), 1e-4f), 1);
+            shot.settings.samples = 16;
+            expect_mean(render(context(), scene, shot), passed * passed, "and before the camera");
+        }
+}
+
 TEST_F(PathTracer, TiltedShadingNormalsLetNoLightThrough) {
     Scene scene;
     Mesh floor = make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0});
