@@ -96,12 +96,14 @@ void print_traces(std::ostream& out, const Results& results, std::string_view ti
 std::vector<nlohmann::json> records_of(const nlohmann::json& base, const Results& results, RayKind kind,
                                        std::span<const TraceRounds> traces) {
     std::vector<nlohmann::json> records;
+    const dvec3& origin = results.scene.scene.origin;
     for (std::size_t i = 0; i < traces.size(); ++i) {
         const Labels& labels = results.line_up[i]->labels();
         const Spread rate = mrays_per_s(traces[i]);
         nlohmann::json record = base;
         record.update({{"schema", record_schema},
                        {"scene", results.scene.name},
+                       {"origin", {origin.x, origin.y, origin.z}},
                        {"triangles", count_triangles(results.scene.scene)},
                        {"rays", name_of(kind)},
                        {"n", traces[i].n},

@@ -61,8 +61,7 @@ nlohmann::json base_record(const BenchOptions& options, const Context& context) 
 
 BenchScene load(const BenchOptions& options, const std::string& name) {
     BenchScene scene = bench::make_scene(name);
-    if (!options.common.quiet)
-        for (const std::string& warning : scene.scene.warnings) std::cerr << "twinray: warning: " << warning << '\n';
+    print_notes(scene.scene, options.common.quiet);
     return scene;
 }
 

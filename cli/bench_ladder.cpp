@@ -6,6 +6,7 @@
 #include "bench/keeping.h"
 #include "bench/ladder.h"
 #include "cli/common.h"
+#include "cli/places.h"
 #include "engine/core/error.h"
 #include "engine/report/recorder.h"
 #include "twinray_version.h"
@@ -14,6 +15,7 @@ namespace twinray::cli {
 
 void bench_ladder(const CommonOptions& options, const std::string& scene_name, const bench::RunOptions& run) {
     const bench::BenchScene scene = bench::make_scene(scene_name);
+    print_notes(scene.scene, options.quiet);
     const std::unique_ptr<Context> context = make_context(options);
     const bench::LadderOptions ladder_options{.layout = run.line_up.layouts.front(),
                                               .level = run.line_up.levels.front(),
@@ -23,8 +25,13 @@ void bench_ladder(const CommonOptions& options, const std::string& scene_name, c
     std::cout << "bench " << scene.name << ": features that " << name_of(ladder_options.layout) << ' '
               << bench::level_name(ladder_options.level) << " does not need, one more on each rung, medians of "
               << ladder_options.rounds << " interleaved rounds, on " << context->facts().name << '\n';
-    const nlohmann::json base = {{"device", describe(*context)}, {"started", utc_now()}, {"git", twinray_version},
-                                 {"width", run.width},           {"seed", options.seed}, {"scene", scene.name}};
+    const nlohmann::json base = {{"device", describe(*context)},
+                                 {"started", utc_now()},
+                                 {"git", twinray_version},
+                                 {"width", run.width},
+                                 {"seed", options.seed},
+                                 {"scene", scene.name},
+                                 {"origin", list_of(scene.scene.origin)}};
     nlohmann::json rung_base = base;
     rung_base.update({{"layout", name_of(ladder_options.layout)}, {"level", bench::level_name(ladder_options.level)}});
     bool agree = true;

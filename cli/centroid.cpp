@@ -2,6 +2,7 @@
 // `twinray centroid`: the mean of what is seen along a direction.
 #include <iostream>
 
+#include "cli/places.h"
 #include "cli/ray_grid_options.h"
 #include "engine/analysis/centroid.h"
 #include "engine/core/error.h"
@@ -14,9 +15,13 @@ struct CentroidOptions {
     RayGridOptions grid;
 };
 
-void write(const std::filesystem::path& file, const Centroid& result) {
+// In the file's coordinates.
+void write(const std::filesystem::path& file, const Centroid& result, const dvec3& origin) {
     CsvFile csv(file, "x,y,z");
-    for (const dvec3& point : result.points) csv.row({}, {point.x, point.y, point.z});
+    for (const dvec3& point : result.points) {
+        const dvec3 place = origin + point;
+        csv.row({}, {place.x, place.y, place.z});
+    }
     csv.close();
 }
 
@@ -25,7 +30,7 @@ void print(const CentroidOptions& options, const Analysed& analysed, const Centr
               << " faces, " << analysed.accel->name() << " on " << analysed.context->facts().name << "\n  "
               << speed_text(result.ray_count, seconds) << "\n  ";
     if (result.mean) {
-        std::cout << "mean of " << result.point_count << " points: " << text_of(*result.mean);
+        std::cout << "mean of " << result.point_count << " points: " << place_text(*result.mean, analysed.scene.origin);
         if (result.standard_error) std::cout << ", standard error " << text_of(*result.standard_error);
         std::cout << '\n';
     } else {
@@ -40,7 +45,9 @@ ScenePicture picture_of(const CentroidOptions& options, const Analysed& analysed
     ScenePicture picture;
     picture.page.title = options.analysis.scene.filename().string() + ": centroid";
     picture.page.subtitle = "no ray hits anything";
-    if (result.mean) picture.page.subtitle = text("mean of ", result.point_count, " points: ", text_of(*result.mean));
+    if (result.mean)
+        picture.page.subtitle =
+            text("mean of ", result.point_count, " points: ", place_text(*result.mean, analysed.scene.origin));
     picture.page.legend.entries = {{categorical::vermillion, "mean"}, {categorical::blue, "points"}};
     picture.colors.assign(count_triangles(analysed.scene), plain_color);
     const std::size_t count = std::min(result.points.size(), most_points);
@@ -55,9 +62,7 @@ ScenePicture picture_of(const CentroidOptions& options, const Analysed& analysed
     return picture;
 }
 
-nlohmann::json list_of(const std::optional<dvec3>& v) {
-    return v ? nlohmann::json{v->x, v->y, v->z} : nlohmann::json(nullptr);
-}
+nlohmann::json list_or_null(const std::optional<dvec3>& v) { return v ? list_of(*v) : nlohmann::json(nullptr); }
 
 void run(const CentroidOptions& options) {
     const Analysed analysed(options.analysis);
@@ -71,15 +76,17 @@ void run(const CentroidOptions& options) {
                            .keeps_points = !options.analysis.output.empty() || !pictures.files.empty(),
                            .progress = &progress});
     });
-    if (!options.analysis.output.empty()) write(options.analysis.output, result);
+    if (!options.analysis.output.empty()) write(options.analysis.output, result, analysed.scene.origin);
     if (!pictures.files.empty())
         write_pictures(pictures, *analysed.accel, analysed.scene, picture_of(options, analysed, result));
     if (!options.analysis.common.quiet) print(options, analysed, result, seconds);
+    std::optional<dvec3> mean = result.mean;
+    if (mean) *mean += analysed.scene.origin;
     nlohmann::json record = {{"schema", "twinray-centroid/1"},
                              {"n", result.ray_count},
                              {"points_hit", result.point_count},
-                             {"mean", list_of(result.mean)},
-                             {"standard_error", list_of(result.standard_error)},
+                             {"mean", list_or_null(mean)},
+                             {"standard_error", list_or_null(result.standard_error)},
                              {"seconds", seconds}};
     record.update(options.grid.record());
     record.update(analysed.record(options.analysis));

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "cli/collide_picture.h"
+#include "cli/places.h"
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 
@@ -70,6 +71,7 @@ void run_broad(const CollideOptions& options) {
     append_json(options.common.json, {{"schema", "twinray-collide/1"},
                                       {"device", describe(*context)},
                                       {"scene", options.scene.string()},
+                                      {"origin", list_of(scene.origin)},
                                       {"phase", "broad"},
                                       {"backend", options.accel},
                                       {"instances", scene.instances.size()},
@@ -115,6 +117,7 @@ void run_exact(const CollideOptions& options) {
     append_json(options.common.json, {{"schema", "twinray-collide/1"},
                                       {"device", describe(*context)},
                                       {"scene", options.scene.string()},
+                                      {"origin", list_of(scene.origin)},
                                       {"phase", "exact"},
                                       {"self", options.contacts.self},
                                       {"weld", options.contacts.shared == Shared::by_position},

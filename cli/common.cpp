@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "cli/common.h"
 
-#include <bit>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
 
 #include "engine/core/error.h"
+#include "engine/scene/local_origin.h"
 #include "hwtlas/hw_tlas.h"
 #include "swtlas/sw_tlas.h"
 
 namespace twinray::cli {
-namespace {
-
-static_assert(std::endian::native == std::endian::little, "ray and hit files are little-endian");
-
-}  // namespace
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_option("--device", options.device, "index or part of the name (see `twinray devices`)");
@@ -69,35 +64,21 @@ std::unique_ptr<AbstractAccel> make_accel(Context& context, const std::string& k
 
 Scene load_scene_with_warnings(const std::filesystem::path& file, bool quiet) {
     Scene scene = load_scene(file);
-    if (!quiet)
-        for (const std::string& warning : scene.warnings) std::cerr << "twinray: warning: " << warning << '\n';
+    print_notes(scene, quiet);
     return scene;
 }
 
-std::vector<Ray> read_rays(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary | std::ios::ate);
-    if (!in || std::filesystem::is_directory(file)) fail("rays file '", file.string(), "' cannot be opened");
-    const auto bytes = static_cast<std::uint64_t>(in.tellg());
-    if (bytes % sizeof(Ray) != 0)
-        fail("rays file '", file.string(), "': ", bytes, " bytes is not a multiple of ", sizeof(Ray),
-             ", the size of a ray");
-    std::vector<Ray> rays(bytes / sizeof(Ray));
-    in.seekg(0);
-    if (!in.read(reinterpret_cast<char*>(rays.data()), static_cast<std::streamsize>(bytes)))
-        fail("rays file '", file.string(), "' cannot be read");
-    return rays;
+void print_notes(const Scene& scene, bool quiet) {
+    if (quiet) return;
+    if (scene.origin != dvec3(0))
+        std::cerr << "twinray: scene moved to local origin " << origin_text(scene.origin) << '\n';
+    for (const std::string& warning : scene.warnings) std::cerr << "twinray: warning: " << warning << '\n';
 }
 
 void check_writable(const std::filesystem::path& file) {
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
     if (!std::filesystem::is_directory(folder))
         fail("'", file.string(), "': there is no folder '", folder.string(), "'");
-}
-
-void write_hits(const std::filesystem::path& file, const std::vector<Hit>& hits) {
-    std::ofstream out(file, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(hits.data()), static_cast<std::streamsize>(hits.size() * sizeof(Hit)));
-    if (!out.flush()) fail("hits file '", file.string(), "' cannot be written");
 }
 
 void append_json(const std::filesystem::path& file, const nlohmann::json& record) {

@@ -40,13 +40,11 @@ std::unique_ptr<Context> make_context(const CommonOptions& options);
 // kind: "sw" or "hw".
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const std::string& kind);
 
-// Loads and prints the warnings to stderr unless quiet.
+// Loads; prints where the origin is, if it was moved, and the warnings to stderr unless quiet.
 Scene load_scene_with_warnings(const std::filesystem::path& file, bool quiet);
+void print_notes(const Scene& scene, bool quiet);
 
-// Raw little-endian arrays of 32-byte records. Throws Error naming the file and the size.
-std::vector<Ray> read_rays(const std::filesystem::path& file);
 void check_writable(const std::filesystem::path& file);  // its folder exists: before the work, not after it
-void write_hits(const std::filesystem::path& file, const std::vector<Hit>& hits);
 
 // "1.4.305".
 std::string api_version(const Context& context);

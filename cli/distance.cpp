@@ -8,6 +8,7 @@
 #include "cli/distance_slice.h"
 #include "cli/npz.h"
 #include "cli/picture_options.h"
+#include "cli/places.h"
 #include "cli/query_points.h"
 #include "engine/core/error.h"
 #include "engine/points/point_finder.h"
@@ -39,14 +40,15 @@ void close_table(std::ofstream& out, const std::filesystem::path& file) {
     if (!out.flush()) fail("CSV file '", file.string(), "' cannot be written");
 }
 
-void write_csv(const std::filesystem::path& file, const std::vector<ClosestPoint>& found) {
+void write_csv(const std::filesystem::path& file, const std::vector<ClosestPoint>& found, const dvec3& origin) {
     std::ofstream out = open_table(file, "point,distance,x,y,z,instance,triangle");
     for (std::size_t i = 0; i < found.size(); ++i) {
         const ClosestPoint& of = found[i];
+        const dvec3 place = origin + of.position;
         out << i << ',';
         if (of.is_found)
-            out << of.distance << ',' << of.position.x << ',' << of.position.y << ',' << of.position.z << ','
-                << of.instance << ',' << of.triangle << '\n';
+            out << of.distance << ',' << place.x << ',' << place.y << ',' << place.z << ',' << of.instance << ','
+                << of.triangle << '\n';
         else
             out << "inf,,,,,\n";
     }
@@ -61,14 +63,17 @@ void write_csv(const std::filesystem::path& file, const std::vector<NearTriangle
 }
 
 // Arrays by point: of a grid, distance[z, y, x].
-void write_npz(const DistanceOptions& options, const std::vector<glm::dvec3>& points,
-               const std::vector<ClosestPoint>& found) {
+void write_npz(const DistanceOptions& options, const std::vector<dvec3>& points, const std::vector<ClosestPoint>& found,
+               const dvec3& origin) {
     constexpr std::uint32_t none = 0xffffffffu;
     std::vector<double> distance, from, at;
     std::vector<std::uint32_t> instance, triangle;
     for (std::size_t i = 0; i < points.size(); ++i) {
         distance.push_back(found[i].distance);
-        for (int axis = 0; axis < 3; ++axis) from.push_back(points[i][axis]), at.push_back(found[i].position[axis]);
+        for (int axis = 0; axis < 3; ++axis) {
+            from.push_back(origin[axis] + points[i][axis]);
+            at.push_back(origin[axis] + found[i].position[axis]);
+        }
         instance.push_back(found[i].is_found ? found[i].instance : none);
         triangle.push_back(found[i].is_found ? found[i].triangle : none);
     }
@@ -87,7 +92,7 @@ void write_npz(const DistanceOptions& options, const std::vector<glm::dvec3>& po
 struct Search {
     Scene scene;
     std::unique_ptr<Context> context;
-    std::vector<glm::dvec3> points;
+    std::vector<dvec3> points;
     PointFinder finder;
     double build_seconds = 0;
 
@@ -102,13 +107,10 @@ struct Search {
         build_seconds = seconds_since(start);
     }
     nlohmann::json record(const DistanceOptions& options, double seconds) const {
-        return {{"schema", "twinray-distance/1"},
-                {"device", describe(*context)},
-                {"scene", options.scene.string()},
-                {"triangles", finder.triangle_count()},
-                {"n", points.size()},
-                {"build_seconds", build_seconds},
-                {"seconds", seconds}};
+        return {{"schema", "twinray-distance/1"},       {"device", describe(*context)},
+                {"scene", options.scene.string()},      {"origin", list_of(scene.origin)},
+                {"triangles", finder.triangle_count()}, {"n", points.size()},
+                {"build_seconds", build_seconds},       {"seconds", seconds}};
     }
     void print(double seconds) const {
         std::cout << points.size() << " points, " << finder.triangle_count() << " triangles: built in " << build_seconds
@@ -145,9 +147,9 @@ void run_closest(const DistanceOptions& options, Search& search) {
     }
     const double seconds = seconds_since(start);
     if (options.output.extension() == ".npz")
-        write_npz(options, search.points, found);
+        write_npz(options, search.points, found, search.scene.origin);
     else if (!options.output.empty())
-        write_csv(options.output, found);
+        write_csv(options.output, found, search.scene.origin);
     const auto near =
         std::count_if(found.begin(), found.end(), [](const ClosestPoint& point) { return point.is_found; });
     if (!options.common.quiet) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/places.h"
 #include "cli/query_points.h"
 #include "engine/core/error.h"
 #include "engine/picture/page.h"
@@ -42,7 +43,7 @@ Slice slice_of(const SliceOptions& options, const Scene& scene) {
     slice.columns = std::max(1u, static_cast<uint>(std::lround(box.size[right] / slice.step)));
     slice.rows = std::max(1u, static_cast<uint>(std::lround(box.size[up] / slice.step)));
     dvec3 point;
-    point[normal] = options.at.value_or(box.lo[normal] + box.size[normal] / 2);
+    point[normal] = options.at ? *options.at - scene.origin[normal] : box.lo[normal] + box.size[normal] / 2;
     const double middle = box.lo[up] + box.size[up] / 2;
     for (uint y = 0; y < slice.rows; ++y)
         for (uint x = 0; x < slice.columns; ++x) {
@@ -97,7 +98,8 @@ void write_slice(const SliceOptions& options, const Scene& scene, PointFinder& f
     std::transform(values.begin(), values.end(), picture.pixels.begin(),
                    [&](double value) { return scale.color(value); });
     draw_levels(picture, values, (scale.hi() - scale.lo()) / 20);
-    const double at = slice.points.front()[axes_of(options.axis).normal];
+    const int normal = axes_of(options.axis).normal;
+    const std::string at = place_text(slice.points.front()[normal], scene.origin[normal]);
     const Raster page =
         compose(picture, {.title = title,
                           .subtitle = text("plane ", options.axis, " = ", at),

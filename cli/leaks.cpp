@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "cli/common.h"
+#include "cli/places.h"
 #include "cli/suite/crossings.h"
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
@@ -190,7 +191,8 @@ std::uint64_t run(const LeaksOptions& options) {
     if (options.rays == 0) fail("leaks: --rays 0 leaves nothing to judge");
     if (!options.resume.empty()) check_writable(options.resume);
     const std::string file = options.scene.filename().string();
-    const Mesh mesh = joined(load_scene_with_warnings(options.scene, options.common.quiet), file);
+    const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
+    const Mesh mesh = joined(scene, file);
     const std::unique_ptr<Context> context = make_context(options.common);
     if (options.accel == "hw" && !context->facts().ray_query) fail("leaks: --accel hw needs ray queries");
     const nlohmann::json identity = identity_of(options, mesh, *context);
@@ -207,6 +209,7 @@ std::uint64_t run(const LeaksOptions& options) {
                                       {"device", describe(*context)},
                                       {"case", "leaks"},
                                       {"scene", options.scene.string()},
+                                      {"origin", list_of(scene.origin)},
                                       {"backend", options.accel},
                                       {"level", options.level},
                                       {"reference", "analytic"},

@@ -23,17 +23,17 @@ QueryBox query_box(const Scene& scene) {
     return {lo - margin, size + 2 * margin};
 }
 
-std::vector<dvec3> read_points(const std::filesystem::path& file) {
+std::vector<dvec3> read_points(const std::filesystem::path& file, const dvec3& origin) {
     std::vector<dvec3> points;
     read_number_lines(file, "points file", "x,y,z", [&](std::span<const double> xyz, std::size_t) {
         if (points.size() == most_points) fail("points file '", file.string(), "': it has more than ", most_points);
-        points.push_back({xyz[0], xyz[1], xyz[2]});
+        points.push_back(dvec3(xyz[0], xyz[1], xyz[2]) - origin);
     });
     return points;
 }
 
 std::vector<dvec3> QueryPointOptions::make(const Scene& scene, std::uint64_t seed) const {
-    if (!file.empty()) return read_points(file);
+    if (!file.empty()) return read_points(file, scene.origin);
     if (random == 0 && grid == 0) return {};
     const QueryBox box = query_box(scene);
     std::vector<dvec3> points;

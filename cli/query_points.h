@@ -28,7 +28,7 @@ struct QueryPointOptions {
 // At most one of --points, --random, --grid.
 void add_query_point_options(CLI::App& command, QueryPointOptions& options);
 
-// x,y,z a line, under a heading or none.
-std::vector<glm::dvec3> read_points(const std::filesystem::path& file);
+// x,y,z a line, under a heading or none; from each `origin` is subtracted.
+std::vector<glm::dvec3> read_points(const std::filesystem::path& file, const dvec3& origin);
 
 }  // namespace twinray::cli

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <utility>
 
+#include "cli/places.h"
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 
@@ -65,11 +66,8 @@ Analysed::Analysed(const AnalysisOptions& options) {
 }
 
 nlohmann::json Analysed::record(const AnalysisOptions& options) const {
-    return {{"device", describe(*context)},
-            {"scene", options.scene.string()},
-            {"backend", options.accel},
-            {"faces", count_triangles(scene)},
-            {"seed", options.common.seed}};
+    return {{"device", describe(*context)}, {"scene", options.scene.string()}, {"origin", list_of(scene.origin)},
+            {"backend", options.accel},     {"faces", count_triangles(scene)}, {"seed", options.common.seed}};
 }
 
 double seconds_of(const std::function<void()>& work) {

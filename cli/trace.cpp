@@ -5,6 +5,8 @@
 #include <iostream>
 
 #include "cli/common.h"
+#include "cli/places.h"
+#include "cli/ray_file.h"
 #include "engine/accel/all_hits.h"
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
@@ -55,7 +57,7 @@ void run(const TraceOptions& options) {
     check_writable(options.hits);
     if (is_all) check_writable(options.counts);
     const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
-    const std::vector<Ray> rays = read_rays(options.rays);
+    const std::vector<Ray> rays = read_rays(options.rays, scene.origin);
     const std::unique_ptr<Context> context = make_context(options.common);
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, options.accel);
     push_scene(*accel, scene);
@@ -70,6 +72,7 @@ void run(const TraceOptions& options) {
     append_json(options.common.json, {{"schema", "twinray-trace/1"},
                                       {"device", describe(*context)},
                                       {"scene", options.scene.string()},
+                                      {"origin", list_of(scene.origin)},
                                       {"backend", options.accel},
                                       {"level", options.level},
                                       {"query", options.query},
@@ -84,7 +87,8 @@ void add_trace(CLI::App& app, int&) {
     CLI::App* command = app.add_subcommand("trace", "trace a file of rays");
     const auto options = std::make_shared<TraceOptions>();
     command->add_option("scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
-    command->add_option("--rays", options->rays, "raw 32-byte rays, little endian")->required();
+    command->add_option("--rays", options->rays, "raw 32-byte rays, little endian, or .npy: N x 8 numbers, float64 too")
+        ->required();
     command->add_option("--hits", options->hits, "written: raw 32-byte hits")->required();
     command->add_option("--accel", options->accel)->check(CLI::IsMember({"sw", "hw"}))->capture_default_str();
     command->add_option("--query", options->query)

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "cli/exact/referee.h"
+#include "cli/ray_file.h"
 #include "cli/replay/replay.h"
 #include "cli/replay/scene_file.h"
 #include "cli/replay/show.h"
@@ -19,11 +20,11 @@ namespace twinray::cli {
 namespace {
 
 constexpr std::size_t batch_size = 1 << 18;
-std::vector<RaySet> ray_sets(const VerifyOptions& options, const Oracle& oracle, const Bounds& bounds) {
-    if (!options.rays.empty()) return {{"file", read_rays(options.rays)}};
+std::vector<RaySet> ray_sets(const VerifyOptions& options, const Oracle& oracle, const Scene& scene) {
+    if (!options.rays.empty()) return {{"file", read_rays(options.rays, scene.origin)}};
     if (options.random + options.aimed == 0) fail("verify: --random 0 and --aimed 0 leave nothing to judge");
     const std::uint64_t seed = options.common.seed;
-    return {{"random", random_rays(bounds, options.random, seed)},
+    return {{"random", random_rays(bounds_of(scene), options.random, seed)},
             {"vertex", vertex_aimed_rays(oracle, options.aimed, seed)},
             {"edge", edge_aimed_rays(oracle, options.aimed, seed)}};
 }
@@ -59,7 +60,7 @@ void write_replays(const VerifyOptions& options, const Scene& scene, const Oracl
         replay::write(folder / text(set.name, '-', kind, '-', ++numbers[fault.kind], ".json"),
                       {std::filesystem::absolute(options.scene), hash, backend_of(fault, context), "watertight", kind,
                        fault.ray, fault.answer, reference_of(oracle, fault.ray, arbiter), context.facts().name,
-                       context.facts().driver, twinray_version});
+                       context.facts().driver, twinray_version, scene.origin});
         ++written;
     }
     std::cout << "    " << written << " replays in " << folder.string() << "; show one: twinray verify --replay FILE\n";
@@ -82,7 +83,7 @@ std::uint64_t run(const VerifyOptions& options) {
               << scene.instances.size() << " instances, on " << context->facts().name << "; HwTlas by "
               << (hw ? hw->trace_path() : "nothing (unsupported on this device)") << '\n';
     std::uint64_t faults = 0;
-    for (const RaySet& set : ray_sets(options, oracle, bounds_of(scene))) {
+    for (const RaySet& set : ray_sets(options, oracle, scene)) {
         Outcome outcome;
         Progress progress("verify " + set.name, set.rays.size(), options.common.quiet);
         for (std::size_t first = 0; first < set.rays.size(); first += batch_size) {
@@ -91,7 +92,7 @@ std::uint64_t run(const VerifyOptions& options) {
             progress.advance(batch.size());
         }
         print(set, outcome, hw != nullptr);
-        append_records(options, *context, set, outcome, hw.get());
+        append_records(options, {*context, scene, set, outcome, hw.get()});
         write_replays(options, scene, oracle, arbiter, *context, set, outcome);
         faults += outcome.software.faults_of_ours();
     }
@@ -122,7 +123,8 @@ void add_verify(CLI::App& app, int& exit_code) {
                      text("folder for faulty rays: ours, and up to ", max_faults_of_driver,
                           " of each class of the driver's; without it only ours are written, to twinray_replays"))
         ->excludes(replay);
-    CLI::Option* rays = command->add_option("--rays", options->rays, "raw 32-byte rays, little endian");
+    CLI::Option* rays = command->add_option("--rays", options->rays,
+                                            "raw 32-byte rays, little endian, or .npy: N x 8 numbers, float64 too");
     command->add_option("--random", options->random, "random rays")->capture_default_str()->excludes(rays);
     command->add_option("--aimed", options->aimed, "rays aimed at vertices, and as many aimed at edges")
         ->capture_default_str()

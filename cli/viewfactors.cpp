@@ -7,6 +7,7 @@
 
 #include "cli/face_groups.h"
 #include "cli/npz.h"
+#include "cli/places.h"
 #include "cli/view_factor_picture.h"
 #include "engine/accel/scene_push.h"
 #include "engine/analysis/pair_exchanges.h"
@@ -240,6 +241,7 @@ void run(const Options& options) {
     append_json(options.common.json, {{"schema", "twinray-viewfactors/1"},
                                       {"device", describe(*context)},
                                       {"scene", options.scene.string()},
+                                      {"origin", list_of(scene.origin)},
                                       {"backend", options.accel},
                                       {"by", name_of(options.factors.grouping)},
                                       {"sequence", name_of(options.factors.sequence)},

@@ -14,7 +14,8 @@ namespace twinray::replay {
 // hit have all corners at 0. Masks and culling are left out.
 Scene scene_of(const Oracle& oracle);
 
-// Binary glTF of positions and transforms alone: load_scene() gives the same floats, triangles and instances. Throws
+// Binary glTF of positions and transforms alone, relative to the scene's origin: load_scene(file, dvec3(0)) gives the
+// same floats, triangles and instances. Throws
 // Error where the file cannot be written.
 void write_glb(const std::filesystem::path& file, const Scene& scene);
 

@@ -12,6 +12,7 @@
 #include "cli/suite/judging.h"
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
+#include "engine/scene/local_origin.h"
 #include "engine/verify/certainty.h"
 
 namespace twinray::replay {
@@ -40,7 +41,7 @@ struct Stage {
 
 Scene load_checked(const std::filesystem::path& file, const Replay& replay) {
     const std::filesystem::path path = file.parent_path() / replay.scene;
-    Scene scene = load_scene(path);
+    Scene scene = load_scene(path, replay.origin);
     if (const std::string hash = hash_of(scene); hash != replay.scene_hash)
         fail("replay '", file.string(), "': scene '", path.string(), "' is not the one that was traced: its hash is ",
              hash, ", not ", replay.scene_hash);
@@ -141,6 +142,8 @@ void print_header(std::ostream& out, const Stage& stage) {
     out << replay.kind << " of " << replay.backend << " at level " << replay.level << " on " << replay.device << ", "
         << replay.driver << ", twinray " << replay.twinray << '\n'
         << "The ray: origin, t_min, direction, t_max\n  " << suite::hexadecimal(replay.ray) << '\n';
+    if (const dvec3& origin = replay.origin; origin != dvec3(0))
+        out << "  relative to the local origin " << origin_text(origin) << '\n';
     print(out, "answered", replay.answer.hit, replay.answer.instance_index, replay.answer.primitive_index,
           replay.answer.t);
     out << '\n';

@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <iostream>
 
+#include "cli/places.h"
 #include "engine/report/statistics.h"
 
 namespace twinray::cli {
@@ -65,19 +66,20 @@ struct Judgement {
     double seconds;
 };
 
-void append_record(const VerifyOptions& options, const Context& context, const RaySet& set, const Judgement& judged) {
+void append_record(const VerifyOptions& options, const JudgedSet& of, const Judgement& judged) {
     append_json(options.common.json, {{"schema", "twinray-report/1"},
-                                      {"device", describe(context)},
-                                      {"case", "verify." + set.name},
+                                      {"device", describe(of.context)},
+                                      {"case", "verify." + of.set.name},
                                       {"scene", options.scene.string()},
+                                      {"origin", list_of(of.scene.origin)},
                                       {"backend", judged.backend},
                                       {"path", judged.path},
                                       {"level", "watertight"},
                                       {"reference", "f64"},
-                                      {"n", set.rays.size()},
+                                      {"n", of.set.rays.size()},
                                       {"seed", options.common.seed},
                                       {"counts", counts_json(judged.classes)},
-                                      {"bound95", upper_bound_95(judged.faults, set.rays.size())},
+                                      {"bound95", upper_bound_95(judged.faults, of.set.rays.size())},
                                       {"seconds", judged.seconds},
                                       {"pass", judged.faults == 0},
                                       {"criterion", judged.criterion}});
@@ -85,14 +87,14 @@ void append_record(const VerifyOptions& options, const Context& context, const R
 
 }  // namespace
 
-void append_records(const VerifyOptions& options, const Context& context, const RaySet& set, const Outcome& outcome,
-                    const HwTlas* hw) {
-    append_record(options, context, set,
+void append_records(const VerifyOptions& options, const JudgedSet& judged) {
+    const Outcome& outcome = judged.outcome;
+    append_record(options, judged,
                   {"sw", "compute", outcome.software, outcome.software.faults_of_ours(),
                    "SW_LEAK, SW_FALSE and T_ERR are 0", outcome.software_seconds});
-    if (hw)
-        append_record(options, context, set,
-                      {"hw", hw->trace_path(), outcome.hardware, outcome.hardware.faults_of_hardware(),
+    if (judged.hw)
+        append_record(options, judged,
+                      {"hw", judged.hw->trace_path(), outcome.hardware, outcome.hardware.faults_of_hardware(),
                        "HW_LEAK, HW_FALSE, HW_T_ERR and HW_RANGE are 0", outcome.hardware_seconds});
 }
 

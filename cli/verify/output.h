@@ -20,8 +20,15 @@ struct VerifyOptions {
 // To stdout.
 void print(const RaySet& set, const Outcome& outcome, bool has_hardware);
 
-// To the JSON file of the options, if there is one. hw may be null.
-void append_records(const VerifyOptions& options, const Context& context, const RaySet& set, const Outcome& outcome,
-                    const HwTlas* hw);
+// What one set of rays gave, and where.
+struct JudgedSet {
+    const Context& context;
+    const Scene& scene;
+    const RaySet& set;
+    const Outcome& outcome;
+    const HwTlas* hw;  // may be null
+};
+// To the JSON file of the options, if there is one.
+void append_records(const VerifyOptions& options, const JudgedSet& judged);
 
 }  // namespace twinray::cli

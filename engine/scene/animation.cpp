@@ -48,6 +48,7 @@ Pose pose_of(const Rig& rig, Locals&& locals) {
         const glm::dmat4 local = node.is_fixed ? node.matrix : matrix_of(locals.places[i]);
         const glm::dmat4 axes = node.is_fixed ? node.matrix : frame_of(locals.places[i]);
         pose.nodes.push_back(node.parent < 0 ? local : pose.nodes[parent] * local);
+        if (node.parent < 0) pose.nodes.back()[3] -= dvec4(rig.origin, 0);
         pose.frames.push_back(node.parent < 0 ? axes : pose.frames[parent] * axes);
         pose.frames.back()[3] = pose.nodes.back()[3];
     }

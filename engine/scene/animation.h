@@ -120,11 +120,12 @@ struct Rig {
         Place place;
     };
     std::vector<Hidden> hidden;
+    dvec3 origin = dvec3(0);                        // of the scene, which poses are relative to
 };
 
 // Of each node of a rig.
 struct Pose {
-    std::vector<glm::dmat4> nodes;             // to world space
+    std::vector<glm::dmat4> nodes;             // to world space, relative to the rig's origin
     std::vector<glm::dmat4> frames;            // the same with axes that scales of 0 leave: of cameras and lights
     std::vector<std::vector<double>> weights;  // of morph targets
 };

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <sstream>
+#include <utility>
 
 #include <tiny_gltf.h>
 
@@ -61,8 +62,7 @@ class GlbModel {
                 for (const float entry : {rows[0][i], rows[1][i], rows[2][i], i == 3 ? 1.0f : 0.0f})
                     node.matrix.push_back(static_cast<double>(entry));
         }
-        model_.scenes[0].nodes.push_back(static_cast<int>(model_.nodes.size()));
-        model_.nodes.push_back(std::move(node));
+        add_root(std::move(node));
     }
 
     std::size_t bytes() const { return model_.buffers[0].data.size(); }
@@ -72,11 +72,22 @@ class GlbModel {
             model_.buffers.clear();
             model_.scenes.clear();
             model_.defaultScene = -1;
+        } else if (const dvec3& origin = scene_.origin; origin != dvec3(0)) {
+            tinygltf::Node root;
+            root.name = "local origin";
+            root.translation = {origin.x, origin.y, origin.z};
+            root.children = std::exchange(model_.scenes[0].nodes, {});
+            add_root(std::move(root));
         }
         return std::move(model_);
     }
 
   private:
+    void add_root(tinygltf::Node&& node) {
+        model_.scenes[0].nodes.push_back(static_cast<int>(model_.nodes.size()));
+        model_.nodes.push_back(std::move(node));
+    }
+
     // -1: nothing of it can be written.
     int mesh_of(const Instance& instance, std::span<const Rgb> colors, bool is_node) {
         const Transform placed = is_node ? Transform{} : instance.transform;

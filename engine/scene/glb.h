@@ -10,7 +10,8 @@
 namespace twinray {
 
 // The scene as glTF 2.0 in one file, each face in its colour (COLOR_0, linear light): `colors` by instance, then by
-// triangle. Instances are nodes; those of one mesh that have the same colours share it. Faces keep their order; each
+// triangle. Instances are nodes, below one that moves them where the scene's origin is not 0; those of one mesh that
+// have the same colours share it. Faces keep their order; each
 // has corners of its own, and those with a corner that is not finite, which glTF does not allow, are left out. Of
 // materials, textures, cameras and lights nothing is written. Throws Error naming the file, and for a wrong number of
 // colours.

@@ -3,13 +3,14 @@
 #include "engine/scene/gltf_file.h"
 #include "engine/scene/gltf_material.h"
 #include "engine/scene/gltf_nodes.h"
+#include "engine/scene/gltf_origin.h"
 #include "engine/scene/gltf_rig.h"
 #include "engine/scene/gltf_shapes.h"
 #include "engine/scene/importers.h"
 
 namespace twinray {
 
-Scene import_gltf(const std::filesystem::path& path) {
+Scene import_gltf(const std::filesystem::path& path, const std::optional<dvec3>& origin) {
     GltfFile file = open_gltf(path);
     Scene scene;
     const std::vector<GltfNode> nodes = flatten_nodes(file);
@@ -19,6 +20,7 @@ Scene import_gltf(const std::filesystem::path& path) {
     rig.lights = read_gltf_lights(file, nodes, scene);
     read_gltf_materials(file, scene);
     read_gltf_shapes(file, std::move(instances), scene, rig);
+    move_to_origin(origin, scene, rig);
     if (!rig.animations.empty()) scene.rig = std::make_shared<const Rig>(std::move(rig));
     scene.warnings = std::move(file.warnings);
     return scene;

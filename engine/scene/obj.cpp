@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/importers.h"
+#include "engine/scene/local_origin.h"
 #include "engine/scene/mtl.h"
 #include "engine/scene/obj_file.h"
 #include "engine/scene/polygon.h"
@@ -15,8 +16,11 @@ namespace {
 // Turns a parsed file into a Scene.
 class ObjReader {
   public:
-    ObjReader(const ObjFile& file, const std::filesystem::path& path) : file_(file), path_(path) {
+    ObjReader(const ObjFile& file, const std::filesystem::path& path, const std::optional<dvec3>& origin)
+        : file_(file), path_(path) {
         scene_.warnings = file.warnings;
+        scene_.origin = origin.value_or(choose_local_origin(bounds()));
+        positions_ = local_positions(file.positions, scene_.origin);
     }
 
     Scene read() {
@@ -33,6 +37,13 @@ class ObjReader {
         std::vector<uint> materials;
         bool has_uvs = false, has_normals = false;
     };
+
+    // Of the vertices that faces use.
+    Bounds64 bounds() const {
+        Bounds64 bounds;
+        for (const ObjFile::Corner& corner : file_.corners) bounds.include(file_.positions[corner.position]);
+        return bounds;
+    }
 
     void read_materials() {
         MtlReader library(scene_, path_.parent_path());
@@ -93,8 +104,8 @@ class ObjReader {
 
     const ObjFile& file_;
     const std::filesystem::path& path_;
-    const std::vector<vec3> positions_{file_.positions.begin(), file_.positions.end()};
     Scene scene_;
+    std::vector<vec3> positions_;  // relative to the scene's origin
     std::vector<uint> materials_;  // of the file's materials: the scene's
     std::optional<uint> default_material_;
     std::vector<Part> parts_;
@@ -102,10 +113,10 @@ class ObjReader {
 
 }  // namespace
 
-Scene import_obj(const std::filesystem::path& path) {
+Scene import_obj(const std::filesystem::path& path, const std::optional<dvec3>& origin) {
     const Bytes bytes = read_packed_file(path);
     const ObjFile file = parse_obj(text_of(bytes, path.string()), path.string());
-    return ObjReader(file, path).read();
+    return ObjReader(file, path, origin).read();
 }
 
 }  // namespace twinray

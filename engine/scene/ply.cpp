@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/scene/importers.h"
+#include "engine/scene/local_origin.h"
 #include "engine/scene/passed_over.h"
 #include "engine/scene/ply_header.h"
 #include "engine/scene/polygon.h"
@@ -107,18 +108,20 @@ class PlyReader {
     PlyReader(const Bytes& bytes, std::string object)
         : object_(std::move(object)), header_(parse_ply_header(bytes, object_)), values_(bytes, header_, object_) {}
 
-    Mesh read() {
+    Mesh read(const std::optional<dvec3>& wanted_origin) {
         for (const PlyElement& element : header_.elements)
             if (element.name == "vertex")
                 read_vertices(element);
             else
                 read_faces(element);
         check_corners();
+        origin_ = wanted_origin.value_or(choose_local_origin(bounds()));
+        mesh_.positions = local_positions(positions_, origin_);
         triangulate();
-        mesh_.positions.assign(positions_.begin(), positions_.end());
         return std::move(mesh_);
     }
 
+    const dvec3& origin() const { return origin_; }
     std::vector<std::string> warnings() const {
         std::vector<std::string> sentences = cutter_.warnings("face");
         if (!passed_over_.empty())
@@ -201,6 +204,13 @@ class PlyReader {
                          positions_.size(), " vertices");
     }
 
+    // Of the vertices that faces use.
+    Bounds64 bounds() const {
+        Bounds64 bounds;
+        for (const double corner : corners_) bounds.include(positions_[static_cast<std::size_t>(corner)]);
+        return bounds;
+    }
+
     void triangulate() {
         std::size_t first = 0;
         std::vector<dvec3> outline;
@@ -217,8 +227,9 @@ class PlyReader {
     PlyHeader header_;
     PlyValues values_;
     Mesh mesh_;
-    std::vector<dvec3> positions_;
-    std::vector<double> corners_;  // of all faces, unchecked
+    dvec3 origin_ = dvec3(0);
+    std::vector<dvec3> positions_;  // as the file has them
+    std::vector<double> corners_;   // of all faces, unchecked
     std::vector<std::size_t> corner_counts_;
     FaceCutter cutter_;
     PassedOver passed_over_;
@@ -226,11 +237,12 @@ class PlyReader {
 
 }  // namespace
 
-Scene import_ply(const std::filesystem::path& file) {
+Scene import_ply(const std::filesystem::path& file, const std::optional<dvec3>& origin) {
     const Bytes bytes = read_packed_file(file);
     PlyReader reader(bytes, file.string());
     Scene scene;
-    Mesh mesh = reader.read();
+    Mesh mesh = reader.read(origin);
+    scene.origin = reader.origin();
     mesh.name = file.stem().string();
     mesh.materials.assign(mesh.triangles.size(), 0);
     scene.warnings = reader.warnings();

@@ -24,8 +24,9 @@ void place_light(Light& light, const glm::dmat4& frame) {
 
 void place_camera(Camera& camera, const glm::dmat4& frame) { camera.camera_to_world = transform_of(frame); }
 
-void pose_scene(Scene& scene, const Pose& pose) {
-    const Rig& rig = *scene.rig;
+void pose_scene(Scene& scene, const Pose& pose) { pose_scene(scene, *scene.rig, pose); }
+
+void pose_scene(Scene& scene, const Rig& rig, const Pose& pose) {
     for (std::size_t i = 0; i < scene.instances.size(); ++i)
         scene.instances[i].transform = transform_of(matrix_of(pose, rig.instances[i]));
     for (std::size_t i = 0; i < scene.cameras.size(); ++i)

@@ -22,6 +22,7 @@ void place_camera(Camera& camera, const glm::dmat4& frame);
 // or not finite. A camera or light whose frame has an axis without length stays. Meshes stay: see
 // engine/scene/deform.h.
 void pose_scene(Scene& scene, const Pose& pose);
+void pose_scene(Scene& scene, const Rig& rig, const Pose& pose);
 
 // Gives the hidden instances of a rig, if there are any, a place in the scene, before it is pushed into an accelerator
 // and played: until the first pose_scene() they stand at the identity.

@@ -11,13 +11,13 @@
 namespace twinray {
 namespace {
 
-Scene read_by_suffix(const std::filesystem::path& file) {
+Scene read_by_suffix(const std::filesystem::path& file, const std::optional<dvec3>& origin) {
     const std::string suffix = lower_suffix(file);
-    if (suffix == ".gltf" || suffix == ".glb") return import_gltf(file);
+    if (suffix == ".gltf" || suffix == ".glb") return import_gltf(file, origin);
     const std::string inner = suffix == ".gz" ? lower_suffix(file.stem()) : suffix;
-    if (inner == ".ply") return import_ply(file);
-    if (inner == ".obj") return import_obj(file);
-    if (inner == ".stl") return import_stl(file);
+    if (inner == ".ply") return import_ply(file, origin);
+    if (inner == ".obj") return import_obj(file, origin);
+    if (inner == ".stl") return import_stl(file, origin);
     fail("'", file.string(), "': unknown suffix '", suffix == ".gz" ? inner + suffix : suffix,
          "'; scenes are .gltf, .glb, .obj, .ply or .stl, the last three also with .gz");
 }
@@ -71,9 +71,9 @@ std::array<const Texture*, 13> textures_of(const Material& material) {
         &material.anisotropy_texture};
 }
 
-Scene load_scene(const std::filesystem::path& file) {
+Scene load_scene(const std::filesystem::path& file, const std::optional<dvec3>& origin) {
     try {
-        Scene scene = read_by_suffix(file);
+        Scene scene = read_by_suffix(file, origin);
         complete(scene, file);
         return scene;
     } catch (const Error&) {

@@ -119,7 +119,11 @@ struct Light {
     float outer_cone = 0.7853982f;
 };
 
+// A point of the file is `origin` plus a point of the scene. The origin is 0 but for files whose coordinates float32
+// cannot hold: engine/scene/local_origin.h says which. Rays of such a file are made in float64 and moved before they
+// are rounded: ray.origin = vec3(point - scene.origin), and a hit is at scene.origin + dvec3(point).
 struct Scene {
+    dvec3 origin = dvec3(0);
     std::vector<Mesh> meshes;
     std::vector<Material> materials;  // never empty after load: entry for meshes without one is appended
     std::vector<Image> images;
@@ -132,8 +136,9 @@ struct Scene {
 };
 
 // Loads .gltf, .glb (by tinygltf), .obj, .ply or .stl, the last three also with .gz, chosen by the suffix.
-// Throws Error naming the file, the object and the limit on anything that cannot be rendered faithfully.
-Scene load_scene(const std::filesystem::path& file);
+// Throws Error naming the file, the object and the limit on anything that cannot be rendered faithfully. `origin`: of
+// the scene, in place of choose_local_origin(); dvec3(0) keeps the file's coordinates.
+Scene load_scene(const std::filesystem::path& file, const std::optional<dvec3>& origin = {});
 
 // Union of all instances' boxes under their transforms, in world space.
 Bounds bounds_of(const Scene& scene);

@@ -6,6 +6,7 @@
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/importers.h"
+#include "engine/scene/local_origin.h"
 #include "engine/scene/mtl.h"
 #include "engine/scene/passed_over.h"
 #include "engine/scene/polygon.h"
@@ -129,19 +130,27 @@ StlFile parse_stl(const Bytes& bytes, const std::string& object) {
     return StlTextParser(text, object).parse();
 }
 
+Bounds64 bounds_of(const StlFile& file) {
+    Bounds64 bounds;
+    for (const StlSolid& solid : file.solids)
+        for (const dvec3& corner : solid.corners) bounds.include(corner);
+    return bounds;
+}
+
 }  // namespace
 
-Scene import_stl(const std::filesystem::path& path) {
+Scene import_stl(const std::filesystem::path& path, const std::optional<dvec3>& origin) {
     const Bytes bytes = read_packed_file(path);
     StlFile file = parse_stl(bytes, path.string());
     Scene scene;
     scene.warnings = std::move(file.warnings);
+    scene.origin = origin.value_or(choose_local_origin(bounds_of(file)));
     scene.materials.push_back(plain_material("default"));
     for (const StlSolid& solid : file.solids) {
         if (solid.corners.empty()) continue;
         Mesh mesh;
         mesh.name = solid.name.empty() ? path.stem().string() : solid.name;
-        mesh.positions.assign(solid.corners.begin(), solid.corners.end());
+        mesh.positions = local_positions(solid.corners, scene.origin);
         mesh.materials.assign(solid.corners.size() / 3, 0);
         scene.instances.push_back({mesh.name, static_cast<uint>(scene.meshes.size()), {}});
         scene.meshes.push_back(weld_corners(std::move(mesh)));

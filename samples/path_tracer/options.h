@@ -24,8 +24,9 @@ struct Options {
     bool resume = false;
     bool keep_film = false;
     bool aovs = false;
-    std::vector<float> crop;  // fractions x0 x1 y0 y1; none: all
-    std::vector<float> look_from, look_at, up = {0, 1, 0};
+    std::vector<float> crop;                 // fractions x0 x1 y0 y1; none: all
+    std::vector<double> look_from, look_at;  // in the file's coordinates
+    std::vector<float> up = {0, 1, 0};
     float fov = 40;  // degrees, vertical
     float lens_radius = 0;
     std::optional<float> focal_distance;  // none: to look_at

@@ -19,8 +19,10 @@ double mega_rays_per_second(const RenderStats& stats) {
 }
 
 nlohmann::json settings_json(const Options& options, const Session& session) {
+    const dvec3& origin = session.scene.origin;
     return {{"schema", "twinray-report/1"},
             {"scene", options.scene.string()},
+            {"origin", {origin.x, origin.y, origin.z}},
             {"picture", options.output.string()},
             {"device", session.context->facts().name},
             {"driver", session.context->facts().driver},

@@ -8,6 +8,7 @@
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
+#include "engine/scene/local_origin.h"
 #include "engine/scene/pose_scene.h"
 #include "engine/scene/shapes.h"
 #include "engine/scene/variants.h"
@@ -32,6 +33,13 @@ Scene load_any(const Options& options) {
     fail("'", name, "': unknown; there are builtin:cornell-box and builtin:sunflower");
 }
 
+void print_notes(const Scene& scene) {
+    if (scene.origin != dvec3(0))
+        std::fprintf(stderr, "path_tracer: scene moved to local origin %s\n", origin_text(scene.origin).c_str());
+    for (const std::vector<std::string>& warnings : {scene.warnings, stopped_lights(scene)})
+        for (const std::string& warning : warnings) std::fprintf(stderr, "path_tracer: %s\n", warning.c_str());
+}
+
 Scene load(const Options& options) {
     Scene scene = load_any(options);
     if (options.sequence.plays_animation()) show_hidden(scene);
@@ -39,13 +47,16 @@ Scene load(const Options& options) {
     return scene;
 }
 
-vec3 vector_of(const std::vector<float>& values) { return {values[0], values[1], values[2]}; }
+template <class T>
+glm::vec<3, T> vector_of(const std::vector<T>& values) {
+    return {values[0], values[1], values[2]};
+}
 
 // Nothing: the whole scene is framed.
 std::optional<Camera> chosen_camera(const Options& options, const Scene& scene) {
     if (!options.look_from.empty())
-        return look_camera(vector_of(options.look_from), vector_of(options.look_at), vector_of(options.up),
-                           options.fov);
+        return look_camera(vec3(vector_of(options.look_from) - scene.origin),
+                           vec3(vector_of(options.look_at) - scene.origin), vector_of(options.up), options.fov);
     if (options.camera < 0 || (scene.cameras.empty() && options.camera == 0)) return {};
     const auto index = static_cast<std::size_t>(options.camera);
     if (index >= scene.cameras.size())
@@ -82,7 +93,7 @@ void set_lens(CameraRays& camera, const Options& options) {
     if (options.look_at.empty() || options.focal_distance)
         camera.focal_distance = options.focal_distance.value_or(0);
     else
-        camera.focal_distance = length(vector_of(options.look_at) - vector_of(options.look_from));
+        camera.focal_distance = static_cast<float>(length(vector_of(options.look_at) - vector_of(options.look_from)));
 }
 
 RenderSettings make_settings(const Options& options, const Scene& scene) {
@@ -170,9 +181,7 @@ Session make_session(const Options& options, const Ranks& ranks) {
         fail("--aovs: '", options.output.string(), "' must end in .exr");
     Session session;
     session.scene = load(options);
-    if (!options.quiet)
-        for (const std::vector<std::string>& warnings : {session.scene.warnings, stopped_lights(session.scene)})
-            for (const std::string& warning : warnings) std::fprintf(stderr, "path_tracer: %s\n", warning.c_str());
+    if (!options.quiet) print_notes(session.scene);
     session.rules = make_rules(options);
     session.shard = make_shard(options, ranks);
     session.settings = make_settings(options, session.scene);

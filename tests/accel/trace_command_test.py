@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Runs `twinray trace` as a user does. Usage: trace_command_test.py TWINRAY"""
+import json
 import pathlib
 import struct
 import subprocess
@@ -10,8 +11,8 @@ import tempfile
 twinray, here = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(tempfile.mkdtemp())
 
 
-def run(*arguments, status=0):
-    done = subprocess.run([twinray, "trace", "two.ply", "--rays", "rays", "--hits", "hits", "--quiet", *arguments],
+def run(*arguments, rays="rays", status=0):
+    done = subprocess.run([twinray, "trace", "two.ply", "--rays", rays, "--hits", "hits", "--quiet", *arguments],
                           capture_output=True, text=True, cwd=here)
     assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
     return done.stdout + done.stderr
@@ -40,3 +41,52 @@ assert "--query all needs --counts" in run("--query", "all", status=1)
 assert "--counts is for --query all" in run("--counts", "counts", status=1)
 (here / "rays").write_bytes(b"12345")
 assert "'rays'" in run(status=1)
+
+
+# Far away, in float64: the same triangles 0.13 and 0.27 m from where float32 has a number. NumPy's format, by its own text.
+east, north = 500000.13, 5400000.27
+(here / "two.ply").write_text((here / "two.ply").read_text().replace("property float", "property double").replace(
+    "0 0 2\n4 0 2\n0 4 2\n0 0 1\n2 0 1\n0 2 1\n",
+    "".join(f"{east + x:.2f} {north + y:.2f} {z}\n" for x, y, z in [(0, 0, 2), (4, 0, 2), (0, 4, 2), (0, 0, 1), (2, 0, 1), (0, 2, 1)])))
+
+
+def npy(kind, numbers, shape, order="False"):
+    header = f"{{'descr': '{kind}', 'fortran_order': {order}, 'shape': {shape}, }}".encode().ljust(117) + b"\n"
+    (here / "rays.npy").write_bytes(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header +
+                                    struct.pack(f"<{len(numbers)}{'d' if kind == '<f8' else 'f'}", *numbers))
+
+
+def near(wanted):
+    return all(h[0] == w[0] and h[2] == w[2] and abs(h[1] - w[1]) < 1e-6 for h, w in zip(hits(), wanted, strict=True))
+
+
+# Half a millimetre inside the corners, and as much outside.
+far_rays = [(east + 5e-4, north + 5e-4, 0), (east + 3.9985, north + 5e-4, 0), (east - 5e-4, north + 1, 0)]
+inside = [(1, 1, 1), (1, 2, 0), (0, -1, 0)]
+npy("<f8", [number for origin in far_rays for number in (*origin, 0, 0, 0, 1, 9)], "(3, 8)")
+for accel in ["sw", "hw"]:
+    run("--accel", accel, "--json", "far.jsonl", rays="rays.npy")
+    assert near(inside), hits()
+assert json.loads((here / "far.jsonl").read_text().splitlines()[0])["origin"] == [500002, 5400002, 2]
+said = subprocess.run([twinray, "trace", "two.ply", "--rays", "rays.npy", "--hits", "hits"], capture_output=True, text=True, cwd=here)
+assert said.stderr.count("scene moved to local origin 500002 5400002 2\n") == 1, said.stderr
+# What float32 can hold of rays there is moved exactly.
+at = [(500001, 5400001, 0), (500003, 5400001, 0), (500000, 5400001, 0)]
+(here / "rays").write_bytes(b"".join(struct.pack("<8f", *origin, 0, 0, 0, 1, 9) for origin in at))
+run()
+assert near(inside), hits()
+npy("<f4", [number for origin in at for number in (*origin, 0, 0, 0, 1, 9)], "(3, 8)")
+run(rays="rays.npy")
+assert near(inside), hits()
+npy("<f8", [0.0] * 16, "(4, 4)")
+assert "'rays.npy': its shape is not (N, 8)" in run(rays="rays.npy", status=1)
+npy("<f8", [0.0] * 15, "(2, 8)")
+assert "'rays.npy': its shape is not (N, 8)" in run(rays="rays.npy", status=1)
+npy("<f8", [0.0] * 16, "(2, 8)", order="True")
+assert "'rays.npy': its order is Fortran's" in run(rays="rays.npy", status=1)
+npy("<i4", [0.0] * 8, "(1, 8)")
+assert "'rays.npy': its numbers are neither" in run(rays="rays.npy", status=1)
+(here / "rays.npy").write_bytes(b"\x93NUMPY\x01\x00\xff\xff123")
+assert "'rays.npy': its header is cut off" in run(rays="rays.npy", status=1)
+(here / "rays.npy").write_bytes(b"no array at all")
+assert "'rays.npy': it is not a NumPy array" in run(rays="rays.npy", status=1)

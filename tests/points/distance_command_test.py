@@ -3,6 +3,7 @@
 """Runs `twinray distance` as a user does. Usage: distance_command_test.py TWINRAY"""
 import json
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
@@ -78,3 +79,33 @@ assert ".csv or .npz" in run("solid.ply", "--random", "5", "-o", "out.txt", stat
 run("solid.ply", status=2)
 run("solid.ply", "--random", "5", "--grid", "2", status=2)
 run("solid.ply", "--random", "5", "--within", "-1", status=2)
+
+# Far away, all is in the file's coordinates.
+east, north = 500000.13, 5400000.27
+(here / "far.ply").write_text((here / "solid.ply").read_text().replace("float", "double").replace(
+    "0 0 0\n4 0 0\n0 4 0\n0 0 4\n", "".join(f"{east + x:.2f} {north + y:.2f} {z}\n" for x, y, z in [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4)])))
+(here / "far.csv").write_text(f"{east + 1:.6f},{north + 1:.6f},-2\n{east + 0.5:.6f},{north + 0.75:.6f},0.25\n{east - 3:.6f},{north:.6f},4\n")
+
+
+def near(text, *wanted):
+    return all(abs(float(number) - right) < 1e-6 for number, right in zip(text, wanted, strict=True))
+
+
+said = run("far.ply", "--points", "far.csv", "--signed", "-o", "out.csv", "--json", "far.jsonl")
+assert said.count("scene moved to local origin 500002 5400002 2\n") == 1, said
+assert json.loads(lines("far.jsonl")[0])["origin"] == [500002, 5400002, 2]
+rows = [line.split(",")[1:5] for line in lines("out.csv")[1:]]
+assert near(rows[0], 2, east + 1, north + 1, 0) and near(rows[1], -0.25, east + 0.5, north + 0.75, 0), rows
+assert near(rows[2], 3, east, north, 4), rows
+assert "moved" not in run("far.ply", "--points", "far.csv", "--quiet", "-o", "out.npz")
+with zipfile.ZipFile(here / "out.npz") as archive:
+    for name, values in [("point", [east + 1, north + 1, -2]), ("nearest", [east + 1, north + 1, 0])]:
+        array = archive.read(f"{name}.npy")
+        assert near(struct.unpack("<3d", array[len(array) - 72:][:24]), *values), name
+# The plane through the middle, asked for or not, and another one.
+far_slice = ["far.ply", "--slice-axis", "x", "--slice-size", "64", "--signed", "--quiet", "--slice"]
+run(*far_slice, "middle.png")
+run(*far_slice, "asked.png", "--slice-at", f"{east + 2:.2f}")
+run(*far_slice, "other.png", "--slice-at", f"{east + 1:.2f}")
+middle, asked, other = [(here / f"{name}.png").read_bytes() for name in ["middle", "asked", "other"]]
+assert middle == asked and middle != other

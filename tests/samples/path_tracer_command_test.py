@@ -151,4 +151,21 @@ for arguments, status, words in [
 for films, words in [(["bad.film"], "cut short or damaged"), (["whole.png"], "not a film"), (["part.film", "0.film"], "part is")]:
     shown = run("merge", *films, "-o", "a.png", status=1)
     assert words in shown, shown
+
+# Far away: the picture is that of the same tetrahedron about 0, seen from the same place.
+def tetrahedron(name, at):
+    (here / name).write_text("ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
+                             "element face 4\nproperty list uchar int vertex_indices\nend_header\n" +
+                             "".join(f"{at[0] + x:.2f} {at[1] + y:.2f} {at[2] + z:.2f}\n"
+                                     for x, y, z in [(-1.87, -1.73, -2), (2.13, -1.73, -2), (-1.87, 2.27, -2), (-1.87, -1.73, 2)]) +
+                             "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
+    place = [[str(o + c) for o, c in zip(at, corner, strict=True)] for corner in [(7.13, 5.26, 8), (0.13, 0.26, 0)]]
+    return run(name, "--height", "24", "--spp", "2", "--look-from", *place[0], "--look-at", *place[1], "--accel", "sw", "--json", "far.jsonl",
+               "-o", name + ".png")
+
+
+shown = tetrahedron("far.ply", (500000, 5400000, 2))
+assert shown.count("scene moved to local origin 500000 5400000 2\n") == 1, shown
+assert "moved" not in tetrahedron("near.ply", (0, 0, 0)) and same("far.ply.png", "near.ply.png")
+assert [json.loads(line)["origin"] for line in (here / "far.jsonl").read_text().splitlines()] == [[500000, 5400000, 2], [0, 0, 0]]
 print("path_tracer_command_test: passed")

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+#include "engine/scene/animation.h"
+#include "engine/scene/scene.h"
+
+namespace twinray {
+
+// Moves a scene in its rest pose to a local origin, `wanted` or chosen for what stands there, and the rig with it:
+// places are composed again in float64, relative to the origin, and rounded once. Vertices that are themselves as large
+// as that, or that a node brings back from far away, are moved too, and their instances the other way: rays are rounded
+// in the space of the mesh. Without need nothing changes, bit for bit.
+void move_to_origin(const std::optional<dvec3>& wanted, Scene& scene, Rig& rig);
+
+}  // namespace twinray
