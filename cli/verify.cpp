@@ -60,7 +60,7 @@ void write_replays(const VerifyOptions& options, const Scene& scene, const Oracl
         replay::write(folder / text(set.name, '-', kind, '-', ++numbers[fault.kind], ".json"),
                       {std::filesystem::absolute(options.scene), hash, backend_of(fault, context), "watertight", kind,
                        fault.ray, fault.answer, reference_of(oracle, fault.ray, arbiter), context.facts().name,
-                       context.facts().driver, twinray_version, scene.origin});
+                       context.facts().driver, twinray_version});
         ++written;
     }
     std::cout << "    " << written << " replays in " << folder.string() << "; show one: twinray verify --replay FILE\n";

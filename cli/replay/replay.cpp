@@ -34,14 +34,6 @@ double number(const json& word) {
 float float_of(const json& word) { return static_cast<float>(number(word)); }  // exact: it was written as a float
 
 json words(vec3 v) { return {hexadecimal(v.x), hexadecimal(v.y), hexadecimal(v.z)}; }
-json words(const dvec3& v) { return {hexadecimal(v.x), hexadecimal(v.y), hexadecimal(v.z)}; }
-
-dvec3 origin_of(const json& object) {
-    if (!object.contains("origin")) return dvec3(0);
-    const json& words = object["origin"];
-    return {number(words.at(0)), number(words.at(1)), number(words.at(2))};
-}
-
 vec3 vector(const json& words) { return {float_of(words.at(0)), float_of(words.at(1)), float_of(words.at(2))}; }
 
 template <class HitType>
@@ -84,7 +76,6 @@ void write(const std::filesystem::path& file, const Replay& replay) {
         {"schema", schema},
         {"scene", replay.scene.generic_string()},
         {"scene_hash", replay.scene_hash},
-        {"origin", words(replay.origin)},
         {"backend", replay.backend},
         {"level", replay.level},
         {"class", replay.kind},
@@ -121,8 +112,7 @@ Replay read(const std::filesystem::path& file) {
                 reference_of(object.at("reference")),
                 object.at("device").get<std::string>(),
                 object.at("driver").get<std::string>(),
-                object.at("twinray").get<std::string>(),
-                origin_of(object)};
+                object.at("twinray").get<std::string>()};
     } catch (const std::exception& error) {
         fail("replay '", file.string(), "': ", error.what());
     }

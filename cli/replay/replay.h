@@ -20,7 +20,6 @@ struct Replay {
     Hit answer{};
     OracleHit reference;
     std::string device, driver, twinray;  // who answered
-    dvec3 origin = dvec3(0);              // of the scene, to which the ray is relative
 };
 
 // JSON; floats are hexadecimal words, so that none is rounded. Throws Error naming the file and what is wrong with it.

@@ -15,8 +15,7 @@ namespace twinray::replay {
 Scene scene_of(const Oracle& oracle);
 
 // Binary glTF of positions and transforms alone, relative to the scene's origin: load_scene(file, dvec3(0)) gives the
-// same floats, triangles and instances. Throws
-// Error where the file cannot be written.
+// same floats, triangles and instances. Throws Error where the file cannot be written.
 void write_glb(const std::filesystem::path& file, const Scene& scene);
 
 // 16 hexadecimal digits over all positions, triangles and transforms (FNV-1a).

@@ -39,13 +39,16 @@ struct Stage {
     Stage(const Stage&) = delete;
 };
 
+// A file of a user's was loaded as it is here; one that write_glb() made has the floats that were traced.
 Scene load_checked(const std::filesystem::path& file, const Replay& replay) {
     const std::filesystem::path path = file.parent_path() / replay.scene;
-    Scene scene = load_scene(path, replay.origin);
-    if (const std::string hash = hash_of(scene); hash != replay.scene_hash)
-        fail("replay '", file.string(), "': scene '", path.string(), "' is not the one that was traced: its hash is ",
-             hash, ", not ", replay.scene_hash);
-    return scene;
+    Scene scene = load_scene(path);
+    const std::string hash = hash_of(scene);
+    if (hash == replay.scene_hash) return scene;
+    Scene as_written = load_scene(path, dvec3(0));
+    if (hash_of(as_written) == replay.scene_hash) return as_written;
+    fail("replay '", file.string(), "': scene '", path.string(), "' is not the one that was traced: its hash is ", hash,
+         ", not ", replay.scene_hash);
 }
 
 Level level_of(const Replay& replay) {
@@ -142,7 +145,7 @@ void print_header(std::ostream& out, const Stage& stage) {
     out << replay.kind << " of " << replay.backend << " at level " << replay.level << " on " << replay.device << ", "
         << replay.driver << ", twinray " << replay.twinray << '\n'
         << "The ray: origin, t_min, direction, t_max\n  " << suite::hexadecimal(replay.ray) << '\n';
-    if (const dvec3& origin = replay.origin; origin != dvec3(0))
+    if (const dvec3& origin = stage.scene.origin; origin != dvec3(0))
         out << "  relative to the local origin " << origin_text(origin) << '\n';
     print(out, "answered", replay.answer.hit, replay.answer.instance_index, replay.answer.primitive_index,
           replay.answer.t);

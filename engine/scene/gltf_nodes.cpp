@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/gltf_nodes.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace twinray {

@@ -109,6 +109,7 @@ void show_rest_pose(Scene& scene, const Rig& rig) {
 }  // namespace
 
 void move_to_origin(const std::optional<dvec3>& wanted, Scene& scene, Rig& rig) {
+    if (wanted == dvec3(0)) return;
     Bounds64 bounds = world_bounds(scene, rig, rest_pose(rig));
     scene.origin = rig.origin = wanted.value_or(choose_local_origin(bounds));
     bounds.lo -= rig.origin, bounds.hi -= rig.origin;

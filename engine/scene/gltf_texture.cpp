@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/gltf_texture.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/scene/image.h"

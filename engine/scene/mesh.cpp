@@ -2,6 +2,7 @@
 #include "engine/scene/mesh.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/error.h"
 

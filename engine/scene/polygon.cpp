@@ -135,7 +135,7 @@ class EarCutter {
 
     Triangulation cut() {
         do cut_ears();
-        while (left_ >= 3 && (cut_flat_corners() || cut_least_corner()));
+        while (left_ >= 3 && cut_least_corner());
         while (left_ >= 3) cut_corner();
         // What is less is lost in the rounding of positions to float32.
         return {std::move(triangles_), turned_area_ > 0x1p-24 * whole_area_};
@@ -153,19 +153,8 @@ class EarCutter {
             }
     }
 
-    // What lies on one line, once around. Returns whether there was any.
-    bool cut_flat_corners() {
-        const std::size_t before = left_;
-        for (std::size_t i = 0; i < before && left_ >= 3; ++i)
-            if (triangle_at(at_).turn() == 0)
-                cut_corner();
-            else
-                at_ = next_[at_];
-        return left_ < before;
-    }
-
-    // Without an ear the outline crosses itself, if only by the rounding of its corners; there the smallest triangle
-    // does the least harm. Returns false where that would take too long.
+    // Without an ear the rest has no area, or crosses itself, if only by the rounding of its corners; there the
+    // smallest triangle does the least harm. Returns false where that would take too long.
     bool cut_least_corner() {
         if (least_cuts_left_-- == 0) return false;
         for (uint i = next_[at_], first = at_; i != first; i = next_[i])

@@ -137,7 +137,7 @@ struct Scene {
 
 // Loads .gltf, .glb (by tinygltf), .obj, .ply or .stl, the last three also with .gz, chosen by the suffix.
 // Throws Error naming the file, the object and the limit on anything that cannot be rendered faithfully. `origin`: of
-// the scene, in place of choose_local_origin(); dvec3(0) keeps the file's coordinates.
+// the scene, in place of choose_local_origin(); dvec3(0) keeps the file's coordinates, rounded.
 Scene load_scene(const std::filesystem::path& file, const std::optional<dvec3>& origin = {});
 
 // Union of all instances' boxes under their transforms, in world space.

@@ -26,7 +26,6 @@ constexpr uint LAYERS = ~0u;  // in kernels specialisation constants
 #include "shaders/path_tracer/weights.h"
 #include "shaders/path_tracer/microfacet.h"
 #include "shaders/path_tracer/bsdf_record.h"
-#include "shaders/path_tracer/ggx_table.h"
 #include "shaders/path_tracer/bsdf_albedo.h"
 #include "shaders/path_tracer/bsdf_opaque.h"
 #include "shaders/path_tracer/bsdf_glass.h"

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What the interface of an opaque surface reflects of the light from a direction, and what that leaves to the diffuse part
-// below. Needs bsdf_record.h and ggx_table.h.
+// below. Needs bsdf_record.h.
 #ifndef TWINRAY_PATH_TRACER_BSDF_ALBEDO_H
 #define TWINRAY_PATH_TRACER_BSDF_ALBEDO_H
-
-FUNC vec2 ggx_entry(uint entry) { return vec2(float(entry & 0xffffu), float(entry >> 16u)) / GGX_UNIT; }
-
-// Where a cosine or a roughness lies between the nodes of its axis, and the node before it.
-FUNC float ggx_place(float value) { return sqrt(clamp(value, 0.0f, 1.0f)) * float(GGX_NODES - 1u); }
-FUNC uint ggx_node(float place) { return min(uint(place), GGX_NODES - 2u); }
 
 // Of a grain: the roughness of an even surface that reflects no less of the light from w. That is the one in the plane of w,
 // and across the grain down to less than half of it, as what tilts microfacets out of the plane makes more of them grazing:
@@ -23,31 +17,30 @@ FUNC float alpha_towards(Bsdf bsdf, vec3 w)
     return sqrt(dot(slope, slope) / sine2) * (1.0f - 0.55f * (1.0f - bsdf.alpha / bsdf.alpha_grain) * across * across);
 }
 
-// Albedo of a white mirror for light from w, and Schlick's part of it.
+// Albedo of a white mirror for light from w, and Schlick's part of it: fits to quadrature of microfacets that scatter once.
+// Schlick's part is that of a cosine which is larger at grazing, for facets that are seen face the viewer; it is at most 0.033
+// too high and 0.005 too low for cosines from 0.01 on. A white mirror's, of which a dielectric has 4 %, is at most 0.15 too
+// high and 0.012 too low.
 FUNC vec2 mirror_albedo(Bsdf bsdf, vec3 w)
 {
     if (is_smooth(bsdf)) return vec2(1.0f, schlick_weight(w.z));
-    float x = ggx_place(w.z);
-    float y = ggx_place(alpha_towards(bsdf, w));
-    uint i = ggx_node(x);
-    uint j = ggx_node(y);
-    uint first = j * GGX_NODES + i;
-    uint second = first + GGX_NODES;
-    vec2 low = mix(ggx_entry(GGX_ALBEDO[first]), ggx_entry(GGX_ALBEDO[first + 1u]), x - float(i));
-    vec2 high = mix(ggx_entry(GGX_ALBEDO[second]), ggx_entry(GGX_ALBEDO[second + 1u]), x - float(i));
-    return mix(low, high, y - float(j));
+    float alpha = alpha_towards(bsdf, w);
+    float roughness = sqrt(alpha);
+    float most = alpha / (0.076f + 1.541f * roughness + 0.485f * alpha);
+    float near = max(1.0f - w.z * (0.054f + 0.487f * roughness) / alpha, 0.0f);
+    float lost = 0.64f * alpha * roughness * w.z * (2.0f - w.z);
+    return vec2(1.0f - lost, schlick_weight(w.z + most * near * near));
 }
 
-// Their means over all directions by the cosine; of a grain, at most.
+// Their means over all directions by the cosine, the second at most 0.0015 too low; of a grain, at most.
 FUNC vec2 mean_mirror_albedo(Bsdf bsdf)
 {
     if (is_smooth(bsdf)) return vec2(1.0f, 1.0f / 21.0f);
     float alpha = bsdf.alpha;
     if (has_layer(bsdf, LAYER_ANISOTROPY))
         alpha = sqrt(0.5f * (alpha * alpha + bsdf.alpha_grain * bsdf.alpha_grain));
-    float y = ggx_place(alpha);
-    uint j = ggx_node(y);
-    return mix(ggx_entry(GGX_MEAN_ALBEDO[j]), ggx_entry(GGX_MEAN_ALBEDO[j + 1u]), y - float(j));
+    float r = sqrt(alpha);
+    return vec2(1.0f - 0.53333f * alpha * r, 1.0f / (21.0f + r * (-2.6f + r * (98.0f + r * (-274.0f + r * 711.0f)))));
 }
 
 // Where the interface is colored, what it keeps of its strongest color is kept of all, else the diffuse part would have

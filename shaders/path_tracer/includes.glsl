@@ -15,7 +15,6 @@
 #include "shaders/path_tracer/features.glsl"
 #include "shaders/path_tracer/microfacet.h"
 #include "shaders/path_tracer/bsdf_record.h"
-#include "shaders/path_tracer/ggx_table.h"
 #include "shaders/path_tracer/bsdf_albedo.h"
 #include "shaders/path_tracer/bsdf_opaque.h"
 #include "shaders/path_tracer/bsdf_glass.h"

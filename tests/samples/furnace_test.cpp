@@ -71,9 +71,7 @@ TEST(Furnace, NoGrainReturnsMoreThanItGets) {
 TEST(Furnace, AWhiteDielectricReturnsNearlyAll) {
     for (const float roughness : roughnesses)
         for (const float cosine : cosines)
-            EXPECT_GE(albedo_of(dielectric(roughness), direction(cosine, 0.2f)), roughness == 0    ? 0.998
-                                                                                 : cosine >= 0.05f ? 0.98
-                                                                                                   : 0.95)
+            EXPECT_GE(albedo_of(dielectric(roughness), direction(cosine, 0.2f)), roughness == 0 ? 0.998 : 0.955)
                 << roughness << ' ' << cosine;
 }
 
@@ -114,22 +112,20 @@ glm::dvec2 mirror_albedo_by_quadrature(double cosine, double alpha) {
     return sum / static_cast<double>(steps * steps);
 }
 
-TEST(Furnace, TheTableBoundsTheAlbedoOfAMirror) {
+TEST(Furnace, TheFitsBoundTheAlbedoOfAMirror) {
     for (const float alpha : {0.0015f, 0.008f, 0.03f, 0.13f, 0.37f, 0.9f})
         for (const float cosine : {0.97f, 0.63f, 0.31f, 0.11f, 0.06f, 0.023f}) {
             const glm::dvec2 exact = mirror_albedo_by_quadrature(double{cosine}, double{alpha});
             const glm::dvec2 found(mirror_albedo(mirror(alpha), direction(cosine)));
             for (const int part : {0, 1}) {
-                EXPECT_GE(found[part], exact[part] - (part == 0 ? 0.015 : 5e-4))
-                    << alpha << ' ' << cosine << ' ' << part;
-                EXPECT_LE(found[part], exact[part] + (cosine < 0.05f ? 0.05 : 0.03))
-                    << alpha << ' ' << cosine << ' ' << part;
+                EXPECT_GE(found[part], exact[part] - (part == 0 ? 0.012 : 0.005)) << alpha << ' ' << cosine << ' ' << part;
+                EXPECT_LE(found[part], exact[part] + (part == 0 ? 0.15 : 0.035)) << alpha << ' ' << cosine << ' ' << part;
             }
         }
 }
 
-// What is diffuse is divided by what the means leave: they must not be greater than the means of the table.
-TEST(Furnace, MeansAreThoseOfTheTable) {
+// What is diffuse is divided by what the means leave: they must not be greater than the means of what it is dimmed by.
+TEST(Furnace, MeansAreThoseOfTheFits) {
     for (const float alpha : {0.0f, 0.0015f, 0.02f, 0.1f, 0.37f, 0.9f, 1.0f}) {
         glm::dvec2 sum(0);
         constexpr int steps = 20000;
@@ -139,7 +135,7 @@ TEST(Furnace, MeansAreThoseOfTheTable) {
         const glm::dvec2 mean(mean_mirror_albedo(mirror(alpha)));
         for (const int part : {0, 1}) {
             EXPECT_LE(mean[part], sum[part] / steps + 1e-5) << alpha << ' ' << part;
-            EXPECT_GE(mean[part], sum[part] / steps - 1e-4) << alpha << ' ' << part;
+            EXPECT_GE(mean[part], sum[part] / steps - 0.002) << alpha << ' ' << part;
         }
     }
 }

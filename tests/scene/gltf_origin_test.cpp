@@ -70,6 +70,15 @@ TEST(FarGltf, LargeVerticesAreMovedSinceRaysAreRoundedInTheSpaceOfTheMesh) {
     EXPECT_EQ(turned.meshes[0].positions, there_and_back.meshes[0].positions);
 }
 
+TEST(FarGltf, NothingIsMovedWhereTheFilesCoordinatesAreWanted) {
+    GltfBuilder back = large_vertices();
+    back.root["nodes"][0]["translation"] = {-500'000, -5.4e6, 0};
+    const TempDir folder;
+    const Scene scene = load_scene(folder.write("a.gltf", back.with_data_uri()), dvec3(0));
+    EXPECT_EQ(scene.meshes[0].positions[0], vec3(500'001.5f, 5'400'000.5f, 1));
+    EXPECT_EQ(scene.instances[0].transform, Transform::translation({-500'000, -5.4e6f, 0}));
+}
+
 TEST(FarGltf, CamerasAndLightsAreMovedAlong) {
     GltfBuilder gltf = far_houses_gltf();
     gltf.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};

@@ -80,6 +80,13 @@ TEST(Polygon, HolesReachedBySlitsStayOpen) {
     expect_cover(window);
     // A hole that touches the outline in two corners.
     expect_cover({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {3, 2, 0}, {0, 0, 0}, {2, 3, 0}, {4, 4, 0}, {0, 4, 0}});
+    // One with a corner in a corner of the outline, reached from another one: no ear may be cut across it there.
+    Outline touched = {{0, 0, 0},   {4, 0, 0},   {4, 4, 0}, {3.5, 3, 0}, {0, 0, 0},
+                       {3, 3.5, 0}, {3.5, 3, 0}, {4, 4, 0}, {0, 4, 0}};
+    for (std::size_t first = 0; first < touched.size(); ++first) {
+        expect_cover(touched);
+        std::rotate(touched.begin(), touched.begin() + 1, touched.end());
+    }
 }
 
 // Around cells of a grid that hang together as a tree: slits between cells that do not, corners that touch.
@@ -139,6 +146,15 @@ TEST(Polygon, ManyCornersTakeNoLongerThanTheyMust) {
     expect_cover(circle, 1e-15);
     expect_cover(star, 1e-15);
     EXPECT_EQ(triangulate_polygon(line).triangles.size(), 29'998u);
+}
+
+TEST(Polygon, ALineThatGoesOutAndBackHasNoArea) {
+    Outline outline = {{0, 0, 0}};
+    constexpr int length = 3000;
+    for (int i = -length; i <= length; ++i) outline.emplace_back(1 + length - std::abs(i), std::abs(i) - length, 0);
+    outline.insert(outline.end(), {dvec3(1, 1, 0), dvec3(0, 1, 0)});
+    EXPECT_EQ(area_of(outline), 1);
+    EXPECT_EQ(expect_cover(outline), outline.size() - 4);
 }
 
 TEST(Polygon, FarFromTheOriginItIsAsNear) {
