@@ -2,11 +2,15 @@
 // `twinray bench`: build times and trace rates of both accelerators beside others, with their errors.
 #include <cmath>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "bench/embree_contestant.h"
 #include "bench/growth.h"
 #include "bench/report.h"
 #include "bench/run.h"
+#include "cli/bench_kinds.h"
+#include "cli/command/values.h"
+#include "cli/commands.h"
 #include "cli/common.h"
 #include "engine/core/error.h"
 #include "engine/report/recorder.h"
@@ -27,7 +31,7 @@ struct BenchOptions {
     std::vector<RayKind> kinds;
     std::vector<double> growth = {1e3, 1e4, 1e5, 1e6, 1e7};
     std::size_t moves = 0;
-    bool no_embree = false, no_build = false, is_ladder = false;
+    bool no_embree = false, no_build = false, is_ladder = false, is_growth = false;
 };
 
 // The devices and who runs on them.
@@ -61,7 +65,7 @@ nlohmann::json base_record(const BenchOptions& options, const Context& context) 
 
 BenchScene load(const BenchOptions& options, const std::string& name) {
     BenchScene scene = bench::make_scene(name);
-    print_notes(scene.scene, options.common.quiet);
+    heed_warnings(scene.scene, name, options.common);
     return scene;
 }
 
@@ -107,75 +111,58 @@ void run_growth(const BenchOptions& options) {
     }
 }
 
-std::map<std::string, RayKind> ray_kinds_by_name() {
-    std::map<std::string, RayKind> kinds;
-    for (const RayKind kind : bench::all_ray_kinds) kinds.emplace(bench::name_of(kind), kind);
-    return kinds;
+Section contestants_section(BenchOptions& options) {
+    bench::LineUpOptions& line_up = options.run.line_up;
+    return {"Contestants",
+            {{.name = "--contestants",
+              .value = words(line_up.only, "PART,..."),
+              .help = "those with one of these parts in their names, as sw,embree8; all if not given"},
+             {.name = "--levels", .value = choices(line_up.levels, levels_by_name()), .help = "of the triangle test"},
+             {.name = "--layouts",
+              .value = choices(line_up.layouts, names_of(all_layouts)),
+              .help = "of the software accelerator's trees"},
+             {.name = "--build-qualities",
+              .value = choices(line_up.build_qualities, names_of(all_build_qualities)),
+              .help = "of the software accelerator's trees"},
+             {.name = "--ray-orders",
+              .value = choices(line_up.ray_orders, names_of(all_ray_orders)),
+              .help = "in which accelerators trace"},
+             {.name = "--no-embree", .value = flag(options.no_embree), .help = "leave Embree out"},
+             {.name = "--no-build",
+              .value = flag(options.no_build),
+              .help = "time traces alone; a ladder's, without its memory"}}};
 }
 
-std::map<std::string, Level> levels_by_name() {
-    std::map<std::string, Level> levels;
-    for (const Level level : {Level::fast, Level::watertight, Level::refined, Level::certified})
-        levels.emplace(bench::level_name(level), level);
-    return levels;
+Section rays_section(BenchOptions& options) {
+    bench::RunOptions& run = options.run;
+    return {"Rays and rounds",
+            {{.name = "--ray-kinds",
+              .value = choices(options.kinds, names_of(bench::all_ray_kinds)),
+              .help = "kinds of rays; the first three if not given, with --growth the first two",
+              .former_name = "--rays"},
+             {.name = "--width",
+              .value = number(run.width, {.least = 8, .most = 4096, .step = 8}),
+              .help = "pixels a side of the square of primary rays, a multiple of 8"},
+             {.name = "--rounds", .value = number(run.rounds, {1, 1000}), .help = "of which medians are taken"},
+             {.name = "--max-seconds",
+              .value = number(run.max_seconds, {.least = 0, .is_above = true}),
+              .help = "of one trace: whoever needs more traces fewer rays, evenly chosen"}}};
 }
 
-std::map<std::string, RayOrder> ray_orders_by_name() {
-    std::map<std::string, RayOrder> orders;
-    for (const RayOrder order : all_ray_orders) orders.emplace(name_of(order), order);
-    return orders;
-}
-
-void add_choice_options(CLI::App& command, bench::RunOptions& run) {
-    command.add_option("--levels", run.line_up.levels, "fast, watertight, refined, certified; separated by commas")
-        ->delimiter(',')
-        ->transform(CLI::CheckedTransformer(levels_by_name()));
-    command.add_option("--layouts", run.line_up.layouts, "of SwTlas: compressed4, bvh2, bvh4; separated by commas")
-        ->delimiter(',')
-        ->transform(CLI::CheckedTransformer(layouts_by_name()));
-    command.add_option("--build-qualities", run.line_up.build_qualities, "of SwTlas: fast, high; separated by commas")
-        ->delimiter(',')
-        ->transform(CLI::CheckedTransformer(build_qualities_by_name()));
-    command
-        .add_option("--ray-orders", run.line_up.ray_orders,
-                    "in which accelerators trace: given, sorted; separated by commas")
-        ->delimiter(',')
-        ->transform(CLI::CheckedTransformer(ray_orders_by_name()));
-    command
-        .add_option("--contestants", run.line_up.only,
-                    "those with one of these parts in their names, as sw,embree8; separated by commas; else all")
-        ->delimiter(',');
-}
-
-void add_size_options(CLI::App& command, bench::RunOptions& run) {
-    command.add_option("--width", run.width, "pixels a side of the square of primary rays, a multiple of 8")
-        ->check(CLI::Range(8, 4096))
-        ->check([](const std::string& width) {
-            return std::stoul(width) % 8 == 0 ? std::string() : width + " is not a multiple of 8";
-        })
-        ->capture_default_str();
-    command.add_option("--rounds", run.rounds)->check(CLI::Range(1, 1000))->capture_default_str();
-    command
-        .add_option("--max-seconds", run.max_seconds,
-                    "of one trace: whoever needs more traces fewer rays, evenly chosen")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-}
-
-void dispatch(BenchOptions& options, bool is_growth) {
+void dispatch(BenchOptions& options) {
     options.run.seed = options.common.seed;
     options.run.quiet = options.common.quiet;
     options.run.times_builds = !options.no_build;
     options.run.line_up.has_embree = !options.no_embree;
     if (!options.kinds.empty())
         options.run.kinds = options.kinds;
-    else if (is_growth)
+    else if (options.is_growth)
         options.run.kinds = {RayKind::primary, RayKind::incoherent};
     if (options.moves)
         bench_moves(options.common, options.moves, options.run.rounds);
     else if (options.is_ladder)
         bench_ladder(options.common, options.scene, options.run);
-    else if (is_growth)
+    else if (options.is_growth)
         run_growth(options);
     else
         run(options);
@@ -183,39 +170,40 @@ void dispatch(BenchOptions& options, bool is_growth) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, int&) {
-    CLI::App* command = app.add_subcommand("bench", "build and trace rates of both accelerators, with their errors");
+Command bench_command() {
     const auto options = std::make_shared<BenchOptions>();
-    auto* what = command->add_option_group("what")->require_option(1);
-    CLI::Option* scene =
-        what->add_option("--scene", options->scene,
-                         "a file (.gltf, .glb, .obj, .ply, .stl), or made: sphere:N, soup:N, instances:KxN, with N "
-                         "triangles and K instances");
-    what->add_option("--moves", options->moves, "refit of so many instances that move, against a rebuild")
-        ->check(CLI::Range(1, 1 << 22));
-    const CLI::Option* growth =
-        what->add_option("--growth", options->growth, "spheres of so many triangles; separated by commas")
-            ->delimiter(',')
-            ->expected(0, 100)
-            ->check(CLI::Range(20.0, 5e7))
-            ->capture_default_str();
-    command
-        ->add_option("--rays", options->kinds,
-                     "primary, incoherent, occlusion, shuffled; separated by commas; else the first three, of growth "
-                     "the first two")
-        ->delimiter(',')
-        ->transform(CLI::CheckedTransformer(ray_kinds_by_name()));
-    add_choice_options(*command, options->run);
-    add_size_options(*command, options->run);
-    command
-        ->add_flag("--ladder", options->is_ladder,
-                   "what each feature costs that the scene does not need, on the first layout and level, and what an "
-                   "accelerator keeps in memory")
-        ->needs(scene);
-    command->add_flag("--no-embree", options->no_embree, "leave Embree out");
-    command->add_flag("--no-build", options->no_build, "time traces alone; a ladder's, without its memory");
-    add_common_options(*command, options->common);
-    command->callback([options, growth] { dispatch(*options, growth->count() > 0); });
+    const Section what = {
+        "What is measured",
+        {{.name = "--scene",
+          .value = word(options->scene, "SCENE"),
+          .help = "a file (.gltf, .glb, .obj, .ply, .stl), or made: sphere:N, soup:N, instances:KxN, with N triangles "
+                  "and K instances"},
+         {.name = "--moves",
+          .value = number(options->moves, {1, 1 << 22}),
+          .help = "refit of so many instances that move, against a rebuild"},
+         {.name = "--growth",
+          .value = optional_list(options->is_growth, options->growth, {20, 5e7}),
+          .help = "spheres of so many triangles, one after the other"},
+         {.name = "--ladder",
+          .value = flag(options->is_ladder),
+          .help = "what each feature costs that the scene does not need, on the first layout and level, and what an "
+                  "accelerator keeps in memory",
+          .needs = {"--scene"}}}};
+    return {.name = "bench",
+            .group = "Checking",
+            .summary = "measure build times and trace rates of both accelerators, with their errors",
+            .description =
+                "Builds and traces a scene by both accelerators, and by Embree where it is built in, taking "
+                "turns in rounds, and tells medians, ratios within a round, memory, and how often hits "
+                "differ from exact ones.",
+            .sections = {what, rays_section(*options), contestants_section(*options), common_options(options->common)},
+            .alternatives = {{.names = {"--scene", "--moves", "--growth"}, .is_required = true}},
+            .examples = {{"twinray bench --scene sphere:100000 --levels watertight,certified",
+                          "what certainty costs on a sphere of a hundred thousand triangles"}},
+            .run = [options] {
+                dispatch(*options);
+                return 0;
+            }};
 }
 
 }  // namespace twinray::cli

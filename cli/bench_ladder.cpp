@@ -2,9 +2,11 @@
 // `twinray bench --ladder`: what each feature costs a scene that does not need it, in time and in memory.
 #include <algorithm>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "bench/keeping.h"
 #include "bench/ladder.h"
+#include "cli/bench_kinds.h"
 #include "cli/common.h"
 #include "cli/places.h"
 #include "engine/core/error.h"
@@ -15,7 +17,7 @@ namespace twinray::cli {
 
 void bench_ladder(const CommonOptions& options, const std::string& scene_name, const bench::RunOptions& run) {
     const bench::BenchScene scene = bench::make_scene(scene_name);
-    print_notes(scene.scene, options.quiet);
+    heed_warnings(scene.scene, scene_name, options);
     const std::unique_ptr<Context> context = make_context(options);
     const bench::LadderOptions ladder_options{.layout = run.line_up.layouts.front(),
                                               .level = run.line_up.levels.front(),

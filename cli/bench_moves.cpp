@@ -4,8 +4,9 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
-#include "cli/common.h"
+#include "cli/bench_kinds.h"
 #include "engine/report/statistics.h"
 #include "engine/scene/shapes.h"
 #include "hwtlas/hw_tlas.h"

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // `twinray centroid`: the mean of what is seen along a direction.
 #include <iostream>
+#include <nlohmann/json.hpp>
 
+#include "cli/commands.h"
 #include "cli/places.h"
 #include "cli/ray_grid_options.h"
 #include "engine/analysis/centroid.h"
@@ -26,9 +28,7 @@ void write(const std::filesystem::path& file, const Centroid& result, const dvec
 }
 
 void print(const CentroidOptions& options, const Analysed& analysed, const Centroid& result, double seconds) {
-    std::cout << "centroid " << options.analysis.scene.filename().string() << ": " << count_triangles(analysed.scene)
-              << " faces, " << analysed.accel->name() << " on " << analysed.context->facts().name << "\n  "
-              << speed_text(result.ray_count, seconds) << "\n  ";
+    std::cout << analysed.head("centroid", options.analysis) << "  " << speed_text(result.ray_count, seconds) << "\n  ";
     if (result.mean) {
         std::cout << "mean of " << result.point_count << " points: " << place_text(*result.mean, analysed.scene.origin);
         if (result.standard_error) std::cout << ", standard error " << text_of(*result.standard_error);
@@ -95,13 +95,26 @@ void run(const CentroidOptions& options) {
 
 }  // namespace
 
-void add_centroid(CLI::App& app, int&) {
-    CLI::App* command = app.add_subcommand("centroid", "the mean of what is seen along a direction");
+Command centroid_command() {
     const auto options = std::make_shared<CentroidOptions>();
-    add_analysis_options(*command, options->analysis, "CSV of the points: x,y,z",
-                         "none; points that rays hit and their mean are marked in the .png");
-    add_ray_grid_options(*command, *command, options->grid)->required();
-    command->callback([options] { run(*options); });
+    Section rays = {"Rays", ray_grid_options(options->grid)};
+    rays.options.front().is_required = true;
+    return {.name = "centroid",
+            .group = "Analyses",
+            .summary = "find the mean of what is seen along a direction",
+            .description =
+                "Sends parallel rays over the whole scene, one through each cell of a grid, and averages "
+                "the points that they hit.",
+            .positionals = {scene_argument(options->analysis.scene)},
+            .sections = {rays, analysis_output(options->analysis, "the points as CSV: x,y,z"),
+                         picture_options(options->analysis.pictures,
+                                         "none; points that rays hit and their mean are marked in the .png"),
+                         common_options(options->analysis.common)},
+            .examples = {{"twinray centroid statue.ply --direction 0 0 -1", "as seen by one who looks along -z"}},
+            .run = [options] {
+                run(*options);
+                return 0;
+            }};
 }
 
 }  // namespace twinray::cli

@@ -3,10 +3,12 @@
 #include <chrono>
 #include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "cli/collide_picture.h"
+#include "cli/command/values.h"
+#include "cli/commands.h"
 #include "cli/places.h"
-#include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 
 namespace twinray::cli {
@@ -15,7 +17,7 @@ namespace {
 struct CollideOptions {
     CommonOptions common;
     std::filesystem::path scene, output;
-    std::string accel = "sw";
+    std::string accel = "auto";
     bool is_broad = false;
     ContactOptions contacts;
     std::uint64_t max_pairs = PairSearch::default_max_pairs;
@@ -36,13 +38,6 @@ void write_table(const std::filesystem::path& file, const char* header, const st
     if (!out.flush()) fail("CSV file '", file.string(), "' cannot be written");
 }
 
-std::unique_ptr<AbstractAccel> filled_accel(const CollideOptions& options, Context& context, const Scene& scene) {
-    std::unique_ptr<AbstractAccel> accel = make_accel(context, options.accel);
-    push_scene(*accel, scene);
-    context.wait(accel->sync());
-    return accel;
-}
-
 // The title goes onto the picture here.
 void draw(const CollideOptions& options, AbstractAccel& accel, const Scene& scene, ScenePicture picture,
           const std::string& found) {
@@ -52,9 +47,10 @@ void draw(const CollideOptions& options, AbstractAccel& accel, const Scene& scen
 }
 
 void run_broad(const CollideOptions& options) {
-    const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
+    const Scene scene = load_scene(options.scene, options.common);
     const std::unique_ptr<Context> context = make_context(options.common);
-    const std::unique_ptr<AbstractAccel> accel = filled_accel(options, *context, scene);
+    const AccelChoice choice = choose_accel(context->facts(), options.accel);
+    const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene);
     CollisionFinder finder(*context);
     finder.set_max_pairs(options.max_pairs);
     const Clock::time_point start = Clock::now();
@@ -67,16 +63,17 @@ void run_broad(const CollideOptions& options) {
              text(pairs.size(), " pairs of boxes overlap"));
     if (!options.common.quiet)
         std::cout << scene.instances.size() << " instances, " << pairs.size() << " pairs of boxes overlap, " << seconds
-                  << " s with copies\n";
-    append_json(options.common.json, {{"schema", "twinray-collide/1"},
-                                      {"device", describe(*context)},
-                                      {"scene", options.scene.string()},
-                                      {"origin", list_of(scene.origin)},
-                                      {"phase", "broad"},
-                                      {"backend", options.accel},
-                                      {"instances", scene.instances.size()},
-                                      {"pairs", pairs.size()},
-                                      {"seconds", seconds}});
+                  << " s with copies, " << text_of(choice) << '\n';
+    nlohmann::json record = {{"schema", "twinray-collide/1"},
+                             {"device", describe(*context)},
+                             {"scene", options.scene.string()},
+                             {"origin", list_of(scene.origin)},
+                              {"phase", "broad"},
+                             {"instances", scene.instances.size()},
+                             {"pairs", pairs.size()},
+                             {"seconds", seconds}};
+    record.update(describe(choice));
+    append_json(options.common.json, record);
 }
 
 nlohmann::json counts_of(const Contacts& contacts) {
@@ -97,7 +94,7 @@ void print(const Scene& scene, const Contacts& contacts, const nlohmann::json& c
 }
 
 void run_exact(const CollideOptions& options) {
-    const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
+    const Scene scene = load_scene(options.scene, options.common);
     const std::unique_ptr<Context> context = make_context(options.common);
     ContactFinder finder(*context);
     finder.set_max_pairs(options.max_pairs);
@@ -110,7 +107,8 @@ void run_exact(const CollideOptions& options) {
                         << name_of(c.pair_class) << '\n';
                 });
     if (!options.pictures.files.empty())
-        draw(options, *filled_accel(options, *context, scene), scene, picture_of_contacts(scene, contacts),
+        draw(options, *make_accel(*context, choose_accel(context->facts(), options.accel), scene), scene,
+             picture_of_contacts(scene, contacts),
              text(contacts.list.size(), " pairs of triangles touch or intersect"));
     const nlohmann::json counts = counts_of(contacts);
     if (!options.common.quiet) print(scene, contacts, counts);
@@ -136,7 +134,6 @@ void run_exact(const CollideOptions& options) {
 void run(const CollideOptions& options) {
     if (!options.output.empty()) check_writable(options.output);
     check_pictures(options.pictures);
-    if (options.is_broad && options.contacts.self) fail("collide: --broad knows instances; --self is about triangles");
     if (options.is_broad)
         run_broad(options);
     else
@@ -145,29 +142,47 @@ void run(const CollideOptions& options) {
 
 }  // namespace
 
-void add_collide(CLI::App& app, int&) {
-    CLI::App* command = app.add_subcommand("collide", "which instances and triangles of a scene touch or overlap");
+Command collide_command() {
     const auto options = std::make_shared<CollideOptions>();
-    command->add_option("scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
-    command->add_flag("--broad", options->is_broad, "pairs of instances whose boxes overlap, instead of triangles");
-    command->add_option("-o,--output", options->output, "written: the pairs as CSV");
-    command
-        ->add_option("--accel", options->accel,
-                     "whose boxes --broad takes, and what pictures are traced with; answers are the same")
-        ->check(CLI::IsMember({"sw", "hw"}))
-        ->capture_default_str();
-    command->add_flag("--self", options->contacts.self,
-                      "also pairs within an instance, but for neighbours that only share vertices");
-    command->add_flag_callback(
-        "--weld", [options] { options->contacts.shared = Shared::by_position; },
-        "with --self: vertices at one position are one, as where faces have normals of their own");
-    command->add_option("--max-pairs", options->max_pairs, "of boxes that overlap: 17 bytes of device memory each")
-        ->check(CLI::Range(std::uint64_t{1}, PairSearch::most_pairs))
-        ->capture_default_str();
-    add_picture_options(*command, options->pictures,
-                        "the worst contact of each face, or with --broad how many boxes that of its instance overlaps");
-    add_common_options(*command, options->common);
-    command->callback([options] { run(*options); });
+    const Section pairs = {
+        "Pairs",
+        {{.name = "--broad",
+          .value = flag(options->is_broad),
+          .help = "pairs of instances whose boxes overlap, instead of triangles"},
+         {.name = "--self",
+          .value = flag(options->contacts.self),
+          .help = "also pairs within an instance, but for neighbours that only share vertices",
+          .excludes = {"--broad"}},
+         {.name = "--weld",
+          .value = flag([options] { options->contacts.shared = Shared::by_position; }),
+          .help = "vertices at one position are one, as where faces have normals of their own",
+          .needs = {"--self"}},
+         {.name = "--max-pairs",
+          .value = number(options->max_pairs, {1, PairSearch::most_pairs}),
+          .help = "of boxes that overlap: 17 bytes of device memory each"},
+         output_option(file(options->output),
+                       "the pairs as CSV: instance_a, instance_b and, without --broad, "
+                       "triangle_a, triangle_b, class"),
+         accel_option(options->accel, "whose boxes --broad takes, and what traces pictures; answers are the same")}};
+    return {
+        .name = "collide",
+        .group = "Analyses",
+        .summary = "find the triangles, or the instances, of a scene that touch or overlap",
+        .description =
+            "Finds all pairs of triangles of different instances that touch or intersect, and tells "
+            "how: crossing, touching at a vertex or along an edge, coplanar. Classes are exact: what "
+            "float64 cannot decide is decided in larger arithmetic.",
+        .positionals = {scene_argument(options->scene)},
+        .sections = {pairs,
+                     picture_options(options->pictures,
+                                     "the worst contact of each face, or with --broad how many "
+                                     "boxes that of its instance overlaps"),
+                     common_options(options->common)},
+        .examples = {{"twinray collide machine.gltf -o pairs.csv", "which parts of a machine are in each other's way"}},
+        .run = [options] {
+            run(*options);
+            return 0;
+        }};
 }
 
 }  // namespace twinray::cli

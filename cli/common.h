@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: MIT
-// What the subcommands share: options, making an accelerator, raw ray files, JSON lines.
+// What the commands share: options, making an accelerator, raw ray files, JSON lines.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <filesystem>
-#include <map>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "bench/run.h"
-#include "engine/accel/abstract_accel.h"
-#include "engine/scene/scene.h"
+#include "cli/command/command.h"
+#include "engine/accel/accel_choice.h"
+
+namespace twinray {
+class AbstractAccel;
+class Context;
+struct AccelOptions;
+struct ContextDesc;
+struct Hit;
+struct Ray;
+struct Scene;
+}  // namespace twinray
 
 namespace twinray::cli {
 
@@ -22,27 +29,39 @@ struct CommonOptions {
     std::uint64_t seed = 1;
     std::filesystem::path json;
     bool quiet = false;
+    bool strict = false;
     bool validation = false;
-    std::filesystem::path pipelines = user_pipeline_folder();
+    std::optional<std::filesystem::path> pipelines;  // none: the user's folder for them
 };
-void add_common_options(CLI::App& command, CommonOptions& options);
+Section common_options(CommonOptions& options);
 
-std::map<std::string, Layout> layouts_by_name();
-std::map<std::string, BuildQuality> build_qualities_by_name();
+Option json_option(std::filesystem::path& file);
+// The positional SCENE, of which everything is asked.
+Option scene_argument(std::filesystem::path& file);
+// "-o, --output".
+Option output_option(Value value, const std::string& help);
+// --accel auto|sw|hw, for choose_accel(). `what`: "what traces".
+Option accel_option(std::string& request, const std::string& what = "what traces");
+// --level, which says what each costs; and the levels by their names.
+Option level_option(Level& level, const std::string& help = "of the triangle test");
+std::vector<std::pair<std::string, Level>> levels_by_name();
+std::string name_of(Level level);
 // --layout and --build-quality
-void add_tree_options(CLI::App& command, AccelOptions& options);
+std::vector<Option> tree_options(AccelOptions& options);
 
 // A context for these options; TWINRAY_DISABLE (a comma-separated list of ray_query, ray_tracing_pipeline) leaves
 // features of the device unused.
 ContextDesc context_desc(const CommonOptions& options);
 std::unique_ptr<Context> make_context(const CommonOptions& options);
 
-// kind: "sw" or "hw".
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const std::string& kind);
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, Level level = Level::watertight);
+// Holds the scene, built.
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, const Scene& scene,
+                                          Level level = Level::watertight);
 
-// Loads; prints where the origin is, if it was moved, and the warnings to stderr unless quiet.
-Scene load_scene_with_warnings(const std::filesystem::path& file, bool quiet);
-void print_notes(const Scene& scene, bool quiet);
+// Prints the importer's warnings to stderr unless quiet. With --strict they are an Error.
+Scene load_scene(const std::filesystem::path& file, const CommonOptions& options);
+void heed_warnings(const Scene& scene, const std::string& name, const CommonOptions& options);
 
 void check_writable(const std::filesystem::path& file);  // its folder exists: before the work, not after it
 
@@ -52,20 +71,8 @@ std::string api_version(const Context& context);
 // Appends one line; does nothing for an empty path.
 void append_json(const std::filesystem::path& file, const nlohmann::json& record);
 nlohmann::json describe(const Context& context);
-
-// Each adds its subcommand; the callback sets `exit_code`.
-void add_collide(CLI::App& app, int& exit_code);
-void add_devices(CLI::App& app, int& exit_code);
-void add_distance(CLI::App& app, int& exit_code);
-void add_trace(CLI::App& app, int& exit_code);
-void add_verify(CLI::App& app, int& exit_code);
-void add_leaks(CLI::App& app, int& exit_code);
-void bench_moves(const CommonOptions& options, std::size_t count, std::size_t rounds);
-void bench_ladder(const CommonOptions& options, const std::string& scene, const bench::RunOptions& run);
-void add_bench(CLI::App& app, int& exit_code);
-void add_illumination(CLI::App& app, int& exit_code);
-void add_centroid(CLI::App& app, int& exit_code);
-void add_report(CLI::App& app, int& exit_code);
-void add_viewfactors(CLI::App& app, int& exit_code);
+nlohmann::json describe(const AccelChoice& choice);  // "backend" and "backend_why"
+// "by SwTlas (device 'llvmpipe' is a CPU, without hardware for rays)".
+std::string text_of(const AccelChoice& choice);
 
 }  // namespace twinray::cli

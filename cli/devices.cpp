@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // `twinray devices`: every Vulkan device, what each accelerator can do there, and why not.
 #include <iostream>
+#include <nlohmann/json.hpp>
 
+#include "cli/commands.h"
 #include "cli/common.h"
 #include "engine/core/error.h"
 #include "hwtlas/hw_tlas.h"
@@ -46,6 +48,22 @@ void print_capabilities(const DeviceFacts& device, CapabilityOn capability_on) {
     }
 }
 
+// What --accel auto takes; null where nothing works.
+nlohmann::json auto_choice(const DeviceFacts& device) {
+    return missing_for_software(device).empty() ? describe(choose_accel(device, "auto")) : nlohmann::json();
+}
+
+// Without what TWINRAY_DISABLE leaves unused.
+std::vector<DeviceFacts> usable_devices() {
+    const ContextDesc desc = context_desc({});
+    std::vector<DeviceFacts> devices = list_devices();
+    for (DeviceFacts& device : devices) {
+        device.ray_query &= desc.use_ray_query;
+        device.ray_tracing_pipeline &= desc.use_ray_tracing_pipeline;
+    }
+    return devices;
+}
+
 nlohmann::json describe_device(std::size_t index, const DeviceFacts& device) {
     return {{"index", index},
             {"name", device.name},
@@ -56,12 +74,13 @@ nlohmann::json describe_device(std::size_t index, const DeviceFacts& device) {
             {"ray_query", device.ray_query},
             {"ray_tracing_pipeline", device.ray_tracing_pipeline},
             {"float64", device.shader_float64},
+            {"auto", auto_choice(device)},
             {"sw", describe_capabilities(device, SwTlas::capability_on)},
             {"hw", describe_capabilities(device, HwTlas::capability_on)}};
 }
 
 void print_devices(const std::filesystem::path& json) {
-    const std::vector<DeviceFacts> devices = list_devices();
+    const std::vector<DeviceFacts> devices = usable_devices();
     const DeviceChoice choice = choose_device(devices, "");
     for (std::size_t i = 0; i < devices.size(); ++i) {
         const DeviceFacts& device = devices[i];
@@ -74,6 +93,8 @@ void print_devices(const std::filesystem::path& json) {
         if (missing_for_software(device).empty()) print_capabilities(device, SwTlas::capability_on);
         std::cout << "     HwTlas  " << verdict(missing_for_hardware(device), hardware_able(device)) << '\n';
         if (missing_for_hardware(device).empty()) print_capabilities(device, HwTlas::capability_on);
+        if (missing_for_software(device).empty())
+            std::cout << "     --accel auto traces " << text_of(choose_accel(device, "auto")) << '\n';
         std::cout << "     float64 in shaders  " << (device.shader_float64 ? "yes" : "no") << '\n';
         append_json(json, describe_device(i, device));
     }
@@ -84,11 +105,23 @@ void print_devices(const std::filesystem::path& json) {
 
 }  // namespace
 
-void add_devices(CLI::App& app, int&) {
-    CLI::App* command = app.add_subcommand("devices", "list Vulkan devices and what each accelerator can do there");
+Command devices_command() {
     const auto json = std::make_shared<std::filesystem::path>();
-    command->add_option("--json", *json, "append to FILE, one JSON object a line");
-    command->callback([json] { print_devices(*json); });
+    return {.name = "devices",
+            .group = "Tracing",
+            .summary = "list the Vulkan devices and what each accelerator can do there",
+            .description =
+                "Lists every Vulkan device with what the software accelerator (SwTlas) and the hardware "
+                "accelerator (HwTlas, on VK_KHR_acceleration_structure) can do there, and what a device "
+                "lacks, and which of the two --accel auto takes. The device that commands take unless --device names "
+                "another is "
+                "marked with a star.",
+            .sections = {{"Output", {json_option(*json)}}},
+            .examples = {{"twinray devices", "what there is"}},
+            .run = [json] {
+                print_devices(*json);
+                return 0;
+            }};
 }
 
 }  // namespace twinray::cli

@@ -4,7 +4,11 @@
 #include <chrono>
 #include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
+#include "cli/command/values.h"
+#include "cli/commands.h"
+#include "cli/common.h"
 #include "cli/distance_slice.h"
 #include "cli/npz.h"
 #include "cli/picture_options.h"
@@ -12,6 +16,7 @@
 #include "cli/query_points.h"
 #include "engine/core/error.h"
 #include "engine/points/point_finder.h"
+#include "engine/scene/bytes.h"
 
 namespace twinray::cli {
 namespace {
@@ -25,6 +30,8 @@ struct DistanceOptions {
     double max_distance = PointFinder::unlimited;
     std::optional<double> within;
 };
+
+bool is_npz(const std::filesystem::path& file) { return lower_suffix(file) == ".npz"; }
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -97,7 +104,7 @@ struct Search {
     double build_seconds = 0;
 
     explicit Search(const DistanceOptions& options)
-        : scene(load_scene_with_warnings(options.scene, options.common.quiet)),
+        : scene(load_scene(options.scene, options.common)),
           context(make_context(options.common)),
           points(options.points.make(scene, options.common.seed)),
           finder(*context) {
@@ -146,7 +153,7 @@ void run_closest(const DistanceOptions& options, Search& search) {
         }
     }
     const double seconds = seconds_since(start);
-    if (options.output.extension() == ".npz")
+    if (is_npz(options.output))
         write_npz(options, search.points, found, search.scene.origin);
     else if (!options.output.empty())
         write_csv(options.output, found, search.scene.origin);
@@ -167,15 +174,11 @@ void run_closest(const DistanceOptions& options, Search& search) {
 
 void run(const DistanceOptions& options) {
     if (!options.points.is_asked_for() && options.slice.file.empty())
-        throw CLI::RequiredError("--points, --random, --grid or --slice");
-    if (!options.output.empty()) check_writable(options.output);
-    if (!options.slice.file.empty()) check_png(options.slice.file);
-    const std::string suffix = options.output.extension().string();
-    if (suffix != "" && suffix != ".csv" && suffix != ".npz")
-        fail("'", options.output.string(), "': distances go into .csv or .npz");
-    if (options.within && suffix == ".npz")
-        fail("'", options.output.string(), "': what is within a radius goes into .csv");
-    if (options.within && !options.slice.file.empty()) fail("--slice shows distances, not what is within a radius");
+        throw UsageError("one of --points, --random, --grid, --slice is required");
+    check_writable(options.output);
+    check_writable(options.slice.file);
+    if (options.within && is_npz(options.output))
+        throw UsageError(text("--output is '", options.output.string(), "', but --within writes .csv"));
     Search search(options);
     if (options.points.is_asked_for()) options.within ? run_within(options, search) : run_closest(options, search);
     if (!options.slice.file.empty())
@@ -185,27 +188,42 @@ void run(const DistanceOptions& options) {
 
 }  // namespace
 
-void add_distance(CLI::App& app, int&) {
-    CLI::App* command = app.add_subcommand("distance", "what of a scene is near to points, and how far away");
+Command distance_command() {
     const auto options = std::make_shared<DistanceOptions>();
-    command->add_option("scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
-    add_query_point_options(*command, options->points);
-    add_slice_options(*command, options->slice);
-    command->add_option("-o,--output", options->output,
-                        "CSV of point,distance,x,y,z,instance,triangle, or .npz with the points, too");
-    CLI::Option* sign = command->add_flag("--signed", options->is_signed,
-                                          "negative inside; needs closed meshes whose fronts look outward");
-    CLI::Option* limit = command->add_option("--max-distance", options->max_distance, "nothing is looked for beyond it")
-                             ->check(CLI::NonNegativeNumber)
-                             ->excludes(sign);
-    command
-        ->add_option("--within", options->within,
-                     "instead, all triangles that are at most so far away: CSV of point,instance,triangle,distance")
-        ->check(CLI::NonNegativeNumber)
-        ->excludes(sign)
-        ->excludes(limit);
-    add_common_options(*command, options->common);
-    command->callback([options] { run(*options); });
+    const Section search = {
+        "Search",
+        {{.name = "--signed",
+          .value = flag(options->is_signed),
+          .help = "negative inside; needs closed meshes whose fronts look outward"},
+         {.name = "--max-distance",
+          .value = number(options->max_distance, {.least = 0}),
+          .help = "nothing is looked for beyond it",
+          .excludes = {"--signed"}},
+         {.name = "--within",
+          .value = number(options->within, {.least = 0}),
+          .help = "instead of the nearest, all triangles that are at most so far away",
+          .excludes = {"--signed", "--max-distance", "--slice"}},
+         output_option(file(options->output, {".csv", ".npz"}),
+                       "of each point: its number, distance, nearest position, instance and triangle; with --within, "
+                       "which is .csv alone: point, instance, triangle, distance")}};
+    return {.name = "distance",
+            .group = "Analyses",
+            .summary = "find what of a scene is near to points, and how far away",
+            .description =
+                "Finds the nearest triangle of each point, or all triangles within a radius, in float64. "
+                "With --signed it tells inside from outside, exactly.",
+            .positionals = {scene_argument(options->scene)},
+            .sections = {{"Points", query_point_options(options->points)},
+                         search,
+                         slice_options(options->slice),
+                         common_options(options->common)},
+            .alternatives = {{.names = {"--points", "--random", "--grid"}}},
+            .examples = {{"twinray distance part.stl --points probes.csv --signed -o distances.csv",
+                          "how deep probes are inside a part, or how far outside"}},
+            .run = [options] {
+                run(*options);
+                return 0;
+            }};
 }
 
 }  // namespace twinray::cli

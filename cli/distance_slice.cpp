@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/command/values.h"
 #include "cli/places.h"
 #include "cli/query_points.h"
 #include "engine/core/error.h"
@@ -70,19 +71,24 @@ void draw_levels(Raster& picture, const std::vector<double>& values, double leve
 
 }  // namespace
 
-void add_slice_options(CLI::App& command, SliceOptions& options) {
-    CLI::Option* slice =
-        command.add_option("--slice", options.file, "written: distances in a plane through the scene, .png");
-    command.add_option("--slice-axis", options.axis, "the axis that the plane is perpendicular to")
-        ->check(CLI::IsMember({'x', 'y', 'z'}))
-        ->capture_default_str()
-        ->needs(slice);
-    command.add_option("--slice-at", options.at, "its place along the axis; the middle of the scene if not said")
-        ->needs(slice);
-    command.add_option("--slice-size", options.width, "pixels of its larger side")
-        ->check(CLI::Range(16u, 4096u))
-        ->capture_default_str()
-        ->needs(slice);
+Section slice_options(SliceOptions& options) {
+    const Names<char> axes = {{"x", 'x'}, {"y", 'y'}, {"z", 'z'}};
+    return {"Slice",
+            {{.name = "--slice",
+              .value = file(options.file, {".png"}),
+              .help = "written: distances in a plane through the scene"},
+             {.name = "--slice-axis",
+              .value = choice(options.axis, axes),
+              .help = "the axis that the plane is perpendicular to",
+              .needs = {"--slice"}},
+             {.name = "--slice-at",
+              .value = number(options.at),
+              .help = "the plane's place along the axis; the middle of the scene if not given",
+              .needs = {"--slice"}},
+             {.name = "--slice-size",
+              .value = number(options.width, {16, 4096}),
+              .help = "pixels of the larger side",
+              .needs = {"--slice"}}}};
 }
 
 void write_slice(const SliceOptions& options, const Scene& scene, PointFinder& finder, bool is_signed,

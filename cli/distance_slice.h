@@ -2,8 +2,9 @@
 // `twinray distance --slice`: distances in a plane as a picture.
 #pragma once
 
-#include "cli/common.h"
+#include "cli/command/command.h"
 #include "engine/points/point_finder.h"
+#include "engine/scene/scene.h"
 
 namespace twinray::cli {
 
@@ -13,7 +14,7 @@ struct SliceOptions {
     std::optional<double> at;    // the plane's place along it; none: the middle of the scene
     uint width = 480;            // pixels of the larger side, a point each
 };
-void add_slice_options(CLI::App& command, SliceOptions& options);
+Section slice_options(SliceOptions& options);
 
 // Throws Error for a scene without triangles. `is_signed`: negative inside, as signed_distances() tells.
 void write_slice(const SliceOptions& options, const Scene& scene, PointFinder& finder, bool is_signed,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iomanip>
 
+#include "cli/command/values.h"
 #include "cli/number_lines.h"
 #include "engine/core/error.h"
 
@@ -38,24 +39,23 @@ void FaceGroupOptions::set_groups(Faces& faces) const {
     if (by == FaceGrouping::custom) faces.set_custom_groups(read_face_groups(file, faces.count()));
 }
 
-FaceGroupOptionPair add_face_group_options(CLI::App& command, FaceGroupOptions& options, const std::string& of_what) {
-    std::map<std::string, FaceGrouping> groupings;
+std::vector<Option> face_group_options(FaceGroupOptions& options, const std::string& of_what,
+                                       const std::vector<std::string>& needs) {
+    Names<FaceGrouping> groupings;
     for (const FaceGrouping by :
          {FaceGrouping::face, FaceGrouping::mesh, FaceGrouping::instance, FaceGrouping::material})
-        groupings.emplace(name_of(by), by);
-    CLI::Option* by =
-        command.add_option("--by", options.by, of_what + ": face (the default), mesh, instance, material")
-            ->transform(CLI::CheckedTransformer(groupings).description("face|mesh|instance|material"));
-    CLI::Option* groups = command
-                              .add_option_function<std::string>(
-                                  "--groups",
-                                  [&options](const std::string& file) {
-                                      options.file = file;
-                                      options.by = FaceGrouping::custom;
-                                  },
-                                  of_what + ", told by a CSV of face,group: each face once, groups numbered from 0")
-                              ->excludes(by);
-    return {by, groups};
+        groupings.emplace_back(name_of(by), by);
+    Value groups = cli::file(options.file);
+    groups.store = [store = groups.store, &options](std::span<const std::string> words) {
+        options.by = FaceGrouping::custom;
+        return store(words);
+    };
+    return {{.name = "--by", .value = choice(options.by, groupings), .help = of_what, .needs = needs},
+            {.name = "--groups",
+             .value = groups,
+             .help = of_what + ", told by a CSV of face,group: each face once, groups numbered from 0",
+             .needs = needs,
+             .excludes = {"--by"}}};
 }
 
 }  // namespace twinray::cli

@@ -2,7 +2,9 @@
 // By what commands put faces together: --by, or --groups with a file.
 #pragma once
 
-#include "cli/common.h"
+#include <filesystem>
+
+#include "cli/command/command.h"
 #include "engine/analysis/faces.h"
 
 namespace twinray::cli {
@@ -15,10 +17,8 @@ struct FaceGroupOptions {
     void set_groups(Faces& faces) const;
 };
 
-struct FaceGroupOptionPair {
-    CLI::Option *by, *groups;
-};
-// `of_what`: "what a row is".
-FaceGroupOptionPair add_face_group_options(CLI::App& command, FaceGroupOptions& options, const std::string& of_what);
+// `of_what`: "what a row is". Both need the options `needs`.
+std::vector<Option> face_group_options(FaceGroupOptions& options, const std::string& of_what,
+                                       const std::vector<std::string>& needs = {});
 
 }  // namespace twinray::cli

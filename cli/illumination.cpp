@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
+#include "cli/command/values.h"
+#include "cli/commands.h"
 #include "cli/face_groups.h"
 #include "cli/sky_light.h"
 #include "engine/core/error.h"
@@ -22,13 +25,13 @@ struct IlluminationOptions {
     Measure measure = Measure::area;
 };
 
-const std::map<std::string, Measure> measures = {
+const Names<Measure> measures = {
     {"area", Measure::area}, {"fraction", Measure::fraction}, {"irradiance", Measure::irradiance}};
-const std::map<std::string, Sides> sides_by_name = {{"front", Sides::front}, {"both", Sides::both}};
+const Names<Sides> sides_by_name = {{"front", Sides::front}, {"both", Sides::both}};
 
 template <class T>
-std::string name_in(const std::map<std::string, T>& values, T wanted) {
-    return std::find_if(values.begin(), values.end(), [&](const auto& entry) { return entry.second == wanted; })->first;
+std::string name_in(const Names<T>& names, T wanted) {
+    return std::ranges::find(names, wanted, &std::pair<std::string, T>::second)->first;
 }
 
 // What areas are divided by; 0: nothing is there to be divided.
@@ -76,11 +79,9 @@ void print(const IlluminationOptions& options, const Analysed& analysed, const I
     const LitArea& total = result.total;
     const auto lit =
         std::count_if(result.groups.begin(), result.groups.end(), [](const LitArea& g) { return g.hits > 0; });
-    std::cout << "illumination " << options.analysis.scene.filename().string() << ": "
-              << count_triangles(analysed.scene) << " faces, " << analysed.accel->name() << " on "
-              << analysed.context->facts().name << "\n  " << speed_text(result.ray_count, seconds) << "\n  lit: " << lit
-              << " of " << result.groups.size() << " by " << name_of(options.groups.by) << "; area across the light "
-              << total.area;
+    std::cout << analysed.head("illumination", options.analysis) << "  " << speed_text(result.ray_count, seconds)
+              << "\n  lit: " << lit << " of " << result.groups.size() << " by " << name_of(options.groups.by)
+              << "; area across the light " << total.area;
     if (options.grid.points == GridPoints::random)
         std::cout << " [" << total.interval.low << ", " << total.interval.high << "]";
     std::cout << ", without shadows " << total.unobstructed << '\n';
@@ -115,35 +116,41 @@ void run(const IlluminationOptions& options) {
 
 }  // namespace
 
-void add_illumination(CLI::App& app, int&) {
-    CLI::App* command =
-        app.add_subcommand("illumination", "what parallel light, the sky or the sun bring to each face");
+Command illumination_command() {
     const auto options = std::make_shared<IlluminationOptions>();
-    add_analysis_options(*command, options->analysis, "CSV, one line a face: face,hits,area,ci_low,ci_high",
-                         "what the third column of the CSV holds");
-    add_color_scale_option(*command, options->analysis.pictures);
-    CLI::Option_group* source = command->add_option_group("light", "exactly one of them");
-    CLI::Option* direction = add_ray_grid_options(*command, *source, options->grid);
-    add_sky_options(*command, *source, options->sky);
-    source->require_option(1);
-    command->add_option("--sides", options->sides, "which sides receive light: both (the default), or front")
-        ->transform(CLI::CheckedTransformer(sides_by_name).description("front|both"));
-    const FaceGroupOptionPair grouping = add_face_group_options(*command, options->groups, "what a line of the CSV is");
-    grouping.by->needs(direction);
-    grouping.groups->needs(direction);
-    command
-        ->add_option("--measure", options->measure,
-                     "third column of the CSV: area across the light (the default), fraction of what is turned to the "
-                     "light, or irradiance: area across the light a unit of surface")
-        ->needs(direction)
-        ->transform(CLI::CheckedTransformer(measures).description("area|fraction|irradiance"));
-    command->callback([options] {
-        if (options->grid.direction.empty()) {
-            run_sky(options->analysis, options->sky, options->sides);
-        } else {
-            run(*options);
-        }
-    });
+    Section light = {"Light", ray_grid_options(options->grid)};
+    for (Option& option : sky_options(options->sky)) light.options.push_back(std::move(option));
+    light.options.push_back({.name = "--sides",
+                             .value = choice(options->sides, sides_by_name),
+                             .help = "which sides of faces receive light"});
+    Section output = analysis_output(options->analysis,
+                                     "a CSV, one line a face: face, hits, area, ci_low, ci_high; with --sky or --sun "
+                                     "face, free_rays, sky or hours, ci_low, ci_high");
+    for (Option& option : face_group_options(options->groups, "what a line of the CSV is", {"--direction"}))
+        output.options.push_back(std::move(option));
+    output.options.push_back({.name = "--measure",
+                              .value = choice(options->measure, measures),
+                              .help = "third column of the CSV: area across the light, fraction of what is turned to "
+                                      "the light, or irradiance: area across the light a unit of surface",
+                              .needs = {"--direction"}});
+    Section pictures = picture_options(options->analysis.pictures, "what the third column of the CSV holds");
+    pictures.options.push_back(color_scale_option(options->analysis.pictures));
+    return {.name = "illumination",
+            .group = "Analyses",
+            .summary = "find what parallel light, the sky or the sun bring to each face",
+            .description =
+                "Tells how much of each face parallel light reaches, how much of a uniform sky it sees, or "
+                "for how many hours the sun shines on it, with 95 % intervals.",
+            .positionals = {scene_argument(options->analysis.scene)},
+            .sections = {light, output, pictures, common_options(options->analysis.common)},
+            .alternatives = {{.names = {"--direction", "--sky", "--sun"}, .is_required = true}},
+            .examples = {{"twinray illumination house.glb --direction 0.3 -1 0.2 -o lit.csv --picture lit.png",
+                          "what the sun reaches, as a table and as a picture"}},
+            .run = [options] {
+                options->grid.direction.empty() ? run_sky(options->analysis, options->sky, options->sides)
+                                                : run(*options);
+                return 0;
+            }};
 }
 
 }  // namespace twinray::cli

@@ -5,17 +5,20 @@
 #include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
+#include "cli/command/values.h"
+#include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/places.h"
 #include "cli/suite/crossings.h"
 #include "engine/core/error.h"
+#include "engine/core/parallel.h"
 #include "engine/core/progress.h"
 #include "engine/report/statistics.h"
 #include "engine/verify/inside_rays.h"
-#include "engine/core/parallel.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include "engine/scene/scene.h"
+#include "engine/accel/abstract_accel.h"
 
 namespace twinray::cli {
 namespace {
@@ -24,16 +27,15 @@ using Clock = std::chrono::steady_clock;
 
 struct LeaksOptions {
     CommonOptions common;
-    std::filesystem::path scene, resume;
+    std::filesystem::path scene, state;
     std::uint64_t rays = 1'000'000;
-    std::string accel = "sw", level = "watertight";
-
-    suite::Subject subject() const {
-        const auto found = std::find_if(suite::all_levels.begin(), suite::all_levels.end(),
-                                        [&](Level known) { return suite::name(known) == level; });
-        return {accel == "sw" ? suite::Backend::software : suite::Backend::ray_query, *found};
-    }
+    std::string accel = "auto";
+    Level level = Level::watertight;
 };
+
+suite::Subject subject_of(const LeaksOptions& options, const AccelChoice& choice) {
+    return {choice.is_software ? suite::Backend::software : suite::Backend::ray_query, options.level};
+}
 
 constexpr std::size_t batch_size = 1 << 17;
 constexpr std::size_t max_printed_faults = 20;
@@ -75,10 +77,11 @@ std::uint64_t hash_of(const Mesh& mesh) {
 }
 
 // What a run must have in common with the one that it goes on from.
-nlohmann::json identity_of(const LeaksOptions& options, const Mesh& mesh, const Context& context) {
-    return {{"schema", "twinray-leaks/1"}, {"mesh", text(std::hex, hash_of(mesh))},
-            {"seed", options.common.seed}, {"backend", options.accel},
-            {"level", options.level},      {"device", describe(context)["name"]}};
+nlohmann::json identity_of(const LeaksOptions& options, const AccelChoice& choice, const Mesh& mesh,
+                           const Context& context) {
+    return {{"schema", "twinray-leaks/1"},     {"mesh", text(std::hex, hash_of(mesh))},
+            {"seed", options.common.seed},     {"backend", choice.name()},
+            {"level", name_of(options.level)}, {"device", describe(context)["name"]}};
 }
 
 Totals read_state(const std::filesystem::path& file, const nlohmann::json& identity) {
@@ -120,13 +123,11 @@ void print_fault(std::uint64_t index, const Ray& ray, uint counted, Parity parit
 
 class Run {
   public:
-    Run(const LeaksOptions& options, const Mesh& mesh, Context& context)
-        : closed_(mesh), inside_(closed_, Aim::both, options.common.seed), counter_(context, options.subject()) {
-        const AccelOptions accel{std::max(options.subject().level, Level::watertight)};
-        if (options.accel == "sw")
-            accel_ = std::make_unique<SwTlas>(context, accel);
-        else
-            accel_ = std::make_unique<HwTlas>(context, BuildOrder::automatic, accel);
+    Run(const LeaksOptions& options, const AccelChoice& choice, const Mesh& mesh, Context& context)
+        : closed_(mesh),
+          inside_(closed_, Aim::both, options.common.seed),
+          counter_(context, subject_of(options, choice)),
+          accel_(make_accel(context, choice, options.level)) {
         accel_->push(mesh, {}, {.filtered = true});
         accel_->sync();
     }
@@ -169,15 +170,15 @@ Totals trace_all(const LeaksOptions& options, const Run& run, const nlohmann::js
         const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
         totals.seconds = seconds_before + seconds;
         const bool is_due = seconds - saved > seconds_between_saves || totals.rays == options.rays;
-        if (options.resume.empty() || !is_due) continue;
-        write_state(options.resume, identity, totals);
+        if (options.state.empty() || !is_due) continue;
+        write_state(options.state, identity, totals);
         saved = seconds;
     }
     return totals;
 }
 
-void print(const LeaksOptions& options, const Totals& totals) {
-    const char* whose = options.accel == "sw" ? "ours" : "the driver's";
+void print(const AccelChoice& choice, const Totals& totals) {
+    const char* whose = choice.is_software ? "ours" : "the driver's";
     std::cout << "  " << totals.rays << " rays: " << totals.leaks << " leaks, " << totals.double_hits
               << " double hits of " << whose;
     if (totals.unspecified) std::cout << "; " << totals.unspecified << " cannot be told: edge-on at the origin";
@@ -188,30 +189,31 @@ void print(const LeaksOptions& options, const Totals& totals) {
 
 // Returns the faults of ours.
 std::uint64_t run(const LeaksOptions& options) {
-    if (options.rays == 0) fail("leaks: --rays 0 leaves nothing to judge");
-    if (!options.resume.empty()) check_writable(options.resume);
+    if (!options.state.empty()) check_writable(options.state);
     const std::string file = options.scene.filename().string();
-    const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
+    const Scene scene = load_scene(options.scene, options.common);
     const Mesh mesh = joined(scene, file);
     const std::unique_ptr<Context> context = make_context(options.common);
-    if (options.accel == "hw" && !context->facts().ray_query) fail("leaks: --accel hw needs ray queries");
-    const nlohmann::json identity = identity_of(options, mesh, *context);
-    const bool goes_on = !options.resume.empty() && std::filesystem::exists(options.resume);
-    const Totals before = goes_on ? read_state(options.resume, identity) : Totals();
-    const Run leak_run(options, mesh, *context);
-    std::cout << "leaks " << file << ": closed, " << mesh.triangles.size() << " triangles; " << options.accel << " at "
-              << options.level << " on " << context->facts().name << '\n';
+    const AccelChoice choice =
+        choose_accel(context->facts(), options.accel, {.level = options.level, .kernel_queries = true});
+    const nlohmann::json identity = identity_of(options, choice, mesh, *context);
+    const bool goes_on = !options.state.empty() && std::filesystem::exists(options.state);
+    const Totals before = goes_on ? read_state(options.state, identity) : Totals();
+    const Run leak_run(options, choice, mesh, *context);
+    std::cout << "leaks " << file << ": closed, " << mesh.triangles.size() << " triangles; " << text_of(choice)
+              << " at " << name_of(options.level) << " on " << context->facts().name << '\n';
     if (goes_on) std::cout << "  goes on after " << before.rays << " rays\n";
 
     const Totals totals = trace_all(options, leak_run, identity, before);
-    print(options, totals);
+    print(choice, totals);
     append_json(options.common.json, {{"schema", "twinray-report/1"},
                                       {"device", describe(*context)},
                                       {"case", "leaks"},
                                       {"scene", options.scene.string()},
                                       {"origin", list_of(scene.origin)},
-                                      {"backend", options.accel},
-                                      {"level", options.level},
+                                      {"backend", choice.name()},
+                                      {"backend_why", choice.why},
+                                      {"level", name_of(options.level)},
                                       {"reference", "analytic"},
                                       {"n", totals.rays},
                                       {"seed", options.common.seed},
@@ -225,28 +227,40 @@ std::uint64_t run(const LeaksOptions& options) {
                                       {"seconds", totals.seconds},
                                       {"pass", totals.faults() == 0},
                                       {"criterion", "every ray crosses an odd number of triangles"}});
-    return options.accel == "sw" ? totals.faults() : 0;
+    return choice.is_software ? totals.faults() : 0;
 }
 
 }  // namespace
 
-void add_leaks(CLI::App& app, int& exit_code) {
-    CLI::App* command = app.add_subcommand(
-        "leaks", "rays from inside a closed mesh at its vertices and edges: none may get out, none hit twice; exit 1");
+Command leaks_command() {
     const auto options = std::make_shared<LeaksOptions>();
-    command->add_option("scene", options->scene, ".gltf, .glb, .obj, .ply or .stl; every edge between two triangles")
-        ->required();
-    command->add_option("--rays", options->rays, "how many in all")->capture_default_str();
-    command->add_option("--resume", options->resume,
-                        "keep the state of the run in FILE, and go on from it if it is there");
-    command->add_option("--accel", options->accel, "accelerator")
-        ->check(CLI::IsMember({"sw", "hw"}))
-        ->capture_default_str();
-    command->add_option("--level", options->level, "level of the triangle test")
-        ->check(CLI::IsMember({"fast", "watertight", "refined", "certified"}))
-        ->capture_default_str();
-    add_common_options(*command, options->common);
-    command->callback([options, &exit_code] { exit_code = run(*options) ? 1 : 0; });
+    Option scene = scene_argument(options->scene);
+    scene.help += ", in which every edge lies between two triangles";
+    const Section rays = {"Rays",
+                          {{.name = "--ray-count",
+                            .value = number(options->rays, {.least = 1}),
+                            .help = "how many rays in all",
+                            .former_name = "--rays"},
+                           {.name = "--state",
+                            .value = file(options->state),
+                            .help = "keep the state of the run in FILE, and go on from it if it is there",
+                            .former_name = "--resume"},
+                           accel_option(options->accel, "whose hits are counted"),
+                           level_option(options->level)}};
+    return {.name = "leaks",
+            .group = "Checking",
+            .summary = "shoot rays from inside a closed mesh: none may get out, none hit twice",
+            .description =
+                "Rays start inside a closed mesh and are aimed at its vertices and at points of its edges, "
+                "where a test that is not watertight loses them. A ray that crosses an even number of "
+                "triangles has leaked or was hit twice; no reference is needed to see it. Prints the first "
+                "such rays bit by bit.",
+            .positionals = {scene},
+            .sections = {rays, common_options(options->common)},
+            .examples = {{"twinray leaks torus.ply --ray-count 1e8 --state torus.json",
+                          "a hundred million rays, in as many sittings as one likes"}},
+            .fault = "a ray leaks or hits twice by the software accelerator",
+            .run = [options] { return run(*options) > 0 ? 1 : 0; }};
 }
 
 }  // namespace twinray::cli

@@ -1,51 +1,88 @@
 // SPDX-License-Identifier: MIT
 // The command `twinray`.
-#include <cctype>
+#include <algorithm>
 #include <iostream>
 
-#include "cli/common.h"
+#include "cli/command/help_text.h"
+#include "cli/command/parse.h"
+#include "cli/command/suggest.h"
+#include "cli/commands.h"
 #include "engine/core/cpu_vectors.h"
+#include "twinray_version.h"
 
+namespace twinray::cli {
 namespace {
 
-// The arguments from the last to the first, as the parser wants them. It takes "-.5" for an option, "-0.5" for a
-// number.
-std::vector<std::string> reversed(int argc, char** argv) {
-    std::vector<std::string> all;
-    for (int i = argc; i-- > 1;) {
-        std::string argument = argv[i];
-        if (argument.size() > 2 && argument.starts_with("-.") && std::isdigit(static_cast<unsigned char>(argument[2])))
-            argument.insert(1, "0");
-        all.push_back(std::move(argument));
+constexpr int done = 0, failed = 1, wrong_use = 2;
+
+int refuse(const std::string& program, const std::string& why, const std::string& help) {
+    std::cerr << program << ": " << why << (why.ends_with('?') ? " See '" : "; see '") << help << "'\n";
+    return wrong_use;
+}
+
+int run(const Command& command, const std::vector<std::string>& arguments) {
+    const std::string program = "twinray " + command.name;
+    try {
+        if (!parse(command, arguments)) {
+            std::cout << help_text(command, terminal_width());
+            return done;
+        }
+        widen_cpu_vectors();
+        return command.run();
+    } catch (const UsageError& error) {
+        return refuse(program, error.what(), program + " --help");
+    } catch (const std::exception& error) {
+        std::cerr << "twinray: " << error.what() << '\n';
+        return failed;
     }
-    return all;
+}
+
+int refuse_command(const std::string& word, const std::vector<Command>& commands) {
+    std::vector<std::string> names;
+    for (const Command& command : commands) names.push_back(command.name);
+    const std::string nearest = nearest_to(word, names);
+    return refuse("twinray",
+                  "there is no command '" + word + (nearest.empty() ? "'" : "'; did you mean " + nearest + '?'),
+                  "twinray help");
+}
+
+int run(const std::vector<std::string>& words) {
+    const std::vector<Command> commands = all_commands();
+    if (words.empty()) {
+        std::cerr << list_text(commands, terminal_width());
+        return wrong_use;
+    }
+    if (words[0] == "--help" || words[0] == "-h") {
+        std::cout << list_text(commands, terminal_width());
+        return done;
+    }
+    if (words[0] == "--version") {
+        std::cout << "twinray " << twinray_version << '\n';
+        return done;
+    }
+    const auto found = std::ranges::find(commands, words[0], &Command::name);
+    if (found == commands.end()) return refuse_command(words[0], commands);
+    return run(*found, {words.begin() + 1, words.end()});
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    twinray::widen_cpu_vectors();
-    CLI::App app("twinray: Vulkan ray tracing with two acceleration structures that check each other", "twinray");
-    app.require_subcommand(1);
-    int exit_code = 0;
-    twinray::cli::add_devices(app, exit_code);
-    twinray::cli::add_trace(app, exit_code);
-    twinray::cli::add_verify(app, exit_code);
-    twinray::cli::add_collide(app, exit_code);
-    twinray::cli::add_distance(app, exit_code);
-    twinray::cli::add_leaks(app, exit_code);
-    twinray::cli::add_illumination(app, exit_code);
-    twinray::cli::add_centroid(app, exit_code);
-    twinray::cli::add_bench(app, exit_code);
-    twinray::cli::add_report(app, exit_code);
-    twinray::cli::add_viewfactors(app, exit_code);
-    try {
-        app.parse(reversed(argc, argv));
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;
-    } catch (const std::exception& error) {
-        std::cerr << "twinray: " << error.what() << '\n';
-        return 1;
-    }
-    return exit_code;
+std::vector<Command> all_commands() {
+    std::vector<Command> commands = {trace_command(), devices_command(), verify_command(), leaks_command(),
+                                     report_command()};
+#ifdef TWINRAY_HAS_BENCH
+    commands.push_back(bench_command());
+#endif
+    for (const auto& make : {distance_command, collide_command, viewfactors_command, illumination_command,
+                             centroid_command, completion_command})
+        commands.push_back(make());
+    std::vector<std::string> names;
+    for (const Command& command : commands) names.push_back(command.name);
+    names.emplace_back("help");
+    commands.push_back(help_command(names));
+    return commands;
 }
+
+}  // namespace twinray::cli
+
+int main(int argc, char** argv) { return twinray::cli::run({argv + 1, argv + argc}); }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "cli/command/values.h"
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/glb.h"
@@ -13,8 +14,6 @@ namespace {
 
 // Of --picture-size, either way.
 constexpr uint least_size = 16, most_size = 16384;
-
-const std::map<std::string, ColorScale> color_scales = {{"linear", ColorScale::linear}, {"log", ColorScale::log}};
 
 Camera camera_of(const PictureOptions& options, const Scene& scene) {
     const float aspect = static_cast<float>(options.size[0]) / static_cast<float>(options.size[1]);
@@ -36,47 +35,36 @@ Raster draw(const PictureOptions& options, AbstractAccel& accel, const Scene& sc
 
 }  // namespace
 
-CLI::Option* add_picture_options(CLI::App& command, PictureOptions& options, const std::string& shows) {
-    CLI::Option* picture = command.add_option(
-        "--picture", options.files,
-        "written, once or more: .png, a picture of the scene, or .glb, the scene; colours: " + shows);
-    picture->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    command
-        .add_option("--view", options.view,
-                    "X Y Z: in which direction the picture looks; if not said, that of the scene's first camera, or "
-                    "from the front right and above")
-        ->needs(picture)
-        ->expected(3);
-    command.add_option("--picture-size", options.size, "WIDTH HEIGHT of what is seen of the scene, in pixels")
-        ->needs(picture)
-        ->expected(2)
-        ->check(CLI::Range(least_size, most_size))
-        ->capture_default_str();
-    command
-        .add_flag("--cutaway", options.is_cutaway,
-                  "faces seen from their back are left out of the .png, so that rooms are seen from outside")
-        ->needs(picture);
-    return picture;
+Section picture_options(PictureOptions& options, const std::string& shows) {
+    return {"Pictures",
+            {{.name = "--picture",
+              .value = files(options.files, {".png", ".glb"}),
+              .help = "a picture of the scene (.png), or the scene (.glb); colours show " + shows},
+             {.name = "--view",
+              .value = numbers(options.view, "X Y Z"),
+              .help = "in which direction the picture looks; if not given, that of the scene's first camera, or from "
+                      "the front right and above",
+              .needs = {"--picture"}},
+             {.name = "--picture-size",
+              .value = numbers(options.size, "WIDTH HEIGHT", {least_size, most_size}),
+              .help = "of what is seen of the scene, in pixels",
+              .needs = {"--picture"}},
+             {.name = "--cutaway",
+              .value = flag(options.is_cutaway),
+              .help = "faces seen from their back are left out of the .png, so that rooms are seen from outside",
+              .needs = {"--picture"}}}};
 }
 
-void add_color_scale_option(CLI::App& command, PictureOptions& options) {
-    command.add_option("--color-scale", options.color_scale, "linear or log")
-        ->needs(command.get_option("--picture"))
-        ->transform(CLI::CheckedTransformer(color_scales).description("linear|log"));
-}
-
-void check_png(const std::filesystem::path& file) {
-    if (file.empty()) return;
-    if (lower_suffix(file) != ".png") fail("'", file.string(), "': this picture goes into .png");
-    check_writable(file);
+Option color_scale_option(PictureOptions& options) {
+    const Names<ColorScale> scales = {{"linear", ColorScale::linear}, {"log", ColorScale::log}};
+    return {.name = "--color-scale",
+            .value = choice(options.color_scale, scales),
+            .help = "of values; as fits them if not given",
+            .needs = {"--picture"}};
 }
 
 void check_pictures(const PictureOptions& options) {
-    for (const std::filesystem::path& file : options.files) {
-        if (const std::string suffix = lower_suffix(file); suffix != ".png" && suffix != ".glb")
-            fail("'", file.string(), "': pictures go into .png or .glb");
-        check_writable(file);
-    }
+    for (const std::filesystem::path& file : options.files) check_writable(file);
     if (!options.view.empty())
         frame_scene({}, 1, vec3(options.view[0], options.view[1], options.view[2]));  // throws for no direction
 }

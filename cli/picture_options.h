@@ -19,13 +19,12 @@ struct PictureOptions {
     std::optional<ColorScale> color_scale;  // of values; none: as fits them
     bool is_cutaway = false;
 };
-// `shows`: what colours tell. Returns --picture, which the others need.
-CLI::Option* add_picture_options(CLI::App& command, PictureOptions& options, const std::string& shows);
-// Of commands whose colours are values; after add_picture_options().
-void add_color_scale_option(CLI::App& command, PictureOptions& options);
-// Throws Error where a file has an unknown suffix or no folder: before the work, not after it.
+// --picture and the others, which need it. `shows`: what colours tell.
+Section picture_options(PictureOptions& options, const std::string& shows);
+// Of commands whose colours are values.
+Option color_scale_option(PictureOptions& options);
+// Throws Error where a file has no folder: before the work, not after it.
 void check_pictures(const PictureOptions& options);
-void check_png(const std::filesystem::path& file);
 
 // A scene in colours with what stands around it. Marks are in .png only.
 struct ScenePicture {

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "cli/command/values.h"
 #include "cli/number_lines.h"
 #include "engine/core/error.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 using glm::dvec3;
 
-constexpr std::uint64_t most_points = 1u << 28;
+constexpr std::uint64_t most_points = 1u << 28, most_cells = 640;
 
 }  // namespace
 
@@ -55,14 +56,14 @@ std::vector<dvec3> QueryPointOptions::make(const Scene& scene, std::uint64_t see
     return points;
 }
 
-void add_query_point_options(CLI::App& command, QueryPointOptions& options) {
-    CLI::Option_group* source = command.add_option_group("points", "at most one of them");
-    source->add_option("--points", options.file, "a file of x,y,z lines");
-    source->add_option("--random", options.random, "so many, in the box of the scene and a tenth around it")
-        ->check(CLI::Range(std::uint64_t{1}, most_points));
-    source->add_option("--grid", options.grid, "the centres of N x N x N cells of that box, x fastest")
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{640}));
-    source->require_option(0, 1);
+std::vector<Option> query_point_options(QueryPointOptions& options) {
+    return {{.name = "--points", .value = cli::file(options.file), .help = "points from a file of x,y,z lines"},
+            {.name = "--random",
+             .value = number(options.random, {1, most_points}),
+             .help = "so many, in the box of the scene and a tenth around it"},
+            {.name = "--grid",
+             .value = number(options.grid, {1, most_cells}),
+             .help = "the centres of N x N x N cells of that box, x fastest"}};
 }
 
 }  // namespace twinray::cli

@@ -5,7 +5,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "cli/common.h"
+#include "cli/command/command.h"
+#include "engine/scene/scene.h"
 
 namespace twinray::cli {
 
@@ -25,8 +26,8 @@ struct QueryPointOptions {
     // Throws Error naming the file and the line.
     std::vector<glm::dvec3> make(const Scene& scene, std::uint64_t seed) const;
 };
-// At most one of --points, --random, --grid.
-void add_query_point_options(CLI::App& command, QueryPointOptions& options);
+// --points, --random, --grid: at most one of them.
+std::vector<Option> query_point_options(QueryPointOptions& options);
 
 // x,y,z a line, under a heading or none; from each `origin` is subtracted.
 std::vector<glm::dvec3> read_points(const std::filesystem::path& file, const dvec3& origin);

@@ -4,10 +4,11 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "cli/command/values.h"
 #include "cli/places.h"
-#include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 
 namespace twinray::cli {
@@ -20,30 +21,24 @@ std::string digits_of(double value) {
 
 }  // namespace
 
-void add_analysis_options(CLI::App& command, AnalysisOptions& options, const std::string& output,
-                          const std::string& shows) {
-    command.add_option("scene", options.scene, ".gltf, .glb, .obj, .ply or .stl")->required();
-    command.add_option("--accel", options.accel)->check(CLI::IsMember({"sw", "hw"}))->capture_default_str();
-    command.add_option("-o,--output", options.output, "written: " + output);
-    add_picture_options(command, options.pictures, shows);
-    add_common_options(command, options.common);
+Section analysis_output(AnalysisOptions& options, const std::string& output) {
+    return {"Output and accelerator", {output_option(file(options.output), output), accel_option(options.accel)}};
 }
 
-CLI::Option* add_ray_grid_options(CLI::App& command, CLI::App& source, RayGridOptions& options) {
-    static const std::map<std::string, GridPoints> points = {{"random", GridPoints::random},
-                                                             {"centers", GridPoints::centers}};
-    CLI::Option* direction =
-        source.add_option("--direction", options.direction, "X Y Z: of the rays, in world space; of any length but 0")
-            ->expected(3);
-    command.add_option("--grid", options.side, "N: one ray in each of N x N cells across the direction, 1 to 65535")
-        ->needs(direction)
-        ->capture_default_str();
-    command
-        .add_option("--points", options.points,
-                    "where rays go through their cells: random (the default), which gives intervals, or centers")
-        ->needs(direction)
-        ->transform(CLI::CheckedTransformer(points).description("random|centers"));
-    return direction;
+std::vector<Option> ray_grid_options(RayGridOptions& options) {
+    const Names<GridPoints> points = {{"random", GridPoints::random}, {"centers", GridPoints::centers}};
+    return {{.name = "--direction",
+             .value = numbers(options.direction, "X Y Z"),
+             .help = "of the rays, in world space; of any length but 0"},
+            {.name = "--grid",
+             .value = number(options.side, {1, 65535}),
+             .help = "one ray through each of N x N cells across the direction",
+             .needs = {"--direction"}},
+            {.name = "--grid-points",
+             .value = choice(options.points, points),
+             .help = "where rays go through their cells; intervals are there for random ones",
+             .needs = {"--direction"},
+             .former_name = "--points"}};
 }
 
 RayGridDesc RayGridOptions::desc(const CommonOptions& common) const {
@@ -58,16 +53,25 @@ nlohmann::json RayGridOptions::record() const {
 Analysed::Analysed(const AnalysisOptions& options) {
     if (!options.output.empty()) check_writable(options.output);
     check_pictures(options.pictures);
-    scene = load_scene_with_warnings(options.scene, options.common.quiet);
+    scene = load_scene(options.scene, options.common);
     context = make_context(options.common);
-    accel = make_accel(*context, options.accel);
-    push_scene(*accel, scene);
-    context->wait(accel->sync());
+    choice = choose_accel(context->facts(), options.accel);
+    accel = make_accel(*context, choice, scene);
 }
 
 nlohmann::json Analysed::record(const AnalysisOptions& options) const {
-    return {{"device", describe(*context)}, {"scene", options.scene.string()}, {"origin", list_of(scene.origin)},
-            {"backend", options.accel},     {"faces", count_triangles(scene)}, {"seed", options.common.seed}};
+    nlohmann::json record = {{"device", describe(*context)},
+                             {"scene", options.scene.string()},
+                             {"origin", list_of(scene.origin)},
+                             {"faces", count_triangles(scene)},
+                             {"seed", options.common.seed}};
+    record.update(describe(choice));
+    return record;
+}
+
+std::string Analysed::head(const char* command, const AnalysisOptions& options) const {
+    return text(command, ' ', options.scene.filename().string(), ": ", count_triangles(scene), " faces, ",
+                text_of(choice), ", on ", context->facts().name, '\n');
 }
 
 double seconds_of(const std::function<void()>& work) {

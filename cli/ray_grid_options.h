@@ -15,12 +15,11 @@ namespace twinray::cli {
 struct AnalysisOptions {
     CommonOptions common;
     std::filesystem::path scene, output;
-    std::string accel = "hw";
+    std::string accel = "auto";
     PictureOptions pictures;
 };
-// `output` and `shows`: what -o writes, and what colours of pictures tell.
-void add_analysis_options(CLI::App& command, AnalysisOptions& options, const std::string& output,
-                          const std::string& shows);
+// `output`: what -o writes.
+Section analysis_output(AnalysisOptions& options, const std::string& output);
 
 struct RayGridOptions {
     std::vector<double> direction;
@@ -30,17 +29,20 @@ struct RayGridOptions {
     RayGridDesc desc(const CommonOptions& common) const;
     nlohmann::json record() const;
 };
-// Returns --direction, which goes into `source`: the command or a group of its options. The others need it.
-CLI::Option* add_ray_grid_options(CLI::App& command, CLI::App& source, RayGridOptions& options);
+// --direction, then the others, which need it.
+std::vector<Option> ray_grid_options(RayGridOptions& options);
 
 // A scene in an accelerator.
 struct Analysed {
     Scene scene;
     std::unique_ptr<Context> context;
+    AccelChoice choice;
     std::unique_ptr<AbstractAccel> accel;
 
     explicit Analysed(const AnalysisOptions& options);
     nlohmann::json record(const AnalysisOptions& options) const;
+    // "illumination house.glb: 12 faces, by SwTlas (...), on llvmpipe".
+    std::string head(const char* command, const AnalysisOptions& options) const;
 };
 
 double seconds_of(const std::function<void()>& work);

@@ -4,12 +4,17 @@
 #include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
 
+#include "cli/command/values.h"
+#include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/report/figures.h"
 #include "cli/report/page.h"
 #include "cli/suite/devices.h"
 #include "engine/core/error.h"
+#include "engine/scene/scene.h"
 #include "engine/verify/float_probe.h"
 #include "twinray_version.h"
 
@@ -102,6 +107,18 @@ void write_page(const ReportOptions& options, std::span<const suite::SuiteCase> 
     if (!out.flush()) fail("page '", file.string(), "' cannot be written");
 }
 
+// What there was to compare with.
+void print_baseline(const JsonLines& baseline, std::span<const Record> records) {
+    std::cout << "  baseline: " << report::count_comparable(baseline.records, records) << " of " << records.size()
+              << " records have one there to be compared with";
+    const char* separator = "; not compared: ";
+    for (const auto& [kind, count] : baseline.others) {
+        std::cout << separator << count << " of " << kind;
+        separator = ", ";
+    }
+    std::cout << '\n';
+}
+
 void print_changes(std::span<const report::Change> changes) {
     for (const report::Change& change : changes) std::cout << "  worse: " << change.what << ": " << change.how << '\n';
 }
@@ -109,7 +126,7 @@ void print_changes(std::span<const report::Change> changes) {
 void check_only(const std::vector<std::string>& patterns, std::span<const suite::SuiteCase> cases) {
     for (const std::string& pattern : patterns)
         if (std::none_of(cases.begin(), cases.end(), [&](const auto& row) { return suite::matches(row.id, pattern); }))
-            fail("report: --only ", pattern, " fits no case; see the catalogue in the report");
+            throw UsageError(text("--only ", pattern, " fits no case; see the catalogue in the report"));
 }
 
 // Exit status: 1 where there is a fault of ours.
@@ -117,9 +134,9 @@ int run(const ReportOptions& options) {
     std::vector<suite::SuiteCase> cases = suite::catalogue();
     for (suite::SuiteCase& of_scene : suite::scene_cases(options.scenes)) cases.push_back(std::move(of_scene));
     check_only(options.only, cases);
+    for (const std::filesystem::path& scene : options.scenes) load_scene(scene, options.common);
     // Read before anything is written: it may be the report that this one replaces.
-    const std::vector<Record> baseline =
-        options.baseline.empty() ? std::vector<Record>() : read_json_lines(options.baseline);
+    const JsonLines baseline = options.baseline.empty() ? JsonLines() : read_json_lines(options.baseline);
     std::filesystem::create_directories(options.folder);
     suite::Devices devices(context_desc(options.common), options.trees);
     Context& context = devices.context(suite::Backend::software);
@@ -130,17 +147,19 @@ int run(const ReportOptions& options) {
     write_csv(options.folder / "report.csv", recorder.records());
     for (const Record& record : recorder.records())
         append_json(options.common.json, nlohmann::json::parse(to_json(record)));
-    const std::vector<report::Change> changes = report::worse_than(baseline, recorder.records());
+    const std::vector<report::Change> changes = report::worse_than(baseline.records, recorder.records());
     write_page(options, cases, recorder.records(), changes);
     print_summary(recorder.records());
+    if (!options.baseline.empty()) print_baseline(baseline, recorder.records());
     print_changes(changes);
     std::cout << "  " << (options.folder / "report.html").string() << "; "
               << report::draw_figures(options.folder, report::plots_of(recorder.records())) << '\n';
     return report::faults_of_ours(recorder.records()) > 0 ? 1 : 0;
 }
 
+// Of backends or levels.
 template <class T, std::size_t N>
-std::vector<std::string> names_of(const std::array<T, N>& all) {
+std::vector<std::string> suite_names(const std::array<T, N>& all) {
     std::vector<std::string> names;
     for (const T one : all) names.emplace_back(suite::name(one));
     return names;
@@ -148,28 +167,44 @@ std::vector<std::string> names_of(const std::array<T, N>& all) {
 
 }  // namespace
 
-void add_report(CLI::App& app, int& exit_code) {
-    CLI::App* command =
-        app.add_subcommand("report", "error against run time over stiff and extreme cases; exit 1 on a fault of ours");
+Command report_command() {
     const auto options = std::make_shared<ReportOptions>();
-    command->add_option("--suite", options->suite, "quick (under 150 s on a CPU driver) or full")
-        ->check(CLI::IsMember({"quick", "full"}))
-        ->capture_default_str();
-    command->add_option("-o,--output", options->folder, "folder of report.jsonl, report.csv and report.html")
-        ->capture_default_str();
-    command->add_option("--only", options->only, "case ids with * and ?, as N07,B*")->delimiter(',');
-    command
-        ->add_option("--scenes", options->scenes, "scenes of yours, on which each level is measured as case L11, ...")
-        ->delimiter(',')
-        ->check(CLI::ExistingFile);
-    command->add_option("--accel", options->accels)
-        ->delimiter(',')
-        ->check(CLI::IsMember(names_of(suite::all_backends)));
-    command->add_option("--levels", options->levels)->delimiter(',')->check(CLI::IsMember(names_of(suite::all_levels)));
-    add_tree_options(*command, options->trees);
-    command->add_option("--baseline", options->baseline, "report.jsonl of an earlier run: says what is worse");
-    add_common_options(*command, options->common);
-    command->callback([options, &exit_code] { exit_code = run(*options); });
+    const Section cases = {
+        "Cases",
+        {{.name = "--suite",
+          .value = choice(options->suite, {"quick", "full"}),
+          .help = "quick takes under 150 s on a CPU driver"},
+         {.name = "--only", .value = words(options->only, "CASE,..."), .help = "case ids with * and ?, as N07,B*"},
+         {.name = "--scenes",
+          .value = file_list(options->scenes),
+          .help = "scenes of yours, on which each level is measured as case L11, ..."},
+         {.name = "--accels",
+          .value = choices(options->accels, suite_names(suite::all_backends)),
+          .help = "which accelerators; all if not given",
+          .former_name = "--accel"},
+         {.name = "--levels",
+          .value = choices(options->levels, suite_names(suite::all_levels)),
+          .help = "which levels; all if not given"}}};
+    Section output = {
+        "Output and trees",
+        {output_option(folder(options->folder), "folder of report.jsonl, report.csv and report.html"),
+         {.name = "--baseline",
+          .value = file(options->baseline),
+          .help = "report.jsonl, or --json, of an earlier run: says what is worse; lines of other commands are "
+                  "counted"}}};
+    for (Option& option : tree_options(options->trees)) output.options.push_back(std::move(option));
+    return {.name = "report",
+            .group = "Checking",
+            .summary = "measure error against run time over a suite of stiff and extreme cases",
+            .description =
+                "Runs a suite of cases on your driver, from NaN vertices and coincident triangles to long "
+                "rays and tiny scenes, and writes what they cost and how wrong the answers are: a page with "
+                "plots that needs no network, JSON lines and CSV.",
+            .sections = {cases, output, common_options(options->common)},
+            .examples = {{"twinray report -o today --baseline yesterday/report.jsonl",
+                          "the quick suite, and what is worse than yesterday"}},
+            .fault = "the software accelerator has a fault",
+            .run = [options] { return run(*options); }};
 }
 
 }  // namespace twinray::cli

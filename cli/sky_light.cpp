@@ -4,12 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
+#include "cli/command/values.h"
 #include "cli/number_lines.h"
 #include "engine/core/error.h"
 
 namespace twinray::cli {
 namespace {
+
+constexpr uint most_samples = 1u << 20;
 
 std::vector<SunPosition> read_sun(const std::filesystem::path& file) {
     std::vector<SunPosition> positions;
@@ -52,20 +56,18 @@ ScenePicture picture_of(const AnalysisOptions& analysis, const SkyOptions& optio
 
 }  // namespace
 
-void add_sky_options(CLI::App& command, CLI::App& source, SkyOptions& options) {
-    CLI::Option* sky = source.add_option(
-        "--sky", options.sky, "N: what a uniform sky above the horizon brings, by N rays a face, 1 to 1048576");
-    CLI::Option* sun = source.add_option("--sun", options.sun,
-                                         "hours of sun, from a CSV of x,y,z,hours: in which directions its rays go");
-    sky->check(CLI::Range(1u, 1u << 20));
-    command.add_option("--up", options.up, "X Y Z: where the zenith is")
-        ->needs(sky)
-        ->expected(3)
-        ->capture_default_str();
-    command.add_option("--samples", options.samples, "points of each face for each position of the sun, 1 to 1048576")
-        ->needs(sun)
-        ->check(CLI::Range(1u, 1u << 20))
-        ->capture_default_str();
+std::vector<Option> sky_options(SkyOptions& options) {
+    return {{.name = "--sky",
+             .value = number(options.sky, {1, most_samples}),
+             .help = "what a uniform sky above the horizon brings, by N rays a face"},
+            {.name = "--sun",
+             .value = cli::file(options.sun),
+             .help = "hours of sun, from a CSV of x,y,z,hours: in which directions its rays go, and for how long"},
+            {.name = "--up", .value = numbers(options.up, "X Y Z"), .help = "where the zenith is", .needs = {"--sky"}},
+            {.name = "--samples",
+             .value = number(options.samples, {1, most_samples}),
+             .help = "points of each face for each position of the sun",
+             .needs = {"--sun"}}};
 }
 
 void run_sky(const AnalysisOptions& analysis, const SkyOptions& options, Sides sides) {
@@ -88,9 +90,7 @@ void run_sky(const AnalysisOptions& analysis, const SkyOptions& options, Sides s
                        picture_of(analysis, options, light, faces.areas()));
     const double mean = mean_of(light, faces.areas());
     if (!analysis.common.quiet)
-        std::cout << "illumination " << analysis.scene.filename().string() << ": " << faces.count() << " faces, "
-                  << analysed.accel->name() << " on " << analysed.context->facts().name << "\n  "
-                  << speed_text(light.ray_count, seconds) << "\n  "
+        std::cout << analysed.head("illumination", analysis) << "  " << speed_text(light.ray_count, seconds) << "\n  "
                   << (options.sky ? "light of the sky" : "hours of sun") << ", mean over the surface: " << mean << '\n';
     nlohmann::json record = {{"schema", "twinray-sky/1"},
                              {"what", what},

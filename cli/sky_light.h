@@ -13,8 +13,8 @@ struct SkyOptions {
     std::filesystem::path sun;
     uint samples = 16;
 };
-// --sky and --sun go into `source`.
-void add_sky_options(CLI::App& command, CLI::App& source, SkyOptions& options);
+// --sky and --sun, and those that need them.
+std::vector<Option> sky_options(SkyOptions& options);
 void run_sky(const AnalysisOptions& analysis, const SkyOptions& options, Sides sides);
 
 }  // namespace twinray::cli

@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
+#include "cli/command/values.h"
+#include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/places.h"
 #include "cli/ray_file.h"
 #include "engine/accel/all_hits.h"
-#include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/progress.h"
+#include "engine/scene/scene.h"
 
 namespace twinray::cli {
 namespace {
@@ -19,9 +22,9 @@ namespace {
 struct TraceOptions {
     CommonOptions common;
     std::filesystem::path scene, rays, hits, counts;
-    std::string accel = "hw";
+    std::string accel = "auto";
     std::string query = "closest";
-    std::string level = "watertight";
+    Level level = Level::watertight;
 };
 
 constexpr std::size_t batch_size = 1 << 20;
@@ -43,7 +46,9 @@ std::vector<Hit> trace_in_batches(AbstractAccel& accel, std::span<const Ray> ray
     Progress progress("trace", rays.size(), options.common.quiet);
     for (std::size_t first = 0; first < rays.size(); first += batch_size) {
         const auto batch = rays.subspan(first, std::min(batch_size, rays.size() - first));
-        const std::vector<Hit> some = options.query == "any" ? accel.any_hits(batch) : accel.closest_hits(batch);
+        const TraceDesc desc{.level = options.level};
+        const std::vector<Hit> some =
+            options.query == "any" ? accel.any_hits(batch, desc) : accel.closest_hits(batch, desc);
         hits.insert(hits.end(), some.begin(), some.end());
         progress.advance(batch.size());
     }
@@ -53,52 +58,77 @@ std::vector<Hit> trace_in_batches(AbstractAccel& accel, std::span<const Ray> ray
 void run(const TraceOptions& options) {
     const bool is_all = options.query == "all";
     if (is_all == options.counts.empty())
-        fail(is_all ? "--query all needs --counts: which hits are of which ray" : "--counts is for --query all");
+        throw UsageError(is_all ? "--query all needs --counts: which hits are of which ray"
+                                : "--counts is for --query all");
+    if (is_all && options.level != Level::watertight)
+        throw UsageError("--query all finds hits at --level watertight alone");
     check_writable(options.hits);
     if (is_all) check_writable(options.counts);
-    const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
+    const Scene scene = load_scene(options.scene, options.common);
     const std::vector<Ray> rays = read_rays(options.rays, scene.origin);
     const std::unique_ptr<Context> context = make_context(options.common);
-    const std::unique_ptr<AbstractAccel> accel = make_accel(*context, options.accel);
-    push_scene(*accel, scene);
-    context->wait(accel->sync());
+    const AccelChoice choice =
+        choose_accel(context->facts(), options.accel, {.level = options.level, .kernel_queries = is_all});
+    const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene, options.level);
     const auto start = std::chrono::steady_clock::now();
     const std::vector<Hit> hits = is_all ? trace_all(*accel, rays, options) : trace_in_batches(*accel, rays, options);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     write_hits(options.hits, hits);
     const auto found = std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.hit != 0; });
     if (!options.common.quiet)
-        std::cout << rays.size() << " rays, " << found << " hits, " << seconds << " s with copies\n";
-    append_json(options.common.json, {{"schema", "twinray-trace/1"},
-                                      {"device", describe(*context)},
-                                      {"scene", options.scene.string()},
-                                      {"origin", list_of(scene.origin)},
-                                      {"backend", options.accel},
-                                      {"level", options.level},
-                                      {"query", options.query},
-                                      {"n", rays.size()},
-                                      {"hits", found},
-                                      {"seconds", seconds}});
+        std::cout << rays.size() << " rays, " << found << " hits, " << seconds << " s with copies, " << text_of(choice)
+                  << '\n';
+    nlohmann::json record = {{"schema", "twinray-trace/1"},
+                             {"device", describe(*context)},
+                             {"scene", options.scene.string()},
+                             {"origin", list_of(scene.origin)},
+                             {"level", name_of(options.level)},
+                             {"query", options.query},
+                             {"n", rays.size()},
+                             {"hits", found},
+                             {"seconds", seconds}};
+    record.update(describe(choice));
+    append_json(options.common.json, record);
 }
 
 }  // namespace
 
-void add_trace(CLI::App& app, int&) {
-    CLI::App* command = app.add_subcommand("trace", "trace a file of rays");
+Command trace_command() {
     const auto options = std::make_shared<TraceOptions>();
-    command->add_option("scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
-    command->add_option("--rays", options->rays, "raw 32-byte rays, little endian, or .npy: N x 8 numbers, float64 too")
-        ->required();
-    command->add_option("--hits", options->hits, "written: raw 32-byte hits")->required();
-    command->add_option("--accel", options->accel)->check(CLI::IsMember({"sw", "hw"}))->capture_default_str();
-    command->add_option("--query", options->query)
-        ->check(CLI::IsMember({"closest", "any", "all"}))
-        ->capture_default_str();
-    command->add_option("--counts", options->counts,
-                        "written, of all hits: raw 32-bit counts by ray; the hits of a ray are ascending by t");
-    command->add_option("--level", options->level)->check(CLI::IsMember({"watertight"}))->capture_default_str();
-    add_common_options(*command, options->common);
-    command->callback([options] { run(*options); });
+    Section rays = {
+        "Rays and hits",
+        {{.name = "--rays",
+          .value = file(options->rays),
+          .help = "the rays: 32 bytes each, little endian: float32 origin (3), t_min, direction (3), t_max; or .npy: N x 8 "
+                   "numbers in that order, float64 too",
+          .is_required = true},
+         {.name = "--hits",
+          .value = file(options->hits),
+          .help = "written: a hit for each ray, 32 bytes: uint32 hit, float32 t, uint32 primitive, custom index, "
+                  "float32 u, v, uint32 instance, 0; a miss has t = -1",
+          .is_required = true},
+         {.name = "--query",
+          .value = choice(options->query, {"closest", "any", "all"}),
+          .help = "the hit of smallest t, whether there is any, or all hits, ascending by t"},
+         {.name = "--counts",
+          .value = file(options->counts),
+          .help = "written with --query all: how many hits each ray has, uint32"}}};
+    Section tracing = {"Tracing", {accel_option(options->accel), level_option(options->level)}};
+    return {.name = "trace",
+            .group = "Tracing",
+            .summary = "trace a file of rays",
+            .description =
+                "Reads a scene and a file of rays, traces all of them and writes a file of hits. t counts "
+                "in units of a ray's direction, which need not be normalised; indices begin at 0 and count "
+                "the triangles of the scene as they are in its file.",
+            .positionals = {scene_argument(options->scene)},
+            .sections = {rays, tracing, common_options(options->common)},
+            .examples = {{"twinray trace bunny.ply --rays rays.bin --hits hits.bin",
+                          "closest hits of all rays, with float32 arithmetic that loses no ray at an edge"}},
+            .run = [options] {
+                run(*options);
+                return 0;
+            }};
 }
 
 }  // namespace twinray::cli

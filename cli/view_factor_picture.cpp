@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "cli/command/values.h"
 #include "engine/core/error.h"
 #include "engine/picture/matrix_picture.h"
 #include "engine/scene/png.h"
@@ -30,9 +31,14 @@ std::vector<double> by_face(const std::vector<uint>& groups, const std::vector<d
 
 }  // namespace
 
-void add_view_factor_picture_options(CLI::App& command, CLI::Option* picture, ViewFactorPictureOptions& options) {
-    command.add_option("--matrix", options.matrix, "written: a .png of the matrix, on a logarithmic scale");
-    command.add_option("--from", options.from, "the row whose view factors --picture shows")->needs(picture);
+std::vector<Option> view_factor_picture_options(ViewFactorPictureOptions& options) {
+    return {{.name = "--from",
+             .value = number(options.from),
+             .help = "the row whose view factors --picture shows, from 0",
+             .needs = {"--picture"}},
+            {.name = "--matrix",
+             .value = file(options.matrix, {".png"}),
+             .help = "a picture of the matrix, on a logarithmic scale"}};
 }
 
 void check_shown(const ViewFactorPictureOptions& options, std::size_t row_count) {

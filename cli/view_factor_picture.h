@@ -12,7 +12,7 @@ struct ViewFactorPictureOptions {
     std::optional<uint> from;  // a row; none: open fractions of all
 };
 // --matrix, and --from, which needs --picture.
-void add_view_factor_picture_options(CLI::App& command, CLI::Option* picture, ViewFactorPictureOptions& options);
+std::vector<Option> view_factor_picture_options(ViewFactorPictureOptions& options);
 // Throws Error for a row that is not there.
 void check_shown(const ViewFactorPictureOptions& options, std::size_t row_count);
 

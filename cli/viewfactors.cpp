@@ -4,12 +4,15 @@
 #include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
+#include "cli/command/values.h"
+#include "cli/commands.h"
+#include "cli/common.h"
 #include "cli/face_groups.h"
 #include "cli/npz.h"
 #include "cli/places.h"
 #include "cli/view_factor_picture.h"
-#include "engine/accel/scene_push.h"
 #include "engine/analysis/pair_exchanges.h"
 #include "engine/analysis/reciprocity.h"
 #include "engine/analysis/row_file.h"
@@ -24,7 +27,7 @@ namespace {
 struct Options {
     CommonOptions common;
     std::filesystem::path scene, output;
-    std::string accel = "sw";
+    std::string accel = "auto";
     FaceGroupOptions groups;
     ViewFactorOptions factors;  // of which this sets the grouping
     PairEstimator estimator = PairEstimator::automatic;
@@ -35,14 +38,15 @@ struct Options {
 };
 
 // Of what the rows depend on.
-std::string configuration_of(const Options& options, const Scene& scene, const Faces& faces) {
+std::string configuration_of(const Options& options, const AccelChoice& choice, const Scene& scene,
+                             const Faces& faces) {
     const ViewFactorOptions& of = options.factors;
     const std::vector<uint> groups = faces.groups(of.grouping);
     std::ostringstream out;
     out << std::hexfloat << count_triangles(scene) << " faces " << checksum_of(scene) << ", by " << name_of(of.grouping)
         << ' ' << crc32_of(std::as_bytes(std::span(groups))) << ", " << name_of(of.sides) << ", "
         << name_of(of.sequence) << ", " << of.rays << " rays, error " << of.target_error.value_or(0) << ", seed "
-        << of.seed << ", " << options.accel << ", estimator " << name_of(options.estimator);
+        << of.seed << ", " << choice.name() << ", estimator " << name_of(options.estimator);
     return out.str();
 }
 
@@ -189,18 +193,14 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 void run(const Options& options) {
-    const std::string suffix = options.output.extension().string();
-    if (!options.output.empty() && suffix != ".npz" && suffix != ".csv")
-        fail("'", options.output.string(), "': the matrix goes into .npz or .csv");
-    if (options.resumes && options.output.empty()) fail("--resume needs -o: unfinished rows lie beside the output");
-    if (!options.output.empty()) check_writable(options.output);
+    const std::string suffix = lower_suffix(options.output);
+    check_writable(options.output);
     check_pictures(options.pictures);
-    check_png(options.shown.matrix);
-    const Scene scene = load_scene_with_warnings(options.scene, options.common.quiet);
+    check_writable(options.shown.matrix);
+    const Scene scene = load_scene(options.scene, options.common);
     const std::unique_ptr<Context> context = make_context(options.common);
-    const std::unique_ptr<AbstractAccel> accel = make_accel(*context, options.accel);
-    push_scene(*accel, scene);
-    context->wait(accel->sync());
+    const AccelChoice choice = choose_accel(context->facts(), options.accel);
+    const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene);
     Faces faces(*context, scene);
     options.groups.set_groups(faces);
     check_shown(options.shown, faces.group_count(options.factors.grouping));
@@ -208,7 +208,7 @@ void run(const Options& options) {
     const PairExchanges pairs = compute_pairs(options, *accel, scene, faces);
     const double seconds_of_pairs = seconds_since(start);
     ViewFactors factors(*accel, faces, options.factors, pairs.known);
-    Computed computed = compute(options, factors, configuration_of(options, scene, faces));
+    Computed computed = compute(options, factors, configuration_of(options, choice, scene, faces));
     const double seconds = seconds_since(start), rate = static_cast<double>(computed.rays()) / seconds;
     std::vector<ViewFactorRow>& rows = computed.rows;
     const Totals totals = totals_of(rows);
@@ -230,7 +230,7 @@ void run(const Options& options) {
     if (!options.common.quiet) {
         std::cout << rows.size() << ' ' << name_of(options.factors.grouping) << " rows, " << totals.entries
                   << " entries, " << totals.rays << " rays in " << seconds << " s (" << rate / 1e6
-                  << " million a second), " << totals.hits
+                  << " million a second) " << text_of(choice) << ", " << totals.hits
                   << " met a face\nentries by estimator: " << totals.entries_by.at("contour") << " contour, "
                   << totals.entries_by.at("area") << " area, " << totals.entries_by.at("hits") << " hits; "
                   << pairs.rays << " rays between points of faces, " << seconds_of_pairs
@@ -242,7 +242,8 @@ void run(const Options& options) {
                                       {"device", describe(*context)},
                                       {"scene", options.scene.string()},
                                       {"origin", list_of(scene.origin)},
-                                      {"backend", options.accel},
+                                      {"backend", choice.name()},
+                                      {"backend_why", choice.why},
                                       {"by", name_of(options.factors.grouping)},
                                       {"sequence", name_of(options.factors.sequence)},
                                       {"sides", name_of(options.factors.sides)},
@@ -263,44 +264,63 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_viewfactors(CLI::App& app, int&) {
-    CLI::App* command = app.add_subcommand("viewfactors", "view factors between faces or groups of them, with errors");
+Command viewfactors_command() {
     const auto options = std::make_shared<Options>();
-    command->add_option("scene", options->scene, ".gltf, .glb, .obj, .ply or .stl")->required();
-    command->add_option("-o,--output", options->output, ".npz (a SciPy CSR matrix with intervals) or .csv");
-    add_face_group_options(*command, options->groups, "what a row is");
-    command->add_option("--rays", options->factors.rays, "of a row; with --target-error the most")
-        ->capture_default_str();
-    command->add_option("--target-error", options->factors.target_error,
-                        "a row ends when the 95 % interval of each entry is within +- this");
-    command->add_option("--sides", options->factors.sides, "that radiate: front, both")
-        ->transform(
-            CLI::CheckedTransformer(std::map<std::string, Sides>{{"front", Sides::front}, {"both", Sides::both}}));
-    command->add_option("--sequence", options->factors.sequence, "of samples: sobol, random")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, Sequence>{{"sobol", Sequence::sobol}, {"random", Sequence::random}}));
-    std::map<std::string, PairEstimator> estimators;
-    for (const PairEstimator estimator : all_pair_estimators) estimators.emplace(name_of(estimator), estimator);
-    command
-        ->add_option("--estimator", options->estimator,
-                     "auto: contour integrals for pairs that nothing can come between, rays between points of both for "
-                     "those far apart, else rays that hit; or one of hits, area, contour for all")
-        ->transform(CLI::CheckedTransformer(estimators));
-    command->add_option("--accel", options->accel)->check(CLI::IsMember({"sw", "hw"}))->capture_default_str();
-    command->add_flag("--project", options->projects,
-                      "write the nearest matrix that fulfils reciprocity and closure instead of the counted one");
-    command->add_flag("--resume", options->resumes, "go on with the rows that an earlier run left beside the output");
-    CLI::Option* picture = add_picture_options(*command, options->pictures,
-                                               "the open fraction, or with --from the view factors of one row");
-    add_color_scale_option(*command, options->pictures);
-    add_view_factor_picture_options(*command, picture, options->shown);
-    add_common_options(*command, options->common);
-    command->callback([options] {
-        if (options->common.seed > UINT32_MAX) fail("--seed ", options->common.seed, ": at most ", UINT32_MAX);
-        options->factors.seed = static_cast<uint>(options->common.seed);
-        options->factors.grouping = options->groups.by;
-        run(*options);
-    });
+    ViewFactorOptions& factors = options->factors;
+    const Names<Sides> sides = {{"front", Sides::front}, {"both", Sides::both}};
+    const Names<Sequence> sequences = {{"sobol", Sequence::sobol}, {"random", Sequence::random}};
+    Section sampling = {
+        "Sampling",
+        {{.name = "--rays-per-row",
+          .value = number(factors.rays, {.least = 1}),
+          .help = "how many rays leave each row; with --target-error at most",
+          .former_name = "--rays"},
+         {.name = "--target-error",
+          .value = number(factors.target_error, {.least = 0, .is_above = true}),
+          .help = "a row ends when the 95 % interval of each entry is within +- this"},
+         {.name = "--sides", .value = choice(factors.sides, sides), .help = "which sides of faces radiate"},
+         {.name = "--sequence", .value = choice(factors.sequence, sequences), .help = "of samples"},
+         {.name = "--estimator",
+          .value = choice(options->estimator, names_of(all_pair_estimators)),
+          .help = "auto: contour integrals for pairs that nothing can come between, rays between points of both for "
+                  "those far apart, else rays that hit; or one of hits, area, contour for all"},
+         accel_option(options->accel)}};
+    Section output = {"Matrix",
+                      {output_option(file(options->output, {".npz", ".csv"}),
+                                     "the matrix: a SciPy CSR matrix with intervals, or lines i,j,F,ci_low,ci_high")}};
+    for (Option& option : face_group_options(options->groups, "what a row is"))
+        output.options.push_back(std::move(option));
+    output.options.push_back({.name = "--project",
+                              .value = flag(options->projects),
+                              .help = "write the nearest matrix that fulfils reciprocity and closure instead of the "
+                                      "counted one"});
+    output.options.push_back({.name = "--resume",
+                              .value = flag(options->resumes),
+                              .help = "go on with the rows that an earlier run left beside the output",
+                              .needs = {"--output"}});
+    Section pictures =
+        picture_options(options->pictures, "the open fraction, or with --from the view factors of one row");
+    pictures.options.push_back(color_scale_option(options->pictures));
+    for (Option& option : view_factor_picture_options(options->shown)) pictures.options.push_back(std::move(option));
+    return {.name = "viewfactors",
+            .group = "Analyses",
+            .summary = "find view factors between faces, or groups of them, with their errors",
+            .description =
+                "Computes which part of the diffuse radiation that leaves each face, or group of faces, "
+                "meets each other one: the matrix of view factors, with a 95 % interval for each entry, and "
+                "how far it is from reciprocity and closure.",
+            .positionals = {scene_argument(options->scene)},
+            .sections = {output, sampling, pictures, common_options(options->common)},
+            .examples = {{"twinray viewfactors room.obj --by instance -o room.npz",
+                          "between the objects of a room, as a matrix for SciPy"}},
+            .run = [options] {
+                if (options->common.seed > UINT32_MAX)
+                    throw UsageError(text("--seed is ", options->common.seed, ", but must be at most ", UINT32_MAX));
+                options->factors.seed = static_cast<uint>(options->common.seed);
+                options->factors.grouping = options->groups.by;
+                run(*options);
+                return 0;
+            }};
 }
 
 }  // namespace twinray::cli

@@ -12,6 +12,13 @@ install(EXPORT twinrayTargets NAMESPACE twinray:: DESTINATION ${package_dir})
 if(TARGET twinray_cli)
     set_target_properties(twinray_cli PROPERTIES INSTALL_RPATH $ORIGIN/../${CMAKE_INSTALL_LIBDIR})
     install(TARGETS twinray_cli)
+    if(NOT CMAKE_CROSSCOMPILING)
+        set(texts ${PROJECT_BINARY_DIR}/cli/texts)
+        install(DIRECTORY ${texts}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+        install(FILES ${texts}/twinray DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+        install(FILES ${texts}/_twinray DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+        install(FILES ${texts}/twinray.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+    endif()
 endif()
 
 # Headers whose types come from a private dependency stay behind.

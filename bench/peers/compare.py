@@ -248,7 +248,7 @@ def viewfactors(bench):
 
         bench.measure(f"room of {len(box.faces)} triangles", {
             "twinray viewfactors": ours,
-            **{f"the same, hits of 2^{k} rays": lambda k=k: ours("--estimator", "hits", "--rays", 1 << k)
+            **{f"the same, hits of 2^{k} rays": lambda k=k: ours("--estimator", "hits", "--rays-per-row", 1 << k)
                for k in (10, 12, 14, 16, 18)},
             "pyviewfactor": of_pyviewfactor})
 

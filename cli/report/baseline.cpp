@@ -47,6 +47,16 @@ double drift_of(const std::vector<Pair>& pairs) {
     return ratios.size() < fewest_for_drift ? 1 : median(std::move(ratios));
 }
 
+std::vector<Pair> pairs_of(std::span<const Record> baseline, std::span<const Record> now) {
+    std::map<std::string, const Record*> known;
+    for (const Record& record : baseline) known[name_of(record)] = &record;
+    std::vector<Pair> pairs;
+    for (const Record& record : now)
+        if (const auto found = known.find(name_of(record)); found != known.end())
+            pairs.emplace_back(found->second, &record);
+    return pairs;
+}
+
 class Comparison {
   public:
     Comparison(const Record& before, const Record& now, double drift) : before_(before), now_(now), drift_(drift) {}
@@ -99,12 +109,7 @@ class Comparison {
 }  // namespace
 
 std::vector<Change> worse_than(std::span<const Record> baseline, std::span<const Record> now) {
-    std::map<std::string, const Record*> known;
-    for (const Record& record : baseline) known[name_of(record)] = &record;
-    std::vector<Pair> pairs;
-    for (const Record& record : now)
-        if (const auto found = known.find(name_of(record)); found != known.end())
-            pairs.emplace_back(found->second, &record);
+    const std::vector<Pair> pairs = pairs_of(baseline, now);
     const double drift = drift_of(pairs);
     std::vector<Change> changes;
     if (drift > tolerated) {
@@ -116,6 +121,10 @@ std::vector<Change> worse_than(std::span<const Record> baseline, std::span<const
     for (const auto& [before, after] : pairs)
         for (Change& change : Comparison(*before, *after, drift).changes()) changes.push_back(std::move(change));
     return changes;
+}
+
+std::size_t count_comparable(std::span<const Record> baseline, std::span<const Record> now) {
+    return pairs_of(baseline, now).size();
 }
 
 }  // namespace twinray::report

@@ -26,5 +26,7 @@ struct Change {
 //   and is not. Of negative controls, whose faults are wanted, only the verdict counts.
 // Times are compared where both ran on the same device and driver.
 std::vector<Change> worse_than(std::span<const Record> baseline, std::span<const Record> now);
+// How many of `now` have such a record in the baseline.
+std::size_t count_comparable(std::span<const Record> baseline, std::span<const Record> now);
 
 }  // namespace twinray::report

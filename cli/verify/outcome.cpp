@@ -34,11 +34,12 @@ std::uint64_t Outcome::disagreeing() const {
     return count;
 }
 
-void judge(const Oracle& oracle, const Arbiter& arbiter, std::span<const Ray> rays, AbstractAccel& sw,
+void judge(const Oracle& oracle, const Arbiter& arbiter, std::span<const Ray> rays, Level level, AbstractAccel& sw,
            AbstractAccel* hw, Outcome& outcome) {
-    const std::vector<Hit> software = timed(outcome.software_seconds, [&] { return sw.closest_hits(rays); });
+    const TraceDesc desc{.level = level};
+    const std::vector<Hit> software = timed(outcome.software_seconds, [&] { return sw.closest_hits(rays, desc); });
     std::vector<Hit> hardware;
-    if (hw) hardware = timed(outcome.hardware_seconds, [&] { return hw->closest_hits(rays); });
+    if (hw) hardware = timed(outcome.hardware_seconds, [&] { return hw->closest_hits(rays, desc); });
     const std::vector<Verdict> verdicts = classify_all(oracle, rays, software, hardware, arbiter);
     for (std::size_t i = 0; i < rays.size(); ++i) {
         outcome.software.add(*verdicts[i].software);

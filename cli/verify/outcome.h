@@ -36,8 +36,8 @@ struct Outcome {
 
 inline constexpr std::size_t max_faults_of_ours = 10'000, max_faults_of_driver = 100;
 
-// Traces closest hits at watertight, judges them and adds what came out. hw may be null.
-void judge(const Oracle& oracle, const Arbiter& arbiter, std::span<const Ray> rays, AbstractAccel& sw,
+// Traces closest hits at the level, judges them and adds what came out. hw may be null.
+void judge(const Oracle& oracle, const Arbiter& arbiter, std::span<const Ray> rays, Level level, AbstractAccel& sw,
            AbstractAccel* hw, Outcome& outcome);
 
 }  // namespace twinray::cli

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "cli/places.h"
 #include "engine/report/statistics.h"
@@ -74,7 +75,7 @@ void append_record(const VerifyOptions& options, const JudgedSet& of, const Judg
                                       {"origin", list_of(of.scene.origin)},
                                       {"backend", judged.backend},
                                       {"path", judged.path},
-                                      {"level", "watertight"},
+                                      {"level", name_of(options.level)},
                                       {"reference", "f64"},
                                       {"n", of.set.rays.size()},
                                       {"seed", options.common.seed},

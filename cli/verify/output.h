@@ -15,6 +15,7 @@ struct VerifyOptions {
     std::filesystem::path replays;  // folder; "" = only faults of ours are written
     std::size_t random = 100'000;
     std::size_t aimed = 10'000;
+    Level level = Level::watertight;
 };
 
 // To stdout.

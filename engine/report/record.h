@@ -22,7 +22,8 @@ struct Value {
     Value(std::string value) : is(std::move(value)) {}
     Value(const char* value) : is(std::string(value)) {}
     template <class Number>
-    requires std::is_arithmetic_v<Number> Value(Number value) : is(static_cast<double>(value)) {}
+        requires std::is_arithmetic_v<Number>
+    Value(Number value) : is(static_cast<double>(value)) {}
 
     bool operator==(const Value&) const = default;
     std::string text() const;  // "true", "0.5", "kept"
@@ -102,5 +103,9 @@ inline constexpr std::string_view record_schema = "twinray-report/1";
 std::string to_json(const Record& record);
 // Throws Error naming what is missing, of another type, or of another schema. Fields it does not know are left out.
 Record record_of_json(std::string_view line);
+// How a line counts that commands append beside records of a report: by its schema, "twinray-trace/1", or
+// "verify.random" where a command writes some fields of a record alone; "" for a record. Throws Error for what is no
+// JSON object.
+std::string kind_of_json(std::string_view line);
 
 }  // namespace twinray

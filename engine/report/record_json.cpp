@@ -179,4 +179,13 @@ Record record_of_json(std::string_view line) {
     }
 }
 
+std::string kind_of_json(std::string_view line) {
+    const Json json = Json::parse(line, nullptr, false);
+    if (!json.is_object()) fail("not a JSON object");
+    if (!json.contains("schema") || !json["schema"].is_string()) return "no schema";
+    const std::string schema = json["schema"];
+    const bool is_partial = schema == record_schema && !json.contains("run") && json.value("case", Json()).is_string();
+    return is_partial ? json["case"].get<std::string>() : schema == record_schema ? "" : schema;
+}
+
 }  // namespace twinray

@@ -79,20 +79,23 @@ void write_csv(const std::filesystem::path& file, std::span<const Record> record
     if (!out.flush()) fail("table '", file.string(), "' cannot be written");
 }
 
-std::vector<Record> read_json_lines(const std::filesystem::path& file) {
+JsonLines read_json_lines(const std::filesystem::path& file) {
     std::ifstream in(file);
     if (!in || std::filesystem::is_directory(file)) fail("report '", file.string(), "' cannot be opened");
-    std::vector<Record> records;
+    JsonLines lines;
     std::string line;
     for (std::size_t number = 1; std::getline(in, line); ++number) {
         if (line.empty()) continue;
         try {
-            records.push_back(record_of_json(line));
+            if (const std::string kind = kind_of_json(line); !kind.empty())
+                ++lines.others[kind];
+            else
+                lines.records.push_back(record_of_json(line));
         } catch (const Error& error) {
             fail("report '", file.string(), "' line ", number, ": ", error.what());
         }
     }
-    return records;
+    return lines;
 }
 
 std::string utc_now() {

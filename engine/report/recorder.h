@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -39,8 +40,13 @@ class Recorder {
 // ("counts.AGREE"), quoted by RFC 4180. Throws Error naming the file.
 void write_csv(const std::filesystem::path& file, std::span<const Record> records);
 
+// What a file of JSON lines holds, to which any command may have appended.
+struct JsonLines {
+    std::vector<Record> records;                // of reports
+    std::map<std::string, std::size_t> others;  // how many of each kind_of_json()
+};
 // Throws Error naming the file and the line.
-std::vector<Record> read_json_lines(const std::filesystem::path& file);
+JsonLines read_json_lines(const std::filesystem::path& file);
 
 // Now, as Recorder::Run::started.
 std::string utc_now();

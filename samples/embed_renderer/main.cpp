@@ -37,6 +37,9 @@ int run(const Options& options) {
             std::fprintf(stderr, "embed_renderer: %.*s\n", static_cast<int>(message.size()), message.data());
     };
     for (const std::string& warning : stage.scene.warnings) log(warning);
+    if (options.strict && !stage.scene.warnings.empty())
+        fail("'", options.scene.string(), "': ", stage.scene.warnings.size(),
+             " warning(s), of which --strict allows none");
     const Device device(device_desc(options, log));
     std::vector<std::vector<PassTimer::Lap>> laps;
     {
@@ -48,7 +51,7 @@ int run(const Options& options) {
             rays = result.rays;
             if (!options.output.empty()) write_picture(frame_file(options, frame), result.picture, 0);
         }
-        report(options, renderer.accel().name(), costs_of(laps), rays);
+        report(options, renderer.choice(), costs_of(laps), rays);
     }
     if (device.live_allocations() > 0) fail(device.live_allocations(), " allocations are left");
     return device.validation_message_count() > 0 ? 1 : 0;

@@ -37,10 +37,13 @@ void add_picture(CLI::App& app, Options& options) {
 }
 
 void add_machine(CLI::App& app, Options& options) {
-    app.add_option("--accel", options.accel, "hw (ray tracing extensions) or sw (compute); default: hw where possible")
-        ->check(CLI::IsMember({"hw", "sw"}));
+    app.add_option("--accel", options.accel,
+                   "hw (ray tracing extensions), sw (compute), or auto: hw where the device has it and is no CPU")
+        ->check(CLI::IsMember({"auto", "sw", "hw"}))
+        ->option_text("auto|sw|hw [auto]");
     app.add_option("--device", options.device, "index, or a part of the name");
     app.add_flag("--validation", options.validation, "Khronos validation layer; exit 1 on any message");
+    app.add_flag("--strict", options.strict, "what is not understood of the scene's file is an error, not a warning");
     app.add_flag("--quiet", options.quiet, "errors only");
 }
 

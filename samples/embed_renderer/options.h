@@ -11,7 +11,7 @@ namespace twinray::embed_renderer {
 
 struct Options {
     std::filesystem::path scene, output, json;  // output: a folder, or empty
-    std::string accel;                          // "hw", "sw", "" = hw where the device has it
+    std::string accel = "auto";                 // for choose_accel()
     std::string device;
     uint frames = 8;
     uint width = 960, height = 540;
@@ -22,6 +22,7 @@ struct Options {
     int camera = -1;  // -1: frame the scene
     bool no_ground = false;
     bool validation = false;
+    bool strict = false;
     bool quiet = false;
 };
 

@@ -25,10 +25,9 @@ const vec3 sun_color(1.25f, 1.15f, 1.0f), sky_color(0.3f, 0.36f, 0.45f);
 constexpr float ao_reach = 0.15f;     // of the scene's diagonal
 constexpr float near_plane = 0.001f;  // likewise
 
-std::unique_ptr<AbstractAccel> new_accel(Context& context, const std::string& kind) {
-    const bool can_hardware = missing_for_hardware(context.facts()).empty();
-    if (kind == "hw" || (kind.empty() && can_hardware)) return std::make_unique<HwTlas>(context);
-    return std::make_unique<SwTlas>(context);
+std::unique_ptr<AbstractAccel> new_accel(Context& context, const AccelChoice& choice) {
+    if (choice.is_software) return std::make_unique<SwTlas>(context);
+    return std::make_unique<HwTlas>(context);
 }
 
 Camera chosen_camera(const Stage& stage, const Options& options) {
@@ -67,7 +66,8 @@ Renderer::Renderer(const Device& device, const Stage& stage, const Options& opti
     : device_(device),
       stage_(stage),
       context_(device.adopted()),
-      accel_(new_accel(context_, options.accel)),
+      choice_(choose_accel(context_.facts(), options.accel)),
+      accel_(new_accel(context_, choice_)),
       targets_(device, {options.width, options.height}),
       scene_(device, context_, stage.scene),
       timer_(device),

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "engine/accel/accel_choice.h"
 #include "engine/accel/abstract_accel.h"
 #include "samples/embed_renderer/frame_commands.h"
 #include "samples/embed_renderer/options.h"
@@ -30,7 +31,7 @@ class Renderer {
 
     // turns: how far the balls have gone round.
     FrameResult render(float turns);
-    const AbstractAccel& accel() const { return *accel_; }
+    const AccelChoice& choice() const { return choice_; }
 
   private:
     FrameData frame_data(const Stage& stage, const Options& options) const;
@@ -45,6 +46,7 @@ class Renderer {
     const Device& device_;
     const Stage& stage_;
     Context context_;
+    AccelChoice choice_;
     std::unique_ptr<AbstractAccel> accel_;
     AccelHandle balls_;
     Targets targets_;

@@ -36,10 +36,11 @@ Costs costs_of(const std::vector<std::vector<PassTimer::Lap>>& frames) {
     return costs;
 }
 
-void report(const Options& options, const std::string& accel, const Costs& costs, const RayCounts& rays) {
+void report(const Options& options, const AccelChoice& accel, const Costs& costs, const RayCounts& rays) {
     if (!options.quiet) {
-        std::printf("%s: %u x %u, %u frames by %s, %u shadow and %u AO rays a frame\n", options.scene.string().c_str(),
-                    options.width, options.height, options.frames, accel.c_str(), rays.shadow, rays.ao);
+        std::printf("%s: %u x %u, %u frames by %s (%s), %u shadow and %u AO rays a frame\n",
+                    options.scene.string().c_str(), options.width, options.height, options.frames, name_of(accel),
+                    accel.why.c_str(), rays.shadow, rays.ao);
         for (const Costs::Pass& pass : costs.passes)
             std::printf("  %-13s %8.3f ms%s\n", pass.name.c_str(), pass.ms, pass.is_twinrays ? "  twinray" : "");
         std::printf("  %-13s %8.3f ms, of which twinray adds %.3f ms (%.0f %%)\n", "frame", costs.frame_ms,
@@ -49,7 +50,8 @@ void report(const Options& options, const std::string& accel, const Costs& costs
     nlohmann::json passes;
     for (const Costs::Pass& pass : costs.passes) passes[pass.name] = pass.ms;
     const nlohmann::json line = {{"scene", options.scene.string()},
-                                 {"accel", accel},
+                                 {"accel", name_of(accel)},
+                                 {"accel_why", accel.why},
                                  {"width", options.width},
                                  {"height", options.height},
                                  {"frames", options.frames},

@@ -21,6 +21,6 @@ struct Costs {
 // The first frame counts only where it is the only one: there the first move rebuilds.
 Costs costs_of(const std::vector<std::vector<PassTimer::Lap>>& frames);
 
-void report(const Options& options, const std::string& accel, const Costs& costs, const RayCounts& rays);
+void report(const Options& options, const AccelChoice& accel, const Costs& costs, const RayCounts& rays);
 
 }  // namespace twinray::embed_renderer

@@ -24,10 +24,9 @@ ContextDesc context_desc(const Options& options) {
     return desc;
 }
 
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const std::string& kind) {
-    const bool can_hardware = missing_for_hardware(context.facts()).empty();
-    if (kind == "hw" || (kind.empty() && can_hardware)) return std::make_unique<HwTlas>(context);
-    return std::make_unique<SwTlas>(context);
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice) {
+    if (choice.is_software) return std::make_unique<SwTlas>(context);
+    return std::make_unique<HwTlas>(context);
 }
 
 double milliseconds_since(Clock::time_point start) {
@@ -56,12 +55,13 @@ int run(const Options& options) {
     if (!options.output.empty() && !path_tracer::is_picture_file(options.output))
         fail("'", options.output.string(), "': pictures are .png or .exr");
     Context context(context_desc(options));
-    const std::unique_ptr<AbstractAccel> accel = make_accel(context, options.accel);
+    const AccelChoice choice = choose_accel(context.facts(), options.accel);
+    const std::unique_ptr<AbstractAccel> accel = make_accel(context, choice);
     Simulation simulation(*accel, make_particles(options.count, options.seed));
     Renderer renderer(simulation, options.size);
     const RunTimes times = run_frames(simulation, renderer, options.frames);
     if (!options.output.empty()) path_tracer::write_picture(options.output, renderer.picture(), 0);
-    report(options, accel->name(), times);
+    report(options, choice, times);
     return context.validation_messages().empty() ? 0 : 1;
 }
 

@@ -17,10 +17,12 @@ void add_options(CLI::App& app, Options& options) {
     app.add_option("--height", options.size.height, "pixels")->check(CLI::Range(1u, max_side))->capture_default_str();
     app.add_option("--samples", options.size.samples, "rays of a pixel: 1, 4, 9 or 16")
         ->check(CLI::IsMember({1u, 4u, 9u, 16u}))
-        ->capture_default_str();
+        ->option_text("1|4|9|16 [" + std::to_string(options.size.samples) + "]");
     app.add_option("--seed", options.seed, "of where the particles start")->capture_default_str();
-    app.add_option("--accel", options.accel, "hw (ray tracing extensions) or sw (compute); default: hw where possible")
-        ->check(CLI::IsMember({"hw", "sw"}));
+    app.add_option("--accel", options.accel,
+                   "hw (ray tracing extensions), sw (compute), or auto: hw where the device has it and is no CPU")
+        ->check(CLI::IsMember({"auto", "sw", "hw"}))
+        ->option_text("auto|sw|hw [auto]");
     app.add_option("--device", options.device, "index, or a part of the name");
     app.add_flag("--validation", options.validation, "Khronos validation layer; exit 1 on any message");
     app.add_flag("--quiet", options.quiet, "errors only");

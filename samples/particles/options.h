@@ -11,7 +11,7 @@ namespace twinray::particles {
 
 struct Options {
     std::filesystem::path output, json;
-    std::string accel;  // "hw", "sw", "" = hw where the device has it
+    std::string accel = "auto";  // for choose_accel()
     std::string device;
     uint frames = 100;
     uint count = 1000;

@@ -10,23 +10,30 @@
 
 namespace twinray::particles {
 
-void report(const Options& options, const std::string& accel, const RunTimes& times) {
+void report(const Options& options, const AccelChoice& accel, const RunTimes& times) {
     const double frame_ms = times.total_ms / options.frames;
     if (!options.quiet) {
-        std::printf("%u particles, %u x %u, %u frames by %s: %.2f ms a frame; all were submitted after %.1f ms\n",
-                    options.count, options.size.width, options.size.height, options.frames, accel.c_str(), frame_ms,
-                    times.submit_ms);
+        std::printf("%u particles, %u x %u, %u frames by %s (%s): %.2f ms a frame; all were submitted after %.1f ms\n",
+                    options.count, options.size.width, options.size.height, options.frames, name_of(accel),
+                    accel.why.c_str(), frame_ms, times.submit_ms);
         for (const PassTiming& pass : times.last_frame) std::printf("  %-22s %9.3f ms\n", pass.name.c_str(), pass.ms);
     }
     if (options.json.empty()) return;
     nlohmann::json passes;
     for (const PassTiming& pass : times.last_frame) passes[pass.name] = pass.ms;
-    const nlohmann::json line = {{"sample", "particles"},           {"accel", accel},
-                                 {"count", options.count},          {"frames", options.frames},
-                                 {"width", options.size.width},     {"height", options.size.height},
-                                 {"samples", options.size.samples}, {"frame_ms", frame_ms},
-                                 {"submit_ms", times.submit_ms},    {"total_ms", times.total_ms},
-                                 {"was_ahead", times.was_ahead},    {"pass_ms", passes}};
+    const nlohmann::json line = {{"sample", "particles"},
+                                 {"accel", name_of(accel)},
+                                 {"accel_why", accel.why},
+                                 {"count", options.count},
+                                 {"frames", options.frames},
+                                 {"width", options.size.width},
+                                 {"height", options.size.height},
+                                 {"samples", options.size.samples},
+                                 {"frame_ms", frame_ms},
+                                 {"submit_ms", times.submit_ms},
+                                 {"total_ms", times.total_ms},
+                                 {"was_ahead", times.was_ahead},
+                                 {"pass_ms", passes}};
     std::ofstream out(options.json, std::ios::app);
     if (!(out << line.dump() << '\n').flush()) fail("'", options.json.string(), "': cannot be written");
 }

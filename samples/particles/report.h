@@ -2,6 +2,7 @@
 // What a run is told as: text, and a line of JSON.
 #pragma once
 
+#include "engine/accel/accel_choice.h"
 #include "samples/particles/options.h"
 
 namespace twinray::particles {
@@ -14,6 +15,6 @@ struct RunTimes {
 };
 
 // Prints unless quiet, and appends to the file of --json. Throws Error naming it.
-void report(const Options& options, const std::string& accel, const RunTimes& times);
+void report(const Options& options, const AccelChoice& accel, const RunTimes& times);
 
 }  // namespace twinray::particles

@@ -15,7 +15,7 @@ namespace {
 // 128 + the signal, as shells have it, where one came.
 int render(const Options& options, Ranks& ranks) {
     const Session session = make_session(options, ranks);
-    const auto accel = make_accel(*session.context, session.scene, chosen_accel(options, *session.context));
+    const auto accel = make_accel(*session.context, session.scene, session.accel);
     const Rendering rendering = render_film(options, session, *accel, ranks);
     if (rendering.signal) say_interrupted(rendering, checkpoint_file(options.output, ranks));
     if (ranks.index() == 0) report_render(options, session, *accel, rendering);
@@ -31,8 +31,9 @@ int cross_check(const Options& options, const Ranks& ranks) {
     if (!is_picture_file(options.output)) fail("--cross-check: '", options.output.string(), "' must be a picture");
     const Session session = make_session(options, ranks);
     Renderer& renderer = *session.renderer;
-    const auto hardware = make_accel(*session.context, session.scene, "hw");
-    const auto software = make_accel(*session.context, session.scene, "sw");
+    const DeviceFacts& facts = session.context->facts();
+    const auto hardware = make_accel(*session.context, session.scene, choose_accel(facts, "hw"));
+    const auto software = make_accel(*session.context, session.scene, choose_accel(facts, "sw"));
     CrossCheck result;
     result.hardware_path = trace_path(*hardware);
     result.pixel_count = renderer.film_size();

@@ -109,7 +109,7 @@ void add_picture(CLI::App& app, Options& options) {
                    "what of the picture a pixel shows: its square (box), or its surroundings within a pixel (triangle) "
                    "or with a standard deviation of half a pixel (gaussian)")
         ->check(CLI::IsMember({"box", "triangle", "gaussian"}))
-        ->capture_default_str();
+        ->option_text("box|triangle|gaussian [gaussian]");
     app.add_option("--seed", options.seed, "of the random numbers")->capture_default_str();
     app.add_option("--max-depth", options.max_depth, "scatterings of a path; 0 shows only what emits")
         ->check(CLI::Range(0u, max_max_depth))
@@ -117,10 +117,13 @@ void add_picture(CLI::App& app, Options& options) {
 }
 
 void add_machine(CLI::App& app, Options& options) {
-    app.add_option("--accel", options.accel, "hw (ray tracing extensions) or sw (compute); default: hw where possible")
-        ->check(CLI::IsMember({"hw", "sw"}));
+    app.add_option("--accel", options.accel,
+                   "hw (ray tracing extensions), sw (compute), or auto: hw where the device has it and is no CPU")
+        ->check(CLI::IsMember({"auto", "sw", "hw"}))
+        ->option_text("auto|sw|hw [auto]");
     app.add_option("--device", options.device, "index, or a part of the name");
     app.add_flag("--validation", options.validation, "Khronos validation layer");
+    app.add_flag("--strict", options.strict, "what is not understood of the scene's file is an error, not a warning");
     app.add_flag("--quiet", options.quiet, "errors only");
     app.add_flag("--stats", options.stats, "print what was traced, the device's time by pass, and memory");
     app.add_flag("--all-features", options.all_features,

@@ -13,7 +13,7 @@ namespace twinray::path_tracer {
 
 struct Options {
     std::filesystem::path scene, output, environment, json, cross_check, reference;
-    std::string accel;  // "hw", "sw", "" = hw where the device has it
+    std::string accel = "auto";  // for choose_accel()
     std::string device;
     std::optional<std::uint32_t> samples;
     std::optional<double> seconds, target_error;
@@ -40,6 +40,7 @@ struct Options {
     int camera = 0;                 // -1: frame the scene
     std::optional<float> exposure;  // stops; none: 0 under the default sky, else automatic
     bool validation = false;
+    bool strict = false;
     bool quiet = false;
     bool stats = false;
     bool all_features = false;

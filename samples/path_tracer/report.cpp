@@ -42,7 +42,8 @@ nlohmann::json render_json(const Options& options, const Session& session, const
     record.update({{"case", "path_tracer"},
                    {"spp", film.mean_samples()},
                    {"configuration", hash_of(film.configuration)},
-                   {"backend", backend(accel)},
+                   {"backend", session.accel.name()},
+                   {"backend_why", session.accel.why},
                    {"path", trace_path(accel)},
                    {"path_rays", stats.path_rays},
                    {"shadow_rays", stats.shadow_rays},
@@ -186,9 +187,9 @@ void report_render(const Options& options, const Session& session, const Abstrac
     const std::string resumed =
         rendering.resumed_samples > 0 ? text(" (", rendering.resumed_samples, " resumed)") : std::string();
     if (frame) std::fputs(frame_text(*frame).c_str(), stdout);
-    std::printf("%s: %s%s by %s (%s) in %.1f s, %.2f Mrays/s\n%s", options.output.string().c_str(),
+    std::printf("%s: %s%s by %s (%s; %s) in %.1f s, %.2f Mrays/s\n%s", options.output.string().c_str(),
                 film_text(film).c_str(), resumed.c_str(), accel.name().c_str(), trace_path(accel).c_str(),
-                stats.seconds, mega_rays_per_second(stats), against.c_str());
+                session.accel.why.c_str(), stats.seconds, mega_rays_per_second(stats), against.c_str());
 }
 
 void say_interrupted(const Rendering& rendering, const std::filesystem::path& checkpoint) {

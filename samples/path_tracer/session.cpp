@@ -33,11 +33,13 @@ Scene load_any(const Options& options) {
     fail("'", name, "': unknown; there are builtin:cornell-box and builtin:sunflower");
 }
 
-void print_notes(const Scene& scene) {
-    if (scene.origin != dvec3(0))
+void print_notes(const Scene& scene, const Options& options) {
+    if (!options.quiet && scene.origin != dvec3(0))
         std::fprintf(stderr, "path_tracer: scene moved to local origin %s\n", origin_text(scene.origin).c_str());
-    for (const std::vector<std::string>& warnings : {scene.warnings, stopped_lights(scene)})
-        for (const std::string& warning : warnings) std::fprintf(stderr, "path_tracer: %s\n", warning.c_str());
+    if (!options.quiet || options.strict)
+        for (const std::string& warning : scene.warnings) std::fprintf(stderr, "path_tracer: %s\n", warning.c_str());
+    if (options.strict && !scene.warnings.empty())
+        fail("'", options.scene.string(), "': ", scene.warnings.size(), " warning(s), of which --strict allows none");
 }
 
 Scene load(const Options& options) {
@@ -181,7 +183,7 @@ Session make_session(const Options& options, const Ranks& ranks) {
         fail("--aovs: '", options.output.string(), "' must end in .exr");
     Session session;
     session.scene = load(options);
-    if (!options.quiet) print_notes(session.scene);
+    print_notes(session.scene, options);
     session.rules = make_rules(options);
     session.shard = make_shard(options, ranks);
     session.settings = make_settings(options, session.scene);
@@ -193,6 +195,7 @@ Session make_session(const Options& options, const Ranks& ranks) {
     session.configuration =
         configuration_of(session.settings, session.scene, session.lights, session.environment.get(), is_default_sky);
     session.context = std::make_unique<Context>(desc_for(options, ranks));
+    session.accel = choose_accel(session.context->facts(), options.accel);
     session.device_scene = std::make_unique<DeviceScene>(
         *session.context, session.scene, session.lights, session.environment.get(),
         options.all_features ? all_features(session.scene)
@@ -201,27 +204,20 @@ Session make_session(const Options& options, const Ranks& ranks) {
     return session;
 }
 
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const std::string& kind) {
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice) {
     std::unique_ptr<AbstractAccel> accel;
-    if (kind == "hw")
-        accel = std::make_unique<HwTlas>(context);
-    else
+    if (choice.is_software)
         accel = std::make_unique<SwTlas>(context);
+    else
+        accel = std::make_unique<HwTlas>(context);
     push_scene(*accel, scene);
     accel->sync();
     return accel;
-}
-
-std::string chosen_accel(const Options& options, const Context& context) {
-    if (!options.accel.empty()) return options.accel;
-    return missing_for_hardware(context.facts()).empty() ? "hw" : "sw";
 }
 
 std::string trace_path(const AbstractAccel& accel) {
     const auto* hardware = dynamic_cast<const HwTlas*>(&accel);
     return hardware ? hardware->trace_path() : "compute";
 }
-
-std::string backend(const AbstractAccel& accel) { return dynamic_cast<const HwTlas*>(&accel) ? "hw" : "sw"; }
 
 }  // namespace twinray::path_tracer

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "engine/accel/accel_choice.h"
 #include "samples/path_tracer/configuration.h"
 #include "samples/path_tracer/options.h"
 #include "samples/path_tracer/ranks.h"
@@ -20,6 +21,7 @@ struct Session {
     Shard shard;
     Configuration configuration;
     std::unique_ptr<Context> context;
+    AccelChoice accel;  // what traces, and why
     std::unique_ptr<DeviceScene> device_scene;
     std::unique_ptr<Renderer> renderer;
 };
@@ -36,15 +38,10 @@ bool is_framing(const Options& options, const Scene& scene);
 // With the lens of the options.
 CameraRays rays_of(const Options& options, const Camera& camera, const RenderSettings& settings);
 
-// kind: "hw" or "sw". Holds the scene, built.
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const std::string& kind);
-
-// "hw" where the device has it and the options do not say otherwise.
-std::string chosen_accel(const Options& options, const Context& context);
+// Holds the scene, built.
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice);
 
 // "compute", "ray query" or "ray tracing pipeline".
 std::string trace_path(const AbstractAccel& accel);
-// "hw" or "sw".
-std::string backend(const AbstractAccel& accel);
 
 }  // namespace twinray::path_tracer

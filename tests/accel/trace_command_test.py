@@ -37,8 +37,8 @@ for accel in ["sw", "hw"]:
     run("--accel", accel, "--query", "all", "--counts", "counts")
     assert hits() == [(1, 1, 1), (1, 2, 0), (1, 2, 0)], hits()
     assert struct.unpack("<3I", (here / "counts").read_bytes()) == (2, 1, 0)
-assert "--query all needs --counts" in run("--query", "all", status=1)
-assert "--counts is for --query all" in run("--counts", "counts", status=1)
+assert "--query all needs --counts" in run("--query", "all", status=2)
+assert "--counts is for --query all" in run("--counts", "counts", status=2)
 (here / "rays").write_bytes(b"12345")
 assert "'rays'" in run(status=1)
 

@@ -51,7 +51,7 @@ near(table("mesh.csv", "mesh,hits,fraction,ci_low,ci_high")[0][2], 0.75, 0.02)
 run(*light, "--grid", "100", "--groups", "groups.csv", "-o", "groups_lit.csv")
 for row, exact in zip(table("groups_lit.csv", "group,hits,area,ci_low,ci_high"), [1, 0.5], strict=True):
     near(row[2], exact, 0.01)
-run(*light, "--grid", "30", "--sides", "front", "--measure", "irradiance", "--points", "centers", "-o", "centers.csv")
+run(*light, "--grid", "30", "--sides", "front", "--measure", "irradiance", "--grid-points", "centers", "-o", "centers.csv")
 assert [row[3:] for row in table("centers.csv", "face,hits,irradiance,ci_low,ci_high")] == [["", ""]] * 4
 
 run("illumination", "squares.ply", "--sky", "500", "--up", "0", "0", "1", "-o", "sky.csv")
@@ -71,10 +71,11 @@ assert "there is no mean" in run("centroid", "nothing.ply", "--direction", "0", 
 
 for arguments, status, words in [
         (["--direction", "0", "0", "0"], 1, "must be finite and not 0"),
-        (["--direction", "0", "0", "1", "--grid", "70000"], 1, "70000 cells a side; 1 to 65535"),
+        (["--direction", "0", "0", "1", "--grid", "70000"], 2, "--grid is '70000', but must be a whole number from 1 to 65535"),
         (["--direction", "0", "0", "1", "-o", "none/a.csv"], 1, "there is no folder 'none'"),
-        (["--direction", "0", "0", "1", "--sky", "9"], 2, "Exactly 1 option"), ([], 2, "Exactly 1 option"),
-        (["--sky", "9", "--grid", "5"], 2, "--grid requires --direction"), (["--sky", "0"], 2, "not in range"),
+        (["--direction", "0", "0", "1", "--sky", "9"], 2, "only one of --direction, --sky, --sun may be given"),
+        ([], 2, "one of --direction, --sky, --sun is required"),
+        (["--sky", "9", "--grid", "5"], 2, "--grid requires --direction"), (["--sky", "0"], 2, "--sky is '0', but must be a whole number from 1 to 1048576"),
         (["--sun", "none.csv"], 1, "sun file 'none.csv' cannot be read"),
         (["--sun", "squares.ply"], 1, "'format ascii 1.0' is not x,y,z,hours")]:
     shown = run("illumination", "squares.ply", *arguments, status=status)

@@ -64,7 +64,7 @@ with tempfile.TemporaryDirectory() as folder:
     box, csv_file, npz_file = (os.path.join(folder, name) for name in ("box.obj", "f.csv", "f.npz"))
     write_grid_box(box, 6)
 
-    text = run(box, "-o", csv_file, "--rays", "1024", "--estimator", "hits", "--project", "--json",
+    text = run(box, "-o", csv_file, "--rays-per-row", "1024", "--estimator", "hits", "--project", "--json",
                os.path.join(folder, "f.json"))
     expect("432 face rows" in text and "closure 0\n" in text, text)
     with open(csv_file, encoding="utf-8") as rows:
@@ -79,7 +79,7 @@ with tempfile.TemporaryDirectory() as folder:
         record = json.loads(lines.readline())
     expect(record["hits"] == record["rays"] == 432 * 1024 and record["projected"]["reciprocity"] < 1e-6, record)
 
-    run(box, "-o", npz_file, "--rays", "1024", "--estimator", "hits", "--project", "--quiet")
+    run(box, "-o", npz_file, "--rays-per-row", "1024", "--estimator", "hits", "--project", "--quiet")
     with zipfile.ZipFile(npz_file) as archive:
         expect(archive.testzip() is None, "checksums")
         starts, columns, values = array(archive, "indptr"), array(archive, "indices"), array(archive, "data")
@@ -92,7 +92,7 @@ with tempfile.TemporaryDirectory() as folder:
            "both formats hold the same")
     expect(abs(sum(areas) - 6) < 1e-6, "areas of the box")
 
-    by_mesh = run(box, "--by", "mesh", "--rays", "65536", "--estimator", "hits")
+    by_mesh = run(box, "--by", "mesh", "--rays-per-row", "65536", "--estimator", "hits")
     expect("1 mesh rows, 1 entries" in by_mesh, by_mesh)
 
     # Groups of faces: with walls as groups, each sees the four beside it and the one that faces it.
@@ -101,7 +101,7 @@ with tempfile.TemporaryDirectory() as folder:
         with open(groups, "w", encoding="utf-8") as out:
             out.write("face,group\n" + "".join(f"{face},{group}\n" for face, group in lines))
     write_groups((face, face // 72) for face in reversed(range(432)))
-    by_wall = run(box, "--groups", groups, "--rays", "65536", "--estimator", "hits", "-o", csv_file)
+    by_wall = run(box, "--groups", groups, "--rays-per-row", "65536", "--estimator", "hits", "-o", csv_file)
     expect("6 group rows, 30 entries" in by_wall, by_wall)
     with open(csv_file, encoding="utf-8") as rows:
         for r in csv.DictReader(rows):
@@ -118,14 +118,14 @@ with tempfile.TemporaryDirectory() as folder:
     write_grid_box(small, 2)
     write_grid_box(plate, 4, with_plate=True)
     for scene in (small, plate):
-        run(scene, "--rays", "1024", "--json", json_file)
+        run(scene, "--rays-per-row", "1024", "--json", json_file)
     with open(json_file, encoding="utf-8") as lines:
         exact, mixed = (json.loads(line) for line in lines)
     expect(exact["entries_by_estimator"] == {"area": 0, "contour": 48 * 40, "hits": 0}, exact)
     expect(exact["as_counted"]["closure"] < 1e-6 and exact["widest_half_interval"] < 1e-6, exact)
     expect(all(count > 0 for count in mixed["entries_by_estimator"].values()) and mixed["rays_between_faces"] > 0, mixed)
     for accel in ("sw", "hw"):
-        run(plate, "--rays", "1024", "--estimator", "hits", "--accel", accel, "-o", os.path.join(folder, accel + ".npz"))
+        run(plate, "--rays-per-row", "1024", "--estimator", "hits", "--accel", accel, "-o", os.path.join(folder, accel + ".npz"))
     with open(os.path.join(folder, "sw.npz"), "rb") as one, open(os.path.join(folder, "hw.npz"), "rb") as other:
         expect(one.read() == other.read(), "both accelerators give the same counts")
     expect("may come between" in run(plate, "--estimator", "contour", fails=True), "contours are refused")
@@ -133,7 +133,7 @@ with tempfile.TemporaryDirectory() as folder:
 
     # Killed in the middle and resumed: the same file, byte for byte.
     whole, killed = os.path.join(folder, "whole.npz"), os.path.join(folder, "killed.npz")
-    options = ["--rays", "16384", "--quiet"]
+    options = ["--rays-per-row", "16384", "--quiet"]
     run(plate, "-o", whole, *options)
     process = subprocess.Popen([twinray, "viewfactors", plate, "-o", killed, *options])
     unfinished = killed + ".rows"
@@ -143,21 +143,21 @@ with tempfile.TemporaryDirectory() as folder:
     process.send_signal(signal.SIGKILL)
     process.wait()
     expect(os.path.exists(unfinished) and not os.path.exists(killed), "unfinished rows are left")
-    for other in (["--rays", "4096"], ["--rays", "16384", "--estimator", "hits"]):
+    for other in (["--rays-per-row", "4096"], ["--rays-per-row", "16384", "--estimator", "hits"]):
         refused = run(plate, "-o", killed, "--resume", *other, fails=True)
         expect("of another scene or of other options" in refused, refused)
     write_grid_box(box, 4, with_plate=True, plate_at=0.2)  # as many faces of the same areas
-    refused = run(box, "-o", killed, "--resume", "--rays", "16384", fails=True)
+    refused = run(box, "-o", killed, "--resume", "--rays-per-row", "16384", fails=True)
     expect("of another scene or of other options" in refused, refused)
-    resumed = run(plate, "-o", killed, "--resume", "--rays", "16384")
+    resumed = run(plate, "-o", killed, "--resume", "--rays-per-row", "16384")
     expect("resumed after" in resumed, resumed)
     with open(whole, "rb") as a, open(killed, "rb") as b:
         expect(a.read() == b.read(), "resuming gives the same file")
     expect(not os.path.exists(unfinished), "nothing is left behind")
 
     for arguments, message in ((["-o", os.path.join(folder, "f.txt")], ".npz or .csv"),
-                               (["--resume"], "--resume needs -o"), (["--rays", "0"], "0 rays a row"),
-                               (["--target-error", "0"], "target error of 0"),
+                               (["--resume"], "--resume requires --output"), (["--rays-per-row", "0"], "--rays-per-row is '0', but must be a whole number at least 1"),
+                               (["--target-error", "0"], "--target-error is '0', but must be a finite number above 0"),
                                (["-o", os.path.join(folder, "none", "f.csv")], "there is no folder")):
         expect(message in run(box, *arguments, fails=True), message)
 print("viewfactors_command_test: passed")

@@ -55,16 +55,16 @@ for kind in KINDS:  # layouts give the same bits; a baseline compares with itsel
 assert all(r["vs_sw"] is not None for r in records)
 
 # Some, on some.
-_, records = bench("--scene", "instances:4x80", "--width", "16", "--rounds", "1", "--rays", "occlusion", "--layouts", "bvh2",
+_, records = bench("--scene", "instances:4x80", "--width", "16", "--rounds", "1", "--ray-kinds", "occlusion", "--layouts", "bvh2",
                    "--levels", "fast,watertight", "--contestants", "sw", "--no-build")
 assert [(r["rays"], r["contestant"]) for r in records] == [("occlusion", "sw bvh2 fast"), ("occlusion", "sw bvh2 watertight")]
 assert all(r["build_ms"] is None and r["vs_embree8"] is None and r["triangles"] == 320 for r in records)
-_, records = bench("--scene", "soup:100", "--width", "16", "--rounds", "1", "--rays", "primary", "--no-embree",
+_, records = bench("--scene", "soup:100", "--width", "16", "--rounds", "1", "--ray-kinds", "primary", "--no-embree",
                    "--contestants", "compressed4,embree")
 assert not any(r["backend"] == "embree" for r in records)
 
 # Rays in random order, and who sorts them.
-said, records = bench("--scene", "sphere:320", "--width", "32", "--rounds", "1", "--rays", "incoherent,shuffled", "--layouts",
+said, records = bench("--scene", "sphere:320", "--width", "32", "--rounds", "1", "--ray-kinds", "incoherent,shuffled", "--layouts",
                       "bvh2", "--contestants", "sw,embree8 low", "--ray-orders", "given,sorted", "--no-build")
 ours = [r for r in records if r["backend"] == "sw"]
 assert [(r["rays"], r["contestant"], r["ray_order"]) for r in ours] == [
@@ -94,7 +94,7 @@ _, records = bench("--moves", "20", "--rounds", "1")
 assert records and all(r["refit_ms"] > 0 and r["rebuild_ms"] > 0 for r in records)
 
 # What features cost: rungs hold more and more, and find the same.
-said, records = bench("--validation", "--ladder", "--scene", "sphere:320", "--width", "16", "--rounds", "5", "--rays",
+said, records = bench("--validation", "--ladder", "--scene", "sphere:320", "--width", "16", "--rounds", "5", "--ray-kinds",
                       "incoherent,occlusion")
 for kind in KINDS[1:]:
     rungs = [r for r in records if r.get("rays") == kind]
@@ -110,14 +110,14 @@ assert {name for name, r in kept.items() if r["vertices_bytes_per_triangle"] > 0
     "vertices moved", "level refined", "level certified"}
 assert all(kept[layout]["structures_bytes_per_triangle"] > kept["needed"]["structures_bytes_per_triangle"]
            for layout in ("layout bvh4", "layout bvh2"))
-_, records = bench("--ladder", "--no-build", "--scene", "instances:3x80", "--width", "16", "--layouts", "bvh2", "--rays",
+_, records = bench("--ladder", "--no-build", "--scene", "instances:3x80", "--width", "16", "--layouts", "bvh2", "--ray-kinds",
                    "primary")
 assert [r["rung"] for r in records] == ["needed", "+ masks", "+ culling", "+ filters", "+ boxes", "+ other layouts"]
 
 # What is wrong is said.
 assert "'abc' is not a whole number" in bench("--scene", "sphere:abc", status=1)[0]
 assert "no contestant's name has a part 'nobody'" in bench("--scene", "sphere:80", "--contestants", "nobody", status=1)[0]
-bench("--scene", "sphere:80", "--rays", "diffuse", status=2)
+bench("--scene", "sphere:80", "--ray-kinds", "diffuse", status=2)
 bench("--scene", "sphere:80", "--ray-orders", "random", status=2)
 bench("--scene", "sphere:80", "--width", "12", status=2)
 bench("--scene", "sphere:80", "--max-seconds", "0", status=2)

@@ -41,6 +41,6 @@ for accel in ["sw", "hw"]:
 assert [json.loads(line)["pairs"] for line in (here / "broad.jsonl").read_text().splitlines()] == [0, 0]
 
 assert "at most 1 are allowed" in run("soup.ply", "--self", "--max-pairs", "1", status=1)
-assert "--self" in run("soup.ply", "--broad", "--self", status=1)
+assert "--self excludes --broad" in run("soup.ply", "--broad", "--self", status=2)
 assert "no folder" in run("soup.ply", "-o", "nowhere/out.csv", status=1)
 assert "none.ply" in run("none.ply", status=1)

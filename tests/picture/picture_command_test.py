@@ -97,18 +97,18 @@ for color in [(213, 94, 0), (205, 208, 213), (30, 30, 30)]:  # crossing, no cont
 run("collide", "soup.ply", "--broad", "--picture", "broad.png", "--quiet", *small)
 assert (68, 1, 84) in colors("broad.png")
 
-run("viewfactors", "pair.ply", "--rays", "1024", "--picture", "open.png", "--matrix", "matrix.png", "--quiet", *small)
+run("viewfactors", "pair.ply", "--rays-per-row", "1024", "--picture", "open.png", "--matrix", "matrix.png", "--quiet", *small)
 assert struct.unpack(">II", (here / "matrix.png").read_bytes()[16:24]) > (900, 900) and len(colors("open.png")) > 1
-run("viewfactors", "pair.ply", "--rays", "1024", "--by", "mesh", "--picture", "from.png", "--from", "0", "--quiet", *small)
+run("viewfactors", "pair.ply", "--rays-per-row", "1024", "--by", "mesh", "--picture", "from.png", "--from", "0", "--quiet", *small)
 assert (213, 94, 0) in colors("from.png")
 
 for arguments, status, words in [
-        ([*light, "--picture", "a.jpg"], 1, "'a.jpg': pictures go into .png or .glb"),
+        ([*light, "--picture", "a.jpg"], 2, "--picture is 'a.jpg', but must be a file whose name ends in .png or .glb"),
         ([*light, "--picture", "none/a.png"], 1, "there is no folder 'none'"),
         ([*light, "--view", "0", "0", "1"], 2, "--view requires --picture"),
         ([*light, "--picture", "a.png", "--view", "0", "0", "0"], 1, "must be finite and not 0"),
-        ([*light, "--picture", "a.png", "--picture-size", "1", "1"], 2, "not in range"),
-        (["viewfactors", "pair.ply", "--matrix", "a.npz"], 1, "'a.npz': this picture goes into .png"),
+        ([*light, "--picture", "a.png", "--picture-size", "1", "1"], 2, "--picture-size is '1', but must be a whole number from 16 to 16384"),
+        (["viewfactors", "pair.ply", "--matrix", "a.npz"], 2, "--matrix is 'a.npz', but must be a file whose name ends in .png"),
         (["viewfactors", "pair.ply", "--picture", "a.png", "--from", "4"], 1, "--from 4: there are 4 rows")]:
     shown = run(*arguments, status=status)
     assert words in shown, shown

@@ -54,8 +54,8 @@ assert len(lines("out.csv")) == 6
 
 run("solid.ply", "--slice", "plane.png", "--slice-axis", "x", "--slice-at", "0.5", "--slice-size", "64", "--signed", "--quiet")
 assert (here / "plane.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
-assert ".png" in run("solid.ply", "--slice", "plane.jpg", status=1)
-assert "--slice shows distances" in run("solid.ply", "--random", "5", "--within", "1", "--slice", "plane.png", status=1)
+assert ".png" in run("solid.ply", "--slice", "plane.jpg", status=2)
+assert "--within excludes --slice" in run("solid.ply", "--random", "5", "--within", "1", "--slice", "plane.png", status=2)
 assert "is not closed" in run("open.ply", "--random", "5", "--signed", status=1)
 (here / "bad.csv").write_text("1,2,3\n1,2\n")
 assert "line 2: '1,2' is not x,y,z" in run("solid.ply", "--points", "bad.csv", status=1)
@@ -75,7 +75,7 @@ for text, fault in (("1|2|3\n", "line 1: '1|2|3' is not x,y,z"), ("0,5;1;2\n", "
 (here / "bad.csv").write_text("x,y,z\n1,2,3\n", encoding="utf-16")
 assert "'bad.csv': not a text file in ASCII or UTF-8" in run("solid.ply", "--points", "bad.csv", status=1)
 assert "points file 'none.csv'" in run("solid.ply", "--points", "none.csv", status=1)
-assert ".csv or .npz" in run("solid.ply", "--random", "5", "-o", "out.txt", status=1)
+assert ".csv or .npz" in run("solid.ply", "--random", "5", "-o", "out.txt", status=2)
 run("solid.ply", status=2)
 run("solid.ply", "--random", "5", "--grid", "2", status=2)
 run("solid.ply", "--random", "5", "--within", "-1", status=2)

@@ -101,5 +101,13 @@ TEST(Baseline, OtherSettingsAreOtherMeasurements) {
     EXPECT_TRUE(changes(measured(100, {98, 102}), other).empty());
 }
 
+TEST(Baseline, CountsWhatHasACounterpart) {
+    const Record known = measured(100, {98, 102});
+    Record other = known;
+    other.level = "refined";
+    EXPECT_EQ(count_comparable(std::vector{known}, std::vector{known, other}), 1u);
+    EXPECT_EQ(count_comparable({}, std::vector{known, other}), 0u);
+}
+
 }  // namespace
 }  // namespace twinray::report

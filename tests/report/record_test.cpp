@@ -119,25 +119,45 @@ TEST_F(RecorderTest, FillsInTheRunAndWritesEachRecordAtOnce) {
     Record record;
     record.case_id = "W01";
     recorder.add(record);
-    const std::vector<Record> first = read_json_lines(file_);
+    const std::vector<Record> first = read_json_lines(file_).records;
     ASSERT_EQ(first.size(), 1u);
     EXPECT_EQ(first[0].run, "now");
     EXPECT_EQ(first[0].device.probe.at("fp64"), Value(true));
     recorder.add(full_record());
-    EXPECT_EQ(read_json_lines(file_), recorder.records());
+    EXPECT_EQ(read_json_lines(file_).records, recorder.records());
     EXPECT_EQ(recorder.records()[1].git, "0.1.0");
 }
 
 TEST_F(RecorderTest, ReadingNamesTheLine) {
-    std::ofstream(file_) << to_json(full_record()) << "\n{}\n";
-    try {
-        read_json_lines(file_);
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("line 2"), std::string::npos) << error.what();
+    const std::string record = to_json(full_record());
+    for (const std::string broken :
+         {std::string("{\"schema\": "), std::string("[]"), std::string("7"), record.substr(0, record.size() / 2),
+          std::string("{\"schema\": \"twinray-report/1\", \"run\": \"now\"}")}) {
+        std::ofstream(file_) << record << '\n' << broken << '\n';
+        try {
+            read_json_lines(file_);
+            FAIL() << broken;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find(file_.string() + "' line 2: "), std::string::npos) << error.what();
+        }
     }
     EXPECT_THROW(read_json_lines(folder_ / "none.jsonl"), Error);
     EXPECT_THROW(Recorder({"", "", {}}, folder_ / "none" / "report.jsonl"), Error);
+}
+
+// As `twinray trace`, `twinray verify` and the samples append them.
+TEST_F(RecorderTest, LinesOfOtherCommandsAreCounted) {
+    std::ofstream(file_) << to_json(full_record()) << "\n\n"
+                         << R"({"schema": "twinray-trace/1", "n": 3})" << '\n'
+                         << R"({"schema": "twinray-trace/1", "n": 4})" << '\n'
+                         << R"({"schema": "twinray-report/1", "case": "verify.random", "device": {"name": "x"}})"
+                         << '\n'
+                         << R"({"schema": "twinray-report/1", "case": "path_tracer", "device": "x"})" << '\n'
+                         << R"({"frames": 4})" << '\n';
+    const JsonLines lines = read_json_lines(file_);
+    EXPECT_EQ(lines.records, std::vector<Record>{full_record()});
+    EXPECT_EQ(lines.others, (std::map<std::string, std::size_t>{
+                                {"no schema", 1}, {"path_tracer", 1}, {"twinray-trace/1", 2}, {"verify.random", 1}}));
 }
 
 // Each cell is what the JSON line says, under one header for all.

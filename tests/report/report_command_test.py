@@ -49,7 +49,7 @@ else:
     assert drawn == sorted(plot["id"] for plot in json.loads((first / "plots.json").read_text())), said
 
 # The device's arithmetic: on a CPU driver every bit is that of the CPU twin.
-report("--only", "F06,F07,F08,F09", "--accel", "sw", "-o", str(here / "floats"))
+report("--only", "F06,F07,F08,F09", "--accels", "sw", "-o", str(here / "floats"))
 floats = [r for r in lines("floats/report.jsonl") if r["status"] == "run"]
 assert {r["case"] for r in floats} == {"F06", "F07", "F08", "F09"}
 if "llvmpipe" in floats[0]["device"]["name"]:
@@ -59,20 +59,32 @@ if "llvmpipe" in floats[0]["device"]["name"]:
 # Beside a baseline of which a count was better, and in which a case passed.
 better = [dict(r, faults=0, counts={}) for r in records]
 (here / "old.jsonl").write_text("".join(json.dumps(r) + "\n" for r in better))
-report("--only", "N07", "--accel", "sw", "--levels", "watertight", "-o", str(here / "second"), "--baseline",
+report("--only", "N07", "--accels", "sw", "--levels", "watertight", "-o", str(here / "second"), "--baseline",
        str(here / "old.jsonl"))
 again = lines("second/report.jsonl")
 assert {(r["backend"], r["level"]) for r in again} == {("sw", "watertight")}
 assert [r["counts"] for r in again] == [r["counts"] for r in records
                                         if (r["case"], r["backend"], r["level"]) == ("N07", "sw", "watertight")]
 
+# A baseline to which other commands have appended, and one that is broken.
+with open(here / "old.jsonl", "a", encoding="utf-8") as old:
+    old.write('{"schema": "twinray-trace/1", "n": 3}\n{"schema": "twinray-report/1", "case": "verify.random", "n": 5}\n')
+again = ["--only", "N07", "--accels", "sw", "--levels", "watertight", "--baseline", str(here / "old.jsonl")]
+said = report(*again, "-o", str(here / "mixed"))
+n = len(lines("mixed/report.jsonl"))
+assert f"baseline: {n} of {n} records have one there to be compared with; not compared: 1 of twinray-trace/1, 1 of verify.random" in said, said
+with open(here / "old.jsonl", "a", encoding="utf-8") as old:
+    old.write('{"schema": \n')
+run = subprocess.run([twinray, "report", *again, "-o", str(here / "third")], capture_output=True, text=True)
+number = len((here / "old.jsonl").read_text().splitlines())
+assert run.returncode == 1 and f"{here / 'old.jsonl'}' line {number}: not a JSON object" in run.stderr, run.stderr
 report("--only", "N07", "-o", str(here / "third"), "--baseline", str(here / "none.jsonl"), status=1)
 assert not (here / "third").exists(), "a report was begun although its baseline cannot be read"
 # Negative controls show faults in both layouts, or the report fails.
 for layout in ("compressed4", "bvh2"):
-    report("--only", "W14,W15", "--accel", "sw", "--layout", layout, "-o", str(here / ("controls_" + layout)))
+    report("--only", "W14,W15", "--accels", "sw", "--layout", layout, "-o", str(here / ("controls_" + layout)))
     assert sum(r["variant"].startswith("control: ") and bool(r["pass"])
                for r in lines("controls_" + layout + "/report.jsonl")) >= 2
-report("--accel", "gpu", status=2)
-report("--only", "Q99", "-o", str(here / "fourth"), status=1)
+report("--accels", "gpu", status=2)
+report("--only", "Q99", "-o", str(here / "fourth"), status=2)
 print("report: the command works")

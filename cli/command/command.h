@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// A command as data: what it takes, what it says, what it does. The parser, --help, man pages and the completions of
+// shells are made of it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace twinray::cli {
+
+// The command line is wrong: exit status 2.
+class UsageError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+// What follows an option, or stands for a positional; made by cli/command/values.h.
+struct Value {
+    enum class Kind : std::uint8_t { flag, word, choice, file, folder };
+    Kind kind = Kind::flag;
+    std::string metavar = {};                // "N", "X Y Z", "closest|any|all"; empty for a flag
+    std::size_t least = 0, most = 0;         // how many words follow
+    bool is_list = false;                    // a word holds several values, separated by commas
+    bool is_repeatable = false;              // the option may stand there more than once
+    std::vector<std::string> choices = {};   // of Kind::choice
+    std::vector<std::string> suffixes = {};  // of Kind::file, which must have one of them; empty: any
+    std::string allowed = {};                // "a whole number from 1 to 65535"
+    std::string limits = {};                 // "from 1 to 65535"; empty: none that one would have to be told
+    std::string initial = {};  // what holds where the option is not given; empty: nothing, or the help says it
+    // Takes all values. Returns the first that is not what is allowed, or null.
+    std::function<const std::string*(std::span<const std::string>)> store = {};
+};
+
+struct Option {
+    std::string name = {};  // "--rays"; a positional has none
+    char letter = 0;        // 'o' of "-o"
+    Value value = {};
+    std::string help = {};  // begins in lower case; ends without a full stop
+    bool is_required = false;
+    std::vector<std::string> needs = {}, excludes = {};  // other options, by name
+    std::string former_name = {};                        // is still taken, and shown nowhere
+};
+
+// Options under one heading.
+struct Section {
+    std::string title = {};
+    std::vector<Option> options = {};
+};
+
+// Of these options at most one is given, or exactly one.
+struct Alternatives {
+    std::vector<std::string> names;
+    bool is_required = false;
+};
+
+struct Example {
+    std::string line, what;
+};
+
+struct Command {
+    std::string name = {}, group = {};
+    std::string summary = {};      // in lower case, without a full stop
+    std::string description = {};  // sentences
+    std::vector<Option> positionals = {};
+    std::vector<Section> sections = {};
+    std::vector<Alternatives> alternatives = {};
+    std::vector<Example> examples = {};
+    std::string fault = {};  // "SwTlas shows a fault": ends with exit status 1; empty: there is none to find
+    std::function<int()> run = {};
+};
+
+// -h, --help, which each command has.
+const Option& help_option();
+
+// All options in the order of the sections, then --help; and the one of this name, or null.
+std::vector<const Option*> options_of(const Command& command);
+const Option* find_option(const Command& command, const std::string& name);
+
+// "-o, --output FILE"; of a positional "SCENE".
+std::string head_of(const Option& option);
+// The help with what may be given and what holds if nothing is: "how many; from 1 to 9, default: 5".
+std::string text_of(const Option& option);
+// "twinray trace SCENE --rays FILE --hits FILE [OPTION]...".
+std::string synopsis_of(const Command& command);
+// The title, then a sentence: what exit statuses mean.
+struct ExitStatus {
+    std::string status, meaning;
+};
+std::vector<ExitStatus> exit_statuses_of(const Command& command);
+
+// A variable that any command heeds.
+struct EnvironmentVariable {
+    std::string name, meaning;
+};
+std::vector<EnvironmentVariable> environment_variables();
+
+}  // namespace twinray::cli

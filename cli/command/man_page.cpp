@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "cli/command/man_page.h"
+
+#include <algorithm>
+
+namespace twinray::cli {
+namespace {
+
+// As roff prints it: a hyphen that can be copied, no control line, no escape.
+std::string escaped(const std::string& text) {
+    std::string roff;
+    for (const char c : text) {
+        if (c == '\\')
+            roff += "\\e";
+        else if (c == '-')
+            roff += "\\-";
+        else if (c == '\'')
+            roff += "\\(aq";
+        else if (c == '"')
+            roff += "\\(dq";
+        else
+            roff += c;
+    }
+    return roff.starts_with('.') ? "\\&" + roff : roff;
+}
+
+std::string upper(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return text;
+}
+
+std::string title(const std::string& page, const std::string& version) {
+    return ".TH \"" + upper(page) + "\" 1 \"\" \"twinray " + version + "\" \"User Commands\"\n";
+}
+
+std::string heading(const std::string& text) { return ".SH " + text + '\n'; }
+
+std::string item(const std::string& head, const std::string& meaning) {
+    return ".TP\n.B " + escaped(head) + '\n' + escaped(meaning) + '\n';
+}
+
+std::string items(const std::vector<Option>& options) {
+    std::string roff;
+    for (const Option& option : options) roff += item(head_of(option), text_of(option));
+    return roff;
+}
+
+// What ends every page.
+std::string end(const Command& command, const std::string& see_also) {
+    std::string roff = heading("EXIT STATUS");
+    for (const auto& [status, meaning] : exit_statuses_of(command)) roff += item(status, meaning);
+    roff += heading("ENVIRONMENT");
+    for (const auto& [name, meaning] : environment_variables()) roff += item(name, meaning);
+    return roff + heading("SEE ALSO") + see_also;
+}
+
+}  // namespace
+
+std::string man_page(const Command& command, const std::string& version) {
+    std::string roff = title("twinray-" + command.name, version);
+    roff += heading("NAME") + escaped("twinray-" + command.name) + " \\- " + escaped(command.summary) + '\n';
+    roff += heading("SYNOPSIS") + escaped(synopsis_of(command)) + '\n';
+    roff += heading("DESCRIPTION") + escaped(command.description) + '\n';
+    roff += heading("OPTIONS") + items(command.positionals);
+    for (const Section& section : command.sections)
+        roff += ".SS " + escaped(section.title) + '\n' + items(section.options);
+    roff += ".SS Help\n" + items({help_option()});
+    roff += heading("EXAMPLES");
+    for (const Example& example : command.examples) roff += item(example.line, example.what);
+    return roff + end(command, ".BR twinray (1)\n");
+}
+
+std::string man_page(std::span<const Command> commands, const std::string& version) {
+    std::string roff = title("twinray", version), see_also;
+    roff += heading("NAME") + "twinray \\- ray tracing on Vulkan by two accelerators that check each other\n";
+    roff += heading("SYNOPSIS") + ".B twinray\n.I COMMAND\n[OPTION]...\n";
+    roff += heading("DESCRIPTION") +
+            "twinray traces rays on any Vulkan device, by the acceleration structures of the driver and by structures "
+            "and kernels of its own, tells where the two differ, and which of them is right.\n";
+    roff += heading("COMMANDS");
+    for (const Command& command : commands) {
+        roff += item(command.name, command.summary);
+        see_also += (see_also.empty() ? "" : ",\n") + std::string(".BR twinray\\-") + escaped(command.name) + " (1)";
+    }
+    return roff + end({.fault = "a fault was found, by a command that looks for them"}, see_also + '\n');
+}
+
+}  // namespace twinray::cli

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// CLI11 tells which words belong to which option; everything else about them is decided here.
+#include "cli/command/parse.h"
+
+#include <CLI/CLI.hpp>
+
+#include "cli/command/suggest.h"
+
+namespace twinray::cli {
+namespace {
+
+template <class... Parts>
+[[noreturn]] void refuse(const Parts&... parts) {
+    std::ostringstream out;
+    (out << ... << parts);
+    throw UsageError(out.str());
+}
+
+// One option and the words that were given for it.
+struct Given {
+    const Option* option;
+    CLI::Option* parsed;
+
+    bool is_there() const { return parsed->count() > 0; }
+    std::string name() const { return option->name.empty() ? option->value.metavar : option->name; }
+};
+
+std::string names_for_parser(const Option& option) {
+    if (option.name.empty()) return "positional";
+    std::string names = option.letter ? std::string("-") + option.letter + ',' + option.name : option.name;
+    return option.former_name.empty() ? names : names + ',' + option.former_name;
+}
+
+CLI::Option* declare(CLI::App& app, const Option& option) {
+    const Value& value = option.value;
+    if (value.most == 0) return app.add_flag(names_for_parser(option))->disable_flag_override();
+    return app.add_option(names_for_parser(option))
+        ->expected(static_cast<int>(value.least), static_cast<int>(value.most))
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+bool is_named(const Option& option, const std::string& word) {
+    return word == option.name || (option.letter && word == std::string("-") + option.letter) ||
+           (!option.former_name.empty() && word == option.former_name);
+}
+
+// An option that wants a value and stands at the end, or before another option.
+void check_values_follow(const Command& command, const std::vector<std::string>& arguments) {
+    const std::vector<const Option*> options = options_of(command);
+    const auto find = [&](const std::string& word) {
+        return std::ranges::find_if(options, [&](const Option* option) { return is_named(*option, word); });
+    };
+    for (std::size_t i = 0; i < arguments.size(); ++i) {
+        const auto found = find(arguments[i]);
+        if (found == options.end() || (*found)->value.least == 0) continue;
+        const std::string wanted = (*found)->name + " wants " + (*found)->value.metavar;
+        if (i + 1 == arguments.size()) refuse(wanted, ", and nothing follows");
+        if (find(arguments[i + 1]) != options.end()) refuse(wanted, ", but ", arguments[i + 1], " follows");
+    }
+}
+
+void check_known(const Command& command, const std::vector<std::string>& left) {
+    for (const std::string& word : left) {
+        if (word.size() < 2 || word[0] != '-') continue;
+        const std::string name = word.substr(0, word.find('='));
+        std::vector<std::string> names;
+        for (const Option* option : options_of(command)) names.push_back(option->name);
+        const std::string nearest = nearest_to(name, names);
+        refuse("there is no option ", name, nearest.empty() ? "" : "; did you mean " + nearest + "?");
+    }
+    if (!left.empty()) refuse("'", left.front(), "' is one word too many");
+}
+
+std::vector<std::string> split(const std::string& list) {
+    std::vector<std::string> parts;
+    std::istringstream in(list + ',');
+    for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
+    return parts;
+}
+
+void store(const Given& given) {
+    const Value& value = given.option->value;
+    std::vector<std::string> words = given.parsed->results();
+    if (value.most == 0) words.clear();
+    if (value.least == 0) std::erase(words, std::string());
+    if (value.most == 1 && words.size() > 1 && !value.is_repeatable) refuse(given.name(), " is given more than once");
+    if (words.size() < value.least || (words.size() > value.most && !value.is_repeatable))
+        refuse(given.name(), " wants ", value.least, " values, ", value.metavar, ", not ", words.size());
+    if (value.is_list) {
+        std::vector<std::string> parts;
+        for (const std::string& word : words)
+            for (std::string& part : split(word)) parts.push_back(std::move(part));
+        words = std::move(parts);
+    }
+    if (const std::string* refused = value.store(words)) {
+        const std::string nearest = nearest_to(*refused, value.choices);
+        refuse(given.name(), " is '", *refused, "', but must be ", value.allowed,
+               nearest.empty() ? "" : "; did you mean " + nearest + "?");
+    }
+}
+
+void check_together(const Command& command, const std::vector<Given>& all) {
+    const auto is_there = [&](const std::string& name) {
+        return std::ranges::any_of(all, [&](const Given& given) { return given.name() == name && given.is_there(); });
+    };
+    for (const Given& given : all) {
+        if (given.option->is_required && !given.is_there()) refuse(given.name(), " is required");
+        if (!given.is_there()) continue;
+        for (const std::string& other : given.option->needs)
+            if (!is_there(other)) refuse(given.name(), " requires ", other);
+        for (const std::string& other : given.option->excludes)
+            if (is_there(other)) refuse(given.name(), " excludes ", other);
+    }
+    for (const Alternatives& alternatives : command.alternatives) {
+        std::string names;
+        for (const std::string& name : alternatives.names) names += (names.empty() ? "" : ", ") + name;
+        const auto count = std::ranges::count_if(alternatives.names, is_there);
+        if (count > 1) refuse("only one of ", names, " may be given");
+        if (count == 0 && alternatives.is_required) refuse("one of ", names, " is required");
+    }
+}
+
+// From the last to the first, as CLI11 wants them. It takes "-.5" for an option, "-0.5" for a number.
+std::vector<std::string> reversed(std::vector<std::string> arguments) {
+    std::ranges::reverse(arguments);
+    for (std::string& word : arguments)
+        if (word.size() > 2 && word.starts_with("-.") && std::isdigit(static_cast<unsigned char>(word[2])))
+            word.insert(1, "0");
+    return arguments;
+}
+
+}  // namespace
+
+bool parse(const Command& command, const std::vector<std::string>& arguments) {
+    for (const std::string& word : arguments)
+        if (is_named(help_option(), word)) return false;
+    check_values_follow(command, arguments);
+    CLI::App app;
+    app.set_help_flag();
+    app.allow_extras();
+    std::vector<Given> all;
+    for (const Option& positional : command.positionals) all.push_back({&positional, declare(app, positional)});
+    for (const Option* option : options_of(command)) all.push_back({option, declare(app, *option)});
+    try {
+        app.parse(reversed(arguments));
+    } catch (const CLI::ParseError& error) {
+        refuse(error.what());
+    }
+    check_known(command, app.remaining());
+    for (const Given& given : all)
+        if (given.is_there()) store(given);
+    check_together(command, all);
+    return true;
+}
+
+}  // namespace twinray::cli

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// What someone who wrote a word wrongly may have meant.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace twinray::cli {
+
+// How many letters must be inserted, removed, replaced or swapped with their neighbour to make one of the other
+// (optimal string alignment).
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+// The nearest of the candidates, the first of those as near; empty where none is near: at most a third of the word's
+// letters may be wrong, and one always may.
+std::string nearest_to(std::string_view word, std::span<const std::string> candidates);
+
+}  // namespace twinray::cli

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// Values that options take, bound to the variables in which they end up. A variable holds its default before; one that
+// is empty (a path, a vector, an optional) has none to be shown.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "cli/command/command.h"
+
+namespace twinray::cli {
+
+template <class T>
+struct Range {
+    T least = std::numeric_limits<T>::lowest();
+    T most = std::numeric_limits<T>::max();
+    bool is_above = false;  // least itself is not in it
+    T step = 0;             // if not 0, multiples of it alone
+};
+
+Value flag(bool& target);
+Value flag(std::function<void()> take);
+
+Value word(std::string& target, const std::string& metavar);
+Value words(std::vector<std::string>& target, const std::string& metavar);  // separated by commas
+
+// T: int, unsigned int, unsigned long, float or double. Whole numbers may be written as 1e6.
+template <class T>
+    requires std::is_arithmetic_v<T>
+Value number(T& target, Range<T> range = {});
+template <class T>
+Value number(std::optional<T>& target, Range<T> range = {});
+// As many as there are names in the metavar: "X Y Z".
+template <class T>
+Value numbers(std::vector<T>& target, const std::string& metavar, Range<T> range = {});
+// Separated by commas; the option may stand alone, too. `is_given` becomes true.
+Value optional_list(bool& is_given, std::vector<double>& target, Range<double> range);
+
+// Read or written. With `suffixes`, in lower case, the name must have one of them.
+Value file(std::filesystem::path& target, std::vector<std::string> suffixes = {});
+Value files(std::vector<std::filesystem::path>& target, std::vector<std::string> suffixes);  // the option is repeatable
+Value file_list(std::vector<std::filesystem::path>& target);                                 // separated by commas
+Value folder(std::filesystem::path& target);
+
+// One of some names; `take` gets its index. `initial`: the name that holds before, or "".
+Value choice(std::vector<std::string> names, const std::string& initial, std::function<void(std::size_t)> take);
+// One of some names for itself.
+Value choice(std::string& target, std::vector<std::string> names);
+// Any of some names, separated by commas.
+Value choices(std::vector<std::string> names, const std::string& initial,
+              std::function<void(const std::vector<std::size_t>&)> take);
+Value choices(std::vector<std::string>& target, std::vector<std::string> names);
+
+// Values with their names.
+template <class T>
+using Names = std::vector<std::pair<std::string, T>>;
+
+// By name_of(T).
+template <class T, std::size_t n>
+Names<T> names_of(const std::array<T, n>& all) {
+    Names<T> names;
+    for (const T one : all) names.emplace_back(std::string(name_of(one)), one);
+    return names;
+}
+
+template <class T>
+std::vector<std::string> words_of(const Names<T>& names) {
+    std::vector<std::string> words;
+    for (const auto& [name, value] : names) words.push_back(name);
+    return words;
+}
+
+template <class T, class Target>
+Value choice(Target& target, const Names<T>& names) {
+    std::string initial;
+    for (const auto& [name, value] : names)
+        if (target == value) initial = name;
+    return choice(words_of(names), initial, [&target, names](std::size_t index) { target = names[index].second; });
+}
+
+template <class T>
+Value choices(std::vector<T>& target, const Names<T>& names) {
+    std::string initial;
+    for (const T& each : target)
+        for (const auto& [name, value] : names)
+            if (each == value) initial += (initial.empty() ? "" : ",") + name;
+    return choices(words_of(names), initial, [&target, names](const std::vector<std::size_t>& chosen) {
+        target.clear();
+        for (const std::size_t index : chosen) target.push_back(names[index].second);
+    });
+}
+
+}  // namespace twinray::cli

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Every command of `twinray`, each from the file of its name; completion and help from help.cpp.
+#pragma once
+
+#include "cli/command/command.h"
+
+namespace twinray::cli {
+
+// In the order of the list.
+std::vector<Command> all_commands();
+
+#ifdef TWINRAY_HAS_BENCH
+Command bench_command();
+#endif
+Command centroid_command();
+Command collide_command();
+Command completion_command();
+Command devices_command();
+Command distance_command();
+Command help_command(const std::vector<std::string>& names);
+Command illumination_command();
+Command leaks_command();
+Command report_command();
+Command trace_command();
+Command verify_command();
+Command viewfactors_command();
+
+}  // namespace twinray::cli

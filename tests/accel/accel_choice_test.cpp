@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "engine/accel/accel_choice.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+DeviceFacts device_of(DeviceKind kind) {
+    DeviceFacts device;
+    device.name = "GPU 9";
+    device.kind = kind;
+    device.api_version = (1u << 22) | (2u << 12);  // Vulkan 1.2
+    device.has_compute_queue = device.timeline_semaphore = device.buffer_device_address = true;
+    device.scalar_block_layout = device.shader_int64 = true;
+    device.acceleration_structure = device.ray_query = device.ray_tracing_pipeline = true;
+    return device;
+}
+
+std::string refusal_of(const DeviceFacts& device, const std::string& request, const AccelNeeds& needs = {}) {
+    try {
+        choose_accel(device, request, needs);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(AccelChoice, AutomaticIsHardwareWhereTheDeviceHasIt) {
+    for (const DeviceKind kind :
+         {DeviceKind::discrete, DeviceKind::integrated, DeviceKind::virtual_gpu, DeviceKind::other})
+        EXPECT_EQ(choose_accel(device_of(kind), "auto"), (AccelChoice{false, "device 'GPU 9' has VK_KHR_ray_query"}));
+    DeviceFacts pipelines = device_of(DeviceKind::discrete);
+    pipelines.ray_query = false;
+    EXPECT_EQ(choose_accel(pipelines, "auto"), (AccelChoice{false, "device 'GPU 9' has VK_KHR_ray_tracing_pipeline"}));
+}
+
+TEST(AccelChoice, AutomaticIsSoftwareOnACpu) {
+    EXPECT_EQ(choose_accel(device_of(DeviceKind::cpu), "auto"),
+              (AccelChoice{true, "device 'GPU 9' is a CPU, without hardware for rays"}));
+    EXPECT_FALSE(choose_accel(device_of(DeviceKind::cpu), "hw").is_software) << "it works where it is asked for";
+}
+
+TEST(AccelChoice, WhatHardwareLacksIsNamed) {
+    DeviceFacts none = device_of(DeviceKind::discrete);
+    none.acceleration_structure = none.ray_query = none.ray_tracing_pipeline = false;
+    EXPECT_EQ(choose_accel(none, "auto"),
+              (AccelChoice{true,
+                           "device 'GPU 9' lacks VK_KHR_acceleration_structure, VK_KHR_ray_query or "
+                           "VK_KHR_ray_tracing_pipeline"}));
+    EXPECT_EQ(refusal_of(none, "hw"),
+              "--accel hw: device 'GPU 9' lacks VK_KHR_acceleration_structure, VK_KHR_ray_query or "
+              "VK_KHR_ray_tracing_pipeline; --accel sw works there");
+    EXPECT_EQ(choose_accel(none, "sw"), (AccelChoice{true, "asked for"}));
+}
+
+TEST(AccelChoice, NeedsThatHardwareDoesNotMeetChooseSoftware) {
+    DeviceFacts device = device_of(DeviceKind::discrete);
+    const AccelNeeds certified{.level = Level::certified}, kernels{.kernel_queries = true};
+    EXPECT_FALSE(choose_accel(device, "auto", {.level = Level::refined}).is_software);
+    EXPECT_FALSE(choose_accel(device, "auto", kernels).is_software);
+    EXPECT_TRUE(choose_accel(device, "auto", certified).is_software);
+    EXPECT_NE(refusal_of(device, "hw", certified).find("level certified is of software alone"), std::string::npos);
+    device.ray_query = false;
+    EXPECT_TRUE(choose_accel(device, "auto", kernels).is_software);
+    EXPECT_NE(refusal_of(device, "hw", kernels).find("lacks VK_KHR_ray_query"), std::string::npos);
+    EXPECT_FALSE(choose_accel(device, "hw").is_software);
+}
+
+TEST(AccelChoice, NothingElseIsTaken) {
+    EXPECT_EQ(refusal_of(device_of(DeviceKind::cpu), "gpu"), "accelerator 'gpu' is not auto, sw or hw");
+}
+
+}  // namespace
+}  // namespace twinray

@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Which accelerator commands take and what they say of it; --level and --strict. Usage: accel_option_test.py TWINRAY PATH_TRACER"""
+import json
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+
+twinray, path_tracer = (pathlib.Path(program).resolve() for program in sys.argv[1:3])
+here = pathlib.Path(tempfile.mkdtemp())
+NONE = {"TWINRAY_DISABLE": "ray_query,ray_tracing_pipeline"}  # as a device without ray tracing
+
+
+def run(program, *arguments, status=0, env=None):
+    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, cwd=here,
+                          env={**os.environ, **(env or {})})
+    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout + done.stderr
+
+
+def record(program, *arguments, env=None):
+    """Of a run with --json."""
+    (here / "all.jsonl").unlink(missing_ok=True)
+    run(program, *arguments, "--json", "all.jsonl", env=env)
+    return json.loads((here / "all.jsonl").read_text().splitlines()[-1])
+
+
+def ply(name, faces):
+    (here / name).write_text("ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
+                             f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n" +
+                             "".join(f"{x} {y} {z}\n" for z in (0, 1) for y in (0, 1) for x in (0, 1)) +
+                             "".join(f"{len(face)} {' '.join(map(str, face))}\n" for face in faces))
+
+
+CUBE = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+ply("cube.ply", CUBE)
+(here / "rays").write_bytes(struct.pack("<8f", 0.25, 0.375, -1, 0, 0, 0, 1, 9) + struct.pack("<8f", 5, 5, -1, 0, 0, 0, 1, 9))
+trace = ["trace", "cube.ply", "--rays", "rays", "--hits", "hits"]
+light = ["--direction", 0, 0, -1, "--grid", 8]
+commands = [trace, ["illumination", "cube.ply", *light], ["illumination", "cube.ply", "--sky", 4],
+            ["centroid", "cube.ply", *light], ["viewfactors", "cube.ply", "--rays-per-row", 64],
+            ["collide", "cube.ply", "--broad"], ["leaks", "cube.ply", "--ray-count", 100]]
+
+device = record(twinray, "devices")
+assert set(device["auto"]) == {"backend", "backend_why"} and device["auto"]["backend_why"]
+assert device["auto"]["backend"] == ("sw" if device["kind"] == "CPU" or device["hw_missing"] else "hw"), device
+assert "--accel auto traces by " in run(twinray, "devices")
+assert record(twinray, "devices", env=NONE)["auto"]["backend"] == "sw"
+
+def check(of, backend, why):
+    assert of["backend"] == backend and why in of["backend_why"], of
+
+
+check(record(twinray, *trace), device["auto"]["backend"], device["auto"]["backend_why"])
+check(record(twinray, *trace, "--accel", "sw"), "sw", "asked for")
+for command in commands:
+    check(record(twinray, *command, env=NONE), "sw", "lacks VK_KHR_ray_query")
+    said = run(twinray, *command, "--accel", "hw", env=NONE, status=1)
+    assert "VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline" in said and "--accel sw works" in said, said
+    assert said.count("\n") == 1, said
+small = [path_tracer, "cube.ply", "-o", "p.exr", "--spp", 1, "--width", 8, "--height", 8]
+check(record(*small, env=NONE), "sw", "lacks VK_KHR_ray_query")
+said = run(*small, "--accel", "hw", env=NONE, status=1)
+assert "VK_KHR_ray_query" in said and "--accel sw works" in said, said
+
+# The same hits at every level, and hardware has no level certified.
+hits = set()
+for level in ["fast", "watertight", "refined", "certified"]:
+    of = record(twinray, *trace, "--level", level, "--accel", "sw")
+    assert (of["level"], of["hits"]) == (level, 1), of
+    hits.add((here / "hits").read_bytes())
+assert len(hits) == 1
+assert record(twinray, *trace, "--level", "certified")["backend"] == "sw"
+if device["auto"]["backend"] == "hw" or not device["hw_missing"]:
+    assert "certified" in run(twinray, *trace, "--level", "certified", "--accel", "hw", status=1)
+of = record(twinray, "verify", "cube.ply", "--random", 500, "--aimed", 100, "--level", "certified")
+assert (of["level"], of["backend"]) == ("certified", "sw"), of
+
+# What the importer warns of is an error with --strict; without warnings it changes nothing.
+ply("odd.ply", CUBE + [(0, 1)])
+loads = [[twinray, *trace], [twinray, *commands[1]], [twinray, *commands[2]], [twinray, *commands[5]],
+         [twinray, "distance", "cube.ply", "--random", 5], [twinray, "verify", "cube.ply", "--random", 10, "--aimed", 5], small]
+assert "twinray: warning: " in run(twinray, "distance", "odd.ply", "--random", 5)
+for command in loads:
+    said = run(*["odd.ply" if word == "cube.ply" else word for word in command], "--strict", "--quiet", status=1)
+    assert said.splitlines()[-1].endswith("'odd.ply': 1 warning(s), of which --strict allows none"), said
+run(twinray, *trace, "--strict", "--quiet")
+print("cli: accelerators are chosen, and told")
