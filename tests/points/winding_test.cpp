@@ -31,8 +31,8 @@ class WindingTest : public test::VulkanTest {
 
 // A torus of 2 n m triangles with shared vertices, its fronts outward.
 Mesh torus(uint n, uint m, float radius, float tube) {
-    Mesh mesh{
-        .name = "torus", .positions = {}, .triangles = {}, .normals = {}, .tangents = {}, .uvs = {}, .materials = {}};
+    Mesh mesh;
+    mesh.name = "torus";
     constexpr float turn = 6.2831853f;
     for (uint i = 0; i < n; ++i)
         for (uint j = 0; j < m; ++j) {

@@ -130,7 +130,7 @@ TEST_F(RecorderTest, FillsInTheRunAndWritesEachRecordAtOnce) {
 
 TEST_F(RecorderTest, ReadingNamesTheLine) {
     const std::string record = to_json(full_record());
-    for (const std::string broken :
+    for (const std::string& broken :
          {std::string("{\"schema\": "), std::string("[]"), std::string("7"), record.substr(0, record.size() / 2),
           std::string("{\"schema\": \"twinray-report/1\", \"run\": \"now\"}")}) {
         std::ofstream(file_) << record << '\n' << broken << '\n';
