@@ -3,6 +3,7 @@
 """Counts the instructions of trace.comp, its specialisation constants frozen and optimised by spirv-opt: each feature that
 is left out must make it smaller, and the leanest variants may not outgrow instruction_counts.txt, which --record writes
 anew. Usage: variants_test.py FEATURES_H COUNTS [--record] BACKEND=MODULE.spv..., BACKEND being sw or hw."""
+import functools
 import pathlib
 import re
 import sys
@@ -28,9 +29,13 @@ uncovered = set(bits) - {name for names in [*OPTIONAL.values(), *LEAST.values()]
 assert not uncovered, f"no module leaves out {uncovered}: add them to the table"
 
 
+@functools.cache
+def count_of(module, query, features):
+    return frozen_spirv.count(module, {QUERY: query, FEATURES: features, LEVEL: WATERTIGHT})
+
+
 def count(module, query, features):
-    value = sum(bits[name] for name in features)
-    return frozen_spirv.count(module, {QUERY: query, FEATURES: value, LEVEL: WATERTIGHT})
+    return count_of(module, query, sum(bits[name] for name in features))
 
 
 faults, counts = [], {}

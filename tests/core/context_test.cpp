@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/core/radix_sort.h"
 #include "engine/core/vma.h"
+#include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"
 
 namespace twinray {
@@ -30,8 +31,8 @@ TEST(ContextErrors, AnIncompleteAdoptionIsRefused) { EXPECT_THROW(Context(Adopte
 
 TEST(ContextPipelines, AreKeptBetweenRuns) {
     if (!test::make_context()) return;
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "twinray_context_pipelines";
-    std::filesystem::remove_all(folder);
+    const test::TempDir temp;
+    const std::filesystem::path folder = temp / "pipelines";
     std::string said;
     const ContextDesc desc{.pipeline_folder = folder, .log = [&](std::string_view line) { said += line; }};
     for (int run = 0; run < 2; ++run) {
@@ -46,7 +47,6 @@ TEST(ContextPipelines, AreKeptBetweenRuns) {
     { const Context context(desc); }
     EXPECT_NE(said.find("not pipelines of this driver"), std::string::npos) << said;
     EXPECT_GE(std::filesystem::file_size(file), sizeof(VkPipelineCacheHeaderVersionOne)) << "written anew";
-    std::filesystem::remove_all(folder);
 }
 
 TEST_F(ContextTest, UploadsAndDownloads) {

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <span>
 
+#include "tests/scene/temp_dir.h"
+
 namespace twinray {
 namespace {
 
@@ -34,9 +36,6 @@ Bytes pipelines_of(const VkPhysicalDeviceProperties& driver, std::size_t bytes) 
 
 class PipelineStoreTest : public testing::Test {
   protected:
-    PipelineStoreTest() { fs::remove_all(folder_); }
-    ~PipelineStoreTest() override { fs::remove_all(folder_); }
-
     PipelineStore store(std::uint32_t version = 1) const { return {folder_, driver_of(version)}; }
     Bytes load(const PipelineStore& from) {
         return from.load([this](std::string_view sentence) { said_ += sentence; });
@@ -45,7 +44,8 @@ class PipelineStoreTest : public testing::Test {
         to.save(std::as_bytes(std::span(data)), [this](std::string_view sentence) { said_ += sentence; });
     }
 
-    const fs::path folder_ = fs::path(testing::TempDir()) / "twinray_pipeline_store_test" / "deep";
+    const test::TempDir temp_;
+    const fs::path folder_ = temp_ / "deep";
     std::string said_;
 };
 

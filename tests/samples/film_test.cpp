@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/error.h"
+#include "tests/scene/temp_dir.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -48,8 +49,8 @@ std::string message_of(const std::function<void()>& action) {
 
 class FilmFile : public ::testing::Test {
   protected:
-    ~FilmFile() override { std::filesystem::remove(file_); }
-    std::filesystem::path file_ = std::filesystem::path(testing::TempDir()) / "film_test.film";
+    const test::TempDir temp_;
+    const std::filesystem::path file_ = temp_ / "test.film";
 };
 
 TEST(Film, SumsDependNeitherOnOrderNorOnGrouping) {

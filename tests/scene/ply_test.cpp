@@ -43,7 +43,8 @@ TEST(Ply, AsciiKeepsVerticesTrianglesAndTheirOrder) {
 
 TEST(Ply, NumbersAreAsTheirDigitsSayAndBeyondFloatInfiniteOrZero) {
     const Mesh mesh =
-        load(ply(3, "0.1 1.00000005960465 +3\n1e60 -1e999 1e-999\nnan inf -inf\n", 1, "3 0 1 2\n")).meshes[0];
+        load(ply(4, "0.1 1.00000005960465 +3\n1e60 -1e999 1e-999\nnan inf -inf\n0 0 0\n", 2, "3 0 1 2\n3 0 1 3\n"))
+            .meshes[0];
     EXPECT_EQ(mesh.positions[0], vec3(0.1f, 1.00000012f, 3));
     EXPECT_EQ(mesh.positions[1], vec3(INFINITY, -INFINITY, 0));
     EXPECT_TRUE(std::isnan(mesh.positions[2].x));
