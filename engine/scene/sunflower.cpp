@@ -12,8 +12,8 @@ constexpr float outer_radius = 2.4f, dome_height = 1.0f;
 
 // Deep blue at the heart, over turquoise and cream, to coral at the rim; linear.
 vec3 petal_color(float along) {
-    constexpr vec3 stops[] = {{0.02f, 0.03f, 0.1f}, {0.02f, 0.16f, 0.24f}, {0.10f, 0.46f, 0.42f},
-                              {0.86f, 0.72f, 0.42f},   {0.82f, 0.26f, 0.10f},  {0.42f, 0.035f, 0.07f}};
+    constexpr vec3 stops[] = {{0.02f, 0.03f, 0.1f},  {0.02f, 0.16f, 0.24f}, {0.10f, 0.46f, 0.42f},
+                              {0.86f, 0.72f, 0.42f}, {0.82f, 0.26f, 0.10f}, {0.42f, 0.035f, 0.07f}};
     const float at = along * 4.999f;
     const auto stop = static_cast<uint>(at);
     return glm::mix(stops[stop], stops[stop + 1], at - static_cast<float>(stop));
@@ -25,9 +25,7 @@ std::vector<Material> sunflower_materials() {
         materials.push_back({.name = "glazed " + std::to_string(i),
                              .base_color = vec4(petal_color(static_cast<float>(i) / (color_count - 1)), 1),
                              .metallic = 0,
-                             .roughness = 0.45f,
-                             .clearcoat = 1,
-                             .clearcoat_roughness = 0.25f});
+                             .roughness = 0.3f});
     materials.push_back({.name = "gold", .base_color = vec4(1, 0.71f, 0.29f, 1), .metallic = 1, .roughness = 0.45f});
     materials.push_back(
         {.name = "table", .base_color = vec4(0.035f, 0.037f, 0.045f, 1), .metallic = 0, .roughness = 0.5f});
