@@ -28,7 +28,7 @@ def bench(*arguments, status=0):
 
 KINDS = ["primary", "incoherent", "occlusion"]
 RATIOS = ["vs_ray_query", "vs_ray_query_presorted", "vs_pipeline", "vs_embree8", "vs_sw"]
-FIELDS = {"schema", "device", "started", "git", "width", "seed", "scene", "triangles", "rays", "n", "rounds", "contestant",
+FIELDS = {"schema", "device", "started", "git", "width", "seed", "scene", "origin", "triangles", "rays", "n", "rounds", "contestant",
           "backend", "path", "order", "layout", "builder", "level", "ray_order", "mrays_per_s", "mrays_per_s_min", "mrays_per_s_max",
           "build_ms", "build_ms_min", "build_ms_max", "build_wall_ms", "bytes_per_triangle", "scratch_bytes_per_triangle",
           "agreement", "faults", "judged", "hits_hash", *RATIOS}
