@@ -3,14 +3,14 @@
 # From a checkout to a picture: installs the packages, builds path_tracer and what it links, renders a scene with the
 # faster accelerator of this device, and lets the other one check its rays.
 #   tools/demo.sh [SCENE]         SCENE: .gltf, .glb, .obj, .ply or .stl; without it a sunflower of beads, made by formula
-#   TWINRAY_DEMO_SECONDS=N        how long to render: 60 unless it is set
+#   TWINRAY_DEMO_SECONDS=N        how long to render: 120 unless it is set
 set -euo pipefail
 
 bin=build/release/bin
 out=out
 picture=$out/demo.png
 report=$out/demo_cross_check.txt
-seconds=${TWINRAY_DEMO_SECONDS-60}
+seconds=${TWINRAY_DEMO_SECONDS-120}
 
 scene=builtin:sunflower
 if [[ $# -gt 1 || ${1-} == -* ]]; then
