@@ -6,6 +6,7 @@
 #include "cli/command/help_text.h"
 #include "cli/command/parse.h"
 #include "cli/command/suggest.h"
+#include "cli/command/values.h"
 #include "cli/commands.h"
 #include "engine/core/cpu_vectors.h"
 #include "twinray_version.h"
@@ -41,9 +42,8 @@ int refuse_command(const std::string& word, const std::vector<Command>& commands
     std::vector<std::string> names;
     for (const Command& command : commands) names.push_back(command.name);
     const std::string nearest = nearest_to(word, names);
-    return refuse("twinray",
-                  "there is no command '" + word + (nearest.empty() ? "'" : "'; did you mean " + nearest + '?'),
-                  "twinray help");
+    const std::string meant = nearest.empty() ? ", but " + either_of(names) : "; did you mean " + nearest + '?';
+    return refuse("twinray", "there is no command '" + word + '\'' + meant, "twinray help");
 }
 
 int run(const std::vector<std::string>& words) {

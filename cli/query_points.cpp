@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/query_points.h"
 
+#include <algorithm>
 #include <random>
 
 #include "cli/command/values.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `twinray viewfactors`: the view factors of a scene with their errors.
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iomanip>

@@ -2,6 +2,8 @@
 // CLI11 tells which words belong to which option; everything else about them is decided here.
 #include "cli/command/parse.h"
 
+#include <algorithm>
+
 #include <CLI/CLI.hpp>
 
 #include "cli/command/suggest.h"

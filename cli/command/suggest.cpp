@@ -23,6 +23,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string nearest_to(std::string_view word, std::span<const std::string> candidates) {
+    for (const std::string& candidate : candidates)
+        if (word.size() > 1 && candidate.starts_with(word)) return candidate;
     std::string nearest;
     std::size_t best = std::max<std::size_t>(word.size() / 3, 1) + 1;
     for (const std::string& candidate : candidates) {

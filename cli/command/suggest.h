@@ -12,8 +12,9 @@ namespace twinray::cli {
 // (optimal string alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-// The nearest of the candidates, the first of those as near; empty where none is near: at most a third of the word's
-// letters may be wrong, and one always may.
+// The first of the candidates that begins with two or more letters that were all of the word; else the nearest of them,
+// the first of those as near; empty where none is near: at most a third of the word's letters may be wrong, and one
+// always may.
 std::string nearest_to(std::string_view word, std::span<const std::string> candidates);
 
 }  // namespace twinray::cli

@@ -95,14 +95,6 @@ bool has_suffix(const std::string& file, const std::vector<std::string>& suffixe
            std::ranges::any_of(suffixes, [&](const std::string& suffix) { return name.ends_with(suffix); });
 }
 
-// ".png or .glb".
-std::string either_of(const std::vector<std::string>& words) {
-    std::string all;
-    for (std::size_t i = 0; i < words.size(); ++i)
-        all += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
-    return all;
-}
-
 Value file_value(std::vector<std::string> suffixes, std::function<void(Words)> take) {
     Value value{.kind = Value::Kind::file, .metavar = "FILE", .least = 1, .most = 1};
     if (!suffixes.empty()) value.metavar += suffixes.front();
@@ -145,6 +137,13 @@ std::string joined_by_commas(const std::vector<std::string>& words) {
 }
 
 }  // namespace
+
+std::string either_of(const std::vector<std::string>& words) {
+    std::string all;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        all += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+    return all;
+}
 
 Value flag(std::function<void()> take) {
     return {.store = [take = std::move(take)](Words) -> const std::string* {

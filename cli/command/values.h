@@ -46,6 +46,9 @@ Value files(std::vector<std::filesystem::path>& target, std::vector<std::string>
 Value file_list(std::vector<std::filesystem::path>& target);                                 // separated by commas
 Value folder(std::filesystem::path& target);
 
+// "trace, verify or leaks".
+std::string either_of(const std::vector<std::string>& words);
+
 // One of some names; `take` gets its index. `initial`: the name that holds before, or "".
 Value choice(std::vector<std::string> names, const std::string& initial, std::function<void(std::size_t)> take);
 // One of some names for itself.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What is near to points, against every triangle in float64. The GPU answers; no accelerator takes part.
+#include <algorithm>
 #include <cmath>
 #include <random>
 

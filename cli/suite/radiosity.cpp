@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Light between the walls of a cube, of which one shines: known in closed form.
+#include <algorithm>
 #include <chrono>
 
 #include "cli/suite/estimators.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/analysis/polygon64.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace twinray {

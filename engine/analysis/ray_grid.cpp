@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/analysis/ray_grid.h"
 
+#include <algorithm>
 #include <cfloat>
 #include <mutex>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/picture/color_map.h"
 
+#include <algorithm>
 #include <span>
 
 namespace twinray {

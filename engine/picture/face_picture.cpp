@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/picture/face_picture.h"
 
+#include <algorithm>
+
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/picture/font.h"
 
+#include <algorithm>
 #include <array>
 
 namespace twinray {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/picture/marks.h"
 
+#include <algorithm>
+
 namespace twinray {
 namespace {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/picture/matrix_picture.h"
 
+#include <algorithm>
+
 #include "engine/core/error.h"
 #include "engine/picture/font.h"
 

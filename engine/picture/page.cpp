@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/picture/page.h"
 
+#include <algorithm>
+
 #include "engine/picture/font.h"
 
 namespace twinray {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/picture/value_scale.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "engine/core/error.h"

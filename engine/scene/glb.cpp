@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/glb.h"
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 #include <utility>

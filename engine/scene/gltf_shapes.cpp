@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/gltf_shapes.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Members of a wrong type, which tinygltf passes over in silence and a scene would then lack.
+#include <algorithm>
 #include <set>
 #include <string_view>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Level::refined: what float64 says of the hit that counts, from whatever distance.
+#include <algorithm>
 #include <random>
 
 #include "engine/verify/oracle.h"

@@ -51,7 +51,7 @@ assert seen["--accel"] == ("--accel auto|sw|hw", "auto"), seen["--accel"]
 
 # Wrong use: status 2, and what was meant.
 for arguments, words in [
-        (["frob"], "there is no command 'frob'; see 'twinray help'"),
+        (["frob"], "there is no command 'frob', but trace, devices, verify,"), (["view"], "did you mean viewfactors?"),
         (["trase"], "there is no command 'trase'; did you mean trace? See 'twinray help'"),
         (["help", "trase"], "must be trace, devices"), (["help", "trase"], "did you mean trace?"),
         (["trace", "a.ply", "--ray", "r"], "there is no option --ray; did you mean --rays?"),

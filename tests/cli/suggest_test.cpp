@@ -24,6 +24,8 @@ TEST(Suggest, TheNearestIsOnlyNamedWhereItIsNear) {
     EXPECT_EQ(nearest_to("trase", commands), "trace");
     EXPECT_EQ(nearest_to("verfy", commands), "verify");
     EXPECT_EQ(nearest_to("leak", commands), "leaks");
+    EXPECT_EQ(nearest_to("ver", commands), "verify") << "begun";
+    EXPECT_EQ(nearest_to("v", commands), "");
     EXPECT_EQ(nearest_to("frob", commands), "");
     EXPECT_EQ(nearest_to("x", {}), "");
 }

@@ -2,6 +2,7 @@
 // Classes of triangles against a referee in rational arithmetic that shares no code and no method with them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <string>

@@ -2,6 +2,7 @@
 // What the tests of HwTlas share: every way of tracing as a parameter, and a float64 brute force as the judge.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <random>
 

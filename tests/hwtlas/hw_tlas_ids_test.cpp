@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Ids against a float64 brute force: whatever is reordered, replaced or left out, the user's numbering comes back.
 #include "tests/hwtlas/hw_test.h"
+
+#include <algorithm>
 #include "engine/scene/shapes.h"
 
 namespace twinray::test {

@@ -2,6 +2,7 @@
 // Text, legends and matrices: what can be told of them without eyes.
 #include "engine/picture/page.h"
 
+#include <algorithm>
 #include <set>
 
 #include "engine/core/files.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Inside and outside, against sums of solid angles and what is known.
+#include <algorithm>
 #include <cmath>
 
 #include "engine/points/boundary.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/film_file.h"
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 

@@ -2,6 +2,8 @@
 // Which samples come next, and what adaptive sampling does to the picture.
 #include "samples/path_tracer/rounds.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "samples/path_tracer/renderer.h"
