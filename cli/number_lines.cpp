@@ -40,14 +40,14 @@ std::vector<std::string_view> fields_of(std::string_view line) {
 // Names of columns, and no number that is written in some other way.
 bool is_heading(const std::vector<std::string_view>& fields) {
     return std::string_view("0123456789+-.").find(fields[0][0]) == std::string_view::npos &&
-           std::ranges::none_of(fields, [](std::string_view field) { return number_of(field).has_value(); });
+           std::ranges::none_of(fields, [](std::string_view field) { return parse_number(field).has_value(); });
 }
 
 // One that is no number, or beyond those of double, is of no use in any of these files.
 std::optional<std::vector<double>> numbers_of(const std::vector<std::string_view>& fields) {
     std::vector<double> numbers;
     for (const std::string_view field : fields) {
-        const std::optional<double> number = number_of(field);
+        const std::optional<double> number = parse_number(field);
         if (!number || !std::isfinite(*number)) return std::nullopt;
         numbers.push_back(*number);
     }

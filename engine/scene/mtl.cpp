@@ -31,7 +31,7 @@ std::array<float, 3> cut_numbers(std::string_view& rest, std::size_t most, float
     std::array<float, 3> numbers = {otherwise, otherwise, otherwise};
     for (std::size_t i = 0; i < most; ++i) {
         std::string_view after = rest;
-        const std::optional<double> number = number_of(cut_word(after));
+        const std::optional<double> number = parse_number(cut_word(after));
         if (!number || trimmed(after).empty()) break;
         numbers[i] = static_cast<float>(*number);
         rest = after;
@@ -142,7 +142,7 @@ void MtlReader::read_color(const ObjLines& line) {
     std::vector<float> numbers;
     std::string_view rest = line.numbers();
     for (std::string_view word = cut_word(rest); !word.empty(); word = cut_word(rest)) {
-        const std::optional<double> number = number_of(word);
+        const std::optional<double> number = parse_number(word);
         if (!number || !std::isfinite(*number))
             return passed_over_.add(text(line.keyword(), ' ', word),
                                     line.line());  // "Kd spectral file", "Kd xyz 1 1 1"
@@ -165,7 +165,7 @@ void MtlReader::read_opacity(const ObjLines& line) {
     std::string_view rest = line.numbers();
     std::string_view word = cut_word(rest);
     if (word == "-halo") word = cut_word(rest);
-    const std::optional<double> number = number_of(word);
+    const std::optional<double> number = parse_number(word);
     if (!number || std::isnan(*number)) return passed_over_.add(text(line.keyword(), ' ', word), line.line());
     const bool is_tr = line.keyword() == "Tr";
     if (is_tr && current_->has_opacity) return;

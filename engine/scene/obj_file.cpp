@@ -77,7 +77,7 @@ class ObjParser {
         Numbers numbers;
         std::string_view rest = lines_.numbers();
         for (std::string_view word = cut_word(rest); !word.empty() && numbers.count < 8; word = cut_word(rest)) {
-            const std::optional<double> number = number_of(word);
+            const std::optional<double> number = parse_number(word);
             if (!number) fail_here("'", word.substr(0, 20), "' is not a number");
             numbers.values[numbers.count++] = *number;
         }

@@ -66,7 +66,7 @@ class PlyValues {
         std::string_view rest = text.substr(position_);
         const std::string_view word = cut_word(rest);
         if (word.empty()) fail_truncated();
-        const std::optional<double> number = number_of(word);
+        const std::optional<double> number = parse_number(word);
         if (!number)
             fail("'", object_, "': '", word.substr(0, 20), "' at byte ", word.data() - text.data(), " is not a number");
         position_ = text.size() - rest.size();

@@ -93,7 +93,7 @@ class StlTextParser {
         dvec3 point;
         for (int i = 0; i < 3; ++i) {
             const std::string_view word = cut_word(rest);
-            const std::optional<double> number = number_of(word);
+            const std::optional<double> number = parse_number(word);
             if (!number)
                 fail("'", object_, "', line ", line_, ": '", word.substr(0, 20), "' is not a number of a vertex");
             point[i] = *number;

@@ -56,7 +56,7 @@ std::string lowered(std::string_view text) {
     return lower;
 }
 
-std::optional<double> number_of(std::string_view word) {
+std::optional<double> parse_number(std::string_view word) {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0;
     const char* const last = word.data() + word.size();

@@ -23,6 +23,6 @@ std::string lowered(std::string_view text);
 
 // The whole word as a number, rounded once; beyond the range of double it is infinite or 0. Also nan, inf, and what
 // Microsoft's C library printed in their place until 2015 (-1.#IND, 1.#QNAN, 1.#INF). Nothing if it is anything else.
-std::optional<double> number_of(std::string_view word);
+std::optional<double> parse_number(std::string_view word);
 
 }  // namespace twinray

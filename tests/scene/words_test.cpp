@@ -37,11 +37,11 @@ TEST(Words, NumbersAreWholeWords) {
                                                                                            {"inf", INFINITY},
                                                                                            {"1.#INF", INFINITY},
                                                                                            {"-1.#INF00", -INFINITY}})
-        EXPECT_EQ(number_of(word), value) << word;
+        EXPECT_EQ(parse_number(word), value) << word;
     for (const char* word : {"nan", "-nan", "NaN", "nan(ind)", "-1.#IND", "1.#QNAN", "1.#IND00"})
-        EXPECT_TRUE(number_of(word) && std::isnan(*number_of(word))) << word;
+        EXPECT_TRUE(parse_number(word) && std::isnan(*parse_number(word))) << word;
     for (const char* word : {"", "+", "-", "x", "1x", "1,5", "0x1", "1.5#INF", "2.#INF", "1#INF", "#"})
-        EXPECT_FALSE(number_of(word)) << word;
+        EXPECT_FALSE(parse_number(word)) << word;
 }
 
 TEST(Words, TextHasNoMarkAndNoZeroByte) {
