@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What the interface of an opaque surface reflects of the light from a direction, and what that leaves to the diffuse part
-// below. Needs bsdf_record.h.
+// What the interface of an opaque surface reflects of the light from a direction, and what that leaves to the diffuse
+// part below. Needs bsdf_record.h.
 #ifndef TWINRAY_PATH_TRACER_BSDF_ALBEDO_H
 #define TWINRAY_PATH_TRACER_BSDF_ALBEDO_H
 
-// Of a grain: the roughness of an even surface that reflects no less of the light from w. That is the one in the plane of w,
-// and across the grain down to less than half of it, as what tilts microfacets out of the plane makes more of them grazing:
-// fitted, and a test holds it against samples.
+// Of a grain: the roughness of an even surface that reflects no less of the light from w. That is the one in the plane
+// of w, and across the grain down to less than half of it, as what tilts microfacets out of the plane makes more of
+// them grazing: fitted, and a test holds it against samples.
 FUNC float alpha_towards(Bsdf bsdf, vec3 w)
 {
     float sine2 = w.x * w.x + w.y * w.y;
@@ -17,10 +17,10 @@ FUNC float alpha_towards(Bsdf bsdf, vec3 w)
     return sqrt(dot(slope, slope) / sine2) * (1.0f - 0.55f * (1.0f - bsdf.alpha / bsdf.alpha_grain) * across * across);
 }
 
-// Albedo of a white mirror for light from w, and Schlick's part of it: fits to quadrature of microfacets that scatter once.
-// Schlick's part is that of a cosine which is larger at grazing, for facets that are seen face the viewer; it is at most 0.033
-// too high and 0.005 too low for cosines from 0.01 on. A white mirror's, of which a dielectric has 4 %, is at most 0.15 too
-// high and 0.012 too low.
+// Albedo of a white mirror for light from w, and Schlick's part of it: fits to quadrature of microfacets that scatter
+// once. Schlick's part is that of a cosine which is larger at grazing, for facets that are seen face the viewer; it is
+// at most 0.033 too high and 0.005 too low for cosines from 0.01 on. A white mirror's, of which a dielectric has 4 %,
+// is at most 0.15 too high and 0.012 too low.
 FUNC vec2 mirror_albedo(Bsdf bsdf, vec3 w)
 {
     if (is_smooth(bsdf)) return vec2(1.0f, schlick_weight(w.z));
