@@ -8,7 +8,6 @@
 #include "bench/hits_hash.h"
 #include "bench/report.h"
 #include "bench/table.h"
-#include "bench_minimal.spv.h"
 #include "engine/accel/scene_push.h"
 #include "ladder_program.trace_program.h"
 #include "swtlas/sw_tlas.h"
@@ -26,9 +25,6 @@ constexpr Addition additions[] = {
     {"+ instances", FEATURE_INSTANCES}, {"+ masks", FEATURE_MASKS},
     {"+ culling", FEATURE_CULLING},     {"+ filters", FEATURE_FILTERS},
     {"+ boxes", FEATURE_BOXES},         {"+ other layouts", FEATURE_BVH2 | FEATURE_COMPRESSED | FEATURE_BVH4}};
-
-// What minimal.comp can do.
-constexpr uint minimal_features = FEATURE_COMPRESSED;
 
 // A scene, traced by one program.
 class RungContestant : public Contestant {
@@ -74,31 +70,22 @@ class RungContestant : public Contestant {
     std::unique_ptr<TraceProgram> program_;
 };
 
-TraceProgramCode minimal_program() {
-    TraceProgramCode code;
-    code.software = bench_minimal_spirv;
-    return code;
-}
-
-std::unique_ptr<TraceProgram> program_of(const AbstractAccel& accel, const std::string& name, uint features,
-                                         const TraceProgramCode& code) {
-    return std::make_unique<KernelProgram>(accel.context(), accel.view().accel, features, name, code.software,
-                                           code.software_refined, true);
+std::unique_ptr<TraceProgram> program_of(const AbstractAccel& accel, const std::string& name, uint features) {
+    return std::make_unique<KernelProgram>(accel.context(), accel.view().accel, features, name, ladder_program.software,
+                                           ladder_program.software_refined, true);
 }
 
 LineUp line_up_of(AbstractAccel& accel, Level level, Query query) {
     LineUp line_up;
-    const auto add = [&](const std::string& name, uint features, const TraceProgramCode& code) {
-        line_up.push_back(std::make_unique<RungContestant>(accel, level, program_of(accel, name, features, code)));
+    const auto add = [&](const std::string& name, uint features) {
+        line_up.push_back(std::make_unique<RungContestant>(accel, level, program_of(accel, name, features)));
     };
     uint features = accel.features_for({.query = query, .answer_only = true});
-    if ((features & ~FEATURE_HITS) == minimal_features && level == Level::watertight)
-        add("by hand", features, minimal_program());
-    add("needed", features, ladder_program);
+    add("needed", features);
     for (const Addition& addition : additions) {
         if ((addition.features & ~features) == 0) continue;
         features |= addition.features;
-        add(addition.name, features, ladder_program);
+        add(addition.name, features);
     }
     return line_up;
 }
@@ -112,13 +99,12 @@ Ladder measure_ladder(AbstractAccel& accel, RayKind kind, std::vector<Ray>&& ray
     for (std::size_t i = 0; i < line_up.size(); ++i)
         ladder.rungs.push_back(
             {line_up[i]->labels().name, static_cast<const RungContestant&>(*line_up[i]).features(), rounds[i]});
-    ladder.needed = ladder.rungs.front().name == "by hand" ? 1 : 0;
     return ladder;
 }
 
 }  // namespace
 
-double Ladder::ratio(std::size_t rung) const { return speed_up(rungs[needed].rounds, rungs[rung].rounds); }
+double Ladder::ratio(std::size_t rung) const { return speed_up(rungs.front().rounds, rungs[rung].rounds); }
 
 bool Ladder::agrees() const {
     return std::all_of(rungs.begin(), rungs.end(),

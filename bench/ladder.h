@@ -19,19 +19,17 @@ struct LadderOptions {
 };
 
 // One set of rays on the rungs of a ladder: programs for the same scene that bits of FEATURES are added to, one after
-// the other. The first has those alone that the trace needs; where a kernel written by hand can trace the scene, it
-// stands below.
+// the other. The first has those alone that the trace needs.
 struct Ladder {
     struct Rung {
-        std::string name;  // "by hand", "needed", "+ masks"
+        std::string name;  // "needed", "+ masks"
         uint features = 0;
         TraceRounds rounds;
     };
     RayKind kind;
     std::vector<Rung> rungs;
-    std::size_t needed = 0;  // which rung has what is needed alone
 
-    // Median over the rounds of its time over that of the rung with what is needed.
+    // Median over the rounds of its time over that of the first.
     double ratio(std::size_t rung) const;
     // Whether all of them found the same.
     bool agrees() const;

@@ -4,7 +4,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/query.glsl"
-#include "shaders/shared/turns.h"
 #ifdef TWINRAY_PROGRAM
 #include "twinray_program.glsl"
 #endif
@@ -22,13 +21,9 @@ void main()
     uint first = dealt_group(group_index(), groups, TRACE_HANDS) * run * size + gl_LocalInvocationID.x;
     TraceOptions options = trace_options(args.mask, args.flags, TRACE_QUERY);
     options.user_data = args.user_data;
-    bool has_turns = TRACE_HANDS != 0u && TRACE_QUERY == QUERY_CLOSEST;
-    Turns turns = turns_as_given();
     for (uint k = 0u; k < run && first + k * size < count; ++k)
     {
-        uint place = first + k * size;
-        if (has_turns) place = ray_of_turn(turns, args, first, k, run, size, count);
-        uint i = ray_at(args.order, place);
+        uint i = ray_at(args.order, first + k * size);
         Hit hit = trace(args.scene, load_ray(args.rays, i), options);
         if ((TRACE_FEATURES & FEATURE_HITS) != 0u) store_hit(args.hits, i, hit);
         else AT(args.hits, i).hit = hit.hit;

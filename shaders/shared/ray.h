@@ -68,11 +68,6 @@ FUNC Ray load_ray(REF(Ray) rays, uint index)
     ray.t_max = z_max.y;
     return ray;
 }
-FUNC vec3 load_direction(REF(Ray) rays, uint index)
-{
-    Words64 words = Words64(uint64_t(rays) + uint64_t(index) * 32ul);
-    return vec3(FLOATS(AT(words, 2)), FLOATS(AT(words, 3)).x);
-}
 FUNC void store_hit(REF(Hit) hits, uint index, Hit hit)
 {
     Words64 words = Words64(uint64_t(hits) + uint64_t(index) * 32ul);

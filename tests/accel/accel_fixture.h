@@ -38,7 +38,8 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
 
     // Not the driver: held to every rule to the letter.
     bool is_ours() const { return GetParam() == Kind::software || GetParam() == Kind::oracle; }
-    virtual AccelOptions accel_options() const { return {}; }
+    // Programs that no test waits for are not compiled.
+    virtual AccelOptions accel_options() const { return {.compiles_in_background = false}; }
     std::unique_ptr<AbstractAccel> make_accel() { return make_accel(accel_options()); }
     std::unique_ptr<AbstractAccel> make_accel(const AccelOptions& options) {
         if (GetParam() == Kind::oracle) return std::make_unique<OracleAccel>(context());

@@ -16,7 +16,7 @@ class Certified : public test::VulkanTest {
   protected:
     // Rays for which SwTlas names another hit than the referee.
     std::size_t wrong(const Scene& scene, std::span<const Ray> rays, Level level, const TraceDesc& desc = {}) {
-        SwTlas accel(context(), {.level = level});
+        SwTlas accel(context(), {.level = level, .compiles_in_background = false});
         for (const Instance& instance : scene.instances) accel.push(scene.meshes[instance.mesh], instance.transform);
         const Oracle oracle = Oracle::of(scene);
         TraceDesc at_level = desc;
@@ -98,7 +98,7 @@ TEST_F(Certified, FarRaysHitSqueezedInstances) {
 
 TEST_F(Certified, NothingLeaksAtEdgesAndVertices) {
     const Mesh sphere = make_icosphere(4);
-    SwTlas accel(context(), {.level = Level::certified});
+    SwTlas accel(context(), {.level = Level::certified, .compiles_in_background = false});
     const AccelHandle handle = accel.push(sphere);
     for (const Transform& transform :
          {Transform{}, Transform::translation({1e4f, 0, 0}) * Transform::scaling({3, 0.1f, 1})}) {
@@ -116,14 +116,14 @@ TEST_F(Certified, NothingLeaksAtEdgesAndVertices) {
 }
 
 TEST_F(Certified, EqualTrianglesAreDecidedByTheirIds) {
-    SwTlas accel(context(), {.level = Level::certified});
+    SwTlas accel(context(), {.level = Level::certified, .compiles_in_background = false});
     for (int i = 0; i < 3; ++i) accel.push(square(0));
     const std::vector<Ray> rays(64, test::down(0.3f, 0.6f));
     for (const Hit& hit : accel.closest_hits(rays, {.level = Level::certified})) EXPECT_EQ(hit.instance_index, 0u);
 }
 
 TEST_F(Certified, TheIntervalHoldsExactly) {
-    SwTlas accel(context(), {.level = Level::certified});
+    SwTlas accel(context(), {.level = Level::certified, .compiles_in_background = false});
     accel.push(square(0));
     const float third = 1.0f / 3;
     Ray ray{vec3(0.25f, 0.5f, third), 0, vec3(0, 0, -0.1f), INFINITY};  // t = 3.33333332..., no float
@@ -143,7 +143,7 @@ TEST_F(Certified, TheIntervalHoldsExactly) {
 }
 
 TEST_F(Certified, TheIntervalHoldsExactlyForFarRays) {
-    SwTlas accel(context(), {.level = Level::certified});
+    SwTlas accel(context(), {.level = Level::certified, .compiles_in_background = false});
     accel.push(square(0));
     for (const float speed : {3.0f, 5.0f, 7.0f}) {
         const float t = 0x1p20f;
@@ -160,7 +160,7 @@ TEST_F(Certified, TheIntervalHoldsExactlyForFarRays) {
 }
 
 TEST_F(Certified, NoDistanceBeyondTheLargestFloatIsReported) {
-    SwTlas accel(context(), {.level = Level::certified});
+    SwTlas accel(context(), {.level = Level::certified, .compiles_in_background = false});
     accel.push(square(0));
     // t has two halves; beyond the largest float the first is infinite, and the second of either sign.
     for (float z = 1e9f; z < 2e9f; z += 1e8f) {

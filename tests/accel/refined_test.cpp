@@ -14,7 +14,7 @@ using test::square;
 
 class Refined : public test::AccelTest {
   protected:
-    AccelOptions accel_options() const override { return {.level = Level::refined}; }
+    AccelOptions accel_options() const override { return {.level = Level::refined, .compiles_in_background = false}; }
 
     // Distance in units of the last place of the exact t.
     static double ulps(float t, double exact) {
