@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "engine/core/error.h"
+#include "engine/core/statistics_feature.h"
 
 namespace twinray {
 namespace {
@@ -76,7 +77,7 @@ void disable_features(ContextDesc& desc, const std::string& list) {
     }
 }
 
-Context::Context(const ContextDesc& desc) : log_(desc.log) {
+Context::Context(const ContextDesc& desc) : log_(desc.log), watch_(desc.watch_kernels) {
     vk_.load_global(desc.get_instance_proc_addr);
     try {
         create_instance(desc);
@@ -165,6 +166,8 @@ void Context::create_device(const ContextDesc& desc) {
     info.pQueueCreateInfos = &queue;
     info.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions().size());
     info.ppEnabledExtensionNames = requirements.extensions().data();
+    StatisticsFeature statistics;
+    if (watch_) statistics.add_to(info, vk_, physical_device_);
     vk_check(vk_.vkCreateDevice(physical_device_, &info, nullptr, &device_), "create a Vulkan device");
     state_features(info, facts_);
     vk_.load_device(device_);
@@ -175,21 +178,13 @@ void Context::create_own_objects(const AllocatorHooks& allocator, const std::fil
     VkPhysicalDeviceProperties2 properties{};
     properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
     vk_.vkGetPhysicalDeviceProperties2(physical_device_, &properties);
-    if (has_timestamps(vk_, physical_device_, queue_family_))
+    if (!watch_ && has_timestamps(vk_, physical_device_, queue_family_))
         timestamp_period_ns_ = properties.properties.limits.timestampPeriod;
     const bool has_hooks = allocator.allocate || allocator.free;
     allocator_ = has_hooks ? std::make_unique<Allocator>(allocator)
                            : std::make_unique<Allocator>(vk_, instance_, physical_device_, device_, api_version_);
 
-    VkSemaphoreTypeCreateInfo type{};
-    type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
-    type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
-    VkSemaphoreCreateInfo semaphore{};
-    semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-    semaphore.pNext = &type;
-    vk_check(vk_.vkCreateSemaphore(device_, &semaphore, nullptr, &timeline_), "create the timeline semaphore");
-    set_name(VK_OBJECT_TYPE_SEMAPHORE, reinterpret_cast<std::uint64_t>(timeline_), "twinray timeline");
-
+    if (!watch_) create_timeline();
     if (!pipeline_cache_) create_pipeline_cache(PipelineStore(pipeline_folder, properties.properties));
 }
 

@@ -22,6 +22,9 @@ struct SyncPoint {
     std::uint64_t value = 0;
 };
 
+// A kernel that is made, and the size of its push constants. Any thread.
+using KernelWatch = std::function<void(const KernelDesc& kernel, std::uint32_t args_bytes)>;
+
 struct ContextDesc {
     std::string name = "twinray";
     std::string device = {};  // "" = best; an index or a part of the name, see choose_device
@@ -34,6 +37,10 @@ struct ContextDesc {
     std::filesystem::path pipeline_folder =
         {};        // keeps compiled pipelines between runs, see PipelineStore; empty: none does
     Log log = {};  // warnings and validation messages; empty = stderr
+    // For tools that ask what a driver makes of kernels (engine/core/kernel_statistics.h): if set, nothing runs. Each
+    // kernel is told to it and not compiled, what is submitted is done at once, and what is read back is 0. A driver
+    // without its hardware will do; where it can tell of pipelines (VK_KHR_pipeline_executable_properties), it does.
+    KernelWatch watch_kernels = {};
 };
 
 // Leaves features of the device unused: `list` holds ray_query and ray_tracing_pipeline, separated by commas. For
@@ -61,6 +68,7 @@ class Context {
     // where the device has no image arrays.
     VkDescriptorSetLayout image_array_layout();
     std::uint32_t queue_family() const { return queue_family_; }
+    const KernelWatch& watch() const { return watch_; }                 // ContextDesc::watch_kernels
     const DeviceFacts& facts() const { return facts_; }                 // what is enabled, not merely supported
     float timestamp_period_ns() const { return timestamp_period_ns_; }  // 0: the queue has no timestamps
 
@@ -113,6 +121,7 @@ class Context {
     void create_instance(const ContextDesc& desc);
     void create_device(const ContextDesc& desc);
     void create_own_objects(const AllocatorHooks& allocator, const std::filesystem::path& pipeline_folder);
+    void create_timeline();
     void create_pipeline_cache(const PipelineStore& store);
     void keep_pipelines() noexcept;
     VkResult submit_signalling(VkCommandBuffer commands, std::uint64_t value) const;
@@ -124,6 +133,7 @@ class Context {
     VulkanFunctions vk_;
     DeviceFacts facts_;
     Log log_;
+    KernelWatch watch_;
     bool owns_device_ = true;
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
@@ -141,7 +151,7 @@ class Context {
     VkDescriptorSetLayout image_array_layout_ = VK_NULL_HANDLE;
     PipelineStore pipeline_store_;
     std::size_t kept_pipeline_bytes_ = 0;
-    VkSemaphore timeline_ = VK_NULL_HANDLE;
+    VkSemaphore timeline_ = VK_NULL_HANDLE;  // none where nothing runs
     std::uint64_t submitted_ = 0;
     std::vector<Wait> awaited_;  // by the next submission
     float timestamp_period_ns_ = 0;

@@ -20,15 +20,6 @@ DeviceKind kind_of(VkPhysicalDeviceType type) {
     }
 }
 
-std::vector<VkExtensionProperties> device_extensions(const VulkanFunctions& vk, VkPhysicalDevice device) {
-    std::uint32_t count = 0;
-    vk_check(vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "list device extensions");
-    std::vector<VkExtensionProperties> extensions(count);
-    vk_check(vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
-             "list device extensions");
-    return extensions;
-}
-
 // As if a device were created with everything that this one has.
 void query_features(const VulkanFunctions& vk, VkPhysicalDevice device, DeviceFacts& facts) {
     const std::vector<VkExtensionProperties> extensions = device_extensions(vk, device);
@@ -63,6 +54,15 @@ std::vector<VkPhysicalDevice> physical_devices(const VulkanFunctions& vk, VkInst
     std::vector<VkPhysicalDevice> devices(count);
     vk_check(vk.vkEnumeratePhysicalDevices(instance, &count, devices.data()), "list Vulkan devices");
     return devices;
+}
+
+std::vector<VkExtensionProperties> device_extensions(const VulkanFunctions& vk, VkPhysicalDevice device) {
+    std::uint32_t count = 0;
+    vk_check(vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "list device extensions");
+    std::vector<VkExtensionProperties> extensions(count);
+    vk_check(vk.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
+             "list device extensions");
+    return extensions;
 }
 
 int compute_queue_family(const VulkanFunctions& vk, VkPhysicalDevice device) {

@@ -43,7 +43,8 @@ VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlag
 
 ComputePipeline::ComputePipeline(Context& context, const KernelDesc& desc, std::uint32_t args_bytes)
     : context_(context), desc_(desc), args_bytes_(args_bytes) {
-    if (desc.compiles_when_used) return;
+    if (context.watch()) context.watch()(desc, args_bytes);
+    if (context.watch() || desc.compiles_when_used) return;
     compiled_ = context.pipelines().get(context, desc, args_bytes);
     desc_.spirv = {};
 }
@@ -69,6 +70,7 @@ void ComputePipeline::dispatch_groups(Commands& commands, const void* args, std:
     if (group_count == 0) return;
     std::optional<Commands::Pass> own_pass;
     if (!commands.in_pass()) own_pass.emplace(commands, desc_.name);
+    if (context_.watch()) return;
     bind(commands, args, images);
     const std::uint64_t rows = (group_count + groups_per_row - 1) / groups_per_row;
     context_.vk().vkCmdDispatch(commands.handle(), static_cast<std::uint32_t>(std::min(group_count, groups_per_row)),
@@ -79,6 +81,7 @@ void ComputePipeline::dispatch_indirect(Commands& commands, const void* args, co
                                         std::uint64_t offset) const {
     std::optional<Commands::Pass> own_pass;
     if (!commands.in_pass()) own_pass.emplace(commands, desc_.name);
+    if (context_.watch()) return;
     bind(commands, args, VK_NULL_HANDLE);
     context_.vk().vkCmdDispatchIndirect(commands.handle(), counts.handle(), offset);
 }

@@ -19,7 +19,7 @@ std::string key_of(const KernelDesc& desc, std::uint32_t args_bytes) {
     return key;
 }
 
-VkPipeline new_pipeline(Context& context, const KernelDesc& desc, VkPipelineLayout layout) {
+VkPipeline new_pipeline(Context& context, const KernelDesc& desc, VkPipelineLayout layout, Telling telling) {
     std::vector<VkSpecializationMapEntry> entries;
     std::vector<std::uint32_t> values;
     for (const SpecializationConstant& constant : desc.constants) {
@@ -37,9 +37,11 @@ VkPipeline new_pipeline(Context& context, const KernelDesc& desc, VkPipelineLayo
     info.stage.pName = "main";
     info.stage.pSpecializationInfo = &specialization;
     info.layout = layout;
+    if (telling == Telling::statistics) info.flags = VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
     VkPipeline pipeline = VK_NULL_HANDLE;
+    const VkPipelineCache cache = telling == Telling::statistics ? VK_NULL_HANDLE : context.pipeline_cache();
     const VkResult result =
-        context.vk().vkCreateComputePipelines(context.device(), context.pipeline_cache(), 1, &info, nullptr, &pipeline);
+        context.vk().vkCreateComputePipelines(context.device(), cache, 1, &info, nullptr, &pipeline);
     context.vk().vkDestroyShaderModule(context.device(), module, nullptr);
     if (result != VK_SUCCESS) fail("kernel '", desc.name, "': create the pipeline: ", name_of(result));
     context.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), desc.name);
@@ -53,14 +55,20 @@ CompiledKernel::~CompiledKernel() {
     vk.vkDestroyPipelineLayout(device, layout, nullptr);
 }
 
+std::shared_ptr<CompiledKernel> compile(Context& context, const KernelDesc& desc, std::uint32_t args_bytes,
+                                        Telling telling) {
+    auto kernel = std::make_shared<CompiledKernel>(context.vk(), context.device());
+    kernel->layout = create_push_constant_layout(context, VK_SHADER_STAGE_COMPUTE_BIT, args_bytes,
+                                                 desc.has_images ? context.image_array_layout() : VK_NULL_HANDLE);
+    kernel->pipeline = new_pipeline(context, desc, kernel->layout, telling);
+    return kernel;
+}
+
 // Compiles unlocked: if two threads compile the same, the first one's is taken.
 std::shared_ptr<CompiledKernel> PipelineTable::get(Context& context, const KernelDesc& desc, std::uint32_t args_bytes) {
     std::string key = key_of(desc, args_bytes);
     if (std::shared_ptr<CompiledKernel> kernel = find(key)) return kernel;
-    auto kernel = std::make_shared<CompiledKernel>(context.vk(), context.device());
-    kernel->layout = create_push_constant_layout(context, VK_SHADER_STAGE_COMPUTE_BIT, args_bytes,
-                                                 desc.has_images ? context.image_array_layout() : VK_NULL_HANDLE);
-    kernel->pipeline = new_pipeline(context, desc, kernel->layout);
+    std::shared_ptr<CompiledKernel> kernel = compile(context, desc, args_bytes, Telling::nothing);
     const std::lock_guard lock(mutex_);
     return entries_.try_emplace(std::move(key), Entry{std::move(kernel)}).first->second.kernel;
 }

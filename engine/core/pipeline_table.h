@@ -2,6 +2,7 @@
 // The compute pipelines of a device: whoever runs the same kernel shares one.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -26,6 +27,14 @@ struct CompiledKernel {
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline pipeline = VK_NULL_HANDLE;
 };
+
+enum class Telling : std::uint8_t {
+    nothing,
+    statistics,  // for vkGetPipelineExecutableStatisticsKHR, and beside the context's pipeline cache
+};
+// Throws Error naming the kernel where it cannot be compiled. Any thread.
+std::shared_ptr<CompiledKernel> compile(Context& context, const KernelDesc& desc, std::uint32_t args_bytes,
+                                        Telling telling);
 
 // Keeps pipelines beyond the kernels that were made with them, so that the next accelerator, say, compiles nothing. A
 // driver may also compile a part at the first dispatch (lavapipe does, about 1 ms a kernel), which no pipeline cache

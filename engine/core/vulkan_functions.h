@@ -81,6 +81,11 @@
     F(vkCmdBindDescriptorSets)      \
     F(vkCmdCopyBufferToImage)
 
+// Present only with VK_KHR_pipeline_executable_properties.
+#define TWINRAY_STATISTICS_FUNCTIONS(F)     \
+    F(vkGetPipelineExecutablePropertiesKHR) \
+    F(vkGetPipelineExecutableStatisticsKHR)
+
 // Present only with VK_KHR_acceleration_structure and VK_KHR_ray_tracing_pipeline.
 #define TWINRAY_RAY_TRACING_FUNCTIONS(F)             \
     F(vkCreateAccelerationStructureKHR)              \
@@ -104,6 +109,7 @@ struct VulkanFunctions {
     TWINRAY_INSTANCE_FUNCTIONS(TWINRAY_MEMBER)
     TWINRAY_DEBUG_FUNCTIONS(TWINRAY_MEMBER)
     TWINRAY_DEVICE_FUNCTIONS(TWINRAY_MEMBER)
+    TWINRAY_STATISTICS_FUNCTIONS(TWINRAY_MEMBER)
     TWINRAY_RAY_TRACING_FUNCTIONS(TWINRAY_MEMBER)
 #undef TWINRAY_MEMBER
 

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "engine/core/vulkan_functions.h"
+
+namespace twinray {
+
+// Lets the driver tell of pipelines (VK_KHR_pipeline_executable_properties).
+class StatisticsFeature {
+  public:
+    // Nothing where the device has no such thing. `info` refers to this object until vkCreateDevice. Once.
+    void add_to(VkDeviceCreateInfo& info, const VulkanFunctions& vk, VkPhysicalDevice device);
+
+  private:
+    VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR feature_{};
+    std::vector<const char*> extensions_;
+};
+
+}  // namespace twinray
