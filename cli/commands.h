@@ -19,6 +19,7 @@ Command devices_command();
 Command distance_command();
 Command help_command(const std::vector<std::string>& names);
 Command illumination_command();
+Command kernels_command();
 Command leaks_command();
 Command report_command();
 Command trace_command();

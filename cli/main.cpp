@@ -73,8 +73,8 @@ std::vector<Command> all_commands() {
 #ifdef TWINRAY_HAS_BENCH
     commands.push_back(bench_command());
 #endif
-    for (const auto& make : {distance_command, collide_command, viewfactors_command, illumination_command,
-                             centroid_command, completion_command})
+    for (const auto& make : {kernels_command, distance_command, collide_command, viewfactors_command,
+                             illumination_command, centroid_command, completion_command})
         commands.push_back(make());
     std::vector<std::string> names;
     for (const Command& command : commands) names.push_back(command.name);

@@ -20,11 +20,11 @@ AbstractAccel& checked(AbstractAccel& accel) {
 }
 
 KernelDesc kernel_for(const AbstractAccel& accel) {
-    KernelDesc desc{.name = "all_hits",
+    KernelDesc desc{.name = "all_hits_hw",
                     .spirv = all_hits_hw_spirv,
                     .constants = {{FEATURES_CONSTANT, FEATURES_ALL & ~FEATURE_BOXES},
                                   {LEVEL_CONSTANT, static_cast<std::uint32_t>(Level::watertight)}}};
-    if (accel.is_software()) desc.spirv = all_hits_sw_spirv;
+    if (accel.is_software()) desc.name = "all_hits_sw", desc.spirv = all_hits_sw_spirv;
     return desc;
 }
 

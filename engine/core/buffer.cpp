@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/buffer.h"
 
-#include <cstring>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -24,7 +23,6 @@ Buffer::Buffer(Context& context, const BufferDesc& desc) : context_(&context), b
     if (name_.empty()) fail("buffer of ", bytes_, " bytes: a name is required");
     if (bytes_ == 0) return;
     made_ = context.allocator().allocate({name_.c_str(), bytes_, usage_of(context, desc), desc.memory, desc.alignment});
-    if (context.watch() && made_.mapped) std::memset(made_.mapped, 0, bytes_);
     VkBufferDeviceAddressInfo address{};
     address.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO;
     address.buffer = made_.buffer;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "engine/core/dry_device.h"
 #include "engine/core/error.h"
 #include "engine/core/statistics_feature.h"
 
@@ -82,7 +83,7 @@ Context::Context(const ContextDesc& desc) : log_(desc.log), watch_(desc.watch_ke
     try {
         create_instance(desc);
         create_device(desc);
-        create_own_objects({}, desc.pipeline_folder);
+        create_own_objects(watch_ ? memoryless_allocator() : AllocatorHooks{}, desc.pipeline_folder);
     } catch (...) {
         destroy_everything();
         throw;
@@ -172,19 +173,20 @@ void Context::create_device(const ContextDesc& desc) {
     state_features(info, facts_);
     vk_.load_device(device_);
     vk_.vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+    if (watch_) run_nothing(vk_);
 }
 
 void Context::create_own_objects(const AllocatorHooks& allocator, const std::filesystem::path& pipeline_folder) {
     VkPhysicalDeviceProperties2 properties{};
     properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
     vk_.vkGetPhysicalDeviceProperties2(physical_device_, &properties);
-    if (!watch_ && has_timestamps(vk_, physical_device_, queue_family_))
+    if (has_timestamps(vk_, physical_device_, queue_family_))
         timestamp_period_ns_ = properties.properties.limits.timestampPeriod;
     const bool has_hooks = allocator.allocate || allocator.free;
     allocator_ = has_hooks ? std::make_unique<Allocator>(allocator)
                            : std::make_unique<Allocator>(vk_, instance_, physical_device_, device_, api_version_);
 
-    if (!watch_) create_timeline();
+    create_timeline();
     if (!pipeline_cache_) create_pipeline_cache(PipelineStore(pipeline_folder, properties.properties));
 }
 

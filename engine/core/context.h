@@ -151,7 +151,7 @@ class Context {
     VkDescriptorSetLayout image_array_layout_ = VK_NULL_HANDLE;
     PipelineStore pipeline_store_;
     std::size_t kept_pipeline_bytes_ = 0;
-    VkSemaphore timeline_ = VK_NULL_HANDLE;  // none where nothing runs
+    VkSemaphore timeline_ = VK_NULL_HANDLE;
     std::uint64_t submitted_ = 0;
     std::vector<Wait> awaited_;  // by the next submission
     float timestamp_period_ns_ = 0;

@@ -60,7 +60,7 @@ VkResult Context::submit_signalling(VkCommandBuffer commands, std::uint64_t valu
 
 SyncPoint Context::submit(VkCommandBuffer commands) {
     check_alive();
-    if (!watch_) check(submit_signalling(commands, submitted_ + 1), "submit to the queue");
+    check(submit_signalling(commands, submitted_ + 1), "submit to the queue");
     ++submitted_;
     awaited_.clear();
     collect();
@@ -69,7 +69,6 @@ SyncPoint Context::submit(VkCommandBuffer commands) {
 
 bool Context::is_reached(SyncPoint point) const {
     check_alive();
-    if (watch_) return true;
     std::uint64_t value = 0;
     check(vk_.vkGetSemaphoreCounterValue(device_, point.semaphore, &value), "read the timeline");
     return value >= point.value;
@@ -107,7 +106,6 @@ void Context::retire(std::function<void()> destroy) {
 }
 
 std::uint64_t Context::reached(VkSemaphore semaphore) const noexcept {
-    if (watch_) return submitted_;
     std::uint64_t value = 0;
     const VkResult result = vk_.vkGetSemaphoreCounterValue(device_, semaphore, &value);
     is_lost_ |= result == VK_ERROR_DEVICE_LOST;
@@ -115,7 +113,7 @@ std::uint64_t Context::reached(VkSemaphore semaphore) const noexcept {
 }
 
 void Context::collect() noexcept {
-    if (retired_.empty()) return;
+    if (retired_.empty() || !timeline_) return;
     std::erase_if(announced_, [&](SyncPoint point) { return reached(point.semaphore) >= point.value; });
     const std::uint64_t own = reached(timeline_);
     const auto is_past = [&](SyncPoint point) { return reached(point.semaphore) >= point.value; };

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/dry_device.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace twinray {
+namespace {
+
+// Blocks of the heap are their handles; so many bits apart, addresses do not run into each other soon.
+constexpr unsigned address_shift = 8;
+
+template <class Handle>
+VkResult make(Handle& handle, std::uint64_t bytes = 1) {
+    void* block = std::calloc(bytes, 1);
+    handle = reinterpret_cast<Handle>(block);
+    return block ? VK_SUCCESS : VK_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+template <class Handle>
+void release(Handle handle) {
+    std::free(reinterpret_cast<void*>(handle));
+}
+
+template <class Handle>
+std::uint64_t address_of(Handle handle) {
+    return reinterpret_cast<std::uint64_t>(handle) << address_shift;
+}
+
+// Commands are what begins with a command buffer and returns nothing.
+template <class... Rest>
+void mute(void(VKAPI_PTR*& command)(VkCommandBuffer, Rest...)) {
+    if (command) command = [](VkCommandBuffer, Rest...) {};
+}
+template <class Function>
+void mute(Function&) {}
+
+void mute_commands(VulkanFunctions& vk) {
+#define TWINRAY_MUTE(name) mute(vk.name);
+    TWINRAY_DEVICE_FUNCTIONS(TWINRAY_MUTE)
+    TWINRAY_RAY_TRACING_FUNCTIONS(TWINRAY_MUTE)
+    TWINRAY_DEBUG_FUNCTIONS(TWINRAY_MUTE)
+#undef TWINRAY_MUTE
+    vk.vkSetDebugUtilsObjectNameEXT = nullptr;
+}
+
+void record_nothing(VulkanFunctions& vk) {
+    mute_commands(vk);
+    vk.vkCreateCommandPool = [](VkDevice, const VkCommandPoolCreateInfo*, const VkAllocationCallbacks*,
+                                VkCommandPool* pool) { return make(*pool); };
+    vk.vkDestroyCommandPool = [](VkDevice, VkCommandPool pool, const VkAllocationCallbacks*) { release(pool); };
+    vk.vkAllocateCommandBuffers = [](VkDevice, const VkCommandBufferAllocateInfo* info, VkCommandBuffer* buffers) {
+        std::fill_n(buffers, info->commandBufferCount, VkCommandBuffer{});
+        return VK_SUCCESS;
+    };
+    vk.vkBeginCommandBuffer = [](VkCommandBuffer, const VkCommandBufferBeginInfo*) { return VK_SUCCESS; };
+    vk.vkEndCommandBuffer = [](VkCommandBuffer) { return VK_SUCCESS; };
+    vk.vkCreateQueryPool = [](VkDevice, const VkQueryPoolCreateInfo*, const VkAllocationCallbacks*,
+                              VkQueryPool* pool) { return make(*pool); };
+    vk.vkDestroyQueryPool = [](VkDevice, VkQueryPool pool, const VkAllocationCallbacks*) { release(pool); };
+    vk.vkGetQueryPoolResults = [](VkDevice, VkQueryPool, std::uint32_t, std::uint32_t, std::size_t, void*,
+                                  VkDeviceSize, VkQueryResultFlags) { return VK_SUCCESS; };
+}
+
+void pass_at_once(VulkanFunctions& vk) {
+    vk.vkQueueSubmit = [](VkQueue, std::uint32_t, const VkSubmitInfo*, VkFence) { return VK_SUCCESS; };
+    vk.vkCreateSemaphore = [](VkDevice, const VkSemaphoreCreateInfo*, const VkAllocationCallbacks*,
+                              VkSemaphore* semaphore) { return make(*semaphore); };
+    vk.vkDestroySemaphore = [](VkDevice, VkSemaphore semaphore, const VkAllocationCallbacks*) { release(semaphore); };
+    vk.vkWaitSemaphores = [](VkDevice, const VkSemaphoreWaitInfo*, std::uint64_t) { return VK_SUCCESS; };
+    vk.vkGetSemaphoreCounterValue = [](VkDevice, VkSemaphore, std::uint64_t* value) {
+        *value = UINT64_MAX;
+        return VK_SUCCESS;
+    };
+}
+
+void hold_nothing(VulkanFunctions& vk) {
+    vk.vkGetBufferDeviceAddress = [](VkDevice, const VkBufferDeviceAddressInfo* info) {
+        return VkDeviceAddress{address_of(info->buffer)};
+    };
+    if (!vk.vkCreateAccelerationStructureKHR) return;
+    vk.vkCreateAccelerationStructureKHR = [](VkDevice, const VkAccelerationStructureCreateInfoKHR*,
+                                             const VkAllocationCallbacks*,
+                                             VkAccelerationStructureKHR* structure) { return make(*structure); };
+    vk.vkDestroyAccelerationStructureKHR = [](VkDevice, VkAccelerationStructureKHR structure,
+                                              const VkAllocationCallbacks*) { release(structure); };
+    vk.vkGetAccelerationStructureDeviceAddressKHR = [](VkDevice,
+                                                       const VkAccelerationStructureDeviceAddressInfoKHR* info) {
+        return VkDeviceAddress{address_of(info->accelerationStructure)};
+    };
+}
+
+VkResult allocate_buffer(void*, const BufferRequest& request, AllocatedBuffer& result) {
+    const bool is_mapped = request.memory != Memory::device;
+    const VkResult made = make(result.buffer, is_mapped ? request.bytes : 1);
+    if (is_mapped) result.mapped = reinterpret_cast<void*>(result.buffer);
+    return made;
+}
+
+void free_buffer(void*, const AllocatedBuffer& buffer) { release(buffer.buffer); }
+
+}  // namespace
+
+void run_nothing(VulkanFunctions& vk) {
+    record_nothing(vk);
+    pass_at_once(vk);
+    hold_nothing(vk);
+}
+
+AllocatorHooks memoryless_allocator() {
+    AllocatorHooks hooks;
+    hooks.allocate = allocate_buffer;
+    hooks.free = free_buffer;
+    return hooks;
+}
+
+}  // namespace twinray
