@@ -7,10 +7,10 @@
 namespace twinray::cli {
 
 // The Vulkan instances of this process that are made from now on see RADV alone, which takes the GPU for one of this
-// family. Throws Error where RADV is not installed.
+// family. Throws Error where RADV is not installed or knows no such family.
 void pretend_family(const std::string& family);
 
-// "RADV's manifest": the file by which the Vulkan loader finds RADV; empty: there is none in the usual folders.
+// The file by which the Vulkan loader finds RADV; empty: there is none in the usual folders.
 std::string find_radv();
 
 }  // namespace twinray::cli

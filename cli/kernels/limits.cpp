@@ -110,14 +110,16 @@ std::string table_of(std::span<const KernelRow> rows) {
     std::vector<std::size_t> widths(lines.front().size());
     for (const auto& cells : lines)
         for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], cells[i].size());
-    std::ostringstream out;
+    std::string table;
     for (const auto& cells : lines) {
+        std::ostringstream line;
         for (std::size_t i = 0; i < cells.size(); ++i)
-            out << (i == 0 ? "" : "  ") << (i < 2 ? std::left : std::right) << std::setw(static_cast<int>(widths[i]))
-                << cells[i];
-        out << '\n';
+            line << (i == 0 ? "" : "  ") << (i < 2 ? std::left : std::right) << std::setw(static_cast<int>(widths[i]))
+                 << cells[i];
+        const std::string text = line.str();
+        table += text.substr(0, text.find_last_not_of(' ') + 1) + '\n';
     }
-    return out.str();
+    return table;
 }
 
 }  // namespace twinray::cli

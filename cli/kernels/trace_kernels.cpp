@@ -41,12 +41,13 @@ void trace(AbstractAccel& accel, TraceDesc desc) {
     commands.submit();
 }
 
-// Each query at each level.
+// Each query at each level. Those that need float64 do more with a hit and the same with the scene: the largest is enough.
 void trace_all(AbstractAccel& accel, Stage stage) {
     fill(accel, stage);
     accel.sync();
     for (const Level level : all_levels) {
         const Feature feature = feature_of(level);
+        if (level > Level::watertight && stage != Stage::everything) continue;
         if (level > accel.options().level || accel.capability(feature).support == Support::unsupported) continue;
         for (const Query query : {Query::closest, Query::any})
             trace(accel, {.query = query,
