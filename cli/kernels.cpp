@@ -80,38 +80,39 @@ int run(const KernelsOptions& options) {
 
 Command kernels_command() {
     const auto options = std::make_shared<KernelsOptions>();
-    return {.name = "kernels",
-            .group = "Checking",
-            .summary = "what a driver's compiler makes of every kernel: registers, scratch, instructions",
-            .description =
-                "Compiles every kernel that a program can get from the library, and those of the path tracer, and prints "
-                "what the driver tells of each (VK_KHR_pipeline_executable_properties): VGPR, registers of a lane; waves, "
-                "how many subgroups a unit keeps at a time; scratch, bytes of memory that stand in for registers, of a "
-                "subgroup; shared, bytes of a group; instructions. What it does not tell is empty. Nothing runs: with "
-                "--family, Mesa's driver RADV compiles for GPUs of AMD that are not there.",
-            .sections = {{"Which",
-                          {{.name = "--device",
-                            .value = word(options->device, "DEVICE"),
-                            .help = "index or a part of the name, as `twinray devices` shows them; the fastest if not "
-                                    "given",
-                            .excludes = {"--family"}},
-                           {.name = "--family",
-                            .value = words(options->families, "FAMILY,..."),
-                            .help = "GPUs of AMD, by the names that RADV has for them: navi10 (RDNA 1), navi21 (RDNA 2), "
-                                    "navi31 (RDNA 3), gfx1201 (RDNA 4), ..."},
-                           {.name = "--filter",
-                            .value = word(options->filter, "TEXT"),
-                            .help = "only kernels with this in their name or specialisation"}}},
-                         {"Output",
-                          {{.name = "--against",
-                            .value = file(options->against),
-                            .help = "what --json wrote earlier: says which kernels take more registers, scratch or shared "
-                                    "memory, or 2 % more instructions, and which are new"},
-                           json_option(options->json)}}},
-            .examples = {{"twinray kernels --family navi21,navi31,gfx1201", "three generations, without any of them"},
-                         {"twinray kernels --filter \"swtlas_trace closest\"", "what traces on this device"}},
-            .fault = "a kernel grew past its limit, or has none",
-            .run = [options] { return run(*options); }};
+    return {
+        .name = "kernels",
+        .group = "Checking",
+        .summary = "what a driver's compiler makes of every kernel: registers, scratch, instructions",
+        .description =
+            "Compiles every kernel that a program can get from the library, and those of the path tracer, and prints "
+            "what the driver tells of each (VK_KHR_pipeline_executable_properties): VGPR, registers of a lane; waves, "
+            "how many subgroups a unit keeps at a time; scratch, bytes of memory that stand in for registers, of a "
+            "subgroup; shared, bytes of a group; instructions. What it does not tell is empty. Nothing runs: with "
+            "--family, Mesa's driver RADV compiles for GPUs of AMD that are not there.",
+        .sections = {{"Which",
+                      {{.name = "--device",
+                        .value = word(options->device, "DEVICE"),
+                        .help = "index or a part of the name, as `twinray devices` shows them; the fastest if not "
+                                "given",
+                        .excludes = {"--family"}},
+                       {.name = "--family",
+                        .value = words(options->families, "FAMILY,..."),
+                        .help = "GPUs of AMD, by the names that RADV has for them: navi10 (RDNA 1), navi21 (RDNA 2), "
+                                "navi31 (RDNA 3), gfx1201 (RDNA 4), ..."},
+                       {.name = "--filter",
+                        .value = word(options->filter, "TEXT"),
+                        .help = "only kernels with this in their name or specialisation"}}},
+                     {"Output",
+                      {{.name = "--against",
+                        .value = file(options->against),
+                        .help = "what --json wrote earlier: says which kernels take more registers, scratch or shared "
+                                "memory, or 2 % more instructions, and which are new"},
+                       json_option(options->json)}}},
+        .examples = {{"twinray kernels --family navi21,navi31,gfx1201", "three generations, without any of them"},
+                     {"twinray kernels --filter \"swtlas_trace closest\"", "what traces on this device"}},
+        .fault = "a kernel grew past its limit, or has none",
+        .run = [options] { return run(*options); }};
 }
 
 }  // namespace twinray::cli

@@ -23,7 +23,7 @@ SEES = {  # besides itself and shaders/shared
 }
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all
 SOURCE = re.compile(r"\.(h|hpp|c|cc|cpp|inl)$|" + GLSL.pattern)
-GENERATED = re.compile(r"\.(spv|trace_program)\.h$|^twinray_program\.glsl$|^twinray/|^twinray_version\.h$|\.py\.h$")  # by the build, or as installed
+GENERATED = re.compile(r"\.(spv|trace_program)\.h$|^twinray_program\.glsl$|^twinray/|^twinray_version\.h$|^kernel_modules\.h$|\.py\.h$")  # by the build, or as installed
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 

@@ -26,8 +26,7 @@ class Collector {
         const auto is_taken = [&](const ListedKernel& other) {
             return other.name == kernel.name && other.variant == kernel.variant;
         };
-        for (int number = 2; has(is_taken); ++number)
-            kernel.variant = variant_of(desc) + " #" + std::to_string(number);
+        for (int number = 2; has(is_taken); ++number) kernel.variant = variant_of(desc) + " #" + std::to_string(number);
         kernels_.push_back(std::move(kernel));
     }
     std::vector<ListedKernel> kernels() const {

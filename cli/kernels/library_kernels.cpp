@@ -50,7 +50,7 @@ void make_queries(AbstractAccel& accel) {
 
 void make_analysis(Context& context) {
     const Scene scene = cornell_box_scene();
-    SwTlas accel(context);
+    SwTlas accel(context, {.compiles_in_background = false});
     push_scene(accel, scene);
     accel.sync();
     const Faces faces(context, scene);

@@ -50,8 +50,8 @@ void compare(const KernelRow& row, const KernelRow& limit, double margin, std::v
         if (!column.words || !now || !most) continue;
         const double allowed = static_cast<double>(*most) * (column.has_margin ? 1 + margin : 1);
         if (static_cast<double>(*now) > allowed)
-            faults.push_back(text(name_of(row), ": ", *now, ' ', column.words, ", at most ",
-                                  static_cast<std::uint64_t>(allowed)));
+            faults.push_back(
+                text(name_of(row), ": ", *now, ' ', column.words, ", at most ", static_cast<std::uint64_t>(allowed)));
     }
 }
 

@@ -27,7 +27,7 @@ void make_path_tracer_kernels(Context& context) {
     Scene scene = plain_scene();
     const pt::LocalLights lights = pt::collect_lights(scene);
     const pt::EnvironmentMap sky(pt::default_sky());
-    SwTlas accel(context);
+    SwTlas accel(context, {.compiles_in_background = false});
     push_scene(accel, scene);
     accel.sync();
     const pt::RenderSettings settings{.width = 8, .height = 8};

@@ -41,7 +41,8 @@ void trace(AbstractAccel& accel, TraceDesc desc) {
     commands.submit();
 }
 
-// Each query at each level. Those that need float64 do more with a hit and the same with the scene: the largest is enough.
+// Each query at each level. Those that need float64 do more with a hit and the same with the scene: the largest is
+// enough.
 void trace_all(AbstractAccel& accel, Stage stage) {
     fill(accel, stage);
     accel.sync();

@@ -28,9 +28,9 @@ struct Bit {
 
 void add_features(Words& words, uint features) {
     constexpr Bit bits[] = {
-        {FEATURE_COMPRESSED, "compressed4"}, {FEATURE_BVH4, "bvh4"},        {FEATURE_BVH2, "bvh2"},
-        {FEATURE_INSTANCES, "instances"},    {FEATURE_MASKS, "masks"},      {FEATURE_CULLING, "culling"},
-        {FEATURE_TRANSFORMS, "transforms"},  {FEATURE_BOXES, "boxes"},      {FEATURE_FILTERS, "filters"},
+        {FEATURE_COMPRESSED, "compressed4"}, {FEATURE_BVH4, "bvh4"},   {FEATURE_BVH2, "bvh2"},
+        {FEATURE_INSTANCES, "instances"},    {FEATURE_MASKS, "masks"}, {FEATURE_CULLING, "culling"},
+        {FEATURE_TRANSFORMS, "transforms"},  {FEATURE_BOXES, "boxes"}, {FEATURE_FILTERS, "filters"},
         {FEATURE_REMAP, "reordered"},        {FEATURE_HITS, "hits"},
     };
     if (features == FEATURES_ALL) return words.add("everything");
@@ -50,11 +50,20 @@ void add_of_rays(Words& words, const SpecializationConstant& constant) {
 
 void add_of_path_tracer(Words& words, const KernelDesc& desc) {
     constexpr Bit bits[] = {
-        {PT_HAS_ALPHA, "alpha"},           {PT_HAS_TEXTURES, "textures"},      {PT_HAS_GLASS, "glass"},
-        {PT_HAS_SPECULAR, "specular"},     {PT_HAS_COAT, "coat"},              {PT_HAS_SHEEN, "sheen"},
-        {PT_HAS_ANISOTROPY, "anisotropy"}, {PT_HAS_VOLUME, "volume"},          {PT_HAS_MEDIA, "media"},
-        {PT_HAS_COLORS, "colors"},         {PT_HAS_SECOND_UVS, "second-uvs"},  {PT_HAS_PANES, "panes"},
-        {PT_HAS_LOCAL_LIGHTS, "lights"},   {PT_HAS_ENVIRONMENT, "environment"},
+        {PT_HAS_ALPHA, "alpha"},
+        {PT_HAS_TEXTURES, "textures"},
+        {PT_HAS_GLASS, "glass"},
+        {PT_HAS_SPECULAR, "specular"},
+        {PT_HAS_COAT, "coat"},
+        {PT_HAS_SHEEN, "sheen"},
+        {PT_HAS_ANISOTROPY, "anisotropy"},
+        {PT_HAS_VOLUME, "volume"},
+        {PT_HAS_MEDIA, "media"},
+        {PT_HAS_COLORS, "colors"},
+        {PT_HAS_SECOND_UVS, "second-uvs"},
+        {PT_HAS_PANES, "panes"},
+        {PT_HAS_LOCAL_LIGHTS, "lights"},
+        {PT_HAS_ENVIRONMENT, "environment"},
     };
     uint chosen = 0;
     for (const SpecializationConstant& constant : desc.constants)

@@ -55,11 +55,12 @@ void record_nothing(VulkanFunctions& vk) {
     };
     vk.vkBeginCommandBuffer = [](VkCommandBuffer, const VkCommandBufferBeginInfo*) { return VK_SUCCESS; };
     vk.vkEndCommandBuffer = [](VkCommandBuffer) { return VK_SUCCESS; };
-    vk.vkCreateQueryPool = [](VkDevice, const VkQueryPoolCreateInfo*, const VkAllocationCallbacks*,
-                              VkQueryPool* pool) { return make(*pool); };
+    vk.vkCreateQueryPool = [](VkDevice, const VkQueryPoolCreateInfo*, const VkAllocationCallbacks*, VkQueryPool* pool) {
+        return make(*pool);
+    };
     vk.vkDestroyQueryPool = [](VkDevice, VkQueryPool pool, const VkAllocationCallbacks*) { release(pool); };
-    vk.vkGetQueryPoolResults = [](VkDevice, VkQueryPool, std::uint32_t, std::uint32_t, std::size_t, void*,
-                                  VkDeviceSize, VkQueryResultFlags) { return VK_SUCCESS; };
+    vk.vkGetQueryPoolResults = [](VkDevice, VkQueryPool, std::uint32_t, std::uint32_t, std::size_t, void*, VkDeviceSize,
+                                  VkQueryResultFlags) { return VK_SUCCESS; };
 }
 
 void pass_at_once(VulkanFunctions& vk) {

@@ -44,11 +44,11 @@ TEST(KernelLimits, EachFigureThatGrowsIsTold) {
         return grown(now, limits);
     };
     EXPECT_EQ(faults_with(&KernelFigures::vgprs, 97), Faults{"navi21: trace: 97 registers, at most 96"});
-    EXPECT_EQ(faults_with(&KernelFigures::scratch_bytes, 1),
-                Faults{"navi21: trace: 1 bytes of scratch, at most 0"});
-    EXPECT_EQ(faults_with(&KernelFigures::shared_bytes, 513), Faults{"navi21: trace: 513 bytes of shared memory, at most 512"});
+    EXPECT_EQ(faults_with(&KernelFigures::scratch_bytes, 1), Faults{"navi21: trace: 1 bytes of scratch, at most 0"});
+    EXPECT_EQ(faults_with(&KernelFigures::shared_bytes, 513),
+              Faults{"navi21: trace: 513 bytes of shared memory, at most 512"});
     EXPECT_EQ(faults_with(&KernelFigures::instructions, 1021),
-                Faults{"navi21: trace: 1021 instructions, at most 1020"});
+              Faults{"navi21: trace: 1021 instructions, at most 1020"});
 }
 
 TEST(KernelLimits, ARowWithoutALimitIsTold) {
@@ -68,7 +68,9 @@ TEST(KernelLimits, WhatOneSideDoesNotTellIsNotCompared) {
 
 TEST(KernelLimits, RowsAreReadAsTheyWereWritten) {
     const TemporaryFile file;
-    file.write(R"({"device":"navi21","driver":"radv"})" "\n" + to_json(row("a b")).dump() + '\n');
+    file.write(R"({"device":"navi21","driver":"radv"})"
+               "\n" +
+               to_json(row("a b")).dump() + '\n');
     const std::vector<KernelRow> rows = read_rows(file.path);
     ASSERT_EQ(rows.size(), 1);
     EXPECT_EQ(rows[0].figures, row().figures);

@@ -25,9 +25,8 @@ bool is_compute(std::span<const std::uint32_t> spirv) {
 
 // Rows may be of modules that another translation unit has a copy of.
 bool lists(const KernelList& list, std::span<const std::uint32_t> spirv) {
-    return std::ranges::any_of(list.kernels, [&](const ListedKernel& kernel) {
-        return std::ranges::equal(kernel.desc.spirv, spirv);
-    });
+    return std::ranges::any_of(
+        list.kernels, [&](const ListedKernel& kernel) { return std::ranges::equal(kernel.desc.spirv, spirv); });
 }
 
 class KernelListTest : public ::testing::Test {
