@@ -12,11 +12,12 @@
 #include "swtlas_fine_codes.spv.h"
 #include "swtlas_gather_keys.spv.h"
 #include "swtlas_hierarchy.spv.h"
+#include "swtlas_leaf_edges.spv.h"
 #include "swtlas_leaves_instances.spv.h"
 #include "swtlas_leaves_triangles.spv.h"
+#include "swtlas_link_nodes.spv.h"
 #include "swtlas_morton.spv.h"
 #include "swtlas_node_areas.spv.h"
-#include "swtlas_parents.spv.h"
 #include "swtlas_record_parents.spv.h"
 #include "swtlas_refit.spv.h"
 #include "swtlas_refit_records.spv.h"
@@ -115,7 +116,8 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
           context,
           grouped(context, stage("swtlas_refit_records", swtlas_refit_records_spirv, needs.records && needs.moves),
                   BUILD_GROUP)),
-      parents_(context, stage("swtlas_parents", swtlas_parents_spirv, needs.binary && needs.moves)),
+      link_nodes_(context, stage("swtlas_link_nodes", swtlas_link_nodes_spirv, needs.binary)),
+      leaf_edges_(context, stage("swtlas_leaf_edges", swtlas_leaf_edges_spirv, needs.binary && needs.moves)),
       refit_(context, stage("swtlas_refit", swtlas_refit_spirv, needs.binary && needs.moves)),
       refit_triangles_(context,
                        stage("swtlas_refit_triangles", swtlas_refit_triangles_spirv, needs.binary && needs.moves)) {}
@@ -248,6 +250,7 @@ void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::s
     const RadixSort::Pairs sorted = record_order(commands, plan, batch);
     record_hierarchy(commands, batch, sorted, true);
     if (has_records(plan.layout)) return record_collapse(commands, plan, batch, sorted);
+    record_links(commands, batch);
     encode_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, sorted.values, batch.block_count, 0},
                                       batch.block_count);
 }
@@ -259,8 +262,15 @@ void Builder::record_instances(Commands& commands, const BuildPlan& plan, const 
     const Batch batch = begin_instances(commands, plan, tree, records, instances, scratch);
     const RadixSort::Pairs sorted = record_order(commands, plan, batch);
     record_hierarchy(commands, batch, sorted, has_records(plan.layout));
-    if (has_records(plan.layout)) record_collapse(commands, plan, batch, sorted);
+    if (has_records(plan.layout))
+        record_collapse(commands, plan, batch, sorted);
+    else
+        record_links(commands, batch);
     commands.keep(std::move(scratch));
+}
+
+void Builder::record_links(Commands& commands, const Batch& batch) const {
+    link_nodes_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.block_count, 0}, batch.block_count);
 }
 
 // Places lie where the codes were, which are done.

@@ -59,6 +59,7 @@ class Builder {
                            const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const;
     void record_hierarchy(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
                           bool leaves_are_sorted) const;
+    void record_links(Commands& commands, const Batch& batch) const;
     void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch,
                          const RadixSort::Pairs& sorted) const;
     void record_levels(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
@@ -81,7 +82,8 @@ class Builder {
     Kernel<EncodeRecordsArgs> encode_records_;
     Kernel<RecordParentsArgs> record_parents_;
     Kernel<RefitRecordsArgs> refit_records_;
-    Kernel<ParentsArgs> parents_;
+    Kernel<LinkNodesArgs> link_nodes_;
+    Kernel<LeafEdgesArgs> leaf_edges_;
     Kernel<RefitArgs> refit_;
     Kernel<RefitTrianglesArgs> refit_triangles_;
 };

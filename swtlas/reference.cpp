@@ -153,6 +153,13 @@ Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::spa
     return tree;
 }
 
+Hierarchy linked(Hierarchy tree) {
+    const auto nodes = Ref<BvhNode>::to(tree.nodes.data());
+    if (tree.root != NOTHING) set_edge(nodes, tree.root, 0);
+    for (uint node = 0; node < tree.nodes.size(); ++node) link_children(nodes, node);
+    return tree;
+}
+
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
                                           std::span<const uint> order) {
     std::vector<BvhTriangle> encoded;

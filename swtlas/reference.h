@@ -36,6 +36,9 @@ struct Hierarchy {
 Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order,
                     bool leaves_are_sorted, BuildQuality quality = BuildQuality::fast);
 
+// As a tree of layout bvh2: its nodes know their edges.
+Hierarchy linked(Hierarchy tree);
+
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
                                           std::span<const uint> order);
 

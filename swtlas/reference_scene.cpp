@@ -16,8 +16,10 @@ std::size_t Scene::add_geometry(const MeshView& mesh) {
     Records records;
     if (has_records(layout_))
         records = records_of_triangles(tree, geometry.positions, geometry.triangles);
-    else
+    else {
+        tree = linked(std::move(tree));
         triangles = encode_triangles(geometry.positions, geometry.triangles, order);
+    }
     geometries_.push_back({std::move(geometry), std::move(tree), std::move(triangles), std::move(records)});
     return geometries_.size() - 1;
 }
@@ -59,7 +61,10 @@ void Scene::build() {
     const Codes codes = morton(instance_boxes_, centroids(instance_boxes_));
     top_ = hierarchy(instance_boxes_, codes, sort(codes), false, quality_);
     const auto count = static_cast<uint>(instance_boxes_.size());
-    if (has_records(layout_)) top_records_ = records_of_instances(top_, count);
+    if (has_records(layout_))
+        top_records_ = records_of_instances(top_, count);
+    else
+        top_ = linked(std::move(top_));
     header_ = {{top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), root_of(top_), count},
                Ref<CompressedRecord>::to(top_records_.records.data()),
                boxes_of(top_records_),

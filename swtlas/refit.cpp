@@ -23,14 +23,12 @@ void Builder::record_records_climb(Commands& commands, const BuildPlan& plan, co
 }
 
 void Builder::record_climb(Commands& commands, const Batch& batch) const {
-    // Nothing is sorted in a refit: that scratch holds the parents.
-    const Uints node_parents = batch.pairs.keys, leaf_parents = batch.pairs.values;
-    parents_.dispatch_groups(commands, {batch.trees, batch.blocks, node_parents, leaf_parents, batch.block_count, 0},
-                             batch.block_count);
-    refit_.dispatch_groups(
-        commands,
-        {batch.trees, batch.blocks, batch.boxes, node_parents, leaf_parents, batch.meeting, batch.block_count, 0},
-        batch.block_count);
+    const Uints leaf_edges = batch.pairs.keys;  // nothing is sorted in a refit
+    leaf_edges_.dispatch_groups(commands, {batch.trees, batch.blocks, leaf_edges, batch.block_count, 0},
+                                batch.block_count);
+    refit_.dispatch_groups(commands,
+                           {batch.trees, batch.blocks, batch.boxes, leaf_edges, batch.meeting, batch.block_count, 0},
+                           batch.block_count);
 }
 
 namespace {

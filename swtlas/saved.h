@@ -19,7 +19,7 @@
 
 namespace twinray {
 
-constexpr uint saved_version = 6;
+constexpr uint saved_version = 7;
 
 struct SavedHeader {
     char magic[8];

@@ -2,6 +2,8 @@
 // The software accelerator's structures, build arguments and traversal for C++.
 #pragma once
 
+#include <array>
+
 #include "engine/accel/instance_record.h"
 #include "engine/accel/surface_area.h"
 #include "engine/accel/trace_args.h"
@@ -11,6 +13,15 @@
 namespace twinray {
 using glm::findMSB;
 using NodeWords = Words64;
+
+// The slots of a traversal's stack, of the thread that traces.
+inline std::array<uint, 16>& stack_slots() {
+    thread_local std::array<uint, 16> slots;
+    return slots;
+}
+inline uint load_entry(uint slot) { return stack_slots()[slot]; }
+inline void store_entry(uint slot, uint entry) { stack_slots()[slot] = entry; }
+
 #include "engine/core/bridge_begin.h"
 #include "shaders/shared/build.h"
 #include "shaders/shared/collapse.h"

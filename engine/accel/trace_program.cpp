@@ -19,6 +19,9 @@ RayGroups groups_for_rays(std::uint64_t rays, const DeviceFacts& device, bool is
     return {size, std::max((rays + most_rays - 1) / most_rays, std::min(blocks, least_share * device.cpu_threads))};
 }
 
+// Where groups have no memory of their own, a lane's registers are as good a place.
+uint stack_on(const DeviceFacts& device) { return device.cpu_threads ? STACK_REGISTERS : STACK_SHARED; }
+
 KernelProgram::KernelProgram(Context& context, std::uint64_t accel, uint features, std::string name,
                              std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> refined,
                              bool is_software)
@@ -44,6 +47,7 @@ const Kernel<TraceArgs>& KernelProgram::kernel(Query query, Level level) const {
                                  .group_size = group_size,
                                  .constants = {{QUERY_CONSTANT, query == Query::any ? QUERY_ANY : QUERY_CLOSEST},
                                                {HANDS_CONSTANT, context_.facts().cpu_threads},
+                                               {STACK_CONSTANT, stack_on(context_.facts())},
                                                {RAY_GROUP_CONSTANT, group_size},
                                                {FEATURES_CONSTANT, features()},
                                                {LEVEL_CONSTANT, static_cast<uint>(level)}}});

@@ -57,6 +57,8 @@ struct RayGroups {
 };
 RayGroups groups_for_rays(std::uint64_t rays, const DeviceFacts& device, bool is_software);
 
+uint stack_on(const DeviceFacts& device);  // STACK_*
+
 // A compute kernel.
 class KernelProgram final : public TraceProgram {
   public:

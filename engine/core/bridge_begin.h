@@ -11,4 +11,6 @@
 #define UINTS(word) uints_of(word)
 #define WORD(low, high) word_of(low, high)
 #define FMA(a, b, c) ((a) * (b) + (c))
+#define FUSED(a, b, c) std::fma(a, b, c)
 #define UNROLL
+#define DONT_UNROLL

@@ -11,4 +11,6 @@
 #undef UINTS
 #undef WORD
 #undef FMA
+#undef FUSED
 #undef UNROLL
+#undef DONT_UNROLL

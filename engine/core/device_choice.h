@@ -35,6 +35,8 @@ struct DeviceFacts {
     bool update_after_bind_images = false;
     // The driver builds in input order, without spatial sorting (Mesa's lavapipe): presorted input pays.
     bool builds_in_input_order = false;
+    // GLSL's fma() is known to round once, so that it gives the rounding error of a product.
+    bool fused_fma = false;
 
     // Whether kernels can reach any number of images through one array of descriptors.
     bool has_image_arrays() const {

@@ -75,6 +75,18 @@ int compute_queue_family(const VulkanFunctions& vk, VkPhysicalDevice device) {
     return -1;
 }
 
+// Drivers of GPUs that have such an instruction and no other for fma(); Vulkan allows two roundings.
+bool has_fused_fma(VkDriverId driver) {
+    switch (driver) {
+        case VK_DRIVER_ID_MESA_RADV:
+        case VK_DRIVER_ID_AMD_OPEN_SOURCE:
+        case VK_DRIVER_ID_AMD_PROPRIETARY:
+        case VK_DRIVER_ID_NVIDIA_PROPRIETARY:
+        case VK_DRIVER_ID_INTEL_OPEN_SOURCE_MESA: return true;
+        default: return false;
+    }
+}
+
 DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice device) {
     VkPhysicalDeviceDriverProperties driver{};
     driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
@@ -95,6 +107,7 @@ DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice devic
     facts.api_version = properties.properties.apiVersion;
     facts.shared_bytes = properties.properties.limits.maxComputeSharedMemorySize;
     facts.builds_in_input_order = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
+    facts.fused_fma = has_fused_fma(driver.driverID);
     facts.has_compute_queue = compute_queue_family(vk, device) >= 0;
     if (facts.api_version >= VK_API_VERSION_1_2) query_features(vk, device, facts);
     return facts;

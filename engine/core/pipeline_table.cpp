@@ -7,6 +7,8 @@
 namespace twinray {
 namespace {
 
+constexpr std::uint32_t fused_fma_constant = 105;  // of shaders/shared/bridge.glsl
+
 std::string key_of(const KernelDesc& desc, std::uint32_t args_bytes) {
     std::string key;
     const auto add = [&](const void* data, std::size_t bytes) { key.append(static_cast<const char*>(data), bytes); };
@@ -22,7 +24,9 @@ std::string key_of(const KernelDesc& desc, std::uint32_t args_bytes) {
 VkPipeline new_pipeline(Context& context, const KernelDesc& desc, VkPipelineLayout layout, Telling telling) {
     std::vector<VkSpecializationMapEntry> entries;
     std::vector<std::uint32_t> values;
-    for (const SpecializationConstant& constant : desc.constants) {
+    std::vector<SpecializationConstant> constants = desc.constants;
+    constants.push_back({fused_fma_constant, context.facts().fused_fma});
+    for (const SpecializationConstant& constant : constants) {
         entries.push_back({constant.id, static_cast<std::uint32_t>(values.size() * 4), 4});
         values.push_back(constant.value);
     }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 #include <glm/glm.hpp>
@@ -30,6 +31,12 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 using std::uint64_t;
+
+constexpr bool FUSED_FMA = false;  // compilers of C++ may, but need not fuse
+
+// Of a number and NaN the number.
+inline float min_number(float a, float b) { return a < b || b != b ? a : b; }
+inline float max_number(float a, float b) { return a > b || b != b ? a : b; }
 
 inline float uintBitsToFloat(uint bits) { return std::bit_cast<float>(bits); }
 inline uint floatBitsToUint(float value) { return std::bit_cast<uint>(value); }

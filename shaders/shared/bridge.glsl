@@ -8,6 +8,17 @@
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_control_flow_attributes : require
 
+#extension GL_EXT_spirv_intrinsics : require
+
+// The lesser and the greater of two numbers, and of a number and NaN the number: what min() and max() leave open. Of two
+// zeros either.
+spirv_instruction(set = "GLSL.std.450", id = 79) float min_number(float a, float b);
+spirv_instruction(set = "GLSL.std.450", id = 80) float max_number(float a, float b);
+
+// Whether fma() rounds once. Set for every kernel that the library makes (DeviceFacts::fused_fma).
+layout(constant_id = 105) const bool FUSED_FMA = false;
+#define FUSED(a, b, c) fma(a, b, c)
+
 #define FUNC
 #define INOUT(T) inout T
 #define PRECISE precise
@@ -28,6 +39,7 @@ uvec2 uints_of(uint64_t word) { return uvec2(unpackUint2x32(word << 32u).y, unpa
 // For where either rounding will do.
 #define FMA(a, b, c) fma(a, b, c)
 #define UNROLL [[unroll]]
+#define DONT_UNROLL [[dont_unroll]]
 
 BUFFER_OF_WORDS(Words64, uint64_t, 8);
 BUFFER_OF_WORDS(Floats, float, 4);

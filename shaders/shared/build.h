@@ -150,13 +150,20 @@ struct HierarchyArgs
     uint reserved;
 };
 
-// Leads from a child to its parent: node << 1 | side, NOTHING for the root.
-struct ParentsArgs
+// Links the nodes of built trees of layout bvh2 to those above them.
+struct LinkNodesArgs
 {
     REF(BuildTree) trees;
     REF(BuildBlock) blocks;
-    Uints node_parents; // by inner node, of all trees of the batch
-    Uints leaf_parents; // by leaf
+    uint block_count;
+    uint reserved;
+};
+
+struct LeafEdgesArgs
+{
+    REF(BuildTree) trees;
+    REF(BuildBlock) blocks;
+    Uints leaf_edges; // by leaf, of all trees of the batch
     uint block_count;
     uint reserved;
 };
@@ -167,8 +174,7 @@ struct RefitArgs
     REF(BuildTree) trees;
     REF(BuildBlock) blocks;
     REF(LeafBox) boxes;
-    Uints node_parents;
-    Uints leaf_parents;
+    Uints leaf_edges;
     Uints arrived; // by inner node: NOTHING before its first child is done
     uint block_count;
     uint reserved;

@@ -44,7 +44,7 @@ struct BvhNode
     vec3 lo0;
     uint child0;
     vec3 hi0;
-    uint below0; // of child0, see make_below
+    uint below0; // of child0, see make_below; once a tree of layout bvh2 is built, the node's own edge, see make_edge
     vec3 lo1;
     uint child1;
     vec3 hi1;
@@ -133,6 +133,26 @@ BUFFER_OF(SwScene, 8);
 FUNC uint make_below(uint leaves, uint height) { return leaves | height << 25u; }
 FUNC uint leaves_in(uint below) { return below & 0x1ffffffu; }
 FUNC uint height_in(uint below) { return below >> 25u; }
+
+// A child of a node of layout bvh2, as the node above it and its side. A built tree knows the edges of its inner nodes, as a way up
+// to the root, whose edge is 0.
+FUNC uint make_edge(uint node, uint side) { return (node + 1u) << 1u | side; }
+FUNC uint parent_of_edge(uint edge) { return (edge >> 1u) - 1u; }
+FUNC uint edge_of(REF(BvhNode) nodes, uint node) { return AT(nodes, node).below0; }
+FUNC void set_edge(REF(BvhNode) nodes, uint child, uint edge)
+{
+    if ((child & LEAF_BIT) == 0u) AT(nodes, child).below0 = edge;
+}
+FUNC void link_children(REF(BvhNode) nodes, uint node)
+{
+    set_edge(nodes, AT(nodes, node).child0, make_edge(node, 0u));
+    set_edge(nodes, AT(nodes, node).child1, make_edge(node, 1u));
+}
+FUNC uint child_at(REF(BvhNode) nodes, uint edge)
+{
+    uint node = parent_of_edge(edge);
+    return (edge & 1u) == 0u ? AT(nodes, node).child0 : AT(nodes, node).child1;
+}
 
 FUNC BvhNode load_node(REF(BvhNode) nodes, uint index)
 {

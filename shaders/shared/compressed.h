@@ -52,6 +52,23 @@ FUNC void store_no_record(REF(CompressedRecord) records, uint index)
     AT(Words64(uint64_t(records) + uint64_t(index) * 40ul), 1) = 0ul;
 }
 
+// Which child of a node the record `target` is or lies below. The records below a child lie side by side, in the order of the
+// children, so that it is the last one whose own children begin no later.
+FUNC uint child_towards(REF(CompressedRecord) records, CompressedRecord node, uint target)
+{
+    uint first = first_child_of(node);
+    uint count = children_in(node);
+    uint found = target - first;
+    if (found < count) return found;
+    for (uint i = 0u; i < count; i = i + 1u)
+    {
+        uint child = AT(records, first + i).a.w;
+        bool begins_before = (child & LEAF_BIT) == 0u && (child & (MOST_RECORDS - 1u)) <= target;
+        found = begins_before ? i : found;
+    }
+    return found;
+}
+
 // The exponent of the smallest power of two by which lo..hi is 252 cells long at most, with what origin_below may lie farther
 // off, and a cell some roundings of the coordinates: then what lies a cell below lo, rounded, is 1/2 to 3/2 of a cell below.
 FUNC uint cell_exponent(float lo, float hi)

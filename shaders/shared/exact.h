@@ -13,6 +13,11 @@ FUNC float high_part(float x) { return uintBitsToFloat(floatBitsToUint(x) & 0xff
 // Dekker, "A floating-point technique for extending the available precision", 1971, but numbers are cut, not rounded, in two.
 FUNC float product_error(float a, float b, float p)
 {
+    if (FUSED_FMA)
+    {
+        PRECISE float fused = FUSED(a, b, -p);
+        return fused;
+    }
     float a_high = high_part(a);
     float b_high = high_part(b);
     PRECISE float a_low = a - a_high;

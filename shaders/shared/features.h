@@ -30,4 +30,9 @@ const uint FEATURES_CONSTANT = 100u;  // of every kernel that includes twinray/q
 const uint LEVEL_CONSTANT = 101u;
 const uint HANDS_CONSTANT = 102u;     // of a batch kernel: see dealt_group
 const uint RAY_GROUP_CONSTANT = 103u; // of a batch kernel: invocations of a group
+const uint STACK_CONSTANT = 104u;     // of every kernel that includes twinray/query.glsl: STACK_*
+
+// Where the stack of a traversal of software lies.
+const uint STACK_SHARED = 0u;    // in the workgroup's memory
+const uint STACK_REGISTERS = 1u; // in registers that are found by comparison: for devices without such memory of its own
 #endif

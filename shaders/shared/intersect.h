@@ -144,14 +144,29 @@ FUNC SeenTriangle seen_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space)
     return seen;
 }
 
+// Whether the ray's line meets it, by exact_side: rarely asked, so that a loop of little code is better than a fast one. Its
+// corners change places until each is where it was, as copies would take registers.
+FUNC bool is_exactly_around(INOUT(SeenTriangle) seen)
+{
+    int sides = 0;
+    DONT_UNROLL for (uint edge = 0u; edge < 3u; edge = edge + 1u)
+    {
+        sides = sides + exact_side(seen.b, seen.c);
+        vec3 first = seen.a;
+        seen.a = seen.b;
+        seen.b = seen.c;
+        seen.c = first;
+    }
+    return sides == 3 || sides == -3;
+}
+
 // Whether the ray's line meets it.
-FUNC bool is_around_ray(SeenTriangle seen)
+FUNC bool is_around_ray(INOUT(SeenTriangle) seen)
 {
     bool is_met = (seen.area_a < 0.0f) == (seen.area_b < 0.0f) && (seen.area_b < 0.0f) == (seen.area_c < 0.0f);
     if (is_any_zero(seen.area_a, seen.area_b, seen.area_c))
     {
-        int side_a = exact_side(seen.b, seen.c);
-        is_met = side_a != 0 && side_a == exact_side(seen.c, seen.a) && side_a == exact_side(seen.a, seen.b);
+        is_met = is_exactly_around(seen);
     }
     return is_met;
 }

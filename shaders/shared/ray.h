@@ -77,16 +77,20 @@ FUNC void store_hit(REF(Hit) hits, uint index, Hit hit)
     AT(words, 3) = WORD(hit.instance_index, hit.flags);
 }
 
-FUNC bool is_finite(vec3 v)
+// The magnitudes' bits, doubled, which are in the order of the magnitudes, NaN above all.
+FUNC uint largest_bits(vec3 v)
 {
-    const float largest = 3.402823466e+38f;
-    return abs(v.x) <= largest && abs(v.y) <= largest && abs(v.z) <= largest;
+    return max(max(floatBitsToUint(v.x) << 1u, floatBitsToUint(v.y) << 1u), floatBitsToUint(v.z) << 1u);
 }
+
+const uint INFINITE_BITS = 0xff000000u; // of largest_bits: the least that is not finite
+FUNC bool is_finite(vec3 v) { return largest_bits(v) < INFINITE_BITS; }
 
 // Rays that Vulkan forbids (non-finite origin or direction, zero direction, NaN or empty interval) miss.
 FUNC bool is_traceable(Ray ray)
 {
     bool moves = ray.direction.x != 0.0f || ray.direction.y != 0.0f || ray.direction.z != 0.0f;
-    return moves && is_finite(ray.origin) && is_finite(ray.direction) && ray.t_min < ray.t_max && 0.0f < ray.t_max;
+    bool is_bounded = max(largest_bits(ray.origin), largest_bits(ray.direction)) < INFINITE_BITS;
+    return moves && is_bounded && ray.t_min < ray.t_max && 0.0f < ray.t_max;
 }
 #endif

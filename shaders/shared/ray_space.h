@@ -54,11 +54,10 @@ FUNC vec3 dominant_last(vec3 v, uint axis)
     return axis == 0u ? vec3(v.y, v.z, v.x) : (axis == 1u ? vec3(v.z, v.x, v.y) : v);
 }
 
-// x, or the nearest of -limit and limit. By comparisons: see latest_of.
+// x, or the nearest of -limit and limit.
 FUNC float within(float x, float limit)
 {
-    float above = -limit > x ? -limit : x;
-    return limit < above ? limit : above;
+    return min_number(max_number(x, -limit), limit);
 }
 
 FUNC BoxRay box_ray(RaySpace space)
@@ -128,19 +127,15 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
 // sheared corners say so, and its box must be, too, however near to the ray's origin that is.
 FUNC float corner_pad(vec3 origin, float extent) { return (largest_entry(origin) + extent) * 9.5367431640625e-07f; } // 2^-20
 
-// The interval in which a ray is inside of all three slabs, begun with its own. Compare-and-select instead of min/max: a NaN
-// (products out of range) must leave the interval as it was, which GLSL does not promise of min/max.
+// The interval in which a ray is inside of all three slabs, begun with its own, which a NaN (of products out of range) leaves
+// as it was.
 FUNC float latest_of(float enter, float near_x, float near_y, float near_z)
 {
-    enter = near_x > enter ? near_x : enter;
-    enter = near_y > enter ? near_y : enter;
-    return near_z > enter ? near_z : enter;
+    return max_number(max_number(max_number(near_x, near_y), near_z), enter);
 }
 FUNC float earliest_of(float leave, float far_x, float far_y, float far_z)
 {
-    leave = far_x < leave ? far_x : leave;
-    leave = far_y < leave ? far_y : leave;
-    return far_z < leave ? far_z : leave;
+    return min_number(min_number(min_number(far_x, far_y), far_z), leave);
 }
 
 // Where the ray enters the box and where it leaves it within [t_min, t_max], in t * ray.t_scale: enter > leave where it does

@@ -1,17 +1,290 @@
 // SPDX-License-Identifier: MIT
-// Traversal of a SwScene.
+// Traversal of a SwScene, of any layout: one loop over nodes, primitives and instances.
+//
+// What a node leaves to visit is one entry of the stack, and the way out of an instance is another. The stack is short: once
+// it is empty and has lost entries, the ray goes from the root of its tree to where it is, and puts what it passes on the
+// stack again. The order of siblings does not depend on what was found meanwhile, but that those behind it are left out.
 #ifndef TWINRAY_SHARED_TRAVERSE_H
 #define TWINRAY_SHARED_TRAVERSE_H
-#include "shaders/shared/traverse_bvh2.h"
-#include "shaders/shared/traverse_records.h"
+#include "shaders/shared/enter_binary.h"
+#include "shaders/shared/enter_compressed.h"
+#include "shaders/shared/enter_full.h"
+#include "shaders/shared/short_stack.h"
 
-// Traces a ray. The closest hit is the first by comes_before, whatever the layout and the order of traversal; with
-// QUERY_ANY it is the first one found.
+const uint LEAVE_INSTANCE = 1u; // an entry of the stack that no group and no edge is
+
+// A tree of one level; of its arrays a layout has some.
+struct SwTree
+{
+    REF(BvhNode) nodes;
+    REF(BvhTriangle) triangles;
+    REF(CompressedRecord) records;
+    REF(LeafBox) boxes;
+    uint root;
+};
+
+// A node or leaf of a tree: the number of a record, for both; in layout bvh2 a child and its edge. The root's edge is 0.
+struct TreePosition
+{
+    uint item;
+    uint edge;
+};
+
+FUNC TreePosition at_record(uint index)
+{
+    TreePosition at;
+    at.item = index;
+    at.edge = index;
+    return at;
+}
+FUNC TreePosition at_root(SwTree tree, bool is_binary)
+{
+    TreePosition at;
+    at.item = is_binary ? tree.root : 0u;
+    at.edge = 0u;
+    return at;
+}
+
+FUNC SwTree top_tree(SwScene scene)
+{
+    SwTree tree;
+    tree.nodes = scene.bvh.nodes;
+    tree.triangles = REF(BvhTriangle)(0ul);
+    tree.records = scene.records;
+    tree.boxes = scene.record_boxes;
+    tree.root = scene.bvh.root;
+    return tree;
+}
+FUNC SwTree tree_of(SwInstance instance)
+{
+    SwTree tree;
+    tree.nodes = instance.nodes;
+    tree.triangles = instance.triangles;
+    tree.records = instance.records;
+    tree.boxes = instance.record_boxes;
+    tree.root = instance.root;
+    return tree;
+}
+
+FUNC bool is_binary(SwScene scene, TraceOptions options)
+{
+    bool may_be = (options.features & FEATURE_BVH2) != 0u;
+    bool may_have_records = (options.features & (FEATURE_COMPRESSED | FEATURE_BVH4)) != 0u;
+    return may_be && (!may_have_records || uint64_t(scene.records) == 0ul);
+}
+
+// The children of a node that the ray enters, the first one first, and the rest as an entry of the stack.
+struct EnteredChildren
+{
+    TreePosition first;
+    bool is_entered;
+    uint others; // or EMPTY_GROUP
+};
+
+// `target`: not NOTHING, but what the ray is on its way back to.
+FUNC EnteredChildren children_of_record(CompressedRecord record, SwTree tree, BoxRay ray, Search search, uint target, TraceOptions options)
+{
+    bool may_be_full = (options.features & FEATURE_BVH4) != 0u;
+    bool may_be_compressed = (options.features & FEATURE_COMPRESSED) != 0u;
+    ChildKeys keys;
+    if (may_be_full && (!may_be_compressed || uint64_t(tree.boxes) != 0ul))
+        keys = enter_full(tree.boxes, record, ray, search.t_min, search.t_best, options.query);
+    else keys = enter_compressed(record, ray, search.t_min, search.t_best, options.query);
+    if (target != NOTHING) keys = keys_from(keys, child_towards(tree.records, record, target));
+    sort_keys(keys);
+    EnteredChildren children;
+    children.first = at_record(first_child_of(record) + (keys.key0 & 3u));
+    children.is_entered = keys.key0 < NO_ENTRY;
+    children.others = group_of(keys, first_child_of(record));
+    return children;
+}
+
+FUNC EnteredChildren children_of_node(uint index, SwTree tree, BoxRay ray, Search search, uint target, TraceOptions options)
+{
+    BvhNode node = load_node(tree.nodes, index);
+    ChildKeys keys = enter_binary(node, ray, search, options.query);
+    if (target != NOTHING) keys = keys_from(keys, binary_child_towards(tree.nodes, index, target));
+    sort_pair(keys.key0, keys.key1);
+    uint side = keys.key0 & 1u;
+    EnteredChildren children;
+    children.first.item = side == 0u ? node.child0 : node.child1;
+    children.first.edge = make_edge(index, side);
+    children.is_entered = keys.key0 < NO_ENTRY;
+    children.others = keys.key1 < NO_ENTRY ? make_edge(index, side ^ 1u) : EMPTY_GROUP;
+    return children;
+}
+
+// Where a ray is, and what it has still to visit.
+struct Traversal
+{
+    SwTree tree;
+    TreePosition at;
+    InInstance inside;
+    RaySpace space;     // of the tree
+    bool is_elsewhere;  // the ray is still to be prepared for the tree
+    ShortStack stack;
+    uint outside;       // the edge of the instance that the ray is in, or NOTHING
+    uint target;        // the edge that the ray is on its way back to, or NOTHING
+};
+
+FUNC Traversal begin_traversal(SwScene scene, Ray ray, bool is_binary, TraceOptions options)
+{
+    Traversal here;
+    if ((options.features & FEATURE_INSTANCES) != 0u)
+    {
+        here.tree = top_tree(scene);
+        here.inside = in_no_instance();
+    }
+    else
+    {
+        SwInstance instance = load_instance(scene.instances, 0u);
+        here.tree = tree_of(instance);
+        here.inside = enter_instance(instance, 0u, options);
+        here.space = space_of(ray_in_instance(instance, here.inside, ray, options));
+    }
+    here.at = at_root(here.tree, is_binary);
+    here.is_elsewhere = true;
+    here.stack = empty_stack(false);
+    here.outside = NOTHING;
+    here.target = NOTHING;
+    return here;
+}
+
+// For the tree of the instance, or for that of the top level: in one place, as it is much code.
+FUNC void prepare_ray(INOUT(Traversal) here, SwScene scene, Ray ray, TraceOptions options)
+{
+    LocalRay local;
+    if (here.outside == NOTHING) local = ray_in_world(scene, ray);
+    else
+    {
+        SwInstance instance = load_instance(scene.instances, here.inside.index);
+        here.tree = tree_of(instance);
+        here.inside = enter_instance(instance, here.inside.index, options);
+        local = ray_in_instance(instance, here.inside, ray, options);
+    }
+    here.space = space_of(local);
+    here.is_elsewhere = false;
+}
+
+// Goes on to a child, unless the ray enters none, or is back where it was.
+FUNC bool visit_children(INOUT(Traversal) here, EnteredChildren children)
+{
+    if (children.others != NO_STACK_ENTRY) push_entry(here.stack, children.others);
+    bool descends = children.is_entered && children.first.edge != here.target;
+    if (children.is_entered) here.at = children.first;
+    if (here.at.edge == here.target) here.target = NOTHING;
+    return descends;
+}
+
+FUNC bool visit_instance(INOUT(Traversal) here, SwScene scene, uint index, bool is_binary, TraceOptions options)
+{
+    bool enters = is_visible(scene.instances, index, options);
+    if (enters)
+    {
+        push_entry(here.stack, LEAVE_INSTANCE);
+        here.inside.index = index;
+        here.outside = here.at.edge;
+        here.at.edge = 0u;
+        here.at.item = is_binary ? AT(scene.instances, index).root : 0u;
+        here.is_elsewhere = true;
+    }
+    return enters;
+}
+
+FUNC void leave_instance(INOUT(Traversal) here, SwScene scene)
+{
+    here.tree = top_tree(scene);
+    here.at.edge = here.outside;
+    here.outside = NOTHING;
+    here.is_elsewhere = true;
+}
+
+// Takes the next child off the last entry.
+FUNC void take_child(INOUT(Traversal) here, bool is_binary)
+{
+    uint entry = here.stack.last;
+    here.at = at_record(next_of(entry));
+    if (is_binary)
+    {
+        here.at.item = child_at(here.tree.nodes, entry);
+        here.at.edge = entry;
+    }
+    here.stack.last = is_binary ? NO_STACK_ENTRY : rest_of(entry);
+}
+
+// Sends the ray from the root to where it is.
+FUNC void restart(INOUT(Traversal) here, bool is_inside, bool is_binary)
+{
+    here.stack = empty_stack(is_inside);
+    if (is_inside) push_entry(here.stack, LEAVE_INSTANCE);
+    here.target = here.at.edge;
+    here.at = at_root(here.tree, is_binary);
+}
+
+// Goes on to what waits. False: there is nothing.
+FUNC bool visit_next(INOUT(Traversal) here, SwScene scene, bool is_binary, TraceOptions options)
+{
+    bool has_top = (options.features & FEATURE_INSTANCES) != 0u;
+    fetch_last(here.stack);
+    if (has_top && here.stack.last == LEAVE_INSTANCE)
+    {
+        leave_instance(here, scene);
+        here.stack.last = NO_STACK_ENTRY;
+        fetch_last(here.stack);
+    }
+    bool waits = here.stack.last != NO_STACK_ENTRY;
+    if (waits) take_child(here, is_binary);
+    else if (here.stack.has_lost)
+    {
+        restart(here, has_top && here.outside != NOTHING, is_binary);
+        waits = true;
+    }
+    return waits;
+}
+
+// The closest hit is the first by comes_before, whatever the layout and the order of traversal; with QUERY_ANY it is the
+// first one found.
 FUNC Hit traverse(SwScene scene, Ray ray, TraceOptions options)
 {
-    bool may_be_bvh2 = (options.features & FEATURE_BVH2) != 0u;
-    bool may_have_records = (options.features & (FEATURE_COMPRESSED | FEATURE_BVH4)) != 0u;
-    if (may_have_records && (!may_be_bvh2 || uint64_t(scene.records) != 0ul)) return traverse_records(scene, ray, options);
-    return traverse_bvh2(scene, ray, options);
+    bool has_top = (options.features & FEATURE_INSTANCES) != 0u;
+    bool binary = is_binary(scene, options);
+    Traversal here = begin_traversal(scene, ray, binary, options);
+    BoxRay only_ray;
+    if (!has_top) only_ray = box_ray(here.space);
+    bool is_traced = is_traceable(ray) && here.tree.root != NOTHING;
+    if (!has_top) is_traced = is_traced && is_visible(scene.instances, 0u, options);
+    Search search = begin_search(ray);
+    while (is_traced)
+    {
+        if (has_top && here.is_elsewhere) prepare_ray(here, scene, ray, options);
+        bool descends = false;
+        CompressedRecord record;
+        if (!binary) record = load_record(here.tree.records, here.at.item);
+        bool is_inner = binary ? (here.at.item & LEAF_BIT) == 0u : !is_leaf(record);
+        bool is_place = has_top && (binary ? here.outside == NOTHING : is_instance(record));
+        if (is_inner)
+        {
+            BoxRay boxes_ray = only_ray;
+            if (has_top) boxes_ray = box_ray(here.space);
+            EnteredChildren children;
+            if (binary) children = children_of_node(here.at.item, here.tree, boxes_ray, search, here.target, options);
+            else children = children_of_record(record, here.tree, boxes_ray, search, here.target, options);
+            descends = visit_children(here, children);
+        }
+        else if (!is_place)
+        {
+            BvhTriangle leaf;
+            if (binary) leaf = load_triangle(here.tree.triangles, here.at.item & ~LEAF_BIT);
+            else leaf = primitive_of(record);
+            if (visit_leaf(leaf, here.inside, here.space, options, search) && options.query == QUERY_ANY) break;
+        }
+        else
+        {
+            uint index = binary ? here.at.item & ~LEAF_BIT : index_in(record);
+            descends = visit_instance(here, scene, index, binary, options);
+        }
+        if (!descends) is_traced = visit_next(here, scene, binary, options);
+    }
+    return hit_of(search, scene, here.inside.custom_index, options);
 }
 #endif

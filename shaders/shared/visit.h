@@ -50,6 +50,18 @@ FUNC InInstance enter_instance(SwInstance instance, uint index, TraceOptions opt
     return inside;
 }
 
+FUNC InInstance in_no_instance()
+{
+    InInstance inside;
+    inside.index = NOTHING;
+    inside.custom_index = 0u;
+    inside.culled = 0u;
+    inside.has_boxes = false;
+    inside.is_filtered = false;
+    inside.error = 0.0f;
+    return inside;
+}
+
 // Adding 0 takes a zero's sign, which the sums of a transform may change: with the identity, too, both ways give the same bits.
 FUNC vec3 without_negative_zeros(vec3 v)
 {
@@ -57,15 +69,38 @@ FUNC vec3 without_negative_zeros(vec3 v)
     return sum;
 }
 
-// The ray in the space of the instance's geometry.
-FUNC RaySpace space_in(SwInstance instance, INOUT(InInstance) inside, Ray ray, TraceOptions options)
+// A ray in the space of a tree, and how far off its boxes may be met (see make_ray_space).
+struct LocalRay
 {
+    vec3 origin;
+    vec3 direction;
+    float pad;
+};
+
+FUNC LocalRay ray_in_world(SwScene scene, Ray ray)
+{
+    LocalRay local;
+    local.origin = ray.origin;
+    local.direction = ray.direction;
+    local.pad = world_pad(ray.origin, largest_coordinate(scene.bvh.lo, scene.bvh.hi));
+    return local;
+}
+
+FUNC RaySpace space_of(LocalRay ray) { return make_ray_space(ray.origin, ray.direction, ray.pad); }
+
+// In the space of the instance's geometry.
+FUNC LocalRay ray_in_instance(SwInstance instance, INOUT(InInstance) inside, Ray ray, TraceOptions options)
+{
+    LocalRay local;
 #ifdef TWINRAY_REFINED
     if (options.level == LEVEL_CERTIFIED)
     {
         CertifiedRay mapped = certified_ray(AT(options.instances, inside.index), ray, options.advance != double(0.0f));
         inside.error = mapped.error;
-        return make_ray_space(mapped.origin, mapped.direction, mapped.error);
+        local.origin = mapped.origin;
+        local.direction = mapped.direction;
+        local.pad = mapped.error;
+        return local;
     }
 #endif
     vec3 origin = ray.origin;
@@ -79,8 +114,10 @@ FUNC RaySpace space_in(SwInstance instance, INOUT(InInstance) inside, Ray ray, T
         origin = transform_point(to_object, origin);
         direction = transform_vector(to_object, direction);
     }
-    origin = without_negative_zeros(origin);
-    return make_ray_space(origin, without_negative_zeros(direction), corner_pad(origin, instance.extent));
+    local.origin = without_negative_zeros(origin);
+    local.direction = without_negative_zeros(direction);
+    local.pad = corner_pad(local.origin, instance.extent);
+    return local;
 }
 
 FUNC Candidate candidate_of(InInstance inside, uint primitive_index, TraceOptions options)
@@ -145,7 +182,7 @@ FUNC uint place_in_order(float enter, float leave, bool is_there, uint query)
 {
     uint longest_first = 0x7f000000u - min(floatBitsToUint(leave - enter), 0x7e000000u);
     uint place = query == QUERY_ANY ? longest_first : floatBitsToUint(enter);
-    return is_there && enter <= leave ? place & ~3u : NO_ENTRY;
+    return is_there && enter <= leave ? place & 0x7ffffffcu : NO_ENTRY; // of zeros the sign may be either
 }
 
 // What has been found so far, and where there is more to find. Only what a kernel needs is ever written: the rest stays a
@@ -251,14 +288,10 @@ FUNC bool visit_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceO
     return is_first;
 }
 
-FUNC bool is_visible(SwInstance instance, TraceOptions options)
+FUNC bool is_visible(REF(SwInstance) instances, uint index, TraceOptions options)
 {
-    bool is_seen = (options.features & FEATURE_MASKS) == 0u || (instance.custom_index_mask >> 24u & options.mask) != 0u;
-    return is_seen && instance.root != NOTHING;
-}
-
-FUNC RaySpace world_space(SwScene scene, Ray ray)
-{
-    return make_ray_space(ray.origin, ray.direction, world_pad(ray.origin, largest_coordinate(scene.bvh.lo, scene.bvh.hi)));
+    uint mask = AT(instances, index).custom_index_mask >> 24u;
+    bool is_seen = (options.features & FEATURE_MASKS) == 0u || (mask & options.mask) != 0u;
+    return is_seen && AT(instances, index).root != NOTHING;
 }
 #endif

@@ -15,11 +15,11 @@ void climb(BuildTree tree, uint leaf)
 {
     SharedNodes nodes = SharedNodes(uint64_t(tree.nodes));
     LeafBox box = AT(args.boxes, leaf);
-    uint parent = AT(args.leaf_parents, leaf);
-    while (parent != NOTHING)
+    uint edge = AT(args.leaf_edges, leaf);
+    while (edge != 0u)
     {
-        uint node = parent >> 1u;
-        bool is_second = (parent & 1u) != 0u;
+        uint node = parent_of_edge(edge);
+        bool is_second = (edge & 1u) != 0u;
         if (is_second)
         {
             nodes.items[node].lo1 = box.lo;
@@ -35,7 +35,7 @@ void climb(BuildTree tree, uint leaf)
         memoryBarrierBuffer();
         box.lo = min(box.lo, is_second ? nodes.items[node].lo0 : nodes.items[node].lo1);
         box.hi = max(box.hi, is_second ? nodes.items[node].hi0 : nodes.items[node].hi1);
-        parent = AT(args.node_parents, tree.first + node);
+        edge = edge_of(tree.nodes, node);
     }
     AT(tree.bvh, 0).lo = box.lo;
     AT(tree.bvh, 0).hi = box.hi;

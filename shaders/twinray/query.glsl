@@ -21,9 +21,7 @@ layout(constant_id = FEATURES_CONSTANT) const uint TRACE_FEATURES = FEATURES_ALL
 layout(constant_id = LEVEL_CONSTANT) const uint TRACE_LEVEL = LEVEL_WATERTIGHT;
 
 #if defined(TWINRAY_SW)
-#define TWINRAY_GROUP_STACK STACK_OF_FEATURES
-#include "shaders/shared/group.h"
-const uint STACK_OF_FEATURES = (TRACE_FEATURES & FEATURE_INSTANCES) != 0u ? GROUP_STACK_SIZE : ONE_LEVEL_STACK_SIZE;
+#include "twinray/stack.glsl"
 #include "shaders/shared/traverse.h"
 Hit trace_float32(uint64_t accel, Ray ray, TraceOptions options) { return traverse(AT(REF(SwScene)(accel), 0), ray, options); }
 uint64_t refinement_of(uint64_t accel) { return AT(REF(SwScene)(accel), 0).refinement; }

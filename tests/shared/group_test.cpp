@@ -2,13 +2,12 @@
 // The words on the stack of a traversal of records.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <random>
 #include <vector>
 
 #include "engine/accel/geometry.h"
-#include "swtlas/structures.h"
+#include "engine/scene/shapes.h"
+#include "swtlas/reference.h"
 
 namespace twinray {
 namespace {
@@ -36,65 +35,95 @@ TEST(Groups, HoldAllChildrenButTheFirstInOrder) {
 }
 
 TEST(Groups, AreNoneOfTheOtherEntriesOfAStack) {
+    EXPECT_EQ(group_of(entered({2}), 1), EMPTY_GROUP);
     for (uint order = 0; order < 64; ++order) {
         const uint group = make_group(1, order & 3, order >> 2 & 3, order >> 4);
-        for (const uint other : {EMPTY_GROUP, BOTTOM, IN_WINDOW, IN_MEMORY}) EXPECT_NE(group, other);
+        for (const uint other : {EMPTY_GROUP, LEAVE_INSTANCE}) EXPECT_NE(group, other);
+    }
+    for (const uint side : {0u, 1u})
+        for (const uint other : {EMPTY_GROUP, LEAVE_INSTANCE}) EXPECT_NE(make_edge(0, side), other);
+}
+
+// What a traversal that went on to a child has left to visit, whatever it has found since.
+TEST(Groups, AreFoundAgainFromTheChild) {
+    const ChildKeys keys{0x400, 0x101, NO_ENTRY | 2, 0x203};
+    const auto again = [&](uint child) {
+        ChildKeys found = keys_from(keys, child);
+        sort_keys(found);
+        EXPECT_EQ(found.key0 & 3, child);
+        EXPECT_LT(found.key0, NO_ENTRY);
+        return visited(group_of(found, 8));
+    };
+    EXPECT_EQ(again(1), (std::vector<uint>{8 + 3, 8 + 0}));
+    EXPECT_EQ(again(3), std::vector<uint>{8 + 0});
+    EXPECT_EQ(again(0), std::vector<uint>{});
+    EXPECT_EQ(again(2), std::vector<uint>{}) << "beyond what was found";
+}
+
+TEST(ShortStack, KeepsTheLastEntriesAndSaysThatItHasLostOthers) {
+    std::mt19937 random(5);
+    ShortStack stack = empty_stack(false);
+    std::vector<uint> all;
+    std::size_t losses = 0;
+    for (int turn = 0; turn < 100'000; ++turn) {
+        const bool is_growing = turn / 300 % 2 == 0;
+        if (random() % 8 < (is_growing ? 6u : 1u)) {
+            all.push_back(static_cast<uint>(random()) | 1);
+            push_entry(stack, all.back());
+        } else if (fetch_last(stack); stack.last != NO_STACK_ENTRY) {
+            ASSERT_EQ(stack.last, all.back()) << turn;
+            stack.last = NO_STACK_ENTRY;
+            all.pop_back();
+        } else {
+            ASSERT_EQ(stack.has_lost, !all.empty()) << turn;
+            losses += stack.has_lost;
+            all.clear();
+            stack = empty_stack(false);
+        }
+        ASSERT_LE(stack.top - stack.bottom, STACK_SIZE);
+    }
+    EXPECT_GT(losses, 10u);
+}
+
+// Every record of a tree is found from the root.
+TEST(Compressed, TheChildTowardsARecordLeadsToIt) {
+    const Mesh mesh = make_soup(500, 4);
+    const Geometry geometry(mesh);
+    const std::vector<LeafBox> boxes = reference::leaves_triangles(geometry.positions, geometry.triangles);
+    const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
+    const reference::Hierarchy tree = reference::hierarchy(boxes, codes, reference::sort(codes), false);
+    const std::vector<CompressedRecord> records =
+        reference::records_of_triangles(tree, geometry.positions, geometry.triangles).records;
+    const auto all = Ref<CompressedRecord>::to(records.data());
+    for (uint target = 1; target < records.size(); ++target) {
+        if (is_none(records[target])) continue;
+        uint at = 0;
+        for (uint depth = 0; at != target; ++depth) {
+            ASSERT_LT(depth, DEEPEST_RECORDS) << target;
+            ASSERT_FALSE(is_leaf(records[at])) << target;
+            at = first_child_of(records[at]) + child_towards(all, records[at], target);
+        }
     }
 }
 
-// A stack as traversals have it, of entries one word each.
-class Stack {
-  public:
-    void push(uint entry) { shift(entry); }
-    uint pop() {  // takes the next one off the group that it returns; BOTTOM: there is none
-        uint group = held_.first;
-        TWINRAY_FETCH_GROUP(held_, window_, memory_, height_, group);
-        if (group == BOTTOM) return group;
-        held_.first = rest_of(group);
-        shift(EMPTY_GROUP);
-        return group;
-    }
-    uint height() const { return height_; }
-    uint waiting() const { return waiting_; }
-
-  private:
-    void shift(uint pushed) {
-        TWINRAY_MAKE_ROOM(held_, window_, memory_, height_, pushed);
-        waiting_ = waiting_after(held_, pushed, waiting_);
-        shift_groups(held_, pushed);
-    }
-
-    HeldGroups held_ = hold_none(BOTTOM);
-    GroupWindow window_ = empty_window();
-    std::array<uint, GROUP_STACK_SIZE> memory_{};
-    uint height_ = 0;
-    uint waiting_ = 0;
-};
-
-TEST(Groups, ComeFromTheStackInTheOrderOfAStack) {
-    std::mt19937 random(5);
-    Stack stack;
-    std::vector<uint> expected;
-    std::size_t highest = 0, empty = 0;
-    for (int turn = 0; turn < 100'000; ++turn) {
-        const bool is_growing = turn / 300 % 2 == 0;
-        if (expected.size() < GROUP_STACK_SIZE + WINDOW_SIZE + 5 && random() % 8 < (is_growing ? 6u : 1u)) {
-            const auto order = static_cast<uint>(random());
-            expected.push_back(make_group(static_cast<uint>(turn) + 1, order & 3, order >> 2 & 3, order >> 4 & 3));
-            stack.push(expected.back());
-        } else {
-            const uint last = expected.empty() ? BOTTOM : expected.back();
-            ASSERT_EQ(stack.pop(), last) << turn;
-            if (expected.empty())
-                ++empty;
-            else if ((expected.back() = rest_of(last)) == EMPTY_GROUP)
-                expected.pop_back();
+TEST(Bvh2, EveryEdgeLeadsBackToTheRoot) {
+    const Mesh mesh = make_soup(500, 4);
+    const Geometry geometry(mesh);
+    const std::vector<LeafBox> boxes = reference::leaves_triangles(geometry.positions, geometry.triangles);
+    const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
+    const reference::Hierarchy tree = reference::linked(
+        reference::hierarchy(boxes, codes, reference::sort(codes), true, BuildQuality::high));
+    const auto nodes = Ref<BvhNode>::to(tree.nodes.data());
+    for (uint node = 0; node < tree.nodes.size(); ++node)
+        for (const uint side : {0u, 1u}) {
+            uint at = tree.root;
+            for (uint depth = 0;; ++depth) {
+                ASSERT_LT(depth, DEEPEST_TREE);
+                const uint edge = make_edge(at, binary_child_towards(nodes, at, make_edge(node, side)));
+                if (edge == make_edge(node, side)) break;
+                at = child_at(nodes, edge);
+            }
         }
-        ASSERT_EQ(stack.waiting(), expected.size()) << turn;
-        highest = std::max<std::size_t>(highest, stack.height());
-    }
-    EXPECT_EQ(highest, GROUP_STACK_SIZE);
-    EXPECT_GT(empty, 100u);
 }
 
 TEST(Groups, KeysAreSortedLeastFirst) {

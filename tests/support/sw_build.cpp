@@ -56,7 +56,8 @@ void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh, BuildQuality qualit
     const std::vector<LeafBox> boxes = reference::leaves_triangles(built(mesh), mesh.triangles);
     const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
-    const reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, !has_records(tree), quality);
+    reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, !has_records(tree), quality);
+    if (!has_records(tree)) twin = reference::linked(std::move(twin));
     if (has_records(tree)) {
         EXPECT_TRUE(
             same_bytes(tree.records, reference::records_of_triangles(twin, built(mesh), mesh.triangles).records))

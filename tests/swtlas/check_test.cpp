@@ -100,7 +100,7 @@ TEST(Compressed, NoPathIsDeeperThanAStackIsMadeFor) {
     }
     const test::TallTree tall(leaf_boxes);
     const Bvh binary{tall.tree.box.lo, tall.tree.box.hi, {}, tall.tree.root, tall.leaves};
-    const TreeCheck tree = check_tree(binary, tall.tree.nodes, tall.boxes);
+    const TreeCheck tree = check_tree(binary, reference::linked(tall.tree).nodes, tall.boxes);
     EXPECT_TRUE(tree.violations.empty()) << tree.violations.front();
     EXPECT_EQ(tree.depth, DEEPEST_TREE);
     const CompressedCheck check = check_compressed(
@@ -110,7 +110,8 @@ TEST(Compressed, NoPathIsDeeperThanAStackIsMadeFor) {
 }
 
 TEST(TreeCheck, NamesWhatIsWrong) {
-    const auto& [mesh, boxes, good] = some_tree();
+    const auto& [mesh, boxes, unlinked] = some_tree();
+    const reference::Hierarchy good = reference::linked(unlinked);
     const Bvh bvh{good.box.lo, good.box.hi, {}, good.root, 20};
     EXPECT_TRUE(check_tree(bvh, good.nodes, boxes).violations.empty());
 

@@ -38,7 +38,7 @@ SavedGeometry saved(Layout layout, const Mesh& mesh, std::size_t instances) {
                 reference::records_of_triangles(tree, geometry.positions, mesh.triangles).records,
                 placed};
     }
-    const reference::Hierarchy tree = reference::hierarchy(boxes, codes, order, true);
+    const reference::Hierarchy tree = reference::linked(reference::hierarchy(boxes, codes, order, true));
     return {geometry,   {tree.box.lo, tree.box.hi, {}, tree.root, count},
             tree.nodes, reference::encode_triangles(geometry.positions, mesh.triangles, order),
             {},         placed};
@@ -53,7 +53,7 @@ SavedGeometry saved_boxes() {
     }
     const reference::Codes codes = reference::morton(leaf_boxes, reference::centroids(leaf_boxes));
     const std::vector<uint> order = reference::sort(codes);
-    const reference::Hierarchy tree = reference::hierarchy(leaf_boxes, codes, order, true);
+    const reference::Hierarchy tree = reference::linked(reference::hierarchy(leaf_boxes, codes, order, true));
     std::vector<BvhTriangle> leaves;
     for (const uint i : order) leaves.push_back({boxes[i].lo, boxes[i].hi, vec3(0), i});
     return {
@@ -164,7 +164,7 @@ TEST_P(SavedFile, OtherFormatsAreNamed) {
     const auto edited = [&](const std::function<void(SavedHeader&)>& edit) {
         return refusal(resealed(good, [&](SavedHeader& header, SavedEntry&) { edit(header); }));
     };
-    expect_contains(edited([](SavedHeader& h) { h.version = 9; }), "format version 9; this library reads version 6");
+    expect_contains(edited([](SavedHeader& h) { h.version = 9; }), "format version 9; this library reads version 7");
     expect_contains(edited([](SavedHeader& h) { h.byte_order = 0x04030201; }), "another byte order");
     expect_contains(edited([](SavedHeader& h) { h.node_bytes = 80; }), "its node has 80 bytes; this library's has 64");
     expect_contains(edited([](SavedHeader& h) { h.leaf_bytes = 48; }), "its leaf has 48 bytes; this library's has 40");
@@ -205,6 +205,7 @@ TEST(SavedTrees, BinaryOnesThatCannotBeWalkedSafelyAreRefused) {
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child0 = 1000; }), "node 1000 of 19");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child1 = LEAF_BIT | 20; }), "leaf 20 of 20");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child0 = g.bvh.root; }), "reached twice");
+    expect_contains(edited([](SavedGeometry& g) { g.nodes[3].below0 += 2; }), "its edge is");
     expect_contains(edited([](SavedGeometry& g) { g.bvh.root = 19; }), "node 19 of 19");
     expect_contains(edited([](SavedGeometry& g) { g.bvh.root = NOTHING; }), "unsound tree");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[g.bvh.root].lo0.x += 1; }), "not the union");

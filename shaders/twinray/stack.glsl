@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Where the entries of a traversal's stack lie: in the memory of the workgroup, a column for each invocation, or in registers
+// (STACK_CONSTANT). A kernel whose groups have more than 64 invocations defines TWINRAY_INVOCATIONS as their number before it
+// includes twinray/query.glsl; TWINRAY_PRIVATE_STACK, in stages without such memory, leaves it out.
+#ifndef TWINRAY_STACK_GLSL
+#define TWINRAY_STACK_GLSL
+#include "shaders/shared/features.h"
+#include "shaders/shared/short_stack_size.h"
+
+uint twinray_stack_registers[STACK_SIZE];
+
+uint entry_of_registers(uint slot)
+{
+    uint entry = twinray_stack_registers[0];
+    UNROLL for (uint i = 1u; i < STACK_SIZE; ++i) entry = slot == i ? twinray_stack_registers[i] : entry;
+    return entry;
+}
+void set_entry_of_registers(uint slot, uint entry)
+{
+    UNROLL for (uint i = 0u; i < STACK_SIZE; ++i)
+        twinray_stack_registers[i] = slot == i ? entry : twinray_stack_registers[i];
+}
+
+#ifdef TWINRAY_PRIVATE_STACK
+uint load_entry(uint slot) { return entry_of_registers(slot); }
+void store_entry(uint slot, uint entry) { set_entry_of_registers(slot, entry); }
+#else
+#ifndef TWINRAY_INVOCATIONS
+#define TWINRAY_INVOCATIONS 64
+#endif
+layout(constant_id = STACK_CONSTANT) const uint STACK = STACK_SHARED;
+shared uint twinray_stack[STACK_SIZE * TWINRAY_INVOCATIONS];
+
+uint load_entry(uint slot)
+{
+    if (STACK == STACK_REGISTERS) return entry_of_registers(slot);
+    return twinray_stack[slot * TWINRAY_INVOCATIONS + gl_LocalInvocationIndex];
+}
+void store_entry(uint slot, uint entry)
+{
+    if (STACK == STACK_REGISTERS) set_entry_of_registers(slot, entry);
+    else twinray_stack[slot * TWINRAY_INVOCATIONS + gl_LocalInvocationIndex] = entry;
+}
+#endif
+#endif
