@@ -6,7 +6,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
 {
-    uint64_t accel;
+    Address accel;
     Floats sky_view; // a value per cell, written
     vec3 corner;     // of the grid, in world space; y is up
     float cell;      // width of a cell

@@ -20,9 +20,9 @@ struct TopDown {
     bool leaves_are_sorted;
     BuildQuality quality;
     float scale;
-    std::vector<BvhNode>& nodes;
+    NodeHalves nodes;
 
-    std::uint64_t split_after(std::size_t position) const {
+    uvec2 split_after(std::size_t position) const {
         const uint left = order[position], right = order[position + 1];
         const uint fine = codes.fine.empty() ? 0 : codes.fine[left] ^ codes.fine[right];
         return make_split(codes.coarse[left] ^ codes.coarse[right], fine, static_cast<uint>(position));
@@ -31,7 +31,7 @@ struct TopDown {
     std::size_t highest_split(std::size_t first, std::size_t last) const {
         std::size_t best = first;
         for (std::size_t i = first + 1; i < last; ++i)
-            if (split_after(i) > split_after(best)) best = i;
+            if (less64(split_after(best), split_after(i))) best = i;
         return best;
     }
 
@@ -44,13 +44,12 @@ struct TopDown {
         const std::size_t split = highest_split(first, last);
         const auto node = static_cast<uint>(split);
         const NodeHalf left = build(first, split), right = build(split + 1, last);
-        const Words64 words{Ref<BvhNode>::to(nodes.data()).address};
-        put_half(words, node, 0, left);
-        put_half(words, node, 1, right);
+        put_half(nodes, node, 0, left);
+        put_half(nodes, node, 1, right);
         NodeHalf both = joined_half(left, right, node);
         if (quality == BuildQuality::high && is_rotated(both))
             both.below = make_below(leaves_in(both.below),
-                                    rotate(words, node, highest_below(split_after(split)), scale));
+                                    rotate(nodes, node, highest_below(split_after(split)), scale));
         return both;
     }
 };
@@ -144,10 +143,15 @@ Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::spa
                     bool leaves_are_sorted, BuildQuality quality) {
     Hierarchy tree;
     if (boxes.empty()) return tree;
-    tree.nodes.resize(boxes.size() - 1);
+    std::vector<BvhHalf> halves(2 * (boxes.size() - 1));
     const LeafBox bounds = bounds_of(centroids(boxes));
-    const TopDown build{boxes, codes, order, leaves_are_sorted, quality, area_scale(bounds.lo, bounds.hi), tree.nodes};
+    const TopDown build{boxes, codes, order, leaves_are_sorted, quality, area_scale(bounds.lo, bounds.hi),
+                        NodeHalves::to(halves.data())};
     const NodeHalf root = build.build(0, boxes.size() - 1);
+    for (std::size_t node = 0; node < halves.size(); node += 2) {
+        const BvhHalf &a = halves[node], &b = halves[node + 1];
+        tree.nodes.push_back({a.lo, a.child, a.hi, a.below, b.lo, b.child, b.hi, b.below});
+    }
     tree.root = root.child;
     tree.box = root.box;
     return tree;

@@ -44,7 +44,7 @@ void main()
     Ray ray = AT(args.rays, 0);
     if (!closest_hit(args.scene, ray, hit)) return;
     Corners corners = Corners(vec3(0.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0));
-    ray.origin = spawn_position(surface_point(placement_of(REF(InstanceRecord)(args.scene).items[0]), corners, vec2(hit.u, hit.v)), true);
+    ray.origin = spawn_position(surface_point(placement_of(AT(REF(InstanceRecord)(args.scene), 0)), corners, vec2(hit.u, hit.v)), true);
     if (!any_hit(args.scene, ray)) AT(args.hits, 0) = hit;
 }
 GLSL

@@ -7,9 +7,6 @@
 #define REF(T) Ref<T>
 #define AT(ref, i) ref[i]
 #define BUFFER_OF(T, alignment) static_assert(sizeof(T) % (alignment) == 0)
-#define FLOATS(word) floats_of(word)
-#define UINTS(word) uints_of(word)
-#define WORD(low, high) word_of(low, high)
 #define FMA(a, b, c) ((a) * (b) + (c))
 #define FUSED(a, b, c) std::fma(a, b, c)
 #define UNROLL

@@ -7,9 +7,6 @@
 #undef REF
 #undef AT
 #undef BUFFER_OF
-#undef FLOATS
-#undef UINTS
-#undef WORD
 #undef FMA
 #undef FUSED
 #undef UNROLL

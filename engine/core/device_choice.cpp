@@ -57,7 +57,6 @@ std::vector<Requirement> requirements_of(const DeviceFacts& device) {
          device.buffer_device_address},
         {"scalarBlockLayout", "structs have the same bytes on the host and on the GPU", everything,
          device.scalar_block_layout},
-        {"shaderInt64", "its kernels compute with addresses", everything, device.shader_int64},
         {"VK_KHR_acceleration_structure", "the driver builds its structures", hardware, device.acceleration_structure},
         {"VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline", "it traces through one of them", hardware,
          device.ray_query || device.ray_tracing_pipeline},

@@ -18,13 +18,13 @@ struct DeviceFacts {
     DeviceKind kind = DeviceKind::other;
     std::uint32_t api_version = 0;   // as VK_MAKE_API_VERSION
     std::uint32_t shared_bytes = 0;  // of memory that a compute group may have
-    std::uint32_t cpu_threads = 0;   // of a CPU, each of which runs a stretch of a dispatch's groups; else 0
+    std::uint32_t cpu_threads = 0;   // of a CPU, where each runs a stretch of a dispatch's groups; else 0, as of SwiftShader
     std::uint32_t subgroup_size = 0;
     bool has_compute_queue = false;
     bool timeline_semaphore = false;
     bool buffer_device_address = false;
     bool scalar_block_layout = false;
-    bool shader_int64 = false;
+    bool shader_int64 = false;  // for kernels of hosts; none of ours needs it
     bool shader_float64 = false;
     bool acceleration_structure = false;
     bool ray_query = false;
@@ -37,6 +37,8 @@ struct DeviceFacts {
     bool builds_in_input_order = false;
     // GLSL's fma() is known to round once, so that it gives the rounding error of a product.
     bool fused_fma = false;
+    // The driver compiles what a specialisation constant has switched off, too, which takes it minutes (SwiftShader).
+    bool compiles_unused_branches = false;
 
     // Whether kernels can reach any number of images through one array of descriptors.
     bool has_image_arrays() const {

@@ -102,10 +102,12 @@ DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice devic
     facts.name = properties.properties.deviceName;
     facts.driver = std::string(driver.driverName) + " " + driver.driverInfo;
     facts.kind = kind_of(properties.properties.deviceType);
-    if (facts.kind == DeviceKind::cpu) facts.cpu_threads = count_cpu_threads();
+    const bool is_swiftshader = driver.driverID == VK_DRIVER_ID_GOOGLE_SWIFTSHADER;
+    if (facts.kind == DeviceKind::cpu && !is_swiftshader) facts.cpu_threads = count_cpu_threads();
     facts.subgroup_size = subgroup.subgroupSize;
     facts.api_version = properties.properties.apiVersion;
     facts.shared_bytes = properties.properties.limits.maxComputeSharedMemorySize;
+    facts.compiles_unused_branches = is_swiftshader;
     facts.builds_in_input_order = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
     facts.fused_fma = has_fused_fma(driver.driverID);
     facts.has_compute_queue = compute_queue_family(vk, device) >= 0;

@@ -7,13 +7,9 @@
 #include <vector>
 
 #include "engine/core/commands.h"
+#include "engine/core/frozen_spirv.h"
 
 namespace twinray {
-
-struct SpecializationConstant {
-    std::uint32_t id;
-    std::uint32_t value;  // VkBool32 for bools
-};
 
 struct KernelDesc {
     std::string name = {};                 // folder_stem: the label, the timing and the twin have this name too

@@ -21,18 +21,29 @@ std::string key_of(const KernelDesc& desc, std::uint32_t args_bytes) {
     return key;
 }
 
-VkPipeline new_pipeline(Context& context, const KernelDesc& desc, VkPipelineLayout layout, Telling telling) {
-    std::vector<VkSpecializationMapEntry> entries;
-    std::vector<std::uint32_t> values;
+std::vector<SpecializationConstant> constants_of(const Context& context, const KernelDesc& desc) {
     std::vector<SpecializationConstant> constants = desc.constants;
     constants.push_back({fused_fma_constant, context.facts().fused_fma});
+    return constants;
+}
+
+VkShaderModule new_module(Context& context, const KernelDesc& desc,
+                          std::span<const SpecializationConstant> constants) {
+    if (!context.facts().compiles_unused_branches) return create_shader_module(context, desc.spirv, desc.name);
+    return create_shader_module(context, freeze_constants(desc.spirv, constants), desc.name);
+}
+
+VkPipeline new_pipeline(Context& context, const KernelDesc& desc, VkPipelineLayout layout, Telling telling) {
+    const std::vector<SpecializationConstant> constants = constants_of(context, desc);
+    std::vector<VkSpecializationMapEntry> entries;
+    std::vector<std::uint32_t> values;
     for (const SpecializationConstant& constant : constants) {
         entries.push_back({constant.id, static_cast<std::uint32_t>(values.size() * 4), 4});
         values.push_back(constant.value);
     }
     const VkSpecializationInfo specialization{static_cast<std::uint32_t>(entries.size()), entries.data(),
                                               values.size() * 4, values.data()};
-    const VkShaderModule module = create_shader_module(context, desc.spirv, desc.name);
+    const VkShaderModule module = new_module(context, desc, constants);
     VkComputePipelineCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
     info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;

@@ -24,13 +24,13 @@ using glm::floor;
 using glm::ivec3;
 using glm::max;
 using glm::min;
+using glm::umulExtended;
 using glm::uvec2;
 using glm::uvec3;
 using glm::uvec4;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
-using std::uint64_t;
 
 constexpr bool FUSED_FMA = false;  // compilers of C++ may, but need not fuse
 
@@ -41,33 +41,40 @@ inline float max_number(float a, float b) { return a > b || b != b ? a : b; }
 inline float uintBitsToFloat(uint bits) { return std::bit_cast<float>(bits); }
 inline uint floatBitsToUint(float value) { return std::bit_cast<uint>(value); }
 
-// Eight bytes: a device address when pushed to the GPU, a host address in the serial CPU twins.
+// Eight bytes: a device address when pushed to the GPU, a host address in the serial CPU twins. GLSL has two words for them, so
+// that structs are to be aligned as there.
+using Address [[gnu::aligned(4)]] = std::uint64_t;
+using Uint64 [[gnu::aligned(4)]] = std::uint64_t;
+
+constexpr std::uint64_t NULL_ADDRESS = 0;
+inline bool is_null(std::uint64_t address) { return address == NULL_ADDRESS; }
+inline std::uint64_t address_after(std::uint64_t base, uint bytes) { return base + bytes; }
+inline std::uint64_t address_at(std::uint64_t base, uint index, uint stride) {
+    return base + std::uint64_t{index} * stride;
+}
+
 template <class T>
 struct Ref {
-    std::uint64_t address = 0;
+    Address address = 0;
 
     T& operator[](std::size_t i) const { return reinterpret_cast<T*>(address)[i]; }
-    explicit operator std::uint64_t() const { return address; }
     static Ref to(const T* host) { return {reinterpret_cast<std::uint64_t>(host)}; }
 };
-
-// The words of any structure, which others read and write as what they are.
-struct Words64 {
-    using Word [[gnu::may_alias]] = std::uint64_t;
-    std::uint64_t address = 0;
-
-    Word& operator[](std::size_t i) const { return reinterpret_cast<Word*>(address)[i]; }
-    explicit operator std::uint64_t() const { return address; }
-};
+template <class T>
+bool is_null(Ref<T> ref) {
+    return is_null(ref.address);
+}
 
 using Floats = Ref<float>;
 using Uints = Ref<uint>;
+using Vec2s = Ref<vec2>;
+using Vec3s = Ref<vec3>;
 using Vec4s = Ref<vec4>;
+using Uvec2s = Ref<uvec2>;
+using Uvec3s = Ref<uvec3>;
 
-inline vec2 floats_of(std::uint64_t word) {
-    return {uintBitsToFloat(static_cast<uint>(word)), uintBitsToFloat(static_cast<uint>(word >> 32))};
-}
-inline uvec2 uints_of(std::uint64_t word) { return {static_cast<uint>(word), static_cast<uint>(word >> 32)}; }
-inline std::uint64_t word_of(uint low, uint high) { return std::uint64_t{high} << 32 | low; }
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/word64.h"
+#include "engine/core/bridge_end.h"
 
 }  // namespace twinray

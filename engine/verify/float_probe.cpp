@@ -79,7 +79,7 @@ bool has_exact_float64(Context& context, const Buffer& source, std::span<const F
                  sums = make_buffer(context, "float64 sums", cases.size() * 8);
     Commands commands(context, "float64 probe");
     kernel.dispatch(commands,
-                    {source.ref<FloatCase>(), Words64{products.address()}, Words64{sums.address()},
+                    {source.ref<FloatCase>(), Uvec2s{products.address()}, Uvec2s{sums.address()},
                      static_cast<uint>(cases.size()), 0},
                     cases.size());
     commands.submit();

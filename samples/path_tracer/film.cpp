@@ -12,6 +12,10 @@
 namespace twinray::path_tracer {
 namespace {
 
+double number_of(uvec2 words) {
+    return static_cast<double>(static_cast<std::int64_t>(std::uint64_t{words.y} << 32 | words.x));
+}
+
 double luminance_sum(const FilmPixel& pixel) {
     return 0.2126 * sum_of(pixel, 0) + 0.7152 * sum_of(pixel, 1) + 0.0722 * sum_of(pixel, 2);
 }
@@ -31,8 +35,8 @@ void merge_pixel(FilmPixel& pixel, FilmPixel other) {
     film_raise_all(pixel, other.places & 0xffffu, other.places >> 16);
     film_raise_all(other, pixel.places & 0xffffu, pixel.places >> 16);
     for (uint i = 0; i <= FILM_SQUARES; ++i) {
-        pixel.high[i] += other.high[i];
-        pixel.low[i] += other.low[i];
+        pixel.high[i] = add64(pixel.high[i], other.high[i]);
+        pixel.low[i] = add64(pixel.low[i], other.low[i]);
     }
     pixel.count += other.count;
 }
@@ -143,8 +147,8 @@ double sum_of(const FilmPixel& pixel, uint sum) {
     const bool is_square = sum == FILM_SQUARES;
     const int place = static_cast<int>(is_square ? pixel.places >> 16 : pixel.places & 0xffffu);
     const int unit = static_cast<int>(FILM_PIECE_BITS) * place - (is_square ? 298 : 149);
-    const auto high = static_cast<double>(static_cast<std::int64_t>(pixel.high[sum]));
-    const auto low = static_cast<double>(static_cast<std::int64_t>(pixel.low[sum]));
+    const auto high = number_of(pixel.high[sum]);
+    const auto low = number_of(pixel.low[sum]);
     return std::ldexp(high, unit + static_cast<int>(FILM_PIECE_BITS)) + std::ldexp(low, unit);
 }
 

@@ -32,7 +32,7 @@ void main()
     Corners64 corners = world_corners(placed, vertices);
     TriangleName name;
     name.corners = vertices;
-    if (uint64_t(placed.vertex_ids) != 0ul)
+    if (!is_null(placed.vertex_ids))
         name.corners = uvec3(AT(placed.vertex_ids, vertices.x), AT(placed.vertex_ids, vertices.y), AT(placed.vertex_ids, vertices.z));
     name.placed = index;
     AT(args.corners, i) = corners;

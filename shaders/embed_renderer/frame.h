@@ -24,6 +24,7 @@ struct FrameData
     uint height;
     uint shadow_rays;    // per pixel
     uint ao_rays;
+    uint reserved;
 };
 BUFFER_OF(FrameData, 8);
 

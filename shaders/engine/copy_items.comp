@@ -11,9 +11,8 @@ void main()
 {
     uint item = global_index();
     if (item >= args.count) return;
-    // 64-bit: 2^32 rays have more words than 32 bits count.
-    uint64_t offset = uint64_t(item) * args.words_per_item * 4ul;
-    Uints from = Uints(uint64_t(args.from) + offset);
-    Uints to = Uints(uint64_t(args.to) + offset);
+    // 2^32 rays have more words than 32 bits count.
+    Uints from = Uints(address_at(args.from.address, item, args.words_per_item * 4u));
+    Uints to = Uints(address_at(args.to.address, item, args.words_per_item * 4u));
     for (uint word = 0u; word < args.words_per_item; word = word + 1u) AT(to, word) = AT(from, word);
 }

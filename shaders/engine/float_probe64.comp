@@ -15,6 +15,6 @@ void main()
     FloatCase c = AT(args.cases, i);
     precise double product = double(c.a) * double(c.b);
     precise double sum = double(c.a) + double(c.b);
-    AT(args.products, i) = packUint2x32(unpackDouble2x32(product));
-    AT(args.sums, i) = packUint2x32(unpackDouble2x32(sum));
+    AT(args.products, i) = unpackDouble2x32(product);
+    AT(args.sums, i) = unpackDouble2x32(sum);
 }

@@ -14,9 +14,9 @@ shared uint columns[DIGITS * THREADS]; // [digit][thread]
 
 Uints kept_columns(SortArgs args)
 {
-    return Uints(uint64_t(args.kept) + uint64_t(group_index()) * uint64_t(DIGITS * THREADS * 4u));
+    return Uints(address_at(args.kept.address, group_index(), DIGITS * THREADS * 4u));
 }
-bool keeps_columns(SortArgs args) { return uint64_t(args.kept) != 0ul; }
+bool keeps_columns(SortArgs args) { return !is_null(args.kept); }
 
 uint slot_of(SortArgs args, uint key)
 {

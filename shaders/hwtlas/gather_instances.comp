@@ -13,12 +13,12 @@ void main()
 {
     uint place = global_index();
     if (place >= args.count) return;
-    bool has_table = uint64_t(args.instances) != 0ul;
-    bool has_order = uint64_t(args.order) != 0ul;
+    bool has_table = !is_null(args.instances);
+    bool has_order = !is_null(args.order);
     uint index = has_order ? AT(args.order, place) : (has_table ? AT(args.instances, place).instance_index : place);
     InstanceRecord record = in_built_units(AT(args.records, index));
     Rows to_world = to_world_of(record);
-    bool usable = record.geometry != 0ul && is_usable(to_world, inverse_of(to_world));
+    bool usable = !is_null(record.geometry) && is_usable(to_world, inverse_of(to_world));
     HwGeometry geometry;
     geometry.kind = GEOMETRY_TRIANGLES;
     if (usable) geometry = AT(REF(HwGeometry)(record.geometry), 0);
@@ -33,13 +33,13 @@ void main()
         area.hi = box.hi;
     }
     AT(args.areas, place) = area;
-    record.geometry = usable ? geometry.blas : 0ul;
+    record.geometry = usable ? geometry.blas : NULL_ADDRESS;
     record.sbt_offset_flags |= geometry.kind; // the hit group of a pipeline
     AT(args.driver_records, place) = record;
     if (!has_table) return;
     HwInstance instance;
     if (usable) instance.triangles = geometry.triangles;
-    else instance.triangles = Uints(0ul);
+    else instance.triangles = Uints(NULL_ADDRESS);
     instance.instance_index = index;
     instance.pad = 0u;
     AT(args.instances, place) = instance;

@@ -23,8 +23,8 @@ void main()
 {
     uint place = global_index();
     if (place >= args.count) return;
-    bool has_table = uint64_t(args.table) != 0ul;
-    bool has_order = uint64_t(args.order) != 0ul;
+    bool has_table = !is_null(args.table);
+    bool has_order = !is_null(args.order);
     uint index = has_order ? AT(args.order, place) : (has_table ? AT(args.table, place) : place);
     if (has_order) AT(args.table, place) = index;
     MeshTriangle triangle = load_triangle(args, index);

@@ -14,7 +14,7 @@ Candidate candidate_of(HwScene scene, uint instance_id, uint primitive_id, uint 
     candidate.instance_index = instance_id;
     candidate.custom_index = custom_index;
     candidate.user_data = options.user_data;
-    if ((options.features & FEATURE_REMAP) != 0u && uint64_t(scene.instances) != 0ul)
+    if ((options.features & FEATURE_REMAP) != 0u && !is_null(scene.instances))
     {
         HwInstance instance = AT(scene.instances, instance_id);
         candidate.instance_index = instance.instance_index;

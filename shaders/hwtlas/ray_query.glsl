@@ -42,9 +42,9 @@ void consider_box(HwScene scene, rayQueryEXT query, Ray ray, TraceOptions option
     uv = at;
 }
 
-uint64_t refinement_of(uint64_t accel) { return AT(REF(HwScene)(accel), 0).refinement; }
+Address refinement_of(Address accel) { return AT(REF(HwScene)(accel), 0).refinement; }
 
-Hit trace_float32(uint64_t accel, Ray ray, TraceOptions options)
+Hit trace_float32(Address accel, Ray ray, TraceOptions options)
 {
     if (!is_traceable(ray)) return miss();
     ray.t_min = max(ray.t_min, 0.0f);

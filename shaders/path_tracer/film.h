@@ -6,6 +6,7 @@
 // Reproducible Summation", 2015; integers, because devices need not round float64 correctly or have it at all.) Needs wave.h.
 #ifndef TWINRAY_PATH_TRACER_FILM_H
 #define TWINRAY_PATH_TRACER_FILM_H
+#include "shaders/shared/word64.h"
 
 const uint FILM_PIECE_BITS = 40u; // 2^23 numbers fit into a sum of 64 bits with a sign
 const uint FILM_SQUARES = 3u;     // index of their sum
@@ -16,16 +17,16 @@ struct FilmPixel
 {
     uint count;       // of the blocks that were added
     uint places;      // low half: of the color sums; high half: of the sum of squares
-    uint64_t high[4]; // of a block's red, green and blue, and of its luminance squared
-    uint64_t low[4];
+    uvec2 high[4]; // of a block's red, green and blue, and of its luminance squared
+    uvec2 low[4];
 };
 BUFFER_OF(FilmPixel, 8);
 
 // |x| is mantissa << shift, in units of 2^-149, for finite x.
-FUNC uint64_t film_mantissa(float x)
+FUNC uint film_mantissa(float x)
 {
     uint bits = floatBitsToUint(x);
-    return uint64_t((bits & 0x7fffffu) | ((bits & 0x7f800000u) != 0u ? 0x800000u : 0u));
+    return (bits & 0x7fffffu) | ((bits & 0x7f800000u) != 0u ? 0x800000u : 0u);
 }
 FUNC uint film_shift(float x) { return max((floatBitsToUint(x) >> 23u) & 0xffu, 1u) - 1u; }
 
@@ -33,20 +34,20 @@ FUNC uint film_shift(float x) { return max((floatBitsToUint(x) >> 23u) & 0xffu, 
 FUNC uint film_place(uint shift, uint bits) { return max((shift + bits - 1u) / FILM_PIECE_BITS, 1u) - 1u; }
 
 // Bits [40 place, 40 place + 40) of mantissa << shift, for mantissas of at most 48 bits.
-FUNC uint64_t film_piece(uint64_t mantissa, uint shift, uint place)
+FUNC uvec2 film_piece(uvec2 mantissa, uint shift, uint place)
 {
     int up = int(shift) - int(FILM_PIECE_BITS * place);
-    if (up >= int(FILM_PIECE_BITS) || up <= -48) return uint64_t(0);
-    uint64_t bits = up >= 0 ? mantissa << up : mantissa >> -up;
-    return bits & 0xfffffffffful;
+    if (up >= int(FILM_PIECE_BITS) || up <= -48) return uvec2(0u);
+    uvec2 bits = up >= 0 ? shift_up64(mantissa, uint(up)) : shift_down64(mantissa, uint(-up));
+    return uvec2(bits.x, bits.y & ((1u << (FILM_PIECE_BITS - 32u)) - 1u));
 }
 
 // What lies below the places is left out; a sum whose place is not lower already stays.
 FUNC void film_raise(INOUT(FilmPixel) pixel, uint sum, uint from, uint to)
 {
     if (to <= from) return;
-    pixel.low[sum] = to == from + 1u ? pixel.high[sum] : uint64_t(0);
-    pixel.high[sum] = uint64_t(0);
+    pixel.low[sum] = to == from + 1u ? pixel.high[sum] : uvec2(0u);
+    pixel.high[sum] = uvec2(0u);
 }
 
 FUNC void film_raise_all(INOUT(FilmPixel) pixel, uint color_place, uint square_place)
@@ -70,15 +71,15 @@ FUNC void film_add(INOUT(FilmPixel) pixel, vec3 radiance, float luminance_of_it)
     uint place = pixel.places & 0xffffu, square_place = pixel.places >> 16u;
     for (uint i = 0u; i < FILM_SQUARES; ++i)
     {
-        uint64_t mantissa = film_mantissa(values[i]), low = film_piece(mantissa, film_shift(values[i]), place);
-        uint64_t high = film_piece(mantissa, film_shift(values[i]), place + 1u);
+        uvec2 mantissa = uvec2(film_mantissa(values[i]), 0u), low = film_piece(mantissa, film_shift(values[i]), place);
+        uvec2 high = film_piece(mantissa, film_shift(values[i]), place + 1u);
         bool is_negative = values[i] < 0.0f;
-        pixel.low[i] += is_negative ? uint64_t(0) - low : low;
-        pixel.high[i] += is_negative ? uint64_t(0) - high : high;
+        pixel.low[i] = add64(pixel.low[i], is_negative ? negate64(low) : low);
+        pixel.high[i] = add64(pixel.high[i], is_negative ? negate64(high) : high);
     }
-    uint64_t square = film_mantissa(luminance_of_it) * film_mantissa(luminance_of_it);
-    pixel.low[FILM_SQUARES] += film_piece(square, square_shift, square_place);
-    pixel.high[FILM_SQUARES] += film_piece(square, square_shift, square_place + 1u);
+    uvec2 square = multiply64(film_mantissa(luminance_of_it), film_mantissa(luminance_of_it));
+    pixel.low[FILM_SQUARES] = add64(pixel.low[FILM_SQUARES], film_piece(square, square_shift, square_place));
+    pixel.high[FILM_SQUARES] = add64(pixel.high[FILM_SQUARES], film_piece(square, square_shift, square_place + 1u));
     pixel.count += 1u;
 }
 

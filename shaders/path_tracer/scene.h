@@ -61,8 +61,8 @@ BUFFER_OF(SurfaceInstance, 8);
 // What vertices of a mesh have beyond SurfaceVertex; null: not these. By Hit::instance_index.
 struct VertexExtras
 {
-    Words64 second_uvs; // vec2
-    Words64 colors;     // vec4, linear
+    Vec2s second_uvs;
+    Vec4s colors; // linear
 };
 BUFFER_OF(VertexExtras, 8);
 

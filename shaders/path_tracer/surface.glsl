@@ -31,20 +31,6 @@ struct TriangleData
     uint material;
 };
 
-// Fetched in 64-bit components: drivers on CPUs pay per component, not per byte.
-SurfaceVertex load_vertex(REF(SurfaceVertex) vertices, uint index)
-{
-    Words64 words = Words64(uint64_t(vertices) + uint64_t(index) * 48ul);
-    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2);
-    uint64_t w3 = AT(words, 3), w4 = AT(words, 4), w5 = AT(words, 5);
-    SurfaceVertex vertex;
-    vertex.position = vec3(FLOATS(w0), FLOATS(w1).x);
-    vertex.normal = vec3(FLOATS(w1).y, FLOATS(w2));
-    vertex.uv = FLOATS(w3);
-    vertex.tangent = vec4(FLOATS(w4), FLOATS(w5));
-    return vertex;
-}
-
 void load_extras(inout TriangleData data, SceneData scene, uint instance, uvec3 vertices)
 {
     if (!HAS_COLORS && !HAS_SECOND_UVS) return;
@@ -59,33 +45,23 @@ void load_extras(inout TriangleData data, SceneData scene, uint instance, uvec3 
 TriangleData load_triangle_data(SceneData scene, uint instance_index, uint primitive)
 {
     SurfaceInstance instance = AT(scene.instances, instance_index);
-    Words64 words = Words64(uint64_t(instance.triangles) + uint64_t(primitive) * 16ul);
-    uvec2 low = UINTS(AT(words, 0)), high = UINTS(AT(words, 1));
+    SurfaceTriangle triangle = AT(instance.triangles, primitive);
     TriangleData data;
-    data.corner[0] = load_vertex(instance.vertices, low.x);
-    data.corner[1] = load_vertex(instance.vertices, low.y);
-    data.corner[2] = load_vertex(instance.vertices, high.x);
-    data.material = high.y;
-    load_extras(data, scene, instance_index, uvec3(low, high.x));
+    data.corner[0] = AT(instance.vertices, triangle.vertices.x);
+    data.corner[1] = AT(instance.vertices, triangle.vertices.y);
+    data.corner[2] = AT(instance.vertices, triangle.vertices.z);
+    data.material = triangle.material;
+    load_extras(data, scene, instance_index, triangle.vertices);
     return data;
 }
 
-Rows load_rows(uint64_t address)
-{
-    Words64 words = Words64(address);
-    Rows rows;
-    rows.r0 = vec4(FLOATS(AT(words, 0)), FLOATS(AT(words, 1)));
-    rows.r1 = vec4(FLOATS(AT(words, 2)), FLOATS(AT(words, 3)));
-    rows.r2 = vec4(FLOATS(AT(words, 4)), FLOATS(AT(words, 5)));
-    return rows;
-}
+Rows rows_of(vec4 map[3]) { return Rows(map[0], map[1], map[2]); }
 
 Placement load_placement(REF(SurfaceInstance) instances, uint index)
 {
-    uint64_t address = uint64_t(instances) + uint64_t(index) * 120ul;
     Placement placement;
-    placement.to_world = load_rows(address);
-    placement.to_object = load_rows(address + 48ul);
+    placement.to_world = rows_of(AT(instances, index).object_to_world);
+    placement.to_object = rows_of(AT(instances, index).world_to_object);
     return placement;
 }
 

@@ -14,7 +14,7 @@ BUFFER_OF(RayHit, 4);
 
 struct AllHitsArgs
 {
-    uint64_t scene; // AccelView::scene
+    Address scene; // AccelView::scene
     REF(Ray) rays;
     REF(RayHit) found; // written, with room for `capacity`; hardware may list a hit more than once
     REF(ListTotal) total;

@@ -5,7 +5,7 @@
 #define TWINRAY_BRIDGE_GLSL
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_buffer_reference2 : require
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_control_flow_attributes : require
 
 #extension GL_EXT_spirv_intrinsics : require
@@ -22,29 +22,51 @@ layout(constant_id = 105) const bool FUSED_FMA = false;
 #define FUNC
 #define INOUT(T) inout T
 #define PRECISE precise
+
+// Where something lies in device memory, and other integers of 64 bits that kernels pass on: two words, the low one first, as
+// not every device has integers of 64 bits.
+#define Address uvec2
+#define Uint64 uvec2
+const Address NULL_ADDRESS = Address(0u);
+bool is_null(Address address) { return address == NULL_ADDRESS; }
+Address address_after(Address base, uint bytes)
+{
+    uint carry;
+    uint low = uaddCarry(base.x, bytes, carry);
+    return Address(low, base.y + carry);
+}
+// That of item `index` of those of `stride` bytes.
+Address address_at(Address base, uint index, uint stride)
+{
+    uint high, low;
+    umulExtended(index, stride, high, low);
+    return address_after(base, low) + Address(0u, high);
+}
+
+// REF(T) is the address of items of type T, a struct of its own so that functions overload by it. It becomes a pointer only where
+// AT follows it: pointers in structs and variables are more than some drivers compile.
+#define REFERENCE(name, qualifier, contents, alignment) \
+    layout(buffer_reference, scalar, buffer_reference_align = alignment) qualifier buffer name##_buffer { contents; }; \
+    struct name { Address address; }; \
+    name##_buffer buffer_of(name ref) { return name##_buffer(ref.address); } \
+    bool is_null(name ref) { return is_null(ref.address); }
 #define REF(T) T##_ref
-#define AT(ref, i) ref.items[i]
-#define BUFFER_OF(T, alignment) \
-    layout(buffer_reference, scalar, buffer_reference_align = alignment) buffer T##_ref { T items[]; }
-#define BUFFER_OF_WORDS(name, T, alignment) \
-    layout(buffer_reference, scalar, buffer_reference_align = alignment) buffer name { T items[]; }
+#define AT(ref, i) buffer_of(ref).items[i]
+#define BUFFER_OF(T, alignment) REFERENCE(T##_ref, , T items[], alignment)
 #define FEATURE(id, name) layout(constant_id = id) const bool name = true;
 
-// The two numbers that lie in one 64-bit word, the low one first. That one by way of the upper half: where a vector holds a word
-// in two places, drivers on CPUs take five operations for the lower halves.
-uvec2 uints_of(uint64_t word) { return uvec2(unpackUint2x32(word << 32u).y, unpackUint2x32(word).y); }
-#define FLOATS(word) uintBitsToFloat(uints_of(word))
-#define UINTS(word) uints_of(word)
-#define WORD(low, high) packUint2x32(uvec2(low, high))
 // For where either rounding will do.
 #define FMA(a, b, c) fma(a, b, c)
 #define UNROLL [[unroll]]
 #define DONT_UNROLL [[dont_unroll]]
 
-BUFFER_OF_WORDS(Words64, uint64_t, 8);
-BUFFER_OF_WORDS(Floats, float, 4);
-BUFFER_OF_WORDS(Uints, uint, 4);
-BUFFER_OF_WORDS(Vec4s, vec4, 4);
+REFERENCE(Floats, , float items[], 4)
+REFERENCE(Uints, , uint items[], 4)
+REFERENCE(Vec2s, , vec2 items[], 4)
+REFERENCE(Vec3s, , vec3 items[], 4)
+REFERENCE(Vec4s, , vec4 items[], 4)
+REFERENCE(Uvec2s, , uvec2 items[], 4)
+REFERENCE(Uvec3s, , uvec3 items[], 4)
 
 // Linear index of this group and this invocation; Kernel::dispatch spreads large counts over x and y. Macros, because
 // gl_WorkGroupSize has its value only after the shader's local_size declaration, which follows this include.

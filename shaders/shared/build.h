@@ -252,11 +252,11 @@ FUNC vec3 center_of(LeafBox box)
 
 FUNC void keep_box(BuildTree tree, uint record, LeafBox box)
 {
-    if (uint64_t(tree.record_boxes) != 0ul) store_box(tree.record_boxes, record, box);
+    if (!is_null(tree.record_boxes)) store_box(tree.record_boxes, record, box);
 }
 
-FUNC bool has_instances(BuildTree tree) { return uint64_t(tree.positions) == 0ul; }
-FUNC bool has_boxes(BuildTree tree) { return uint64_t(tree.indices) == 0ul; }
+FUNC bool has_instances(BuildTree tree) { return is_null(tree.positions); }
+FUNC bool has_boxes(BuildTree tree) { return is_null(tree.indices); }
 
 FUNC BvhTriangle fetch_primitive(BuildTree tree, uint primitive)
 {

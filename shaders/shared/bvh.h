@@ -25,7 +25,7 @@ struct LeafBox
     vec3 lo; // lo > hi: empty
     vec3 hi;
 };
-BUFFER_OF(LeafBox, 4);
+BUFFER_OF(LeafBox, 8);
 
 // Without NaN, and by comparisons: for what min and max make of NaN, drivers on CPUs take up to eight operations a number.
 FUNC vec3 lesser_of(vec3 a, vec3 b) { return vec3(a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z); }
@@ -51,6 +51,15 @@ struct BvhNode
     uint below1;
 };
 BUFFER_OF(BvhNode, 16);
+
+// Each half of a node, as others write it alone.
+struct BvhHalf
+{
+    vec3 lo;
+    uint child;
+    vec3 hi;
+    uint below;
+};
 
 // 40 bytes; all corners 0 for a triangle that is not active (see triangle.h), which is never hit. Of a box, v0 and v1 are
 // its lowest and highest corner.
@@ -124,8 +133,8 @@ struct SwScene
     REF(CompressedRecord) records; // as in SwGeometry
     REF(LeafBox) record_boxes;
     REF(SwInstance) instances;
-    uint64_t instance_count;
-    uint64_t refinement; // address of a RefineScene, or 0
+    Uint64 instance_count;
+    Address refinement; // address of a RefineScene, or 0
 };
 BUFFER_OF(SwScene, 8);
 
@@ -154,78 +163,13 @@ FUNC uint child_at(REF(BvhNode) nodes, uint edge)
     return (edge & 1u) == 0u ? AT(nodes, node).child0 : AT(nodes, node).child1;
 }
 
-FUNC BvhNode load_node(REF(BvhNode) nodes, uint index)
-{
-    // Fetched in 64-bit components: drivers on CPUs pay per component, not per byte.
-    Words64 words = Words64(uint64_t(nodes) + uint64_t(index) * 64ul);
-    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3);
-    uint64_t w4 = AT(words, 4), w5 = AT(words, 5), w6 = AT(words, 6), w7 = AT(words, 7);
-    BvhNode node;
-    uvec2 u1 = UINTS(w1), u3 = UINTS(w3), u5 = UINTS(w5), u7 = UINTS(w7);
-    node.lo0 = vec3(FLOATS(w0), uintBitsToFloat(u1.x));
-    node.child0 = u1.y;
-    node.hi0 = vec3(FLOATS(w2), uintBitsToFloat(u3.x));
-    node.below0 = u3.y;
-    node.lo1 = vec3(FLOATS(w4), uintBitsToFloat(u5.x));
-    node.child1 = u5.y;
-    node.hi1 = vec3(FLOATS(w6), uintBitsToFloat(u7.x));
-    node.below1 = u7.y;
-    return node;
-}
+FUNC BvhNode load_node(REF(BvhNode) nodes, uint index) { return AT(nodes, index); }
 
-FUNC SwInstance load_instance(REF(SwInstance) instances, uint index)
-{
-    Words64 words = Words64(uint64_t(instances) + uint64_t(index) * 104ul);
-    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4), w5 = AT(words, 5);
-    uint64_t w10 = AT(words, 10), w11 = AT(words, 11), w12 = AT(words, 12);
-    SwInstance instance;
-    instance.world_to_object[0] = vec4(FLOATS(w0), FLOATS(w1));
-    instance.world_to_object[1] = vec4(FLOATS(w2), FLOATS(w3));
-    instance.world_to_object[2] = vec4(FLOATS(w4), FLOATS(w5));
-    instance.nodes = REF(BvhNode)(AT(words, 6));
-    instance.triangles = REF(BvhTriangle)(AT(words, 7));
-    instance.records = REF(CompressedRecord)(AT(words, 8));
-    instance.record_boxes = REF(LeafBox)(AT(words, 9));
-    uvec2 root_mask = UINTS(w10), flags_kind = UINTS(w11);
-    instance.root = root_mask.x;
-    instance.custom_index_mask = root_mask.y;
-    instance.flags = flags_kind.x;
-    instance.kind = flags_kind.y;
-    instance.extent = FLOATS(w12).x;
-    instance.reserved = 0u;
-    return instance;
-}
+FUNC SwInstance load_instance(REF(SwInstance) instances, uint index) { return AT(instances, index); }
 
-FUNC LeafBox load_box(REF(LeafBox) boxes, uint index)
-{
-    Words64 words = Words64(uint64_t(boxes) + uint64_t(index) * 24ul);
-    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2);
-    vec2 f1 = FLOATS(w1);
-    LeafBox box;
-    box.lo = vec3(FLOATS(w0), f1.x);
-    box.hi = vec3(f1.y, FLOATS(w2));
-    return box;
-}
+FUNC LeafBox load_box(REF(LeafBox) boxes, uint index) { return AT(boxes, index); }
 
-FUNC void store_box(REF(LeafBox) boxes, uint index, LeafBox box)
-{
-    Words64 words = Words64(uint64_t(boxes) + uint64_t(index) * 24ul);
-    AT(words, 0) = WORD(floatBitsToUint(box.lo.x), floatBitsToUint(box.lo.y));
-    AT(words, 1) = WORD(floatBitsToUint(box.lo.z), floatBitsToUint(box.hi.x));
-    AT(words, 2) = WORD(floatBitsToUint(box.hi.y), floatBitsToUint(box.hi.z));
-}
+FUNC void store_box(REF(LeafBox) boxes, uint index, LeafBox box) { AT(boxes, index) = box; }
 
-FUNC BvhTriangle load_triangle(REF(BvhTriangle) triangles, uint index)
-{
-    Words64 words = Words64(uint64_t(triangles) + uint64_t(index) * 40ul);
-    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4);
-    vec2 f1 = FLOATS(w1);
-    uvec2 u4 = UINTS(w4);
-    BvhTriangle triangle;
-    triangle.v0 = vec3(FLOATS(w0), f1.x);
-    triangle.v1 = vec3(f1.y, FLOATS(w2));
-    triangle.v2 = vec3(FLOATS(w3), uintBitsToFloat(u4.x));
-    triangle.primitive_index = u4.y;
-    return triangle;
-}
+FUNC BvhTriangle load_triangle(REF(BvhTriangle) triangles, uint index) { return AT(triangles, index); }
 #endif

@@ -17,33 +17,10 @@ struct CollapseItem
     uint record; // where it goes
     uint below;  // where the records below it begin
 };
-BUFFER_OF(CollapseItem, 4);
+BUFFER_OF(CollapseItem, 8);
 
-// The words of an item.
-FUNC uint64_t first_word(CollapseItem item) { return WORD(item.tree, item.place); }
-FUNC uint64_t second_word(CollapseItem item) { return WORD(item.record, item.below); }
-FUNC CollapseItem item_of(uint64_t first, uint64_t second)
-{
-    uvec2 u0 = UINTS(first), u1 = UINTS(second);
-    CollapseItem item;
-    item.tree = u0.x;
-    item.place = u0.y;
-    item.record = u1.x;
-    item.below = u1.y;
-    return item;
-}
-
-FUNC CollapseItem load_item(REF(CollapseItem) items, uint index)
-{
-    Words64 words = Words64(uint64_t(items) + uint64_t(index) * 16ul);
-    return item_of(AT(words, 0), AT(words, 1));
-}
-FUNC void store_item(REF(CollapseItem) items, uint index, CollapseItem item)
-{
-    Words64 words = Words64(uint64_t(items) + uint64_t(index) * 16ul);
-    AT(words, 0) = first_word(item);
-    AT(words, 1) = second_word(item);
-}
+FUNC CollapseItem load_item(REF(CollapseItem) items, uint index) { return AT(items, index); }
+FUNC void store_item(REF(CollapseItem) items, uint index, CollapseItem item) { AT(items, index) = item; }
 
 // How many items a level has; begins with what an indirect dispatch reads.
 struct CollapseLevel
@@ -83,7 +60,10 @@ struct CollapseArgs
 
 // The queue of a subtree of n leaves takes its (2 n - 1) / 3 nodes at most, half as many as it has records below it: where that
 // of the one with records from `below` on begins, and, with the number of leaves and 0, where all end.
-FUNC uint64_t queue_begin(uint tree_first, uint below) { return uint64_t(tree_first) * 5ul / 6ul + uint64_t(below / 2u); }
+FUNC uint queue_begin(uint tree_first, uint below)
+{
+    return tree_first / 6u * 5u + tree_first % 6u * 5u / 6u + below / 2u; // 5/6 of it, which 32 bits hold all the way
+}
 
 FUNC void set_child(INOUT(NodeChildren) children, uint at, uint child, vec3 lo, vec3 hi, uint below)
 {

@@ -25,31 +25,13 @@ FUNC bool is_leaf(CompressedRecord record) { return (record.a.w & LEAF_BIT) != 0
 FUNC bool is_instance(CompressedRecord leaf) { return (leaf.a.w & INSTANCE_BIT) != 0u; }
 FUNC uint index_in(CompressedRecord leaf) { return leaf.a.w & ~(LEAF_BIT | INSTANCE_BIT); } // of the primitive or instance
 
-FUNC CompressedRecord load_record(REF(CompressedRecord) records, uint index)
-{
-    // In 64-bit components: drivers on CPUs pay per component, not per byte.
-    Words64 words = Words64(uint64_t(records) + uint64_t(index) * 40ul);
-    uint64_t w0 = AT(words, 0), w1 = AT(words, 1), w2 = AT(words, 2), w3 = AT(words, 3), w4 = AT(words, 4);
-    CompressedRecord record;
-    record.a = uvec4(UINTS(w0), UINTS(w1));
-    record.b = uvec4(UINTS(w2), UINTS(w3));
-    record.c = UINTS(w4);
-    return record;
-}
-FUNC void store_record(REF(CompressedRecord) records, uint index, CompressedRecord record)
-{
-    Words64 words = Words64(uint64_t(records) + uint64_t(index) * 40ul);
-    AT(words, 0) = WORD(record.a.x, record.a.y);
-    AT(words, 1) = WORD(record.a.z, record.a.w);
-    AT(words, 2) = WORD(record.b.x, record.b.y);
-    AT(words, 3) = WORD(record.b.z, record.b.w);
-    AT(words, 4) = WORD(record.c.x, record.c.y);
-}
+FUNC CompressedRecord load_record(REF(CompressedRecord) records, uint index) { return AT(records, index); }
+FUNC void store_record(REF(CompressedRecord) records, uint index, CompressedRecord record) { AT(records, index) = record; }
 
 // Where no node leads to; the other words are as they were.
 FUNC void store_no_record(REF(CompressedRecord) records, uint index)
 {
-    AT(Words64(uint64_t(records) + uint64_t(index) * 40ul), 1) = 0ul;
+    AT(records, index).a.w = 0u;
 }
 
 // Which child of a node the record `target` is or lies below. The records below a child lie side by side, in the order of the
@@ -91,9 +73,10 @@ FUNC float origin_below(float limit, uint exponent)
     uint bits = floatBitsToUint(limit);
     bool is_negative = (bits & 0x80000000u) != 0u;
     uint moved = (bits & 0xfffffe00u) | exponent;
-    if (is_negative) return uintBitsToFloat(moved < bits ? moved + 512u : moved);
-    if (moved <= bits) return uintBitsToFloat(moved);
-    return uintBitsToFloat(moved < 512u ? 0x80000000u | exponent : moved - 512u);
+    uint of_negative = moved < bits ? moved + 512u : moved;
+    uint of_positive = moved < 512u ? 0x80000000u | exponent : moved - 512u;
+    of_positive = moved <= bits ? moved : of_positive;
+    return uintBitsToFloat(is_negative ? of_negative : of_positive);
 }
 
 FUNC float cell_within(float cells)
@@ -129,8 +112,9 @@ FUNC LeafBox box_around(NodeChildren children)
     LeafBox around = empty_box();
     UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
     {
-        if (i >= children.count) continue;
-        around = around_both(around, children.box[i]);
+        LeafBox wider = around_both(around, children.box[i]);
+        around.lo = i < children.count ? wider.lo : around.lo;
+        around.hi = i < children.count ? wider.hi : around.hi;
     }
     return around;
 }
@@ -143,9 +127,10 @@ FUNC uvec2 encode_axis(NodeChildren children, uint axis, float origin, float per
     {
         // A box that nothing hits has lo > hi.
         bool is_solid = is_active(children.box[i]);
-        uint below = is_solid ? cell_below(children.box[i].lo[axis], origin, per_unit) : 255u;
-        uint above = is_solid ? cell_above(children.box[i].hi[axis], origin, per_unit) : 0u;
-        if (i < children.count) planes = uvec2(planes.x | below << 8u * i, planes.y | above << 8u * i);
+        uint below = cell_below(children.box[i].lo[axis], origin, per_unit);
+        uint above = cell_above(children.box[i].hi[axis], origin, per_unit);
+        uvec2 more = uvec2(is_solid ? below : 255u, is_solid ? above : 0u) << 8u * i;
+        planes = planes | (i < children.count ? more : uvec2(0u));
     }
     return planes;
 }

@@ -32,6 +32,6 @@ FUNC uint group_of(CountFacesArgs args, uint ray)
     uint primitive = AT(args.hits, ray).primitive_index;
     if (primitive >= AT(args.table.instances, instance).count) return args.group_count;
     uint face = AT(args.table.instances, instance).first + primitive;
-    return uint64_t(args.groups) == 0ul ? face : AT(args.groups, face);
+    return is_null(args.groups) ? face : AT(args.groups, face);
 }
 #endif

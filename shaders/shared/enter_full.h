@@ -5,9 +5,8 @@
 #include "shaders/shared/compressed.h"
 #include "shaders/shared/group.h"
 
-FUNC uint enter_full_box(REF(LeafBox) boxes, uint record, BoxRay ray, float t_min, float t_max, bool is_there, uint query)
+FUNC uint enter_full_box(LeafBox box, BoxRay ray, float t_min, float t_max, bool is_there, uint query)
 {
-    LeafBox box = load_box(boxes, record);
     float enter = 0.0f;
     float leave = 0.0f;
     cross_box(box.lo, box.hi, ray, t_min, t_max, enter, leave);
@@ -18,11 +17,14 @@ FUNC ChildKeys enter_full(REF(LeafBox) boxes, CompressedRecord node, BoxRay ray,
 {
     uint first = first_child_of(node);
     uint last = children_in(node) - 1u;
+    uint key[4]; // a loop: unrolled, it takes some drivers minutes to compile
+    for (uint i = 0u; i < 4u; i = i + 1u)
+        key[i] = enter_full_box(load_box(boxes, first + min(i, last)), ray, t_min, t_max, i <= last, query) | i;
     ChildKeys keys;
-    keys.key0 = enter_full_box(boxes, first, ray, t_min, t_max, true, query);
-    keys.key1 = enter_full_box(boxes, first + 1u, ray, t_min, t_max, true, query) | 1u;
-    keys.key2 = enter_full_box(boxes, first + min(2u, last), ray, t_min, t_max, last > 1u, query) | 2u;
-    keys.key3 = enter_full_box(boxes, first + min(3u, last), ray, t_min, t_max, last > 2u, query) | 3u;
+    keys.key0 = key[0];
+    keys.key1 = key[1];
+    keys.key2 = key[2];
+    keys.key3 = key[3];
     return keys;
 }
 #endif

@@ -41,8 +41,8 @@ struct FloatProbeArgs
 struct Float64Args
 {
     REF(FloatCase) cases;
-    Words64 products; // double(a) double(b)
-    Words64 sums;     // double(a) + double(b)
+    Uvec2s products; // double(a) double(b)
+    Uvec2s sums;     // double(a) + double(b)
     uint count;
     uint reserved;
 };

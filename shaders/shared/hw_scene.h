@@ -8,7 +8,7 @@ struct HwGeometry
 {
     vec3 lo;
     vec3 hi;
-    uint64_t blas;    // device address of the bottom-level structure; 0: nothing can be hit
+    Address blas;    // device address of the bottom-level structure; 0: nothing can be hit
     Uints triangles;  // primitive of the built geometry -> the user's; null: the same
     uint kind;        // GEOMETRY_*
     uint reserved;
@@ -26,9 +26,9 @@ BUFFER_OF(HwInstance, 8);
 
 struct HwScene
 {
-    uint64_t tlas;              // device address of the top-level acceleration structure
+    Address tlas;              // device address of the top-level acceleration structure
     REF(HwInstance) instances;  // by InstanceId; null without FEATURE_REMAP
-    uint64_t refinement;        // address of a RefineScene, or 0
+    Address refinement;        // address of a RefineScene, or 0
 };
 BUFFER_OF(HwScene, 8);
 

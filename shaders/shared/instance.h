@@ -10,7 +10,7 @@ struct InstanceRecord
     vec4 object_to_world[3];   // rows of a 3x4 matrix
     uint custom_index_mask;    // 24-bit custom index, 8-bit mask in the high byte
     uint sbt_offset_flags;     // 24-bit shader binding table offset (0), 8-bit VkGeometryInstanceFlagsKHR
-    uint64_t geometry;         // address of the accelerator's block for the geometry; 0 = inactive
+    Address geometry;         // address of the accelerator's block for the geometry; 0 = inactive
 };
 BUFFER_OF(InstanceRecord, 16);
 
@@ -61,8 +61,8 @@ FUNC Rows to_world_of(InstanceRecord instance)
 // The instance of what was built, not of what was given.
 FUNC InstanceRecord in_built_units(InstanceRecord instance)
 {
-    if (instance.geometry == 0ul) return instance;
-    float scale = AT(REF(GeometrySource)(instance.geometry + uint64_t(GEOMETRY_SOURCE_OFFSET)), 0).scale;
+    if (is_null(instance.geometry)) return instance;
+    float scale = AT(REF(GeometrySource)(address_after(instance.geometry, GEOMETRY_SOURCE_OFFSET)), 0).scale;
     for (uint row = 0u; row < 3u; row = row + 1u)
     {
         vec4 r = instance.object_to_world[row];

@@ -20,5 +20,5 @@ FUNC bool is_valid(SetKey key) { return key.type != 0u; }
 // TWINRAY_SET_VIEW(MaterialSet, MATERIALS): struct MaterialSet with, for each type, the array `diffuse` of its elements
 // and their number `diffuse_count`. 16 bytes a type and 16 more. The element types need a BUFFER_OF before it.
 #define TWINRAY_SET_FIELD(P, number, Type, name) REF(Type) name; uint name##_count; uint name##_reserved;
-#define TWINRAY_SET_VIEW(Name, LIST) struct Name { LIST(TWINRAY_SET_FIELD, 0) REF(Faults) faults; uint64_t revision; };
+#define TWINRAY_SET_VIEW(Name, LIST) struct Name { LIST(TWINRAY_SET_FIELD, 0) REF(Faults) faults; Uint64 revision; };
 #endif

@@ -15,7 +15,7 @@ struct NodeBoxes
 FUNC NodeBoxes boxes_in(SwGeometry geometry, uint index)
 {
     NodeBoxes node;
-    if (uint64_t(geometry.records) == 0ul)
+    if (is_null(geometry.records))
     {
         BvhNode binary = load_node(geometry.bvh.nodes, index);
         node.box[0].lo = binary.lo0;
@@ -32,7 +32,7 @@ FUNC NodeBoxes boxes_in(SwGeometry geometry, uint index)
     for (uint i = 0u; i < node.count; i = i + 1u)
     {
         node.child[i] = first_child_of(record) + i;
-        if (uint64_t(geometry.record_boxes) != 0ul) node.box[i] = load_box(geometry.record_boxes, first_child_of(record) + i);
+        if (!is_null(geometry.record_boxes)) node.box[i] = load_box(geometry.record_boxes, first_child_of(record) + i);
         else node.box[i] = box_in_planes(record, i);
     }
     return node;
@@ -40,7 +40,7 @@ FUNC NodeBoxes boxes_in(SwGeometry geometry, uint index)
 
 FUNC bool is_inner_child(SwGeometry geometry, uint child)
 {
-    if (uint64_t(geometry.records) == 0ul) return (child & LEAF_BIT) == 0u;
+    if (is_null(geometry.records)) return (child & LEAF_BIT) == 0u;
     return !is_leaf(load_record(geometry.records, child));
 }
 #endif

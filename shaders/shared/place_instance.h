@@ -54,7 +54,7 @@ FUNC bool is_within(LeafBox box, LeafBox outer)
 // A box around the geometry under the map, but for rounding: around its boxes CUT_LEVELS below the root, and the leaves above.
 FUNC LeafBox box_of_cut(SwGeometry geometry, Rows to_world)
 {
-    bool is_binary = uint64_t(geometry.records) == 0ul;
+    bool is_binary = is_null(geometry.records);
     uint lowest = is_binary ? BINARY_CUT_LEVELS : CUT_LEVELS;
     LeafBox around = empty_box();
     uint stack[CUT_STACK];
@@ -127,7 +127,7 @@ FUNC SwInstance place_instance(InstanceRecord record, INOUT(LeafBox) box)
     instance.extent = 0.0f;
     instance.reserved = 0u;
     box = empty_box();
-    if (record.geometry == 0ul || !is_usable(to_world, to_object)) return instance;
+    if (is_null(record.geometry) || !is_usable(to_world, to_object)) return instance;
     SwGeometry geometry = AT(REF(SwGeometry)(record.geometry), 0);
     instance.nodes = geometry.bvh.nodes;
     instance.triangles = geometry.triangles;

@@ -11,7 +11,7 @@ struct Candidate
     uint primitive_index; // box or triangle of the geometry, in the user's numbering
     uint instance_index;
     uint custom_index;
-    uint64_t user_data; // TraceDesc::user_data; 0 in kernels that call closest_hit or any_hit
+    Address user_data; // TraceDesc::user_data; 0 in kernels that call closest_hit or any_hit
 };
 
 #ifdef TWINRAY_PROGRAM

@@ -37,7 +37,7 @@ const uint CULL_FRONT = 0x20u;
 // How many rays to trace: `count`, or what a kernel has written if that is less.
 FUNC uint ray_count(uint count, Uints indirect_count)
 {
-    if (uint64_t(indirect_count) == 0ul) return count;
+    if (is_null(indirect_count)) return count;
     uint written = AT(indirect_count, 0);
     return written < count ? written : count;
 }
@@ -56,26 +56,8 @@ FUNC Hit miss()
     return hit;
 }
 
-// In 64-bit components: drivers on CPUs pay per component, not per byte.
-FUNC Ray load_ray(REF(Ray) rays, uint index)
-{
-    Words64 words = Words64(uint64_t(rays) + uint64_t(index) * 32ul);
-    vec2 z_min = FLOATS(AT(words, 1)), z_max = FLOATS(AT(words, 3));
-    Ray ray;
-    ray.origin = vec3(FLOATS(AT(words, 0)), z_min.x);
-    ray.t_min = z_min.y;
-    ray.direction = vec3(FLOATS(AT(words, 2)), z_max.x);
-    ray.t_max = z_max.y;
-    return ray;
-}
-FUNC void store_hit(REF(Hit) hits, uint index, Hit hit)
-{
-    Words64 words = Words64(uint64_t(hits) + uint64_t(index) * 32ul);
-    AT(words, 0) = WORD(hit.hit, floatBitsToUint(hit.t));
-    AT(words, 1) = WORD(hit.primitive_index, hit.custom_index);
-    AT(words, 2) = WORD(floatBitsToUint(hit.u), floatBitsToUint(hit.v));
-    AT(words, 3) = WORD(hit.instance_index, hit.flags);
-}
+FUNC Ray load_ray(REF(Ray) rays, uint index) { return AT(rays, index); }
+FUNC void store_hit(REF(Hit) hits, uint index, Hit hit) { AT(hits, index) = hit; }
 
 // The magnitudes' bits, doubled, which are in the order of the magnitudes, NaN above all.
 FUNC uint largest_bits(vec3 v)

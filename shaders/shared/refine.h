@@ -94,7 +94,7 @@ FUNC Hit refined(Hit hit, Ray ray, double advance, GivenMesh mesh)
 {
     PRECISE double moved = double(hit.t) + advance;
     hit.t = rounded_within(moved, ray);
-    if (uint64_t(mesh.indices) == 0ul) return hit;
+    if (is_null(mesh.indices)) return hit;
     dvec3 origin = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
     dvec3 direction = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
     dvec3 a = corner_from(origin, mesh, 3u * hit.primitive_index);

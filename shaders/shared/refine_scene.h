@@ -33,20 +33,7 @@ struct RefineScene
 BUFFER_OF(RefineScene, 8);
 
 // Fetched in 64-bit components, as in load_node of traverse.h.
-FUNC GivenMesh load_given_mesh(REF(RefineInstance) instances, uint index)
-{
-    Words64 words = Words64(uint64_t(instances) + uint64_t(index) * 176ul);
-    GivenMesh mesh;
-    for (uint row = 0u; row < 3u; row = row + 1u)
-    {
-        uint64_t xy = AT(words, 2u * row);
-        uint64_t zw = AT(words, 2u * row + 1u);
-        mesh.object_to_world[row] = vec4(FLOATS(xy), FLOATS(zw));
-    }
-    mesh.positions = Floats(AT(words, 6));
-    mesh.indices = Uints(AT(words, 7));
-    return mesh;
-}
+FUNC GivenMesh load_given_mesh(REF(RefineInstance) instances, uint index) { return AT(instances, index).mesh; }
 
 struct RefineGatherArgs
 {
@@ -63,12 +50,12 @@ FUNC RefineInstance refine_instance(InstanceRecord record)
     Rows to_world = to_world_of(record);
     RefineInstance instance;
     for (uint row = 0u; row < 3u; row = row + 1u) instance.mesh.object_to_world[row] = record.object_to_world[row];
-    instance.mesh.positions = Floats(0ul);
-    instance.mesh.indices = Uints(0ul);
+    instance.mesh.positions = Floats(NULL_ADDRESS);
+    instance.mesh.indices = Uints(NULL_ADDRESS);
     instance.extent = 0.0f;
-    if (record.geometry != 0ul)
+    if (!is_null(record.geometry))
     {
-        GeometrySource mesh = AT(REF(GeometrySource)(record.geometry + uint64_t(GEOMETRY_SOURCE_OFFSET)), 0);
+        GeometrySource mesh = AT(REF(GeometrySource)(address_after(record.geometry, GEOMETRY_SOURCE_OFFSET)), 0);
         GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);
         instance.mesh.positions = mesh.positions;
         instance.mesh.indices = mesh.indices;

@@ -21,26 +21,25 @@ struct NodeHalf
     uint below; // as BvhNode::below0
 };
 
-// The nodes are words: eight each, four a half.
-FUNC NodeHalf get_half(NodeWords nodes, uint node, uint side)
+// The nodes are two halves each, which begin with the even ones.
+FUNC NodeHalf get_half(NodeHalves nodes, uint node, uint side)
 {
-    uint at = node * 8u + side * 4u;
-    uint64_t w0 = AT(nodes, at), w1 = AT(nodes, at + 1u), w2 = AT(nodes, at + 2u), w3 = AT(nodes, at + 3u);
-    uvec2 u1 = UINTS(w1), u3 = UINTS(w3);
+    BvhHalf stored = AT(nodes, node * 2u + side);
     NodeHalf found;
-    found.box.lo = vec3(FLOATS(w0), uintBitsToFloat(u1.x));
-    found.box.hi = vec3(FLOATS(w2), uintBitsToFloat(u3.x));
-    found.child = u1.y;
-    found.below = u3.y;
+    found.box.lo = stored.lo;
+    found.box.hi = stored.hi;
+    found.child = stored.child;
+    found.below = stored.below;
     return found;
 }
-FUNC void put_half(NodeWords nodes, uint node, uint side, NodeHalf half_node)
+FUNC void put_half(NodeHalves nodes, uint node, uint side, NodeHalf half_node)
 {
-    uint at = node * 8u + side * 4u;
-    AT(nodes, at) = WORD(floatBitsToUint(half_node.box.lo.x), floatBitsToUint(half_node.box.lo.y));
-    AT(nodes, at + 1u) = WORD(floatBitsToUint(half_node.box.lo.z), half_node.child);
-    AT(nodes, at + 2u) = WORD(floatBitsToUint(half_node.box.hi.x), floatBitsToUint(half_node.box.hi.y));
-    AT(nodes, at + 3u) = WORD(floatBitsToUint(half_node.box.hi.z), half_node.below);
+    BvhHalf stored;
+    stored.lo = half_node.box.lo;
+    stored.child = half_node.child;
+    stored.hi = half_node.box.hi;
+    stored.below = half_node.below;
+    AT(nodes, node * 2u + side) = stored;
 }
 
 // `node` with these two children, as a child.
@@ -54,11 +53,9 @@ FUNC NodeHalf joined_half(NodeHalf a, NodeHalf b, uint node)
 }
 
 // Nodes on the longest way down from a node, itself among them.
-FUNC uint height_of(NodeWords nodes, uint node)
+FUNC uint height_of(NodeHalves nodes, uint node)
 {
-    uint below0 = UINTS(AT(nodes, node * 8u + 3u)).y;
-    uint below1 = UINTS(AT(nodes, node * 8u + 7u)).y;
-    return 1u + max(height_in(below0), height_in(below1));
+    return 1u + max(height_in(AT(nodes, node * 2u).below), height_in(AT(nodes, node * 2u + 1u).below));
 }
 
 FUNC bool is_inner(NodeHalf half_node) { return (half_node.child & LEAF_BIT) == 0u; }
@@ -110,7 +107,7 @@ FUNC void keep_better(INOUT(float) best, INOUT(uint) best_move, float gain, uint
 }
 
 // Rotates a node with children a and b where that gains most, if it gains and leaves the node within `limit` nodes of height.
-FUNC Rotated rotate_node(NodeWords nodes, uint node, NodeHalf a, NodeHalf b, uint limit, float scale)
+FUNC Rotated rotate_node(NodeHalves nodes, uint node, NodeHalf a, NodeHalf b, uint limit, float scale)
 {
     NodeHalf a0 = a, a1 = a, b0 = b, b1 = b;
     float area_a = area_of(a.box, scale);
@@ -232,7 +229,7 @@ FUNC void choose_next(INOUT(Rotation) rotation)
     else rotation.next = NOTHING;
 }
 
-FUNC void rotate_next(NodeWords nodes, INOUT(Rotation) rotation, float scale)
+FUNC void rotate_next(NodeHalves nodes, INOUT(Rotation) rotation, float scale)
 {
     NodeHalf a = get_half(nodes, rotation.next, 0u);
     NodeHalf b = get_half(nodes, rotation.next, 1u);
@@ -251,7 +248,7 @@ FUNC void rotate_next(NodeWords nodes, INOUT(Rotation) rotation, float scale)
 }
 
 // All at once. Returns the node's height.
-FUNC uint rotate(NodeWords nodes, uint node, uint limit, float scale)
+FUNC uint rotate(NodeHalves nodes, uint node, uint limit, float scale)
 {
     Rotation rotation = rotation_of(node, limit);
     while (rotation.next != NOTHING) rotate_next(nodes, rotation, scale);

@@ -4,6 +4,7 @@
 #define TWINRAY_SHARED_SPLITS_H
 #include "shaders/shared/build.h"
 #include "shaders/shared/morton.h"
+#include "shaders/shared/word64.h"
 
 FUNC LeafBox bounds_of(CentroidBounds bits)
 {
@@ -16,17 +17,17 @@ FUNC LeafBox bounds_of(CentroidBounds bits)
 // What separates neighbours in sorted order, larger = higher up: the highest bit in which their codes differ, between equal codes
 // the highest in which fine codes do, between equal ones of both the highest in which their places do. Only the highest
 // bit counts, and that of two neighbours of a range of leaves is never the same.
-FUNC uint64_t make_split(uint of_code, uint of_fine_code, uint place)
+FUNC uvec2 make_split(uint of_code, uint of_fine_code, uint place)
 {
     uint of_place = place ^ (place + 1u); // 25 bits
     uint lower = of_fine_code != 0u ? (uint(findMSB(of_fine_code)) + 1u) << 25u : of_place;
-    return uint64_t(of_code) << 32u | uint64_t(lower);
+    return uvec2(lower, of_code);
 }
 // A tree below a split has one node at most on any way down for each lower bit.
-FUNC uint highest_below(uint64_t split)
+FUNC uint highest_below(uvec2 split)
 {
-    uint of_code = UINTS(split).y;
-    uint lower = UINTS(split).x;
+    uint of_code = split.y;
+    uint lower = split.x;
     if (of_code != 0u) return uint(findMSB(of_code)) + 56u;
     return lower >> 25u != 0u ? (lower >> 25u) + 25u : uint(findMSB(lower)) + 1u;
 }

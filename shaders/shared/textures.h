@@ -35,6 +35,6 @@ struct TextureTable
     uint count;
     uint reserved;
     REF(Faults) faults;
-    uint64_t revision;
+    Uint64 revision;
 };
 #endif

@@ -21,7 +21,7 @@ struct TraceOptions
     uint query;    // QUERY_*
     uint level;    // LEVEL_*
     uint features; // FEATURE_*
-    uint64_t user_data;
+    Address user_data;
 #ifdef TWINRAY_REFINED
     // From LEVEL_REFINED on: the ray as it was given, of which the traced one begins `advance` ahead.
     Ray given;
@@ -41,11 +41,11 @@ FUNC float t_of_given(float t, TraceOptions options)
 
 struct TraceArgs
 {
-    uint64_t scene; // AccelView::scene
+    Address scene; // AccelView::scene
     REF(Ray) rays;
     REF(Hit) hits;
     Uints indirect_count; // null, or where a smaller count may stand
-    uint64_t user_data;
+    Address user_data;
     Uints order; // null, or which ray each invocation traces
     uint count; // where the rays of this launch end
     uint mask;
@@ -53,5 +53,5 @@ struct TraceArgs
     uint first; // ray that the launch begins with
 };
 
-FUNC uint ray_at(Uints order, uint place) { return uint64_t(order) == 0ul ? place : AT(order, place); }
+FUNC uint ray_at(Uints order, uint place) { return is_null(order) ? place : AT(order, place); }
 #endif

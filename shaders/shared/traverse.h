@@ -49,7 +49,7 @@ FUNC SwTree top_tree(SwScene scene)
 {
     SwTree tree;
     tree.nodes = scene.bvh.nodes;
-    tree.triangles = REF(BvhTriangle)(0ul);
+    tree.triangles = REF(BvhTriangle)(NULL_ADDRESS);
     tree.records = scene.records;
     tree.boxes = scene.record_boxes;
     tree.root = scene.bvh.root;
@@ -70,7 +70,7 @@ FUNC bool is_binary(SwScene scene, TraceOptions options)
 {
     bool may_be = (options.features & FEATURE_BVH2) != 0u;
     bool may_have_records = (options.features & (FEATURE_COMPRESSED | FEATURE_BVH4)) != 0u;
-    return may_be && (!may_have_records || uint64_t(scene.records) == 0ul);
+    return may_be && (!may_have_records || is_null(scene.records));
 }
 
 // The children of a node that the ray enters, the first one first, and the rest as an entry of the stack.
@@ -87,7 +87,7 @@ FUNC EnteredChildren children_of_record(CompressedRecord record, SwTree tree, Bo
     bool may_be_full = (options.features & FEATURE_BVH4) != 0u;
     bool may_be_compressed = (options.features & FEATURE_COMPRESSED) != 0u;
     ChildKeys keys;
-    if (may_be_full && (!may_be_compressed || uint64_t(tree.boxes) != 0ul))
+    if (may_be_full && (!may_be_compressed || !is_null(tree.boxes)))
         keys = enter_full(tree.boxes, record, ray, search.t_min, search.t_best, options.query);
     else keys = enter_compressed(record, ray, search.t_min, search.t_best, options.query);
     if (target != NOTHING) keys = keys_from(keys, child_towards(tree.records, record, target));

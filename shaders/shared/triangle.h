@@ -84,22 +84,9 @@ FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c)
              is_flat(vec2(a.z, a.x), vec2(b.z, b.x), vec2(c.z, c.x)));
 }
 
-// The three words at an address that is a multiple of 4, two of them in one fetch: drivers on CPUs pay per component.
-FUNC uvec3 load_three(uint64_t address)
-{
-    bool begins_alone = (address & 4ul) != 0ul;
-    uvec2 pair = UINTS(AT(Words64(begins_alone ? address + 4ul : address), 0));
-    uint alone = AT(Uints(begins_alone ? address : address + 8ul), 0);
-    return begins_alone ? uvec3(alone, pair) : uvec3(pair, alone);
-}
-
 // Of 3 tightly packed floats a vertex.
-FUNC vec3 load_position(Floats positions, uint vertex)
-{
-    uvec3 bits = load_three(uint64_t(positions) + uint64_t(vertex) * 12ul);
-    return vec3(uintBitsToFloat(bits.x), uintBitsToFloat(bits.y), uintBitsToFloat(bits.z));
-}
+FUNC vec3 load_position(Floats positions, uint vertex) { return AT(Vec3s(positions.address), vertex); }
 
 // Of 3 tightly packed indices a triangle.
-FUNC uvec3 load_indices(Uints indices, uint triangle) { return load_three(uint64_t(indices) + uint64_t(triangle) * 12ul); }
+FUNC uvec3 load_indices(Uints indices, uint triangle) { return AT(Uvec3s(indices.address), triangle); }
 #endif

@@ -8,7 +8,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
 {
-    uint64_t scene; // AccelView::scene
+    Address scene; // AccelView::scene
     REF(Ray) rays;
     Uints counts; // written
     uint count;

@@ -16,7 +16,7 @@ void keep_loads(uint found)
 }
 
 // So many bytes from an address on, but perhaps the last few, by a word of each 64, shared out among a group's invocations.
-void load_lines(uint64_t begin, uint bytes, uint group_size)
+void load_lines(Address begin, uint bytes, uint group_size)
 {
     uint found = 0u;
     uint count = (bytes + 63u) / 64u;

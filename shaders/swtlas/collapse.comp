@@ -41,9 +41,9 @@ uint reserve(REF(CollapseLevel) list, uint count, uint share)
 
 ItemLists reserve(ItemLists counts)
 {
-    const uint64_t LEVEL_BYTES = 16ul;
+    const uint LEVEL_BYTES = 16u;
     ItemLists places;
-    places.next = reserve(REF(CollapseLevel)(uint64_t(args.level) + LEVEL_BYTES), counts.next, COLLAPSE_GROUP);
+    places.next = reserve(REF(CollapseLevel)(address_after(args.level.address, LEVEL_BYTES)), counts.next, COLLAPSE_GROUP);
     places.subtrees = reserve(args.subtree_level, counts.subtrees, 1u);
     return places;
 }

@@ -9,18 +9,10 @@
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { CollapseArgs args; };
 
-// Of CollapseItems, two words each, as all invocations of a group see them.
-layout(buffer_reference, scalar, buffer_reference_align = 8) coherent buffer QueueWords { uint64_t items[]; };
+// As all invocations of a group see it.
+REFERENCE(Queue, coherent, CollapseItem items[], 8)
 
 shared uint queued; // how many items ever were
-
-void put_item(QueueWords queue, uint at, CollapseItem item)
-{
-    AT(queue, 2u * at) = first_word(item);
-    AT(queue, 2u * at + 1u) = second_word(item);
-}
-
-CollapseItem get_item(QueueWords queue, uint at) { return item_of(AT(queue, 2u * at), AT(queue, 2u * at + 1u)); }
 
 // Where rotations have moved nodes, these are other ones of the tree.
 void load_ahead(BuildTree tree, CollapseItem root)
@@ -30,11 +22,11 @@ void load_ahead(BuildTree tree, CollapseItem root)
     uint leaves = left + leaves_in(node.below1);
     uint first = node_at(root.place) + 1u - min(left, node_at(root.place) + 1u);
     uint nodes = min(leaves - 1u, tree.count - 1u - first);
-    load_lines(uint64_t(tree.nodes) + uint64_t(first) * 64ul, nodes * 64u, gl_WorkGroupSize.x);
-    load_lines(uint64_t(tree.records) + uint64_t(root.below) * 40ul, records_below(leaves) * 40u, gl_WorkGroupSize.x);
+    load_lines(address_at(tree.nodes.address, first, 64u), nodes * 64u, gl_WorkGroupSize.x);
+    load_lines(address_at(tree.records.address, root.below, 40u), records_below(leaves) * 40u, gl_WorkGroupSize.x);
 }
 
-void do_item(BuildTree tree, QueueWords queue, CollapseItem item)
+void do_item(BuildTree tree, Queue queue, CollapseItem item)
 {
     NodeChildren children = children_of(tree.nodes, item.place);
     uint count = 0u;
@@ -45,7 +37,7 @@ void do_item(BuildTree tree, QueueWords queue, CollapseItem item)
     UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
     {
         if (found.leaves[i] == 0u) continue;
-        put_item(queue, place, found.items[i]);
+        AT(queue, place) = found.items[i];
         place = place + 1u;
     }
 }
@@ -55,10 +47,10 @@ void main()
     if (group_index() >= AT(args.subtree_level, 0).count) return;
     CollapseItem root = load_item(args.subtrees, group_index());
     BuildTree tree = AT(args.trees, root.tree);
-    QueueWords queue = QueueWords(uint64_t(args.queues) + queue_begin(tree.first, root.below) * 16ul);
+    Queue queue = Queue(address_at(args.queues.address, queue_begin(tree.first, root.below), 16u));
     if (gl_LocalInvocationID.x == 0u)
     {
-        put_item(queue, 0u, root);
+        AT(queue, 0) = root;
         queued = 1u;
     }
     if (LOADS_AHEAD) load_ahead(tree, root);
@@ -72,7 +64,7 @@ void main()
         barrier(); // all have read it before any adds to it
         memoryBarrierBuffer();
         uint mine = begin + gl_LocalInvocationID.x;
-        if (mine < end) do_item(tree, queue, get_item(queue, mine));
+        if (mine < end) do_item(tree, queue, AT(queue, mine));
         begin = end;
     }
 }

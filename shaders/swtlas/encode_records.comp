@@ -12,8 +12,8 @@ layout(push_constant, scalar) uniform Push { EncodeRecordsArgs args; };
 void load_ahead(BuildBlock block, BuildTree tree)
 {
     uint stride = gl_WorkGroupSize.x;
-    load_lines(uint64_t(args.order) + uint64_t(block.first) * 4ul, block.count * 4u, stride);
-    load_lines(uint64_t(args.places) + uint64_t(block.first) * 4ul, block.count * 4u, stride);
+    load_lines(address_at(args.order.address, block.first, 4u), block.count * 4u, stride);
+    load_lines(address_at(args.places.address, block.first, 4u), block.count * 4u, stride);
     uint found = 0u;
     for (uint first = gl_LocalInvocationID.x; first < block.count; first += LOADS_ABREAST * stride)
     {

@@ -13,7 +13,7 @@ shared float areas[OVERLAP_GROUP];
 OverlapSum measured(uint index)
 {
     SwGeometry geometry = AT(args.geometry, 0);
-    if (uint64_t(geometry.records) == 0ul)
+    if (is_null(geometry.records))
         return overlap_of(geometry, load_triangle(geometry.triangles, index), LEAF_BIT | index);
     CompressedRecord record = load_record(geometry.records, index);
     if (is_leaf(record)) return overlap_of(geometry, primitive_of(record), index);

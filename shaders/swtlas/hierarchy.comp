@@ -23,12 +23,12 @@ layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(constant_id = 0) const uint QUALITY = HIERARCHY_FAST;
 layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
 
-// The nodes as seen by all groups, not through caches of one; eight words each.
-layout(buffer_reference, scalar, buffer_reference_align = 16) coherent buffer NodeWords { uint64_t items[]; };
+// The nodes as seen by all groups, not through caches of one.
+REFERENCE(NodeHalves, coherent, BvhHalf items[], 16)
 #include "shaders/shared/rotate.h"
 
-const uint64_t TREE_END = ~0ul; // the split beside the first and the last leaf
-const uint MOST_STEPS = 2u;     // leaves or joins in one turn of a run
+const uvec2 TREE_END = uvec2(~0u); // the split beside the first and the last leaf
+const uint MOST_STEPS = 2u;         // leaves or joins in one turn of a run
 
 struct Range
 {
@@ -39,24 +39,24 @@ struct Range
 
 bool is_fine; // leaves are sorted by fine codes, too
 
-uint64_t split_of(BuildTree tree, uint position, uint code, uint next_code)
+uvec2 split_of(BuildTree tree, uint position, uint code, uint next_code)
 {
     uint difference = 0u;
     if (is_fine && code == next_code)
         difference = AT(args.fine_codes, AT(args.order, position)) ^ AT(args.fine_codes, AT(args.order, position + 1u));
     return make_split(code ^ next_code, difference, position - tree.first);
 }
-uint64_t split_after(BuildTree tree, uint position)
+uvec2 split_after(BuildTree tree, uint position)
 {
     return split_of(tree, position, AT(args.codes, position), AT(args.codes, position + 1u));
 }
-uint64_t split_before(BuildTree tree, uint position)
+uvec2 split_before(BuildTree tree, uint position)
 {
     return position == tree.first ? TREE_END : split_after(tree, position - 1u);
 }
 
 // The node at a split has both its halves, `top` and `other`, and becomes the top. Returns the rotation that this asks for.
-Rotation join(inout NodeHalf top, NodeHalf other, uint node, uint64_t split)
+Rotation join(inout NodeHalf top, NodeHalf other, uint node, uvec2 split)
 {
     top = joined_half(top, other, node);
     if (QUALITY == HIERARCHY_HIGH && is_rotated(top)) return rotation_of(node, highest_below(split));
@@ -64,7 +64,7 @@ Rotation join(inout NodeHalf top, NodeHalf other, uint node, uint64_t split)
 }
 
 // The next one of the rotation of `top`.
-void rotate_one(NodeWords nodes, inout Rotation rotation, inout NodeHalf top, float scale)
+void rotate_one(NodeHalves nodes, inout Rotation rotation, inout NodeHalf top, float scale)
 {
     rotate_next(nodes, rotation, scale);
     if (rotation.next == NOTHING) top.below = make_below(leaves_in(top.below), height_of(nodes, rotation.node));
@@ -78,14 +78,14 @@ void finish(BuildTree tree, NodeHalf root)
     AT(tree.bvh, 0).hi = root.box.hi;
 }
 
-void climb(BuildTree tree, NodeWords nodes, float scale, Range range)
+void climb(BuildTree tree, NodeHalves nodes, float scale, Range range)
 {
     uint tree_last = tree.first + tree.count - 1u;
     while (range.first != tree.first || range.last != tree_last)
     {
-        uint64_t left = split_before(tree, range.first);
-        uint64_t right = range.last == tree_last ? TREE_END : split_after(tree, range.last);
-        bool joins_right = right < left;
+        uvec2 left = split_before(tree, range.first);
+        uvec2 right = range.last == tree_last ? TREE_END : split_after(tree, range.last);
+        bool joins_right = less64(right, left);
         uint split = joins_right ? range.last : range.first - 1u;
         uint node = split - tree.first;
         put_half(nodes, node, joins_right ? 0u : 1u, range.top);
@@ -93,7 +93,7 @@ void climb(BuildTree tree, NodeWords nodes, float scale, Range range)
         uint other = atomicExchange(AT(args.meeting, split), joins_right ? range.first : range.last);
         if (other == NOTHING) return;
         memoryBarrierBuffer();
-        Rotation rotation = join(range.top, get_half(nodes, node, joins_right ? 1u : 0u), node, min(left, right));
+        Rotation rotation = join(range.top, get_half(nodes, node, joins_right ? 1u : 0u), node, joins_right ? right : left);
         while (rotation.next != NOTHING) rotate_one(nodes, rotation, range.top, scale);
         if (joins_right) range.last = other;
         else range.first = other;
@@ -110,8 +110,8 @@ struct Run
     uint first;      // the range at hand: its leaves, first .. place,
     uint place;
     NodeHalf top;    // its tree
-    uint64_t left;   // and the splits beside it
-    uint64_t right;
+    uvec2 left;      // and the splits beside it
+    uvec2 right;
     bool takes_leaf; // it is still to be begun, with the leaf at `place`
     uint code;       // of the leaf at `place`, then of the one after it
 };
@@ -147,7 +147,7 @@ void take_leaf(BuildTree tree, inout Run run)
 }
 
 // Joins the range with the one before it, if that is next, or else leaves it and takes another leaf.
-Rotation advance(BuildTree tree, NodeWords nodes, inout Run run)
+Rotation advance(BuildTree tree, NodeHalves nodes, inout Run run)
 {
     if (run.takes_leaf) take_leaf(tree, run);
     if (run.left == TREE_END && run.right == TREE_END)
@@ -155,13 +155,13 @@ Rotation advance(BuildTree tree, NodeWords nodes, inout Run run)
         run.place = run.end;
         return no_rotation();
     }
-    bool joins_left = run.left < run.right;
+    bool joins_left = less64(run.left, run.right);
     uint node = (joins_left ? run.first - 1u : run.place) - tree.first;
     put_half(nodes, node, joins_left ? 1u : 0u, run.top);
     if (joins_left && run.first != run.base)
     {
         NodeHalf waiting = get_half(nodes, node, 0u);
-        uint64_t split = run.left;
+        uvec2 split = run.left;
         run.first = run.first - leaves_in(waiting.below);
         run.left = split_before(tree, run.first);
         return join(run.top, waiting, node, split);
@@ -175,7 +175,7 @@ Rotation advance(BuildTree tree, NodeWords nodes, inout Run run)
 
 // Joins the run's ranges with those of other runs: the first ones, which wait in right halves, from the left, the others,
 // in left ones, from the right.
-void join_ranges(BuildTree tree, NodeWords nodes, float scale, Run run)
+void join_ranges(BuildTree tree, NodeHalves nodes, float scale, Run run)
 {
     uint from = run.begin;
     uint to = run.end;
@@ -211,7 +211,7 @@ void load_ahead(uint begin, uint end)
 // a node to rotate, and rotates one: where invocations go through a program together, each waits little for the others.
 void build_run(BuildTree tree, float scale, uint begin, uint end)
 {
-    NodeWords nodes = NodeWords(uint64_t(tree.nodes));
+    NodeHalves nodes = NodeHalves(tree.nodes.address);
     if (LOADS_AHEAD) load_ahead(begin, end);
     Run run = first_run(tree, begin, end);
     Rotation rotation = no_rotation();

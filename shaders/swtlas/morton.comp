@@ -14,7 +14,7 @@ void main()
     BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
     LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
     if (group_index() >= args.block_count) return;
-    if (LOADS_AHEAD) load_lines(uint64_t(args.boxes) + uint64_t(block.first) * 24ul, block.count * 24u, gl_WorkGroupSize.x);
+    if (LOADS_AHEAD) load_lines(address_at(args.boxes.address, block.first, 24u), block.count * 24u, gl_WorkGroupSize.x);
     for (uint i = gl_LocalInvocationID.x; i < block.count; i += gl_WorkGroupSize.x)
     {
         uint leaf = block.first + i;
@@ -25,6 +25,6 @@ void main()
             code = morton_code(center_of(box), bounds.lo, bounds.hi);
         }
         AT(args.codes, leaf) = code;
-        if (uint64_t(args.tree_of) != 0ul) AT(args.tree_of, leaf) = block.tree;
+        if (!is_null(args.tree_of)) AT(args.tree_of, leaf) = block.tree;
     }
 }

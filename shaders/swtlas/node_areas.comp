@@ -15,8 +15,8 @@ shared float sums[AREA_GROUP];
 
 float area_of(Bvh tree, float unit, uint index)
 {
-    if (uint64_t(args.record_boxes) != 0ul) return areas_of_boxes(load_record(args.records, index), args.record_boxes, unit);
-    if (uint64_t(args.records) != 0ul) return areas_in(load_record(args.records, index), unit);
+    if (!is_null(args.record_boxes)) return areas_of_boxes(load_record(args.records, index), args.record_boxes, unit);
+    if (!is_null(args.records)) return areas_in(load_record(args.records, index), unit);
     BvhNode node = AT(tree.nodes, index);
     return half_area(node.lo0, node.hi0, unit) + half_area(node.lo1, node.hi1, unit);
 }

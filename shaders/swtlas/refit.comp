@@ -9,11 +9,11 @@ layout(local_size_x = BUILD_GROUP) in;
 layout(push_constant, scalar) uniform Push { RefitArgs args; };
 
 // The nodes as seen by all groups, not through caches of one.
-layout(buffer_reference, scalar, buffer_reference_align = 16) coherent buffer SharedNodes { BvhNode items[]; };
+REFERENCE(SharedNodes, coherent, BvhNode items[], 16)
 
 void climb(BuildTree tree, uint leaf)
 {
-    SharedNodes nodes = SharedNodes(uint64_t(tree.nodes));
+    SharedNodes nodes = SharedNodes(tree.nodes.address);
     LeafBox box = AT(args.boxes, leaf);
     uint edge = AT(args.leaf_edges, leaf);
     while (edge != 0u)
@@ -22,19 +22,19 @@ void climb(BuildTree tree, uint leaf)
         bool is_second = (edge & 1u) != 0u;
         if (is_second)
         {
-            nodes.items[node].lo1 = box.lo;
-            nodes.items[node].hi1 = box.hi;
+            AT(nodes, node).lo1 = box.lo;
+            AT(nodes, node).hi1 = box.hi;
         }
         else
         {
-            nodes.items[node].lo0 = box.lo;
-            nodes.items[node].hi0 = box.hi;
+            AT(nodes, node).lo0 = box.lo;
+            AT(nodes, node).hi0 = box.hi;
         }
         memoryBarrierBuffer();
         if (atomicAdd(AT(args.arrived, tree.first + node), 1u) == NOTHING) return;
         memoryBarrierBuffer();
-        box.lo = min(box.lo, is_second ? nodes.items[node].lo0 : nodes.items[node].lo1);
-        box.hi = max(box.hi, is_second ? nodes.items[node].hi0 : nodes.items[node].hi1);
+        box.lo = min(box.lo, is_second ? AT(nodes, node).lo0 : AT(nodes, node).lo1);
+        box.hi = max(box.hi, is_second ? AT(nodes, node).hi0 : AT(nodes, node).hi1);
         edge = edge_of(tree.nodes, node);
     }
     AT(tree.bvh, 0).lo = box.lo;

@@ -11,7 +11,7 @@ layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { RefitRecordsArgs args; };
 
 // The boxes as seen by all groups, not through caches of one.
-layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer SharedBoxes { LeafBox items[]; };
+REFERENCE(SharedBoxes, coherent, LeafBox items[], 8)
 
 LeafBox refit_leaf(BuildTree tree, uint slot, uint leaf)
 {
@@ -27,7 +27,7 @@ LeafBox refit_node(BuildTree tree, uint slot, CompressedRecord node, SharedBoxes
     UNROLL for (uint i = 0u; i < 4u; ++i)
     {
         children.box[i] = empty_box();
-        if (i < children.count) children.box[i] = boxes.items[2u * tree.first + first_child_of(node) + i];
+        if (i < children.count) children.box[i] = AT(boxes, 2u * tree.first + first_child_of(node) + i);
     }
     store_record(tree.records, slot, encode_node(children, first_child_of(node)));
     return box_around(children);
@@ -44,7 +44,7 @@ uint leave(BuildTree tree, uint slot, LeafBox box)
         AT(tree.bvh, 0).hi = box.hi;
         return NOTHING;
     }
-    SharedBoxes(uint64_t(args.slot_boxes)).items[base + slot] = box;
+    AT(SharedBoxes(args.slot_boxes.address), base + slot) = box;
     keep_box(tree, slot, box);
     memoryBarrierBuffer();
     if (atomicAdd(AT(args.missing, base + parent), 0xffffffffu) != 1u) return NOTHING;
@@ -57,7 +57,7 @@ void main()
     BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
     BuildTree tree = AT(args.trees, block.tree);
     if (group_index() >= args.block_count) return;
-    SharedBoxes boxes = SharedBoxes(uint64_t(args.slot_boxes));
+    SharedBoxes boxes = SharedBoxes(args.slot_boxes.address);
     uint last = slots_end(tree, block);
     uint run = (last - slots_begin(tree, block) + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
     uint next = min(slots_begin(tree, block) + gl_LocalInvocationID.x * run, last);

@@ -2,7 +2,7 @@
 // Ray queries inside kernels, on either accelerator. Compile the kernel once with TWINRAY_SW and once with TWINRAY_HW
 // defined (twinray_add_kernel does both), and dispatch the one that fits the accelerator. HW needs VK_KHR_ray_query.
 //
-//     layout(push_constant, scalar) uniform Push { uint64_t accel; ... };   // AccelView::scene
+//     layout(push_constant, scalar) uniform Push { Address accel; ... };   // AccelView::scene
 //     Hit hit;
 //     if (closest_hit(accel, ray, hit)) ...
 //     if (any_hit(accel, ray)) ...
@@ -23,8 +23,8 @@ layout(constant_id = LEVEL_CONSTANT) const uint TRACE_LEVEL = LEVEL_WATERTIGHT;
 #if defined(TWINRAY_SW)
 #include "twinray/stack.glsl"
 #include "shaders/shared/traverse.h"
-Hit trace_float32(uint64_t accel, Ray ray, TraceOptions options) { return traverse(AT(REF(SwScene)(accel), 0), ray, options); }
-uint64_t refinement_of(uint64_t accel) { return AT(REF(SwScene)(accel), 0).refinement; }
+Hit trace_float32(Address accel, Ray ray, TraceOptions options) { return traverse(AT(REF(SwScene)(accel), 0), ray, options); }
+Address refinement_of(Address accel) { return AT(REF(SwScene)(accel), 0).refinement; }
 #elif defined(TWINRAY_HW)
 #extension GL_EXT_ray_query : require
 #include "shaders/hwtlas/ray_query.glsl"
@@ -34,7 +34,7 @@ uint64_t refinement_of(uint64_t accel) { return AT(REF(SwScene)(accel), 0).refin
 
 #ifdef TWINRAY_REFINED
 #include "shaders/shared/refine.h"
-Hit trace(uint64_t accel, Ray ray, TraceOptions options)
+Hit trace(Address accel, Ray ray, TraceOptions options)
 {
     if (options.level < LEVEL_REFINED) return trace_float32(accel, ray, options);
     RefineScene scene = AT(REF(RefineScene)(refinement_of(accel)), 0);
@@ -49,7 +49,7 @@ Hit trace(uint64_t accel, Ray ray, TraceOptions options)
     return refined(hit, ray, advance, load_given_mesh(scene.instances, hit.instance_index));
 }
 #else
-Hit trace(uint64_t accel, Ray ray, TraceOptions options) { return trace_float32(accel, ray, options); }
+Hit trace(Address accel, Ray ray, TraceOptions options) { return trace_float32(accel, ray, options); }
 #endif
 
 TraceOptions trace_options(uint mask, uint flags, uint query)
@@ -60,24 +60,24 @@ TraceOptions trace_options(uint mask, uint flags, uint query)
     options.query = query;
     options.level = TRACE_LEVEL;
     options.features = TRACE_FEATURES;
-    options.user_data = 0ul;
+    options.user_data = NULL_ADDRESS;
     return options;
 }
 
 // The closest hit of the instances that share a bit with mask; flags: CULL_BACK, CULL_FRONT or 0. False: hit is a miss.
-bool closest_hit(uint64_t accel, Ray ray, uint mask, uint flags, out Hit hit)
+bool closest_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
 {
     hit = trace(accel, ray, trace_options(mask, flags, QUERY_CLOSEST));
     return hit.hit != 0u;
 }
-bool closest_hit(uint64_t accel, Ray ray, out Hit hit) { return closest_hit(accel, ray, 0xffu, 0u, hit); }
+bool closest_hit(Address accel, Ray ray, out Hit hit) { return closest_hit(accel, ray, 0xffu, 0u, hit); }
 
 // Whether anything lies on the ray.
-bool any_hit(uint64_t accel, Ray ray, uint mask, uint flags)
+bool any_hit(Address accel, Ray ray, uint mask, uint flags)
 {
     TraceOptions options = trace_options(mask, flags, QUERY_ANY);
     options.features &= ~FEATURE_HITS;
     return trace(accel, ray, options).hit != 0u;
 }
-bool any_hit(uint64_t accel, Ray ray) { return any_hit(accel, ray, 0xffu, 0u); }
+bool any_hit(Address accel, Ray ray) { return any_hit(accel, ray, 0xffu, 0u); }
 #endif

@@ -6,7 +6,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
 {
-    uint64_t accel;
+    Address accel;
     REF(Ray) rays;
     REF(Hit) hits;
     Uints blocked;

@@ -38,13 +38,13 @@ TEST(DeviceChoice, TakesAnIndexOrAPartOfTheName) {
 TEST(DeviceChoice, SaysWhyEachOtherDeviceWasRejected) {
     DeviceFacts old = capable("old", DeviceKind::discrete);
     old.api_version = (1u << 22) | (1u << 12);
-    old.shader_int64 = false;
+    old.scalar_block_layout = false;
     const std::vector<DeviceFacts> devices = {old, capable("good", DeviceKind::cpu),
                                               capable("also good", DeviceKind::cpu)};
     const DeviceChoice choice = choose_device(devices, "");
     ASSERT_EQ(choice.index, 1);
     ASSERT_EQ(choice.rejections.size(), 2u);
-    EXPECT_EQ(choice.rejections[0], "0 'old': lacks Vulkan 1.2, shaderInt64");
+    EXPECT_EQ(choice.rejections[0], "0 'old': lacks Vulkan 1.2, scalarBlockLayout");
     EXPECT_EQ(choice.rejections[1], "2 'also good': ranks behind 'good'");
 }
 

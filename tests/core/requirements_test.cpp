@@ -48,12 +48,14 @@ TEST(Requirements, AreToldInSentences) {
     DeviceFacts facts = capable();
     for (const Requirement& met : requirements_of(facts))
         EXPECT_NE(met.sentence().find("; this device has it"), std::string::npos) << met.sentence();
-    facts.shader_int64 = facts.acceleration_structure = false;
+    facts.scalar_block_layout = facts.acceleration_structure = false;
     std::vector<std::string> lacking;
     for (const Requirement& requirement : requirements_of(facts))
         if (!requirement.is_met) lacking.push_back(requirement.sentence());
     ASSERT_EQ(lacking.size(), 2u);
-    EXPECT_EQ(lacking[0], "twinray needs shaderInt64 because its kernels compute with addresses; this device lacks it");
+    EXPECT_EQ(lacking[0],
+              "twinray needs scalarBlockLayout because structs have the same bytes on the host and on the GPU; this device "
+              "lacks it");
     EXPECT_EQ(lacking[1],
               "HwTlas needs VK_KHR_acceleration_structure because the driver builds its structures; this device lacks "
               "it, SwTlas works without");

@@ -67,5 +67,5 @@ void main()
     FOREACH_ELEMENT(TEST_TYPES, args.set, ADD)
     AT(args.values, args.count) = sum;
     if (args.set.diffuse_count != 0u && args.set.glass_count != 0u && args.set.layered_count != 0u)
-        run_unrolled(Floats(uint64_t(args.values) + 4ul * uint64_t(args.count + 1u)));
+        run_unrolled(Floats(address_at(args.values.address, args.count + 1u, 4u)));
 }

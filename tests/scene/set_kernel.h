@@ -16,9 +16,9 @@ struct Glass {
 };
 BUFFER_OF(Glass, 4);
 
-// 8-byte members, and longer than the others.
+// Longer than the others.
 struct Layered {
-    uint64_t id;
+    uvec2 id;
     vec4 layers[3];
 };
 BUFFER_OF(Layered, 8);
@@ -28,7 +28,7 @@ TWINRAY_SET_VIEW(TestSet, TEST_TYPES)
 
 FUNC float value_of(Diffuse diffuse, float x) { return x * diffuse.gain + diffuse.color.y; }
 FUNC float value_of(Glass glass, float x) { return x - glass.ior; }
-FUNC float value_of(Layered layered, float x) { return x + layered.layers[2].w + float(uint(layered.id >> 32u)); }
+FUNC float value_of(Layered layered, float x) { return x + layered.layers[2].w + float(layered.id.y); }
 
 // The weight in which FOREACH_ELEMENT takes an element.
 FUNC float weight_of(uint i) { return float(1u + i % 7u); }

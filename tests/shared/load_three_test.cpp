@@ -10,14 +10,6 @@
 namespace twinray {
 namespace {
 
-TEST(LoadThree, IsTheThreeWordsAtEveryMultipleOfFour) {
-    for (uint first = 0; first < 4; ++first) {
-        std::vector<uint> words(first + 3);  // to the end, which sanitizers watch
-        for (uint i = 0; i < first + 3; ++i) words[i] = 10 + i;
-        EXPECT_EQ(load_three(Uints::to(words.data() + first).address), uvec3(10 + first, 11 + first, 12 + first));
-    }
-}
-
 TEST(LoadThree, OfPositionsAndIndices) {
     const std::vector<float> positions = {0.0f, -1.5f, 2.0f, 3.25f, -0.0f, 1e-45f, 6.0f, 7.0f, 8.0f};
     for (uint vertex = 0; vertex < 3; ++vertex) {

@@ -5,7 +5,7 @@
 layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Push
 {
-    uint64_t accel;
+    Address accel;
     REF(Hit) hit;
 } push;
 

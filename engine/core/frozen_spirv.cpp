@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/frozen_spirv.h"
+
+#include <map>
+#include <optional>
+#include <set>
+
+namespace twinray {
+namespace {
+
+using Words = std::span<const std::uint32_t>;
+
+constexpr std::size_t header_words = 5;
+
+// Of the SPIR-V specification.
+enum Op : std::uint32_t {
+    TypeBool = 20,
+    ConstantTrue = 41,
+    ConstantFalse = 42,
+    Constant = 43,
+    ConstantComposite = 44,
+    SpecConstantTrue = 48,
+    SpecConstantFalse = 49,
+    SpecConstant = 50,
+    SpecConstantComposite = 51,
+    SpecConstantOp = 52,
+    Decorate = 71,
+};
+constexpr std::uint32_t decoration_spec_id = 1;
+
+// Of operands that are whole numbers of 32 bits or booleans. Nothing: not one of those that GLSL makes.
+std::optional<std::uint32_t> evaluate(std::uint32_t op, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    const auto less = [](std::uint32_t x, std::uint32_t y) {
+        return static_cast<std::int32_t>(x) < static_cast<std::int32_t>(y);
+    };
+    switch (op) {
+        case 128: return a + b;
+        case 130: return a - b;
+        case 132: return a * b;
+        case 134: return b == 0 ? std::nullopt : std::optional(a / b);
+        case 137: return b == 0 ? std::nullopt : std::optional(a % b);
+        case 164: case 170: return a == b;  // of booleans, of numbers
+        case 165: case 171: return a != b;
+        case 166: return a | b;
+        case 167: return a & b;
+        case 168: return !a;
+        case 169: return a ? b : c;
+        case 172: return a > b;
+        case 173: return less(b, a);
+        case 174: return a >= b;
+        case 175: return !less(a, b);
+        case 176: return a < b;
+        case 177: return less(a, b);
+        case 178: return a <= b;
+        case 179: return !less(b, a);
+        case 194: return a >> (b & 31);
+        case 196: return a << (b & 31);
+        case 197: return a | b;
+        case 198: return a ^ b;
+        case 199: return a & b;
+        case 200: return ~a;
+        default: return std::nullopt;
+    }
+}
+
+class Freezer {
+  public:
+    Freezer(Words spirv, std::span<const SpecializationConstant> constants) {
+        for (const SpecializationConstant& constant : constants) given_[constant.id] = constant.value;
+        frozen_.assign(spirv.begin(), spirv.begin() + header_words);
+        for (std::size_t at = header_words; at < spirv.size(); at += spirv[at] >> 16)
+            take(spirv.subspan(at, spirv[at] >> 16));
+    }
+    std::vector<std::uint32_t> frozen() && { return std::move(frozen_); }
+
+  private:
+    void take(Words instruction) {
+        switch (instruction[0] & 0xffffu) {
+            case Decorate:
+                if (instruction[2] != decoration_spec_id) return keep(instruction);
+                spec_ids_[instruction[1]] = instruction[3];
+                return;
+            case TypeBool: booleans_.insert(instruction[1]); return keep(instruction);
+            case ConstantTrue:
+            case SpecConstantTrue: return define(instruction, value_or(instruction[2], 1));
+            case ConstantFalse:
+            case SpecConstantFalse: return define(instruction, value_or(instruction[2], 0));
+            case Constant:
+            case SpecConstant:
+                if (instruction.size() != 4) return keep(instruction);  // of 64 bits
+                return define(instruction, value_or(instruction[2], instruction[3]));
+            case SpecConstantComposite:
+                frozen_.push_back(static_cast<std::uint32_t>(instruction.size()) << 16 | ConstantComposite);
+                frozen_.insert(frozen_.end(), instruction.begin() + 1, instruction.end());
+                return;
+            case SpecConstantOp: return fold(instruction);
+            default: return keep(instruction);
+        }
+    }
+
+    void keep(Words instruction) { frozen_.insert(frozen_.end(), instruction.begin(), instruction.end()); }
+
+    std::uint32_t value_or(std::uint32_t id, std::uint32_t standard) const {
+        const auto spec_id = spec_ids_.find(id);
+        if (spec_id == spec_ids_.end()) return standard;
+        const auto given = given_.find(spec_id->second);
+        return given == given_.end() ? standard : given->second;
+    }
+
+    // A constant of the type and id of an instruction.
+    void define(Words instruction, std::uint32_t value) {
+        const std::uint32_t type = instruction[1], id = instruction[2];
+        known_[id] = value;
+        if (booleans_.contains(type))
+            frozen_.insert(frozen_.end(), {3u << 16 | (value ? ConstantTrue : ConstantFalse), type, id});
+        else frozen_.insert(frozen_.end(), {4u << 16 | Constant, type, id, value});
+    }
+
+    void fold(Words instruction) {
+        std::uint32_t operands[3] = {};
+        const Words ids = instruction.subspan(4);
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+            const auto found = known_.find(ids[i]);
+            if (i >= 3 || found == known_.end()) return keep(instruction);
+            operands[i] = found->second;
+        }
+        const std::optional<std::uint32_t> value = evaluate(instruction[3], operands[0], operands[1], operands[2]);
+        if (value) define(instruction, *value);
+        else keep(instruction);
+    }
+
+    std::map<std::uint32_t, std::uint32_t> given_;     // by SpecId
+    std::map<std::uint32_t, std::uint32_t> spec_ids_;  // by result
+    std::map<std::uint32_t, std::uint32_t> known_;     // values of 32 bits, by result
+    std::set<std::uint32_t> booleans_;                 // types
+    std::vector<std::uint32_t> frozen_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> freeze_constants(std::span<const std::uint32_t> spirv,
+                                            std::span<const SpecializationConstant> constants) {
+    return Freezer(spirv, constants).frozen();
+}
+
+}  // namespace twinray
