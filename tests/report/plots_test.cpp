@@ -56,11 +56,11 @@ TEST(Plots, EstimatesHaveAPlotForEachSettingOverTheirRays) {
     std::vector<Record> records;
     for (const double distance : {1.0, 2.0})
         for (const double rays : {100.0, 1000.0, 10000.0, 0.0}) {
-            Record record = point("V01", "", 0, rays ? rays / 10 : 1, 0);
+            Record record = point("V01", "", 0, rays > 0 ? rays / 10 : 1, 0);
             record.params = {{"distance", distance}};
-            if (rays) record.params.emplace("rays", rays);
-            record.variant = rays ? "hits" : "contour";
-            const double error = rays ? distance / std::sqrt(rays) : 1e-15;
+            if (rays > 0) record.params.emplace("rays", rays);
+            record.variant = rays > 0 ? "hits" : "contour";
+            const double error = rays > 0 ? distance / std::sqrt(rays) : 1e-15;
             record.error = ErrorFigures{"relative", error, error, {error, error}, error, 1e-8};
             record.time->metric = "ms_per_estimate";
             records.push_back(record);

@@ -96,11 +96,13 @@ TEST(Layers, SamplesFollowTheirDensity) {
 }
 
 TEST(Layers, WeightsAreValuesOverDensities) {
-    for (const auto& [name, bsdf] : all_cases()) {
+    for (const auto& [title, of_title] : all_cases()) {
+        const std::string& name = title;
+        const auto& bsdf = of_title;
         const vec3 wo = direction(0.4f, 0.2f);
         mean_of_samples(
             bsdf, wo,
-            [&, &bsdf = bsdf, &name = name](const BsdfSample& s) {
+            [&](const BsdfSample& s) {
                 if (s.pdf == 0) return 0;
                 const BsdfValue value = evaluate(bsdf, wo, s.wi);
                 EXPECT_EQ(s.pdf, value.pdf) << name;
