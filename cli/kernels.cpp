@@ -57,7 +57,7 @@ std::vector<KernelRow> report(const KernelsOptions& options, const std::string& 
     return rows;
 }
 
-int judge(const std::vector<KernelRow>& rows, const std::filesystem::path& against) {
+int check(const std::vector<KernelRow>& rows, const std::filesystem::path& against) {
     if (against.empty()) return 0;
     const std::vector<std::string> faults = grown(rows, read_rows(against));
     for (const std::string& fault : faults) std::cout << fault << '\n';
@@ -73,7 +73,7 @@ int run(const KernelsOptions& options) {
         rows.insert(rows.end(), of_family.begin(), of_family.end());
     }
     if (rows.empty()) fail("no kernel has '", options.filter, "' in its name or specialisation");
-    return judge(rows, options.against);
+    return check(rows, options.against);
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ inline void store_entry(uint slot, uint entry) { stack_slots()[slot] = entry; }
 #include "shaders/shared/traverse.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(BvhNode) == 64 && sizeof(BvhHalf) == 32 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 104 &&
-              sizeof(CompressedRecord) == 40);
+static_assert(sizeof(BvhNode) == 64 && sizeof(BvhHalf) == 32 && sizeof(BvhTriangle) == 40 &&
+              sizeof(SwInstance) == 104 && sizeof(CompressedRecord) == 40);
 static_assert(sizeof(OverlapSum) == 8);
 static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 72 && sizeof(SwScene) == 80);
 }  // namespace twinray

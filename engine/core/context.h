@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// One device with its memory, its queue and its timeline, made here or adopted from a host.
 #pragma once
 
 #include <cstdint>

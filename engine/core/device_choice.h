@@ -18,7 +18,7 @@ struct DeviceFacts {
     DeviceKind kind = DeviceKind::other;
     std::uint32_t api_version = 0;   // as VK_MAKE_API_VERSION
     std::uint32_t shared_bytes = 0;  // of memory that a compute group may have
-    std::uint32_t cpu_threads = 0;   // of a CPU, where each runs a stretch of a dispatch's groups; else 0, as of SwiftShader
+    std::uint32_t cpu_threads = 0;   // of a CPU, where each runs a stretch of a dispatch's groups; else 0
     std::uint32_t subgroup_size = 0;
     bool has_compute_queue = false;
     bool timeline_semaphore = false;

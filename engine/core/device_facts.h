@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What a Vulkan device can do, asked of its driver, and what to switch on when one is created.
 #pragma once
 
 #include <vector>

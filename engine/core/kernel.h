@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Compute kernels whose only input is a block of push constants.
 #pragma once
 
 #include <memory>

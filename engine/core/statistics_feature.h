@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Whether a driver tells what it made of a pipeline.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Sets of elements of several types, which kernels reach by one key each.
 #pragma once
 
 #include <algorithm>

@@ -51,7 +51,8 @@ FUNC vec3 left_by_reflection(Bsdf bsdf, vec2 mirror)
     return vec3(1.0f) - (has_layer(bsdf, LAYER_SPECULAR) ? vec3(largest(reflected)) : reflected);
 }
 
-// Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", 2001: over all
+// Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", 2001:
+// over all
 // wi it comes to what the reflection leaves of the light from wo, and it is the same the other way.
 FUNC vec3 under_interface(Bsdf bsdf, vec3 wo, vec3 wi)
 {

@@ -3,7 +3,8 @@
 // of them: each number is cut at fixed places of the binary system, every 40 bits, and the pieces of two places are
 // added as integers, those of the place that the largest number reaches and of the next below. What is smaller than
 // both, less than 2^-40 of the largest number, is left out, whenever it comes. (Demmel and Nguyen, "Parallel
-// Reproducible Summation", 2015; integers, because devices need not round float64 correctly or have it at all.) Needs wave.h.
+// Reproducible Summation", 2015; integers, because devices need not round float64 correctly or have it at all.) Needs
+// wave.h.
 #ifndef TWINRAY_PATH_TRACER_FILM_H
 #define TWINRAY_PATH_TRACER_FILM_H
 #include "shaders/shared/word64.h"
@@ -11,7 +12,8 @@
 const uint FILM_PIECE_BITS = 40u; // 2^23 numbers fit into a sum of 64 bits with a sign
 const uint FILM_SQUARES = 3u;     // index of their sum
 
-// 72 bytes. A sum is (high * 2^40 + low) * 2^(40 place), in two's complement, in units of 2^-149 for colors and of 2^-298
+// 72 bytes. A sum is (high * 2^40 + low) * 2^(40 place), in two's complement, in units of 2^-149 for colors and of
+// 2^-298
 // for squares.
 struct FilmPixel
 {

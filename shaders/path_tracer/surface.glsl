@@ -132,7 +132,8 @@ vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placem
     return dot(normal, point.normal) < 0.0 ? -normal : normal;
 }
 
-// Tangents of the file where they are any, else by the derivatives of uv. glTF's bitangent points to smaller v (up in the
+// Tangents of the file where they are any, else by the derivatives of uv. glTF's bitangent points to smaller v (up in
+// the
 // picture).
 void set_tangents(inout Surface surface, TriangleData data, uint flags, vec2 at)
 {

@@ -10,7 +10,8 @@
 
 #extension GL_EXT_spirv_intrinsics : require
 
-// The lesser and the greater of two numbers, and of a number and NaN the number: what min() and max() leave open. Of two
+// The lesser and the greater of two numbers, and of a number and NaN the number: what min() and max() leave open. Of
+// two
 // zeros either.
 spirv_instruction(set = "GLSL.std.450", id = 79) float min_number(float a, float b);
 spirv_instruction(set = "GLSL.std.450", id = 80) float max_number(float a, float b);
@@ -23,7 +24,8 @@ layout(constant_id = 105) const bool FUSED_FMA = false;
 #define INOUT(T) inout T
 #define PRECISE precise
 
-// Where something lies in device memory, and other integers of 64 bits that kernels pass on: two words, the low one first, as
+// Where something lies in device memory, and other integers of 64 bits that kernels pass on: two words, the low one
+// first, as
 // not every device has integers of 64 bits.
 #define Address uvec2
 #define Uint64 uvec2
@@ -43,7 +45,8 @@ Address address_at(Address base, uint index, uint stride)
     return address_after(base, low) + Address(0u, high);
 }
 
-// REF(T) is the address of items of type T, a struct of its own so that functions overload by it. It becomes a pointer only where
+// REF(T) is the address of items of type T, a struct of its own so that functions overload by it. It becomes a
+// pointer only where
 // AT follows it: pointers in structs and variables are more than some drivers compile.
 #define REFERENCE(name, qualifier, contents, alignment) \
     layout(buffer_reference, scalar, buffer_reference_align = alignment) qualifier buffer name##_buffer { contents; }; \
@@ -72,6 +75,7 @@ REFERENCE(Uvec3s, , uvec3 items[], 4)
 // gl_WorkGroupSize has its value only after the shader's local_size declaration, which follows this include.
 #define group_index() (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x)
 #define global_index() (group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x)
-// The same after dealing groups out to `hands` (shaders/shared/workgroup.h), for kernels whose groups take unequal times.
+// The same after dealing groups out to `hands` (shaders/shared/workgroup.h), for kernels whose groups take unequal
+// times.
 #define dealt_index(hands) (dealt_group(group_index(), gl_NumWorkGroups.x * gl_NumWorkGroups.y, hands) * gl_WorkGroupSize.x + gl_LocalInvocationID.x)
 #endif

@@ -14,7 +14,8 @@ struct InstanceRecord
 };
 BUFFER_OF(InstanceRecord, 16);
 
-// What the block of every geometry begins with: a box around its active triangles in object space. lo > hi: it has none.
+// What the block of every geometry begins with: a box around its active triangles in object space. lo > hi: it has
+// none.
 struct GeometryBox
 {
     vec3 lo;
@@ -22,8 +23,10 @@ struct GeometryBox
 };
 BUFFER_OF(GeometryBox, 8);
 
-// What follows in the block of every geometry, at GEOMETRY_SOURCE_OFFSET, whichever accelerator it belongs to. Meshes are built
-// in units of `scale`, a power of two near their size, so that neither tiny nor huge ones leave the range of float32; the
+// What follows in the block of every geometry, at GEOMETRY_SOURCE_OFFSET, whichever accelerator it belongs to. Meshes
+// are built
+// in units of `scale`, a power of two near their size, so that neither tiny nor huge ones leave the range of float32;
+// the
 // unit is put back into the map to world space.
 struct GeometrySource
 {

@@ -42,8 +42,10 @@ FUNC float accurate_edge_function(vec3 a, vec3 b)
     return area;
 }
 
-// By which power of two x and y of two sheared corners may be multiplied, exactly and without overflow of a product: where a
-// ray passes a vertex by a denormal distance, the products that decide would underflow, some to 0, and triangles around the
+// By which power of two x and y of two sheared corners may be multiplied, exactly and without overflow of a product:
+// where a
+// ray passes a vertex by a denormal distance, the products that decide would underflow, some to 0, and triangles
+// around the
 // vertex would disagree. It depends on the edge alone, so that both of its triangles see the same.
 FUNC float room_above(vec3 a, vec3 b)
 {
@@ -114,7 +116,8 @@ FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float shear_z)
     return hit;
 }
 
-// Whether one of them is 0 or denormal, which devices may take for 0. By their bits: compilers make the least of the magnitudes
+// Whether one of them is 0 or denormal, which devices may take for 0. By their bits: compilers make the least of the
+// magnitudes
 // of three comparisons, for which drivers on CPUs take three times as long.
 FUNC bool is_any_zero(float a, float b, float c)
 {
@@ -144,7 +147,8 @@ FUNC SeenTriangle seen_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space)
     return seen;
 }
 
-// Whether the ray's line meets it, by exact_side: rarely asked, so that a loop of little code is better than a fast one. Its
+// Whether the ray's line meets it, by exact_side: rarely asked, so that a loop of little code is better than a fast
+// one. Its
 // corners change places until each is where it was, as copies would take registers.
 FUNC bool is_exactly_around(INOUT(SeenTriangle) seen)
 {

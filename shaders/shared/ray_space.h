@@ -9,8 +9,10 @@
 //  - Boxes: near and far planes use reciprocals padded by a factor 1 -+ 2^-20, which covers the 2.5 ulp that Vulkan
 //    allows a division and the roundings of (plane - origin) * reciprocal (Ize, "Robust BVH Ray Traversal", 2013,
 //    with the constant for Vulkan), and origins shifted by an absolute pad for what an instance transform adds.
-//    Reciprocals have a limit: across the dominant axis a ray counts as moving by 2^-40 of what it moves along it at least,
-//    far less than the pad. So they are finite for directions of any use. Where the distance to what lies in the space is
+//    Reciprocals have a limit: across the dominant axis a ray counts as moving by 2^-40 of what it moves along it at
+// least,
+//    far less than the pad. So they are finite for directions of any use. Where the distance to what lies in the
+// space is
 //    beyond 2^80 in t, t of boxes is taken times a power of two, so that no product of a box with them overflows.
 //  - Triangles: shear constants of Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", 2013.
 struct RaySpace
@@ -26,7 +28,8 @@ struct RaySpace
     float shear_z;
 };
 
-// What tests of boxes take from it. Made from it at each node where the space changes in the loop, as among instances: that is
+// What tests of boxes take from it. Made from it at each node where the space changes in the loop, as among
+// instances: that is
 // less than a loop on a CPU pays for what it carries.
 struct BoxRay
 {
@@ -86,7 +89,8 @@ FUNC BoxRay box_ray(RaySpace space)
     return ray;
 }
 
-// 1, or the power of two that brings the largest t at which a ray may meet something below 2^80. That is 2^38 pads at most times
+// 1, or the power of two that brings the largest t at which a ray may meet something below 2^80. That is 2^38 pads at
+// most times
 // the reciprocal of the direction's dominant entry.
 FUNC float scale_of_reach(float pad, float along)
 {
@@ -123,11 +127,13 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
     return space;
 }
 
-// How far aside of a ray a corner may be sheared, rounded: 8 of 2^-24 of its distance along an axis. A triangle is hit where its
+// How far aside of a ray a corner may be sheared, rounded: 8 of 2^-24 of its distance along an axis. A triangle is
+// hit where its
 // sheared corners say so, and its box must be, too, however near to the ray's origin that is.
 FUNC float corner_pad(vec3 origin, float extent) { return (largest_entry(origin) + extent) * 9.5367431640625e-07f; } // 2^-20
 
-// The interval in which a ray is inside of all three slabs, begun with its own, which a NaN (of products out of range) leaves
+// The interval in which a ray is inside of all three slabs, begun with its own, which a NaN (of products out of
+// range) leaves
 // as it was.
 FUNC float latest_of(float enter, float near_x, float near_y, float near_z)
 {
@@ -138,7 +144,8 @@ FUNC float earliest_of(float leave, float far_x, float far_y, float far_z)
     return min_number(min_number(min_number(far_x, far_y), far_z), leave);
 }
 
-// Where the ray enters the box and where it leaves it within [t_min, t_max], in t * ray.t_scale: enter > leave where it does
+// Where the ray enters the box and where it leaves it within [t_min, t_max], in t * ray.t_scale: enter > leave where
+// it does
 // not meet it.
 FUNC void cross_box(vec3 lo, vec3 hi, BoxRay ray, float t_min, float t_max, INOUT(float) enter, INOUT(float) leave)
 {

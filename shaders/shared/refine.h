@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Level refined: what float32 loses about a hit, by float64 spent once a ray instead of once a triangle.
-//  - A ray from far away is traced from near the scene: its origin moves along it, computed in float64. Rounding then is
+//  - A ray from far away is traced from near the scene: its origin moves along it, computed in float64. Rounding then
+// is
 //    relative to the scene's size, not to the distance.
 //  - The hit that counts is computed again in float64 from what the user gave: the ray, the corners, the transform.
 #ifndef TWINRAY_SHARED_REFINE_H
@@ -18,8 +19,10 @@ FUNC double slab_entry(float o, float d, float lo, float hi)
     return t;
 }
 
-// The same ray from nearer to the box, if it comes from more than five times as far as the box's largest coordinate: t of the
-// result plus `advance` is t of `ray`. It stops about that coordinate short of the box, so nothing is jumped over. Nearer
+// The same ray from nearer to the box, if it comes from more than five times as far as the box's largest coordinate:
+// t of the
+// result plus `advance` is t of `ray`. It stops about that coordinate short of the box, so nothing is jumped over.
+// Nearer
 // rays pay for one comparison.
 FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, uint level, INOUT(double) advance)
 {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Tree rotations (Kensler, "Tree Rotations for Improving Bounding Volume Hierarchies", 2008): where a child of a node and a
-// grandchild on its other side, or two grandchildren, change places, boxes may become smaller. A node is rotated as soon as it
-// has both children, so that one pass from the leaves to the root rotates all; and what a rotation changed below the node is
+// Tree rotations (Kensler, "Tree Rotations for Improving Bounding Volume Hierarchies", 2008): where a child of a node
+// and a
+// grandchild on its other side, or two grandchildren, change places, boxes may become smaller. A node is rotated as
+// soon as it
+// has both children, so that one pass from the leaves to the root rotates all; and what a rotation changed below the
+// node is
 // rotated again, some levels down; after that the node itself once more.
 #ifndef TWINRAY_SHARED_ROTATE_H
 #define TWINRAY_SHARED_ROTATE_H
@@ -106,7 +109,8 @@ FUNC void keep_better(INOUT(float) best, INOUT(uint) best_move, float gain, uint
     best_move = is_better ? move : best_move;
 }
 
-// Rotates a node with children a and b where that gains most, if it gains and leaves the node within `limit` nodes of height.
+// Rotates a node with children a and b where that gains most, if it gains and leaves the node within `limit` nodes of
+// height.
 FUNC Rotated rotate_node(NodeHalves nodes, uint node, NodeHalf a, NodeHalf b, uint limit, float scale)
 {
     NodeHalf a0 = a, a1 = a, b0 = b, b1 = b;
@@ -163,7 +167,8 @@ FUNC Rotated rotate_node(NodeHalves nodes, uint node, NodeHalf a, NodeHalf b, ui
     return done;
 }
 
-// A rotation of `node` and of what it changes below. Done a node at a time, so that where invocations go through a program
+// A rotation of `node` and of what it changes below. Done a node at a time, so that where invocations go through a
+// program
 // together none waits for one that has more nodes to rotate.
 struct Rotation
 {
@@ -187,7 +192,8 @@ FUNC Rotation no_rotation()
     return rotation;
 }
 
-// Of a node with both its halves, whose subtrees are finished, which then has a height of `limit` at most, if it had. Below the
+// Of a node with both its halves, whose subtrees are finished, which then has a height of `limit` at most, if it had.
+// Below the
 // node no subtree becomes higher; heights told of them are theirs at most.
 FUNC Rotation rotation_of(uint node, uint limit)
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The stack of a traversal: the last entry in a register, as many below it as shared memory has room for at full occupancy.
+// The stack of a traversal: the last entry in a register, as many below it as shared memory has room for at full
+// occupancy.
 // Where more are pushed the lowest are overwritten, and has_lost says so (Laine, "Restart Trail for Stackless BVH
 // Traversal", 2010).
 //
@@ -10,7 +11,8 @@
 
 const uint NO_STACK_ENTRY = 0u;
 
-// Below `last`, which may be NO_STACK_ENTRY, entries bottom to top - 1, each in the slot of its number modulo STACK_SIZE.
+// Below `last`, which may be NO_STACK_ENTRY, entries bottom to top - 1, each in the slot of its number modulo
+// STACK_SIZE.
 struct ShortStack
 {
     uint last;

@@ -10,7 +10,8 @@
 #include "shaders/shared/refine_scene.h"
 #endif
 
-// Every instance is treated as filtered, in kernels that have FEATURE_FILTERS. The value is that of SPIR-V's ray flag NoOpaque.
+// Every instance is treated as filtered, in kernels that have FEATURE_FILTERS. The value is that of SPIR-V's ray flag
+// NoOpaque.
 const uint ALL_FILTERED = 2u;
 
 struct TraceOptions

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Traversal of a SwScene, of any layout: one loop over nodes, primitives and instances.
 //
-// What a node leaves to visit is one entry of the stack, and the way out of an instance is another. The stack is short: once
-// it is empty and has lost entries, the ray goes from the root of its tree to where it is, and puts what it passes on the
-// stack again. The order of siblings does not depend on what was found meanwhile, but that those behind it are left out.
+// What a node leaves to visit is one entry of the stack, and the way out of an instance is another. The stack is
+// short: once
+// it is empty and has lost entries, the ray goes from the root of its tree to where it is, and puts what it passes on
+// the
+// stack again. The order of siblings does not depend on what was found meanwhile, but that those behind it are left
+// out.
 #ifndef TWINRAY_SHARED_TRAVERSE_H
 #define TWINRAY_SHARED_TRAVERSE_H
 #include "shaders/shared/enter_binary.h"
@@ -23,7 +26,8 @@ struct SwTree
     uint root;
 };
 
-// A node or leaf of a tree: the number of a record, for both; in layout bvh2 a child and its edge. The root's edge is 0.
+// A node or leaf of a tree: the number of a record, for both; in layout bvh2 a child and its edge. The root's edge is
+// 0.
 struct TreePosition
 {
     uint item;
@@ -82,7 +86,8 @@ struct EnteredChildren
 };
 
 // `target`: not NOTHING, but what the ray is on its way back to.
-FUNC EnteredChildren children_of_record(CompressedRecord record, SwTree tree, BoxRay ray, Search search, uint target, TraceOptions options)
+FUNC EnteredChildren children_of_record(CompressedRecord record, SwTree tree, BoxRay ray, Search search, uint target,
+                                         TraceOptions options)
 {
     bool may_be_full = (options.features & FEATURE_BVH4) != 0u;
     bool may_be_compressed = (options.features & FEATURE_COMPRESSED) != 0u;
@@ -99,7 +104,8 @@ FUNC EnteredChildren children_of_record(CompressedRecord record, SwTree tree, Bo
     return children;
 }
 
-FUNC EnteredChildren children_of_node(uint index, SwTree tree, BoxRay ray, Search search, uint target, TraceOptions options)
+FUNC EnteredChildren children_of_node(uint index, SwTree tree, BoxRay ray, Search search, uint target,
+                                         TraceOptions options)
 {
     BvhNode node = load_node(tree.nodes, index);
     ChildKeys keys = enter_binary(node, ray, search, options.query);
@@ -242,7 +248,8 @@ FUNC bool visit_next(INOUT(Traversal) here, SwScene scene, bool is_binary, Trace
     return waits;
 }
 
-// The closest hit is the first by comes_before, whatever the layout and the order of traversal; with QUERY_ANY it is the
+// The closest hit is the first by comes_before, whatever the layout and the order of traversal; with QUERY_ANY it is
+// the
 // first one found.
 FUNC Hit traverse(SwScene scene, Ray ray, TraceOptions options)
 {

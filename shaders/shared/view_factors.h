@@ -62,7 +62,8 @@ FUNC vec4 sample_of(FaceRaysArgs args, uint face, uint replicate, uint index)
     return vec4(unit_floats(uvec2(words.x, words.y)), unit_floats(uvec2(words.z, words.w)));
 }
 
-// A point of the face, with barycentric coordinates u, v. One that lies nearer to an edge than some offsets is moved away
+// A point of the face, with barycentric coordinates u, v. One that lies nearer to an edge than some offsets is moved
+// away
 // from it: there it may round to beyond a wall that meets the face at the edge, or start beyond it.
 FUNC SurfacePoint inner_point(FaceTable table, uint face, vec2 uv)
 {

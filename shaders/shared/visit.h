@@ -11,7 +11,8 @@
 #include "shaders/shared/certified.h"
 #endif
 
-// Rounding of the world-to-object transform moves a ray by a few roundings of its origin's size, and the limit of reciprocals
+// Rounding of the world-to-object transform moves a ray by a few roundings of its origin's size, and the limit of
+// reciprocals
 // by 2^-40 of the way. `extent`: the largest coordinate of the scene.
 FUNC float world_pad(vec3 origin, float extent)
 {
@@ -26,7 +27,8 @@ FUNC uint culled_side(uint ray_flags, uint instance_flags)
     return (instance_flags & INSTANCE_TURNED) != 0u ? side ^ (CULL_BACK | CULL_FRONT) : side;
 }
 
-// What traversal must know of the instance it is in. Features are asked for where these are read, not where they are set:
+// What traversal must know of the instance it is in. Features are asked for where these are read, not where they are
+// set:
 // only so compilers see across the loop that what depends on them is never run.
 struct InInstance
 {
@@ -62,7 +64,8 @@ FUNC InInstance in_no_instance()
     return inside;
 }
 
-// Adding 0 takes a zero's sign, which the sums of a transform may change: with the identity, too, both ways give the same bits.
+// Adding 0 takes a zero's sign, which the sums of a transform may change: with the identity, too, both ways give the
+// same bits.
 FUNC vec3 without_negative_zeros(vec3 v)
 {
     PRECISE vec3 sum = v + vec3(0.0f);
@@ -175,8 +178,10 @@ FUNC bool comes_after(TriangleHit hit, float t_min, TraceOptions options)
 
 const uint NO_ENTRY = 0x7f800000u; // infinity, and what is larger: no hit is reported there
 
-// Where among its siblings a box comes that the ray crosses from `enter` to `leave`, the least first; the last two bits are free.
-// The nearest is first; where any hit will do, that in which the ray is longest, as most may be hit there. (Larger boxes
+// Where among its siblings a box comes that the ray crosses from `enter` to `leave`, the least first; the last two
+// bits are free.
+// The nearest is first; where any hit will do, that in which the ray is longest, as most may be hit there. (Larger
+// boxes
 // first, for rays unknown: Nah, Manocha, "SATO: Surface Area Traversal Order for Shadow Ray Tracing", 2014.)
 FUNC uint place_in_order(float enter, float leave, bool is_there, uint query)
 {
@@ -185,7 +190,8 @@ FUNC uint place_in_order(float enter, float leave, bool is_there, uint query)
     return is_there && enter <= leave ? place & 0x7ffffffcu : NO_ENTRY; // of zeros the sign may be either
 }
 
-// What has been found so far, and where there is more to find. Only what a kernel needs is ever written: the rest stays a
+// What has been found so far, and where there is more to find. Only what a kernel needs is ever written: the rest
+// stays a
 // constant, which compilers see through the loop.
 struct Search
 {

@@ -76,7 +76,8 @@ FUNC GeometryBox box_in_world(GeometryBox box, Rows m)
     return world;
 }
 
-// The box of an instance in world space; lo > hi where nothing of it can be hit. `is_unusable`: because of its transform.
+// The box of an instance in world space; lo > hi where nothing of it can be hit. `is_unusable`: because of its
+// transform.
 FUNC GeometryBox instance_box(InstanceRecord given, INOUT(bool) is_unusable)
 {
     const float infinity = uintBitsToFloat(0x7f800000u);

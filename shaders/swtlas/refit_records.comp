@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// New records for an old topology. Each invocation has a run of slots, whose leaves it refits one after the other; of the
-// children of a node the last one goes on with it. One loop over leaves and nodes: as one climbs, its neighbours on a CPU
+// New records for an old topology. Each invocation has a run of slots, whose leaves it refits one after the other; of
+// the
+// children of a node the last one goes on with it. One loop over leaves and nodes: as one climbs, its neighbours on a
+// CPU
 // have leaves to do.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -33,7 +35,8 @@ LeafBox refit_node(BuildTree tree, uint slot, CompressedRecord node, SharedBoxes
     return box_around(children);
 }
 
-// Leaves the box where the record's parent finds it. Gives the parent if this was the last of its children, else NOTHING.
+// Leaves the box where the record's parent finds it. Gives the parent if this was the last of its children, else
+// NOTHING.
 uint leave(BuildTree tree, uint slot, LeafBox box)
 {
     uint base = 2u * tree.first;

@@ -9,8 +9,10 @@
 //
 // Levels from refined on need TWINRAY_REFINED defined (twinray_add_kernel(... REFINED)) and a device with float64.
 //
-// Specialise FEATURES_CONSTANT with AccelView::features, or AbstractAccel::features_for, to leave out what the scene does not
-// need, and LEVEL_CONSTANT with the level. With TWINRAY_PROGRAM defined, the kernel defines intersect_primitive and accept_hit itself (see
+// Specialise FEATURES_CONSTANT with AccelView::features, or AbstractAccel::features_for, to leave out what the scene
+// does not
+// need, and LEVEL_CONSTANT with the level. With TWINRAY_PROGRAM defined, the kernel defines intersect_primitive and
+// accept_hit itself (see
 // shaders/shared/program.h), before or after this include.
 #ifndef TWINRAY_QUERY_GLSL
 #define TWINRAY_QUERY_GLSL
@@ -23,7 +25,10 @@ layout(constant_id = LEVEL_CONSTANT) const uint TRACE_LEVEL = LEVEL_WATERTIGHT;
 #if defined(TWINRAY_SW)
 #include "twinray/stack.glsl"
 #include "shaders/shared/traverse.h"
-Hit trace_float32(Address accel, Ray ray, TraceOptions options) { return traverse(AT(REF(SwScene)(accel), 0), ray, options); }
+Hit trace_float32(Address accel, Ray ray, TraceOptions options)
+{
+    return traverse(AT(REF(SwScene)(accel), 0), ray, options);
+}
 Address refinement_of(Address accel) { return AT(REF(SwScene)(accel), 0).refinement; }
 #elif defined(TWINRAY_HW)
 #extension GL_EXT_ray_query : require
