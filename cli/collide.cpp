@@ -24,9 +24,6 @@ struct CollideOptions {
     PictureOptions pictures;
 };
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 // CSV, a line for each row as `print` writes it.
 template <class Row, class Print>
 void write_table(const std::filesystem::path& file, const char* header, const std::vector<Row>& rows,
@@ -53,7 +50,7 @@ void run_broad(const CollideOptions& options) {
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene);
     CollisionFinder finder(*context);
     finder.set_max_pairs(options.max_pairs);
-    const Clock::time_point start = Clock::now();
+    const auto start = std::chrono::steady_clock::now();
     const std::vector<InstancePair> pairs = finder.instance_pairs(*accel);
     const double seconds = seconds_since(start);
     write_table(options.output, "instance_a,instance_b", pairs,

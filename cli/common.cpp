@@ -144,6 +144,10 @@ void append_json(const std::filesystem::path& file, const nlohmann::json& record
     if (!out.flush()) fail("JSON file '", file.string(), "' cannot be written");
 }
 
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 std::string api_version(const Context& context) {
     const std::uint32_t api = context.facts().api_version;
     return text(VK_API_VERSION_MAJOR(api), ".", VK_API_VERSION_MINOR(api), ".", VK_API_VERSION_PATCH(api));

@@ -33,9 +33,6 @@ struct DistanceOptions {
 
 bool is_npz(const std::filesystem::path& file) { return lower_suffix(file) == ".npz"; }
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 std::ofstream open_table(const std::filesystem::path& file, const char* header) {
     std::ofstream out(file);
     out.precision(17);
@@ -108,7 +105,7 @@ struct Search {
           context(make_context(options.common)),
           points(options.points.make(scene, options.common.seed)),
           finder(*context) {
-        const Clock::time_point start = Clock::now();
+        const auto start = std::chrono::steady_clock::now();
         finder.set(scene);
         context->wait_for_gpu();
         build_seconds = seconds_since(start);
@@ -127,7 +124,7 @@ struct Search {
 };
 
 void run_within(const DistanceOptions& options, Search& search) {
-    const Clock::time_point start = Clock::now();
+    const auto start = std::chrono::steady_clock::now();
     const std::vector<NearTriangle> near = search.finder.within(search.points, *options.within);
     const double seconds = seconds_since(start);
     if (!options.output.empty()) write_csv(options.output, near);
@@ -141,7 +138,7 @@ void run_within(const DistanceOptions& options, Search& search) {
 }
 
 void run_closest(const DistanceOptions& options, Search& search) {
-    const Clock::time_point start = Clock::now();
+    const auto start = std::chrono::steady_clock::now();
     std::vector<ClosestPoint> found = search.finder.closest(search.points, options.max_distance);
     std::size_t inside = 0;
     if (options.is_signed) {

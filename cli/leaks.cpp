@@ -37,7 +37,6 @@ suite::Subject subject_of(const LeaksOptions& options, const AccelChoice& choice
     return {choice.is_software ? suite::Backend::software : suite::Backend::ray_query, options.level};
 }
 
-constexpr std::size_t batch_size = 1 << 17;
 constexpr std::size_t max_printed_faults = 20;
 constexpr double seconds_between_saves = 1;
 
@@ -158,6 +157,7 @@ class Run {
 };
 
 Totals trace_all(const LeaksOptions& options, const Run& run, const nlohmann::json& identity, Totals totals) {
+    constexpr std::size_t batch_size = 1 << 17;
     Progress progress("leaks", options.rays, options.common.quiet);
     progress.advance(std::min(totals.rays, options.rays));
     const auto begin = Clock::now();

@@ -60,7 +60,7 @@ void read_number_lines(const std::filesystem::path& file, const std::string& wha
                        const std::function<void(std::span<const double>, std::size_t)>& take) {
     const Bytes bytes = bytes_of(file, what);
     const auto count = static_cast<std::size_t>(1 + std::count(fields.begin(), fields.end(), ','));
-    std::string_view rest = text_of(bytes, file.string());
+    std::string_view rest = twinray::text_of(bytes, file.string());
     bool is_first = true, has_any = false;
     for (std::size_t line_number = 1; !rest.empty(); ++line_number) {
         const std::string_view line = cut_line(rest);

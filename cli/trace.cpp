@@ -27,8 +27,6 @@ struct TraceOptions {
     Level level = Level::watertight;
 };
 
-constexpr std::size_t batch_size = 1 << 20;
-
 // The hits of all rays, one after the other; writes how many each has.
 std::vector<Hit> trace_all(AbstractAccel& accel, std::span<const Ray> rays, const TraceOptions& options) {
     HitsOfRays found = AllHits(accel)(rays);
@@ -41,6 +39,7 @@ std::vector<Hit> trace_all(AbstractAccel& accel, std::span<const Ray> rays, cons
 }
 
 std::vector<Hit> trace_in_batches(AbstractAccel& accel, std::span<const Ray> rays, const TraceOptions& options) {
+    constexpr std::size_t batch_size = 1 << 20;
     std::vector<Hit> hits;
     hits.reserve(rays.size());
     Progress progress("trace", rays.size(), options.common.quiet);

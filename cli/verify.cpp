@@ -21,7 +21,6 @@
 namespace twinray::cli {
 namespace {
 
-constexpr std::size_t batch_size = 1 << 18;
 std::vector<RaySet> ray_sets(const VerifyOptions& options, const Oracle& oracle, const Scene& scene) {
     if (!options.rays.empty()) return {{"file", read_rays(options.rays, scene.origin)}};
     if (options.random + options.aimed == 0) throw UsageError("--random 0 and --aimed 0 leave nothing to judge");
@@ -100,6 +99,7 @@ std::uint64_t run(const VerifyOptions& options) {
               << scene.instances.size() << " instances, at " << name_of(options.level) << " on "
               << context->facts().name
               << (hw ? text("; HwTlas by ", hw->trace_path()) : text("; without HwTlas (", why_not, ')')) << '\n';
+    constexpr std::size_t batch_size = 1 << 18;
     std::uint64_t faults = 0;
     for (const RaySet& set : ray_sets(options, oracle, scene)) {
         Outcome outcome;

@@ -189,10 +189,6 @@ nlohmann::json json_of(const ViewFactorResiduals& residuals) {
             {"closure", residuals.closure}};
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 void run(const Options& options) {
     const std::string suffix = lower_suffix(options.output);
     check_writable(options.output);

@@ -11,7 +11,7 @@
 namespace twinray::report {
 namespace {
 
-constexpr const char* style = R"(
+constexpr const char* page_style = R"(
 body { font: 14px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 1180px; padding: 0 1em; color: #222; }
 h1 { font-size: 1.6em; } h2 { margin-top: 2em; border-bottom: 1px solid #ccc; } h3 { margin-bottom: .3em; }
 table { border-collapse: collapse; width: 100%; font-size: 12.5px; font-variant-numeric: tabular-nums; }
@@ -257,7 +257,7 @@ std::string page(const PageInput& input) {
     const std::vector<Plot> plots = plots_of(input.records);
     std::ostringstream out;
     out << "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head><meta charset=\"utf-8\"/>"
-        << "<title>twinray report</title><style>" << style << "</style></head>\n<body>\n"
+        << "<title>twinray report</title><style>" << page_style << "</style></head>\n<body>\n"
         << "<h1>twinray: error against run time</h1>\n";
     if (input.records.empty()) {
         out << "<p>No case was asked for.</p>\n";

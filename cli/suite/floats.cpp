@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t batch_size = 1 << 20;
 
-Scene scene_of(const Mesh& mesh, std::vector<Transform> transforms = {Transform{}}) {
+Scene scene_with(const Mesh& mesh, std::vector<Transform> transforms = {Transform{}}) {
     Scene scene;
     scene.meshes = {mesh};
     for (const Transform& transform : transforms) scene.instances.push_back({"", 0, transform});
@@ -86,10 +86,10 @@ struct NamedScene {
 };
 
 std::vector<NamedScene> scenes_for_twins() {
-    return {{"soup", scene_of(make_soup(2000, 5, 0.2f))},
-            {"sphere", scene_of(make_icosphere(5))},
-            {"height field", scene_of(make_grid(64, 64, 0.2f, 3))},
-            {"instances", scene_of(make_soup(500, 6, 0.3f), uneven_transforms())}};
+    return {{"soup", scene_with(make_soup(2000, 5, 0.2f))},
+            {"sphere", scene_with(make_icosphere(5))},
+            {"height field", scene_with(make_grid(64, 64, 0.2f, 3))},
+            {"instances", scene_with(make_soup(500, 6, 0.3f), uneven_transforms())}};
 }
 
 std::vector<Ray> random_and_aimed(const Scene& scene, std::size_t random, std::size_t aimed, std::uint64_t seed) {
@@ -121,7 +121,7 @@ std::vector<Ray> with_denormals(std::vector<Ray> rays, std::uint64_t seed) {
 }  // namespace
 
 void contraction(CaseRun& run) {
-    const Scene scene = scene_of(far_grid());
+    const Scene scene = scene_with(far_grid());
     const Oracle oracle = Oracle::of(scene);
     const std::vector<Ray> rays = edge_aimed_rays(oracle, run.amount(8'192, 1'000'000), run.seed());
     for (const Subject& subject : precise_subjects(run)) {

@@ -11,7 +11,7 @@
 namespace twinray::suite {
 namespace {
 
-constexpr std::array hits = {PairEstimator::hits};
+constexpr std::array by_hits = {PairEstimator::hits};
 constexpr double most_sigma = 5;
 
 struct Rows {
@@ -94,7 +94,7 @@ void blocked(CaseRun& run) {
     expect_nothing(run, squares_and(make_quad(vec3(-1, -1, 0.5f), vec3(3, 0, 0), vec3(0, 3, 0))), "a plate between");
     const auto ask = [&](float side, double value) {
         measure_factor(run, {.scene = squares_and(frame(0.5f, 1, side)), .value = value, .params = {{"hole", side}}},
-                       methods_of(hits));
+                       methods_of(by_hits));
     };
     ask(0.5f, 0.100318601099402597);
     ask(0x1p-3f, 0.00815251611355840471);
@@ -121,14 +121,14 @@ void hollow(CaseRun& run) {
                         .to = 0,
                         .params = {{"cup, corners", corners}},
                         .results = {{"cup_over_half_sphere", value / 0.5 - 1}}},
-                       methods_of(hits));
+                       methods_of(by_hits));
     }
     Mesh angle = make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0));
     const Mesh other = make_quad(vec3(0), vec3(0, 1, 0), vec3(0, 0, 1));
     for (const uvec3& triangle : other.triangles) angle.triangles.push_back(triangle + 4u);
     angle.positions.insert(angle.positions.end(), other.positions.begin(), other.positions.end());
     measure_factor(run, {.scene = scene_of({angle}), .value = 0.200043776075403154, .to = 0, .params = {{"angle", 90}}},
-                   methods_of(hits));
+                   methods_of(by_hits));
 }
 
 void hidden(CaseRun& run) {
@@ -145,7 +145,7 @@ void refined(CaseRun& run) {
     for (const uint cells : {1u, 8u, static_cast<uint>(run.amount(16, 32))})
         measure_factor(run,
                        {.scene = parallel_squares(1, cells), .value = known, .params = {{"faces", 4 * cells * cells}}},
-                       methods_of(hits));
+                       methods_of(by_hits));
     // Each face sends some rays: many faces are slow, and asked once.
     const auto most = static_cast<uint>(run.amount(64, 224));
     const Scene scene = parallel_squares(1, most);
@@ -186,7 +186,7 @@ void separate_spheres(CaseRun& run) {
                             .value = value,
                             .params = {{"radius", radius}, {"distance", distance}, {"subdivisions", subdivisions}},
                             .results = {{"polyhedra_over_spheres", value / known - 1}}},
-                           methods_of(hits));
+                           methods_of(by_hits));
         }
     };
     ask(1, 4, 0.016156244369874);

@@ -2,17 +2,14 @@
 // Invalid and special input: rays. Meshes and wrong use are in inputs_scene.cpp.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "cli/suite/inputs.h"
+#include "cli/suite/scenes.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
-
-constexpr float inf = std::numeric_limits<float>::infinity();
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 // Rays that hit and miss a sphere, of which `spoil(ray, i)` makes every second one special: it lies in one subgroup
 // with rays that must not notice.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "cli/suite/inputs.h"
@@ -11,8 +10,6 @@
 
 namespace twinray::suite {
 namespace {
-
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 // One vertex in the middle of a grid, which six triangles share, has `value` on an axis.
 void spoiled_vertex(CaseRun& run, int axis, float value, const char* setting) {

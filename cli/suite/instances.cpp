@@ -2,7 +2,6 @@
 // Instances: transforms that are hard on the ray, on the box and on the inverse.
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "cli/suite/case_run.h"
 #include "cli/suite/scenes.h"
@@ -93,7 +92,6 @@ void nearly_singular(CaseRun& run) {
 }
 
 void refused_transforms(CaseRun& run) {
-    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<std::pair<const char*, Transform>> bad = {
         {"zero", Transform::scaling(vec3(0))},
         {"flat", Transform::scaling({1, 0, 1})},

@@ -11,7 +11,7 @@
 namespace twinray::suite {
 namespace {
 
-constexpr double rounding = 2e-6;  // of what float32 adds up along a path, relative
+constexpr double rounding_of_path = 2e-6;  // of what float32 adds up along a path, relative
 
 // Of one seed.
 struct FlatPicture {
@@ -40,7 +40,7 @@ void judge(Record& record, const FlatQuestion& question, std::span<const FlatPic
     const double deviation = std::sqrt(variance / (n * pixels)), off = mean - question.value;
     record.results = {{"mean", mean}, {"expected", question.value}};
     if (deviation > 0) record.results.emplace("z", off / deviation);
-    record.faults = !(std::abs(off) <= 4 * deviation + rounding * question.value);
+    record.faults = !(std::abs(off) <= 4 * deviation + rounding_of_path * question.value);
     record.pass = record.faults == 0;
     if (*record.pass) return;
     record.reason = text("the mean of all pixels is ", mean, " +- ", deviation, ", not ", question.value);

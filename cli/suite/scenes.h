@@ -9,6 +9,7 @@
 namespace twinray::suite {
 
 inline constexpr float inf = std::numeric_limits<float>::infinity();
+inline constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 // The same numbers on every platform for one seed.
 class Random {

@@ -13,9 +13,8 @@ struct SpecializationConstant {
     std::uint32_t value;  // VkBool32 for bools
 };
 
-// The module with these values, and its own defaults, in place of its specialisation constants and of what is
-// computed of
-// them: for drivers that compile both sides of a branch on one.
+// The module with these values, and its own defaults, in place of its specialisation constants and of what is computed
+// of them: for drivers that compile both sides of a branch on one.
 std::vector<std::uint32_t> freeze_constants(std::span<const std::uint32_t> spirv,
                                             std::span<const SpecializationConstant> constants);
 

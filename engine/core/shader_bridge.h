@@ -41,9 +41,8 @@ inline float max_number(float a, float b) { return a > b || b != b ? a : b; }
 inline float uintBitsToFloat(uint bits) { return std::bit_cast<float>(bits); }
 inline uint floatBitsToUint(float value) { return std::bit_cast<uint>(value); }
 
-// Eight bytes: a device address when pushed to the GPU, a host address in the serial CPU twins. GLSL has two words
-// for them, so
-// that structs are to be aligned as there.
+// Eight bytes: a device address when pushed to the GPU, a host address in the serial CPU twins. GLSL has two words for
+// them, so that structs are to be aligned as there.
 using Address [[gnu::aligned(4)]] = std::uint64_t;
 using Uint64 [[gnu::aligned(4)]] = std::uint64_t;
 

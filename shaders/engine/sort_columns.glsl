@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Thread t of a group owns a run of the block's items, in order, and a column of counters: equal digits keep their
-// order
-// without an atomic.
+// order without an atomic.
 #ifndef TWINRAY_ENGINE_SORT_COLUMNS_GLSL
 #define TWINRAY_ENGINE_SORT_COLUMNS_GLSL
 #include "shaders/shared/sort.h"

@@ -52,8 +52,7 @@ FUNC vec3 left_by_reflection(Bsdf bsdf, vec2 mirror)
 }
 
 // Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", 2001:
-// over all
-// wi it comes to what the reflection leaves of the light from wo, and it is the same the other way.
+// over all wi it comes to what the reflection leaves of the light from wo, and it is the same the other way.
 FUNC vec3 under_interface(Bsdf bsdf, vec3 wo, vec3 wi)
 {
     vec3 from = left_by_reflection(bsdf, mirror_albedo(bsdf, wo));

@@ -13,8 +13,7 @@ const uint FILM_PIECE_BITS = 40u; // 2^23 numbers fit into a sum of 64 bits with
 const uint FILM_SQUARES = 3u;     // index of their sum
 
 // 72 bytes. A sum is (high * 2^40 + low) * 2^(40 place), in two's complement, in units of 2^-149 for colors and of
-// 2^-298
-// for squares.
+// 2^-298 for squares.
 struct FilmPixel
 {
     uint count;       // of the blocks that were added

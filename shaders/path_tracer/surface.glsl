@@ -133,8 +133,7 @@ vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placem
 }
 
 // Tangents of the file where they are any, else by the derivatives of uv. glTF's bitangent points to smaller v (up in
-// the
-// picture).
+// the picture).
 void set_tangents(inout Surface surface, TriangleData data, uint flags, vec2 at)
 {
     vec3 weights = weights_of(at);

@@ -11,8 +11,7 @@
 #extension GL_EXT_spirv_intrinsics : require
 
 // The lesser and the greater of two numbers, and of a number and NaN the number: what min() and max() leave open. Of
-// two
-// zeros either.
+// two zeros either.
 spirv_instruction(set = "GLSL.std.450", id = 79) float min_number(float a, float b);
 spirv_instruction(set = "GLSL.std.450", id = 80) float max_number(float a, float b);
 
@@ -25,8 +24,7 @@ layout(constant_id = 105) const bool FUSED_FMA = false;
 #define PRECISE precise
 
 // Where something lies in device memory, and other integers of 64 bits that kernels pass on: two words, the low one
-// first, as
-// not every device has integers of 64 bits.
+// first, as not every device has integers of 64 bits.
 #define Address uvec2
 #define Uint64 uvec2
 const Address NULL_ADDRESS = Address(0u);
@@ -45,9 +43,8 @@ Address address_at(Address base, uint index, uint stride)
     return address_after(base, low) + Address(0u, high);
 }
 
-// REF(T) is the address of items of type T, a struct of its own so that functions overload by it. It becomes a
-// pointer only where
-// AT follows it: pointers in structs and variables are more than some drivers compile.
+// REF(T) is the address of items of type T, a struct of its own so that functions overload by it. It becomes a pointer
+// only where AT follows it: pointers in structs and variables are more than some drivers compile.
 #define REFERENCE(name, qualifier, contents, alignment) \
     layout(buffer_reference, scalar, buffer_reference_align = alignment) qualifier buffer name##_buffer { contents; }; \
     struct name { Address address; }; \

@@ -76,9 +76,8 @@ struct MortonArgs
     uint reserved;
 };
 
-// Where Morton codes collide, as in a mesh with parts that are far smaller than the whole, the leaves of that tree
-// are sorted
-// again, by fine codes too: else their order would mean nothing there.
+// Where Morton codes collide, as in a mesh with parts that are far smaller than the whole, the leaves of that tree are
+// sorted again, by fine codes too: else their order would mean nothing there.
 const uint CROWD = 16u; // leaves that follow one of the same code, in order: a crowd
 
 // Written on the device, which dispatches the second sort, or nothing.

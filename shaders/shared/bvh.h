@@ -63,8 +63,7 @@ struct BvhHalf
 };
 
 // 40 bytes; all corners 0 for a triangle that is not active (see triangle.h), which is never hit. Of a box, v0 and v1
-// are
-// its lowest and highest corner.
+// are its lowest and highest corner.
 struct BvhTriangle
 {
     vec3 v0;
@@ -76,8 +75,8 @@ BUFFER_OF(BvhTriangle, 8);
 
 // 40 bytes, see compressed.h.
 //
-// node       a: lower corner of the grid, the last 8 bits of each coordinate being the exponent of the cells' size
-// there;
+// node       a: lower corner of the grid, the last 8 bits of each coordinate being the exponent of the cells'
+//            size there;
 //               w: the first child, count of children << 26
 //            b: lo.x, hi.x, lo.y, hi.y in cells, 8 bits a child      c: lo.z, hi.z
 // primitive  a: v0; w: LEAF_BIT | primitive_index      b: v1; w, c: v2
@@ -146,9 +145,8 @@ FUNC uint make_below(uint leaves, uint height) { return leaves | height << 25u; 
 FUNC uint leaves_in(uint below) { return below & 0x1ffffffu; }
 FUNC uint height_in(uint below) { return below >> 25u; }
 
-// A child of a node of layout bvh2, as the node above it and its side. A built tree knows the edges of its inner
-// nodes, as a way up
-// to the root, whose edge is 0.
+// A child of a node of layout bvh2, as the node above it and its side. A built tree knows the edges of its inner nodes,
+// as a way up to the root, whose edge is 0.
 FUNC uint make_edge(uint node, uint side) { return (node + 1u) << 1u | side; }
 FUNC uint parent_of_edge(uint edge) { return (edge >> 1u) - 1u; }
 FUNC uint edge_of(REF(BvhNode) nodes, uint node) { return AT(nodes, node).below0; }

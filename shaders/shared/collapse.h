@@ -59,8 +59,7 @@ struct CollapseArgs
 };
 
 // The queue of a subtree of n leaves takes its (2 n - 1) / 3 nodes at most, half as many as it has records below it:
-// where that
-// of the one with records from `below` on begins, and, with the number of leaves and 0, where all end.
+// where that of the one with records from `below` on begins, and, with the number of leaves and 0, where all end.
 FUNC uint queue_begin(uint tree_first, uint below)
 {
     return tree_first / 6u * 5u + tree_first % 6u * 5u / 6u + below / 2u; // 5/6 of it, which 32 bits hold all the way
@@ -90,8 +89,8 @@ FUNC void open_child(REF(BvhNode) nodes, uint node, uint i, INOUT(NodeChildren) 
 // How many levels of the binary tree may be below the children of a node of four.
 FUNC uint tallest_below(uint level) { return 2u * (DEEPEST_RECORDS - 1u - level); }
 
-// Opens a child that is too tall, else the one with the largest box of those that have children themselves, if there
-// is one.
+// Opens a child that is too tall, else the one with the largest box of those that have children themselves, if there is
+// one.
 FUNC void open_widest(REF(BvhNode) nodes, float unit, uint tallest, INOUT(NodeChildren) children)
 {
     const float WIDEST = 3.402823466e+38f;
@@ -124,8 +123,7 @@ FUNC NodeChildren no_children()
 }
 
 // The children of the node of four that a binary node becomes. It has two levels more than its children may have at
-// most,
-// so that none is too tall once two are opened.
+// most, so that none is too tall once two are opened.
 FUNC NodeChildren children_of(REF(BvhNode) nodes, uint place)
 {
     NodeChildren children = no_children();

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Layout compressed4: one array of records, of which each is a node of up to four children, a primitive or an
-// instance. The
-// children of a node lie side by side, so that one number leads to all of them, and a traversal fetches one record an
-// iteration, whatever it is.
+// Layout compressed4: one array of records, of which each is a node of up to four children, a primitive or an instance.
+// The children of a node lie side by side, so that one number leads to all of them, and a traversal fetches one record
+// an iteration, whatever it is.
 //
 // A node keeps its children's boxes as planes of a grid, 8 bits each, rounded outwards by more than a traversal's
 // arithmetic may lose (after Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
@@ -16,8 +15,8 @@
 const uint MOST_RECORDS = 1u << 26u; // a tree may have: what an entry on the stack can name; 40 million leaves
 
 // Records that a tree of so many leaves needs at most: a node with fewer than four children has leaves only, so that
-// the most
-// nodes come from pairs of leaves, of which 3 n + 1 have n nodes above them. Those that a tree does not use are `none`.
+// the most nodes come from pairs of leaves, of which 3 n + 1 have n nodes above them. Those that a tree does not use
+// are `none`.
 FUNC uint record_count(uint leaf_count) { return leaf_count == 0u ? 0u : (5u * leaf_count - 1u) / 3u; }
 FUNC uint records_below(uint leaf_count) { return leaf_count < 2u ? 0u : record_count(leaf_count) - 1u; }
 FUNC uint children_in(CompressedRecord node) { return node.a.w >> 26u; } // 0: none
@@ -39,9 +38,8 @@ FUNC void store_no_record(REF(CompressedRecord) records, uint index)
     AT(records, index).a.w = 0u;
 }
 
-// Which child of a node the record `target` is or lies below. The records below a child lie side by side, in the
-// order of the
-// children, so that it is the last one whose own children begin no later.
+// Which child of a node the record `target` is or lies below. The records below a child lie side by side, in the order
+// of the children, so that it is the last one whose own children begin no later.
 FUNC uint child_towards(REF(CompressedRecord) records, CompressedRecord node, uint target)
 {
     uint first = first_child_of(node);
@@ -58,9 +56,8 @@ FUNC uint child_towards(REF(CompressedRecord) records, CompressedRecord node, ui
 }
 
 // The exponent of the smallest power of two by which lo..hi is 252 cells long at most, with what origin_below may lie
-// farther
-// off, and a cell some roundings of the coordinates: then what lies a cell below lo, rounded, is 1/2 to 3/2 of a cell
-// below.
+// farther off, and a cell some roundings of the coordinates: then what lies a cell below lo, rounded, is 1/2 to 3/2 of
+// a cell below.
 FUNC uint cell_exponent(float lo, float hi)
 {
     const float LONGEST = 0.003968253968f;              // 1 / 252
@@ -75,8 +72,7 @@ FUNC float cell_size(uint exponent) { return uintBitsToFloat(exponent << 23u); }
 FUNC float cells_per_unit(uint exponent) { return uintBitsToFloat((254u - exponent) << 23u); }
 
 // The largest number that is not above `limit` and whose last 9 bits are an exponent: 2^-14 of it lower at most. The
-// first of them is
-// 0, so that a shift leaves nothing but the exponent.
+// first of them is 0, so that a shift leaves nothing but the exponent.
 FUNC float origin_below(float limit, uint exponent)
 {
     uint bits = floatBitsToUint(limit);
@@ -95,8 +91,7 @@ FUNC float cell_within(float cells)
 }
 
 // A plane in cells from the origin, moved outwards by a 256th of a cell at least: a traversal that computes with a
-// plane's
-// distance from the ray in float32 is off by less than 2^-10 cells near it, and by its own padding far from it.
+// plane's distance from the ray in float32 is off by less than 2^-10 cells near it, and by its own padding far from it.
 FUNC uint cell_below(float plane, float origin, float per_unit)
 {
     PRECISE float cells = (plane - origin) * per_unit - 0.00390625f;

@@ -10,9 +10,8 @@ const float HALF_ULP = 5.9604644775390625e-08f; // u = 2^-24, the unit roundoff 
 // exact.
 FUNC float high_part(float x) { return uintBitsToFloat(floatBitsToUint(x) & 0xfffff000u); }
 
-// The rounding error of the product p = fl(a b): a b = p + error, exactly, barring over- and underflow.
-// Dekker, "A floating-point technique for extending the available precision", 1971, but numbers are cut, not rounded,
-// in two.
+// The rounding error of the product p = fl(a b): a b = p + error, exactly, barring over- and underflow. Dekker, "A
+// floating-point technique for extending the available precision", 1971, but numbers are cut, not rounded, in two.
 FUNC float product_error(float a, float b, float p)
 {
     if (FUSED_FMA)
@@ -59,10 +58,8 @@ FUNC float doubled_difference(float a, float b, float c, float d, INOUT(float) m
 }
 
 // a.x b.x + a.y b.y + a.z b.z + c in doubled precision: the sum rounded in float32, which is returned, and what is
-// missing
-// from it (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005), with the sum of the magnitudes that this is
-// made of:
-// it is off by five roundings of those.
+// missing from it (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005), with the sum of the magnitudes that this
+// is made of: it is off by five roundings of those.
 FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing, INOUT(float) missing_size)
 {
     PRECISE float p0 = a.x * b.x;

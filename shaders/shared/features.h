@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a scene or a trace may need and traversal leaves out where it does not: one bit each of the specialisation
-// constant
-// FEATURES, which features_of() of engine/accel/features_of.h chooses. A kernel specialised for more than is needed
-// is right,
-// too, and gives the same hits, bit for bit; at LEVEL_FAST but for the signs of zeros.
+// constant FEATURES, which features_of() of engine/accel/features_of.h chooses. A kernel specialised for more than is
+// needed is right, too, and gives the same hits, bit for bit; at LEVEL_FAST but for the signs of zeros.
 #ifndef TWINRAY_SHARED_FEATURES_H
 #define TWINRAY_SHARED_FEATURES_H
 

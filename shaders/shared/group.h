@@ -5,8 +5,7 @@
 #include "shaders/shared/visit.h"
 
 // Where the siblings begin (26 bits), and up to three of them to visit, the next one in the lowest bits (2 bits each,
-// the
-// last one repeated). No siblings begin at the root, so that no group is EMPTY_GROUP.
+// the last one repeated). No siblings begin at the root, so that no group is EMPTY_GROUP.
 const uint EMPTY_GROUP = 0u;
 FUNC uint make_group(uint siblings, uint second, uint third, uint fourth)
 {
@@ -21,8 +20,7 @@ FUNC uint rest_of(uint group)
 }
 
 // Where the children of a node come in order, the least first (see place_in_order), each with its number in the last
-// two bits;
-// NO_ENTRY or more: the ray does not enter it.
+// two bits; NO_ENTRY or more: the ray does not enter it.
 struct ChildKeys
 {
     uint key0;

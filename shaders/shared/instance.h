@@ -24,10 +24,8 @@ struct GeometryBox
 BUFFER_OF(GeometryBox, 8);
 
 // What follows in the block of every geometry, at GEOMETRY_SOURCE_OFFSET, whichever accelerator it belongs to. Meshes
-// are built
-// in units of `scale`, a power of two near their size, so that neither tiny nor huge ones leave the range of float32;
-// the
-// unit is put back into the map to world space.
+// are built in units of `scale`, a power of two near their size, so that neither tiny nor huge ones leave the range of
+// float32; the unit is put back into the map to world space.
 struct GeometrySource
 {
     Floats positions; // of the mesh, in units of scale; null unless level refined needs them

@@ -43,10 +43,8 @@ FUNC float accurate_edge_function(vec3 a, vec3 b)
 }
 
 // By which power of two x and y of two sheared corners may be multiplied, exactly and without overflow of a product:
-// where a
-// ray passes a vertex by a denormal distance, the products that decide would underflow, some to 0, and triangles
-// around the
-// vertex would disagree. It depends on the edge alone, so that both of its triangles see the same.
+// where a ray passes a vertex by a denormal distance, the products that decide would underflow, some to 0, and
+// triangles around the vertex would disagree. It depends on the edge alone, so that both of its triangles see the same.
 FUNC float room_above(vec3 a, vec3 b)
 {
     const float TARGET = 1.152921504606846976e+18f;    // 2^60
@@ -117,8 +115,7 @@ FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float shear_z)
 }
 
 // Whether one of them is 0 or denormal, which devices may take for 0. By their bits: compilers make the least of the
-// magnitudes
-// of three comparisons, for which drivers on CPUs take three times as long.
+// magnitudes of three comparisons, for which drivers on CPUs take three times as long.
 FUNC bool is_any_zero(float a, float b, float c)
 {
     return min(min(floatBitsToUint(a) << 1u, floatBitsToUint(b) << 1u), floatBitsToUint(c) << 1u) < 0x1000000u;
@@ -148,8 +145,7 @@ FUNC SeenTriangle seen_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space)
 }
 
 // Whether the ray's line meets it, by exact_side: rarely asked, so that a loop of little code is better than a fast
-// one. Its
-// corners change places until each is where it was, as copies would take registers.
+// one. Its corners change places until each is where it was, as copies would take registers.
 FUNC bool is_exactly_around(INOUT(SeenTriangle) seen)
 {
     int sides = 0;

@@ -2,9 +2,8 @@
 // An instance as traversal reads it, and the world box around it, its leaf in the top level's tree.
 //
 // Under a rotation the box around a geometry's box may be many times as large as the one around the geometry: of a
-// ball, it has
-// 2.2 times the area on average. So it is made of the boxes some levels down the geometry's tree, where that can gain
-// anything.
+// ball, it has 2.2 times the area on average. So it is made of the boxes some levels down the geometry's tree, where
+// that can gain anything.
 #ifndef TWINRAY_SHARED_PLACE_INSTANCE_H
 #define TWINRAY_SHARED_PLACE_INSTANCE_H
 #include "shaders/shared/node_boxes.h"
@@ -29,9 +28,8 @@ FUNC LeafBox box_under(Rows map, LeafBox box)
     return under;
 }
 
-// What box_under and rays lose to rounding, where these are taken to object space and back, along one axis: both are
-// a few
-// 2^-24 of the magnitudes involved, and this is 2^-20 of them. `low`, `high`: of box_under.
+// What box_under and rays lose to rounding, where these are taken to object space and back, along one axis: both are a
+// few 2^-24 of the magnitudes involved, and this is 2^-20 of them. `low`, `high`: of box_under.
 FUNC float rounding_of_instance(vec4 row, LeafBox box, Rows to_object, float low, float high)
 {
     float reach = max(abs(row.w), max(abs(low), abs(high)));
@@ -54,8 +52,8 @@ FUNC bool is_within(LeafBox box, LeafBox outer)
            box.hi.y <= outer.hi.y && box.hi.z <= outer.hi.z;
 }
 
-// A box around the geometry under the map, but for rounding: around its boxes CUT_LEVELS below the root, and the
-// leaves above.
+// A box around the geometry under the map, but for rounding: around its boxes CUT_LEVELS below the root, and the leaves
+// above.
 FUNC LeafBox box_of_cut(SwGeometry geometry, Rows to_world)
 {
     bool is_binary = is_null(geometry.records);

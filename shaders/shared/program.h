@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The two functions by which a trace program takes part in a traversal. One GLSL text serves the software traversal,
-// ray
-// queries and ray tracing pipelines. They may be called in any order, more than once, and for hits that do not count
-// in the end, so they must depend on their arguments alone and write nothing.
+// ray queries and ray tracing pipelines. They may be called in any order, more than once, and for hits that do not
+// count in the end, so they must depend on their arguments alone and write nothing.
 #ifndef TWINRAY_SHARED_PROGRAM_H
 #define TWINRAY_SHARED_PROGRAM_H
 #include "shaders/shared/ray.h"

@@ -28,9 +28,8 @@ struct RaySpace
     float shear_z;
 };
 
-// What tests of boxes take from it. Made from it at each node where the space changes in the loop, as among
-// instances: that is
-// less than a loop on a CPU pays for what it carries.
+// What tests of boxes take from it. Made from it at each node where the space changes in the loop, as among instances:
+// that is less than a loop on a CPU pays for what it carries.
 struct BoxRay
 {
     vec3 near_origin;
@@ -90,8 +89,7 @@ FUNC BoxRay box_ray(RaySpace space)
 }
 
 // 1, or the power of two that brings the largest t at which a ray may meet something below 2^80. That is 2^38 pads at
-// most times
-// the reciprocal of the direction's dominant entry.
+// most times the reciprocal of the direction's dominant entry.
 FUNC float scale_of_reach(float pad, float along)
 {
     uint exponent = (floatBitsToUint(pad) >> 23u) + (floatBitsToUint(along) >> 23u);
@@ -127,14 +125,12 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
     return space;
 }
 
-// How far aside of a ray a corner may be sheared, rounded: 8 of 2^-24 of its distance along an axis. A triangle is
-// hit where its
-// sheared corners say so, and its box must be, too, however near to the ray's origin that is.
+// How far aside of a ray a corner may be sheared, rounded: 8 of 2^-24 of its distance along an axis. A triangle is hit
+// where its sheared corners say so, and its box must be, too, however near to the ray's origin that is.
 FUNC float corner_pad(vec3 origin, float extent) { return (largest_entry(origin) + extent) * 9.5367431640625e-07f; } // 2^-20
 
-// The interval in which a ray is inside of all three slabs, begun with its own, which a NaN (of products out of
-// range) leaves
-// as it was.
+// The interval in which a ray is inside of all three slabs, begun with its own, which a NaN (of products out of range)
+// leaves as it was.
 FUNC float latest_of(float enter, float near_x, float near_y, float near_z)
 {
     return max_number(max_number(max_number(near_x, near_y), near_z), enter);
@@ -144,9 +140,8 @@ FUNC float earliest_of(float leave, float far_x, float far_y, float far_z)
     return min_number(min_number(min_number(far_x, far_y), far_z), leave);
 }
 
-// Where the ray enters the box and where it leaves it within [t_min, t_max], in t * ray.t_scale: enter > leave where
-// it does
-// not meet it.
+// Where the ray enters the box and where it leaves it within [t_min, t_max], in t * ray.t_scale: enter > leave where it
+// does not meet it.
 FUNC void cross_box(vec3 lo, vec3 hi, BoxRay ray, float t_min, float t_max, INOUT(float) enter, INOUT(float) leave)
 {
     bool flip_x = ray.near_inverse.x < 0.0f;

@@ -19,18 +19,16 @@ FUNC double slab_entry(float o, float d, float lo, float hi)
     return t;
 }
 
-// The same ray from nearer to the box, if it comes from more than five times as far as the box's largest coordinate:
-// t of the
-// result plus `advance` is t of `ray`. It stops about that coordinate short of the box, so nothing is jumped over.
-// Nearer
-// rays pay for one comparison.
+// The same ray from nearer to the box, if it comes from more than five times as far as the box's largest coordinate: t
+// of the result plus `advance` is t of `ray`. It stops about that coordinate short of the box, so nothing is jumped
+// over. Nearer rays pay for one comparison.
 FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, uint level, INOUT(double) advance)
 {
-    const float FAR = 4.0f;
+    const float FAR_IN_SIZES = 4.0f;
     advance = double(0.0f);
     float size = max(largest_entry(lo), largest_entry(hi));
-    PRECISE float far = FAR * size;
-    // A ray that meets the box after FAR + 1 sizes began at least FAR sizes from 0.
+    PRECISE float far = FAR_IN_SIZES * size;
+    // A ray that meets the box after FAR_IN_SIZES + 1 sizes began at least FAR_IN_SIZES sizes from 0.
     if (!(lo.x <= hi.x) || !(largest_entry(ray.origin) > far) || !is_traceable(ray)) return ray;
     double entry = double(0.0f);
     if (ray.direction.x != 0.0f) entry = max(entry, slab_entry(ray.origin.x, ray.direction.x, lo.x, hi.x));
@@ -38,7 +36,7 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, uint level, INOUT(double) advance)
     if (ray.direction.z != 0.0f) entry = max(entry, slab_entry(ray.origin.z, ray.direction.z, lo.z, hi.z));
     PRECISE double box_way = double(size) / double(largest_entry(ray.direction));
     PRECISE double way = entry - box_way;
-    PRECISE double far_way = double(FAR) * box_way;
+    PRECISE double far_way = double(FAR_IN_SIZES) * box_way;
     if (!(way > far_way)) return ray;
     Ray near = ray;
     PRECISE double x = double(ray.origin.x) + way * double(ray.direction.x);

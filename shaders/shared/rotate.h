@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Tree rotations (Kensler, "Tree Rotations for Improving Bounding Volume Hierarchies", 2008): where a child of a node
-// and a
-// grandchild on its other side, or two grandchildren, change places, boxes may become smaller. A node is rotated as
-// soon as it
-// has both children, so that one pass from the leaves to the root rotates all; and what a rotation changed below the
-// node is
-// rotated again, some levels down; after that the node itself once more.
+// and a grandchild on its other side, or two grandchildren, change places, boxes may become smaller. A node is rotated
+// as soon as it has both children, so that one pass from the leaves to the root rotates all; and what a rotation
+// changed below the node is rotated again, some levels down; after that the node itself once more.
 #ifndef TWINRAY_SHARED_ROTATE_H
 #define TWINRAY_SHARED_ROTATE_H
 #include "shaders/shared/build.h"
@@ -168,8 +165,7 @@ FUNC Rotated rotate_node(NodeHalves nodes, uint node, NodeHalf a, NodeHalf b, ui
 }
 
 // A rotation of `node` and of what it changes below. Done a node at a time, so that where invocations go through a
-// program
-// together none waits for one that has more nodes to rotate.
+// program together none waits for one that has more nodes to rotate.
 struct Rotation
 {
     uint node;
@@ -193,8 +189,7 @@ FUNC Rotation no_rotation()
 }
 
 // Of a node with both its halves, whose subtrees are finished, which then has a height of `limit` at most, if it had.
-// Below the
-// node no subtree becomes higher; heights told of them are theirs at most.
+// Below the node no subtree becomes higher; heights told of them are theirs at most.
 FUNC Rotation rotation_of(uint node, uint limit)
 {
     Rotation rotation = no_rotation();

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The stack of a traversal: the last entry in a register, as many below it as shared memory has room for at full
-// occupancy.
-// Where more are pushed the lowest are overwritten, and has_lost says so (Laine, "Restart Trail for Stackless BVH
-// Traversal", 2010).
+// occupancy. Where more are pushed the lowest are overwritten, and has_lost says so (Laine, "Restart Trail for
+// Stackless BVH Traversal", 2010).
 //
 // Where entries lie is up to whoever includes this: load_entry(slot) and store_entry(slot, entry), slot < STACK_SIZE.
 #ifndef TWINRAY_SHARED_SHORT_STACK_H

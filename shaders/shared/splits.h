@@ -15,9 +15,8 @@ FUNC LeafBox bounds_of(CentroidBounds bits)
 }
 
 // What separates neighbours in sorted order, larger = higher up: the highest bit in which their codes differ, between
-// equal codes
-// the highest in which fine codes do, between equal ones of both the highest in which their places do. Only the highest
-// bit counts, and that of two neighbours of a range of leaves is never the same.
+// equal codes the highest in which fine codes do, between equal ones of both the highest in which their places do. Only
+// the highest bit counts, and that of two neighbours of a range of leaves is never the same.
 FUNC uvec2 make_split(uint of_code, uint of_fine_code, uint place)
 {
     uint of_place = place ^ (place + 1u); // 25 bits

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Traversal of a SwScene, of any layout: one loop over nodes, primitives and instances.
 //
-// What a node leaves to visit is one entry of the stack, and the way out of an instance is another. The stack is
-// short: once
-// it is empty and has lost entries, the ray goes from the root of its tree to where it is, and puts what it passes on
-// the
-// stack again. The order of siblings does not depend on what was found meanwhile, but that those behind it are left
-// out.
+// What a node leaves to visit is one entry of the stack, and the way out of an instance is another. The stack is short:
+// once it is empty and has lost entries, the ray goes from the root of its tree to where it is, and puts what it passes
+// on the stack again. The order of siblings does not depend on what was found meanwhile, but that those behind it are
+// left out.
 #ifndef TWINRAY_SHARED_TRAVERSE_H
 #define TWINRAY_SHARED_TRAVERSE_H
 #include "shaders/shared/enter_binary.h"
@@ -249,8 +247,7 @@ FUNC bool visit_next(INOUT(Traversal) here, SwScene scene, bool is_binary, Trace
 }
 
 // The closest hit is the first by comes_before, whatever the layout and the order of traversal; with QUERY_ANY it is
-// the
-// first one found.
+// the first one found.
 FUNC Hit traverse(SwScene scene, Ray ray, TraceOptions options)
 {
     bool has_top = (options.features & FEATURE_INSTANCES) != 0u;

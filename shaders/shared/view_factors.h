@@ -63,8 +63,7 @@ FUNC vec4 sample_of(FaceRaysArgs args, uint face, uint replicate, uint index)
 }
 
 // A point of the face, with barycentric coordinates u, v. One that lies nearer to an edge than some offsets is moved
-// away
-// from it: there it may round to beyond a wall that meets the face at the edge, or start beyond it.
+// away from it: there it may round to beyond a wall that meets the face at the edge, or start beyond it.
 FUNC SurfacePoint inner_point(FaceTable table, uint face, vec2 uv)
 {
     SurfacePoint point = point_on_face(table, face, uv);

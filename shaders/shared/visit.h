@@ -12,8 +12,7 @@
 #endif
 
 // Rounding of the world-to-object transform moves a ray by a few roundings of its origin's size, and the limit of
-// reciprocals
-// by 2^-40 of the way. `extent`: the largest coordinate of the scene.
+// reciprocals by 2^-40 of the way. `extent`: the largest coordinate of the scene.
 FUNC float world_pad(vec3 origin, float extent)
 {
     return largest_entry(origin) * 9.5367431640625e-07f + extent * 3.637978807091713e-12f; // 2^-20, 2^-38
@@ -28,8 +27,7 @@ FUNC uint culled_side(uint ray_flags, uint instance_flags)
 }
 
 // What traversal must know of the instance it is in. Features are asked for where these are read, not where they are
-// set:
-// only so compilers see across the loop that what depends on them is never run.
+// set: only so compilers see across the loop that what depends on them is never run.
 struct InInstance
 {
     uint index;
@@ -178,11 +176,10 @@ FUNC bool comes_after(TriangleHit hit, float t_min, TraceOptions options)
 
 const uint NO_ENTRY = 0x7f800000u; // infinity, and what is larger: no hit is reported there
 
-// Where among its siblings a box comes that the ray crosses from `enter` to `leave`, the least first; the last two
-// bits are free.
-// The nearest is first; where any hit will do, that in which the ray is longest, as most may be hit there. (Larger
-// boxes
-// first, for rays unknown: Nah, Manocha, "SATO: Surface Area Traversal Order for Shadow Ray Tracing", 2014.)
+// Where among its siblings a box comes that the ray crosses from `enter` to `leave`, the least first; the last two bits
+// are free. The nearest is first; where any hit will do, that in which the ray is longest, as most may be hit there.
+// (Larger boxes first, for rays unknown: Nah, Manocha, "SATO: Surface Area Traversal Order for Shadow Ray Tracing",
+// 2014.)
 FUNC uint place_in_order(float enter, float leave, bool is_there, uint query)
 {
     uint longest_first = 0x7f000000u - min(floatBitsToUint(leave - enter), 0x7e000000u);
@@ -190,9 +187,8 @@ FUNC uint place_in_order(float enter, float leave, bool is_there, uint query)
     return is_there && enter <= leave ? place & 0x7ffffffcu : NO_ENTRY; // of zeros the sign may be either
 }
 
-// What has been found so far, and where there is more to find. Only what a kernel needs is ever written: the rest
-// stays a
-// constant, which compilers see through the loop.
+// What has been found so far, and where there is more to find. Only what a kernel needs is ever written: the rest stays
+// a constant, which compilers see through the loop.
 struct Search
 {
     float t_min;

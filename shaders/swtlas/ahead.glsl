@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Loads ahead of use, for CPUs, which go through a vector's loads one after the other and see only the next few: all
-// words of one cold
-// line after the other cost 30 ns a line, one word of each of many lines side by side 8 ns, and the others then find
-// the lines in
-// caches. GPUs have other groups to run in the meantime.
+// words of one cold line after the other cost 30 ns a line, one word of each of many lines side by side 8 ns, and the
+// others then find the lines in caches. GPUs have other groups to run in the meantime.
 #ifndef TWINRAY_SWTLAS_AHEAD_GLSL
 #define TWINRAY_SWTLAS_AHEAD_GLSL
 #include "shaders/shared/workgroup.h"

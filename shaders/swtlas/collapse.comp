@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Binary trees become trees of four children a node, level by level: the items of one level leave those of the next,
-// and
-// those of subtrees that a group can do whole. Begun once per tree.
+// and those of subtrees that a group can do whole. Begun once per tree.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -27,8 +26,7 @@ void count_item(inout ItemLists counts, uint leaves)
 }
 
 // Where a list has room for `count` more items, of which a group does `share`. Whoever begins its last group so far
-// says how
-// many groups it has.
+// says how many groups it has.
 uint reserve(REF(CollapseLevel) list, uint count, uint share)
 {
     if (count == 0u) return 0u;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Collapses subtrees, a group each: items wait in a queue, from which the group takes as many as it has invocations.
-// Nodes and
-// records of a subtree lie side by side, so that a CPU has them in its caches once they are loaded one line after the
-// other.
+// Nodes and records of a subtree lie side by side, so that a CPU has them in its caches once they are loaded one line
+// after the other.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"

@@ -12,8 +12,7 @@
 // An invocation has a run of leaves. A range that is to be joined with one to its right waits in the left half of their
 // node; within a run the next ranges find it there. Ranges that reach over the ends of their run climb once the run is
 // done: of the two that meet at a node the first leaves its own far end in meeting[] and stops; the second finds it
-// there
-// and goes on with both. A range writes its half of the node before the exchange.
+// there and goes on with both. A range writes its half of the node before the exchange.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -56,8 +55,8 @@ uvec2 split_before(BuildTree tree, uint position)
     return position == tree.first ? TREE_END : split_after(tree, position - 1u);
 }
 
-// The node at a split has both its halves, `top` and `other`, and becomes the top. Returns the rotation that this
-// asks for.
+// The node at a split has both its halves, `top` and `other`, and becomes the top. Returns the rotation that this asks
+// for.
 Rotation join(inout NodeHalf top, NodeHalf other, uint node, uvec2 split)
 {
     top = joined_half(top, other, node);
@@ -176,8 +175,7 @@ Rotation advance(BuildTree tree, NodeHalves nodes, inout Run run)
 }
 
 // Joins the run's ranges with those of other runs: the first ones, which wait in right halves, from the left, the
-// others,
-// in left ones, from the right.
+// others, in left ones, from the right.
 void join_ranges(BuildTree tree, NodeHalves nodes, float scale, Run run)
 {
     uint from = run.begin;
@@ -210,9 +208,9 @@ void load_ahead(uint begin, uint end)
     keep_loads(found);
 }
 
-// The leaves begin .. end - 1. In each turn of the loop an invocation takes some leaves or joins, but stops where
-// there is
-// a node to rotate, and rotates one: where invocations go through a program together, each waits little for the others.
+// The leaves begin .. end - 1. In each turn of the loop an invocation takes some leaves or joins, but stops where there
+// is a node to rotate, and rotates one: where invocations go through a program together, each waits little for the
+// others.
 void build_run(BuildTree tree, float scale, uint begin, uint end)
 {
     NodeHalves nodes = NodeHalves(tree.nodes.address);

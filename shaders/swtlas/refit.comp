@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // New boxes for an old topology: each leaf climbs with its box, and of the two children that arrive at a node the
-// second
-// goes on with both.
+// second goes on with both.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"

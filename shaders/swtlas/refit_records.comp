@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 // New records for an old topology. Each invocation has a run of slots, whose leaves it refits one after the other; of
-// the
-// children of a node the last one goes on with it. One loop over leaves and nodes: as one climbs, its neighbours on a
-// CPU
-// have leaves to do.
+// the children of a node the last one goes on with it. One loop over leaves and nodes: as one climbs, its neighbours on
+// a CPU have leaves to do.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"

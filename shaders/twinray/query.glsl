@@ -10,10 +10,8 @@
 // Levels from refined on need TWINRAY_REFINED defined (twinray_add_kernel(... REFINED)) and a device with float64.
 //
 // Specialise FEATURES_CONSTANT with AccelView::features, or AbstractAccel::features_for, to leave out what the scene
-// does not
-// need, and LEVEL_CONSTANT with the level. With TWINRAY_PROGRAM defined, the kernel defines intersect_primitive and
-// accept_hit itself (see
-// shaders/shared/program.h), before or after this include.
+// does not need, and LEVEL_CONSTANT with the level. With TWINRAY_PROGRAM defined, the kernel defines
+// intersect_primitive and accept_hit itself (see shaders/shared/program.h), before or after this include.
 #ifndef TWINRAY_QUERY_GLSL
 #define TWINRAY_QUERY_GLSL
 #include "shaders/shared/bridge.glsl"

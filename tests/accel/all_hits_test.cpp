@@ -11,7 +11,7 @@ namespace twinray {
 namespace {
 
 using test::Kind;
-using testing::make_ray;
+using test::make_ray;
 
 class AllHitsTest : public test::AccelTest {};
 
@@ -21,7 +21,7 @@ std::vector<Ray> random_rays(std::size_t count, unsigned seed) {
     std::mt19937 random(seed);
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < count; ++i)
-        rays.push_back(make_ray(testing::uniform3(random, -2, 2), testing::uniform3(random, -1, 1)));
+        rays.push_back(make_ray(test::uniform3(random, -2, 2), test::uniform3(random, -1, 1)));
     return rays;
 }
 

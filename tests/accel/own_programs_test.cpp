@@ -12,7 +12,7 @@
 namespace twinray {
 namespace {
 
-constexpr uint all = 7;
+constexpr uint all_programs = 7;
 
 class OwnProgramsTest : public ::testing::Test {
   protected:
@@ -34,7 +34,7 @@ class OwnProgramsTest : public ::testing::Test {
 
     std::unique_ptr<OwnPrograms> make(bool in_background) {
         return std::make_unique<OwnPrograms>(
-            [this](uint features) { return std::make_unique<Program>(*this, features); }, all, in_background);
+            [this](uint features) { return std::make_unique<Program>(*this, features); }, all_programs, in_background);
     }
     static uint serving(OwnPrograms& programs, uint features, Query query = Query::closest) {
         return programs.get(features, query, Level::watertight).features();
@@ -56,8 +56,8 @@ TEST_F(OwnProgramsTest, TheGeneralOneServesUntilTheLeanOneIsThere) {
     serving(*programs, 1);
     programs->wait();
     gate.acquire();
-    EXPECT_EQ(serving(*programs, 2), all);
-    EXPECT_EQ(serving(*programs, 2), all);
+    EXPECT_EQ(serving(*programs, 2), all_programs);
+    EXPECT_EQ(serving(*programs, 2), all_programs);
     EXPECT_EQ(serving(*programs, 1), 1u) << "is there already";
     gate.release();
     programs->wait();
@@ -68,7 +68,7 @@ TEST_F(OwnProgramsTest, TheGeneralOneServesUntilTheLeanOneIsThere) {
 
 TEST_F(OwnProgramsTest, WithoutABackgroundEachTraceWaits) {
     const auto programs = make(false);
-    for (const uint features : {1u, 2u, all}) EXPECT_EQ(serving(*programs, features), features);
+    for (const uint features : {1u, 2u, all_programs}) EXPECT_EQ(serving(*programs, features), features);
     EXPECT_EQ(compiled, 3);
 }
 
@@ -77,9 +77,9 @@ TEST_F(OwnProgramsTest, WhatFailsInTheBackgroundIsNeverServed) {
     EXPECT_THROW(serving(*programs, 4), Error) << "no other is there";
     serving(*programs, 1);
     programs->wait();
-    EXPECT_EQ(serving(*programs, 4), all);
+    EXPECT_EQ(serving(*programs, 4), all_programs);
     programs->wait();
-    EXPECT_EQ(serving(*programs, 4), all);
+    EXPECT_EQ(serving(*programs, 4), all_programs);
 }
 
 TEST_F(OwnProgramsTest, TheEndWaitsForTheOneThatIsBeingCompiledAlone) {

@@ -9,8 +9,6 @@
 namespace twinray::cli {
 namespace {
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 TEST(Completion, EachScriptNamesCommandsOptionsAndChoices) {
     SampleValues values;
     const std::vector<Command> commands = {sample_command(values)};

@@ -15,8 +15,6 @@ std::string sample_help(std::size_t width) {
     return help_text(sample_command(values), width);
 }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 TEST(HelpText, HasTheSectionsOfAManPage) {
     const std::string help = sample_help(80);
     std::size_t at = 0;

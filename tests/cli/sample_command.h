@@ -3,10 +3,13 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "cli/command/values.h"
 
 namespace twinray::cli {
+
+inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 struct SampleValues {
     std::filesystem::path scene, output;

@@ -11,7 +11,7 @@ namespace {
 
 using test::error_of;
 
-const Mesh cube = make_box(vec3(0), vec3(1));
+const Mesh unit_cube = make_box(vec3(0), vec3(1));
 // Its box is [p, p + size], exactly where both are representable.
 Transform placed(vec3 p, float size = 1) { return Transform::translation(p) * Transform::scaling(vec3(size)); }
 
@@ -76,8 +76,8 @@ TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFEREE(CollisionFinderTest);
 
 TEST_P(CollisionFinderTest, FindsWhatBruteForceFindsAmongTenThousand) {
     const std::vector<Cube> cubes = random_cubes(10'000, 1, 12);
-    accel().push(cube, transforms_of(std::span(cubes).first(6'000)));
-    accel().push(cube, transforms_of(std::span(cubes).subspan(6'000)));
+    accel().push(unit_cube, transforms_of(std::span(cubes).first(6'000)));
+    accel().push(unit_cube, transforms_of(std::span(cubes).subspan(6'000)));
     const std::vector<InstancePair> expected = brute_force(cubes, cubes, 0, 0);
     ASSERT_GT(expected.size(), 10'000u);
     EXPECT_EQ(finder().instance_pairs(accel()), expected);
@@ -91,7 +91,7 @@ TEST_P(CollisionFinderTest, FindsWhatBruteForceFindsAmongTenThousand) {
 TEST_P(CollisionFinderTest, FindsThemForEverySmallNumber) {
     for (std::size_t count = 0; count <= 20; ++count) {
         const std::vector<Cube> cubes = random_cubes(count, static_cast<unsigned>(count), 2);
-        const AccelHandle handle = accel().push(cube, transforms_of(cubes));
+        const AccelHandle handle = accel().push(unit_cube, transforms_of(cubes));
         EXPECT_EQ(finder().instance_pairs(accel()), brute_force(cubes, cubes, 0, 0)) << count;
         EXPECT_EQ(finder().any(accel()), !brute_force(cubes, cubes, 0, 0).empty()) << count;
         accel().erase(handle);
@@ -100,15 +100,15 @@ TEST_P(CollisionFinderTest, FindsThemForEverySmallNumber) {
 
 TEST_P(CollisionFinderTest, BetweenHandlesAndWithinOne) {
     const std::vector<Cube> a = random_cubes(300, 2, 5), b = random_cubes(200, 3, 5), c = random_cubes(100, 4, 5);
-    const AccelHandle ha = accel().push(cube, transforms_of(a)), hb = accel().push(cube, transforms_of(b)),
-                      hc = accel().push(cube, transforms_of(c));
+    const AccelHandle ha = accel().push(unit_cube, transforms_of(a)), hb = accel().push(unit_cube, transforms_of(b)),
+                      hc = accel().push(unit_cube, transforms_of(c));
     EXPECT_EQ(finder().instance_pairs(accel(), ha, hc), brute_force(a, c, 0, 500));
     EXPECT_EQ(finder().instance_pairs(accel(), hc, ha), brute_force(c, a, 500, 0));
     EXPECT_EQ(finder().instance_pairs(accel(), hb, hb), brute_force(b, b, 300, 300));
     EXPECT_EQ(finder().count(accel(), hc, hb), brute_force(c, b, 500, 300).size());
     const auto twin = make_accel();
-    twin->push(cube, transforms_of(c));
-    twin->push(cube, transforms_of(b));
+    twin->push(unit_cube, transforms_of(c));
+    twin->push(unit_cube, transforms_of(b));
     std::vector<Cube> cb = c;
     cb.insert(cb.end(), b.begin(), b.end());
     accel().erase(hb);
@@ -120,8 +120,8 @@ TEST_P(CollisionFinderTest, BetweenHandlesAndWithinOne) {
 
 // Instances sorted by place, not by number: x = 10, 0, 10.5.
 TEST_P(CollisionFinderTest, AnyAnswersForTheHandlesThatItWasAskedAbout) {
-    const AccelHandle a = accel().push(cube, placed(vec3(10, 0, 0))), b = accel().push(cube, placed(vec3(0))),
-                      c = accel().push(cube, placed(vec3(10.5f, 0, 0)));
+    const AccelHandle a = accel().push(unit_cube, placed(vec3(10, 0, 0))), b = accel().push(unit_cube, placed(vec3(0))),
+                      c = accel().push(unit_cube, placed(vec3(10.5f, 0, 0)));
     EXPECT_TRUE(finder().any(accel(), a, c));
     EXPECT_FALSE(finder().any(accel(), b, c));
     EXPECT_FALSE(finder().any(accel(), a, b));
@@ -133,25 +133,25 @@ TEST_P(CollisionFinderTest, AnyAnswersForTheHandlesThatItWasAskedAbout) {
 
 TEST_P(CollisionFinderTest, BoxesAreClosed) {
     const float one_up = std::nextafter(1.0f, 2.0f);
-    accel().push(cube, std::vector{placed(vec3(0)), placed(vec3(1, 0, 0)), placed(vec3(0, one_up, 0)),
+    accel().push(unit_cube, std::vector{placed(vec3(0)), placed(vec3(1, 0, 0)), placed(vec3(0, one_up, 0)),
                                    placed(vec3(-1, -1, -1))});
     EXPECT_EQ(finder().instance_pairs(accel()), (std::vector<InstancePair>{{0, 1}, {0, 3}}));
 }
 
 TEST_P(CollisionFinderTest, WhatCannotBeHitCollidesWithNothing) {
-    accel().push(cube);
+    accel().push(unit_cube);
     accel().push(Mesh{});
     Mesh flat = make_quad(vec3(0), vec3(1, 0, 0), vec3(2, 0, 0));
     accel().push(flat);
     EXPECT_TRUE(finder().instance_pairs(accel()).empty());
     EXPECT_EQ(finder().count(accel()), 0u);
-    accel().push(cube);
+    accel().push(unit_cube);
     EXPECT_EQ(finder().instance_pairs(accel()), (std::vector<InstancePair>{{0, 3}}));
 }
 
 TEST_P(CollisionFinderTest, IdenticalBoxesAreAllFound) {
     constexpr std::uint64_t n = 10'000, expected = n * (n - 1) / 2;
-    accel().push(cube, std::vector<Transform>(n));
+    accel().push(unit_cube, std::vector<Transform>(n));
     EXPECT_EQ(finder().count(accel()), expected);
     if (GetParam() != test::Kind::software) return;  // one kernel for all
     finder().set_max_pairs(expected - 1);
@@ -170,14 +170,14 @@ TEST_P(CollisionFinderTest, IdenticalBoxesAreAllFound) {
 // 2^32 and more do not fit into a counter of 32 bits.
 TEST_P(CollisionFinderTest, CountsBeyondThirtyTwoBits) {
     constexpr std::uint64_t n = 70'000;
-    accel().push(cube, std::vector<Transform>(n));
+    accel().push(unit_cube, std::vector<Transform>(n));
     const auto twin = make_accel();
-    twin->push(cube, std::vector<Transform>(n));
+    twin->push(unit_cube, std::vector<Transform>(n));
     EXPECT_EQ(finder().count(accel(), *twin), n * n);
 }
 
 TEST_P(CollisionFinderTest, WrongUseIsAnError) {
-    const AccelHandle a = accel().push(cube), b = accel().push(cube);
+    const AccelHandle a = accel().push(unit_cube), b = accel().push(unit_cube);
     accel().erase(b);
     EXPECT_EQ(error_of([&] { finder().instance_pairs(accel(), a, b); }),
               accel().name() + ": instance_pairs: handle " + std::to_string(b.id) + " is not alive");

@@ -13,7 +13,7 @@ namespace twinray {
 namespace {
 
 using enum PairClass;
-using testing::Soup;
+using test::Soup;
 
 class ContactFinderTest : public test::VulkanTest {
   protected:
@@ -71,9 +71,9 @@ std::vector<TriangleContact> brute_force(const std::vector<MeshView>& meshes,
 }
 
 Transform turned(std::mt19937& random, float spread) {
-    Transform m = Transform::scaling(vec3(testing::uniform(random, 0.5f, 1.5f)));
+    Transform m = Transform::scaling(vec3(test::uniform(random, 0.5f, 1.5f)));
     for (vec4& row : m.rows)
-        row += vec4(testing::uniform3(random, -0.5f, 0.5f), testing::uniform(random, -spread, spread));
+        row += vec4(test::uniform3(random, -0.5f, 0.5f), test::uniform(random, -spread, spread));
     return m;
 }
 
@@ -87,7 +87,7 @@ TEST_F(ContactFinderTest, ThoseOnALatticeHaveTheirExactClass) {
 
 TEST_F(ContactFinderTest, NoPairOfInstancesIsLost) {
     std::mt19937 random(3);
-    const Soup soup = testing::random_soup(20, 0.4f, 4), ball = testing::sphere(1);
+    const Soup soup = test::random_soup(20, 0.4f, 4), ball = test::sphere(1);
     const std::vector<MeshView> meshes = {soup.view(), ball.view()};
     std::vector<MeshInstance> instances;
     for (uint i = 0; i < 40; ++i) instances.push_back({i % 2, turned(random, 4)});
@@ -103,7 +103,7 @@ TEST_F(ContactFinderTest, NoPairOfInstancesIsLost) {
 TEST_F(ContactFinderTest, CoordinatesOfManySizesAreAlike) {
     for (const int exponent : {-100, -40, 30, 60}) {
         std::mt19937 random(3);
-        const Soup ball = testing::sphere(1);
+        const Soup ball = test::sphere(1);
         const float scale = std::ldexp(1.0f, exponent);
         const auto instances_at = [&](float size) {
             std::mt19937 same(5);
@@ -138,7 +138,7 @@ TEST_F(ContactFinderTest, CubesThatTouch) {
 
 // Spheres whose extreme vertices meet in one point; of the triangles there, each lies opposite to one in its own plane.
 TEST_F(ContactFinderTest, TangentSpheres) {
-    const Soup ball = testing::sphere(3);
+    const Soup ball = test::sphere(3);
     const Contacts found = find({ball.view()}, {{0, {}}, {0, Transform::translation(vec3(2, 0, 0))}});
     std::size_t at_pole = 0;
     for (const uvec3& t : ball.triangles)
@@ -152,7 +152,7 @@ TEST_F(ContactFinderTest, TangentSpheres) {
 TEST_F(ContactFinderTest, ATranslationIsTheSameAsABakedOne) {
     std::mt19937 random(8);
     Soup a, b;
-    const auto point = [&] { return glm::floor(testing::uniform3(random, -64, 64)) / 64.0f; };
+    const auto point = [&] { return glm::floor(test::uniform3(random, -64, 64)) / 64.0f; };
     for (int i = 0; i < 60; ++i) {
         const vec3 p = point(), q = point();
         a.add(p, q, point());
@@ -169,9 +169,9 @@ TEST_F(ContactFinderTest, ATranslationIsTheSameAsABakedOne) {
 }
 
 TEST_F(ContactFinderTest, NeighboursInAMeshDoNotCollide) {
-    EXPECT_TRUE(find_self(testing::sphere(3).view()).list.empty());
-    EXPECT_TRUE(find_self(testing::grid(12, 0, 0, 1).view()).list.empty());
-    EXPECT_TRUE(find_self(testing::grid(12, 0.3f, 0.5f, 1).view()).list.empty());
+    EXPECT_TRUE(find_self(test::sphere(3).view()).list.empty());
+    EXPECT_TRUE(find_self(test::grid(12, 0, 0, 1).view()).list.empty());
+    EXPECT_TRUE(find_self(test::grid(12, 0.3f, 0.5f, 1).view()).list.empty());
     const Mesh cube = make_box(vec3(0), vec3(1));  // four vertices a face
     EXPECT_FALSE(find_self(cube).list.empty());
     EXPECT_TRUE(find_self(cube, Shared::by_position).list.empty());
@@ -216,7 +216,7 @@ TEST_F(ContactFinderTest, CrossingsHaveTheirSegments) {
 
 TEST_F(ContactFinderTest, NothingAndWhatIsNotFinite) {
     EXPECT_TRUE(find({}, {}).list.empty());
-    const Soup ball = testing::sphere(0);
+    const Soup ball = test::sphere(0);
     EXPECT_TRUE(find({ball.view()}, {{0, {}}}).list.empty());
     const Soup nothing;
     EXPECT_TRUE(find({nothing.view(), ball.view()}, {{0, {}}, {1, {}}, {0, {}}}, {.self = true}).list.empty());
@@ -229,7 +229,7 @@ TEST_F(ContactFinderTest, NothingAndWhatIsNotFinite) {
 
 TEST_F(ContactFinderTest, WrongUseIsAnError) {
     using test::error_of;
-    const Soup ball = testing::sphere(1);
+    const Soup ball = test::sphere(1);
     EXPECT_EQ(error_of([&] { find({ball.view()}, {{0, {}}, {1, {}}}); }), "collide: instance 1 is of mesh 1 of 1");
     finder().set_max_pairs(100);
     EXPECT_NE(error_of([&] { find({ball.view()}, {{0, {}}, {0, {}}}); }).find("at most 100"), std::string::npos);

@@ -15,7 +15,7 @@
 namespace twinray::exact {
 namespace {
 
-using namespace testing;  // NOLINT
+using namespace test;  // NOLINT
 
 const Triangle64 corner_triangle = {glm::dvec3(0, 0, 3), glm::dvec3(4, 0, 3), glm::dvec3(0, 4, 3)};
 

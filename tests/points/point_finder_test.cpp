@@ -15,7 +15,7 @@ namespace twinray {
 namespace {
 
 using test::PlacedTriangle;
-using testing::Soup;
+using test::Soup;
 
 class PointFinderTest : public test::VulkanTest {
   protected:
@@ -107,7 +107,7 @@ class PointFinderTest : public test::VulkanTest {
 std::vector<dvec3> random_points(std::size_t count, float size, unsigned seed) {
     std::mt19937 random(seed);
     std::vector<dvec3> points(count);
-    for (dvec3& point : points) point = dvec3(testing::uniform3(random, -size, size));
+    for (dvec3& point : points) point = dvec3(test::uniform3(random, -size, size));
     return points;
 }
 
@@ -118,15 +118,15 @@ std::size_t point_count() {
 }
 
 Transform turned(std::mt19937& random, float spread) {
-    Transform m = Transform::scaling(vec3(testing::uniform(random, 0.5f, 1.5f)));
+    Transform m = Transform::scaling(vec3(test::uniform(random, 0.5f, 1.5f)));
     for (vec4& row : m.rows)
-        row += vec4(testing::uniform3(random, -0.5f, 0.5f), testing::uniform(random, -spread, spread));
+        row += vec4(test::uniform3(random, -0.5f, 0.5f), test::uniform(random, -spread, spread));
     return m;
 }
 
 // Of every shape: without area, without length, needles.
 Soup mixed_soup(std::size_t count, unsigned seed) {
-    Soup soup = testing::random_soup(count, 0.3f, seed);
+    Soup soup = test::random_soup(count, 0.3f, seed);
     for (std::size_t i = 0; i < count; ++i) {
         vec3* corners = &soup.positions[3 * i];
         if (i % 7 == 1) corners[1] = corners[0];
@@ -155,17 +155,17 @@ TEST_F(PointFinderTest, OnNeedlesAndBesideThem) {
     std::mt19937 random(12);
     for (int exponent = 3; exponent <= 60; exponent += 3) {
         Soup needle;
-        const vec3 from = testing::uniform3(random, -1, 1), along = testing::uniform3(random, -1, 1);
-        const vec3 across = testing::uniform3(random, -1, 1) * std::ldexp(1.0f, -exponent);
+        const vec3 from = test::uniform3(random, -1, 1), along = test::uniform3(random, -1, 1);
+        const vec3 across = test::uniform3(random, -1, 1) * std::ldexp(1.0f, -exponent);
         needle.add(from, from + along, from + along * 0.3f + across);
         set(needle.view());
         const Corners64& t = placed().front().corners;
         std::vector<dvec3> points;
         for (int i = 0; i < 200; ++i) {
-            const double u = testing::uniform(random, 0, 1), v = testing::uniform(random, 0, 1) * (1 - u);
+            const double u = test::uniform(random, 0, 1), v = test::uniform(random, 0, 1) * (1 - u);
             points.push_back(t.a + u * (t.b - t.a) + v * (t.c - t.a));
             if (i % 2 == 0)
-                points.back() += dvec3(testing::uniform3(random, -1, 1)) * std::ldexp(1.0, -exponent - i % 8);
+                points.back() += dvec3(test::uniform3(random, -1, 1)) * std::ldexp(1.0, -exponent - i % 8);
         }
         EXPECT_LE(errors_of(points).of_double, 4) << "height of 2^-" << exponent;
     }
@@ -226,7 +226,7 @@ TEST_F(PointFinderTest, OfSeveralAtOneDistanceTheFirst) {
 // From outside, all triangles around a corner are as near, and the same bits say so.
 TEST_F(PointFinderTest, OfTheTrianglesAroundACornerTheFirst) {
     const Mesh ball = make_icosphere(1);
-    const Transform turn = testing::rotation(0.3f, 1.1f);
+    const Transform turn = test::rotation(0.3f, 1.1f);
     set({ball}, {{0, turn}});
     const auto corner_of = [&](uint triangle, int k) {
         const Corners64& t = placed()[triangle].corners;

@@ -56,7 +56,7 @@ TEST_F(WindingTest, EqualsTheSolidAngleOverTheSphere) {
     const std::vector<MeshInstance> instances = {{0, {}}, {1, {}}, {1, mirrored}};
     const auto placed = test::placed_triangles(meshes, instances);
     std::vector<dvec3> points(3000);
-    for (dvec3& p : points) p = dvec3(testing::uniform3(random, -1.8f, 1.8f));
+    for (dvec3& p : points) p = dvec3(test::uniform3(random, -1.8f, 1.8f));
     const std::vector<int> found = windings(meshes, instances, points);
     std::array<int, 4> seen{};
     for (std::size_t i = 0; i < points.size(); ++i) {

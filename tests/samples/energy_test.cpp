@@ -13,7 +13,6 @@ Mesh flat_sphere(uint subdivisions) {
     return mesh;
 }
 
-constexpr uint strategies[] = {STRATEGY_MIS, STRATEGY_LIGHTS, STRATEGY_BSDF};
 const char* name_of_strategy(uint strategy) {
     return strategy == STRATEGY_MIS ? "both" : strategy == STRATEGY_LIGHTS ? "lights" : "surfaces";
 }

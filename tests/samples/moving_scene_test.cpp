@@ -13,10 +13,6 @@
 namespace twinray::path_tracer {
 namespace {
 
-bool same_bits(const Picture& a, const Picture& b) {
-    return std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(vec3)) == 0;
-}
-
 Keyframes keyframes(uint width, std::vector<float> values) {
     return {Interpolation::linear, false, width, {0, 1}, std::move(values)};
 }

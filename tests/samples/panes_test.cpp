@@ -8,8 +8,6 @@ namespace {
 
 class Panes : public test::VulkanTest {};
 
-constexpr uint strategies[] = {STRATEGY_MIS, STRATEGY_LIGHTS, STRATEGY_BSDF};
-
 Material pane(vec3 color = vec3(1)) {
     return {.name = "pane", .base_color = vec4(color, 1), .metallic = 0, .roughness = 0, .transmission = 1};
 }

@@ -124,7 +124,7 @@ with socket.create_server(("localhost", 0)) as server:
         values[channel] = struct.unpack("<576f", rest[16:])
     assert set(values) == {b"R", b"G", b"B"} and all(0 < sum(channel) / 576 < 10 for channel in values.values()), values
     assert sum(values[b"R"]) > sum(values[b"B"]), "the lamp is warm"
-    process = subprocess.Popen([path_tracer, *box, "--time", "4", "-o", "unseen.png", "--display-server", f"localhost:{port}"], cwd=here,
+    process = subprocess.Popen([path_tracer, *box, "--time", "2", "-o", "unseen.png", "--display-server", f"localhost:{port}"], cwd=here,
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     server.accept()[0].close()
     assert "the display server has gone" in process.communicate()[1] and process.returncode == 0

@@ -9,10 +9,6 @@ namespace {
 
 class PathTracer : public test::VulkanTest {};
 
-bool same_bits(const Picture& a, const Picture& b) {
-    return a.rgb.size() == b.rgb.size() && std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(vec3)) == 0;
-}
-
 Shot cornell_shot(const Scene& scene) {
     Shot shot;
     shot.settings.samples = 4;
@@ -146,7 +142,7 @@ TEST_F(PathTracer, AnyNumberOfTransparentSurfacesIsPassed) {
             shot.settings.samples = 1;
             EXPECT_NEAR(statistics(render(context(), scene, shot)).mean, passed, 1e-4) << "before the light";
             shot.settings.camera = camera_rays(look({0, 9, 0}, vec3(0), 1e-4f), 1);
-            shot.settings.samples = 16;
+            shot.settings.samples = 2;
             expect_mean(render(context(), scene, shot), passed * passed, "and before the camera");
         }
 }

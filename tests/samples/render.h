@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstring>
 #include <memory>
 
 #include "engine/accel/scene_push.h"
@@ -14,6 +15,12 @@
 #include "tests/support/device.h"
 
 namespace twinray::path_tracer {
+
+inline constexpr uint strategies[] = {STRATEGY_MIS, STRATEGY_LIGHTS, STRATEGY_BSDF};
+
+inline bool same_bits(const Picture& a, const Picture& b) {
+    return a.rgb.size() == b.rgb.size() && std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(vec3)) == 0;
+}
 
 struct Shot {
     RenderSettings settings = {.width = 32, .height = 32, .samples = 64};

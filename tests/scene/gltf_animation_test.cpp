@@ -228,13 +228,6 @@ TEST(GltfVariants, MaterialsAreThoseOfTheirMappings) {
     EXPECT_EQ(scene.variants[1].parts[0].materials, (std::vector<uint>{0, 1}));
 }
 
-struct Fault {
-    const char* name;
-    std::function<void(GltfBuilder&)> bend;
-    std::string message;
-};
-std::string fault_name(const testing::TestParamInfo<Fault>& fault) { return fault.param.name; }
-
 // What the rest pose needs is an error.
 class GltfShapeFault : public testing::TestWithParam<Fault> {};
 TEST_P(GltfShapeFault, IsNamed) {

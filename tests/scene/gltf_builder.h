@@ -109,6 +109,14 @@ inline GltfBuilder one_triangle() {
     return gltf;
 }
 
+// What makes a file wrong, and how the error says so.
+struct Fault {
+    const char* name;
+    std::function<void(GltfBuilder&)> bend;
+    std::string message;
+};
+inline std::string fault_name(const testing::TestParamInfo<Fault>& fault) { return fault.param.name; }
+
 // True when some warning of the scene contains the text.
 inline bool has_warning(const Scene& scene, const std::string& part) {
     for (const std::string& warning : scene.warnings)

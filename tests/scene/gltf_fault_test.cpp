@@ -7,14 +7,6 @@
 namespace twinray::test {
 namespace {
 
-struct Fault {
-    const char* name;
-    std::function<void(GltfBuilder&)> bend;
-    std::string message;
-};
-
-std::string fault_name(const testing::TestParamInfo<Fault>& fault) { return fault.param.name; }
-
 class GltfFault : public testing::TestWithParam<Fault> {};
 
 TEST_P(GltfFault, IsNamed) {

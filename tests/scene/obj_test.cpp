@@ -36,12 +36,6 @@ void expect_square(const std::string& content) {
     EXPECT_EQ(scene.meshes[0].triangles, (std::vector<uvec3>{{0, 1, 2}, {0, 2, 3}}));
 }
 
-std::string replaced(std::string all, const std::string& from, const std::string& to) {
-    for (std::size_t at = all.find(from); at != all.npos; at = all.find(from, at + to.size()))
-        all.replace(at, from.size(), to);
-    return all;
-}
-
 TEST(Obj, EqualVerticesAreOneAndOthersStayApart) {
     expect_square("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n");
     const Scene scene = load("v 0 0 0\nv 1e-6 0 0\nv 0 1e-6 0\nv 1e-6 1e-6 0\nf 1 2 3\nf 2 4 3\n");

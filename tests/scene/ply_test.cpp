@@ -160,12 +160,6 @@ TEST(Ply, HeaderFaultsAreNamed) {
     expect_error(replaced("face 1", "face 999999999999"), "999999999999 elements 'face' do not fit");
 }
 
-std::string replaced(std::string all, const std::string& from, const std::string& to) {
-    for (std::size_t at = all.find(from); at != all.npos; at = all.find(from, at + to.size()))
-        all.replace(at, from.size(), to);
-    return all;
-}
-
 TEST(Ply, AHeaderEndsItsLinesAsTheFirstOneDoes) {
     const std::string file = ply(3, TRIANGLE, 1, "3 0 1 2\n");
     for (const char* end : {"\r", "\r\n", " \n"})

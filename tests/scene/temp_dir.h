@@ -56,4 +56,10 @@ inline void expect_contains(const std::string& all, const std::string& part) {
     EXPECT_NE(all.find(part), std::string::npos) << "'" << part << "' is not in: " << all;
 }
 
+inline std::string replaced(std::string all, const std::string& from, const std::string& to) {
+    for (std::size_t at = all.find(from); at != all.npos; at = all.find(from, at + to.size()))
+        all.replace(at, from.size(), to);
+    return all;
+}
+
 }  // namespace twinray::test

@@ -42,12 +42,6 @@ Image gray_image(uint width, uint height, std::uint8_t value) {
             .rgba = std::vector<std::uint8_t>(std::size_t{4} * width * height, value)};
 }
 
-std::string error_of(const std::function<void()>& action) {
-    std::string what;
-    test::outcome_of(action, &what);
-    return what;
-}
-
 class Textures : public test::VulkanTest, public ::testing::WithParamInterface<TextureStorage> {
   protected:
     ContextDesc context_desc() const override {
@@ -202,7 +196,7 @@ TEST_P(Textures, ReferencesThatNameNothingAreWhite) {
         EXPECT_EQ(answers[3].color, vec4(0));
         if (!is_debug) store().check_faults();
     }
-    const std::string told = error_of([&] { store().check_faults(); });
+    const std::string told = test::what_is_thrown_by([&] { store().check_faults(); });
     EXPECT_NE(told.find("textures: kernels met 6 references that name nothing, the first is number "),
               std::string::npos)
         << told;
@@ -210,21 +204,21 @@ TEST_P(Textures, ReferencesThatNameNothingAreWhite) {
 
 TEST_P(Textures, WrongUseIsRefused) {
     const TextureRef texture = store().push(gray_image(3, 2, 9));
-    EXPECT_EQ(error_of([&] { store().update({}, gray_image(3, 2, 9)); }),
+    EXPECT_EQ(test::what_is_thrown_by([&] { store().update({}, gray_image(3, 2, 9)); }),
               "textures: update: the texture has number 0; they go from 1 to 1");
-    EXPECT_EQ(error_of([&] { store().update({2}, gray_image(3, 2, 9)); }),
+    EXPECT_EQ(test::what_is_thrown_by([&] { store().update({2}, gray_image(3, 2, 9)); }),
               "textures: update: the texture has number 2; they go from 1 to 1");
     Image broken = gray_image(3, 2, 9);
     broken.width = 4;
-    EXPECT_EQ(error_of([&] { store().push(broken); }),
+    EXPECT_EQ(test::what_is_thrown_by([&] { store().push(broken); }),
               "textures: push: image 'gray' of 4 x 2 has 24 bytes; it needs 32, and one texel at least");
-    EXPECT_NE(error_of([&] { store().update(texture, gray_image(0, 0, 9)); }), "");
-    EXPECT_EQ(error_of([&] { store().view(); }), "textures: view: edits are pending; call sync() first");
+    EXPECT_NE(test::what_is_thrown_by([&] { store().update(texture, gray_image(0, 0, 9)); }), "");
+    EXPECT_EQ(test::what_is_thrown_by([&] { store().view(); }), "textures: view: edits are pending; call sync() first");
     EXPECT_EQ(store().size(), 1u);
     store().sync();
     EXPECT_EQ(red_of(texture), 9);
     if (!store().has_images()) return;
-    EXPECT_NE(error_of([&] { store().push(gray_image(1, 100'000, 9)); }).find("at most"), std::string::npos);
+    EXPECT_NE(test::what_is_thrown_by([&] { store().push(gray_image(1, 100'000, 9)); }).find("at most"), std::string::npos);
 }
 
 TEST_P(Textures, TheSameSizeIsUpdatedInPlaceAndAnotherIsReplaced) {
@@ -350,7 +344,7 @@ TEST_P(Textures, ASyncThatFailsChangesNothingAndTheNextOneWorks) {
         store().update(texture, gray_image(5 + static_cast<uint>(revision), 4, 6));
         const TextureRef more = store().push(gray_image(4, 4, 7));
         injector_.inject({.function = function});
-        EXPECT_NE(error_of([&] { store().sync(); }), "") << function;
+        EXPECT_NE(test::what_is_thrown_by([&] { store().sync(); }), "") << function;
         EXPECT_EQ(injector_.injected(), 1u) << function;
         injector_.heal();
         EXPECT_EQ(store().revision(), revision);
@@ -371,9 +365,9 @@ TEST_P(Textures, KernelsAndStoresMustFit) {
     const Kernel<test::TextureTestArgs> without(context(),
                                                 {.name = "test_texture", .spirv = test_texture_buffers_spirv});
     Commands commands(context(), "unfit");
-    EXPECT_EQ(error_of([&] { kernel.dispatch(commands, {}, 1); }), "kernel 'test_texture': dispatched without images");
+    EXPECT_EQ(test::what_is_thrown_by([&] { kernel.dispatch(commands, {}, 1); }), "kernel 'test_texture': dispatched without images");
     if (!store().has_images()) return;
-    EXPECT_EQ(error_of([&] { without.dispatch(commands, {}, 1, store().images()); }),
+    EXPECT_EQ(test::what_is_thrown_by([&] { without.dispatch(commands, {}, 1, store().images()); }),
               "kernel 'test_texture': it takes no images");
 }
 

@@ -26,26 +26,65 @@ std::unique_ptr<Context> make_context(ContextDesc desc) {
     }
 }
 
+namespace {
+
+// The one that is kept for the next test.
+struct SharedContext {
+    std::shared_ptr<Context> context;
+    std::shared_ptr<std::vector<std::string>> log;
+    bool use_ray_query = false, use_ray_tracing_pipeline = false;
+
+    bool fits(const ContextDesc& desc) const {
+        return context && desc.use_ray_query == use_ray_query &&
+               desc.use_ray_tracing_pipeline == use_ray_tracing_pipeline;
+    }
+    // Fails on what is said meanwhile.
+    void let_go() {
+        if (!context) return;
+        log->clear();
+        context.reset();
+        for (const std::string& message : *log) ADD_FAILURE() << message;
+    }
+};
+SharedContext shared_context;
+
+class LetsGoOfSharedContext : public ::testing::Environment {
+    void TearDown() override { shared_context.let_go(); }
+};
+[[maybe_unused]] const auto* const lets_go = ::testing::AddGlobalTestEnvironment(new LetsGoOfSharedContext);
+
+}  // namespace
+
 void VulkanTest::SetUp() {
     ContextDesc desc = context_desc();
-    // Collected outside the context, so that what the layer says while it is destroyed counts too.
-    desc.log = [this](std::string_view message) { log_.emplace_back(message); };
+    if (shares_context() && shared_context.fits(desc)) {
+        context_ = shared_context.context;
+        log_ = shared_context.log;
+        log_->clear();
+        return;
+    }
+    log_ = std::make_shared<std::vector<std::string>>();
+    desc.log = [log = log_](std::string_view message) { log->emplace_back(message); };
     context_ = make_context(desc);
     if (!context_ && HasFailure()) FAIL() << "no device";
+    if (!shares_context()) return;
+    shared_context.let_go();
+    shared_context = {context_, log_, desc.use_ray_query, desc.use_ray_tracing_pipeline};
 }
 
 bool VulkanTest::was_logged(const std::string& part) const {
-    for (const std::string& message : log_)
+    for (const std::string& message : *log_)
         if (message.find(part) != std::string::npos) return true;
     return false;
 }
 
 void VulkanTest::TearDown() {
     if (!context_) return;
-    const std::size_t logged = log_.size();
+    const std::size_t logged = log_->size();
     for (const std::string& message : context_->validation_messages()) ADD_FAILURE() << message;
     context_.reset();
-    for (std::size_t i = logged; i < log_.size(); ++i) ADD_FAILURE() << log_[i];
+    if (shares_context() && HasFailure()) shared_context.let_go();
+    for (std::size_t i = logged; i < log_->size(); ++i) ADD_FAILURE() << (*log_)[i];
 }
 
 }  // namespace twinray::test

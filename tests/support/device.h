@@ -33,13 +33,16 @@ class VulkanTest : public ::testing::Test {
     void SetUp() override;
     void TearDown() override;  // fails on validation messages
     virtual ContextDesc context_desc() const { return {}; }
+    // Tests that say so take the context of the one before, with all that it compiled, where that has the same
+    // features: for a driver that takes a second for a kernel.
+    virtual bool shares_context() const { return false; }
     Context& context() { return *context_; }
     // Whether a warning that contains this has come.
     bool was_logged(const std::string& part) const;
 
   private:
-    std::unique_ptr<Context> context_;
-    std::vector<std::string> log_;
+    std::shared_ptr<Context> context_;
+    std::shared_ptr<std::vector<std::string>> log_;  // outlives the context: what is said at its end counts, too
 };
 
 }  // namespace twinray::test

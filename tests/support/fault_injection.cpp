@@ -284,4 +284,10 @@ Outcome outcome_of(const std::function<void()>& action, std::string* what) {
     return Outcome::done;
 }
 
+std::string what_is_thrown_by(const std::function<void()>& action) {
+    std::string what;
+    outcome_of(action, &what);
+    return what;
+}
+
 }  // namespace twinray::test

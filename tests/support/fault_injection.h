@@ -92,5 +92,6 @@ enum class Outcome { done, error, lost };
 
 // What an action came to, and the text of its Error.
 Outcome outcome_of(const std::function<void()>& action, std::string* what = nullptr);
+std::string what_is_thrown_by(const std::function<void()>& action);
 
 }  // namespace twinray::test

@@ -11,7 +11,7 @@
 namespace twinray {
 namespace {
 
-using namespace testing;  // NOLINT
+using namespace test;  // NOLINT
 
 constexpr std::uint64_t seed = 2026;
 

@@ -9,7 +9,7 @@
 namespace twinray {
 namespace {
 
-using namespace testing;  // NOLINT
+using namespace test;  // NOLINT
 
 constexpr std::uint32_t seed = 77;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();

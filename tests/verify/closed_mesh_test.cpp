@@ -9,7 +9,7 @@
 namespace twinray {
 namespace {
 
-using namespace testing;  // NOLINT
+using namespace test;  // NOLINT
 
 std::optional<OpenEdge> open_edge_of(const Soup& soup) { return find_open_edge(Geometry64(soup.view())); }
 

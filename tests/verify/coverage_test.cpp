@@ -10,7 +10,7 @@
 namespace twinray {
 namespace {
 
-using namespace testing;  // NOLINT
+using namespace test;  // NOLINT
 
 // The triangles of the mesh as the ray sees them.
 Coverage coverage_of(const Soup& soup, const Ray& ray) {

@@ -13,7 +13,7 @@
 #include "engine/verify/oracle.h"
 #include "tests/verify/meshes.h"
 
-namespace twinray::testing {
+namespace twinray::test {
 
 struct TriangleHit32 {
     float t, u, v;
@@ -103,4 +103,4 @@ inline Hit refined(const Oracle& oracle, const Ray& ray, Hit hit) {
     return hit;
 }
 
-}  // namespace twinray::testing
+}  // namespace twinray::test

@@ -10,7 +10,7 @@
 namespace twinray {
 namespace {
 
-using namespace testing;  // NOLINT
+using namespace test;  // NOLINT
 
 struct Tally {
     Classes software, hardware;

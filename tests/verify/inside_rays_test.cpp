@@ -10,7 +10,7 @@
 namespace twinray {
 namespace {
 
-using namespace testing;  // NOLINT
+using namespace test;  // NOLINT
 
 double distance_to_line(const glm::dvec3& point, const Ray& ray) {
     const glm::dvec3 d = glm::normalize(glm::dvec3(ray.direction));

@@ -15,7 +15,7 @@
 #include "engine/scene/mesh.h"
 #include "engine/verify/oracle.h"
 
-namespace twinray::testing {
+namespace twinray::test {
 
 struct Soup {
     std::vector<vec3> positions;
@@ -138,4 +138,4 @@ inline std::vector<Ray> rays_from_inside(const Soup& soup, const Transform& tran
     return rays;
 }
 
-}  // namespace twinray::testing
+}  // namespace twinray::test

@@ -9,7 +9,7 @@
 namespace twinray {
 namespace {
 
-using namespace testing;  // NOLINT
+using namespace test;  // NOLINT
 
 Bounds to_bounds(const Box64& box) { return {vec3(box.corners[0]), vec3(box.corners[1])}; }
 

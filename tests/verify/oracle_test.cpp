@@ -10,7 +10,7 @@
 namespace twinray {
 namespace {
 
-using namespace testing;  // NOLINT
+using namespace test;  // NOLINT
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 

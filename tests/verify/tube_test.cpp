@@ -8,7 +8,7 @@
 namespace twinray {
 namespace {
 
-using namespace testing;  // NOLINT
+using namespace test;  // NOLINT
 
 constexpr double e16 = 16 * 0x1p-24;
 const Ray along_z = make_ray(vec3(0), {0, 0, 2});
