@@ -40,7 +40,7 @@ class Maker {
     void add_hardware(Context& context) {
         if (!missing_for_hardware(context.facts()).empty()) return;
         for (const Level level : options_.levels) add_hardware(context, BuildOrder::automatic, level);
-        if (context.facts().builds_in_input_order && context.facts().ray_query)
+        if (context.tuning().builds_in_input_order && context.facts().ray_query)
             add_hardware(context, BuildOrder::input, options_.levels.front());
     }
 

@@ -74,6 +74,7 @@ nlohmann::json describe_device(std::size_t index, const DeviceFacts& device) {
             {"ray_query", device.ray_query},
             {"ray_tracing_pipeline", device.ray_tracing_pipeline},
             {"float64", device.shader_float64},
+            {"tuning", name_of(tuning_for(device).row)},
             {"auto", auto_choice(device)},
             {"sw", describe_capabilities(device, SwTlas::capability_on)},
             {"hw", describe_capabilities(device, HwTlas::capability_on)}};
@@ -95,7 +96,8 @@ void print_devices(const std::filesystem::path& json) {
         if (missing_for_hardware(device).empty()) print_capabilities(device, HwTlas::capability_on);
         if (missing_for_software(device).empty())
             std::cout << "     --accel auto traces " << text_of(choose_accel(device, "auto")) << '\n';
-        std::cout << "     float64 in shaders  " << (device.shader_float64 ? "yes" : "no") << '\n';
+        std::cout << "     float64 in shaders  " << (device.shader_float64 ? "yes" : "no") << '\n'
+                  << "     kernels are shaped for  " << name_of(tuning_for(device).row) << '\n';
         append_json(json, describe_device(i, device));
     }
     for (const std::string& rejection : choice.rejections) std::cout << "not the default: device " << rejection << '\n';

@@ -111,7 +111,7 @@ std::uint64_t scratch_bytes_of(const Context& context, const StructureWork& work
 void record_builds(Commands& commands, const std::string& pass_name, std::span<const StructureWork> work,
                    std::uint64_t scratch) {
     std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
-    // lavapipe applies firstVertex twice; offsets live in the addresses instead, and all of these stay 0.
+    // Mesa's driver for CPUs applies firstVertex twice; offsets live in the addresses instead, and all of these stay 0.
     std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;
     for (const StructureWork& one : work) {
         infos.push_back(build_info(one, scratch));

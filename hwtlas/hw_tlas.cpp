@@ -43,7 +43,7 @@ struct HwTlas::HwTopLevel : BuiltScene {
 HwTlas::HwTlas(Context& context, BuildOrder order, const AccelOptions& options)
     : AbstractAccel(checked(context), "HwTlas", options),
       reorder_(order == BuildOrder::morton ||
-               (order == BuildOrder::automatic && context.facts().builds_in_input_order)),
+               (order == BuildOrder::automatic && context.tuning().builds_in_input_order)),
       moving_(std::make_unique<MovingBlasBuilder>(context, reorder_)),
       tlas_builder_(context, reorder_) {
     if (const Capability level = capability(feature_of(options.level)); level.support == Support::unsupported)

@@ -11,7 +11,7 @@ struct MovingMesh;
 
 // The order in which triangles and instances go to the driver. Results do not depend on it.
 enum class BuildOrder : std::uint8_t {
-    automatic,  // morton where DeviceFacts::builds_in_input_order, else input
+    automatic,  // morton where KernelTuning::builds_in_input_order, else input
     input,      // as pushed; no table to map ids back exists then
     morton,
 };

@@ -31,10 +31,10 @@ constexpr std::uint64_t aligned(std::uint64_t bytes) { return (bytes + 15) / 16 
 struct SortScratch {
     std::uint64_t address;
     uint count;
-    const DeviceFacts& device;
+    const KernelTuning& tuning;
 
     std::uint64_t part_bytes() const { return aligned(std::uint64_t{count} * sizeof(uint)); }
-    std::uint64_t bytes() const { return 4 * part_bytes() + aligned(RadixSort::counter_bytes(count, device)); }
+    std::uint64_t bytes() const { return 4 * part_bytes() + aligned(RadixSort::counter_bytes(count, tuning)); }
     Uints part(std::uint64_t i) const { return {address + i * part_bytes()}; }
 };
 
@@ -89,7 +89,7 @@ std::uint64_t MovingBlasBuilder::scratch_bytes(const MovingMesh& mesh, BuildMode
     const uint n = mesh.triangle_count;
     return scratch_bytes_of(context_, work_of(mesh, mode, {})) + corner_bytes(n) + sizeof(WorldBoundBits) +
            aligned(area_of(mesh, mode).bytes()) +
-           (reorder_ && mode == BuildMode::build ? SortScratch{0, n, context_.facts()}.bytes() : 0);
+           (reorder_ && mode == BuildMode::build ? SortScratch{0, n, context_.tuning()}.bytes() : 0);
 }
 
 MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<const MovingMesh> meshes,
@@ -105,8 +105,8 @@ MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<
         batch.areas.push_back(area_of(mesh, mode));
         SurfaceArea::place(take(aligned(batch.areas.back().bytes())), std::span(&batch.areas.back(), 1));
         if (reorder_ && mode == BuildMode::build) {
-            const SortScratch sort{0, n, context_.facts()};
-            batch.sorts.push_back({take(sort.bytes()), n, context_.facts()});
+            const SortScratch sort{0, n, context_.tuning()};
+            batch.sorts.push_back({take(sort.bytes()), n, context_.tuning()});
         }
         const Floats corners{take(corner_bytes(n))};
         batch.work.push_back(work_of(mesh, mode, corners));

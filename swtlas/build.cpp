@@ -39,18 +39,17 @@ KernelDesc specialized(KernelDesc desc, uint value) {
     return desc;
 }
 
-// Of which `gpu_group` invocations make a group, on a CPU as many as a vector has lanes: a power of two, as those that
-// add up in halves need, and no more than have a share of a group of areas.
-KernelDesc grouped(const Context& context, KernelDesc desc, uint gpu_group) {
-    const DeviceFacts& device = context.facts();
-    const uint lanes = std::clamp(std::bit_floor(device.subgroup_size), CPU_GROUP, AREA_GROUP);
-    desc.group_size = device.kind == DeviceKind::cpu ? lanes : gpu_group;
+// Of which `own_size` invocations make a group, or as many as a vector has lanes (KernelTuning::vector_lanes): a power
+// of two, as those that add up in halves need, and no more than have a share of a group of areas.
+KernelDesc grouped(const Context& context, KernelDesc desc, uint own_size) {
+    const uint lanes = context.tuning().vector_lanes;
+    desc.group_size = lanes ? std::clamp(lanes, CPU_GROUP, AREA_GROUP) : own_size;
     desc.constants.push_back({GROUP_SIZE_CONSTANT, desc.group_size});
     return desc;
 }
 
 KernelDesc loading_ahead(const Context& context, KernelDesc desc) {
-    desc.constants.push_back({LOADS_AHEAD_CONSTANT, context.facts().kind == DeviceKind::cpu});
+    desc.constants.push_back({LOADS_AHEAD_CONSTANT, context.tuning().loads_ahead});
     return desc;
 }
 
@@ -93,7 +92,7 @@ struct Builder::Needs {
 Builder::Builder(Context& context, const AccelOptions& options) : Builder(context, options, Needs(options)) {}
 
 Builder::Builder(Context& context, const AccelOptions& options, const Needs& needs)
-    : run_(context.facts().kind == DeviceKind::cpu ? BUILD_GROUP : 8),
+    : run_(context.tuning().leaves_per_invocation),
       sort_(context),
       areas_(context),
       leaves_triangles_(context, leaves_stage(context, "swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),

@@ -25,7 +25,7 @@ struct Arena {
     }
 };
 
-BuildScratch layout_scratch(const BuildPlan& plan, const DeviceFacts& device) {
+BuildScratch layout_scratch(const BuildPlan& plan, const KernelTuning& tuning) {
     const uint n = plan.leaf_count;
     Arena arena;
     BuildScratch scratch;
@@ -43,7 +43,7 @@ BuildScratch layout_scratch(const BuildPlan& plan, const DeviceFacts& device) {
         scratch.keys[i] = arena.take<uint>(n);
         scratch.order[i] = arena.take<uint>(n);
     }
-    scratch.counters = arena.take<std::byte>(RadixSort::counter_bytes(n, device));
+    scratch.counters = arena.take<std::byte>(RadixSort::counter_bytes(n, tuning));
     scratch.levels = arena.take<CollapseLevel>(plan.collapse_levels + 2);
     if (!has_records(plan.layout)) {
         scratch.bytes = arena.bytes;
@@ -65,10 +65,6 @@ uint levels_to_collapse(uint leaf_count, uint subtree_leaves) {
     return leaf_count <= subtree_leaves ? 0 : std::min(static_cast<uint>(std::bit_width(leaf_count)), DEEPEST_TREE);
 }
 
-// On a CPU as many as fit a core's second cache with their records, half a MiB; on a GPU fewer, so that there are many
-// groups.
-uint leaves_of_subtrees(const DeviceFacts& device) { return device.kind == DeviceKind::cpu ? 4096 : 1024; }
-
 }  // namespace
 
 float software_unit(std::span<const vec3> positions) {
@@ -77,15 +73,15 @@ float software_unit(std::span<const vec3> positions) {
 }
 
 // Alone it needs no tree_of; all other parts are as long or, rounded up one by one, longer.
-std::uint64_t scratch_share(uint leaf_count, Layout layout, const DeviceFacts& device) {
+std::uint64_t scratch_share(uint leaf_count, Layout layout, const KernelTuning& tuning) {
     Arena tree_of;
     tree_of.take<uint>(leaf_count);
-    return plan_build(std::span(&leaf_count, 1), layout, device).scratch.bytes + tree_of.bytes;
+    return plan_build(std::span(&leaf_count, 1), layout, tuning).scratch.bytes + tree_of.bytes;
 }
 
 uint inner_count(uint leaf_count) { return std::max(leaf_count, 1u) - 1u; }
 
-BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const DeviceFacts& device) {
+BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const KernelTuning& tuning) {
     BuildPlan plan;
     plan.layout = layout;
     std::uint64_t total = 0;
@@ -99,11 +95,11 @@ BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const Dev
     }
     plan.leaf_count = static_cast<uint>(total);
     if (leaf_counts.size() > 1) plan.tree_bits = static_cast<uint>(std::bit_width(leaf_counts.size() - 1));
-    plan.subtree_leaves = leaves_of_subtrees(device);
+    plan.subtree_leaves = tuning.subtree_leaves;
     if (!leaf_counts.empty())
         plan.collapse_levels =
             levels_to_collapse(*std::max_element(leaf_counts.begin(), leaf_counts.end()), plan.subtree_leaves);
-    plan.scratch = layout_scratch(plan, device);
+    plan.scratch = layout_scratch(plan, tuning);
     return plan;
 }
 

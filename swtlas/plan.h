@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/accel/trace_desc.h"
-#include "engine/core/device_choice.h"
+#include "engine/core/kernel_tuning.h"
 #include "swtlas/structures.h"
 
 namespace twinray {
@@ -39,10 +39,10 @@ struct BuildPlan {
 };
 
 // Throws Error if the batch has 2^32 leaves or more.
-BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const DeviceFacts& device);
+BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const KernelTuning& tuning);
 
 // What a tree of so many leaves adds to the scratch of its batch, at most.
-std::uint64_t scratch_share(uint leaf_count, Layout layout, const DeviceFacts& device);
+std::uint64_t scratch_share(uint leaf_count, Layout layout, const KernelTuning& tuning);
 
 // The fewest leaves of an item that may be in a list of a level: 1 / so many of all leaves have room there.
 constexpr uint fewest_large_leaves = 12;

@@ -83,7 +83,7 @@ void SwTlas::record_batches(Commands& commands, std::span<const GeometryInput> i
     std::vector<std::uint64_t> shares;
     for (const GeometryInput& input : inputs)
         shares.push_back(
-            scratch_share(static_cast<uint>(input.geometry->primitive_count()), options().layout, context().facts()) +
+            scratch_share(static_cast<uint>(input.geometry->primitive_count()), options().layout, context().tuning()) +
             source_bytes(input));
     const Batches batches = cut_into_batches(shares, scratch_budget());
     Buffer scratch(context(), {.name = "swtlas geometry scratch",
@@ -93,7 +93,7 @@ void SwTlas::record_batches(Commands& commands, std::span<const GeometryInput> i
         Batch batch{inputs.subspan(run.first, run.count)};
         for (const GeometryInput& input : batch.inputs)
             batch.counts.push_back(static_cast<uint>(input.geometry->primitive_count()));
-        batch.plan = plan_build(batch.counts, options().layout, context().facts());
+        batch.plan = plan_build(batch.counts, options().layout, context().tuning());
         record(batch, scratch);
     }
     commands.keep(std::move(scratch));
@@ -201,7 +201,7 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
     }
-    builder_.record_instances(commands, plan_build(std::span(&input.count, 1), options().layout, context().facts()),
+    builder_.record_instances(commands, plan_build(std::span(&input.count, 1), options().layout, context().tuning()),
                               scene->tree(input.count), input.records, scene->instances());
     const Builder::Measured measured{
         {scene->address}, scene->records(), scene->record_boxes(), input.count, input.cost};
@@ -215,7 +215,7 @@ BuildBytes SwTlas::geometry_bytes(std::span<const GeometrySize> geometries) cons
     for (const GeometrySize& size : geometries) {
         const auto count = static_cast<uint>(size.triangles);
         bytes.structures += layout_geometry(count, options().layout).bytes;
-        shares.push_back(scratch_share(count, options().layout, context().facts()) + size.vertices * sizeof(vec3) +
+        shares.push_back(scratch_share(count, options().layout, context().tuning()) + size.vertices * sizeof(vec3) +
                          size.triangles * sizeof(uvec3));
     }
     bytes.scratch = cut_into_batches(shares, scratch_budget()).scratch_bytes;
@@ -225,13 +225,13 @@ BuildBytes SwTlas::geometry_bytes(std::span<const GeometrySize> geometries) cons
 BuildBytes SwTlas::scene_bytes(std::size_t count, std::size_t capacity) const {
     const auto leaves = static_cast<uint>(count);
     return {layout_scene(static_cast<uint>(capacity), options().layout).bytes,
-            plan_build(std::span(&leaves, 1), options().layout, context().facts()).scratch.bytes +
+            plan_build(std::span(&leaves, 1), options().layout, context().tuning()).scratch.bytes +
                 Builder::cost_bytes(leaves, options().layout)};
 }
 
 void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
     const auto& scene = static_cast<const SwBuiltScene&>(current);
-    builder_.record_refit(commands, plan_build(std::span(&input.count, 1), options().layout, context().facts()),
+    builder_.record_refit(commands, plan_build(std::span(&input.count, 1), options().layout, context().tuning()),
                           scene.tree(input.count), input.records, scene.instances());
     const Builder::Measured measured{{scene.address}, scene.records(), scene.record_boxes(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), false);

@@ -17,7 +17,7 @@ struct AccelNeeds {
 
 struct AccelChoice {
     bool is_software = false;
-    std::string why;  // "device 'llvmpipe' is a CPU, without hardware for rays"
+    std::string why;  // "device 'cpu' is a CPU, without hardware for rays"
 
     const char* name() const { return is_software ? "sw" : "hw"; }
 

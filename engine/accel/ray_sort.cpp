@@ -35,8 +35,8 @@ RaySort::RaySort(Context& context)
       keys_(context, {.name = "engine_ray_keys", .spirv = engine_ray_keys_spirv, .group_size = WORLD_BOUND_GROUP}),
       sort_(context) {}
 
-std::uint64_t RaySort::scratch_bytes(std::uint64_t count, const DeviceFacts& device) {
-    return Columns::offset(count, 4) + RadixSort::counter_bytes(count, device);
+std::uint64_t RaySort::scratch_bytes(std::uint64_t count, const KernelTuning& tuning) {
+    return Columns::offset(count, 4) + RadixSort::counter_bytes(count, tuning);
 }
 
 RadixSort::Pairs RaySort::record(Commands& commands, const Buffer& scratch, Ref<Ray> rays, uint count,

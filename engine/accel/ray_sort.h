@@ -16,7 +16,7 @@ class RaySort {
   public:
     explicit RaySort(Context& context);
 
-    static std::uint64_t scratch_bytes(std::uint64_t count, const DeviceFacts& device);
+    static std::uint64_t scratch_bytes(std::uint64_t count, const KernelTuning& tuning);
     // The sorted keys, and as values the numbers of the rays, both of them in `scratch`, which must have
     // scratch_bytes() and live until the GPU is done. Those of min(count, indirect_count) rays come first. `count` must
     // not be 0.

@@ -54,7 +54,7 @@ Uints AbstractAccel::record_order(Commands& commands, const TraceDesc& desc) con
     if (desc.order == RayOrder::given || !works_on_device()) return {};
     if (!ray_sort_) ray_sort_ = std::make_unique<RaySort>(context_);
     const auto count = static_cast<uint>(desc.count);
-    Buffer scratch(context_, {.name = "ray sort scratch", .bytes = RaySort::scratch_bytes(count, context_.facts())});
+    Buffer scratch(context_, {.name = "ray sort scratch", .bytes = RaySort::scratch_bytes(count, context_.tuning())});
     const Uints order = ray_sort_->record(commands, scratch, desc.rays, count, desc.indirect_count).values;
     commands.keep(std::move(scratch));
     return order;

@@ -49,15 +49,14 @@ class TraceProgram {
     std::string name_;
 };
 
-// How trace.comp is launched for so many rays. An invocation has one ray, but on a CPU, by software, a group is one
-// vector and has up to 1024 rays in a row; each thread gets 16 groups if it can, so that none waits long for another.
+// How trace.comp is launched for so many rays. An invocation has one, but by software it has a run of them where
+// KernelTuning::rays_per_group says so: powers of two, as are rows of groups, so that no run of the last row is longer
+// than 32 bits can count.
 struct RayGroups {
     uint size;  // invocations
     std::uint64_t count;
 };
-RayGroups groups_for_rays(std::uint64_t rays, const DeviceFacts& device, bool is_software);
-
-uint stack_on(const DeviceFacts& device);  // STACK_*
+RayGroups groups_for_rays(std::uint64_t rays, const KernelTuning& tuning, bool is_software);
 
 // A compute kernel.
 class KernelProgram final : public TraceProgram {

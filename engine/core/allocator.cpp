@@ -11,8 +11,8 @@ Allocator::Allocator(const AllocatorHooks& hooks) : hooks_(hooks) {
 }
 
 Allocator::Allocator(const VulkanFunctions& vk, VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
-                     std::uint32_t api_version)
-    : own_(create_vma(vk, instance, physical_device, device, api_version)), hooks_(vma_hooks(own_)) {}
+                     std::uint32_t api_version, std::uint64_t block_bytes)
+    : own_(create_vma(vk, instance, physical_device, device, api_version, block_bytes)), hooks_(vma_hooks(own_)) {}
 
 Allocator::~Allocator() {
     if (own_) destroy_vma(own_);

@@ -68,7 +68,7 @@ class Allocator {
     explicit Allocator(const AllocatorHooks& hooks);
     // twinray's own.
     Allocator(const VulkanFunctions& vk, VkInstance instance, VkPhysicalDevice physical_device, VkDevice device,
-              std::uint32_t api_version);
+              std::uint32_t api_version, std::uint64_t block_bytes);
     ~Allocator();  // every buffer must have been freed
     Allocator(const Allocator&) = delete;
     Allocator& operator=(const Allocator&) = delete;

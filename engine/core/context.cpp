@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <sstream>
 
 #include "engine/core/dry_device.h"
@@ -64,6 +65,11 @@ std::string no_device_message(const DeviceChoice& choice) {
     return message;
 }
 
+std::optional<TuningRow> asked_tuning() {
+    const char* name = std::getenv("TWINRAY_TUNING");
+    return parse_tuning_row(name ? name : "");
+}
+
 }  // namespace
 
 void disable_features(ContextDesc& desc, const std::string& list) {
@@ -109,6 +115,7 @@ Context::Context(const AdoptedDevice& adopted)
     vk_.load_instance(instance_);
     vk_.load_device(device_);
     facts_ = check_adoption(adopted, vk_);
+    tuning_ = tuning_for(facts_, asked_tuning());
     try {
         create_own_objects(adopted.allocator, {});
     } catch (...) {
@@ -146,10 +153,7 @@ void Context::create_device(const ContextDesc& desc) {
     facts_ = facts[static_cast<std::size_t>(choice.index)];
     facts_.ray_query &= desc.use_ray_query;
     facts_.ray_tracing_pipeline &= desc.use_ray_tracing_pipeline;
-    if (!desc.use_cpu_kernels && facts_.kind == DeviceKind::cpu) {
-        facts_.kind = DeviceKind::other;
-        facts_.cpu_threads = 0;
-    }
+    tuning_ = tuning_for(facts_, desc.tuning ? desc.tuning : asked_tuning());
     queue_family_ = static_cast<std::uint32_t>(compute_queue_family(vk_, physical_device_));
     api_version_ = std::min(facts_.api_version, std::uint32_t{VK_API_VERSION_1_3});
 
@@ -184,7 +188,8 @@ void Context::create_own_objects(const AllocatorHooks& allocator, const std::fil
         timestamp_period_ns_ = properties.properties.limits.timestampPeriod;
     const bool has_hooks = allocator.allocate || allocator.free;
     allocator_ = has_hooks ? std::make_unique<Allocator>(allocator)
-                           : std::make_unique<Allocator>(vk_, instance_, physical_device_, device_, api_version_);
+                           : std::make_unique<Allocator>(vk_, instance_, physical_device_, device_, api_version_,
+                                                      tuning_.memory_block_bytes);
 
     create_timeline();
     if (!pipeline_cache_) create_pipeline_cache(PipelineStore(pipeline_folder, properties.properties));

@@ -7,11 +7,13 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "engine/core/adopted_device.h"
+#include "engine/core/kernel_tuning.h"
 #include "engine/core/pipeline_store.h"
 #include "engine/core/pipeline_table.h"
 
@@ -32,8 +34,7 @@ struct ContextDesc {
     bool validation = false;  // the Khronos layer, with synchronisation validation; messages go to the log and are kept
     bool use_ray_query = true;             // false: leave the extension disabled although the device has it
     bool use_ray_tracing_pipeline = true;  // likewise
-    bool use_cpu_kernels = true;           // false: for tests, a CPU's driver gets kernels shaped as for a GPU; facts()
-                                           // then say that it is of kind `other`
+    std::optional<TuningRow> tuning = {};  // none: what TWINRAY_TUNING names, else by device
     PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;  // null: open the system's loader
     std::filesystem::path pipeline_folder =
         {};        // keeps compiled pipelines between runs, see PipelineStore; empty: none does
@@ -71,6 +72,7 @@ class Context {
     std::uint32_t queue_family() const { return queue_family_; }
     const KernelWatch& watch() const { return watch_; }                 // ContextDesc::watch_kernels
     const DeviceFacts& facts() const { return facts_; }                 // what is enabled, not merely supported
+    const KernelTuning& tuning() const { return tuning_; }
     float timestamp_period_ns() const { return timestamp_period_ns_; }  // 0: the queue has no timestamps
 
     // Stages and accesses of everything that twinray records; used by its barriers.
@@ -133,6 +135,7 @@ class Context {
 
     VulkanFunctions vk_;
     DeviceFacts facts_;
+    KernelTuning tuning_;
     Log log_;
     KernelWatch watch_;
     bool owns_device_ = true;

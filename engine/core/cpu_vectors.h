@@ -9,7 +9,7 @@ namespace twinray {
 // Whether this is a CPU with AVX-512 (F, BW, DQ, VL) that the system lets programs use.
 bool prefers_512_bit_vectors();
 
-// Has Mesa's CPU driver, lavapipe, compute with vectors of 512 bits where prefers_512_bit_vectors(). Left to itself it
+// Has Mesa's driver for CPUs compute with vectors of 512 bits where prefers_512_bit_vectors(). Left to itself it
 // takes 256 bits, but 512 for eight addresses, and Intel's cores run all else more slowly beside these. With 512 bits
 // throughout, SwTlas traces rays 1.5 to 2 times as fast there and the driver's own ray queries 1.1 to 1.3 times; its
 // ray tracing pipelines, which HwTlas takes where there are no ray queries, 0.7 times. On Zen 4, which computes 512

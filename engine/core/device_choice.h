@@ -18,7 +18,8 @@ struct DeviceFacts {
     DeviceKind kind = DeviceKind::other;
     std::uint32_t api_version = 0;   // as VK_MAKE_API_VERSION
     std::uint32_t shared_bytes = 0;  // of memory that a compute group may have
-    std::uint32_t cpu_threads = 0;   // of a CPU, where each runs a stretch of a dispatch's groups; else 0
+    std::uint32_t driver_id = 0;     // VkDriverId
+    std::uint32_t cpu_threads = 0;   // of a CPU, which run the groups of a dispatch; else 0
     std::uint32_t subgroup_size = 0;
     bool has_compute_queue = false;
     bool timeline_semaphore = false;
@@ -33,12 +34,6 @@ struct DeviceFacts {
     bool variable_descriptor_count = false;
     bool nonuniform_sampled_images = false;
     bool update_after_bind_images = false;
-    // The driver builds in input order, without spatial sorting (Mesa's lavapipe): presorted input pays.
-    bool builds_in_input_order = false;
-    // GLSL's fma() is known to round once, so that it gives the rounding error of a product.
-    bool fused_fma = false;
-    // The driver compiles what a specialisation constant has switched off, too, which takes it minutes (SwiftShader).
-    bool compiles_unused_branches = false;
 
     // Whether kernels can reach any number of images through one array of descriptors.
     bool has_image_arrays() const {

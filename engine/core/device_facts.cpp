@@ -75,18 +75,6 @@ int compute_queue_family(const VulkanFunctions& vk, VkPhysicalDevice device) {
     return -1;
 }
 
-// Drivers of GPUs that have such an instruction and no other for fma(); Vulkan allows two roundings.
-bool has_fused_fma(VkDriverId driver) {
-    switch (driver) {
-        case VK_DRIVER_ID_MESA_RADV:
-        case VK_DRIVER_ID_AMD_OPEN_SOURCE:
-        case VK_DRIVER_ID_AMD_PROPRIETARY:
-        case VK_DRIVER_ID_NVIDIA_PROPRIETARY:
-        case VK_DRIVER_ID_INTEL_OPEN_SOURCE_MESA: return true;
-        default: return false;
-    }
-}
-
 DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice device) {
     VkPhysicalDeviceDriverProperties driver{};
     driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
@@ -102,14 +90,11 @@ DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice devic
     facts.name = properties.properties.deviceName;
     facts.driver = std::string(driver.driverName) + " " + driver.driverInfo;
     facts.kind = kind_of(properties.properties.deviceType);
-    const bool is_swiftshader = driver.driverID == VK_DRIVER_ID_GOOGLE_SWIFTSHADER;
-    if (facts.kind == DeviceKind::cpu && !is_swiftshader) facts.cpu_threads = count_cpu_threads();
+    facts.driver_id = driver.driverID;
+    if (facts.kind == DeviceKind::cpu) facts.cpu_threads = count_cpu_threads();
     facts.subgroup_size = subgroup.subgroupSize;
     facts.api_version = properties.properties.apiVersion;
     facts.shared_bytes = properties.properties.limits.maxComputeSharedMemorySize;
-    facts.compiles_unused_branches = is_swiftshader;
-    facts.builds_in_input_order = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
-    facts.fused_fma = has_fused_fma(driver.driverID);
     facts.has_compute_queue = compute_queue_family(vk, device) >= 0;
     if (facts.api_version >= VK_API_VERSION_1_2) query_features(vk, device, facts);
     return facts;

@@ -23,13 +23,13 @@ std::string key_of(const KernelDesc& desc, std::uint32_t args_bytes) {
 
 std::vector<SpecializationConstant> constants_of(const Context& context, const KernelDesc& desc) {
     std::vector<SpecializationConstant> constants = desc.constants;
-    constants.push_back({fused_fma_constant, context.facts().fused_fma});
+    constants.push_back({fused_fma_constant, context.tuning().has_fused_fma});
     return constants;
 }
 
 VkShaderModule new_module(Context& context, const KernelDesc& desc,
                           std::span<const SpecializationConstant> constants) {
-    if (!context.facts().compiles_unused_branches) return create_shader_module(context, desc.spirv, desc.name);
+    if (context.tuning().folds_constants) return create_shader_module(context, desc.spirv, desc.name);
     return create_shader_module(context, freeze_constants(desc.spirv, constants), desc.name);
 }
 

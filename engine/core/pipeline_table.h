@@ -37,8 +37,8 @@ std::shared_ptr<CompiledKernel> compile(Context& context, const KernelDesc& desc
                                         Telling telling);
 
 // Keeps pipelines beyond the kernels that were made with them, so that the next accelerator, say, compiles nothing. A
-// driver may also compile a part at the first dispatch (lavapipe does, about 1 ms a kernel), which no pipeline cache
-// spares.
+// driver may also compile a part at the first dispatch (Mesa's for CPUs does, about 1 ms a kernel), which no pipeline
+// cache spares.
 class PipelineTable {
   public:
     static constexpr std::size_t most_unused = 256;

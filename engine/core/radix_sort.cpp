@@ -13,24 +13,24 @@ namespace {
 
 std::uint64_t divide_up(std::uint64_t count, std::uint64_t by) { return (count + by - 1) / by; }
 
-uint group_size(uint cpu_threads) { return cpu_threads ? CPU_GROUP : SORT_GPU_GROUP; }
+uint group_size(uint threads) { return threads ? CPU_GROUP : SORT_GPU_GROUP; }
 
-KernelDesc sort_kernel(const char* name, std::span<const std::uint32_t> spirv, uint cpu_threads) {
-    const uint size = group_size(cpu_threads);
+KernelDesc sort_kernel(const char* name, std::span<const std::uint32_t> spirv, uint threads) {
+    const uint size = group_size(threads);
     return {.name = name,
             .spirv = spirv,
             .group_size = size,
-            .constants = {{GROUP_SIZE_CONSTANT, size}, {DIGIT_BITS_CONSTANT, RadixSort::digit_bits(cpu_threads)}}};
+            .constants = {{GROUP_SIZE_CONSTANT, size}, {DIGIT_BITS_CONSTANT, RadixSort::digit_bits(threads)}}};
 }
 
-KernelDesc scatter_kernel(uint cpu_threads, bool values_are_places) {
-    KernelDesc desc = sort_kernel("sort_scatter", engine_sort_scatter_spirv, cpu_threads);
+KernelDesc scatter_kernel(uint threads, bool values_are_places) {
+    KernelDesc desc = sort_kernel("sort_scatter", engine_sort_scatter_spirv, threads);
     desc.constants.push_back({PLACES_CONSTANT, values_are_places});
     return desc;
 }
 
-KernelDesc scan_kernel(uint cpu_threads) {
-    const uint size = cpu_threads ? CPU_GROUP : SCAN_GPU_GROUP;
+KernelDesc scan_kernel(uint threads) {
+    const uint size = threads ? CPU_GROUP : SCAN_GPU_GROUP;
     return {.name = "sort_scan",
             .spirv = engine_sort_scan_spirv,
             .group_size = size,
@@ -39,47 +39,42 @@ KernelDesc scan_kernel(uint cpu_threads) {
 
 }  // namespace
 
-RadixSort::RadixSort(Context& context) : RadixSort(context, cpu_threads_on(context.facts())) {}
+RadixSort::RadixSort(Context& context) : RadixSort(context, context.tuning().sort_threads) {}
 
-RadixSort::RadixSort(Context& context, uint cpu_threads)
-    : cpu_threads_(cpu_threads),
-      histogram_(context, sort_kernel("sort_histogram", engine_sort_histogram_spirv, cpu_threads_)),
-      scan_(context, scan_kernel(cpu_threads)),
-      scatter_(context, scatter_kernel(cpu_threads, false)),
-      scatter_places_(context, scatter_kernel(cpu_threads, true)) {}
-
-uint RadixSort::cpu_threads_on(const DeviceFacts& device) {
-    constexpr uint counters = CPU_GROUP << SORT_CPU_DIGIT_BITS;
-    return device.shared_bytes < counters * sizeof(uint) ? 0 : device.cpu_threads;
-}
+RadixSort::RadixSort(Context& context, uint threads)
+    : threads_(threads),
+      histogram_(context, sort_kernel("sort_histogram", engine_sort_histogram_spirv, threads_)),
+      scan_(context, scan_kernel(threads)),
+      scatter_(context, scatter_kernel(threads, false)),
+      scatter_places_(context, scatter_kernel(threads, true)) {}
 
 // Room for the counters of as many groups as groups_of() says, or more, and for what they keep. Subadditive, as shares
 // of a batch are added up.
-std::uint64_t RadixSort::counter_bytes(std::uint64_t count, uint cpu_threads) {
-    const std::uint64_t blocks = cpu_threads ? std::min(divide_up(count, SORT_CPU_BLOCK),
-                                                        divide_up(count, CPU_GROUP * SORT_LONGEST_RUN) + cpu_threads)
+std::uint64_t RadixSort::counter_bytes(std::uint64_t count, uint threads) {
+    const std::uint64_t blocks = threads ? std::min(divide_up(count, SORT_CPU_BLOCK),
+                                                        divide_up(count, CPU_GROUP * SORT_LONGEST_RUN) + threads)
                                              : divide_up(count, SORT_GPU_BLOCK);
-    const std::uint64_t most_kept = cpu_threads ? divide_up(count, sizeof(uint)) * sizeof(uint) : 0;
-    return (blocks << digit_bits(cpu_threads)) * sizeof(uint) + most_kept;
+    const std::uint64_t most_kept = threads ? divide_up(count, sizeof(uint)) * sizeof(uint) : 0;
+    return (blocks << digit_bits(threads)) * sizeof(uint) + most_kept;
 }
 
-std::uint64_t RadixSort::kept_bytes(std::uint64_t count, uint cpu_threads) {
+std::uint64_t RadixSort::kept_bytes(std::uint64_t count, uint threads) {
     const std::uint64_t bytes =
-        (std::uint64_t{groups_of(count, cpu_threads)} * CPU_GROUP << digit_bits(cpu_threads)) * sizeof(uint);
-    return cpu_threads && bytes <= count ? bytes : 0;
+        (std::uint64_t{groups_of(count, threads)} * CPU_GROUP << digit_bits(threads)) * sizeof(uint);
+    return threads && bytes <= count ? bytes : 0;
 }
 
-uint RadixSort::digit_bits(uint cpu_threads) { return cpu_threads ? SORT_CPU_DIGIT_BITS : SORT_GPU_DIGIT_BITS; }
+uint RadixSort::digit_bits(uint threads) { return threads ? SORT_CPU_DIGIT_BITS : SORT_GPU_DIGIT_BITS; }
 
-uint RadixSort::run_of(std::uint64_t count, uint cpu_threads) {
-    if (cpu_threads == 0 || count == 0) return SORT_GPU_BLOCK / SORT_GPU_GROUP;
-    const std::uint64_t rounds = divide_up(count, std::uint64_t{CPU_GROUP} * SORT_LONGEST_RUN * cpu_threads);
-    const std::uint64_t blocks = std::min(rounds * cpu_threads, divide_up(count, SORT_CPU_BLOCK));
+uint RadixSort::run_of(std::uint64_t count, uint threads) {
+    if (threads == 0 || count == 0) return SORT_GPU_BLOCK / SORT_GPU_GROUP;
+    const std::uint64_t rounds = divide_up(count, std::uint64_t{CPU_GROUP} * SORT_LONGEST_RUN * threads);
+    const std::uint64_t blocks = std::min(rounds * threads, divide_up(count, SORT_CPU_BLOCK));
     return static_cast<uint>(divide_up(count, CPU_GROUP * blocks));
 }
 
-uint RadixSort::groups_of(std::uint64_t count, uint cpu_threads) {
-    return static_cast<uint>(divide_up(count, std::uint64_t{group_size(cpu_threads)} * run_of(count, cpu_threads)));
+uint RadixSort::groups_of(std::uint64_t count, uint threads) {
+    return static_cast<uint>(divide_up(count, std::uint64_t{group_size(threads)} * run_of(count, threads)));
 }
 
 RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
@@ -106,9 +101,9 @@ RadixSort::Pairs RadixSort::record_passes(Commands& commands, const Kernel<SortA
         else
             kernel.dispatch_groups(commands, args, groups);
     };
-    const std::uint64_t behind = counters.address + (std::uint64_t{blocks} << digit_bits(cpu_threads_)) * sizeof(uint);
-    const Uints kept{kept_bytes(count, cpu_threads_) ? behind : 0};
-    for (uint shift = 0; shift < bits; shift += digit_bits(cpu_threads_)) {
+    const std::uint64_t behind = counters.address + (std::uint64_t{blocks} << digit_bits(threads_)) * sizeof(uint);
+    const Uints kept{kept_bytes(count, threads_) ? behind : 0};
+    for (uint shift = 0; shift < bits; shift += digit_bits(threads_)) {
         const SortArgs args{shift == 0 ? keys : pairs.keys,
                             pairs.values,
                             spare.keys,
@@ -118,9 +113,9 @@ RadixSort::Pairs RadixSort::record_passes(Commands& commands, const Kernel<SortA
                             count,
                             shift,
                             blocks,
-                            run_of(count, cpu_threads_)};
+                            run_of(count, threads_)};
         dispatch(histogram_, args, blocks, &Counts::sort);
-        dispatch(scan_, ScanArgs{counters, blocks << digit_bits(cpu_threads_), 0}, 1, &Counts::scan);
+        dispatch(scan_, ScanArgs{counters, blocks << digit_bits(threads_), 0}, 1, &Counts::scan);
         dispatch(shift == 0 ? first_scatter : scatter_, args, blocks, &Counts::sort);
         std::swap(pairs, spare);
     }

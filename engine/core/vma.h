@@ -7,8 +7,9 @@
 
 namespace twinray {
 
+// `block_bytes`: KernelTuning::memory_block_bytes.
 VmaAllocator create_vma(const VulkanFunctions& vk, VkInstance instance, VkPhysicalDevice physical_device,
-                        VkDevice device, std::uint32_t api_version);
+                        VkDevice device, std::uint32_t api_version, std::uint64_t block_bytes);
 void destroy_vma(VmaAllocator allocator);
 AllocatorHooks vma_hooks(VmaAllocator allocator);
 

@@ -14,9 +14,9 @@ const uint LOADS_AHEAD_CONSTANT = 2u;
 // without a group.
 const uint CPU_GROUP = 8u;
 
-// Whose work group `index` of `count` does. lavapipe gives each thread one stretch of a dispatch, and some stretches of a
-// picture take longer than others; so groups are dealt out to as many hands, one after the other. What is left over
-// stays where it is, and all with fewer than two hands.
+// Whose work group `index` of `count` does. Where each thread gets one stretch of a dispatch (KernelTuning::threads),
+// some stretches of a picture take longer than others; so groups are dealt out to as many hands, one after the other.
+// What is left over stays where it is, and all with fewer than two hands.
 FUNC uint dealt_group(uint index, uint count, uint hands)
 {
     if (hands < 2u) return index;

@@ -16,14 +16,14 @@ class RadixSortTest : public test::VulkanTest {
     enum class Groups { from_host, from_device, none_from_device };
     enum class Values { given, places, places_by_own_keys };
     // Values are 0, 1, 2, ... so that they show stability, or, where these are meant, others that must not be read.
-    std::vector<uint> sorted_values(const RadixSort& sort, uint cpu_threads, const std::vector<uint>& keys, uint bits,
+    std::vector<uint> sorted_values(const RadixSort& sort, uint threads, const std::vector<uint>& keys, uint bits,
                                     Groups from = Groups::from_host, Values kind = Values::given) {
         const std::uint64_t bytes = keys.size() * sizeof(uint);
         std::vector<uint> values(keys.size());
         std::iota(values.begin(), values.end(), kind == Values::given ? 0u : 7u);
         Buffer buffers[5];
         for (Buffer& buffer : buffers) buffer = Buffer(context(), {.name = "sort test", .bytes = bytes});
-        Buffer counters(context(), {.name = "counters", .bytes = RadixSort::counter_bytes(keys.size(), cpu_threads)});
+        Buffer counters(context(), {.name = "counters", .bytes = RadixSort::counter_bytes(keys.size(), threads)});
         const uint some = from == Groups::none_from_device ? 0u : 1u;
         const uint groups[] = {some * sort.sort_groups(keys.size()), 1, 1, some, 1, 1};
         Buffer told(context(), {.name = "told", .bytes = sizeof(groups)});

@@ -124,7 +124,7 @@ class HwTlasOrder : public VulkanTest {
 };
 
 TEST_F(HwTlasOrder, FollowsTheDriverUnlessTold) {
-    EXPECT_EQ(HwTlas(context()).reorders(), context().facts().builds_in_input_order);
+    EXPECT_EQ(HwTlas(context()).reorders(), context().tuning().builds_in_input_order);
 }
 
 TEST_F(HwTlasOrder, ChangesNoBitOfTheHitsAndCostsNothingWhenOff) {

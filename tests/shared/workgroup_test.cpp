@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/accel/trace_program.h"
+#include "engine/core/device_choice.h"
 
 namespace twinray {
 namespace {
@@ -61,10 +62,15 @@ std::uint64_t launched(std::uint64_t groups) {
     return groups <= GROUPS_PER_ROW ? groups : (groups + GROUPS_PER_ROW - 1) / GROUPS_PER_ROW * GROUPS_PER_ROW;
 }
 
+KernelTuning on_cpu(uint lanes, uint threads) {
+    DeviceFacts facts;
+    facts.subgroup_size = lanes;
+    facts.cpu_threads = threads;
+    return tuning_for(facts, TuningRow::cpu_driver);
+}
+
 TEST(GroupsForRays, TraceEachRayOnce) {
-    DeviceFacts cpu;
-    cpu.subgroup_size = 8;
-    cpu.cpu_threads = 3;
+    const KernelTuning cpu = on_cpu(8, 3);
     for (const uint rays : {1u, 7u, 8u, 9u, 500u, 1024u, 4097u, 100'000u}) {
         const RayGroups launch = groups_for_rays(rays, cpu, true);
         const auto groups = static_cast<uint>(launched(launch.count));
@@ -72,7 +78,7 @@ TEST(GroupsForRays, TraceEachRayOnce) {
             std::vector<uint> traced(count, 0);
             const uint run = run_of_blocks(count, launch.size, groups);
             for (uint i = 0; i < groups * launch.size; ++i) {
-                const uint group = dealt_group(i / launch.size, groups, cpu.cpu_threads);
+                const uint group = dealt_group(i / launch.size, groups, cpu.threads);
                 const uint first = group * run * launch.size + i % launch.size;
                 for (uint k = 0; k < run && first + k * launch.size < count; ++k) ++traced[first + k * launch.size];
             }
@@ -82,12 +88,9 @@ TEST(GroupsForRays, TraceEachRayOnce) {
 }
 
 TEST(GroupsForRays, CountInThirtyTwoBits) {
-    DeviceFacts cpu;
     for (const uint lanes : {4u, 8u, 16u})
         for (const uint threads : {1u, 2u, 64u}) {
-            cpu.subgroup_size = lanes;
-            cpu.cpu_threads = threads;
-            const RayGroups launch = groups_for_rays(UINT32_MAX, cpu, true);
+            const RayGroups launch = groups_for_rays(UINT32_MAX, on_cpu(lanes, threads), true);
             const std::uint64_t groups = launched(launch.count);
             const std::uint64_t run = run_of_blocks(UINT32_MAX, launch.size, static_cast<uint>(groups));
             EXPECT_LE(groups * run * launch.size, std::uint64_t{1} << 32)
@@ -96,10 +99,7 @@ TEST(GroupsForRays, CountInThirtyTwoBits) {
 }
 
 TEST(GroupsForRays, AreOneForSixtyFourButOnCpusBySoftware) {
-    DeviceFacts gpu, cpu;
-    gpu.subgroup_size = 32;
-    cpu.subgroup_size = 16;
-    cpu.cpu_threads = 2;
+    const KernelTuning gpu, cpu = on_cpu(16, 2);
     for (const bool is_software : {false, true}) {
         EXPECT_EQ(groups_for_rays(1000, gpu, is_software).size, 64u);
         EXPECT_EQ(groups_for_rays(1000, gpu, is_software).count, 16u);
@@ -110,10 +110,8 @@ TEST(GroupsForRays, AreOneForSixtyFourButOnCpusBySoftware) {
     EXPECT_EQ(groups_for_rays(10'000, cpu, true).count, 32u) << "16 for each thread";
     EXPECT_EQ(groups_for_rays(40, cpu, true).count, 3u) << "no more than there are vectors of rays";
     EXPECT_EQ(groups_for_rays(1, cpu, true).count, 1u);
-    cpu.subgroup_size = 6;
-    EXPECT_EQ(groups_for_rays(1, cpu, true).size, 4u) << "a power of two";
-    cpu.subgroup_size = 0;
-    EXPECT_EQ(groups_for_rays(1, cpu, true).size, 1u);
+    EXPECT_EQ(groups_for_rays(1, on_cpu(6, 2), true).size, 4u) << "a power of two";
+    EXPECT_EQ(groups_for_rays(1, on_cpu(0, 2), true).size, 1u);
 }
 
 }  // namespace

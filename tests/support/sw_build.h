@@ -24,7 +24,7 @@ class SwBuildTest : public VulkanTest, public testing::WithParamInterface<How> {
     AccelOptions options() const { return {.layout = std::get<Layout>(GetParam()), .build_quality = quality()}; }
     ContextDesc context_desc() const override {
         ContextDesc desc;
-        desc.use_cpu_kernels = std::get<KernelShape>(GetParam()) == KernelShape::of_device;
+        if (std::get<KernelShape>(GetParam()) == KernelShape::of_gpu) desc.tuning = TuningRow::gpu;
         return desc;
     }
 };

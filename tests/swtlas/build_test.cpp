@@ -107,7 +107,7 @@ TEST_P(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
 }
 
 TEST_P(SwBuild, TreesOfABatchWithLevelsAndSubtreesAreEqualToTheirTwins) {
-    const uint most = plan_build({}, Layout::compressed4, context().facts()).subtree_leaves;
+    const uint most = plan_build({}, Layout::compressed4, context().tuning()).subtree_leaves;
     SwTlas accel(context(), options());
     std::vector<Mesh> meshes;
     std::vector<AccelHandle> handles;
@@ -136,12 +136,12 @@ Mesh chain_before_a_clump(uint depth, uint count) {
 }
 
 TEST_P(SwBuild, ALargeSubtreeIsLeftBelowTheLastLevel) {
-    const uint most = plan_build({}, Layout::compressed4, context().facts()).subtree_leaves;
+    const uint most = plan_build({}, Layout::compressed4, context().tuning()).subtree_leaves;
     const Mesh mesh = chain_before_a_clump(57, most + 300);
     const auto count = static_cast<uint>(mesh.triangles.size());
     const SwTlas::Tree tree = checked_tree(mesh);
     if (!has_records(tree) || quality() == BuildQuality::high) return;  // rotations make it less deep
-    const uint levels = plan_build(std::span(&count, 1), Layout::compressed4, context().facts()).collapse_levels;
+    const uint levels = plan_build(std::span(&count, 1), Layout::compressed4, context().tuning()).collapse_levels;
     EXPECT_GT(check_compressed(tree.bvh, tree.records, leaf_boxes(tree, mesh)).depth, levels + 10);
 }
 

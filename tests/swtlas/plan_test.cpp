@@ -19,7 +19,7 @@ struct Region {
 };
 
 // All that a build has at one time. Places of leaves' records lie where the codes were.
-std::vector<Region> regions_of(const BuildPlan& plan, const DeviceFacts& device) {
+std::vector<Region> regions_of(const BuildPlan& plan, const KernelTuning& tuning) {
     const BuildScratch& at = plan.scratch;
     const std::uint64_t n = plan.leaf_count, trees = plan.first.size();
     std::vector<Region> regions = {{"trees", at.trees, trees * sizeof(BuildTree)},
@@ -32,7 +32,7 @@ std::vector<Region> regions_of(const BuildPlan& plan, const DeviceFacts& device)
                                    {"crowding", at.crowding, sizeof(Crowding)},
                                    {"tree of", at.tree_of, plan.tree_bits ? n * sizeof(uint) : 0},
                                    {"meeting", at.meeting, n * sizeof(uint)},
-                                   {"counters", at.counters, RadixSort::counter_bytes(n, device)},
+                                   {"counters", at.counters, RadixSort::counter_bytes(n, tuning)},
                                    {"levels", at.levels, (plan.collapse_levels + 2) * sizeof(CollapseLevel)}};
     for (int i = 0; i < 2; ++i) {
         regions.push_back({"keys", at.keys[i], n * sizeof(uint)});
@@ -54,37 +54,36 @@ void expect_apart(std::vector<Region> regions, std::uint64_t bytes) {
     }
 }
 
-DeviceFacts facts_of(DeviceKind kind) {
+KernelTuning tuning_of(TuningRow row) {
     DeviceFacts facts;
-    facts.kind = kind;
-    facts.cpu_threads = kind == DeviceKind::cpu ? 2 : 0;
+    facts.cpu_threads = 2;
     facts.shared_bytes = 64 << 10;
     facts.subgroup_size = 16;
-    return facts;
+    return tuning_for(facts, row);
 }
 
-class BuildPlans : public testing::TestWithParam<std::tuple<DeviceKind, Layout>> {};
+class BuildPlans : public testing::TestWithParam<std::tuple<TuningRow, Layout>> {};
 INSTANTIATE_TEST_SUITE_P(On, BuildPlans,
-                         testing::Combine(testing::Values(DeviceKind::cpu, DeviceKind::discrete),
+                         testing::Combine(testing::Values(TuningRow::cpu_driver, TuningRow::gpu),
                                           testing::Values(Layout::compressed4, Layout::bvh4, Layout::bvh2)));
 
 TEST_P(BuildPlans, RegionsBeginAtLinesOfCachesLieApartAndFitTheSumOfShares) {
-    const auto& [kind, layout] = GetParam();
-    const DeviceFacts device = facts_of(kind);
+    const auto& [row, layout] = GetParam();
+    const KernelTuning tuning = tuning_of(row);
     std::mt19937 random(1);
     for (int round = 0; round < 300; ++round) {
         std::vector<uint> counts(1 + random() % 20);
         for (uint& count : counts) count = static_cast<uint>(random()) % (1u << random() % 18);
-        const BuildPlan plan = plan_build(counts, layout, device);
-        expect_apart(regions_of(plan, device), plan.scratch.bytes);
+        const BuildPlan plan = plan_build(counts, layout, tuning);
+        expect_apart(regions_of(plan, tuning), plan.scratch.bytes);
         std::uint64_t shares = 0;
-        for (const uint count : counts) shares += scratch_share(count, layout, device);
+        for (const uint count : counts) shares += scratch_share(count, layout, tuning);
         EXPECT_LE(plan.scratch.bytes, shares) << counts.size() << " trees";
     }
 }
 
 TEST_P(BuildPlans, ListsOfItemsFitWhereTheBoxesWere) {
-    const auto& [kind, layout] = GetParam();
+    const auto& [row, layout] = GetParam();
     for (uint n = 1; n < 300; ++n) {
         const CollapseLists lists = collapse_lists(n);
         EXPECT_LE(lists.end * sizeof(CollapseItem), n * sizeof(LeafBox)) << n;
@@ -92,7 +91,7 @@ TEST_P(BuildPlans, ListsOfItemsFitWhereTheBoxesWere) {
         EXPECT_LE(n / fewest_large_leaves, lists.level[1] - lists.level[0]) << n;
         EXPECT_LE(n / fewest_large_leaves, lists.subtrees - lists.level[1]) << n;
     }
-    EXPECT_LE(fewest_large_leaves, plan_build({}, layout, facts_of(kind)).subtree_leaves + 1) << "what levels are for";
+    EXPECT_LE(fewest_large_leaves, plan_build({}, layout, tuning_of(row)).subtree_leaves + 1) << "what levels are for";
 }
 
 TEST(CollapseQueues, OfSubtreesAndTreesLieApart) {
@@ -109,9 +108,9 @@ TEST(CollapseQueues, OfSubtreesAndTreesLieApart) {
 }
 
 TEST_P(BuildPlans, BlocksCoverEachTreeOnce) {
-    const auto& [kind, layout] = GetParam();
+    const auto& [row, layout] = GetParam();
     const std::vector<uint> counts = {0, 1, BUILD_GROUP, 0, BUILD_GROUP + 1, 3 * BUILD_GROUP - 1, 5};
-    const BuildPlan plan = plan_build(counts, layout, facts_of(kind));
+    const BuildPlan plan = plan_build(counts, layout, tuning_of(row));
     uint next = 0;
     std::vector<uint> covered(counts.size());
     for (const BuildBlock& block : plan.blocks) {

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/kernel_tuning.h"
+
+#include <vulkan/vulkan_core.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "engine/core/device_choice.h"
+#include "engine/core/error.h"
+#include "engine/core/sort_args.h"
+
+namespace twinray {
+namespace {
+
+// Drivers of GPUs that have such an instruction and no other for fma(); Vulkan allows two roundings.
+bool has_fused_fma(std::uint32_t driver) {
+    switch (driver) {
+        case VK_DRIVER_ID_MESA_RADV:
+        case VK_DRIVER_ID_AMD_OPEN_SOURCE:
+        case VK_DRIVER_ID_AMD_PROPRIETARY:
+        case VK_DRIVER_ID_NVIDIA_PROPRIETARY:
+        case VK_DRIVER_ID_INTEL_OPEN_SOURCE_MESA: return true;
+        default: return false;
+    }
+}
+
+TuningRow row_of(const DeviceFacts& device) {
+    return device.driver_id == VK_DRIVER_ID_MESA_LLVMPIPE ? TuningRow::cpu_driver : TuningRow::gpu;
+}
+
+// A core goes through its groups one by one, so that a group is one vector, and a run of rays of one lane finds in the
+// caches what the rays before it met. Shared memory is memory as any other.
+void shape_for_cpu_driver(KernelTuning& tuning, const DeviceFacts& device) {
+    constexpr std::uint32_t counters = CPU_GROUP << SORT_CPU_DIGIT_BITS;
+    tuning.threads = std::max(device.cpu_threads, 1u);
+    tuning.vector_lanes = std::bit_floor(std::max(device.subgroup_size, 1u));
+    tuning.rays_per_group = 1024;
+    tuning.groups_per_thread = 16;
+    tuning.has_stack_in_registers = true;
+    tuning.leaves_per_invocation = 256;
+    tuning.loads_ahead = true;
+    // As many as fit a core's second cache with their records, half a MiB.
+    tuning.subtree_leaves = 4096;
+    tuning.sort_threads = device.shared_bytes < counters * sizeof(std::uint32_t) ? 0 : tuning.threads;
+    // Memory comes from the operating system page by page, at 2.6 us each (measured on a virtual machine), when it is
+    // touched first: a block costs only what was used of it, but keeps that while anything lies in it.
+    tuning.memory_block_bytes = std::uint64_t{2} << 30;
+}
+
+}  // namespace
+
+const char* name_of(TuningRow row) { return row == TuningRow::gpu ? "gpu" : "cpu_driver"; }
+
+KernelTuning tuning_for(const DeviceFacts& device, std::optional<TuningRow> row) {
+    KernelTuning tuning;
+    tuning.row = row.value_or(row_of(device));
+    if (tuning.row == TuningRow::cpu_driver) shape_for_cpu_driver(tuning, device);
+    tuning.has_fused_fma = has_fused_fma(device.driver_id);
+    tuning.folds_constants = device.driver_id != VK_DRIVER_ID_GOOGLE_SWIFTSHADER;
+    tuning.builds_in_input_order = device.driver_id == VK_DRIVER_ID_MESA_LLVMPIPE;
+    return tuning;
+}
+
+std::optional<TuningRow> parse_tuning_row(std::string_view name) {
+    if (name.empty()) return std::nullopt;
+    for (const TuningRow row : {TuningRow::gpu, TuningRow::cpu_driver})
+        if (name == name_of(row)) return row;
+    fail("kernel tuning '", name, "' is not one of gpu, cpu_driver");
+}
+
+}  // namespace twinray

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// All that depends on the kind of device: how kernels are shaped for it, and what its driver is known to do. Plain data
+// in, plain data out, no Vulkan calls.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace twinray {
+
+struct DeviceFacts;
+
+enum class TuningRow : std::uint8_t {
+    gpu,        // what any device gets that is not known to want another
+    cpu_driver  // Mesa's lavapipe: groups one after the other on each core, and no memory of their own
+};
+const char* name_of(TuningRow row);
+
+struct KernelTuning {
+    TuningRow row = TuningRow::gpu;
+
+    // Threads that run a stretch of a dispatch's groups each, one group after the other; 0: in no order that is known.
+    std::uint32_t threads = 0;
+    // Where a group is best one vector of the processor, its lanes; 0: kernels have groups of their own size.
+    std::uint32_t vector_lanes = 0;
+
+    // Batches of rays by software: how many a group has at most, of which an invocation then has a run; and how many
+    // groups a thread gets at least, if there are rays for them. 0: an invocation has one ray.
+    std::uint32_t rays_per_group = 0, groups_per_thread = 0;
+    bool has_stack_in_registers = false;  // of a traversal; false: it lies in shared memory
+
+    // Builds: leaves that an invocation of the hierarchy begins with, and those of a subtree that a group collapses
+    // whole, at most.
+    std::uint32_t leaves_per_invocation = 8, subtree_leaves = 1024;
+    bool loads_ahead = false;
+    // Of a radix sort: threads that it gives a stretch each; 0: as many groups as there are blocks of items.
+    std::uint32_t sort_threads = 0;
+
+    // Size of the blocks that buffers are cut from; 0: the allocator's own choice. Memory that was freed is used again
+    // within a block, while a buffer of more than half a block has its own, which goes back to the driver.
+    std::uint64_t memory_block_bytes = 0;
+
+    // Of the driver, whatever the row.
+    bool has_fused_fma = false;          // GLSL's fma() is known to round once, which gives the error of a product
+    bool folds_constants = true;         // it does not compile what a specialisation constant switches off
+    bool builds_in_input_order = false;  // without spatial sorting, so that presorted input pays
+};
+
+// `row`: instead of the one that the device would get.
+KernelTuning tuning_for(const DeviceFacts& device, std::optional<TuningRow> row = {});
+
+// "gpu", "cpu_driver", or "", which is none. Throws Error that names the value.
+std::optional<TuningRow> parse_tuning_row(std::string_view name);
+
+}  // namespace twinray

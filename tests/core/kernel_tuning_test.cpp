@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Which device gets which row, and what is in it.
+#include "engine/core/kernel_tuning.h"
+
+#include <vulkan/vulkan_core.h>
+
+#include "engine/core/device_choice.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+DeviceFacts device_of(VkDriverId driver, DeviceKind kind) {
+    DeviceFacts device;
+    device.kind = kind;
+    device.driver_id = driver;
+    device.cpu_threads = kind == DeviceKind::cpu ? 3 : 0;
+    device.subgroup_size = 12;
+    device.shared_bytes = 64 << 10;
+    return device;
+}
+
+TEST(KernelTuning, AnyDeviceIsAGpuUntilItsDriverIsKnown) {
+    EXPECT_EQ(tuning_for(DeviceFacts{}).row, TuningRow::gpu);
+    EXPECT_EQ(tuning_for(device_of(VK_DRIVER_ID_NVIDIA_PROPRIETARY, DeviceKind::discrete)).row, TuningRow::gpu);
+    EXPECT_EQ(tuning_for(device_of(VK_DRIVER_ID_GOOGLE_SWIFTSHADER, DeviceKind::cpu)).row, TuningRow::gpu);
+    EXPECT_EQ(tuning_for(device_of(VK_DRIVER_ID_MESA_LLVMPIPE, DeviceKind::cpu)).row, TuningRow::cpu_driver);
+}
+
+TEST(KernelTuning, OfAGpuGroupsComeInNoOrder) {
+    const KernelTuning tuning = tuning_for(device_of(VK_DRIVER_ID_MESA_RADV, DeviceKind::discrete));
+    EXPECT_EQ(tuning.threads, 0u);
+    EXPECT_EQ(tuning.vector_lanes, 0u);
+    EXPECT_EQ(tuning.rays_per_group, 0u);
+    EXPECT_FALSE(tuning.has_stack_in_registers);
+    EXPECT_EQ(tuning.sort_threads, 0u);
+    EXPECT_EQ(tuning.memory_block_bytes, 0u);
+}
+
+TEST(KernelTuning, OfACpuDriverGroupsAreItsVectors) {
+    const KernelTuning tuning = tuning_for(device_of(VK_DRIVER_ID_MESA_LLVMPIPE, DeviceKind::cpu));
+    EXPECT_EQ(tuning.threads, 3u);
+    EXPECT_EQ(tuning.vector_lanes, 8u) << "a power of two";
+    EXPECT_EQ(tuning.rays_per_group, 1024u);
+    EXPECT_TRUE(tuning.has_stack_in_registers);
+    EXPECT_EQ(tuning.sort_threads, 3u);
+}
+
+TEST(KernelTuning, SortsNeedRoomForTheirCounters) {
+    DeviceFacts device = device_of(VK_DRIVER_ID_MESA_LLVMPIPE, DeviceKind::cpu);
+    device.shared_bytes = 16 << 10;
+    EXPECT_EQ(tuning_for(device).sort_threads, 0u);
+}
+
+TEST(KernelTuning, AnyDeviceCanHaveEitherRow) {
+    const DeviceFacts gpu = device_of(VK_DRIVER_ID_MESA_RADV, DeviceKind::discrete);
+    const KernelTuning tuning = tuning_for(gpu, TuningRow::cpu_driver);
+    EXPECT_EQ(tuning.row, TuningRow::cpu_driver);
+    EXPECT_EQ(tuning.threads, 1u) << "some thread runs the groups";
+    EXPECT_EQ(tuning_for(device_of(VK_DRIVER_ID_MESA_LLVMPIPE, DeviceKind::cpu), TuningRow::gpu).threads, 0u);
+}
+
+TEST(KernelTuning, WhatADriverDoesIsTheSameInEitherRow) {
+    for (const TuningRow row : {TuningRow::gpu, TuningRow::cpu_driver}) {
+        EXPECT_TRUE(tuning_for(device_of(VK_DRIVER_ID_MESA_RADV, DeviceKind::discrete), row).has_fused_fma);
+        EXPECT_FALSE(tuning_for(device_of(VK_DRIVER_ID_MESA_LLVMPIPE, DeviceKind::cpu), row).has_fused_fma);
+        EXPECT_TRUE(tuning_for(device_of(VK_DRIVER_ID_MESA_LLVMPIPE, DeviceKind::cpu), row).builds_in_input_order);
+        EXPECT_FALSE(tuning_for(device_of(VK_DRIVER_ID_GOOGLE_SWIFTSHADER, DeviceKind::cpu), row).folds_constants);
+    }
+}
+
+TEST(KernelTuning, RowsHaveNames) {
+    for (const TuningRow row : {TuningRow::gpu, TuningRow::cpu_driver}) EXPECT_EQ(parse_tuning_row(name_of(row)), row);
+    EXPECT_EQ(parse_tuning_row(""), std::nullopt);
+    try {
+        parse_tuning_row("cuda");
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(), "kernel tuning 'cuda' is not one of gpu, cpu_driver");
+    }
+}
+
+}  // namespace
+}  // namespace twinray
