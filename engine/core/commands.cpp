@@ -100,23 +100,23 @@ Commands::Pass::Pass(Commands& commands, const std::string& name) : commands_(co
 
 Commands::Pass::~Pass() {
     Commands& c = commands_;
-    c.write_timestamp(2 * static_cast<std::uint32_t>(c.pass_names_.size()) - 1);
+    c.write_timestamp(2 * static_cast<std::uint32_t>(c.passes_.size()) - 1);
     c.end_pass();
     if (c.context_.vk().vkCmdEndDebugUtilsLabelEXT) c.context_.vk().vkCmdEndDebugUtilsLabelEXT(c.handle_);
 }
 
 void Commands::begin_pass(const std::string& name) {
-    if (in_pass_) fail("commands '", name_, "': pass '", name, "' starts inside pass '", pass_names_.back(), "'");
+    if (in_pass_) fail("commands '", name_, "': pass '", name, "' starts inside pass '", passes_.back().name, "'");
     if (is_ended_) fail("commands '", name_, "': pass '", name, "' recorded after submit");
     in_pass_ = true;
-    pass_names_.push_back(name);
+    passes_.push_back({name});
     if (context_.vk().vkCmdBeginDebugUtilsLabelEXT) {
         VkDebugUtilsLabelEXT label{};
         label.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
         label.pLabelName = name.c_str();
         context_.vk().vkCmdBeginDebugUtilsLabelEXT(handle_, &label);
     }
-    write_timestamp(2 * static_cast<std::uint32_t>(pass_names_.size()) - 2);
+    write_timestamp(2 * static_cast<std::uint32_t>(passes_.size()) - 2);
 }
 
 void Commands::write_timestamp(std::uint32_t index) const {
@@ -190,7 +190,7 @@ SyncPoint Commands::submit() {
     if (is_ended_) fail("commands '", name_, "': submitted twice");
     is_ended_ = true;
     vk_check(context_.vk().vkEndCommandBuffer(handle_), "end a command buffer");
-    done_ = context_.submit(handle_);
+    done_ = context_.submit(handle_, name_, passes_);
     kept_.clear();  // retired behind the submission just made
     return done_;
 }
@@ -198,7 +198,7 @@ SyncPoint Commands::submit() {
 std::vector<PassTiming> Commands::timings() const {
     context_.wait(done_);
     if (!queries_) return {};
-    const std::uint32_t count = std::min(static_cast<std::uint32_t>(pass_names_.size()), max_timed_passes_);
+    const std::uint32_t count = std::min(static_cast<std::uint32_t>(passes_.size()), max_timed_passes_);
     std::vector<std::uint64_t> stamps(2 * count);
     if (count)
         context_.check(context_.vk().vkGetQueryPoolResults(context_.device(), queries_, 0, 2 * count, stamps.size() * 8,
@@ -207,7 +207,7 @@ std::vector<PassTiming> Commands::timings() const {
     std::vector<PassTiming> timings;
     for (std::uint32_t i = 0; i < count; ++i) {
         const double ticks = static_cast<double>(stamps[2 * i + 1] - stamps[2 * i]);
-        timings.push_back({pass_names_[i], ticks * context_.timestamp_period_ns() * 1e-6});
+        timings.push_back({passes_[i].name, ticks * context_.timestamp_period_ns() * 1e-6});
     }
     return timings;
 }

@@ -79,6 +79,9 @@ class Commands {
     // bytes must be a multiple of 4.
     void fill(const Buffer& target, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word);
 
+    // Tells of a dispatch in the present pass.
+    void count_groups(std::uint64_t groups) { passes_.back().groups += groups; }
+
     // Takes ownership until the GPU has finished these commands.
     void keep(Buffer&& temporary) { kept_.push_back(std::move(temporary)); }
 
@@ -112,7 +115,7 @@ class Commands {
     // What follows the commands besides twinray itself.
     VkPipelineStageFlags consumer_stages_ = VK_PIPELINE_STAGE_HOST_BIT;
     VkAccessFlags consumer_access_ = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-    std::vector<std::string> pass_names_;
+    std::vector<PassWork> passes_;
     std::vector<Buffer> kept_;
     bool in_pass_ = false;
     bool is_ended_ = false;

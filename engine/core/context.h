@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/core/adopted_device.h"
+#include "engine/core/in_flight.h"
 #include "engine/core/kernel_tuning.h"
 #include "engine/core/pipeline_store.h"
 #include "engine/core/pipeline_table.h"
@@ -78,8 +79,9 @@ class Context {
     // Stages and accesses of everything that twinray records; used by its barriers.
     VkPipelineStageFlags stages() const;
 
-    // Submits one primary command buffer; returns the point at which it is done. Frees what has been passed.
-    SyncPoint submit(VkCommandBuffer commands);
+    // Submits one primary command buffer; returns the point at which it is done. Frees what has been passed. `name` and
+    // `passes` are for the error of a lost device.
+    SyncPoint submit(VkCommandBuffer commands, const std::string& name, std::vector<PassWork> passes);
     // The next submission, whichever call makes it (Commands::submit, AbstractAccel::sync, ...), runs its `stages` only
     // once the GPU has reached `point`, on a timeline semaphore of the host, and sees what was written before it; one
     // that fails leaves it to the one after. The host may submit the work that signals it later, on another
@@ -99,7 +101,7 @@ class Context {
     // Runs `destroy` when everything submitted or announced so far is done.
     void retire(std::function<void()> destroy);
 
-    // Throws DeviceLost once the device has been lost.
+    // Throws DeviceLost, which says what was in flight, once the device has been lost.
     void check_alive() const;
     // vk_check for what may report the loss of the device, which is remembered.
     void check(VkResult result, const char* action) const;
@@ -157,6 +159,7 @@ class Context {
     std::size_t kept_pipeline_bytes_ = 0;
     VkSemaphore timeline_ = VK_NULL_HANDLE;
     std::uint64_t submitted_ = 0;
+    mutable InFlight in_flight_;
     std::vector<Wait> awaited_;  // by the next submission
     float timestamp_period_ns_ = 0;
     std::deque<Retired> retired_;

@@ -72,6 +72,7 @@ void ComputePipeline::dispatch_groups(Commands& commands, const void* args, std:
     if (!commands.in_pass()) own_pass.emplace(commands, desc_.name);
     if (context_.watch()) return;
     bind(commands, args, images);
+    commands.count_groups(group_count);
     const std::uint64_t rows = (group_count + groups_per_row - 1) / groups_per_row;
     context_.vk().vkCmdDispatch(commands.handle(), static_cast<std::uint32_t>(std::min(group_count, groups_per_row)),
                                 static_cast<std::uint32_t>(rows), 1);

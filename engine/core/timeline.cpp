@@ -58,10 +58,11 @@ VkResult Context::submit_signalling(VkCommandBuffer commands, std::uint64_t valu
     return result;
 }
 
-SyncPoint Context::submit(VkCommandBuffer commands) {
+SyncPoint Context::submit(VkCommandBuffer commands, const std::string& name, std::vector<PassWork> passes) {
     check_alive();
     check(submit_signalling(commands, submitted_ + 1), "submit to the queue");
     ++submitted_;
+    in_flight_.submitted(submitted_, name, std::move(passes));
     awaited_.clear();
     collect();
     return last_submission();
@@ -83,6 +84,7 @@ void Context::wait(SyncPoint point) const {
     info.pSemaphores = &point.semaphore;
     info.pValues = &point.value;
     check(vk_.vkWaitSemaphores(device_, &info, UINT64_MAX), "wait for the GPU");
+    if (point.semaphore == timeline_) in_flight_.reached(point.value);
 }
 
 void Context::wait_for_gpu() {
@@ -116,6 +118,7 @@ void Context::collect() noexcept {
     if (retired_.empty() || !timeline_) return;
     std::erase_if(announced_, [&](SyncPoint point) { return reached(point.semaphore) >= point.value; });
     const std::uint64_t own = reached(timeline_);
+    in_flight_.reached(own);
     const auto is_past = [&](SyncPoint point) { return reached(point.semaphore) >= point.value; };
     while (!retired_.empty() && retired_.front().submitted <= own &&
            std::ranges::all_of(retired_.front().announced, is_past)) {

@@ -118,7 +118,7 @@ void Faults::check_that_it_stays_lost(World& world) {
         {"any_hits", [&] { accel.any_hits(world_rays); }},
         {"sync", [&] { accel.push(make_box(vec3(0), vec3(1))), accel.sync(); }},
         {"commands", [&] { const Commands commands(context, "after the loss"); }},
-        {"submit", [&] { context.submit(VK_NULL_HANDLE); }},
+        {"submit", [&] { context.submit(VK_NULL_HANDLE, "nothing", {}); }},
         {"build_timings", [&] { accel.revision() ? (void)accel.build_timings() : context.check_alive(); }},
     };
     for (const auto& [name, use] : uses) EXPECT_EQ(outcome_of(use), Outcome::lost) << name;
@@ -378,9 +378,12 @@ TEST_P(Faults, LosingTheDevice) {
         for (std::uint64_t n = 1; !HasFailure(); n += count == 1 ? 1 : 4) {
             World lost(faults(), GetParam(), unvalidated());
             faults().inject({.first = n, .count = count, .result = VK_ERROR_DEVICE_LOST});
-            const Outcome outcome = outcome_of([&] { session(lost); });
+            std::string what;
+            const Outcome outcome = outcome_of([&] { session(lost); }, &what);
             if (!faults().injected()) break;
             count_point();
+            if (faults().failed() == "vkWaitSemaphores")
+                EXPECT_NE(what.find("; in flight: '"), std::string::npos) << what;
             SCOPED_TRACE(text("call ", n, ", ", faults().failed()));
             EXPECT_TRUE(outcome == Outcome::lost || faults().failed() == "vkGetSemaphoreCounterValue");
             check_that_it_stays_lost(lost);
