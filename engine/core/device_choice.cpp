@@ -10,8 +10,6 @@
 namespace twinray {
 namespace {
 
-constexpr std::uint32_t version_1_2 = (1u << 22) | (2u << 12);
-
 std::string lower(std::string s) {
     std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return s;
@@ -34,38 +32,6 @@ auto rank(const DeviceFacts& device) {
 }
 
 }  // namespace
-
-std::string Requirement::sentence() const {
-    constexpr const char* who[] = {"twinray needs ", "HwTlas needs ", "Level::refined and above need ",
-                                   "Textures as images need "};
-    constexpr const char* rest[] = {"", ", SwTlas works without", ", Level::watertight works without",
-                                    ", textures in buffers work without"};
-    const auto i = static_cast<std::size_t>(of);
-    return text(who[i], what, " because ", why, is_met ? "; this device has it" : "; this device lacks it",
-                is_met ? "" : rest[i]);
-}
-
-std::vector<Requirement> requirements_of(const DeviceFacts& device) {
-    using enum Requirement::Of;
-    return {
-        {"Vulkan 1.2", "its kernels and its timeline are written for it", everything,
-         device.api_version >= version_1_2},
-        {"a compute queue", "all that it does are compute shaders", everything, device.has_compute_queue},
-        {"timelineSemaphore", "it never waits for the GPU: a timeline tells what may be freed", everything,
-         device.timeline_semaphore},
-        {"bufferDeviceAddress", "its kernels reach all data by address, without descriptor sets", everything,
-         device.buffer_device_address},
-        {"scalarBlockLayout", "structs have the same bytes on the host and on the GPU", everything,
-         device.scalar_block_layout},
-        {"VK_KHR_acceleration_structure", "the driver builds its structures", hardware, device.acceleration_structure},
-        {"VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline", "it traces through one of them", hardware,
-         device.ray_query || device.ray_tracing_pipeline},
-        {"shaderFloat64", "they compute the hit that counts again in float64", refinement, device.shader_float64},
-        {"descriptor indexing (runtimeDescriptorArray, shaderSampledImageArrayNonUniformIndexing, "
-         "descriptorBindingVariableDescriptorCount and descriptorBindingSampledImageUpdateAfterBind)",
-         "kernels reach all of them through one array", images, device.has_image_arrays()},
-    };
-}
 
 std::vector<std::string> missing_for_software(const DeviceFacts& device) {
     std::vector<std::string> missing;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/requirement.h"
+
 namespace twinray {
 
 enum class DeviceKind : std::uint8_t { discrete, integrated, virtual_gpu, cpu, other };
@@ -16,10 +18,11 @@ struct DeviceFacts {
     std::string name;
     std::string driver;
     DeviceKind kind = DeviceKind::other;
-    std::uint32_t api_version = 0;   // as VK_MAKE_API_VERSION
-    std::uint32_t shared_bytes = 0;  // of memory that a compute group may have
-    std::uint32_t driver_id = 0;     // VkDriverId
-    std::uint32_t cpu_threads = 0;   // of a CPU, which run the groups of a dispatch; else 0
+    std::uint32_t api_version = 0;  // as VK_MAKE_API_VERSION
+    // Of a compute group; until the device is asked, what Vulkan guarantees.
+    std::uint32_t shared_bytes = 16384, group_invocations = 128, push_constant_bytes = 128;
+    std::uint32_t driver_id = 0;    // VkDriverId
+    std::uint32_t cpu_threads = 0;  // of a CPU, which run the groups of a dispatch; else 0
     std::uint32_t subgroup_size = 0;
     bool has_compute_queue = false;
     bool timeline_semaphore = false;
@@ -41,22 +44,6 @@ struct DeviceFacts {
                update_after_bind_images;
     }
 };
-
-// One thing that twinray uses of a device.
-struct Requirement {
-    // What does not work without: all, HwTlas, the levels from refined on, or images in TextureStore.
-    enum class Of : std::uint8_t { everything, hardware, refinement, images };
-    const char* what;
-    const char* why;  // "because ..."
-    Of of;
-    bool is_met;
-
-    // "twinray needs timelineSemaphore because ...", then "; this device has it" or "; this device lacks it" and,
-    // where that is so, what works without.
-    std::string sentence() const;
-};
-// All of them.
-std::vector<Requirement> requirements_of(const DeviceFacts& device);
 
 // What the software accelerator and everything else of twinray needs and this device lacks: Requirement::what.
 std::vector<std::string> missing_for_software(const DeviceFacts& device);

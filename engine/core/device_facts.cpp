@@ -94,7 +94,10 @@ DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice devic
     if (facts.kind == DeviceKind::cpu) facts.cpu_threads = count_cpu_threads();
     facts.subgroup_size = subgroup.subgroupSize;
     facts.api_version = properties.properties.apiVersion;
-    facts.shared_bytes = properties.properties.limits.maxComputeSharedMemorySize;
+    const VkPhysicalDeviceLimits& limits = properties.properties.limits;
+    facts.shared_bytes = limits.maxComputeSharedMemorySize;
+    facts.group_invocations = std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
+    facts.push_constant_bytes = limits.maxPushConstantsSize;
     facts.has_compute_queue = compute_queue_family(vk, device) >= 0;
     if (facts.api_version >= VK_API_VERSION_1_2) query_features(vk, device, facts);
     return facts;

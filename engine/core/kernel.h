@@ -51,7 +51,7 @@ class ComputePipeline {
 // A compute kernel that takes one Args struct, shared with its GLSL, as push constants (128 bytes are guaranteed).
 template <class Args>
 class Kernel {
-    static_assert(sizeof(Args) <= 128 && sizeof(Args) % 4 == 0);
+    static_assert(sizeof(Args) <= KernelLimits::push_constant_bytes && sizeof(Args) % 4 == 0);
 
   public:
     Kernel(Context& context, const KernelDesc& desc) : pipeline_(context, desc, sizeof(Args)) {}

@@ -15,6 +15,7 @@ DeviceFacts device_of(DeviceKind kind) {
     device.api_version = (1u << 22) | (2u << 12);  // Vulkan 1.2
     device.has_compute_queue = device.timeline_semaphore = device.buffer_device_address = true;
     device.scalar_block_layout = device.shader_int64 = true;
+    device.group_invocations = 1024;
     device.acceleration_structure = device.ray_query = device.ray_tracing_pipeline = true;
     return device;
 }

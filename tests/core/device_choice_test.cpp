@@ -13,6 +13,7 @@ DeviceFacts capable(const char* name, DeviceKind kind) {
     device.api_version = (1u << 22) | (3u << 12);
     device.has_compute_queue = device.timeline_semaphore = device.buffer_device_address = true;
     device.scalar_block_layout = device.shader_int64 = true;
+    device.group_invocations = 1024;
     device.acceleration_structure = device.ray_query = true;
     return device;
 }

@@ -14,6 +14,7 @@ DeviceFacts capable() {
     DeviceFacts facts;
     facts.api_version = VK_API_VERSION_1_2;
     facts.has_compute_queue = true;
+    facts.group_invocations = KernelLimits::group_invocations;
     for (const FeatureBit& bit : feature_bits()) facts.*bit.fact = true;
     return facts;
 }
@@ -59,6 +60,35 @@ TEST(Requirements, AreToldInSentences) {
     EXPECT_EQ(lacking[1],
               "HwTlas needs VK_KHR_acceleration_structure because the driver builds its structures; this device lacks "
               "it, SwTlas works without");
+}
+
+TEST(Requirements, AreLimitsToo) {
+    DeviceFacts facts = capable();
+    EXPECT_TRUE(missing_for_software(facts).empty());
+    facts.group_invocations = 128;
+    facts.shared_bytes = 8192;
+    facts.push_constant_bytes = 64;
+    const std::vector<std::string> missing = missing_for_software(facts);
+    ASSERT_EQ(missing.size(), 3u);
+    EXPECT_EQ(missing[0], "groups of 256 invocations (maxComputeWorkGroupInvocations, maxComputeWorkGroupSize)");
+    EXPECT_EQ(missing[1], "16384 bytes of shared memory (maxComputeSharedMemorySize)");
+    EXPECT_EQ(missing[2], "128 bytes of push constants (maxPushConstantsSize)");
+}
+
+// What a GPU of 2018 may lack is asked for by no other part than the one that needs it.
+TEST(Requirements, AreOfTheirPartAlone) {
+    DeviceFacts facts = capable();
+    facts.shader_float64 = facts.shader_int64 = facts.acceleration_structure = facts.ray_query = false;
+    facts.ray_tracing_pipeline = facts.runtime_descriptor_array = false;
+    facts.subgroup_size = 1;
+    facts.shared_bytes = KernelLimits::shared_bytes;
+    EXPECT_TRUE(missing_for_software(facts).empty());
+    std::vector<Requirement::Of> lacking;
+    for (const Requirement& requirement : requirements_of(facts))
+        if (!requirement.is_met) lacking.push_back(requirement.of);
+    using enum Requirement::Of;
+    EXPECT_EQ(lacking, (std::vector{hardware, hardware, ray_queries, ray_pipelines, refinement, points, contacts,
+                                    int64_kernels, images}));
 }
 
 TEST(Requirements, TexturesAreImagesWhereNothingOfDescriptorIndexingLacks) {

@@ -12,6 +12,7 @@ DeviceFacts device(DeviceKind kind) {
     facts.api_version = VK_API_VERSION_1_3;
     facts.has_compute_queue = facts.timeline_semaphore = facts.buffer_device_address = true;
     facts.scalar_block_layout = facts.shader_int64 = true;
+    facts.group_invocations = 1024;
     return facts;
 }
 

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/requirement.h"
+
+#include "engine/core/device_choice.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+constexpr std::uint32_t version_1_2 = (1u << 22) | (2u << 12);
+
+// Capabilities, of the SPIR-V specification.
+enum SpirvCapability : std::uint32_t {
+    Shader = 1,
+    Float64 = 10,
+    Int64 = 11,
+    ImageQuery = 50,
+    RayQueryKHR = 4472,
+    RayTracingKHR = 4479,
+    ShaderNonUniform = 5301,
+    RuntimeDescriptorArray = 5302,
+    SampledImageArrayNonUniformIndexing = 5307,
+    PhysicalStorageBufferAddresses = 5347
+};
+
+struct Part {
+    const char* name;
+    const char* title;
+    const char* who;      // begins a sentence
+    const char* without;  // ends it where the device lacks something
+};
+
+// By Requirement::Of.
+constexpr Part parts[] = {
+    {"everything",
+     "Everything; no more need SwTlas below Level::refined, textures in buffers, animation, view factors, "
+     "illumination, centroids, collisions of boxes and the path tracer",
+     "twinray needs ", ""},
+    {"hardware", "HwTlas", "HwTlas needs ", ", SwTlas works without"},
+    {"ray_queries", "Kernels that query HwTlas themselves (twinray/query.glsl, all hits of a ray)",
+     "Kernels that query HwTlas need ", ", batches of rays work without"},
+    {"ray_pipelines", "HwTlas on a device without ray queries", "HwTlas without ray queries needs ",
+     ", SwTlas works without"},
+    {"refinement", "Level::refined, and Level::certified of SwTlas", "Level::refined and above need ",
+     ", Level::watertight works without"},
+    {"points", "Closest points, distances and winding numbers (PointFinder)", "PointFinder needs ",
+     ", all else works without"},
+    {"contacts", "Contacts of triangles (ContactFinder)", "ContactFinder needs ", ", CollisionFinder works without"},
+    {"int64_kernels", "Kernels of a host that have integers of 64 bits", "Kernels with integers of 64 bits need ",
+     ", those without work"},
+    {"images", "Textures as images (TextureStore)", "Textures as images need ", ", textures in buffers work without"},
+};
+const Part& part_of(Requirement::Of part) { return parts[static_cast<std::size_t>(part)]; }
+
+std::vector<Requirement> limits_of(const DeviceFacts& device) {
+    using enum Requirement::Of;
+    using Limits = KernelLimits;
+    return {
+        {text("groups of ", Limits::group_invocations,
+              " invocations (maxComputeWorkGroupInvocations, maxComputeWorkGroupSize)"),
+         "its builds and bounds share out work in groups of that size; Vulkan guarantees 128", everything,
+         device.group_invocations >= Limits::group_invocations},
+        {text(Limits::shared_bytes, " bytes of shared memory (maxComputeSharedMemorySize)"),
+         "its sort counts digits there, and traversals keep their stacks there; Vulkan guarantees as much", everything,
+         device.shared_bytes >= Limits::shared_bytes},
+        {text(Limits::push_constant_bytes, " bytes of push constants (maxPushConstantsSize)"),
+         "kernels get their arguments by them; Vulkan guarantees as much", everything,
+         device.push_constant_bytes >= Limits::push_constant_bytes},
+    };
+}
+
+}  // namespace
+
+const char* name_of(Requirement::Of part) { return part_of(part).name; }
+const char* title_of(Requirement::Of part) { return part_of(part).title; }
+
+std::string Requirement::sentence() const {
+    const Part& part = part_of(of);
+    return text(part.who, what, " because ", why, is_met ? "; this device has it" : "; this device lacks it",
+                is_met ? "" : part.without);
+}
+
+const char* never_required() {
+    return "integers of 64, 16 or 8 bits, floats of 16 bits, subgroup operations and subgroups of a known "
+           "size, and Vulkan above 1.2";
+}
+
+std::vector<Requirement> requirements_of(const DeviceFacts& device) {
+    using enum Requirement::Of;
+    const std::vector<Requirement> limits = limits_of(device);
+    std::vector<Requirement> all = {
+        {"Vulkan 1.2", "its kernels and its timeline are written for it", everything,
+         device.api_version >= version_1_2},
+        {"a compute queue", "all that it does are compute shaders", everything, device.has_compute_queue, {Shader}},
+        {"timelineSemaphore", "it never waits for the GPU: a timeline tells what may be freed", everything,
+         device.timeline_semaphore},
+        {"bufferDeviceAddress", "its kernels reach all data by address, without descriptor sets", everything,
+         device.buffer_device_address, {PhysicalStorageBufferAddresses}},
+        {"scalarBlockLayout", "structs have the same bytes on the host and on the GPU", everything,
+         device.scalar_block_layout},
+    };
+    all.insert(all.end(), limits.begin(), limits.end());
+    const Requirement of_parts[] = {
+        {"VK_KHR_acceleration_structure", "the driver builds its structures", hardware, device.acceleration_structure},
+        {"VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline", "it traces through one of them", hardware,
+         device.ray_query || device.ray_tracing_pipeline},
+        {"VK_KHR_ray_query", "a compute kernel has no other way to the driver's structures", ray_queries,
+         device.ray_query, {RayQueryKHR}, {"SPV_KHR_ray_query"}},
+        {"VK_KHR_ray_tracing_pipeline", "its batches then go through the stages of such a pipeline", ray_pipelines,
+         device.ray_tracing_pipeline, {RayTracingKHR}, {"SPV_KHR_ray_tracing"}},
+        {"shaderFloat64", "they compute the hit that counts again in float64", refinement, device.shader_float64,
+         {Float64}},
+        {"shaderFloat64", "it computes all distances in float64", points, device.shader_float64, {Float64}},
+        {"shaderFloat64", "it decides in float64 which triangles meet", contacts, device.shader_float64, {Float64}},
+        {"shaderInt64", "they compute with them, as none of twinray's does", int64_kernels, device.shader_int64,
+         {Int64}},
+        {"descriptor indexing (runtimeDescriptorArray, shaderSampledImageArrayNonUniformIndexing, "
+         "descriptorBindingVariableDescriptorCount and descriptorBindingSampledImageUpdateAfterBind)",
+         "kernels reach all of them through one array", images, device.has_image_arrays(),
+         {ImageQuery, ShaderNonUniform, RuntimeDescriptorArray, SampledImageArrayNonUniformIndexing}},
+    };
+    all.insert(all.end(), std::begin(of_parts), std::end(of_parts));
+    return all;
+}
+
+}  // namespace twinray
