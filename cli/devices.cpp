@@ -3,8 +3,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "cli/device_requirements.h"
 #include "engine/core/error.h"
 #include "hwtlas/hw_tlas.h"
 #include "swtlas/sw_tlas.h"
@@ -108,7 +110,11 @@ void print_devices(const std::filesystem::path& json) {
 }  // namespace
 
 Command devices_command() {
-    const auto json = std::make_shared<std::filesystem::path>();
+    struct DevicesOptions {
+        bool requirements = false;
+        std::filesystem::path json;
+    };
+    const auto options = std::make_shared<DevicesOptions>();
     return {.name = "devices",
             .group = "Tracing",
             .summary = "list the Vulkan devices and what each accelerator can do there",
@@ -116,12 +122,18 @@ Command devices_command() {
                 "Lists every Vulkan device with what the software accelerator (SwTlas) and the hardware "
                 "accelerator (HwTlas, on VK_KHR_acceleration_structure) can do there, and what a device "
                 "lacks, and which of the two --accel auto takes. The device that commands take unless --device names "
-                "another is "
-                "marked with a star.",
-            .sections = {{"Output", {json_option(*json)}}},
-            .examples = {{"twinray devices", "what there is"}},
-            .run = [json] {
-                print_devices(*json);
+                "another is marked with a star.",
+            .sections = {{"Output",
+                          {{.name = "--requirements",
+                            .value = flag(options->requirements),
+                            .help = "instead, what each part of twinray needs of a device (Vulkan version, features, "
+                                    "extensions, limits) and why, and which of the devices has it"},
+                           json_option(options->json)}}},
+            .examples = {{"twinray devices", "what there is"},
+                         {"twinray devices --requirements", "what is needed for what"}},
+            .run = [options] {
+                if (options->requirements) print_requirements(usable_devices(), options->json);
+                else print_devices(options->json);
                 return 0;
             }};
 }

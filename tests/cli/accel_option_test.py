@@ -50,6 +50,14 @@ assert device["auto"]["backend"] == ("sw" if device["kind"] == "CPU" or device["
 assert "--accel auto traces by " in run(twinray, "devices")
 assert record(twinray, "devices", env=NONE)["auto"]["backend"] == "sw"
 
+# What is needed: what a device lacks is what the list without the option says of it.
+needs = record(twinray, "devices", "--requirements")
+assert needs["name"] == device["name"] and all(need["why"] for need in needs["requirements"]), needs
+assert [n["what"] for n in needs["requirements"] if n["of"] == "everything" and not n["has"]] == device["sw_missing"]
+lacking = {n["of"] for n in record(twinray, "devices", "--requirements", env=NONE)["requirements"] if not n["has"]}
+assert {"hardware", "ray_queries", "ray_pipelines"} <= lacking and "everything" not in lacking, lacking
+assert "yes  Vulkan 1.2\n" in run(twinray, "devices", "--requirements")
+
 def check(of, backend, why):
     assert of["backend"] == backend and why in of["backend_why"], of
 

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// `twinray devices --requirements`: what twinray needs, by its parts, and which device has it.
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "engine/core/device_choice.h"
+
+namespace twinray::cli {
+
+void print_requirements(std::span<const DeviceFacts> devices, const std::filesystem::path& json);
+
+}  // namespace twinray::cli
