@@ -45,6 +45,7 @@ function(twinray_compile_shader target name input)
     target_sources(${target} PRIVATE ${header})
     target_include_directories(${target} PRIVATE ${folder})
     set_property(TARGET ${target} APPEND PROPERTY TWINRAY_SPIRV ${module})
+    set_property(GLOBAL APPEND PROPERTY TWINRAY_ALL_SPIRV ${module})
 endfunction()
 
 function(twinray_add_kernel target name file)
