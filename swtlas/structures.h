@@ -15,11 +15,16 @@ using glm::findMSB;
 struct BvhHalf;
 using NodeHalves = Ref<BvhHalf>;
 
+#include "engine/core/bridge_begin.h"
+#include "shaders/shared/short_stack_size.h"
+#include "engine/core/bridge_end.h"
+
 // The slots of a traversal's stack, of the thread that traces.
-inline std::array<uint, 16>& stack_slots() {
-    thread_local std::array<uint, 16> slots;
+inline std::array<uint, STACK_SIZE>& stack_slots() {
+    thread_local std::array<uint, STACK_SIZE> slots;
     return slots;
 }
+inline uint stack_size() { return STACK_SIZE; }
 inline uint load_entry(uint slot) { return stack_slots()[slot]; }
 inline void store_entry(uint slot, uint entry) { stack_slots()[slot] = entry; }
 

@@ -7,7 +7,8 @@
 namespace twinray {
 namespace {
 
-constexpr std::uint32_t fused_fma_constant = 105;  // of shaders/shared/bridge.glsl
+// Of shaders/shared/bridge.glsl.
+constexpr std::uint32_t fused_fma_constant = 105, compares_numbers_constant = 106;
 
 std::string key_of(const KernelDesc& desc, std::uint32_t args_bytes) {
     std::string key;
@@ -24,6 +25,7 @@ std::string key_of(const KernelDesc& desc, std::uint32_t args_bytes) {
 std::vector<SpecializationConstant> constants_of(const Context& context, const KernelDesc& desc) {
     std::vector<SpecializationConstant> constants = desc.constants;
     constants.push_back({fused_fma_constant, context.tuning().has_fused_fma});
+    constants.push_back({compares_numbers_constant, context.tuning().compares_numbers});
     return constants;
 }
 

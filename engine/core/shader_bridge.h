@@ -34,9 +34,9 @@ using glm::vec4;
 
 constexpr bool FUSED_FMA = false;  // compilers of C++ may, but need not fuse
 
-// Of a number and NaN the number.
-inline float min_number(float a, float b) { return a < b || b != b ? a : b; }
-inline float max_number(float a, float b) { return a > b || b != b ? a : b; }
+// Of NaN and a number b it is b.
+inline float min_number(float a, float b) { return a < b ? a : b; }
+inline float max_number(float a, float b) { return a > b ? a : b; }
 
 inline float uintBitsToFloat(uint bits) { return std::bit_cast<float>(bits); }
 inline uint floatBitsToUint(float value) { return std::bit_cast<uint>(value); }

@@ -10,12 +10,15 @@
 
 #extension GL_EXT_spirv_intrinsics : require
 
-// The lesser and the greater of two numbers, and of a number and NaN the number: what min() and max() leave open. Of
-// two zeros either.
-spirv_instruction(set = "GLSL.std.450", id = 79) float min_number(float a, float b);
-spirv_instruction(set = "GLSL.std.450", id = 80) float max_number(float a, float b);
+spirv_instruction(set = "GLSL.std.450", id = 79) float n_min(float a, float b);
+spirv_instruction(set = "GLSL.std.450", id = 80) float n_max(float a, float b);
+// The lesser and the greater of two numbers; of NaN and a number b it is b: what min() and max() leave open. Of two zeros
+// either. By one instruction, or by a comparison where that is less (KernelTuning::compares_numbers).
+layout(constant_id = 106) const bool COMPARES_NUMBERS = false;
+float min_number(float a, float b) { return COMPARES_NUMBERS ? (a < b ? a : b) : n_min(a, b); }
+float max_number(float a, float b) { return COMPARES_NUMBERS ? (a > b ? a : b) : n_max(a, b); }
 
-// Whether fma() rounds once. Set for every kernel that the library makes (DeviceFacts::fused_fma).
+// Whether fma() rounds once. Set for every kernel that the library makes (KernelTuning::has_fused_fma).
 layout(constant_id = 105) const bool FUSED_FMA = false;
 #define FUSED(a, b, c) fma(a, b, c)
 

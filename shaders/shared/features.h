@@ -34,5 +34,5 @@ const uint STACK_CONSTANT = 104u;     // of every kernel that includes twinray/q
 
 // Where the stack of a traversal of software lies.
 const uint STACK_SHARED = 0u;    // in the workgroup's memory
-const uint STACK_REGISTERS = 1u; // in registers that are found by comparison: for devices without such memory of its own
+const uint STACK_REGISTERS = 1u; // in registers that are found by comparison: where groups have no memory of their own
 #endif

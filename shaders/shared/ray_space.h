@@ -133,11 +133,11 @@ FUNC float corner_pad(vec3 origin, float extent) { return (largest_entry(origin)
 // leaves as it was.
 FUNC float latest_of(float enter, float near_x, float near_y, float near_z)
 {
-    return max_number(max_number(max_number(near_x, near_y), near_z), enter);
+    return max_number(near_z, max_number(near_y, max_number(near_x, enter)));
 }
 FUNC float earliest_of(float leave, float far_x, float far_y, float far_z)
 {
-    return min_number(min_number(min_number(far_x, far_y), far_z), leave);
+    return min_number(far_z, min_number(far_y, min_number(far_x, leave)));
 }
 
 // Where the ray enters the box and where it leaves it within [t_min, t_max], in t * ray.t_scale: enter > leave where it

@@ -7,21 +7,22 @@
 #include "shaders/shared/features.h"
 #include "shaders/shared/short_stack_size.h"
 
-uint twinray_stack_registers[STACK_SIZE];
+uint twinray_stack_registers[REGISTER_STACK_SIZE];
 
 uint entry_of_registers(uint slot)
 {
     uint entry = twinray_stack_registers[0];
-    UNROLL for (uint i = 1u; i < STACK_SIZE; ++i) entry = slot == i ? twinray_stack_registers[i] : entry;
+    UNROLL for (uint i = 1u; i < REGISTER_STACK_SIZE; ++i) entry = slot == i ? twinray_stack_registers[i] : entry;
     return entry;
 }
 void set_entry_of_registers(uint slot, uint entry)
 {
-    UNROLL for (uint i = 0u; i < STACK_SIZE; ++i)
+    UNROLL for (uint i = 0u; i < REGISTER_STACK_SIZE; ++i)
         twinray_stack_registers[i] = slot == i ? entry : twinray_stack_registers[i];
 }
 
 #ifdef TWINRAY_PRIVATE_STACK
+uint stack_size() { return REGISTER_STACK_SIZE; }
 uint load_entry(uint slot) { return entry_of_registers(slot); }
 void store_entry(uint slot, uint entry) { set_entry_of_registers(slot, entry); }
 #else
@@ -31,6 +32,7 @@ void store_entry(uint slot, uint entry) { set_entry_of_registers(slot, entry); }
 layout(constant_id = STACK_CONSTANT) const uint STACK = STACK_SHARED;
 shared uint twinray_stack[STACK_SIZE * TWINRAY_INVOCATIONS];
 
+uint stack_size() { return STACK == STACK_REGISTERS ? REGISTER_STACK_SIZE : STACK_SIZE; }
 uint load_entry(uint slot)
 {
     if (STACK == STACK_REGISTERS) return entry_of_registers(slot);

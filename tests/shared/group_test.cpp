@@ -80,7 +80,7 @@ TEST(ShortStack, KeepsTheLastEntriesAndSaysThatItHasLostOthers) {
             all.clear();
             stack = empty_stack(false);
         }
-        ASSERT_LE(stack.top - stack.bottom, STACK_SIZE);
+        ASSERT_LE(stack.top - stack.bottom, stack_size());
     }
     EXPECT_GT(losses, 10u);
 }
