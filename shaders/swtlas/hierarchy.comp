@@ -17,7 +17,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
-#include "shaders/shared/splits.h"
 #include "shaders/swtlas/ahead.glsl"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(constant_id = 0) const uint QUALITY = HIERARCHY_FAST;
@@ -26,9 +25,9 @@ layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
 // The nodes as seen by all groups, not through caches of one.
 REFERENCE(NodeHalves, coherent, BvhHalf items[], 16)
 #include "shaders/shared/rotate.h"
+#include "shaders/swtlas/sorted_leaves.glsl"
 
-const uvec2 TREE_END = uvec2(~0u); // the split beside the first and the last leaf
-const uint MOST_STEPS = 2u;         // leaves or joins in one turn of a run
+const uint MOST_STEPS = 2u; // leaves or joins in one turn of a run
 
 struct Range
 {
@@ -36,24 +35,6 @@ struct Range
     uint last;
     NodeHalf top; // of its tree
 };
-
-bool is_fine; // leaves are sorted by fine codes, too
-
-uvec2 split_of(BuildTree tree, uint position, uint code, uint next_code)
-{
-    uint difference = 0u;
-    if (is_fine && code == next_code)
-        difference = AT(args.fine_codes, AT(args.order, position)) ^ AT(args.fine_codes, AT(args.order, position + 1u));
-    return make_split(code ^ next_code, difference, position - tree.first);
-}
-uvec2 split_after(BuildTree tree, uint position)
-{
-    return split_of(tree, position, AT(args.codes, position), AT(args.codes, position + 1u));
-}
-uvec2 split_before(BuildTree tree, uint position)
-{
-    return position == tree.first ? TREE_END : split_after(tree, position - 1u);
-}
 
 // The node at a split has both its halves, `top` and `other`, and becomes the top. Returns the rotation that this asks
 // for.
@@ -69,14 +50,6 @@ void rotate_one(NodeHalves nodes, inout Rotation rotation, inout NodeHalf top, f
 {
     rotate_next(nodes, rotation, scale);
     if (rotation.next == NOTHING) top.below = make_below(leaves_in(top.below), height_of(nodes, rotation.node));
-}
-
-void finish(BuildTree tree, NodeHalf root)
-{
-    AT(tree.bvh, 0).root = root.child;
-    AT(tree.bvh, 0).leaf_count = tree.count;
-    AT(tree.bvh, 0).lo = root.box.lo;
-    AT(tree.bvh, 0).hi = root.box.hi;
 }
 
 void climb(BuildTree tree, NodeHalves nodes, float scale, Range range)

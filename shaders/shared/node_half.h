@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// Half a node, which is one child, as what a tree grows by from the leaves up. In GLSL it comes after NodeHalves, the nodes
+// as seen by all groups.
+#ifndef TWINRAY_SHARED_NODE_HALF_H
+#define TWINRAY_SHARED_NODE_HALF_H
+#include "shaders/shared/build.h"
+#include "shaders/shared/surface_area.h"
+
+// One child as its parent, a BvhNode, has it.
+struct NodeHalf
+{
+    LeafBox box;
+    uint child;
+    uint below; // as BvhNode::below0
+};
+
+// The nodes are two halves each, which begin with the even ones.
+FUNC NodeHalf get_half(NodeHalves nodes, uint node, uint side)
+{
+    BvhHalf stored = AT(nodes, node * 2u + side);
+    NodeHalf found;
+    found.box.lo = stored.lo;
+    found.box.hi = stored.hi;
+    found.child = stored.child;
+    found.below = stored.below;
+    return found;
+}
+FUNC void put_half(NodeHalves nodes, uint node, uint side, NodeHalf half_node)
+{
+    BvhHalf stored;
+    stored.lo = half_node.box.lo;
+    stored.child = half_node.child;
+    stored.hi = half_node.box.hi;
+    stored.below = half_node.below;
+    AT(nodes, node * 2u + side) = stored;
+}
+
+// `node` with these two children, as a child.
+FUNC NodeHalf joined_half(NodeHalf a, NodeHalf b, uint node)
+{
+    NodeHalf both;
+    both.box = around_both(a.box, b.box);
+    both.child = node;
+    both.below = make_below(leaves_in(a.below) + leaves_in(b.below), 1u + max(height_in(a.below), height_in(b.below)));
+    return both;
+}
+
+// Nodes on the longest way down from a node, itself among them.
+FUNC uint height_of(NodeHalves nodes, uint node)
+{
+    return 1u + max(height_in(AT(nodes, node * 2u).below), height_in(AT(nodes, node * 2u + 1u).below));
+}
+
+FUNC bool is_inner(NodeHalf half_node) { return (half_node.child & LEAF_BIT) == 0u; }
+
+// Half the area of a box in a unit of lengths, of which there are `scale` in one.
+FUNC float area_of(LeafBox box, float scale)
+{
+    if (!is_active(box)) return 0.0f;
+    PRECISE vec3 size = (box.hi - box.lo) * scale;
+    PRECISE float area = size.x * size.y + size.y * size.z + size.z * size.x;
+    return area;
+}
+FUNC float area_around(NodeHalf a, NodeHalf b, float scale)
+{
+    return area_of(around_both(a.box, b.box), scale);
+}
+// For trees with leaf centres from lo to hi: areas are near 1 at most, or 0.
+FUNC float area_scale(vec3 lo, vec3 hi)
+{
+    float unit = area_unit(lo, hi);
+    return unit > 0.0f ? 1.0f / unit : 0.0f;
+}
+#endif
