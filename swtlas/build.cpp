@@ -18,6 +18,7 @@
 #include "swtlas_link_nodes.spv.h"
 #include "swtlas_morton.spv.h"
 #include "swtlas_node_areas.spv.h"
+#include "swtlas_ploc.spv.h"
 #include "swtlas_record_parents.spv.h"
 #include "swtlas_refit.spv.h"
 #include "swtlas_refit_records.spv.h"
@@ -41,9 +42,9 @@ KernelDesc specialized(KernelDesc desc, uint value) {
 
 // Of which `own_size` invocations make a group, or as many as a vector has lanes (KernelTuning::vector_lanes): a power
 // of two, as those that add up in halves need, and no more than have a share of a group of areas.
-KernelDesc grouped(const Context& context, KernelDesc desc, uint own_size) {
+KernelDesc grouped(const Context& context, KernelDesc desc, uint own_size, uint most = AREA_GROUP) {
     const uint lanes = context.tuning().vector_lanes;
-    desc.group_size = lanes ? std::clamp(lanes, CPU_GROUP, AREA_GROUP) : own_size;
+    desc.group_size = lanes ? std::clamp(lanes, CPU_GROUP, most) : own_size;
     desc.constants.push_back({GROUP_SIZE_CONSTANT, desc.group_size});
     return desc;
 }
@@ -62,8 +63,14 @@ KernelDesc morton_stage(const Context& context) {
 }
 
 KernelDesc hierarchy_stage(const Context& context, BuildQuality quality) {
-    const KernelDesc desc = grouped(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv, true), BUILD_GROUP);
+    const KernelDesc desc = grouped(
+        context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv, quality != BuildQuality::ploc), BUILD_GROUP);
     return specialized(loading_ahead(context, desc), quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST);
+}
+
+KernelDesc ploc_stage(const Context& context, BuildQuality quality) {
+    const KernelDesc desc = stage("swtlas_ploc", swtlas_ploc_spirv, quality == BuildQuality::ploc);
+    return grouped(context, desc, PLOC_GROUP, PLOC_GROUP);
 }
 
 KernelDesc encode_stage(const Context& context, bool is_needed) {
@@ -92,7 +99,8 @@ struct Builder::Needs {
 Builder::Builder(Context& context, const AccelOptions& options) : Builder(context, options, Needs(options)) {}
 
 Builder::Builder(Context& context, const AccelOptions& options, const Needs& needs)
-    : run_(context.tuning().leaves_per_invocation),
+    : quality_(options.build_quality),
+      run_(context.tuning().leaves_per_invocation),
       sort_(context),
       areas_(context),
       leaves_triangles_(context, leaves_stage(context, "swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
@@ -104,6 +112,7 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       fine_codes_(context, stage("swtlas_fine_codes", swtlas_fine_codes_spirv, true)),
       gather_keys_(context, stage("swtlas_gather_keys", swtlas_gather_keys_spirv, true)),
       hierarchy_(context, hierarchy_stage(context, options.build_quality)),
+      ploc_(context, ploc_stage(context, options.build_quality)),
       encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv, needs.binary)),
       collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS, needs.records)),
       collapse_level_(context, collapse_stage(COLLAPSE_LEVEL, needs.records)),
@@ -224,6 +233,7 @@ void Builder::record_fine_order(Commands& commands, const BuildPlan& plan, const
 
 void Builder::record_hierarchy(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
                                bool leaves_are_sorted) const {
+    if (quality_ == BuildQuality::ploc) return record_ploc(commands, batch, sorted, leaves_are_sorted);
     const HierarchyArgs args{batch.trees,
                              batch.blocks,
                              batch.boxes,
@@ -238,6 +248,26 @@ void Builder::record_hierarchy(Commands& commands, const Batch& batch, const Rad
                              run_,
                              0};
     hierarchy_.dispatch(commands, args, std::uint64_t{batch.block_count} * (BUILD_GROUP / run_));
+}
+
+// Lists of clusters lie in the half of the ping-pong that the sort has left.
+void Builder::record_ploc(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
+                          bool leaves_are_sorted) const {
+    const RadixSort::Pairs& lists = batch.other(sorted);
+    const PlocArgs args{batch.trees,
+                        batch.blocks,
+                        batch.boxes,
+                        sorted.keys,
+                        batch.fine_codes,
+                        batch.crowding,
+                        sorted.values,
+                        batch.meeting,
+                        batch.centroids,
+                        lists.keys,
+                        lists.values,
+                        batch.block_count,
+                        leaves_are_sorted ? 1u : 0u};
+    ploc_.dispatch(commands, args, std::uint64_t{batch.block_count} * BUILD_GROUP);
 }
 
 void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
@@ -270,44 +300,6 @@ void Builder::record_instances(Commands& commands, const BuildPlan& plan, const 
 
 void Builder::record_links(Commands& commands, const Batch& batch) const {
     link_nodes_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.block_count, 0}, batch.block_count);
-}
-
-// Places lie where the codes were, which are done.
-void Builder::record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch,
-                              const RadixSort::Pairs& sorted) const {
-    record_levels(commands, plan, batch);
-    encode_records_.dispatch_groups(
-        commands, {batch.trees, batch.blocks, sorted.values, batch.codes, batch.block_count, 0}, batch.block_count);
-}
-
-// Lists of items lie where the boxes were, which are done, too.
-void Builder::record_levels(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
-    const CollapseLists lists = collapse_lists(plan.leaf_count);
-    const auto pass = commands.pass(collapse_level_.name());
-    const auto list = [&](std::uint64_t first) {
-        return Ref<CollapseItem>{batch.boxes.address + first * sizeof(CollapseItem)};
-    };
-    const auto level_at = [&](uint level) { return plan.scratch.levels + level * sizeof(CollapseLevel); };
-    const std::uint64_t subtree_level = level_at(plan.collapse_levels + 1);
-    const auto args = [&](uint level) {
-        return CollapseArgs{batch.trees,
-                            list(lists.level[level % 2]),
-                            list(lists.level[(level + 1) % 2]),
-                            list(lists.subtrees),
-                            list(lists.queues),
-                            {batch.scratch.address() + level_at(level)},
-                            {batch.scratch.address() + subtree_level},
-                            batch.codes,
-                            static_cast<uint>(plan.first.size()),
-                            level < plan.collapse_levels ? plan.subtree_leaves : NOTHING};
-    };
-    collapse_roots_.dispatch(commands, args(0), plan.first.size());
-    for (uint level = 1; level <= plan.collapse_levels; ++level) {
-        commands.barrier();
-        collapse_level_.dispatch_indirect(commands, args(level), batch.scratch, level_at(level));
-    }
-    commands.barrier();
-    collapse_subtrees_.dispatch_indirect(commands, args(0), batch.scratch, subtree_level);
 }
 
 }  // namespace twinray

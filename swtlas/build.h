@@ -8,9 +8,8 @@ namespace twinray {
 
 // Records the build of a batch of trees on the GPU, the same stages for triangles and for instances:
 //
-//     leaves -> morton -> sort by code (-> sort by tree) (-> sort again, by fine codes too) -> hierarchy -> encode
-//     triangles, or
-//                                                                     -> collapse -> encode records
+//     leaves -> morton -> sort by code (-> sort by tree) (-> sort again, by fine codes too) -> hierarchy or ploc
+//     -> encode triangles, or -> collapse -> encode records
 //
 // Each stage is one kernel over all trees of the batch; what it computes has a serial twin of the same name in
 // swtlas/reference.h.
@@ -59,6 +58,8 @@ class Builder {
                            const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const;
     void record_hierarchy(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
                           bool leaves_are_sorted) const;
+    void record_ploc(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
+                     bool leaves_are_sorted) const;
     void record_links(Commands& commands, const Batch& batch) const;
     void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch,
                          const RadixSort::Pairs& sorted) const;
@@ -66,6 +67,7 @@ class Builder {
     void record_climb(Commands& commands, const Batch& batch) const;
     void record_records_climb(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
 
+    BuildQuality quality_;
     uint run_;  // leaves of an invocation of the hierarchy: few where there are many invocations
     RadixSort sort_;
     SurfaceArea areas_;
@@ -77,6 +79,7 @@ class Builder {
     Kernel<FineCodesArgs> fine_codes_;
     Kernel<GatherKeysArgs> gather_keys_;
     Kernel<HierarchyArgs> hierarchy_;
+    Kernel<PlocArgs> ploc_;
     Kernel<EncodeTrianglesArgs> encode_triangles_;
     Kernel<CollapseArgs> collapse_roots_, collapse_level_, collapse_subtrees_;
     Kernel<EncodeRecordsArgs> encode_records_;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "swtlas/reference.h"
-
 #include <algorithm>
 #include <bit>
 #include <numeric>
+
+#include "swtlas/reference_leaves.h"
 
 namespace twinray::reference {
 namespace {
@@ -14,34 +14,14 @@ BvhTriangle gather(std::span<const vec3> positions, uvec3 corners, uint primitiv
 
 // Builds [first, last] and returns it as a child.
 struct TopDown {
-    std::span<const LeafBox> boxes;
-    const Codes& codes;
-    std::span<const uint> order;
-    bool leaves_are_sorted;
+    SortedLeaves leaves;
     BuildQuality quality;
     float scale;
     NodeHalves nodes;
 
-    uvec2 split_after(std::size_t position) const {
-        const uint left = order[position], right = order[position + 1];
-        const uint fine = codes.fine.empty() ? 0 : codes.fine[left] ^ codes.fine[right];
-        return make_split(codes.coarse[left] ^ codes.coarse[right], fine, static_cast<uint>(position));
-    }
-
-    std::size_t highest_split(std::size_t first, std::size_t last) const {
-        std::size_t best = first;
-        for (std::size_t i = first + 1; i < last; ++i)
-            if (less64(split_after(best), split_after(i))) best = i;
-        return best;
-    }
-
     NodeHalf build(std::size_t first, std::size_t last) const {
-        if (first == last) {
-            const uint element = order[first];
-            return {boxes[element], LEAF_BIT | (leaves_are_sorted ? static_cast<uint>(first) : element),
-                    make_below(1, 0)};
-        }
-        const std::size_t split = highest_split(first, last);
+        if (first == last) return leaves.leaf(first);
+        const std::size_t split = leaves.highest_split(first, last);
         const auto node = static_cast<uint>(split);
         const NodeHalf left = build(first, split), right = build(split + 1, last);
         put_half(nodes, node, 0, left);
@@ -49,7 +29,7 @@ struct TopDown {
         NodeHalf both = joined_half(left, right, node);
         if (quality == BuildQuality::high && is_rotated(both))
             both.below = make_below(leaves_in(both.below),
-                                    rotate(nodes, node, highest_below(split_after(split)), scale));
+                                    rotate(nodes, node, highest_below(leaves.split_after(split)), scale));
         return both;
     }
 };
@@ -139,15 +119,31 @@ std::vector<uint> sort(const Codes& codes) {
     return order;
 }
 
-Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order,
-                    bool leaves_are_sorted, BuildQuality quality) {
-    Hierarchy tree;
-    if (boxes.empty()) return tree;
-    std::vector<BvhHalf> halves(2 * (boxes.size() - 1));
+uvec2 SortedLeaves::split_after(std::size_t position) const {
+    const uint left = order[position], right = order[position + 1];
+    const uint fine = codes.fine.empty() ? 0 : codes.fine[left] ^ codes.fine[right];
+    return make_split(codes.coarse[left] ^ codes.coarse[right], fine, static_cast<uint>(position));
+}
+
+std::size_t SortedLeaves::highest_split(std::size_t first, std::size_t last) const {
+    std::size_t best = first;
+    for (std::size_t i = first + 1; i < last; ++i)
+        if (less64(split_after(best), split_after(i))) best = i;
+    return best;
+}
+
+NodeHalf SortedLeaves::leaf(std::size_t position) const {
+    const uint element = order[position];
+    return {boxes[element], LEAF_BIT | (are_sorted ? static_cast<uint>(position) : element), make_below(1, 0)};
+}
+
+float SortedLeaves::scale() const {
     const LeafBox bounds = bounds_of(centroids(boxes));
-    const TopDown build{boxes, codes, order, leaves_are_sorted, quality, area_scale(bounds.lo, bounds.hi),
-                        NodeHalves::to(halves.data())};
-    const NodeHalf root = build.build(0, boxes.size() - 1);
+    return area_scale(bounds.lo, bounds.hi);
+}
+
+Hierarchy hierarchy_of(std::span<const BvhHalf> halves, const NodeHalf& root) {
+    Hierarchy tree;
     for (std::size_t node = 0; node < halves.size(); node += 2) {
         const BvhHalf &a = halves[node], &b = halves[node + 1];
         tree.nodes.push_back({a.lo, a.child, a.hi, a.below, b.lo, b.child, b.hi, b.below});
@@ -155,6 +151,16 @@ Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::spa
     tree.root = root.child;
     tree.box = root.box;
     return tree;
+}
+
+Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order,
+                    bool leaves_are_sorted, BuildQuality quality) {
+    if (quality == BuildQuality::ploc) return ploc(boxes, codes, order, leaves_are_sorted);
+    if (boxes.empty()) return {};
+    std::vector<BvhHalf> halves(2 * (boxes.size() - 1));
+    const SortedLeaves leaves{boxes, codes, order, leaves_are_sorted};
+    const TopDown build{leaves, quality, leaves.scale(), NodeHalves::to(halves.data())};
+    return hierarchy_of(halves, build.build(0, boxes.size() - 1));
 }
 
 Hierarchy linked(Hierarchy tree) {

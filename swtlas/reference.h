@@ -36,6 +36,9 @@ struct Hierarchy {
 Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order,
                     bool leaves_are_sorted, BuildQuality quality = BuildQuality::fast);
 
+// The one of quality ploc: a range is cut at its highest split, and has the clusters of both parts to join.
+Hierarchy ploc(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order, bool leaves_are_sorted);
+
 // As a tree of layout bvh2: its nodes know their edges.
 Hierarchy linked(Hierarchy tree);
 

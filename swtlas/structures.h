@@ -34,6 +34,7 @@ inline void store_entry(uint slot, uint entry) { stack_slots()[slot] = entry; }
 #include "shaders/shared/end_point_overlap.h"
 #include "shaders/shared/morton.h"
 #include "shaders/shared/place_instance.h"
+#include "shaders/shared/ploc.h"
 #include "shaders/shared/rotate.h"
 #include "shaders/shared/splits.h"
 #include "shaders/shared/traverse.h"

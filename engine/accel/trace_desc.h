@@ -53,10 +53,13 @@ constexpr bool has_records(Layout layout) { return layout != Layout::bvh2; }
 enum class BuildQuality : std::uint8_t {
     fast,  // along a Morton curve (LBVH)
     high,  // and rotated on the way up: rays meet a seventh fewer boxes where triangles differ much
+    ploc,  // from the leaves up, nearest neighbours first (H-PLOC)
 };
 
-inline constexpr std::array all_build_qualities = {BuildQuality::fast, BuildQuality::high};
-constexpr std::string_view name_of(BuildQuality quality) { return quality == BuildQuality::high ? "high" : "fast"; }
+inline constexpr std::array all_build_qualities = {BuildQuality::fast, BuildQuality::high, BuildQuality::ploc};
+constexpr std::string_view name_of(BuildQuality quality) {
+    return quality == BuildQuality::fast ? "fast" : quality == BuildQuality::high ? "high" : "ploc";
+}
 
 struct AccelOptions {
     // The highest level that traces ask for. From refined on, the accelerator keeps all meshes and transforms on the

@@ -150,6 +150,26 @@ struct HierarchyArgs
     uint reserved;
 };
 
+// The hierarchy by clusters, see ploc.h.
+const uint PLOC_GROUP = 32u; // invocations at most, as many as clusters that they merge
+
+struct PlocArgs
+{
+    REF(BuildTree) trees;
+    REF(BuildBlock) blocks;
+    REF(LeafBox) boxes;
+    Uints codes;            // in order
+    Uints fine_codes;       // by leaf
+    REF(Crowding) crowding;
+    Uints order;
+    Uints meeting;          // as in HierarchyArgs
+    REF(CentroidBounds) centroids;
+    Uints tops;             // of clusters
+    Uints last_leaves;      // of clusters
+    uint block_count;
+    uint leaves_are_sorted;
+};
+
 // Links the nodes of built trees of layout bvh2 to those above them.
 struct LinkNodesArgs
 {

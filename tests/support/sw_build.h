@@ -36,7 +36,9 @@ inline auto every_build() {
                            How{Layout::bvh2, BuildQuality::high, of_device},
                            How{Layout::bvh4, BuildQuality::fast, of_device},
                            How{Layout::compressed4, BuildQuality::high, of_gpu},
-                           How{Layout::bvh2, BuildQuality::fast, of_gpu});
+                           How{Layout::bvh2, BuildQuality::fast, of_gpu},
+                           How{Layout::compressed4, BuildQuality::ploc, of_device},
+                           How{Layout::bvh2, BuildQuality::ploc, of_gpu});
 }
 inline std::string name_of_build(const testing::TestParamInfo<How>& how) {
     return text(name_of(std::get<Layout>(how.param)), '_', name_of(std::get<BuildQuality>(how.param)),

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+// Topology and boxes in one pass, as in hierarchy.comp, but by clusters (shaders/shared/ploc.h). An invocation begins
+// with a leaf and climbs the radix tree; of the two that meet at a split the first leaves its own far end in meeting[] and
+// stops. Where the range that the second has then is to be merged, the whole group merges it.
+//
+// Between merges the clusters of a range stand in lists by place in the order, where the range begins: their tops, NOTHING
+// after the last one if they are fewer than KEPT_CLUSTERS, and their last leaves. Their boxes are those of their nodes.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/build.h"
+layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
+layout(push_constant, scalar) uniform Push { PlocArgs args; };
+
+// As seen by all groups, not through caches of one.
+REFERENCE(NodeHalves, coherent, BvhHalf items[], 16)
+REFERENCE(SharedUints, coherent, uint items[], 4)
+#include "shaders/shared/ploc.h"
+#include "shaders/swtlas/sorted_leaves.glsl"
+
+// Leaves first .. last, which meet after `split`.
+struct Range
+{
+    uint first;
+    uint split;
+    uint last;
+    uint limit; // of the height of its tree
+};
+
+// A merge has its clusters in one half, and those of the next round in the other.
+shared Cluster clusters[2u * MOST_CLUSTERS];
+shared uint partners[MOST_CLUSTERS]; // the one that each chooses, itself where there is none
+shared uint gone;                    // bits of those that have no place in the next round
+shared uint tallest;                 // of the clusters
+shared uint waiting;                 // bits of invocations whose range is to be merged
+shared Range chosen;                 // the one that is
+
+#define EACH(i, count) (uint i = gl_LocalInvocationID.x; i < count; i += gl_WorkGroupSize.x)
+
+bool is_whole(BuildTree tree, Range range) { return range.last - range.first + 1u == tree.count; }
+
+// Until the range is to be merged. False: another invocation goes on with it.
+bool climb(BuildTree tree, inout Range range)
+{
+    while (!is_whole(tree, range))
+    {
+        uvec2 left = split_before(tree, range.first);
+        uvec2 right = range.last == tree.first + tree.count - 1u ? TREE_END : split_after(tree, range.last);
+        bool joins_right = less64(right, left);
+        range.split = joins_right ? range.last : range.first - 1u;
+        memoryBarrierBuffer();
+        uint other = atomicExchange(AT(args.meeting, range.split), joins_right ? range.first : range.last);
+        if (other == NOTHING) return false;
+        memoryBarrierBuffer();
+        range.limit = height_limit(joins_right ? right : left, tree.count);
+        if (joins_right) range.last = other;
+        else range.first = other;
+        if (range.last - range.first >= KEPT_CLUSTERS) return true;
+    }
+    return true;
+}
+
+// Bits of the invocations that say so.
+uint votes(bool is_for)
+{
+    memoryBarrierBuffer();
+    barrier();
+    if (gl_LocalInvocationID.x == 0u) waiting = 0u;
+    barrier();
+    if (is_for) atomicOr(waiting, 1u << gl_LocalInvocationID.x);
+    barrier();
+    return waiting;
+}
+
+NodeHalf load_top(BuildTree tree, NodeHalves nodes, uint child)
+{
+    if ((child & LEAF_BIT) == 0u) return joined_half(get_half(nodes, child, 0u), get_half(nodes, child, 1u), child);
+    uint leaf = tree.first + (child & ~LEAF_BIT);
+    NodeHalf top;
+    top.box = load_box(args.boxes, args.leaves_are_sorted != 0u ? AT(args.order, leaf) : leaf);
+    top.child = child;
+    top.below = make_below(1u, 0u);
+    return top;
+}
+
+// Where the i-th of those before a round goes.
+uint place_after(uint i) { return i - bitCount(gone & ((1u << i) - 1u)); }
+bool is_gone(uint i) { return (gone & 1u << i) != 0u; }
+void begin_round()
+{
+    if (gl_LocalInvocationID.x == 0u) gone = 0u;
+    barrier();
+}
+
+void place_cluster(uint place, Cluster cluster)
+{
+    clusters[place] = cluster;
+    atomicMax(tallest, height_in(cluster.top.below));
+}
+
+// The i-th place of the lists of both parts.
+uint list_place(Range range, uint i)
+{
+    return i < KEPT_CLUSTERS ? range.first + i : range.split + 1u + i - KEPT_CLUSTERS;
+}
+
+// How many they are.
+uint load_clusters(BuildTree tree, NodeHalves nodes, Range range)
+{
+    SharedUints tops = SharedUints(args.tops.address);
+    memoryBarrierBuffer();
+    if (gl_LocalInvocationID.x == 0u) tallest = 0u;
+    begin_round();
+    for EACH(i, MOST_CLUSTERS)
+    {
+        uint place = list_place(range, i);
+        bool is_within = place <= (i < KEPT_CLUSTERS ? range.split : range.last);
+        partners[i] = is_within ? AT(tops, place) : NOTHING;
+        if (partners[i] == NOTHING) atomicOr(gone, 1u << i);
+    }
+    barrier();
+    uint count = MOST_CLUSTERS - bitCount(gone);
+    for EACH(i, MOST_CLUSTERS)
+    {
+        if (is_gone(i)) continue;
+        Cluster cluster;
+        cluster.top = load_top(tree, nodes, partners[i]);
+        cluster.last_leaf = AT(SharedUints(args.last_leaves.address), list_place(range, i));
+        place_cluster(place_after(i), cluster);
+    }
+    barrier();
+    return count;
+}
+
+uint nearest_to(uint i, uint begin, uint count, float scale)
+{
+    NodeHalf own = clusters[begin + i].top;
+    Nearest nearest = nothing_near(i);
+    uint end = min(i + SEARCH_RADIUS + 1u, count);
+    for (uint j = i - min(i, SEARCH_RADIUS); j < end; ++j)
+        if (j != i) nearest = nearer_of(nearest, i, own, j, clusters[begin + j].top, scale);
+    return nearest.cluster;
+}
+
+uint lowest_but(uint other, uint begin, uint count)
+{
+    uint lowest = other == 0u ? 1u : 0u;
+    for (uint j = lowest + 1u; j < count; ++j)
+        if (j != other && height_in(clusters[begin + j].top.below) < height_in(clusters[begin + lowest].top.below)) lowest = j;
+    return lowest;
+}
+
+// Where none but the two lowest choose each other.
+uint partner_by_height(uint i, uint begin, uint count)
+{
+    uint lowest = lowest_but(NOTHING, begin, count);
+    uint next = lowest_but(lowest, begin, count);
+    return i == lowest ? next : i == next ? lowest : i;
+}
+
+Cluster joined(NodeHalves nodes, Cluster a, Cluster b)
+{
+    Cluster both = joined_cluster(a, b);
+    put_half(nodes, both.top.child, 0u, a.top);
+    put_half(nodes, both.top.child, 1u, b.top);
+    return both;
+}
+
+// Of the clusters from `begin` on. How many are left, in the other half.
+uint merge_round(NodeHalves nodes, uint begin, uint count, uint limit, float scale)
+{
+    bool is_free = has_room(tallest, count, limit);
+    for EACH(i, count)
+        partners[i] = is_free ? nearest_to(i, begin, count, scale) : partner_by_height(i, begin, count);
+    begin_round();
+    for EACH(i, count)
+        if (partners[i] < i && partners[partners[i]] == i) atomicOr(gone, 1u << i);
+    barrier();
+    uint left = count - bitCount(gone);
+    for EACH(i, count)
+    {
+        if (is_gone(i)) continue;
+        uint partner = partners[i];
+        Cluster cluster = clusters[begin + i];
+        if (partner > i && partners[partner] == i) cluster = joined(nodes, cluster, clusters[begin + partner]);
+        place_cluster((begin ^ MOST_CLUSTERS) + place_after(i), cluster);
+    }
+    barrier();
+    return left;
+}
+
+void keep_clusters(Range range, uint begin, uint count)
+{
+    for EACH(i, KEPT_CLUSTERS)
+    {
+        AT(SharedUints(args.tops.address), range.first + i) = i < count ? clusters[begin + i].top.child : NOTHING;
+        if (i < count) AT(SharedUints(args.last_leaves.address), range.first + i) = clusters[begin + i].last_leaf;
+    }
+    memoryBarrierBuffer();
+    barrier();
+}
+
+void merge(BuildTree tree, float scale, Range range)
+{
+    NodeHalves nodes = NodeHalves(tree.nodes.address);
+    bool is_last = is_whole(tree, range);
+    uint begin = 0u;
+    uint count = load_clusters(tree, nodes, range);
+    while (count > (is_last ? 1u : KEPT_CLUSTERS))
+    {
+        count = merge_round(nodes, begin, count, range.limit, scale);
+        begin ^= MOST_CLUSTERS;
+    }
+    if (!is_last) keep_clusters(range, begin, count);
+    else if (gl_LocalInvocationID.x == 0u) finish(tree, clusters[begin].top);
+}
+
+// Merges the ranges of those invocations that wait, one after the other.
+void merge_all(BuildTree tree, float scale, uint invocations, Range own)
+{
+    for (uint rest = invocations; rest != 0u; rest &= rest - 1u)
+    {
+        if (gl_LocalInvocationID.x == uint(findLSB(rest))) chosen = own;
+        barrier();
+        merge(tree, scale, chosen);
+    }
+}
+
+Range begin_leaf(BuildTree tree, uint position)
+{
+    uint place = position - tree.first;
+    uint leaf = args.leaves_are_sorted != 0u ? place : AT(args.order, position) - tree.first;
+    AT(SharedUints(args.tops.address), position) = LEAF_BIT | leaf;
+    AT(SharedUints(args.last_leaves.address), position) = place;
+    return Range(position, position, position, 0u);
+}
+
+void main()
+{
+    uint groups = BUILD_GROUP / gl_WorkGroupSize.x;
+    if (group_index() / groups >= args.block_count) return;
+    BuildBlock block = AT(args.blocks, group_index() / groups);
+    uint begin = group_index() % groups * gl_WorkGroupSize.x;
+    if (begin >= block.count) return;
+    BuildTree tree = AT(args.trees, block.tree);
+    LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
+    float scale = area_scale(bounds.lo, bounds.hi);
+    is_fine = AT(args.crowding, 0).is_fine != 0u;
+    uint leaf = begin + gl_LocalInvocationID.x;
+    bool goes_on = leaf < block.count;
+    Range range = Range(0u, 0u, 0u, 0u);
+    if (goes_on) range = begin_leaf(tree, block.first + leaf);
+    for (;;)
+    {
+        goes_on = goes_on && climb(tree, range);
+        uint invocations = votes(goes_on);
+        if (invocations == 0u) return;
+        merge_all(tree, scale, invocations, range);
+        goes_on = goes_on && !is_whole(tree, range);
+    }
+}
