@@ -73,7 +73,10 @@ std::vector<ExitStatus> exit_statuses_of(const Command& command) {
 std::vector<EnvironmentVariable> environment_variables() {
     return {{"TWINRAY_DISABLE",
              "ray_query, ray_tracing_pipeline or both, separated by a comma: features of the device that are left "
-             "unused"}};
+             "unused"},
+            {"TWINRAY_TUNING",
+             "gpu or cpu_driver: the kind of device that kernels are shaped for, instead of what the device is known "
+             "to be; hits are the same"}};
 }
 
 }  // namespace twinray::cli

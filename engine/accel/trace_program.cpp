@@ -35,6 +35,7 @@ const Kernel<TraceArgs>& KernelProgram::kernel(Query query, Level level) const {
         kernels_[static_cast<std::size_t>(query)][static_cast<std::size_t>(level)];
     const KernelTuning& tuning = context_.tuning();
     const uint group_size = groups_for_rays(0, tuning, is_software_).size;
+    const uint stack = tuning.has_stack_in_registers ? STACK_REGISTERS : STACK_SHARED;
     if (!kernel)
         kernel = std::make_unique<Kernel<TraceArgs>>(
             context_, KernelDesc{.name = name() + (query == Query::any ? " any" : " closest"),
@@ -42,7 +43,7 @@ const Kernel<TraceArgs>& KernelProgram::kernel(Query query, Level level) const {
                                  .group_size = group_size,
                                  .constants = {{QUERY_CONSTANT, query == Query::any ? QUERY_ANY : QUERY_CLOSEST},
                                                {HANDS_CONSTANT, tuning.threads},
-                                               {STACK_CONSTANT, tuning.has_stack_in_registers ? STACK_REGISTERS : STACK_SHARED},
+                                               {STACK_CONSTANT, stack},
                                                {RAY_GROUP_CONSTANT, group_size},
                                                {FEATURES_CONSTANT, features()},
                                                {LEVEL_CONSTANT, static_cast<uint>(level)}}});

@@ -251,7 +251,9 @@ void Context::check(VkResult result, const char* action) const {
 }
 
 void Context::check_alive() const {
-    if (is_lost_) throw DeviceLost(text("device '", facts_.name, "': ", name_of(VK_ERROR_DEVICE_LOST), in_flight_.sentence()));
+    if (is_lost_)
+        throw DeviceLost(
+            text("device '", facts_.name, "': ", name_of(VK_ERROR_DEVICE_LOST), in_flight_.sentence()));
 }
 
 void Context::warn(std::string_view message) const {

@@ -3,8 +3,8 @@
 
 namespace twinray {
 
-// On how many threads a driver for CPUs runs groups: LP_NUM_THREADS (of Mesa) where that is a number above 0, else one a
-// core.
+// On how many threads a driver for CPUs runs groups: LP_NUM_THREADS (of Mesa) where that is a number above 0, else one
+// a core.
 unsigned count_cpu_threads();
 
 }  // namespace twinray

@@ -20,7 +20,8 @@ std::string told(const std::string& commands, std::vector<PassWork> passes) {
     std::vector<std::string> largest;
     for (std::size_t i = 0; i < std::min(passes.size(), most_told); ++i) largest.push_back(told(passes[i]));
     if (passes.size() > most_told) largest.emplace_back("...");
-    return text('\'', commands, "' (", passes.size(), passes.size() == 1 ? " pass: " : " passes: ", joined(largest), ')');
+    const char* const unit = passes.size() == 1 ? " pass: " : " passes: ";
+    return text('\'', commands, "' (", passes.size(), unit, joined(largest), ')');
 }
 
 }  // namespace

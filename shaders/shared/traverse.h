@@ -13,6 +13,7 @@
 #include "shaders/shared/short_stack.h"
 
 const uint LEAVE_INSTANCE = 1u; // an entry of the stack that no group and no edge is
+const uint ROOT_EDGE = 0u;      // in every layout; beside the root there is nothing that could be lost
 
 // A tree of one level; of its arrays a layout has some.
 struct SwTree
@@ -24,8 +25,7 @@ struct SwTree
     uint root;
 };
 
-// A node or leaf of a tree: the number of a record, for both; in layout bvh2 a child and its edge. The root's edge is
-// 0.
+// A node or leaf of a tree: the number of a record, for both; in layout bvh2 a child and its edge.
 struct TreePosition
 {
     uint item;
@@ -43,7 +43,7 @@ FUNC TreePosition at_root(SwTree tree, bool is_binary)
 {
     TreePosition at;
     at.item = is_binary ? tree.root : 0u;
-    at.edge = 0u;
+    at.edge = ROOT_EDGE;
     return at;
 }
 
@@ -188,7 +188,7 @@ FUNC bool visit_instance(INOUT(Traversal) here, SwScene scene, uint index, bool 
         push_entry(here.stack, LEAVE_INSTANCE);
         here.inside.index = index;
         here.outside = here.at.edge;
-        here.at.edge = 0u;
+        here.at.edge = ROOT_EDGE;
         here.at.item = is_binary ? AT(scene.instances, index).root : 0u;
         here.is_elsewhere = true;
     }
@@ -238,7 +238,7 @@ FUNC bool visit_next(INOUT(Traversal) here, SwScene scene, bool is_binary, Trace
     }
     bool waits = here.stack.last != NO_STACK_ENTRY;
     if (waits) take_child(here, is_binary);
-    else if (here.stack.has_lost)
+    else if (here.stack.has_lost && here.at.edge != ROOT_EDGE)
     {
         restart(here, has_top && here.outside != NOTHING, is_binary);
         waits = true;

@@ -5,6 +5,7 @@
 
 #include "engine/accel/all_hits.h"
 #include "engine/verify/aimed_rays.h"
+#include "test_program.trace_program.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {
@@ -46,6 +47,9 @@ class Tunings : public ::testing::TestWithParam<Setting> {
             found.push_back(bytes_of(closest));
             found.push_back(bytes_of(any));
             found.push_back(bytes_of(AllHits(accel)(std::span(rays).first(4000), desc).hits));
+            // A kernel of every feature takes one instance for a scene of many.
+            const std::unique_ptr<TraceProgram> program = accel.make_program(test_program);
+            found.push_back(bytes_of(accel.closest_hits(rays, {.level = desc.level, .program = program.get()})));
         }
     }
 
