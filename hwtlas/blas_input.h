@@ -9,8 +9,8 @@
 namespace twinray {
 
 // Only finite positions, one triangle per triangle of the mesh: one that is not active (a non-finite corner, no area)
-// keeps its place but is collapsed to a point. Vulkan has no word for an infinite corner, and a driver may let a NaN leak into
-// the boxes of the triangles beside it, or hit triangles without area.
+// keeps its place but is collapsed to a point. Vulkan has no word for an infinite corner, and a driver may let a NaN
+// leak into the boxes of the triangles beside it, or hit triangles without area.
 struct BlasInput {
     std::vector<vec3> positions;
     std::vector<uvec3> triangles;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The hardware accelerator, on VK_KHR_acceleration_structure.
 #pragma once
 
 #include "engine/accel/abstract_accel.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The stages of a build of SwTlas, recorded.
 #pragma once
 
 #include "engine/core/radix_sort.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Command buffers: passes of dispatches and copies, their submission and their times.
 #pragma once
 
 #include <cstring>

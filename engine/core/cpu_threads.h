@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The threads of a driver for CPUs.
 #pragma once
 
 namespace twinray {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The width of vectors that a driver for CPUs computes with.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A radix sort of pairs of words.
 #pragma once
 
 #include "engine/core/kernel.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Writes the instances as the driver takes them, and the boxes around them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Morton codes of instances, by which they are presorted.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"

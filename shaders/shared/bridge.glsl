@@ -12,8 +12,8 @@
 
 spirv_instruction(set = "GLSL.std.450", id = 79) float n_min(float a, float b);
 spirv_instruction(set = "GLSL.std.450", id = 80) float n_max(float a, float b);
-// The lesser and the greater of two numbers; of NaN and a number b it is b: what min() and max() leave open. Of two zeros
-// either. By one instruction, or by a comparison where that is less (KernelTuning::compares_numbers).
+// The lesser and the greater of two numbers; of NaN and a number b it is b: what min() and max() leave open. Of two
+// zeros either. By one instruction, or by a comparison where that is less (KernelTuning::compares_numbers).
 layout(constant_id = 106) const bool COMPARES_NUMBERS = false;
 float min_number(float a, float b) { return COMPARES_NUMBERS ? (a < b ? a : b) : n_min(a, b); }
 float max_number(float a, float b) { return COMPARES_NUMBERS ? (a > b ? a : b) : n_max(a, b); }

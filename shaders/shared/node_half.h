@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Half a node, which is one child, as what a tree grows by from the leaves up. In GLSL it comes after NodeHalves, the nodes
-// as seen by all groups.
+// Half a node, which is one child, as what a tree grows by from the leaves up. In GLSL it comes after NodeHalves, the
+// nodes as seen by all groups.
 #ifndef TWINRAY_SHARED_NODE_HALF_H
 #define TWINRAY_SHARED_NODE_HALF_H
 #include "shaders/shared/build.h"

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Clusters of leaves that a tree is joined from, nearest neighbours first (Benthin, Meister, Barczak, Mehalwal, Tsakok,
-// Kensler, "H-PLOC: Hierarchical Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", 2024).
+// Kensler, "H-PLOC: Hierarchical Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction",
+// 2024).
 //
 // Each range of the radix tree over the Morton codes that has more than KEPT_CLUSTERS leaves takes over the clusters of
-// its two parts, in order, and joins them in rounds until it has no more than that; the whole tree's, until one is left.
-// In a round each cluster chooses the one, among those near it in order, with which it has the smallest joint box, and
-// two that choose each other become one in the earlier one's place.
+// its two parts, in order, and joins them in rounds until it has no more than that; the whole tree's, until one is
+// left. In a round each cluster chooses the one, among those near it in order, with which it has the smallest joint
+// box, and two that choose each other become one in the earlier one's place.
 //
 // A cluster owns the number of its last leaf. Two that are joined give the lower of theirs to their node and keep the
 // higher, so that which number a node has follows from the input alone, and the highest is not used, as there are one
@@ -78,7 +79,8 @@ FUNC Cluster joined_cluster(Cluster a, Cluster b)
 FUNC uint levels_for(uint count) { return count < 2u ? 0u : uint(findMSB(count - 1u)) + 1u; }
 
 // How high the tree of a range with this split may become. As no two splits on a way down have the same, there are
-// enough levels above it. Places have 25 bits, of which those that a smaller tree does not need are left for its clusters.
+// enough levels above it. Places have 25 bits, of which those that a smaller tree does not need are left for its
+// clusters.
 FUNC uint height_limit(uvec2 split, uint leaf_count)
 {
     bool is_of_places = split.y == 0u && split.x >> 25u == 0u;

@@ -3,8 +3,8 @@
 // occupancy. Where more are pushed the lowest are overwritten, and has_lost says so (Laine, "Restart Trail for
 // Stackless BVH Traversal", 2010).
 //
-// Where entries lie is up to whoever includes this: load_entry(slot) and store_entry(slot, entry), slot < stack_size(), a
-// power of two.
+// Where entries lie is up to whoever includes this: load_entry(slot) and store_entry(slot, entry), slot < stack_size(),
+// a power of two.
 #ifndef TWINRAY_SHARED_SHORT_STACK_H
 #define TWINRAY_SHARED_SHORT_STACK_H
 #include "shaders/shared/short_stack_size.h"

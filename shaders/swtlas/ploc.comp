@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Topology and boxes in one pass, as in hierarchy.comp, but by clusters (shaders/shared/ploc.h). An invocation begins
-// with a leaf and climbs the radix tree; of the two that meet at a split the first leaves its own far end in meeting[] and
-// stops. Where the range that the second has then is to be merged, the whole group merges it.
+// with a leaf and climbs the radix tree; of the two that meet at a split the first leaves its own far end in meeting[]
+// and stops. Where the range that the second has then is to be merged, the whole group merges it.
 //
-// Between merges the clusters of a range stand in lists by place in the order, where the range begins: their tops, NOTHING
-// after the last one if they are fewer than KEPT_CLUSTERS, and their last leaves. Their boxes are those of their nodes.
+// Between merges the clusters of a range stand in lists by place in the order, where the range begins: their tops,
+// NOTHING after the last one if they are fewer than KEPT_CLUSTERS, and their last leaves. Their boxes are those of
+// their nodes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
