@@ -31,7 +31,7 @@ struct BenchOptions {
     std::vector<RayKind> kinds;
     std::vector<double> growth = {1e3, 1e4, 1e5, 1e6, 1e7};
     std::size_t moves = 0;
-    bool no_embree = false, no_build = false, is_ladder = false, is_growth = false;
+    bool no_embree = false, no_build = false, is_ladder = false, is_trees = false, is_growth = false;
 };
 
 // The devices and who runs on them.
@@ -162,6 +162,8 @@ void dispatch(BenchOptions& options) {
         bench_moves(options.common, options.moves, options.run.rounds);
     else if (options.is_ladder)
         bench_ladder(options.common, options.scene, options.run);
+    else if (options.is_trees)
+        bench_trees(options.common, options.scene, options.run);
     else if (options.is_growth)
         run_growth(options);
     else
@@ -188,6 +190,11 @@ Command bench_command() {
           .value = flag(options->is_ladder),
           .help = "what each feature costs that the scene does not need, on the first layout and level, and what an "
                   "accelerator keeps in memory",
+          .needs = {"--scene"}},
+         {.name = "--trees",
+          .value = flag(options->is_trees),
+          .help = "memory, surface-area cost, end-point overlap and steps a ray of the software accelerator's trees, "
+                  "in each layout and build quality: counts, not times",
           .needs = {"--scene"}}}};
     return {.name = "bench",
             .group = "Checking",

@@ -50,21 +50,6 @@ struct Totals {
     std::uint64_t faults() const { return leaks + double_hits; }
 };
 
-// All instances as one mesh in world space. Corners that meet in the scene meet there, if they are of one instance or
-// of one transform.
-Mesh joined(const Scene& scene, std::string name) {
-    Mesh mesh;
-    mesh.name = std::move(name);
-    for (const Instance& instance : scene.instances) {
-        const Mesh& part = scene.meshes[instance.mesh];
-        const uint first = static_cast<uint>(mesh.positions.size());
-        for (const vec3& position : part.positions)
-            mesh.positions.push_back(transform_point(instance.transform, position));
-        for (const uvec3& triangle : part.triangles) mesh.triangles.push_back(triangle + first);
-    }
-    return mesh;
-}
-
 // FNV-1a (Fowler, Noll, Vo) of all corners.
 std::uint64_t hash_of(const Mesh& mesh) {
     std::uint64_t hash = 0xcbf29ce484222325u;

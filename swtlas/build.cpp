@@ -49,8 +49,9 @@ KernelDesc grouped(const Context& context, KernelDesc desc, uint own_size, uint 
     return desc;
 }
 
-KernelDesc loading_ahead(const Context& context, KernelDesc desc) {
-    desc.constants.push_back({LOADS_AHEAD_CONSTANT, context.tuning().loads_ahead});
+// Layout bvh2 does not use such kernels.
+KernelDesc of_width(KernelDesc desc, Layout layout) {
+    desc.constants.push_back({NODE_WIDTH_CONSTANT, std::max(width_of(layout), 4u)});
     return desc;
 }
 
@@ -59,13 +60,13 @@ KernelDesc leaves_stage(const Context& context, const char* name, std::span<cons
 }
 
 KernelDesc morton_stage(const Context& context) {
-    return loading_ahead(context, grouped(context, stage("swtlas_morton", swtlas_morton_spirv, true), BUILD_GROUP));
+    return grouped(context, stage("swtlas_morton", swtlas_morton_spirv, true), BUILD_GROUP);
 }
 
 KernelDesc hierarchy_stage(const Context& context, BuildQuality quality) {
     const KernelDesc desc = grouped(
         context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv, quality != BuildQuality::ploc), BUILD_GROUP);
-    return specialized(loading_ahead(context, desc), quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST);
+    return specialized(desc, quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST);
 }
 
 KernelDesc ploc_stage(const Context& context, BuildQuality quality) {
@@ -74,17 +75,17 @@ KernelDesc ploc_stage(const Context& context, BuildQuality quality) {
 }
 
 KernelDesc encode_stage(const Context& context, bool is_needed) {
-    const KernelDesc desc = stage("swtlas_encode_records", swtlas_encode_records_spirv, is_needed);
-    return loading_ahead(context, grouped(context, desc, BUILD_GROUP));
+    return grouped(context, stage("swtlas_encode_records", swtlas_encode_records_spirv, is_needed), BUILD_GROUP);
 }
 
-KernelDesc subtrees_stage(const Context& context, bool is_needed) {
+KernelDesc subtrees_stage(const Context& context, Layout layout, bool is_needed) {
     const KernelDesc desc = stage("swtlas_collapse_subtrees", swtlas_collapse_subtrees_spirv, is_needed);
-    return loading_ahead(context, grouped(context, desc, COLLAPSE_GROUP));
+    return of_width(grouped(context, desc, COLLAPSE_GROUP), layout);
 }
 
-KernelDesc collapse_stage(uint step, bool is_needed) {
-    return specialized(stage("swtlas_collapse", swtlas_collapse_spirv, is_needed, COLLAPSE_GROUP), step);
+KernelDesc collapse_stage(uint step, Layout layout, bool is_needed) {
+    return of_width(specialized(stage("swtlas_collapse", swtlas_collapse_spirv, is_needed, COLLAPSE_GROUP), step),
+                    layout);
 }
 
 }  // namespace
@@ -99,7 +100,8 @@ struct Builder::Needs {
 Builder::Builder(Context& context, const AccelOptions& options) : Builder(context, options, Needs(options)) {}
 
 Builder::Builder(Context& context, const AccelOptions& options, const Needs& needs)
-    : quality_(options.build_quality),
+    : layout_(options.layout),
+      quality_(options.build_quality),
       run_(context.tuning().leaves_per_invocation),
       sort_(context),
       areas_(context),
@@ -114,16 +116,20 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       hierarchy_(context, hierarchy_stage(context, options.build_quality)),
       ploc_(context, ploc_stage(context, options.build_quality)),
       encode_triangles_(context, stage("swtlas_encode_triangles", swtlas_encode_triangles_spirv, needs.binary)),
-      collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS, needs.records)),
-      collapse_level_(context, collapse_stage(COLLAPSE_LEVEL, needs.records)),
-      collapse_subtrees_(context, subtrees_stage(context, needs.records)),
+      collapse_roots_(context, collapse_stage(COLLAPSE_ROOTS, layout_, needs.records)),
+      collapse_level_(context, collapse_stage(COLLAPSE_LEVEL, layout_, needs.records)),
+      collapse_subtrees_(context, subtrees_stage(context, layout_, needs.records)),
       encode_records_(context, encode_stage(context, needs.records)),
       record_parents_(context,
-                      stage("swtlas_record_parents", swtlas_record_parents_spirv, needs.records && needs.moves)),
+                      of_width(stage("swtlas_record_parents", swtlas_record_parents_spirv,
+                                     needs.records && needs.moves),
+                               layout_)),
       refit_records_(
           context,
-          grouped(context, stage("swtlas_refit_records", swtlas_refit_records_spirv, needs.records && needs.moves),
-                  BUILD_GROUP)),
+          of_width(grouped(context,
+                           stage("swtlas_refit_records", swtlas_refit_records_spirv, needs.records && needs.moves),
+                           BUILD_GROUP),
+                   layout_)),
       link_nodes_(context, stage("swtlas_link_nodes", swtlas_link_nodes_spirv, needs.binary)),
       leaf_edges_(context, stage("swtlas_leaf_edges", swtlas_leaf_edges_spirv, needs.binary && needs.moves)),
       refit_(context, stage("swtlas_refit", swtlas_refit_spirv, needs.binary && needs.moves)),

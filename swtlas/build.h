@@ -68,6 +68,7 @@ class Builder {
     void record_climb(Commands& commands, const Batch& batch) const;
     void record_records_climb(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
 
+    Layout layout_;
     BuildQuality quality_;
     uint run_;  // leaves of an invocation of the hierarchy: few where there are many invocations
     RadixSort sort_;

@@ -21,13 +21,15 @@ struct Planes {
     glm::dvec3 cell;
 };
 
-Planes planes_of(const CompressedRecord& node, uint child) {
-    const auto plane = [&](uint word) { return static_cast<double>(word >> 8 * child & 0xff); };
+Planes planes_of(const CompressedRecord& node, const CompressedRecord& half_node, uint slot) {
+    const auto plane = [&](uint word) { return static_cast<double>(word >> 8 * (slot & 3) & 0xff); };
     const glm::dvec3 origin(grid_origin(node));
     const glm::dvec3 cell(grid_cell(node));
-    return {origin + cell * glm::dvec3(plane(node.b.x), plane(node.b.z), plane(node.c.x)),
-            origin + cell * glm::dvec3(plane(node.b.y), plane(node.b.w), plane(node.c.y)), cell};
+    return {origin + cell * glm::dvec3(plane(half_node.b.x), plane(half_node.b.z), plane(half_node.c.x)),
+            origin + cell * glm::dvec3(plane(half_node.b.y), plane(half_node.b.w), plane(half_node.c.y)), cell};
 }
+
+bool are_axes(uint axes) { return axes < 64 && (1u << axis_at(axes, 0) | 1u << axis_at(axes, 1) | 1u << axis_at(axes, 2)) == 7; }
 
 class CompressedWalk {
   public:
@@ -86,23 +88,50 @@ class CompressedWalk {
 
     LeafBox visit_node(uint index, uint depth) {
         const CompressedRecord& node = records_[index];
-        const uint count = children_in(node);
-        if (count < 2 || count > 4) return violated(text("record ", index, " has ", count, " children"));
+        const uint width = is_wide_node(node) ? 8 : 4, count = children_in(node);
+        if (result_.width == 0) result_.width = width;
+        if (width != result_.width) return violated(text("record ", index, " is a node of ", width, " children"));
+        if (count < 2 || count > width) return violated(text("record ", index, " has ", count, " children"));
+        if (width == 8 && !has_second_half(index)) return violated(text("node ", index, " has no sound second half"));
+        const CompressedRecord& second_half = records_[width == 8 ? index + 1 : index];
+        const ChildPlaces places = places_in(node, second_half);
         LeafBox all = empty_box();
-        for (uint child = 0; child < count; ++child) {
-            const LeafBox below = visit(first_child_of(node) + child, depth + 1);
-            const Planes planes = planes_of(node, child);
-            area_ += half_area(planes.lo, planes.hi);
-            full_area_ += half_area(below.lo, below.hi);
-            if (!is_active(below)) continue;
-            for (int axis = 0; axis < 3; ++axis)
-                if (planes.lo[axis] + least_margin * planes.cell[axis] > double{below.lo[axis]} ||
-                    planes.hi[axis] - least_margin * planes.cell[axis] < double{below.hi[axis]})
-                    violated(text("record ", index, ": child ", child, " from ", below.lo[axis], " to ", below.hi[axis],
-                                  " lies in planes ", planes.lo[axis], " and ", planes.hi[axis]));
-            all = {min(all.lo, below.lo), max(all.hi, below.hi)};
-        }
+        for (uint slot = 0; slot < 8; ++slot)
+            if (has_child(places, slot)) {
+                const LeafBox below = visit_child(places, slot, depth);
+                check_planes(index, planes_of(node, slot < 4 ? node : second_half, slot), below, slot);
+                if (is_active(below)) all = {min(all.lo, below.lo), max(all.hi, below.hi)};
+            }
         return all;
+    }
+
+    // Of a node of eight: its slots hold as many children as it says.
+    bool has_second_half(uint index) {
+        if (index + 1 >= records_.size() || seen_records_[index + 1]) return false;
+        seen_records_[index + 1] = true;
+        const CompressedRecord& half = records_[index + 1];
+        const uint slots = half.a.x & 0xff, nodes = half.a.x >> 8 & 0xff;
+        return half.a.w == WIDE_BIT && half.a.y == 0 && half.a.z == 0 && are_axes(half.a.x >> 16) &&
+               (nodes & ~slots) == 0 && static_cast<uint>(bitCount(slots)) == children_in(records_[index]);
+    }
+
+    LeafBox visit_child(const ChildPlaces& places, uint slot, uint depth) {
+        const uint place = place_of(places, slot);
+        const bool is_node = (places.slots >> slot & 0x100) != 0;
+        if (result_.width == 8 && place < records_.size() && is_node == is_leaf(records_[place]))
+            return violated(text("record ", place, is_node ? " is no node" : " is no leaf"));
+        return visit(place, depth + 1);
+    }
+
+    void check_planes(uint index, const Planes& planes, const LeafBox& below, uint slot) {
+        area_ += half_area(planes.lo, planes.hi);
+        full_area_ += half_area(below.lo, below.hi);
+        if (!is_active(below)) return;
+        for (int axis = 0; axis < 3; ++axis)
+            if (planes.lo[axis] + least_margin * planes.cell[axis] > double{below.lo[axis]} ||
+                planes.hi[axis] - least_margin * planes.cell[axis] < double{below.hi[axis]})
+                violated(text("record ", index, ": child ", slot, " from ", below.lo[axis], " to ", below.hi[axis],
+                              " lies in planes ", planes.lo[axis], " and ", planes.hi[axis]));
     }
 
     std::span<const CompressedRecord> records_;

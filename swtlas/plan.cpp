@@ -59,7 +59,7 @@ BuildScratch layout_scratch(const BuildPlan& plan, const KernelTuning& tuning) {
     return scratch;
 }
 
-// A tree of four children a node is half as deep as a balanced binary one; Morton codes make it deeper. What a group
+// A tree of records is half as deep as a balanced binary one, or less; Morton codes make it deeper. What a group
 // can do is not worth a dispatch a level.
 uint levels_to_collapse(uint leaf_count, uint subtree_leaves) {
     return leaf_count <= subtree_leaves ? 0 : std::min(static_cast<uint>(std::bit_width(leaf_count)), DEEPEST_TREE);
@@ -116,7 +116,7 @@ CollapseLists collapse_lists(uint leaf_count) {
 GeometryLayout layout_geometry(uint triangle_count, Layout layout) {
     GeometryLayout parts;
     if (has_records(layout)) {
-        parts.record_count = record_count(triangle_count);
+        parts.record_count = record_count(triangle_count, width_of(layout));
     } else {
         parts.node_count = inner_count(triangle_count);
         parts.triangle_count = triangle_count;
@@ -134,7 +134,7 @@ GeometryLayout layout_geometry(uint triangle_count, Layout layout) {
 SceneLayout layout_scene(uint instance_count, Layout layout) {
     SceneLayout parts;
     parts.node_count = has_records(layout) ? 0 : inner_count(instance_count);
-    parts.record_count = has_records(layout) ? record_count(instance_count) : 0;
+    parts.record_count = has_records(layout) ? record_count(instance_count, width_of(layout)) : 0;
     parts.box_count = layout == Layout::bvh4 ? parts.record_count : 0;
     Arena arena;
     arena.take<SwScene>(1);

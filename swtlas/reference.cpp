@@ -42,9 +42,9 @@ bool is_crowded(std::vector<uint> codes) {
     return codes.size() > CROWD && needs_fine_codes(crowded, static_cast<uint>(codes.size()));
 }
 
-Records records_of(const Hierarchy& tree, BuildTree input) {
-    Records made{std::vector<CompressedRecord>(record_count(input.count)),
-                 std::vector<LeafBox>(record_count(input.count), empty_box())};
+Records records_of(const Hierarchy& tree, BuildTree input, uint width) {
+    Records made{std::vector<CompressedRecord>(record_count(input.count, width)),
+                 std::vector<LeafBox>(record_count(input.count, width), empty_box())};
     std::vector<uint> places(input.count);
     Bvh bvh{tree.box.lo, tree.box.hi, {}, tree.root, input.count};
     input.bvh = Ref<Bvh>::to(&bvh);
@@ -54,14 +54,14 @@ Records records_of(const Hierarchy& tree, BuildTree input) {
     const Uints places_ref = Uints::to(places.data());
     std::vector<CollapseItem> waiting;
     const auto push = [&](const CollapseStep& step) {
-        for (int i = 0; i < 4; ++i)
+        for (int i = 0; i < 8; ++i)
             if (step.leaves[i] != 0) waiting.push_back(step.items[i]);
     };
-    push(begin_collapse(input, places_ref, 0));
+    push(begin_collapse(input, places_ref, 0, width));
     while (!waiting.empty()) {
         const CollapseItem item = waiting.back();
         waiting.pop_back();
-        push(write_node(input, places_ref, item, children_of(input.nodes, item.place)));
+        push(write_node(input, places_ref, item, children_of(input.nodes, item.place, width), width));
     }
     for (uint leaf = 0; leaf < input.count; ++leaf) store_record(input.records, places[leaf], encode_leaf(input, leaf));
     return made;
@@ -178,19 +178,20 @@ std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::
     return encoded;
 }
 
-Records records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions, std::span<const uvec3> triangles) {
+Records records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions, std::span<const uvec3> triangles,
+                             uint width) {
     BuildTree input{};
     input.count = static_cast<uint>(triangles.size());
     if (triangles.empty()) return {};
     input.positions = Floats::to(&positions.data()->x);
     input.indices = Uints::to(&triangles.data()->x);
-    return records_of(tree, input);
+    return records_of(tree, input, width);
 }
 
-Records records_of_instances(const Hierarchy& tree, uint leaf_count) {
+Records records_of_instances(const Hierarchy& tree, uint leaf_count, uint width) {
     BuildTree input{};
     input.count = leaf_count;
-    return records_of(tree, input);
+    return records_of(tree, input, width);
 }
 
 }  // namespace twinray::reference

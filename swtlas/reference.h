@@ -45,13 +45,14 @@ Hierarchy linked(Hierarchy tree);
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
                                           std::span<const uint> order);
 
-// The records of layouts compressed4 and bvh4, and the boxes of bvh4, for a tree whose references are the leaves' own
+// The records of nodes of `width` children, and the boxes of bvh4, for a tree whose references are the leaves' own
 // indices. (The kernels' binary trees refer to places in the order; their records are the same.)
 struct Records {
     std::vector<CompressedRecord> records;
     std::vector<LeafBox> boxes;
 };
-Records records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions, std::span<const uvec3> triangles);
-Records records_of_instances(const Hierarchy& tree, uint leaf_count);
+Records records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions, std::span<const uvec3> triangles,
+                             uint width);
+Records records_of_instances(const Hierarchy& tree, uint leaf_count, uint width);
 
 }  // namespace twinray::reference

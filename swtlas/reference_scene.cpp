@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "swtlas/reference_scene.h"
 
+#include <utility>
+
 #include "engine/accel/features_of.h"
 #include "swtlas/plan.h"
 
@@ -15,7 +17,7 @@ std::size_t Scene::add_geometry(const MeshView& mesh) {
     std::vector<BvhTriangle> triangles;
     Records records;
     if (has_records(layout_))
-        records = records_of_triangles(tree, geometry.positions, geometry.triangles);
+        records = records_of_triangles(tree, geometry.positions, geometry.triangles, width_of(layout_));
     else {
         tree = linked(std::move(tree));
         triangles = encode_triangles(geometry.positions, geometry.triangles, order);
@@ -62,7 +64,7 @@ void Scene::build() {
     top_ = hierarchy(instance_boxes_, codes, sort(codes), false, quality_);
     const auto count = static_cast<uint>(instance_boxes_.size());
     if (has_records(layout_))
-        top_records_ = records_of_instances(top_, count);
+        top_records_ = records_of_instances(top_, count, width_of(layout_));
     else
         top_ = linked(std::move(top_));
     header_ = {{top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), root_of(top_), count},
@@ -103,6 +105,8 @@ Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {
     if (level < LEVEL_REFINED || !hit.hit) return hit;
     return refined(hit, ray, advance, refined_[hit.instance_index].mesh);
 }
+
+TraversalSteps Scene::take_steps() { return std::exchange(traversal_steps(), {}); }
 
 Scene::Tree Scene::geometry_tree(std::size_t instance) const {
     const BuiltGeometry& built = geometries_[placed_[instance].first];

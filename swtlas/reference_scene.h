@@ -24,6 +24,9 @@ class Scene {
     // Threads may share it once it is built. level: LEVEL_*.
     Hit trace(const Ray& ray, uint query = QUERY_CLOSEST, uint mask = 0xff, uint level = LEVEL_WATERTIGHT) const;
 
+    // What this thread's calls of trace() have done since it asked last.
+    static TraversalSteps take_steps();
+
     // The ray that the trees are searched with: `ray` itself, or from refined on one that may begin nearer, `advance`
     // in t.
     Ray searched_ray(const Ray& ray, uint level, double& advance) const;

@@ -34,32 +34,32 @@ void Builder::record_climb(Commands& commands, const Batch& batch) const {
 namespace {
 
 // The nodes, or the records, among which areas are summed.
-uint area_count(const Builder::Measured& tree) {
-    return tree.records.address ? record_count(tree.leaf_count) : inner_count(tree.leaf_count);
+uint area_count(uint leaf_count, Layout layout) {
+    return has_records(layout) ? record_count(leaf_count, width_of(layout)) : inner_count(leaf_count);
 }
 
-std::uint64_t area_groups(const Builder::Measured& tree) {
-    return (std::uint64_t{area_count(tree)} + AREA_GROUP - 1) / AREA_GROUP;
+std::uint64_t area_groups(uint leaf_count, Layout layout) {
+    return (std::uint64_t{area_count(leaf_count, layout)} + AREA_GROUP - 1) / AREA_GROUP;
 }
 
 }  // namespace
 
 std::uint64_t Builder::cost_bytes(uint leaf_count, Layout layout) {
-    // An address stands for any.
-    const Measured tree{{}, {has_records(layout) ? 1u : 0u}, {}, leaf_count, {}};
-    return AreaWork{area_groups(tree), {}, {}, false}.bytes();
+    return AreaWork{area_groups(leaf_count, layout), {}, {}, false}.bytes();
 }
 
 void Builder::record_costs(Commands& commands, std::span<const Measured> trees, bool is_build) const {
     std::vector<AreaWork> work;
-    for (const Measured& tree : trees) work.push_back({area_groups(tree), {tree.tree.address}, tree.target, is_build});
+    for (const Measured& tree : trees)
+        work.push_back({area_groups(tree.leaf_count, layout_), {tree.tree.address}, tree.target, is_build});
     SurfaceArea::place(commands, work);
     if (!work.empty()) {
         const auto pass = commands.pass(node_areas_.name());
         for (std::size_t i = 0; i < trees.size(); ++i)
             node_areas_.dispatch_groups(
                 commands,
-                {trees[i].tree, trees[i].records, trees[i].record_boxes, work[i].items, area_count(trees[i]), 0},
+                {trees[i].tree, trees[i].records, trees[i].record_boxes, work[i].items,
+                 area_count(trees[i].leaf_count, layout_), 0},
                 work[i].item_count);
     }
     areas_.record(commands, std::move(work));

@@ -124,9 +124,9 @@ BuildTree source_of(const Geometry& mesh) {
 }
 
 // Returns the boxes of the records.
-std::vector<LeafBox> check_records(const SavedGeometry& geometry) {
+std::vector<LeafBox> check_records(Layout layout, const SavedGeometry& geometry) {
     const auto primitives = static_cast<uint>(geometry.mesh.primitive_count());
-    if (const std::size_t count = record_count(primitives); geometry.records.size() != count)
+    if (const std::size_t count = record_count(primitives, width_of(layout)); geometry.records.size() != count)
         fail("a tree of ", geometry.records.size(), " records for ", primitives, " primitives, not ", count);
     if (primitives == 0) return {};
     const BuildTree source = source_of(geometry.mesh);
@@ -143,6 +143,8 @@ std::vector<LeafBox> check_records(const SavedGeometry& geometry) {
     for (uint i = 0; i < primitives; ++i) boxes.push_back(box_of_primitive(source, i));
     CompressedCheck check = check_compressed(geometry.bvh, geometry.records, boxes);
     if (!check.violations.empty()) fail("unsound tree: ", check.violations.front());
+    if (check.width != 0 && check.width != width_of(layout))
+        fail("nodes of ", check.width, " children in layout ", name_of(layout));
     return std::move(check.boxes);
 }
 
@@ -151,7 +153,7 @@ void check_structure(Layout layout, SavedGeometry& geometry) {
         fail(geometry.nodes.size(), " nodes, ", geometry.leaves.size(), " leaves and ", geometry.records.size(),
              " records in layout ", name_of(layout));
     if (!has_records(layout)) return check_bvh2(geometry);
-    std::vector<LeafBox> boxes = check_records(geometry);
+    std::vector<LeafBox> boxes = check_records(layout, geometry);
     if (layout == Layout::bvh4) geometry.record_boxes = std::move(boxes);
 }
 

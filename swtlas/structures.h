@@ -11,6 +11,8 @@
 #include "engine/core/sort_args.h"
 
 namespace twinray {
+using glm::bitCount;
+using glm::findLSB;
 using glm::findMSB;
 struct BvhHalf;
 using NodeHalves = Ref<BvhHalf>;
@@ -27,6 +29,15 @@ inline std::array<uint, STACK_SIZE>& stack_slots() {
 inline uint stack_size() { return STACK_SIZE; }
 inline uint load_entry(uint slot) { return stack_slots()[slot]; }
 inline void store_entry(uint slot, uint entry) { stack_slots()[slot] = entry; }
+
+// What the traversals of a thread have done so far: nodes fetched, boxes and primitives tested. Kernels do not count.
+struct TraversalSteps {
+    std::uint64_t nodes = 0, boxes = 0, primitives = 0;
+};
+inline TraversalSteps& traversal_steps() {
+    thread_local TraversalSteps steps;
+    return steps;
+}
 
 #include "engine/core/bridge_begin.h"
 #include "shaders/shared/build.h"

@@ -9,5 +9,6 @@
 #define BUFFER_OF(T, alignment) static_assert(sizeof(T) % (alignment) == 0)
 #define FMA(a, b, c) ((a) * (b) + (c))
 #define FUSED(a, b, c) std::fma(a, b, c)
+#define COUNT_STEPS(what, count) traversal_steps().what += (count)
 #define UNROLL
 #define DONT_UNROLL

@@ -9,5 +9,6 @@
 #undef BUFFER_OF
 #undef FMA
 #undef FUSED
+#undef COUNT_STEPS
 #undef UNROLL
 #undef DONT_UNROLL

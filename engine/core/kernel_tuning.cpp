@@ -40,7 +40,6 @@ void shape_for_cpu_driver(KernelTuning& tuning, const DeviceFacts& device) {
     tuning.has_stack_in_registers = true;
     tuning.compares_numbers = true;
     tuning.leaves_per_invocation = 256;
-    tuning.loads_ahead = true;
     // As many as fit a core's second cache with their records, half a MiB.
     tuning.subtree_leaves = 4096;
     tuning.sort_threads = device.shared_bytes < counters * sizeof(std::uint32_t) ? 0 : tuning.threads;

@@ -34,7 +34,6 @@ struct KernelTuning {
     // Builds: leaves that an invocation of the hierarchy begins with, and those of a subtree that a group collapses
     // whole, at most.
     std::uint32_t leaves_per_invocation = 8, subtree_leaves = 1024;
-    bool loads_ahead = false;
     // Of a radix sort: threads that it gives a stretch each; 0: as many groups as there are blocks of items.
     std::uint32_t sort_threads = 0;
 

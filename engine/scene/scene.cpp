@@ -93,6 +93,19 @@ Bounds bounds_of(const Scene& scene) {
     return bounds;
 }
 
+Mesh joined(const Scene& scene, std::string name) {
+    Mesh mesh;
+    mesh.name = std::move(name);
+    for (const Instance& instance : scene.instances) {
+        const Mesh& part = scene.meshes[instance.mesh];
+        const uint first = static_cast<uint>(mesh.positions.size());
+        for (const vec3& position : part.positions)
+            mesh.positions.push_back(transform_point(instance.transform, position));
+        for (const uvec3& triangle : part.triangles) mesh.triangles.push_back(triangle + first);
+    }
+    return mesh;
+}
+
 std::size_t count_triangles(const Scene& scene) {
     std::size_t count = 0;
     for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangles.size();

@@ -146,4 +146,8 @@ Bounds bounds_of(const Scene& scene);
 // Triangles counted once per instance.
 std::size_t count_triangles(const Scene& scene);
 
+// All instances as one mesh in world space. Corners that meet in the scene meet there, if they are of one instance or
+// of one transform.
+Mesh joined(const Scene& scene, std::string name);
+
 }  // namespace twinray

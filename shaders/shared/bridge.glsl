@@ -60,6 +60,7 @@ Address address_at(Address base, uint index, uint stride)
 
 // For where either rounding will do.
 #define FMA(a, b, c) fma(a, b, c)
+#define COUNT_STEPS(what, count) // kernels do not
 #define UNROLL [[unroll]]
 #define DONT_UNROLL [[dont_unroll]]
 

@@ -31,7 +31,7 @@ struct BuildTree
     REF(Bvh) bvh;
     REF(BvhNode) nodes;            // of the scratch where there are records
     REF(BvhTriangle) triangles;    // of layout bvh2
-    REF(CompressedRecord) records; // of layouts compressed4 and bvh4
+    REF(CompressedRecord) records; // of all other layouts
     REF(LeafBox) record_boxes;     // of layout bvh4, else null
 };
 BUFFER_OF(BuildTree, 8);

@@ -3,8 +3,8 @@
 //
 //   SwScene -> top-level Bvh over instances -> SwInstance -> bottom-level Bvh over triangles
 //
-// Trees are built binary, of BvhNodes. In layout bvh2 they stay; in layouts compressed4 and bvh4 a tree of
-// CompressedRecords takes their place, in bvh4 beside the boxes of all records in full precision.
+// Trees are built binary, of BvhNodes. In layout bvh2 they stay; in the other layouts a tree of CompressedRecords takes
+// their place, in bvh4 beside the boxes of all records in full precision.
 //
 // A reference to a child is the index of an inner node, or LEAF_BIT with the index of a leaf. n leaves have n - 1
 // inner nodes; with one leaf the root is that leaf, with none it is NOTHING. Records have their root at 0.
@@ -13,7 +13,8 @@
 #include "shaders/shared/instance.h"
 
 const uint LEAF_BIT = 0x80000000u;
-const uint INSTANCE_BIT = 0x40000000u; // in records
+const uint INSTANCE_BIT = 0x40000000u; // in records of leaves
+const uint WIDE_BIT = INSTANCE_BIT;    // in other records
 const uint NOTHING = 0xffffffffu;
 
 // Inner nodes on a path split on ever lower bits of (30-bit Morton code, 30-bit fine code, 25-bit position).
@@ -77,8 +78,10 @@ BUFFER_OF(BvhTriangle, 8);
 //
 // node       a: lower corner of the grid, the last 8 bits of each coordinate being the exponent of the cells'
 //            size there;
-//               w: the first child, count of children << 26
+//               w: the first child, count of children << 26, in layout compressed8 and WIDE_BIT
 //            b: lo.x, hi.x, lo.y, hi.y in cells, 8 bits a child      c: lo.z, hi.z
+// second half of a node of layout compressed8, of its last four slots
+//            a.x: see ChildPlaces, axes << 16 (see octant_order.h); w: WIDE_BIT      b, c: as in a node
 // primitive  a: v0; w: LEAF_BIT | primitive_index      b: v1; w, c: v2
 // instance   a.w: LEAF_BIT | INSTANCE_BIT | index
 // none       a.w: 0
@@ -105,7 +108,7 @@ struct SwGeometry
 {
     Bvh bvh;
     REF(BvhTriangle) triangles;    // of layout bvh2, else null
-    REF(CompressedRecord) records; // of layouts compressed4 and bvh4, else null
+    REF(CompressedRecord) records; // of all other layouts, else null
     REF(LeafBox) record_boxes;     // by record, of layout bvh4, else null
     uint kind; // GEOMETRY_*
     uint reserved;

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-// From a binary tree to nodes of four children. Where the records of a subtree go follows from the number of its leaves
+// From a binary tree to nodes of four or eight children, `width`. Where the records of a subtree go follows from the number of its leaves
 // and of those before it, so that the result does not depend on the order in which invocations run.
 //
 // A node takes the place of two levels of the binary tree wherever that must be for no path to have more than
-// DEEPEST_RECORDS of them, and where it need not be, of those with the largest boxes.
+// DEEPEST_RECORDS of them, and where it need not be, of those with the largest boxes. With eight children small
+// subtrees go first, so that few nodes are nearly empty (see record_count).
 #ifndef TWINRAY_SHARED_COLLAPSE_H
 #define TWINRAY_SHARED_COLLAPSE_H
-#include "shaders/shared/compressed.h"
+#include "shaders/shared/octant_order.h"
 #include "shaders/shared/surface_area.h"
 
-// An inner node that becomes a node of four.
+// An inner node that becomes a node of records.
 struct CollapseItem
 {
     uint tree;
@@ -32,7 +33,7 @@ struct CollapseLevel
 };
 BUFFER_OF(CollapseLevel, 4);
 
-// A node of the binary tree, and how many nodes of four are above the one that it becomes.
+// A node of the binary tree, and how many nodes of records are above the one that it becomes.
 FUNC uint make_place(uint node, uint level) { return node | level << 25u; }
 FUNC uint node_at(uint place) { return place & 0x1ffffffu; }
 FUNC uint level_at(uint place) { return place >> 25u; }
@@ -58,16 +59,17 @@ struct CollapseArgs
     uint subtree_leaves;             // a subtree has at most
 };
 
-// The queue of a subtree of n leaves takes its (2 n - 1) / 3 nodes at most, half as many as it has records below it:
-// where that of the one with records from `below` on begins, and, with the number of leaves and 0, where all end.
-FUNC uint queue_begin(uint tree_first, uint below)
+// The queue of a subtree has room for its nodes, half as many as it has records below it at most. Where that of a
+// subtree begins: `before` is the first record below it, less the second half of the root, if that has one. With the
+// number of leaves and 0 it is where all end.
+FUNC uint queue_begin(uint tree_first, uint before)
 {
-    return tree_first / 6u * 5u + tree_first % 6u * 5u / 6u + below / 2u; // 5/6 of it, which 32 bits hold all the way
+    return tree_first / 6u * 5u + tree_first % 6u * 5u / 6u + before / 2u; // 5/6 of it, which 32 bits hold all the way
 }
 
-FUNC void set_child(INOUT(NodeChildren) children, uint at, uint child, vec3 lo, vec3 hi, uint below)
+FUNC void set_child(INOUT(NodeChildren) children, uint at, uint child, vec3 lo, vec3 hi, uint below, uint width)
 {
-    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
+    UNROLL for (uint i = 0u; i < width; i = i + 1u)
     {
         bool is_here = i == at;
         children.child[i] = is_here ? child : children.child[i];
@@ -78,41 +80,50 @@ FUNC void set_child(INOUT(NodeChildren) children, uint at, uint child, vec3 lo, 
 }
 
 // Splits `node`, which has place i among the children, into its own two, the second at the end.
-FUNC void open_child(REF(BvhNode) nodes, uint node, uint i, INOUT(NodeChildren) children)
+FUNC void open_child(REF(BvhNode) nodes, uint node, uint i, INOUT(NodeChildren) children, uint width)
 {
     BvhNode opened = load_node(nodes, node);
-    set_child(children, i, opened.child0, opened.lo0, opened.hi0, opened.below0);
-    set_child(children, children.count, opened.child1, opened.lo1, opened.hi1, opened.below1);
+    set_child(children, i, opened.child0, opened.lo0, opened.hi0, opened.below0, width);
+    set_child(children, children.count, opened.child1, opened.lo1, opened.hi1, opened.below1, width);
     children.count = children.count + 1u;
 }
 
-// How many levels of the binary tree may be below the children of a node of four.
+// How many levels of the binary tree may be below the children of a node.
 FUNC uint tallest_below(uint level) { return 2u * (DEEPEST_RECORDS - 1u - level); }
 
-// Opens a child that is too tall, else the one with the largest box of those that have children themselves, if there is
-// one.
-FUNC void open_widest(REF(BvhNode) nodes, float unit, uint tallest, INOUT(NodeChildren) children)
+// Which child is opened next, the one with the most. Of those too small to fill half a node of eight one is left with
+// two children at most; no more than two are left so, as nothing else is opened before them.
+FUNC float priority_of(NodeChildren children, uint i, float unit, uint tallest, uint width)
 {
-    const float WIDEST = 3.402823466e+38f;
-    uint widest = 4u;
+    const float SMALL = 3.402823466e+38f;
+    const float TALL = 1.701411733e+38f;
+    if (i >= children.count || (children.child[i] & LEAF_BIT) != 0u) return -1.0f;
+    if (width == 8u && leaves_in(children.below[i]) < 4u) return SMALL;
+    bool is_too_tall = height_in(children.below[i]) > tallest;
+    return is_too_tall ? TALL : half_area(children.box[i].lo, children.box[i].hi, unit);
+}
+
+// Opens a child, if one has children itself.
+FUNC void open_next(REF(BvhNode) nodes, float unit, uint tallest, INOUT(NodeChildren) children, uint width)
+{
+    uint next = width;
     uint node = 0u;
-    float largest = -1.0f;
-    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
+    float highest = -1.0f;
+    UNROLL for (uint i = 0u; i < width; i = i + 1u)
     {
-        bool is_too_tall = height_in(children.below[i]) > tallest;
-        float area = is_too_tall ? WIDEST : half_area(children.box[i].lo, children.box[i].hi, unit);
-        bool is_wider = i < children.count && (children.child[i] & LEAF_BIT) == 0u && area > largest;
-        widest = is_wider ? i : widest;
-        node = is_wider ? children.child[i] : node;
-        largest = is_wider ? area : largest;
+        float priority = priority_of(children, i, unit, tallest, width);
+        bool is_higher = priority > highest;
+        next = is_higher ? i : next;
+        node = is_higher ? children.child[i] : node;
+        highest = is_higher ? priority : highest;
     }
-    if (widest < 4u) open_child(nodes, node, widest, children);
+    if (next < width) open_child(nodes, node, next, children, width);
 }
 
 FUNC NodeChildren no_children()
 {
     NodeChildren children;
-    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
+    UNROLL for (uint i = 0u; i < 8u; i = i + 1u)
     {
         children.child[i] = LEAF_BIT;
         children.box[i] = empty_box();
@@ -122,30 +133,29 @@ FUNC NodeChildren no_children()
     return children;
 }
 
-// The children of the node of four that a binary node becomes. It has two levels more than its children may have at
-// most, so that none is too tall once two are opened.
-FUNC NodeChildren children_of(REF(BvhNode) nodes, uint place)
+// The children of the node that a binary node becomes. It has two levels more than its children may have at most, so
+// that none is too tall once two are opened.
+FUNC NodeChildren children_of(REF(BvhNode) nodes, uint place, uint width)
 {
     NodeChildren children = no_children();
     children.count = 1u;
-    open_child(nodes, node_at(place), 0u, children);
-    LeafBox around = box_around(children);
+    open_child(nodes, node_at(place), 0u, children, width);
+    LeafBox around = box_around(children, width);
     float unit = area_unit(around.lo, around.hi);
-    open_widest(nodes, unit, tallest_below(level_at(place)), children);
-    open_widest(nodes, unit, tallest_below(level_at(place)), children);
+    for (uint i = 2u; i < width; i = i + 1u) open_next(nodes, unit, tallest_below(level_at(place)), children, width);
     return children;
 }
 
 struct CollapseStep
 {
-    CollapseItem items[4]; // of the children
-    uint leaves[4];        // below them; 0: there is no item
+    CollapseItem items[8]; // of the children
+    uint leaves[8];        // below them; 0: there is no item
 };
 
 FUNC CollapseStep no_step()
 {
     CollapseStep step;
-    UNROLL for (uint i = 0u; i < 4u; i = i + 1u) step.leaves[i] = 0u;
+    UNROLL for (uint i = 0u; i < 8u; i = i + 1u) step.leaves[i] = 0u;
     return step;
 }
 
@@ -157,38 +167,49 @@ FUNC uint leaves_of_item(NodeChildren children, uint i)
     return is_inner(children.child[i]) ? leaves_in(children.below[i]) : 0u;
 }
 
-// Writes the node of an item, whose children_of() these are, and where the leaves among them go.
-FUNC CollapseStep write_node(BuildTree tree, Uints places, CollapseItem item, NodeChildren children)
+FUNC NodeOrder order_of(NodeChildren children, uint width)
 {
-    store_record(tree.records, item.record, encode_node(children, item.below));
+    if (width == 8u) return octant_order(children);
+    return given_order((1u << children.count) - 1u, 0u);
+}
+
+// Writes the node of an item, whose children_of() these are, and where the leaves among them go.
+FUNC CollapseStep write_node(BuildTree tree, Uints places, CollapseItem item, NodeChildren children, uint width)
+{
+    NodeOrder order = order_of(children, width);
+    store_node(tree.records, item.record, encode_node(children, order, item.below, width), width);
+    ChildPlaces of_children;
+    of_children.first = item.below;
+    of_children.slots = order.places;
     CollapseStep step = no_step();
-    uint below = item.below + children.count;
+    uint below = places_end(of_children);
     uint leaves = 0u;
-    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
+    UNROLL for (uint i = 0u; i < width; i = i + 1u)
     {
         if (i >= children.count) continue;
+        uint place = place_of(of_children, slot_of(order, i));
         leaves = leaves + leaves_in(children.below[i]);
-        keep_box(tree, item.below + i, children.box[i]);
+        keep_box(tree, place, children.box[i]);
         uint child = children.child[i];
         step.leaves[i] = leaves_of_item(children, i);
         if (step.leaves[i] == 0u)
         {
-            AT(places, tree.first + (child & ~LEAF_BIT)) = item.below + i;
+            AT(places, tree.first + (child & ~LEAF_BIT)) = place;
             continue;
         }
         step.items[i].tree = item.tree;
         step.items[i].place = make_place(child, level_at(item.place) + 1u);
-        step.items[i].record = item.below + i;
+        step.items[i].record = place;
         step.items[i].below = below;
-        below = below + records_below(leaves_in(children.below[i]));
+        below = below + records_below(leaves_in(children.below[i]), width);
     }
-    for (uint end = item.below + records_below(leaves); below < end; below = below + 1u)
+    for (uint end = item.below + records_below(leaves, width); below < end; below = below + 1u)
         store_no_record(tree.records, below);
     return step;
 }
 
 // The item of a tree's root, if that is an inner node.
-FUNC CollapseStep begin_collapse(BuildTree tree, Uints places, uint index)
+FUNC CollapseStep begin_collapse(BuildTree tree, Uints places, uint index, uint width)
 {
     CollapseStep step = no_step();
     uint root = AT(tree.bvh, 0).root;
@@ -198,8 +219,10 @@ FUNC CollapseStep begin_collapse(BuildTree tree, Uints places, uint index)
     step.items[0].tree = index;
     step.items[0].place = make_place(root, 0u);
     step.items[0].record = 0u;
-    step.items[0].below = 1u;
-    if (!is_inner(root)) AT(places, tree.first) = 0u;
+    step.items[0].below = records_of_node(width);
+    if (is_inner(root)) return step;
+    AT(places, tree.first) = 0u;
+    if (width == 8u) store_no_record(tree.records, 1u);
     return step;
 }
 

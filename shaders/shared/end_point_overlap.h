@@ -7,7 +7,7 @@
 #include "shaders/shared/node_boxes.h"
 
 const uint OVERLAP_GROUP = 64u;
-const uint OVERLAP_STACK_SIZE = 3u * DEEPEST_TREE + 4u;
+const uint OVERLAP_STACK_SIZE = 7u * DEEPEST_RECORDS + 8u; // more than a binary tree needs
 
 struct OverlapSum
 {
@@ -112,14 +112,17 @@ FUNC OverlapSum overlap_of(SwGeometry geometry, BvhTriangle triangle, uint leaf)
     {
         height = height - 1u;
         uint depth = depths[height] + 1u;
-        NodeBoxes node = boxes_in(geometry, stack[height]);
-        for (uint i = 0u; i < node.count; i = i + 1u)
+        AnyNode node = node_of(geometry, stack[height]);
+        for (uint slot = 0u; slot < slots_of(geometry); slot = slot + 1u)
         {
-            if (is_apart(around, node.box[i])) continue;
-            sum.overlap = sum.overlap + area_within(triangle, node.box[i], unit);
-            if (node.child[i] == leaf) above = depth;
-            if (!is_inner_child(geometry, node.child[i])) continue;
-            stack[height] = node.child[i];
+            if (!has_child(node.places, slot)) continue;
+            LeafBox box = box_in(geometry, node, slot);
+            if (is_apart(around, box)) continue;
+            sum.overlap = sum.overlap + area_within(triangle, box, unit);
+            uint child = child_in(geometry, node, slot);
+            if (child == leaf) above = depth;
+            if (!is_inner_child(geometry, child)) continue;
+            stack[height] = child;
             depths[height] = depth;
             height = height + 1u;
         }

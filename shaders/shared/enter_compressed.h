@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Where a ray enters the children of a node of layout compressed4.
+// Where a ray enters the children of a node of layout compressed4, or of half a one of compressed8.
 #ifndef TWINRAY_SHARED_ENTER_COMPRESSED_H
 #define TWINRAY_SHARED_ENTER_COMPRESSED_H
 #include "shaders/shared/compressed.h"
 #include "shaders/shared/group.h"
 
-// The grid of a node as a ray sees it: along each axis the distance of a plane is plane * scale + base. The scale is that of near planes
-// for all: it leaves far ones 2^-20 of at most 255 cells nearer, and they are a 256th of a cell farther off than they must be.
+// The grid of a node as a ray sees it: along each axis the distance of a plane is plane * scale + base. The scale is
+// that of near planes for all: it leaves far ones 2^-20 of at most 255 cells nearer, and they are a 256th of a cell
+// farther off than they must be.
 struct SeenGrid
 {
     vec3 scale;
@@ -16,6 +17,17 @@ struct SeenGrid
     uvec3 far_planes;
 };
 
+FUNC void see_planes(INOUT(SeenGrid) grid, CompressedRecord planes, BoxRay ray)
+{
+    bool flip_x = ray.near_inverse.x < 0.0f;
+    bool flip_y = ray.near_inverse.y < 0.0f;
+    bool flip_z = ray.near_inverse.z < 0.0f;
+    grid.near_planes = uvec3(flip_x ? planes.b.y : planes.b.x, flip_y ? planes.b.w : planes.b.z,
+                             flip_z ? planes.c.y : planes.c.x);
+    grid.far_planes = uvec3(flip_x ? planes.b.x : planes.b.y, flip_y ? planes.b.z : planes.b.w,
+                            flip_z ? planes.c.x : planes.c.y);
+}
+
 FUNC SeenGrid grid_of(CompressedRecord node, BoxRay ray)
 {
     SeenGrid grid;
@@ -24,11 +36,7 @@ FUNC SeenGrid grid_of(CompressedRecord node, BoxRay ray)
     grid.scale = cell * ray.near_inverse;
     grid.near_base = (origin - ray.near_origin) * ray.near_inverse;
     grid.far_base = (origin - ray.far_origin) * ray.far_inverse;
-    bool flip_x = ray.near_inverse.x < 0.0f;
-    bool flip_y = ray.near_inverse.y < 0.0f;
-    bool flip_z = ray.near_inverse.z < 0.0f;
-    grid.near_planes = uvec3(flip_x ? node.b.y : node.b.x, flip_y ? node.b.w : node.b.z, flip_z ? node.c.y : node.c.x);
-    grid.far_planes = uvec3(flip_x ? node.b.x : node.b.y, flip_y ? node.b.z : node.b.w, flip_z ? node.c.x : node.c.y);
+    see_planes(grid, node, ray);
     return grid;
 }
 
@@ -37,8 +45,9 @@ FUNC float distance_along(uint planes, uint shift, float scale, float base)
     return FMA(float(planes >> shift & 0xffu), scale, base);
 }
 
-// The place of child `shift / 8` of the node in order, between t_min and t_max in t * ray.t_scale: as cross_box of ray_space.h.
-FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, bool is_there, uint query)
+// Where the ray crosses the box of child `shift / 8`, between t_min and t_max in t * ray.t_scale: as cross_box of
+// ray_space.h.
+FUNC vec2 cross_planes(SeenGrid grid, uint shift, float t_min, float t_max)
 {
     float near_x = distance_along(grid.near_planes.x, shift, grid.scale.x, grid.near_base.x);
     float near_y = distance_along(grid.near_planes.y, shift, grid.scale.y, grid.near_base.y);
@@ -46,7 +55,17 @@ FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, bool
     float far_x = distance_along(grid.far_planes.x, shift, grid.scale.x, grid.far_base.x);
     float far_y = distance_along(grid.far_planes.y, shift, grid.scale.y, grid.far_base.y);
     float far_z = distance_along(grid.far_planes.z, shift, grid.scale.z, grid.far_base.z);
-    return place_in_order(latest_of(t_min, near_x, near_y, near_z), earliest_of(t_max, far_x, far_y, far_z), is_there, query);
+    return vec2(latest_of(t_min, near_x, near_y, near_z), earliest_of(t_max, far_x, far_y, far_z));
+}
+FUNC bool crosses_planes(SeenGrid grid, uint shift, float t_min, float t_max)
+{
+    vec2 crossing = cross_planes(grid, shift, t_min, t_max);
+    return crossing.x <= crossing.y;
+}
+FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, bool is_there, uint query)
+{
+    vec2 crossing = cross_planes(grid, shift, t_min, t_max);
+    return place_in_order(crossing.x, crossing.y, is_there, query);
 }
 
 FUNC ChildKeys enter_compressed(CompressedRecord node, BoxRay ray, float t_min, float t_max, uint query)

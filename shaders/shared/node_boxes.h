@@ -1,41 +1,50 @@
 // SPDX-License-Identifier: MIT
-// Trees of all layouts, looked at in one way.
+// Trees of all layouts, looked at in one way: a node has slots, of which some have a child.
 #ifndef TWINRAY_SHARED_NODE_BOXES_H
 #define TWINRAY_SHARED_NODE_BOXES_H
 #include "shaders/shared/compressed.h"
 
-// The boxes of a node's children as rays meet them, whatever the layout, and where the children are.
-struct NodeBoxes
+struct AnyNode
 {
-    LeafBox box[4];
-    uint child[4];
-    uint count;
+    BvhNode binary; // of layout bvh2, else:
+    CompressedRecord record;
+    CompressedRecord second_half;
+    ChildPlaces places;
 };
 
-FUNC NodeBoxes boxes_in(SwGeometry geometry, uint index)
+FUNC uint slots_of(SwGeometry geometry) { return is_null(geometry.records) ? 2u : 8u; }
+
+FUNC AnyNode node_of(SwGeometry geometry, uint index)
 {
-    NodeBoxes node;
+    AnyNode node;
+    node.places.first = 0u;
+    node.places.slots = 3u;
     if (is_null(geometry.records))
     {
-        BvhNode binary = load_node(geometry.bvh.nodes, index);
-        node.box[0].lo = binary.lo0;
-        node.box[0].hi = binary.hi0;
-        node.box[1].lo = binary.lo1;
-        node.box[1].hi = binary.hi1;
-        node.child[0] = binary.child0;
-        node.child[1] = binary.child1;
-        node.count = 2u;
+        node.binary = load_node(geometry.bvh.nodes, index);
         return node;
     }
-    CompressedRecord record = load_record(geometry.records, index);
-    node.count = children_in(record);
-    for (uint i = 0u; i < node.count; i = i + 1u)
-    {
-        node.child[i] = first_child_of(record) + i;
-        if (!is_null(geometry.record_boxes)) node.box[i] = load_box(geometry.record_boxes, first_child_of(record) + i);
-        else node.box[i] = box_in_planes(record, i);
-    }
+    node.record = load_record(geometry.records, index);
+    node.second_half = second_half_of(geometry.records, index, node.record);
+    node.places = places_in(node.record, node.second_half);
     return node;
+}
+
+FUNC uint child_in(SwGeometry geometry, AnyNode node, uint slot)
+{
+    if (is_null(geometry.records)) return slot == 0u ? node.binary.child0 : node.binary.child1;
+    return place_of(node.places, slot);
+}
+
+// The box of a child as rays meet it.
+FUNC LeafBox box_in(SwGeometry geometry, AnyNode node, uint slot)
+{
+    if (!is_null(geometry.record_boxes)) return load_box(geometry.record_boxes, place_of(node.places, slot));
+    if (!is_null(geometry.records)) return box_in_planes(node.record, node.second_half, slot);
+    LeafBox box;
+    box.lo = slot == 0u ? node.binary.lo0 : node.binary.lo1;
+    box.hi = slot == 0u ? node.binary.hi0 : node.binary.hi1;
+    return box;
 }
 
 FUNC bool is_inner_child(SwGeometry geometry, uint child)

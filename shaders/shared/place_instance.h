@@ -8,10 +8,17 @@
 #define TWINRAY_SHARED_PLACE_INSTANCE_H
 #include "shaders/shared/node_boxes.h"
 
-// How many levels of boxes below the root are looked at, of nodes with four and of nodes with two children.
-const uint CUT_LEVELS = 4u;
+// How many levels of boxes below the root are looked at, by how many children a node has.
 const uint BINARY_CUT_LEVELS = 8u;
-const uint CUT_STACK = 3u * (CUT_LEVELS - 1u) + 1u; // nodes that wait: fewer in a binary tree
+const uint CUT_LEVELS = 4u;
+const uint WIDE_CUT_LEVELS = 3u;
+const uint CUT_STACK = 7u * (WIDE_CUT_LEVELS - 1u) + 1u; // nodes that wait: fewer where nodes have fewer children
+
+FUNC uint cut_levels(SwGeometry geometry)
+{
+    if (is_null(geometry.records)) return BINARY_CUT_LEVELS;
+    return is_wide_node(load_record(geometry.records, geometry.bvh.root)) ? WIDE_CUT_LEVELS : CUT_LEVELS;
+}
 
 // A box around `box` under the map, but for rounding.
 FUNC LeafBox box_under(Rows map, LeafBox box)
@@ -56,8 +63,7 @@ FUNC bool is_within(LeafBox box, LeafBox outer)
 // above.
 FUNC LeafBox box_of_cut(SwGeometry geometry, Rows to_world)
 {
-    bool is_binary = is_null(geometry.records);
-    uint lowest = is_binary ? BINARY_CUT_LEVELS : CUT_LEVELS;
+    uint lowest = cut_levels(geometry);
     LeafBox around = empty_box();
     uint stack[CUT_STACK];
     uint levels[CUT_STACK];
@@ -68,15 +74,16 @@ FUNC LeafBox box_of_cut(SwGeometry geometry, Rows to_world)
     {
         height = height - 1u;
         uint level = levels[height] + 1u;
-        NodeBoxes node = boxes_in(geometry, stack[height]);
-        for (uint i = 0u; i < node.count; i = i + 1u)
+        AnyNode node = node_of(geometry, stack[height]);
+        for (uint slot = 0u; slot < slots_of(geometry); slot = slot + 1u)
         {
-            if (!is_active(node.box[i])) continue;
-            LeafBox box = box_under(to_world, node.box[i]);
+            if (!has_child(node.places, slot) || !is_active(box_in(geometry, node, slot))) continue;
+            LeafBox box = box_under(to_world, box_in(geometry, node, slot));
             if (is_within(box, around)) continue;
-            if (level < lowest && is_inner_child(geometry, node.child[i]))
+            uint child = child_in(geometry, node, slot);
+            if (level < lowest && is_inner_child(geometry, child))
             {
-                stack[height] = node.child[i];
+                stack[height] = child;
                 levels[height] = level;
                 height = height + 1u;
                 continue;

@@ -41,8 +41,9 @@ struct BoxRay
 
 FUNC float reciprocal(float d)
 {
-    // 1/0 is written out: Vulkan leaves the division undefined. Its sign is that of the zero.
-    return d == 0.0f ? uintBitsToFloat(0x7f800000u | (floatBitsToUint(d) & 0x80000000u)) : 1.0f / d;
+    // 1/0 is written out: Vulkan leaves the division undefined. Of either zero it is positive, as compilers may turn one
+    // into the other, and the order of children depends on it.
+    return d == 0.0f ? uintBitsToFloat(0x7f800000u) : 1.0f / d;
 }
 
 FUNC uint dominant_axis(vec3 direction)

@@ -7,116 +7,10 @@
 // left out.
 #ifndef TWINRAY_SHARED_TRAVERSE_H
 #define TWINRAY_SHARED_TRAVERSE_H
-#include "shaders/shared/enter_binary.h"
-#include "shaders/shared/enter_compressed.h"
-#include "shaders/shared/enter_full.h"
+#include "shaders/shared/entered_children.h"
 #include "shaders/shared/short_stack.h"
 
 const uint LEAVE_INSTANCE = 1u; // an entry of the stack that no group and no edge is
-const uint ROOT_EDGE = 0u;      // in every layout; beside the root there is nothing that could be lost
-
-// A tree of one level; of its arrays a layout has some.
-struct SwTree
-{
-    REF(BvhNode) nodes;
-    REF(BvhTriangle) triangles;
-    REF(CompressedRecord) records;
-    REF(LeafBox) boxes;
-    uint root;
-};
-
-// A node or leaf of a tree: the number of a record, for both; in layout bvh2 a child and its edge.
-struct TreePosition
-{
-    uint item;
-    uint edge;
-};
-
-FUNC TreePosition at_record(uint index)
-{
-    TreePosition at;
-    at.item = index;
-    at.edge = index;
-    return at;
-}
-FUNC TreePosition at_root(SwTree tree, bool is_binary)
-{
-    TreePosition at;
-    at.item = is_binary ? tree.root : 0u;
-    at.edge = ROOT_EDGE;
-    return at;
-}
-
-FUNC SwTree top_tree(SwScene scene)
-{
-    SwTree tree;
-    tree.nodes = scene.bvh.nodes;
-    tree.triangles = REF(BvhTriangle)(NULL_ADDRESS);
-    tree.records = scene.records;
-    tree.boxes = scene.record_boxes;
-    tree.root = scene.bvh.root;
-    return tree;
-}
-FUNC SwTree tree_of(SwInstance instance)
-{
-    SwTree tree;
-    tree.nodes = instance.nodes;
-    tree.triangles = instance.triangles;
-    tree.records = instance.records;
-    tree.boxes = instance.record_boxes;
-    tree.root = instance.root;
-    return tree;
-}
-
-FUNC bool is_binary(SwScene scene, TraceOptions options)
-{
-    bool may_be = (options.features & FEATURE_BVH2) != 0u;
-    bool may_have_records = (options.features & (FEATURE_COMPRESSED | FEATURE_BVH4)) != 0u;
-    return may_be && (!may_have_records || is_null(scene.records));
-}
-
-// The children of a node that the ray enters, the first one first, and the rest as an entry of the stack.
-struct EnteredChildren
-{
-    TreePosition first;
-    bool is_entered;
-    uint others; // or EMPTY_GROUP
-};
-
-// `target`: not NOTHING, but what the ray is on its way back to.
-FUNC EnteredChildren children_of_record(CompressedRecord record, SwTree tree, BoxRay ray, Search search, uint target,
-                                         TraceOptions options)
-{
-    bool may_be_full = (options.features & FEATURE_BVH4) != 0u;
-    bool may_be_compressed = (options.features & FEATURE_COMPRESSED) != 0u;
-    ChildKeys keys;
-    if (may_be_full && (!may_be_compressed || !is_null(tree.boxes)))
-        keys = enter_full(tree.boxes, record, ray, search.t_min, search.t_best, options.query);
-    else keys = enter_compressed(record, ray, search.t_min, search.t_best, options.query);
-    if (target != NOTHING) keys = keys_from(keys, child_towards(tree.records, record, target));
-    sort_keys(keys);
-    EnteredChildren children;
-    children.first = at_record(first_child_of(record) + (keys.key0 & 3u));
-    children.is_entered = keys.key0 < NO_ENTRY;
-    children.others = group_of(keys, first_child_of(record));
-    return children;
-}
-
-FUNC EnteredChildren children_of_node(uint index, SwTree tree, BoxRay ray, Search search, uint target,
-                                         TraceOptions options)
-{
-    BvhNode node = load_node(tree.nodes, index);
-    ChildKeys keys = enter_binary(node, ray, search, options.query);
-    if (target != NOTHING) keys = keys_from(keys, binary_child_towards(tree.nodes, index, target));
-    sort_pair(keys.key0, keys.key1);
-    uint side = keys.key0 & 1u;
-    EnteredChildren children;
-    children.first.item = side == 0u ? node.child0 : node.child1;
-    children.first.edge = make_edge(index, side);
-    children.is_entered = keys.key0 < NO_ENTRY;
-    children.others = keys.key1 < NO_ENTRY ? make_edge(index, side ^ 1u) : EMPTY_GROUP;
-    return children;
-}
 
 // Where a ray is, and what it has still to visit.
 struct Traversal
@@ -171,9 +65,10 @@ FUNC void prepare_ray(INOUT(Traversal) here, SwScene scene, Ray ray, TraceOption
 }
 
 // Goes on to a child, unless the ray enters none, or is back where it was.
-FUNC bool visit_children(INOUT(Traversal) here, EnteredChildren children)
+FUNC bool visit_children(INOUT(Traversal) here, EnteredChildren children, TraceOptions options)
 {
-    if (children.others != NO_STACK_ENTRY) push_entry(here.stack, children.others);
+    if (children.others != NO_STACK_ENTRY)
+        push_entry(here.stack, children.others, children.siblings, may_be_wide(options));
     bool descends = children.is_entered && children.first.edge != here.target;
     if (children.is_entered) here.at = children.first;
     if (here.at.edge == here.target) here.target = NOTHING;
@@ -185,7 +80,7 @@ FUNC bool visit_instance(INOUT(Traversal) here, SwScene scene, uint index, bool 
     bool enters = is_visible(scene.instances, index, options);
     if (enters)
     {
-        push_entry(here.stack, LEAVE_INSTANCE);
+        push_entry(here.stack, LEAVE_INSTANCE, 0u, may_be_wide(options));
         here.inside.index = index;
         here.outside = here.at.edge;
         here.at.edge = ROOT_EDGE;
@@ -204,9 +99,15 @@ FUNC void leave_instance(INOUT(Traversal) here, SwScene scene)
 }
 
 // Takes the next child off the last entry.
-FUNC void take_child(INOUT(Traversal) here, bool is_binary)
+FUNC void take_child(INOUT(Traversal) here, bool is_binary, TraceOptions options)
 {
     uint entry = here.stack.last;
+    if (is_surely_wide(options) || (may_be_wide(options) && here.stack.second != 0u))
+    {
+        here.at = at_next_of_visits(entry, here.stack.second);
+        here.stack.last = rest_of_visits(entry);
+        return;
+    }
     here.at = at_record(next_of(entry));
     if (is_binary)
     {
@@ -217,10 +118,10 @@ FUNC void take_child(INOUT(Traversal) here, bool is_binary)
 }
 
 // Sends the ray from the root to where it is.
-FUNC void restart(INOUT(Traversal) here, bool is_inside, bool is_binary)
+FUNC void restart(INOUT(Traversal) here, bool is_inside, bool is_binary, TraceOptions options)
 {
     here.stack = empty_stack(is_inside);
-    if (is_inside) push_entry(here.stack, LEAVE_INSTANCE);
+    if (is_inside) push_entry(here.stack, LEAVE_INSTANCE, 0u, may_be_wide(options));
     here.target = here.at.edge;
     here.at = at_root(here.tree, is_binary);
 }
@@ -229,18 +130,18 @@ FUNC void restart(INOUT(Traversal) here, bool is_inside, bool is_binary)
 FUNC bool visit_next(INOUT(Traversal) here, SwScene scene, bool is_binary, TraceOptions options)
 {
     bool has_top = (options.features & FEATURE_INSTANCES) != 0u;
-    fetch_last(here.stack);
+    fetch_last(here.stack, may_be_wide(options));
     if (has_top && here.stack.last == LEAVE_INSTANCE)
     {
         leave_instance(here, scene);
         here.stack.last = NO_STACK_ENTRY;
-        fetch_last(here.stack);
+        fetch_last(here.stack, may_be_wide(options));
     }
     bool waits = here.stack.last != NO_STACK_ENTRY;
-    if (waits) take_child(here, is_binary);
+    if (waits) take_child(here, is_binary, options);
     else if (here.stack.has_lost && here.at.edge != ROOT_EDGE)
     {
-        restart(here, has_top && here.outside != NOTHING, is_binary);
+        restart(here, has_top && here.outside != NOTHING, is_binary, options);
         waits = true;
     }
     return waits;
@@ -263,20 +164,29 @@ FUNC Hit traverse(SwScene scene, Ray ray, TraceOptions options)
         if (has_top && here.is_elsewhere) prepare_ray(here, scene, ray, options);
         bool descends = false;
         CompressedRecord record;
-        if (!binary) record = load_record(here.tree.records, here.at.item);
+        CompressedRecord second_half;
+        if (!binary) record = load_record(here.tree.records, here.at.item & ~LEAF_BIT);
+        bool is_wide = is_surely_wide(options) ? (here.at.item & LEAF_BIT) == 0u
+                                               : !binary && may_be_wide(options) && is_wide_node(record);
+        if (may_be_wide(options) && is_wide) second_half = load_record(here.tree.records, here.at.item + 1u);
         bool is_inner = binary ? (here.at.item & LEAF_BIT) == 0u : !is_leaf(record);
         bool is_place = has_top && (binary ? here.outside == NOTHING : is_instance(record));
         if (is_inner)
         {
+            COUNT_STEPS(nodes, 1u);
+            COUNT_STEPS(boxes, binary ? 2u : children_in(record));
             BoxRay boxes_ray = only_ray;
             if (has_top) boxes_ray = box_ray(here.space);
             EnteredChildren children;
             if (binary) children = children_of_node(here.at.item, here.tree, boxes_ray, search, here.target, options);
+            else if (may_be_wide(options) && is_wide)
+                children = children_of_wide(record, second_half, here.tree, boxes_ray, search, here.target);
             else children = children_of_record(record, here.tree, boxes_ray, search, here.target, options);
-            descends = visit_children(here, children);
+            descends = visit_children(here, children, options);
         }
         else if (!is_place)
         {
+            COUNT_STEPS(primitives, 1u);
             BvhTriangle leaf;
             if (binary) leaf = load_triangle(here.tree.triangles, here.at.item & ~LEAF_BIT);
             else leaf = primitive_of(record);

@@ -8,8 +8,8 @@ const uint GROUPS_PER_ROW = 32768u;
 
 // Of groups whose invocations wait for each other, or have much to do each: specialised for the device.
 const uint GROUP_SIZE_CONSTANT = 1u;
-// Of kernels that load ahead on a CPU (shaders/swtlas/ahead.glsl).
-const uint LOADS_AHEAD_CONSTANT = 2u;
+// Of kernels that write nodes of records: how many children these have at most.
+const uint NODE_WIDTH_CONSTANT = 2u;
 // On a CPU, of sorts; of others at least, up to the lanes of its vectors: more would take turns between barriers, and leave threads
 // without a group.
 const uint CPU_GROUP = 8u;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Binary trees become trees of four children a node, level by level: the items of one level leave those of the next,
+// Binary trees become trees of NODE_WIDTH children a node, level by level: the items of one level leave those of the next,
 // and those of subtrees that a group can do whole. Begun once per tree.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -7,6 +7,7 @@
 #include "shaders/shared/collapse.h"
 layout(local_size_x = COLLAPSE_GROUP) in;
 layout(constant_id = 0) const uint STEP = COLLAPSE_LEVEL;
+layout(constant_id = NODE_WIDTH_CONSTANT) const uint NODE_WIDTH = 4u;
 layout(push_constant, scalar) uniform Push { CollapseArgs args; };
 
 // Of the next level and of subtrees: how many items, or where in their lists.
@@ -50,7 +51,7 @@ ItemLists reserve(ItemLists counts)
 
 void push(CollapseStep found, ItemLists places)
 {
-    UNROLL for (uint i = 0u; i < 4u; i = i + 1u)
+    UNROLL for (uint i = 0u; i < NODE_WIDTH; i = i + 1u)
     {
         if (found.leaves[i] == 0u) continue;
         if (is_subtree(found.leaves[i])) store_item(args.subtrees, places.subtrees, found.items[i]);
@@ -61,7 +62,7 @@ void push(CollapseStep found, ItemLists places)
 
 void begin(uint index)
 {
-    CollapseStep found = begin_collapse(AT(args.trees, index), args.places, index);
+    CollapseStep found = begin_collapse(AT(args.trees, index), args.places, index, NODE_WIDTH);
     ItemLists counts = ItemLists(0u, 0u);
     count_item(counts, found.leaves[0]);
     push(found, reserve(counts));
@@ -70,11 +71,11 @@ void begin(uint index)
 void do_item(CollapseItem item)
 {
     BuildTree tree = AT(args.trees, item.tree);
-    NodeChildren children = children_of(tree.nodes, item.place);
+    NodeChildren children = children_of(tree.nodes, item.place, NODE_WIDTH);
     ItemLists counts = ItemLists(0u, 0u);
-    UNROLL for (uint i = 0u; i < 4u; i = i + 1u) count_item(counts, leaves_of_item(children, i));
+    UNROLL for (uint i = 0u; i < NODE_WIDTH; i = i + 1u) count_item(counts, leaves_of_item(children, i));
     ItemLists places = reserve(counts); // before all writes, which an atomic operation waits for on CPUs
-    push(write_node(tree, args.places, item, children), places);
+    push(write_node(tree, args.places, item, children, NODE_WIDTH), places);
 }
 
 void main()

@@ -17,7 +17,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
-#include "shaders/swtlas/ahead.glsl"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(constant_id = 0) const uint QUALITY = HIERARCHY_FAST;
 layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
@@ -167,27 +166,12 @@ void join_ranges(BuildTree tree, NodeHalves nodes, float scale, Run run)
     }
 }
 
-// The codes and boxes of the leaves begin .. end - 1.
-void load_ahead(uint begin, uint end)
-{
-    uint found = 0u;
-    for (uint first = 0u; first < end - begin; first += LOADS_ABREAST)
-    {
-        uint elements[LOADS_ABREAST];
-        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) elements[i] = AT(args.order, min(begin + first + i, end - 1u));
-        found ^= AT(args.codes, begin + first);
-        UNROLL for (uint i = 0u; i < LOADS_ABREAST; ++i) found ^= floatBitsToUint(AT(args.boxes, elements[i]).hi.z);
-    }
-    keep_loads(found);
-}
-
 // The leaves begin .. end - 1. In each turn of the loop an invocation takes some leaves or joins, but stops where there
 // is a node to rotate, and rotates one: where invocations go through a program together, each waits little for the
 // others.
 void build_run(BuildTree tree, float scale, uint begin, uint end)
 {
     NodeHalves nodes = NodeHalves(tree.nodes.address);
-    if (LOADS_AHEAD) load_ahead(begin, end);
     Run run = first_run(tree, begin, end);
     Rotation rotation = no_rotation();
     while (run.place != end)

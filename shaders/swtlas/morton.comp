@@ -5,7 +5,6 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
 #include "shaders/shared/splits.h"
-#include "shaders/swtlas/ahead.glsl"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { MortonArgs args; };
 
@@ -14,7 +13,6 @@ void main()
     BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
     LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
     if (group_index() >= args.block_count) return;
-    if (LOADS_AHEAD) load_lines(address_at(args.boxes.address, block.first, 24u), block.count * 24u, gl_WorkGroupSize.x);
     for (uint i = gl_LocalInvocationID.x; i < block.count; i += gl_WorkGroupSize.x)
     {
         uint leaf = block.first + i;

@@ -14,7 +14,10 @@ void visit(BuildTree tree, uint slot)
     CompressedRecord record = load_record(tree.records, slot);
     if (is_leaf(record)) return;
     AT(args.missing, base + slot) = children_in(record);
-    for (uint i = 0u; i < children_in(record); ++i) AT(args.parents, base + first_child_of(record) + i) = slot;
+    if (children_in(record) == 0u) return;
+    ChildPlaces places = places_in(record, second_half_of(tree.records, slot, record));
+    DONT_UNROLL for (uint i = 0u; i < NODE_WIDTH; ++i)
+        if (has_child(places, i)) AT(args.parents, base + place_of(places, i)) = slot;
 }
 
 void main()

@@ -22,15 +22,18 @@ LeafBox refit_leaf(BuildTree tree, uint slot, uint leaf)
 
 LeafBox refit_node(BuildTree tree, uint slot, CompressedRecord node, SharedBoxes boxes)
 {
+    CompressedRecord second_half = second_half_of(tree.records, slot, node);
+    ChildPlaces places = places_in(node, second_half);
     NodeChildren children;
-    children.count = children_in(node);
-    UNROLL for (uint i = 0u; i < 4u; ++i)
+    children.count = NODE_WIDTH;
+    UNROLL for (uint i = 0u; i < NODE_WIDTH; ++i)
     {
         children.box[i] = empty_box();
-        if (i < children.count) children.box[i] = AT(boxes, 2u * tree.first + first_child_of(node) + i);
+        if (has_child(places, i)) children.box[i] = AT(boxes, 2u * tree.first + place_of(places, i));
     }
-    store_record(tree.records, slot, encode_node(children, first_child_of(node)));
-    return box_around(children);
+    NodeOrder order = given_order(places.slots, NODE_WIDTH == 8u ? second_half.a.x >> 16u : 0u);
+    store_node(tree.records, slot, encode_node(children, order, places.first, NODE_WIDTH), NODE_WIDTH);
+    return box_around(children, NODE_WIDTH);
 }
 
 // Leaves the box where the record's parent finds it. Gives the parent if this was the last of its children, else

@@ -4,6 +4,11 @@
 #define TWINRAY_SWTLAS_SLOTS_GLSL
 #include "shaders/shared/compressed.h"
 
-uint slots_begin(BuildTree tree, BuildBlock block) { return record_count(block.first - tree.first); }
-uint slots_end(BuildTree tree, BuildBlock block) { return record_count(block.first - tree.first + block.count); }
+layout(constant_id = NODE_WIDTH_CONSTANT) const uint NODE_WIDTH = 4u;
+
+uint slots_begin(BuildTree tree, BuildBlock block) { return record_count(block.first - tree.first, NODE_WIDTH); }
+uint slots_end(BuildTree tree, BuildBlock block)
+{
+    return record_count(block.first - tree.first + block.count, NODE_WIDTH);
+}
 #endif

@@ -131,7 +131,7 @@ std::string name_of_features(const ::testing::TestParamInfo<std::tuple<Layout, L
     return std::string(name_of(std::get<0>(info.param))) + names[static_cast<std::size_t>(std::get<1>(info.param))];
 }
 INSTANTIATE_TEST_SUITE_P(Every, Features,
-                         ::testing::Combine(::testing::Values(Layout::compressed4, Layout::bvh2),
+                         ::testing::Combine(::testing::Values(Layout::compressed4, Layout::bvh2, Layout::compressed8),
                                             ::testing::Values(Level::fast, Level::watertight, Level::refined,
                                                               Level::certified)),
                          name_of_features);
@@ -165,6 +165,7 @@ class FeaturesOfAccel : public Features {};
 INSTANTIATE_TEST_SUITE_P(Some, FeaturesOfAccel,
                          ::testing::Values(std::tuple(Layout::compressed4, Level::watertight),
                                            std::tuple(Layout::bvh4, Level::watertight),
+                                           std::tuple(Layout::compressed8, Level::watertight),
                                            std::tuple(Layout::bvh2, Level::certified)),
                          name_of_features);
 

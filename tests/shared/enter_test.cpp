@@ -14,7 +14,8 @@ namespace {
 
 std::array<bool, 4> entered(const NodeChildren& children, const Ray& ray, float extent) {
     const BoxRay prepared = box_ray(make_ray_space(ray.origin, ray.direction, corner_pad(ray.origin, extent)));
-    const ChildKeys keys = enter_compressed(encode_node(children, 1), prepared, ray.t_min, ray.t_max, QUERY_CLOSEST);
+    const NodeRecords node = encode_node(children, given_order((1u << children.count) - 1, 0), 1, 4);
+    const ChildKeys keys = enter_compressed(node.first, prepared, ray.t_min, ray.t_max, QUERY_CLOSEST);
     return {keys.key0 < NO_ENTRY, keys.key1 < NO_ENTRY, keys.key2 < NO_ENTRY, keys.key3 < NO_ENTRY};
 }
 
@@ -56,7 +57,7 @@ TEST(Enter, ARayToACornerOfABoxEntersIt) {
         const vec3 away =
             point_between(draws, vec3(-1), vec3(1)) * size * static_cast<float>(std::exp2(draws.between(-8, 8)));
         const Ray ray{corner + away, 0.0f, -away, 2.0f};
-        const LeafBox around = box_around(children);
+        const LeafBox around = box_around(children, 4);
         ASSERT_TRUE(entered(children, ray, largest_coordinate(around.lo, around.hi))[aim]) << turn;
     }
 }

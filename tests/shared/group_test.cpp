@@ -60,7 +60,12 @@ TEST(Groups, AreFoundAgainFromTheChild) {
     EXPECT_EQ(again(2), std::vector<uint>{}) << "beyond what was found";
 }
 
-TEST(ShortStack, KeepsTheLastEntriesAndSaysThatItHasLostOthers) {
+class ShortStacks : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Of, ShortStacks, testing::Bool(),
+                         [](const auto& has) { return has.param ? "two_words" : "one_word"; });
+
+TEST_P(ShortStacks, KeepTheLastEntriesAndSayThatTheyHaveLostOthers) {
+    const bool has_two_words = GetParam();
     std::mt19937 random(5);
     ShortStack stack = empty_stack(false);
     std::vector<uint> all;
@@ -69,9 +74,10 @@ TEST(ShortStack, KeepsTheLastEntriesAndSaysThatItHasLostOthers) {
         const bool is_growing = turn / 300 % 2 == 0;
         if (random() % 8 < (is_growing ? 6u : 1u)) {
             all.push_back(static_cast<uint>(random()) | 1);
-            push_entry(stack, all.back());
-        } else if (fetch_last(stack); stack.last != NO_STACK_ENTRY) {
+            push_entry(stack, all.back(), ~all.back(), has_two_words);
+        } else if (fetch_last(stack, has_two_words); stack.last != NO_STACK_ENTRY) {
             ASSERT_EQ(stack.last, all.back()) << turn;
+            if (has_two_words) ASSERT_EQ(stack.second, ~all.back()) << turn;
             stack.last = NO_STACK_ENTRY;
             all.pop_back();
         } else {
@@ -80,28 +86,32 @@ TEST(ShortStack, KeepsTheLastEntriesAndSaysThatItHasLostOthers) {
             all.clear();
             stack = empty_stack(false);
         }
-        ASSERT_LE(stack.top - stack.bottom, stack_size());
+        ASSERT_LE(stack.top - stack.bottom, stack_capacity(has_two_words));
     }
     EXPECT_GT(losses, 10u);
 }
 
+class Records : public testing::TestWithParam<uint> {};
+INSTANTIATE_TEST_SUITE_P(OfNodesOf, Records, testing::Values(4u, 8u));
+
 // Every record of a tree is found from the root.
-TEST(Compressed, TheChildTowardsARecordLeadsToIt) {
+TEST_P(Records, TheSlotTowardsARecordLeadsToIt) {
     const Mesh mesh = make_soup(500, 4);
     const Geometry geometry(mesh);
     const std::vector<LeafBox> boxes = reference::leaves_triangles(geometry.positions, geometry.triangles);
     const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     const reference::Hierarchy tree = reference::hierarchy(boxes, codes, reference::sort(codes), false);
     const std::vector<CompressedRecord> records =
-        reference::records_of_triangles(tree, geometry.positions, geometry.triangles).records;
+        reference::records_of_triangles(tree, geometry.positions, geometry.triangles, GetParam()).records;
     const auto all = Ref<CompressedRecord>::to(records.data());
     for (uint target = 1; target < records.size(); ++target) {
-        if (is_none(records[target])) continue;
+        if (!is_leaf(records[target]) && children_in(records[target]) == 0) continue;
         uint at = 0;
         for (uint depth = 0; at != target; ++depth) {
             ASSERT_LT(depth, DEEPEST_RECORDS) << target;
             ASSERT_FALSE(is_leaf(records[at])) << target;
-            at = first_child_of(records[at]) + child_towards(all, records[at], target);
+            const ChildPlaces places = places_in(records[at], second_half_of(all, at, records[at]));
+            at = place_of(places, slot_towards(all, places, target));
         }
     }
 }
@@ -137,7 +147,7 @@ TEST(Groups, ANodeTellsItsFirstChildAndTheirNumber) {
     for (const uint first : {1u, (1u << 25) + 5, MOST_RECORDS - 4}) {
         NodeChildren children{};
         children.count = 4;
-        node = encode_node(children, first);
+        node = encode_node(children, given_order(15, 0), first, 4).first;
         EXPECT_EQ(first_child_of(node), first);
         EXPECT_EQ(children_in(node), 4u);
         EXPECT_FALSE(is_leaf(node));

@@ -38,7 +38,10 @@ inline auto every_build() {
                            How{Layout::compressed4, BuildQuality::high, of_gpu},
                            How{Layout::bvh2, BuildQuality::fast, of_gpu},
                            How{Layout::compressed4, BuildQuality::ploc, of_device},
-                           How{Layout::bvh2, BuildQuality::ploc, of_gpu});
+                           How{Layout::bvh2, BuildQuality::ploc, of_gpu},
+                           How{Layout::compressed8, BuildQuality::fast, of_device},
+                           How{Layout::compressed8, BuildQuality::high, of_gpu},
+                           How{Layout::compressed8, BuildQuality::ploc, of_device});
 }
 inline std::string name_of_build(const testing::TestParamInfo<How>& how) {
     return text(name_of(std::get<Layout>(how.param)), '_', name_of(std::get<BuildQuality>(how.param)),
@@ -62,6 +65,10 @@ std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transfor
 std::vector<Transform> scattered(std::size_t count, uint seed);
 
 inline bool has_records(const SwTlas::Tree& tree) { return !tree.records.empty(); }
+// Of a tree with records: how many children a node has at most. One leaf has room for a node in compressed8 alone.
+inline uint width_of(const SwTlas::Tree& tree) {
+    return tree.records.size() == 2 || is_wide_node(tree.records.front()) ? 8 : 4;
+}
 
 // Of a tree whose references are the leaves' own indices, or with records.
 void expect_sound(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes, const std::string& name);

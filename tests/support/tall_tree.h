@@ -26,7 +26,7 @@ struct TallTree {
         tree.box = all.box;
     }
 
-    // Of a file or a check, in layout compressed4.
+    // Of a file or a check, in layouts of records.
     Bvh bvh_of_records() const { return {tree.box.lo, tree.box.hi, {}, 0, leaves}; }
 
   private:

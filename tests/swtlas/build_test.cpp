@@ -140,7 +140,8 @@ TEST_P(SwBuild, ALargeSubtreeIsLeftBelowTheLastLevel) {
     const Mesh mesh = chain_before_a_clump(57, most + 300);
     const auto count = static_cast<uint>(mesh.triangles.size());
     const SwTlas::Tree tree = checked_tree(mesh);
-    if (!has_records(tree) || quality() != BuildQuality::fast) return;  // the others make it less deep
+    // Others make it less deep.
+    if (!has_records(tree) || width_of(tree) == 8 || quality() != BuildQuality::fast) return;
     const uint levels = plan_build(std::span(&count, 1), Layout::compressed4, context().tuning()).collapse_levels;
     EXPECT_GT(check_compressed(tree.bvh, tree.records, leaf_boxes(tree, mesh)).depth, levels + 10);
 }
@@ -214,7 +215,7 @@ TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
         const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
         const reference::Hierarchy twin = reference::hierarchy(boxes, codes, reference::sort(codes), false, quality());
         if (has_records(tree))
-            EXPECT_TRUE(same_bytes(tree.records, reference::records_of_instances(twin, n).records)) << n;
+            EXPECT_TRUE(same_bytes(tree.records, reference::records_of_instances(twin, n, width_of(tree)).records)) << n;
         else
             EXPECT_TRUE(same_bytes(tree.nodes, reference::linked(twin).nodes)) << n;
     }
@@ -243,8 +244,9 @@ TEST_P(SwBuild, AStrayTriangleDoesNotSpoilTheOrderOfTheOthers) {
     const SwTlas::Tree tree = accel.download_geometry(handle);
     expect_sound(tree, mesh);
     expect_twin(tree, mesh, quality());
-    // In compressed4 the planes of its topmost boxes lie far apart.
-    const bool is_exact = std::get<Layout>(GetParam()) != Layout::compressed4;
+    // In planes of grids its topmost boxes lie far apart.
+    const Layout layout = std::get<Layout>(GetParam());
+    const bool is_exact = layout == Layout::bvh2 || layout == Layout::bvh4;
     EXPECT_LT(area_below_root(tree, mesh), is_exact ? 1.2 * area : INFINITY);
 
     // Beside others in a batch, of which it is a small part, and which keep their order.
@@ -293,8 +295,10 @@ TEST_P(SwQuality, HighAndPlocCostRaysLess) {
         }
         std::printf("surface-area cost of %zu triangles: fast %.2f, high %.2f, ploc %.2f\n", mesh.triangles.size(),
                     sah[0], sah[1], sah[2]);
-        EXPECT_LT(sah[1], 0.97 * sah[0]);
-        EXPECT_LT(sah[2], 0.99 * sah[0]);
+        // On a sphere, whose triangles are alike, nodes of eight leave little to gain.
+        const bool is_wide = GetParam() == Layout::compressed8;
+        EXPECT_LT(sah[1], (is_wide ? 0.99 : 0.97) * sah[0]);
+        EXPECT_LT(sah[2], (is_wide ? 0.995 : 0.99) * sah[0]);
     }
 }
 

@@ -13,7 +13,7 @@
 namespace twinray {
 namespace {
 
-class DeepTrees : public test::VulkanTest {
+class DeepTrees : public test::VulkanTest, public testing::WithParamInterface<Layout> {
   protected:
     // All boxes are around the origin. A ray from there along (1, 1, 1) enters them all, and meets one triangle of the
     // fork `open`, that farther in being visited first.
@@ -34,10 +34,11 @@ class DeepTrees : public test::VulkanTest {
         const Geometry geometry(mesh);
         const test::TallTree tall(reference::leaves_triangles(geometry.positions, mesh.triangles));
         const std::vector<CompressedRecord> records =
-            reference::records_of_triangles(tall.tree, geometry.positions, mesh.triangles).records;
+            reference::records_of_triangles(tall.tree, geometry.positions, mesh.triangles, width_of(GetParam()))
+                .records;
         const std::vector<SavedGeometry> saved = {
             {geometry, tall.bvh_of_records(), {}, {}, records, {make_instance_record(Transform{}, {})}}};
-        const EncodedSave encoded = encode_save(Layout::compressed4, saved);
+        const EncodedSave encoded = encode_save(GetParam(), saved);
         std::string file(reinterpret_cast<const char*>(encoded.head.data()), encoded.head.size());
         for (const std::span<const std::byte> piece : encoded.body)
             file.append(reinterpret_cast<const char*>(piece.data()), piece.size());
@@ -56,11 +57,14 @@ class DeepTrees : public test::VulkanTest {
     test::TempDir folder_;
 };
 
-TEST_F(DeepTrees, NothingThatWaitsIsLost) {
+INSTANTIATE_TEST_SUITE_P(In, DeepTrees, testing::Values(Layout::compressed4, Layout::bvh4, Layout::compressed8),
+                         [](const auto& layout) { return std::string(name_of(layout.param)); });
+
+TEST_P(DeepTrees, NothingThatWaitsIsLost) {
     for (uint open = 0; open < test::TallTree::forks; ++open) expect_hit(*load(open), open);
 }
 
-TEST_F(DeepTrees, NothingThatWaitsIsLostBelowATopLevel) {
+TEST_P(DeepTrees, NothingThatWaitsIsLostBelowATopLevel) {
     for (uint open = 0; open < test::TallTree::forks; open += 3) {
         const std::unique_ptr<SwTlas> accel = load(open);
         accel->push(make_soup(10, 1), Transform::translation({0, 10, 0}));

@@ -54,10 +54,13 @@ std::set<uint> collect(const SwTlas::Tree& tree, uint reference, std::vector<Box
     } else {
         const CompressedRecord& record = tree.records[reference];
         if (is_leaf(record)) return {index_in(record)};
-        for (uint i = 0; i < children_in(record); ++i) {
-            const uint child = first_child_of(record) + i;
-            children.emplace_back(tree.record_boxes.empty() ? box_in_planes(record, i) : tree.record_boxes[child],
-                                  child);
+        const CompressedRecord& second_half = tree.records[is_wide_node(record) ? reference + 1 : reference];
+        const ChildPlaces places = places_in(record, second_half);
+        for (uint slot = 0; slot < 8; ++slot) {
+            if (!has_child(places, slot)) continue;
+            const uint child = place_of(places, slot);
+            children.emplace_back(
+                tree.record_boxes.empty() ? box_in_planes(record, second_half, slot) : tree.record_boxes[child], child);
         }
     }
     std::set<uint> all;

@@ -11,7 +11,7 @@
 namespace twinray {
 namespace {
 
-constexpr Layout layouts[] = {Layout::compressed4, Layout::bvh2, Layout::bvh4};
+constexpr std::array layouts = all_layouts;
 
 LeafBox placed(Layout layout, const Mesh& mesh, const Transform& transform) {
     reference::Scene scene(layout);

@@ -65,7 +65,7 @@ KernelTuning tuning_of(TuningRow row) {
 class BuildPlans : public testing::TestWithParam<std::tuple<TuningRow, Layout>> {};
 INSTANTIATE_TEST_SUITE_P(On, BuildPlans,
                          testing::Combine(testing::Values(TuningRow::cpu_driver, TuningRow::gpu),
-                                          testing::Values(Layout::compressed4, Layout::bvh4, Layout::bvh2)));
+                                          testing::ValuesIn(all_layouts)));
 
 TEST_P(BuildPlans, RegionsBeginAtLinesOfCachesLieApartAndFitTheSumOfShares) {
     const auto& [row, layout] = GetParam();
@@ -95,15 +95,18 @@ TEST_P(BuildPlans, ListsOfItemsFitWhereTheBoxesWere) {
 }
 
 TEST(CollapseQueues, OfSubtreesAndTreesLieApart) {
-    for (uint leaves = 2; leaves < 5000; ++leaves)
-        for (uint tree_first = 0; tree_first < 7; ++tree_first) {
-            const uint most_nodes = (2 * leaves - 1) / 3;
-            for (uint below = 1; below < 4; ++below)
-                EXPECT_GE(queue_begin(tree_first, below + records_below(leaves)),
-                          queue_begin(tree_first, below) + most_nodes)
-                    << leaves << " leaves, records from " << below << " on";
-            EXPECT_LE(queue_begin(tree_first, record_count(leaves)), queue_begin(tree_first + leaves, 0)) << leaves;
-        }
+    for (const uint width : {4u, 8u})
+        for (uint leaves = 2; leaves < 5000; ++leaves)
+            for (uint tree_first = 0; tree_first < 7; ++tree_first) {
+                const uint most_nodes = width == 8 ? std::max((leaves - 1) / 3, 1u) : (2 * leaves - 1) / 3;
+                for (uint before = 1; before < 4; ++before)
+                    EXPECT_GE(queue_begin(tree_first, before + records_below(leaves, width)),
+                              queue_begin(tree_first, before) + most_nodes)
+                        << leaves << " leaves, records from " << before << " on";
+                EXPECT_LE(queue_begin(tree_first, 1 + records_below(leaves, width)),
+                          queue_begin(tree_first + leaves, 0))
+                    << leaves;
+            }
     EXPECT_EQ(queue_begin(4'000'000'000, 0), 3'333'333'333) << "beyond what 32 bits hold on the way";
 }
 

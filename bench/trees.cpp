@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "bench/trees.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "bench/report.h"
+#include "bench/table.h"
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+#include "swtlas/check_compressed.h"
+#include "swtlas/plan.h"
+#include "swtlas/reference_scene.h"
+#include "swtlas/sw_tlas.h"
+
+namespace twinray::bench {
+namespace {
+
+std::size_t bytes_kept(const SwTlas::Tree& tree) {
+    return tree.nodes.size() * sizeof(BvhNode) + tree.triangles.size() * sizeof(BvhTriangle) +
+           tree.records.size() * sizeof(CompressedRecord) + tree.record_boxes.size() * sizeof(LeafBox);
+}
+
+std::size_t bytes_used(const SwTlas::Tree& tree) {
+    const auto used = static_cast<std::size_t>(std::ranges::count_if(tree.records, [](const CompressedRecord& record) {
+        return !is_none(record);
+    }));
+    const std::size_t of_record = sizeof(CompressedRecord) + (tree.record_boxes.empty() ? 0 : sizeof(LeafBox));
+    return tree.records.empty() ? bytes_kept(tree) : used * of_record;
+}
+
+// As rays meet its boxes.
+double sah_of(const SwTlas::Tree& tree, const Mesh& mesh) {
+    std::vector<LeafBox> boxes;
+    if (tree.records.empty()) {
+        for (const BvhTriangle& triangle : tree.triangles) boxes.push_back(box_of_triangle(triangle));
+        return check_tree(tree.bvh, tree.nodes, boxes).sah;
+    }
+    const Geometry built(mesh, software_unit(mesh.positions));
+    boxes = reference::leaves_triangles(built.positions, built.triangles);
+    const CompressedCheck check = check_compressed(tree.bvh, tree.records, boxes);
+    return tree.record_boxes.empty() ? check.sah : check.full_sah;
+}
+
+TreeFigures figures_of_tree(Context& context, const Mesh& mesh, Layout layout, BuildQuality quality) {
+    SwTlas accel(context, {.layout = layout, .build_quality = quality, .can_move = false});
+    const AccelHandle handle = accel.push(mesh);
+    accel.sync();
+    const SwTlas::Tree tree = accel.download_geometry(handle);
+    const auto triangles = static_cast<double>(std::max<std::size_t>(mesh.triangles.size(), 1));
+    return {layout,
+            quality,
+            static_cast<double>(bytes_kept(tree)) / triangles,
+            static_cast<double>(bytes_used(tree)) / triangles,
+            sah_of(tree, mesh),
+            accel.end_point_overlap(handle),
+            {}};
+}
+
+struct Followed {
+    RaySteps steps;
+    std::size_t hits = 0;
+};
+
+Followed follow(const reference::Scene& scene, std::span<const Ray> rays, Query query) {
+    TraversalSteps all;
+    std::size_t hits = 0;
+    std::mutex mutex;
+    parallel_for(rays.size(), [&](std::size_t begin, std::size_t end) {
+        std::size_t found = 0;
+        reference::Scene::take_steps();
+        for (std::size_t i = begin; i < end; ++i)
+            found += scene.trace(rays[i], query == Query::any ? QUERY_ANY : QUERY_CLOSEST).hit;
+        const std::lock_guard lock(mutex);
+        hits += found;
+        const TraversalSteps steps = reference::Scene::take_steps();
+        all.nodes += steps.nodes;
+        all.boxes += steps.boxes;
+        all.primitives += steps.primitives;
+    });
+    const auto a_ray = [&](std::uint64_t count) {
+        return static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(rays.size(), 1));
+    };
+    return {{a_ray(all.nodes), a_ray(all.boxes), a_ray(all.primitives)}, hits};
+}
+
+}  // namespace
+
+std::vector<TreeFigures> measure_trees(Context& context, const BenchScene& scene, std::span<const RayKind> kinds,
+                                       uint width, std::uint64_t seed) {
+    const Mesh mesh = joined(scene.scene, scene.name);
+    const auto rays = make_rays(context, scene, width, seed);
+    std::vector<TreeFigures> trees;
+    std::map<RayKind, std::size_t> hits;
+    for (const Layout layout : all_layouts)
+        for (const BuildQuality quality : all_build_qualities) {
+            TreeFigures figures = figures_of_tree(context, mesh, layout, quality);
+            reference::Scene twin(layout, quality);
+            twin.add_instance(twin.add_geometry(mesh), make_instance_record(Transform{}, {}));
+            twin.build();
+            for (const RayKind kind : kinds) {
+                const Followed followed = follow(twin, rays[static_cast<std::size_t>(kind)], query_of(kind));
+                figures.steps[kind] = followed.steps;
+                if (hits.emplace(kind, followed.hits).first->second != followed.hits)
+                    fail("bench: layout ", name_of(layout), ", build quality ", name_of(quality), ": ", followed.hits,
+                         " of the ", name_of(kind), " rays hit, of other trees ", hits[kind]);
+            }
+            trees.push_back(std::move(figures));
+        }
+    return trees;
+}
+
+void print_trees(std::ostream& out, std::span<const TreeFigures> trees) {
+    std::vector<std::string> heading = {"tree", "bytes/triangle", "used", "SAH", "overlap"};
+    if (!trees.empty())
+        for (const auto& [kind, steps] : trees.front().steps)
+            for (const char* what : {"nodes", "boxes", "triangles"}) heading.push_back(text(name_of(kind), ' ', what));
+    std::vector<std::vector<std::string>> rows = {heading};
+    for (const TreeFigures& tree : trees) {
+        std::vector<std::string> row = {text(name_of(tree.layout), ' ', name_of(tree.quality)),
+                                        fixed_text(tree.bytes, 1), fixed_text(tree.used_bytes, 1),
+                                        number_text(tree.sah, 3), number_text(tree.overlap, 3)};
+        for (const auto& [kind, steps] : tree.steps)
+            for (const double count : {steps.nodes, steps.boxes, steps.primitives})
+                row.push_back(number_text(count, 3));
+        rows.push_back(std::move(row));
+    }
+    print_table(out, rows);
+}
+
+std::vector<nlohmann::json> records_of(const nlohmann::json& base, std::span<const TreeFigures> trees) {
+    std::vector<nlohmann::json> records;
+    for (const TreeFigures& tree : trees) {
+        nlohmann::json record = base;
+        record.update({{"schema", record_schema},
+                       {"kind", "tree"},
+                       {"layout", name_of(tree.layout)},
+                       {"build_quality", name_of(tree.quality)},
+                       {"bytes_per_triangle", tree.bytes},
+                       {"used_bytes_per_triangle", tree.used_bytes},
+                       {"sah", tree.sah},
+                       {"end_point_overlap", tree.overlap}});
+        for (const auto& [kind, steps] : tree.steps)
+            record["steps_per_ray"][std::string(name_of(kind))] = {
+                {"nodes", steps.nodes}, {"boxes", steps.boxes}, {"triangles", steps.primitives}};
+        records.push_back(std::move(record));
+    }
+    return records;
+}
+
+}  // namespace twinray::bench

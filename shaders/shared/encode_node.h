@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// Nodes and leaves of layouts of records, as they are written.
+#ifndef TWINRAY_SHARED_ENCODE_NODE_H
+#define TWINRAY_SHARED_ENCODE_NODE_H
+#include "shaders/shared/compressed.h"
+
+// The exponent of the smallest power of two by which lo..hi is 252 cells long at most, with what origin_below may lie
+// farther off, and a cell some roundings of the coordinates: then what lies a cell below lo, rounded, is 1/2 to 3/2 of
+// a cell below.
+FUNC uint cell_exponent(float lo, float hi)
+{
+    const float LONGEST = 0.003968253968f;              // 1 / 252
+    const float STEPS = 6.103515625e-05f;               // 2^-14
+    const float ROUNDINGS = 4.76837158203125e-07f;      // 2^-21
+    float largest = max(abs(lo), abs(hi));
+    PRECISE float size = (hi - lo + largest * STEPS) * LONGEST;
+    float least = max(size, largest * ROUNDINGS);
+    return clamp((floatBitsToUint(least) >> 23u) + 1u, 1u, 253u);
+}
+FUNC float cells_per_unit(uint exponent) { return uintBitsToFloat((254u - exponent) << 23u); }
+
+// The largest number that is not above `limit` and whose last 9 bits are an exponent: 2^-14 of it lower at most. The
+// first of them is 0, so that a shift leaves nothing but the exponent.
+FUNC float origin_below(float limit, uint exponent)
+{
+    uint bits = floatBitsToUint(limit);
+    bool is_negative = (bits & 0x80000000u) != 0u;
+    uint moved = (bits & 0xfffffe00u) | exponent;
+    uint of_negative = moved < bits ? moved + 512u : moved;
+    uint of_positive = moved < 512u ? 0x80000000u | exponent : moved - 512u;
+    of_positive = moved <= bits ? moved : of_positive;
+    return uintBitsToFloat(is_negative ? of_negative : of_positive);
+}
+
+FUNC float cell_within(float cells)
+{
+    float from_zero = cells > 0.0f ? cells : 0.0f;
+    return from_zero < 255.0f ? from_zero : 255.0f;
+}
+
+// A plane in cells from the origin, moved outwards by a 256th of a cell at least: a traversal that computes with a
+// plane's distance from the ray in float32 is off by less than 2^-10 cells near it, and by its own padding far from it.
+FUNC uint cell_below(float plane, float origin, float per_unit)
+{
+    PRECISE float cells = (plane - origin) * per_unit - 0.00390625f;
+    return whole_number(floor(cell_within(cells)));
+}
+FUNC uint cell_above(float plane, float origin, float per_unit)
+{
+    PRECISE float cells = (plane - origin) * per_unit + 0.00390625f;
+    return whole_number(ceil(cell_within(cells)));
+}
+
+// Only ever indexed by constants, so that drivers keep it in registers; a node of `width` children has the first.
+struct NodeChildren
+{
+    uint child[8]; // as in BvhNode
+    LeafBox box[8];
+    uint below[8]; // see make_below
+    uint count;
+};
+
+// Where the children of a node go.
+struct NodeOrder
+{
+    uint slots;  // of child i, from bit 4 i on
+    uint places; // see ChildPlaces
+    uint axes;   // see octant_order.h
+};
+
+// Each child in the slot of its number.
+FUNC NodeOrder given_order(uint places, uint axes)
+{
+    NodeOrder order;
+    order.slots = 0x76543210u;
+    order.places = places;
+    order.axes = axes;
+    return order;
+}
+FUNC uint slot_of(NodeOrder order, uint child) { return order.slots >> 4u * child & 15u; }
+
+FUNC LeafBox box_around(NodeChildren children, uint width)
+{
+    LeafBox around = empty_box();
+    UNROLL for (uint i = 0u; i < width; i = i + 1u)
+    {
+        LeafBox wider = around_both(around, children.box[i]);
+        around.lo = i < children.count ? wider.lo : around.lo;
+        around.hi = i < children.count ? wider.hi : around.hi;
+    }
+    return around;
+}
+
+// The planes of one axis: x, y those below and above the first four slots, z, w those of the others.
+FUNC uvec4 encode_axis(NodeChildren children, NodeOrder order, uint axis, float origin, float per_unit, uint width)
+{
+    uvec4 planes = uvec4(0u, 0u, 0u, 0u);
+    UNROLL for (uint i = 0u; i < width; i = i + 1u)
+    {
+        // A box that nothing hits has lo > hi.
+        bool is_solid = is_active(children.box[i]);
+        uint below = cell_below(children.box[i].lo[axis], origin, per_unit);
+        uint above = cell_above(children.box[i].hi[axis], origin, per_unit);
+        uint slot = slot_of(order, i);
+        bool is_there = i < children.count && (order.places >> slot & 1u) != 0u;
+        uvec2 both = uvec2(is_solid ? below : 255u, is_solid ? above : 0u) << 8u * (slot & 3u);
+        both = is_there ? both : uvec2(0u);
+        uvec2 none = uvec2(0u);
+        uvec2 first = slot < 4u ? both : none;
+        uvec2 second = slot < 4u ? none : both;
+        planes = planes | uvec4(first.x, first.y, second.x, second.y);
+    }
+    return planes;
+}
+
+struct NodeRecords
+{
+    CompressedRecord first;
+    CompressedRecord second; // of layout compressed8
+};
+
+FUNC NodeRecords encode_node(NodeChildren children, NodeOrder order, uint first_child, uint width)
+{
+    const float FARTHEST = 1.329227995784916e+36f; // 2^120
+    LeafBox around = box_around(children, width);
+    around.lo = is_active(around) ? clamp(around.lo, vec3(-FARTHEST), vec3(FARTHEST)) : vec3(0.0f);
+    around.hi = around.lo.x <= around.hi.x ? clamp(around.hi, vec3(-FARTHEST), vec3(FARTHEST)) : vec3(0.0f);
+    vec3 origin = vec3(0.0f);
+    uvec4 planes[3];
+    UNROLL for (uint axis = 0u; axis < 3u; axis = axis + 1u)
+    {
+        uint exponent = cell_exponent(around.lo[axis], around.hi[axis]);
+        PRECISE float lower = around.lo[axis] - cell_size(exponent);
+        origin[axis] = origin_below(lower, exponent);
+        planes[axis] = encode_axis(children, order, axis, origin[axis], cells_per_unit(exponent), width);
+    }
+    uint count = uint(bitCount(order.places & 0xffu));
+    NodeRecords node;
+    node.first.a = uvec4(floatBitsToUint(origin.x), floatBitsToUint(origin.y), floatBitsToUint(origin.z),
+                         first_child | count << 26u | (width == 8u ? WIDE_BIT : 0u));
+    node.first.b = uvec4(planes[0].x, planes[0].y, planes[1].x, planes[1].y);
+    node.first.c = uvec2(planes[2].x, planes[2].y);
+    node.second.a = uvec4(order.places | order.axes << 16u, 0u, 0u, WIDE_BIT);
+    node.second.b = uvec4(planes[0].z, planes[0].w, planes[1].z, planes[1].w);
+    node.second.c = uvec2(planes[2].z, planes[2].w);
+    return node;
+}
+FUNC void store_node(REF(CompressedRecord) records, uint index, NodeRecords node, uint width)
+{
+    store_record(records, index, node.first);
+    if (width == 8u) store_record(records, index + 1u, node.second);
+}
+
+FUNC CompressedRecord encode_primitive(BvhTriangle t)
+{
+    CompressedRecord record;
+    record.a = uvec4(floatBitsToUint(t.v0.x), floatBitsToUint(t.v0.y), floatBitsToUint(t.v0.z), LEAF_BIT | t.primitive_index);
+    record.b = uvec4(floatBitsToUint(t.v1.x), floatBitsToUint(t.v1.y), floatBitsToUint(t.v1.z), floatBitsToUint(t.v2.x));
+    record.c = uvec2(floatBitsToUint(t.v2.y), floatBitsToUint(t.v2.z));
+    return record;
+}
+
+FUNC CompressedRecord no_record()
+{
+    CompressedRecord record;
+    record.a = uvec4(0u);
+    record.b = uvec4(0u);
+    record.c = uvec2(0u);
+    return record;
+}
+
+FUNC CompressedRecord encode_instance(uint index)
+{
+    CompressedRecord record = no_record();
+    record.a.w = LEAF_BIT | INSTANCE_BIT | index;
+    return record;
+}
+#endif

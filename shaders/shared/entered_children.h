@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// The children of a node that a ray enters, of any layout: the first one, and the others as an entry of the stack.
+#ifndef TWINRAY_SHARED_ENTERED_CHILDREN_H
+#define TWINRAY_SHARED_ENTERED_CHILDREN_H
+#include "shaders/shared/enter_binary.h"
+#include "shaders/shared/enter_compressed.h"
+#include "shaders/shared/enter_full.h"
+#include "shaders/shared/enter_wide.h"
+
+const uint ROOT_EDGE = 0u; // in every layout; beside the root there is nothing that a stack could lose
+
+// A tree of one level; of its arrays a layout has some.
+struct SwTree
+{
+    REF(BvhNode) nodes;
+    REF(BvhTriangle) triangles;
+    REF(CompressedRecord) records;
+    REF(LeafBox) boxes;
+    uint root;
+};
+
+// A node or leaf of a tree: the number of a record, for both, in layout compressed8 with LEAF_BIT where it is known to
+// be a leaf; in layout bvh2 a child and its edge.
+struct TreePosition
+{
+    uint item;
+    uint edge;
+};
+
+FUNC TreePosition at_record(uint index)
+{
+    TreePosition at;
+    at.item = index;
+    at.edge = index;
+    return at;
+}
+FUNC TreePosition at_root(SwTree tree, bool is_binary)
+{
+    TreePosition at;
+    at.item = is_binary ? tree.root : 0u;
+    at.edge = ROOT_EDGE;
+    return at;
+}
+
+FUNC SwTree top_tree(SwScene scene)
+{
+    SwTree tree;
+    tree.nodes = scene.bvh.nodes;
+    tree.triangles = REF(BvhTriangle)(NULL_ADDRESS);
+    tree.records = scene.records;
+    tree.boxes = scene.record_boxes;
+    tree.root = scene.bvh.root;
+    return tree;
+}
+FUNC SwTree tree_of(SwInstance instance)
+{
+    SwTree tree;
+    tree.nodes = instance.nodes;
+    tree.triangles = instance.triangles;
+    tree.records = instance.records;
+    tree.boxes = instance.record_boxes;
+    tree.root = instance.root;
+    return tree;
+}
+
+const uint NARROW_RECORDS = FEATURE_COMPRESSED | FEATURE_BVH4;
+
+FUNC bool is_binary(SwScene scene, TraceOptions options)
+{
+    bool may_be = (options.features & FEATURE_BVH2) != 0u;
+    bool may_have_records = (options.features & (NARROW_RECORDS | FEATURE_COMPRESSED8)) != 0u;
+    return may_be && (!may_have_records || is_null(scene.records));
+}
+FUNC bool may_be_wide(TraceOptions options) { return (options.features & FEATURE_COMPRESSED8) != 0u; }
+FUNC bool is_surely_wide(TraceOptions options)
+{
+    return (options.features & (NARROW_RECORDS | FEATURE_COMPRESSED8 | FEATURE_BVH2)) == FEATURE_COMPRESSED8;
+}
+
+// The children of a node that the ray enters, the first one first, and the rest as an entry of the stack.
+struct EnteredChildren
+{
+    TreePosition first;
+    bool is_entered;
+    uint others;   // or EMPTY_GROUP
+    uint siblings; // in layout compressed8 the entry's other word, else 0
+};
+
+// `target`: not NOTHING, but what the ray is on its way back to.
+FUNC EnteredChildren children_of_record(CompressedRecord record, SwTree tree, BoxRay ray, Search search, uint target,
+                                         TraceOptions options)
+{
+    bool may_be_full = (options.features & FEATURE_BVH4) != 0u;
+    bool may_be_compressed = (options.features & FEATURE_COMPRESSED) != 0u;
+    ChildKeys keys;
+    if (may_be_full && (!may_be_compressed || !is_null(tree.boxes)))
+        keys = enter_full(tree.boxes, record, ray, search.t_min, search.t_best, options.query);
+    else keys = enter_compressed(record, ray, search.t_min, search.t_best, options.query);
+    if (target != NOTHING) keys = keys_from(keys, slot_towards(tree.records, places_in(record, record), target));
+    sort_keys(keys);
+    EnteredChildren children;
+    children.first = at_record(first_child_of(record) + (keys.key0 & 3u));
+    children.is_entered = keys.key0 < NO_ENTRY;
+    children.others = group_of(keys, first_child_of(record));
+    children.siblings = 0u;
+    return children;
+}
+
+FUNC TreePosition at_next_of_visits(uint visits, uint first)
+{
+    ChildPlaces places = places_of_visits(visits, first);
+    uint slot = next_slot(visits);
+    TreePosition at = at_record(place_of(places, slot));
+    if ((places.slots >> slot & 0x100u) == 0u) at.item = at.item | LEAF_BIT;
+    return at;
+}
+
+FUNC EnteredChildren children_of_wide(CompressedRecord record, CompressedRecord second_half, SwTree tree, BoxRay ray,
+                                      Search search, uint target)
+{
+    uint visits = enter_wide(record, second_half, ray, search.t_min, search.t_best);
+    if (target != NOTHING)
+        visits = visits_from(visits, slot_towards(tree.records, places_in(record, second_half), target));
+    EnteredChildren children;
+    children.siblings = first_child_of(record);
+    children.first = at_next_of_visits(visits, children.siblings);
+    children.is_entered = (visits & 0xffu) != 0u;
+    children.others = rest_of_visits(visits);
+    return children;
+}
+
+FUNC EnteredChildren children_of_node(uint index, SwTree tree, BoxRay ray, Search search, uint target,
+                                         TraceOptions options)
+{
+    BvhNode node = load_node(tree.nodes, index);
+    ChildKeys keys = enter_binary(node, ray, search, options.query);
+    if (target != NOTHING) keys = keys_from(keys, binary_child_towards(tree.nodes, index, target));
+    sort_pair(keys.key0, keys.key1);
+    uint side = keys.key0 & 1u;
+    EnteredChildren children;
+    children.first.item = side == 0u ? node.child0 : node.child1;
+    children.first.edge = make_edge(index, side);
+    children.is_entered = keys.key0 < NO_ENTRY;
+    children.others = keys.key1 < NO_ENTRY ? make_edge(index, side ^ 1u) : EMPTY_GROUP;
+    children.siblings = 0u;
+    return children;
+}
+#endif
