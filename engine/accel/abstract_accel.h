@@ -360,6 +360,8 @@ class AbstractAccel {
     SyncPoint synced_;
     uint warned_unusable_ = 0;
     std::unique_ptr<BuiltScene> scene_;
+    // Its instances.
+    std::size_t scene_count_ = 0;
     std::vector<std::unique_ptr<BuiltGeometry>> erased_;  // since the last sync: scene_ still refers to them
     std::unique_ptr<Commands> last_build_;
 };

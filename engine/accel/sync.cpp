@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/accel/abstract_accel.h"
+#include "engine/accel/scene_update.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -111,10 +112,13 @@ void AbstractAccel::stage_scene(Commands& commands, Staged& staged) {
                            bound_.result(),          staged.has_moved,
                            scene_costs_.target(),    refinement_ ? refinement_->scene() : Ref<RefineScene>{}};
     if (refinement_) staged.refinement = refinement_->stage(commands, input.records, input.count, input.bound);
-    // The first move rebuilds: nothing is paid for refits before. So does a geometry that was built anew: its instances
-    // may have been inactive before, which a refit cannot change.
-    staged.is_scene_built =
-        !scene_ || !has_moved_ || dirty_ != Dirty::moves || !staged.built.empty() || has_degraded(scene_costs_);
+    staged.is_scene_built = must_build({.is_built = scene_ != nullptr,
+                                        .was_moved = has_moved_,
+                                        .has_structure = dirty_ != Dirty::moves,
+                                        .has_new_geometry = !staged.built.empty(),
+                                        .has_degraded = has_degraded(scene_costs_),
+                                        .built_count = scene_count_,
+                                        .count = staged.instances.count});
     if (staged.is_scene_built)
         staged.scene = build_scene(commands, input, scene_.get());
     else
@@ -131,6 +135,7 @@ void AbstractAccel::commit(Staged&& staged, SyncPoint done) {
     for (Placement* placement : staged.sources) placement->has_source = true;
     if (refinement_) refinement_->commit(std::move(staged.refinement));
     scene_costs_.commit(staged.is_scene_built, done);
+    scene_count_ = staged.instances.count;
     has_moved_ = staged.has_moved;
     revision_ += dirty_ == Dirty::structure;
     if (dirty_ == Dirty::structure) facts_ = facts_of_placements();

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Instances come and go between moves: the driver's structure is rebuilt then, and updated where they only move.
+#include "engine/scene/shapes.h"
+#include "tests/hwtlas/hw_test.h"
+
+namespace twinray::test {
+namespace {
+
+using InstanceCountTest = HwTlasTest;
+INSTANTIATE_TEST_SUITE_P(Ways, InstanceCountTest, all_ways, name_of_way);
+
+// Squares that face up, one at each whole x.
+class Row {
+  public:
+    explicit Row(HwTlas& accel) : accel_(accel) {}
+
+    void push() { squares_.push_back({accel_.push(make_quad(vec3(0), vec3(0.5f, 0, 0), vec3(0, 0.5f, 0))), 0}); }
+    void erase_first() {
+        EXPECT_TRUE(accel_.erase(squares_.front().handle));
+        squares_.erase(squares_.begin());
+    }
+    void move(float z) {
+        for (std::size_t i = 0; i < squares_.size(); ++i) {
+            squares_[i].z = z + static_cast<float>(i);
+            accel_.update_transform(squares_[i].handle,
+                                    Transform::translation(vec3(static_cast<float>(i), 0, squares_[i].z)));
+        }
+    }
+    void check() {
+        std::vector<Ray> rays;
+        for (std::size_t i = 0; i < squares_.size() + 1; ++i)
+            rays.push_back({vec3(static_cast<float>(i) + 0.125f, 0.25f, 100), 0, vec3(0, 0, -1), INFINITY});
+        const std::vector<Hit> hits = accel_.closest_hits(rays);
+        for (std::size_t i = 0; i < squares_.size(); ++i) {
+            EXPECT_FLOAT_EQ(hits[i].t, 100 - squares_[i].z) << i << " of " << squares_.size();
+            EXPECT_EQ(hits[i].instance_index, i);
+        }
+        EXPECT_EQ(hits.back().hit, 0u);
+    }
+    bool was_updated() const {
+        for (const PassTiming& pass : accel_.build_timings())
+            if (pass.name == "hwtlas_update_tlas") return true;
+        return false;
+    }
+
+  private:
+    struct Square {
+        AccelHandle handle;
+        float z;
+    };
+    HwTlas& accel_;
+    std::vector<Square> squares_;
+};
+
+TEST_P(InstanceCountTest, EachChangeOfItRebuilds) {
+    if (context().timestamp_period_ns() == 0) GTEST_SKIP() << "passes are told by their times";
+    Row row(accel());
+    for (int i = 0; i < 3; ++i) row.push();
+    row.move(0), row.check();
+    row.move(1), row.check();
+    row.move(2), row.check();
+    EXPECT_TRUE(row.was_updated());
+    for (int round = 0; round < 3; ++round) {
+        row.push(), row.push(), row.move(3), row.check();
+        EXPECT_FALSE(row.was_updated()) << "two more";
+        row.move(4), row.check();
+        EXPECT_TRUE(row.was_updated());
+        row.erase_first(), row.move(5), row.check();
+        EXPECT_FALSE(row.was_updated()) << "one less";
+        row.erase_first(), row.push(), row.move(6), row.check();
+        EXPECT_FALSE(row.was_updated()) << "as many, but another";
+        row.move(7), row.check();
+        EXPECT_TRUE(row.was_updated());
+    }
+}
+
+}  // namespace
+}  // namespace twinray::test
