@@ -244,18 +244,6 @@ VkPipelineStageFlags Context::stages() const {
     return stages;
 }
 
-void Context::check(VkResult result, const char* action) const {
-    is_lost_ |= result == VK_ERROR_DEVICE_LOST;
-    if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(text(action, ": ", name_of(result), in_flight_.sentence()));
-    vk_check(result, action);
-}
-
-void Context::check_alive() const {
-    if (is_lost_)
-        throw DeviceLost(
-            text("device '", facts_.name, "': ", name_of(VK_ERROR_DEVICE_LOST), in_flight_.sentence()));
-}
-
 void Context::warn(std::string_view message) const {
     if (log_)
         log_(message);

@@ -101,7 +101,7 @@ class Context {
     // Runs `destroy` when everything submitted or announced so far is done.
     void retire(std::function<void()> destroy);
 
-    // Throws DeviceLost, which says what was in flight, once the device has been lost.
+    // Throws DeviceLost, which says what was in flight and what the driver says of it, once the device has been lost.
     void check_alive() const;
     // vk_check for what may report the loss of the device, which is remembered.
     void check(VkResult result, const char* action) const;
@@ -130,6 +130,7 @@ class Context {
     void create_pipeline_cache(const PipelineStore& store);
     void keep_pipelines() noexcept;
     VkResult submit_signalling(VkCommandBuffer commands, std::uint64_t value) const;
+    std::string words_of_loss() const;
     void finish() noexcept;
     std::uint64_t reached(VkSemaphore semaphore) const noexcept;  // 0 when it cannot be read
     void collect() noexcept;
@@ -160,6 +161,8 @@ class Context {
     VkSemaphore timeline_ = VK_NULL_HANDLE;
     std::uint64_t submitted_ = 0;
     mutable InFlight in_flight_;
+    // What the driver says of a lost device, once it was asked.
+    mutable std::optional<std::string> fault_;
     std::vector<Wait> awaited_;  // by the next submission
     float timestamp_period_ns_ = 0;
     std::deque<Retired> retired_;

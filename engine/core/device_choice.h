@@ -33,6 +33,7 @@ struct DeviceFacts {
     bool acceleration_structure = false;
     bool ray_query = false;
     bool ray_tracing_pipeline = false;
+    bool device_fault = false;  // it tells why it was lost
     bool runtime_descriptor_array = false;
     bool variable_descriptor_count = false;
     bool nonuniform_sampled_images = false;

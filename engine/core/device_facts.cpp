@@ -120,6 +120,7 @@ DeviceRequirements::DeviceRequirements(const DeviceFacts& supported) : supported
         extensions_ = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
     if (supported.ray_query) extensions_.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
     if (supported.ray_tracing_pipeline) extensions_.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+    if (supported.device_fault) extensions_.push_back(VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
     switch_on(alone_, alone_structs_);
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "engine/core/vulkan_functions.h"
+
 namespace twinray {
 namespace {
 

@@ -14,7 +14,8 @@ constexpr VkStructureType layout = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOC
 constexpr VkStructureType indexing = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DESCRIPTOR_INDEXING_FEATURES;
 constexpr VkStructureType structure = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
 constexpr VkStructureType query = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
-constexpr VkStructureType pipeline = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
+constexpr VkStructureType tracing = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
+constexpr VkStructureType fault = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FAULT_FEATURES_EXT;
 
 constexpr FeatureBit alone(bool DeviceFacts::*fact, const char* name, VkStructureType type, std::size_t offset) {
     return {fact, name, type, offset, type, offset};
@@ -48,8 +49,9 @@ constexpr FeatureBit bits[] = {
     alone(&DeviceFacts::acceleration_structure, "accelerationStructure", structure,
           offsetof(VkPhysicalDeviceAccelerationStructureFeaturesKHR, accelerationStructure)),
     alone(&DeviceFacts::ray_query, "rayQuery", query, offsetof(VkPhysicalDeviceRayQueryFeaturesKHR, rayQuery)),
-    alone(&DeviceFacts::ray_tracing_pipeline, "rayTracingPipeline", pipeline,
+    alone(&DeviceFacts::ray_tracing_pipeline, "rayTracingPipeline", tracing,
           offsetof(VkPhysicalDeviceRayTracingPipelineFeaturesKHR, rayTracingPipeline)),
+    alone(&DeviceFacts::device_fault, "deviceFault", fault, offsetof(VkPhysicalDeviceFaultFeaturesEXT, deviceFault)),
 };
 
 VkBool32* bit_at(VkBaseOutStructure* node, std::size_t offset) {
@@ -72,11 +74,12 @@ FeatureStructs::FeatureStructs() {
     indexing.sType = twinray::indexing;
     structure.sType = twinray::structure;
     query.sType = twinray::query;
-    pipeline.sType = twinray::pipeline;
+    pipeline.sType = twinray::tracing;
+    fault.sType = twinray::fault;
 }
 
 VkBaseOutStructure* FeatureStructs::find(VkStructureType type) {
-    void* all[] = {&core, &timeline, &address, &layout, &indexing, &structure, &query, &pipeline};
+    void* all[] = {&core, &timeline, &address, &layout, &indexing, &structure, &query, &pipeline, &fault};
     for (void* node : all)
         if (auto* base = static_cast<VkBaseOutStructure*>(node); base->sType == type) return base;
     return nullptr;
@@ -122,6 +125,7 @@ void state_features(const VkDeviceCreateInfo& info, DeviceFacts& facts) {
     facts.ray_query &= facts.acceleration_structure && has_extension(info, VK_KHR_RAY_QUERY_EXTENSION_NAME);
     facts.ray_tracing_pipeline &=
         facts.acceleration_structure && has_extension(info, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+    facts.device_fault &= has_extension(info, VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
 }
 
 const char* feature_beyond(const DeviceFacts& told, const DeviceFacts& supported) {

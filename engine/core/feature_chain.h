@@ -21,6 +21,7 @@ struct FeatureStructs {
     VkPhysicalDeviceAccelerationStructureFeaturesKHR structure{};
     VkPhysicalDeviceRayQueryFeaturesKHR query{};
     VkPhysicalDeviceRayTracingPipelineFeaturesKHR pipeline{};
+    VkPhysicalDeviceFaultFeaturesEXT fault{};
 
     FeatureStructs();  // all features off
     // The struct of a type; null if none of these.

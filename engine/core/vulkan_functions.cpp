@@ -60,6 +60,7 @@ void VulkanFunctions::load_device(VkDevice device) {
 #define TWINRAY_LOAD(name) name = reinterpret_cast<PFN_##name>(vkGetDeviceProcAddr(device, #name));
     TWINRAY_DEVICE_FUNCTIONS(TWINRAY_LOAD)
     TWINRAY_STATISTICS_FUNCTIONS(TWINRAY_LOAD)
+    TWINRAY_FAULT_FUNCTIONS(TWINRAY_LOAD)
     TWINRAY_RAY_TRACING_FUNCTIONS(TWINRAY_LOAD)
 #undef TWINRAY_LOAD
 }

@@ -86,6 +86,9 @@
     F(vkGetPipelineExecutablePropertiesKHR) \
     F(vkGetPipelineExecutableStatisticsKHR)
 
+// Present only with VK_EXT_device_fault.
+#define TWINRAY_FAULT_FUNCTIONS(F) F(vkGetDeviceFaultInfoEXT)
+
 // Present only with VK_KHR_acceleration_structure and VK_KHR_ray_tracing_pipeline.
 #define TWINRAY_RAY_TRACING_FUNCTIONS(F)             \
     F(vkCreateAccelerationStructureKHR)              \
@@ -110,6 +113,7 @@ struct VulkanFunctions {
     TWINRAY_DEBUG_FUNCTIONS(TWINRAY_MEMBER)
     TWINRAY_DEVICE_FUNCTIONS(TWINRAY_MEMBER)
     TWINRAY_STATISTICS_FUNCTIONS(TWINRAY_MEMBER)
+    TWINRAY_FAULT_FUNCTIONS(TWINRAY_MEMBER)
     TWINRAY_RAY_TRACING_FUNCTIONS(TWINRAY_MEMBER)
 #undef TWINRAY_MEMBER
 

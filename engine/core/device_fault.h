@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// What a driver says of a device that it lost (VK_EXT_device_fault).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/core/vulkan_functions.h"
+
+namespace twinray {
+
+struct DeviceFault {
+    std::string description = {};
+    std::vector<VkDeviceFaultAddressInfoEXT> addresses = {};
+    std::vector<VkDeviceFaultVendorInfoEXT> vendor = {};
+};
+
+// Of a lost device; empty where the driver does not tell.
+DeviceFault query_device_fault(const VulkanFunctions& vk, VkDevice device);
+
+// "; the driver says: 'ring hang', invalid read at 0x1200 to 0x12ff, 'engine' (code 0x7, data 0x1)"; empty where that
+// is nothing.
+std::string sentence(const DeviceFault& fault);
+
+}  // namespace twinray
