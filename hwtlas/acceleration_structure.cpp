@@ -12,6 +12,8 @@ namespace {
 // VkAccelerationStructureCreateInfoKHR: offset must be a multiple of 256; ours is 0 in a buffer aligned likewise.
 constexpr std::uint64_t storage_alignment = 256;
 
+constexpr std::uint64_t primitives_of_group = 64;
+
 std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
     return (value + multiple - 1) / multiple * multiple;
 }
@@ -120,7 +122,10 @@ void record_builds(Commands& commands, const std::string& pass_name, std::span<c
     }
     std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> range_of;
     for (const VkAccelerationStructureBuildRangeInfoKHR& range : ranges) range_of.push_back(&range);
+    std::uint64_t primitives = 0;
+    for (const StructureWork& one : work) primitives += one.build.primitive_count;
     const auto pass = commands.pass(pass_name);
+    commands.count_work(primitives / primitives_of_group);
     commands.context().vk().vkCmdBuildAccelerationStructuresKHR(
         commands.handle(), static_cast<std::uint32_t>(infos.size()), infos.data(), range_of.data());
 }

@@ -25,6 +25,7 @@
 
 namespace twinray {
 
+class Pace;
 class RaySort;
 
 // Names what one push placed. Never reused; a handle of another accelerator or of something erased is dead.
@@ -159,6 +160,9 @@ class AbstractAccel {
 
     // Records the trace; the hits are visible to later passes. Throws Error on a stale or foreign view.
     void trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const;
+    // The same in parts, if one submission might take too long (see Pace), into own commands. Throws Error where
+    // TraceDesc::indirect_count is set, too.
+    void trace(Commands& commands, const AccelView& view, const TraceDesc& desc, Pace& pace) const;
     // Host convenience: syncs, uploads, traces, waits and downloads. Of `desc` all counts but rays, hits, count, query
     // and answer_only.
     std::vector<Hit> closest_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
@@ -337,6 +341,8 @@ class AbstractAccel {
     const TraceProgram& own_program(uint features, const TraceDesc& desc) const;
     const TraceProgram& program_for(const TraceDesc& desc) const;
     void check_desc(const AccelView& view, const TraceDesc& desc) const;
+    void check_buffers(const TraceDesc& desc) const;
+    void record_rays(Commands& commands, const AccelView& view, const TraceDesc& desc) const;
     Uints record_order(Commands& commands, const TraceDesc& desc) const;
 
     Context& context_;

@@ -58,23 +58,26 @@ HitsOfRays AllHits::operator()(std::span<const Ray> rays, const TraceDesc& desc)
     for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
         const std::span<const Ray> some = rays.subspan(begin, std::min(batch, rays.size() - begin));
         grow(context, rays_, "rays", some.size_bytes());
-        const auto record = [&](Commands& commands, const DeviceList::View& list) {
+        const auto record = [&](Commands& commands, const DeviceList::View& list, std::uint64_t first,
+                                std::uint64_t count) {
             {
                 const auto pass = commands.pass("upload rays");
-                commands.upload(rays_, some);
+                commands.upload(rays_, some.subspan(first, count), first * sizeof(Ray));
             }
             kernel_.dispatch(commands,
                              {view.scene,
                               rays_.ref<Ray>(),
                               {list.address},
                               list.total,
-                              static_cast<uint>(some.size()),
+                              static_cast<uint>(first),
+                              static_cast<uint>(first + count),
                               list.capacity,
                               desc.mask,
-                              flags_of(desc.cull)},
-                             some.size());
+                              flags_of(desc.cull),
+                              0},
+                             count);
         };
-        const std::uint64_t count = found_.fill(record, 2 * some.size(), accel_.name() + ": all hits");
+        const std::uint64_t count = found_.fill(record, some.size(), 2 * some.size(), accel_.name() + ": all hits");
         std::vector<RayHit> found = download<RayHit>(context, found_.buffer(), count);
         tidy(found);
         auto next = found.begin();

@@ -3,6 +3,7 @@
 #include "engine/accel/abstract_accel.h"
 #include "engine/accel/ray_sort.h"
 #include "engine/core/error.h"
+#include "engine/core/pace.h"
 
 namespace twinray {
 namespace {
@@ -15,6 +16,14 @@ const char* words_for(uint features) {
     if (features & FEATURE_TRANSFORMS) return "instances with transforms";
     if (features & FEATURE_MASKS) return "instances that the mask may hide";
     return "sides that are culled";
+}
+
+TraceDesc part_of(const TraceDesc& desc, std::uint64_t first, std::uint64_t count) {
+    TraceDesc part = desc;
+    part.rays.address += first * sizeof(Ray);
+    part.hits.address += first * sizeof(Hit);
+    part.count = count;
+    return part;
 }
 
 }  // namespace
@@ -31,10 +40,28 @@ AccelView AbstractAccel::view() const {
 void AbstractAccel::trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const {
     check_desc(view, desc);
     if (desc.count == 0) return;
+    check_buffers(desc);
+    record_rays(commands, view, desc);
+}
+
+void AbstractAccel::trace(Commands& commands, const AccelView& view, const TraceDesc& desc, Pace& pace) const {
+    check_desc(view, desc);
+    if (desc.indirect_count.address) fail(name_, ": trace: a count on the device cannot be cut into parts");
+    if (desc.count == 0) return;
+    check_buffers(desc);
+    pace.record(commands, desc.count, [&](std::uint64_t first, std::uint64_t count) {
+        record_rays(commands, view, part_of(desc, first, count));
+    });
+}
+
+void AbstractAccel::check_buffers(const TraceDesc& desc) const {
     if (!desc.rays.address || !desc.hits.address) fail(name_, ": trace: the address of rays or hits is 0");
     const std::uint64_t bytes = desc.count * sizeof(Ray), rays = desc.rays.address, hits = desc.hits.address;
     if ((rays < hits ? hits - rays : rays - hits) < bytes)
         fail(name_, ": trace: ", bytes, " bytes of rays at ", rays, " and of hits at ", hits, " must not overlap");
+}
+
+void AbstractAccel::record_rays(Commands& commands, const AccelView& view, const TraceDesc& desc) const {
     const TraceProgram& program = program_for(desc);
     const TraceArgs args{.scene = view.scene,
                          .rays = desc.rays,
@@ -137,12 +164,17 @@ std::vector<Hit> AbstractAccel::trace_host(std::span<const Ray> rays, TraceDesc 
     desc.rays = ray_buffer.ref<Ray>();
     desc.hits = hit_buffer.ref<Hit>();
     desc.count = rays.size();
+    const AccelView view = this->view();
+    check_desc(view, desc);
+    Pace pace(context_);
     Commands commands(context_, name_ + " trace");
-    {
-        const auto pass = commands.pass("upload rays");
-        commands.upload(ray_buffer, rays);
-    }
-    trace(commands, view(), desc);
+    pace.record(commands, rays.size(), [&](std::uint64_t first, std::uint64_t count) {
+        {
+            const auto pass = commands.pass("upload rays");
+            commands.upload(ray_buffer, rays.subspan(first, count), first * sizeof(Ray));
+        }
+        record_rays(commands, view, part_of(desc, first, count));
+    });
     commands.submit();
     return download<Hit>(context_, hit_buffer, rays.size());
 }

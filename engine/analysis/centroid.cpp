@@ -91,13 +91,13 @@ Centroid centroid(AbstractAccel& accel, const Scene& scene, const CentroidDesc& 
     Centroid result;
     result.ray_count = plan.ray_count;
     if (plan.ray_count == 0) return result;
-    const RayGridTrace trace(accel, plan);
+    RayGridTrace trace(accel, plan);
     Sums total;
     std::vector<std::optional<dvec3>> points;
     for (const RayBatch batch : ray_batches(plan.ray_count)) {
         Commands commands(accel.context(), "centroid");
         trace.record(commands, batch);
-        commands.submit();
+        trace.finish(commands);
         const std::vector<Hit> hits = download<Hit>(accel.context(), trace.hits(), batch.count);
         points.assign(hits.size(), std::nullopt);
         for (const Sums& sums : sums_of(scene, hits, plan.center, points)) total.add(sums);

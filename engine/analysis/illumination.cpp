@@ -73,12 +73,12 @@ std::vector<uint> groups_that_count(const Faces& faces, FaceGrouping by, std::sp
 
 std::vector<GroupCount> count_hits(AbstractAccel& accel, const RayGridPlan& plan, const GroupCounts& counts,
                                    Progress* progress) {
-    const RayGridTrace trace(accel, plan);
+    RayGridTrace trace(accel, plan);
     for (const RayBatch batch : ray_batches(plan.ray_count)) {
         Commands commands(accel.context(), "illumination");
         trace.record(commands, batch);
         counts.record(commands, trace.hits(), batch);
-        accel.context().wait(commands.submit());
+        trace.finish(commands);
         if (progress) progress->advance(batch.count);
     }
     return counts.read();

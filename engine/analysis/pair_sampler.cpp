@@ -21,7 +21,8 @@ PairSampler::PairSampler(AbstractAccel& accel, const Faces& faces, Sides sides, 
       sequence_(sequence),
       seed_(seed),
       make_rays_(accel.context(), {.name = "analysis_pair_rays", .spirv = analysis_pair_rays_spirv}),
-      mark_blocked_(accel.context(), {.name = "analysis_pair_weights", .spirv = analysis_pair_weights_spirv}) {
+      mark_blocked_(accel.context(), {.name = "analysis_pair_weights", .spirv = analysis_pair_weights_spirv}),
+      pace_(accel.context()) {
     constexpr std::uint64_t rays = batch_chunks * CHUNK;
     Context& context = accel.context();
     chunks_ = Buffer(context,
@@ -69,9 +70,9 @@ void PairSampler::trace(std::span<const PairChunk> chunks) {
                          sequence_ == Sequence::sobol ? SEQUENCE_SOBOL : SEQUENCE_RANDOM, sides_ == Sides::both, 0},
                         count);
     accel_.trace(commands, accel_.view(),
-                 {.rays = rays, .hits = hits, .count = count, .query = Query::any, .answer_only = true});
+                 {.rays = rays, .hits = hits, .count = count, .query = Query::any, .answer_only = true}, pace_);
     mark_blocked_.dispatch(commands, {hits, weights, static_cast<uint>(count), 0}, count);
-    accel_.context().wait(commands.submit());
+    pace_.finish(commands);
 }
 
 }  // namespace twinray

@@ -8,6 +8,7 @@
 #include "engine/analysis/faces.h"
 #include "engine/analysis/pair_sums.h"
 #include "engine/analysis/view_factors.h"
+#include "engine/core/pace.h"
 
 namespace twinray {
 #include "engine/core/bridge_begin.h"
@@ -44,6 +45,7 @@ class PairSampler {
     Kernel<PairRaysArgs> make_rays_;
     Kernel<PairWeightsArgs> mark_blocked_;
     Buffer chunks_, rays_, hits_, weights_;
+    Pace pace_;
 };
 
 }  // namespace twinray

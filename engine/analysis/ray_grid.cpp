@@ -131,17 +131,18 @@ void check_filled(const AbstractAccel& accel, std::size_t instance_count, const 
 RayGridTrace::RayGridTrace(AbstractAccel& accel, const RayGridPlan& plan)
     : accel_(accel),
       grid_(plan.grid),
-      kernel_(accel.context(), {.name = "analysis_grid_rays", .spirv = analysis_grid_rays_spirv}) {
+      kernel_(accel.context(), {.name = "analysis_grid_rays", .spirv = analysis_grid_rays_spirv}),
+      pace_(accel.context()) {
     const std::uint64_t most = std::min(batch_size, plan.ray_count);
     rays_ = Buffer(accel.context(), {.name = "grid rays", .bytes = most * sizeof(Ray)});
     hits_ = Buffer(accel.context(), {.name = "grid hits", .bytes = most * sizeof(Hit)});
     accel.sync();
 }
 
-void RayGridTrace::record(Commands& commands, RayBatch batch) const {
+void RayGridTrace::record(Commands& commands, RayBatch batch) {
     const Ref<Ray> rays = rays_.ref<Ray>();
     kernel_.dispatch(commands, {grid_, rays, batch.first, batch.count}, batch.count);
-    accel_.trace(commands, accel_.view(), {.rays = rays, .hits = hits_.ref<Hit>(), .count = batch.count});
+    accel_.trace(commands, accel_.view(), {.rays = rays, .hits = hits_.ref<Hit>(), .count = batch.count}, pace_);
 }
 
 }  // namespace twinray

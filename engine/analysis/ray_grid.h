@@ -6,6 +6,7 @@
 
 #include "engine/accel/abstract_accel.h"
 #include "engine/analysis/faces.h"
+#include "engine/core/pace.h"
 
 namespace twinray {
 using glm::bitfieldReverse;
@@ -59,7 +60,10 @@ class RayGridTrace {
     // Syncs the accelerator, which must not change until the last batch is done.
     RayGridTrace(AbstractAccel& accel, const RayGridPlan& plan);
 
-    void record(Commands& commands, RayBatch batch) const;
+    // What is recorded is submitted on the way, if it might take too long.
+    void record(Commands& commands, RayBatch batch);
+    // Submits what was recorded, waits and learns how long it takes.
+    void finish(Commands& commands) { pace_.finish(commands); }
     // Of the last batch; the first one is that of its first ray.
     const Buffer& hits() const { return hits_; }
 
@@ -68,6 +72,7 @@ class RayGridTrace {
     RayGrid grid_;
     Kernel<GridRaysArgs> kernel_;
     Buffer rays_, hits_;
+    Pace pace_;
 };
 
 }  // namespace twinray

@@ -47,6 +47,7 @@ std::vector<GroupCount> SkyRays::trace(dvec3 towards, bool to_sun, uint stream) 
                      .stream = stream,
                      .seed_low = static_cast<uint>(desc_.seed),
                      .seed_high = static_cast<uint>(desc_.seed >> 32)};
+    Pace pace(accel_.context());
     for (std::uint64_t first = 0; first < faces_.count(); first += faces_of_batch_) {
         args.first_face = static_cast<uint>(first);
         args.ray_count =
@@ -56,21 +57,22 @@ std::vector<GroupCount> SkyRays::trace(dvec3 towards, bool to_sun, uint stream) 
             const auto pass = commands.pass("rays from faces start");
             commands.fill(counts_, 0, counts_.bytes(), 0);
         }
-        record(commands, args);
-        accel_.context().wait(commands.submit());
+        record(commands, args, pace);
+        pace.finish(commands);
         if (desc_.progress) desc_.progress->advance(args.ray_count);
     }
     return download<GroupCount>(accel_.context(), counts_, faces_.count());
 }
 
-void SkyRays::record(Commands& commands, SkyRaysArgs args) const {
+void SkyRays::record(Commands& commands, SkyRaysArgs args, Pace& pace) const {
     rays_kernel_.dispatch(commands, args, args.ray_count);
     accel_.trace(commands, accel_.view(),
                  {.rays = args.rays,
                   .hits = hits_.ref<Hit>(),
                   .count = args.ray_count,
                   .query = Query::any,
-                  .answer_only = true});
+                  .answer_only = true},
+                 pace);
     const uint pairs = args.ray_count / args.samples * ((args.samples + 1) / 2);
     count_kernel_.dispatch(
         commands, {args.rays, hits_.ref<Hit>(), counts_.ref<GroupCount>(), args.first_face, args.samples, pairs, 0},

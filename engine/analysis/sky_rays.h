@@ -35,7 +35,7 @@ class SkyRays {
 
   private:
     std::vector<GroupCount> trace(dvec3 towards, bool to_sun, uint stream) const;
-    void record(Commands& commands, SkyRaysArgs args) const;
+    void record(Commands& commands, SkyRaysArgs args, Pace& pace) const;
 
     AbstractAccel& accel_;
     const Faces& faces_;

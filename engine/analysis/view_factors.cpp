@@ -85,7 +85,8 @@ ViewFactors::ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFac
       find_targets_(accel.context(), {.name = "analysis_face_targets", .spirv = analysis_face_targets_spirv}),
       members_(faces.members(options.grouping)),
       areas_(faces.areas_of(members_)),
-      known_(members_.size()) {
+      known_(members_.size()),
+      pace_(accel.context()) {
     for (const KnownExchange& exchange : known) {
         known_[exchange.i].push_back(factor_of(exchange, exchange.j, areas_[exchange.i]));
         if (exchange.i != exchange.j) known_[exchange.j].push_back(factor_of(exchange, exchange.i, areas_[exchange.j]));
@@ -195,12 +196,12 @@ void ViewFactors::trace_batch(std::span<const RayChunk> chunks) {
                         {faces_.table(), chunks_.ref<RayChunk>(), rays, options_.seed,
                          options_.sequence == Sequence::sobol ? SEQUENCE_SOBOL : SEQUENCE_RANDOM, is_two_sided, 0},
                         count);
-    accel_.trace(commands, accel_.view(), {.rays = rays, .hits = hits, .count = count});
+    accel_.trace(commands, accel_.view(), {.rays = rays, .hits = hits, .count = count}, pace_);
     find_targets_.dispatch(
         commands,
         {faces_.table(), rays, hits, {groups_.address()}, targets_.ref<uint>(), static_cast<uint>(count), is_two_sided},
         count);
-    accel_.context().wait(commands.submit());
+    pace_.finish(commands);
 }
 
 std::vector<ViewFactorRow> ViewFactors::results(const std::vector<Row>& rows) {

@@ -9,6 +9,7 @@
 #include "engine/analysis/estimate.h"
 #include "engine/analysis/exchange.h"
 #include "engine/analysis/faces.h"
+#include "engine/core/pace.h"
 #include "engine/core/sampling.h"
 
 namespace twinray {
@@ -81,6 +82,7 @@ class ViewFactors {
     std::vector<std::vector<ViewFactor>> known_;  // of each row, ascending by target
     Estimator estimator_;
     Buffer groups_, chunks_, rays_, hits_, targets_;
+    Pace pace_;
 };
 
 }  // namespace twinray

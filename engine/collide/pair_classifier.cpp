@@ -30,7 +30,8 @@ std::uint64_t offset_after(std::uint64_t offset, std::uint64_t count) {
 PairClassifier::PairClassifier(Context& context)
     : context_(with_float64(context, "collide: classes of triangles")),
       kernel_(context, {.name = "collide_classify", .spirv = collide_classify_spirv}),
-      total_(context, {.name = "collide contact total", .bytes = sizeof(ListTotal)}) {}
+      total_(context, {.name = "collide contact total", .bytes = sizeof(ListTotal)}),
+      pace_(context) {}
 
 std::vector<ClassifiedPair> PairClassifier::classify(const DevicePairs& pairs, const Items& items) {
     host_count_ = 0;
@@ -51,21 +52,25 @@ std::vector<ClassifiedPair> PairClassifier::classify(const DevicePairs& pairs, c
 std::uint64_t PairClassifier::run(const DevicePairs& pairs, std::uint64_t begin, uint count, const Items& items) {
     if (contacts_.bytes() < count * sizeof(PairContact))
         contacts_ = Buffer(context_, {.name = "collide contacts", .bytes = count * sizeof(PairContact)});
-    const ClassifyArgs args{.corners = items.corners,
-                            .names = items.names,
-                            .first = {pairs.first.address + begin * sizeof(uint)},
-                            .second = {pairs.second.address + begin * sizeof(uint)},
-                            .contacts = contacts_.ref<PairContact>(),
-                            .total = total_.ref<ListTotal>(),
-                            .count = count,
-                            .reserved = 0};
     Commands commands(context_, "collide classify");
     {
         const auto pass = commands.pass("collide classify start");
         commands.write(total_, ListTotal{0, 0});
     }
-    kernel_.dispatch(commands, args, count);
-    commands.submit();
+    pace_.record(commands, count, [&](std::uint64_t first, std::uint64_t some) {
+        const std::uint64_t offset = (begin + first) * sizeof(uint);
+        kernel_.dispatch(commands,
+                         {.corners = items.corners,
+                          .names = items.names,
+                          .first = {pairs.first.address + offset},
+                          .second = {pairs.second.address + offset},
+                          .contacts = contacts_.ref<PairContact>(),
+                          .total = total_.ref<ListTotal>(),
+                          .count = static_cast<uint>(some),
+                          .reserved = 0},
+                         some);
+    });
+    pace_.finish(commands);
     return download<ListTotal>(context_, total_, 1).front().low;
 }
 

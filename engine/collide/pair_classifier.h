@@ -50,6 +50,7 @@ class PairClassifier {
     Context& context_;
     Kernel<ClassifyArgs> kernel_;
     Buffer contacts_, total_;
+    Pace pace_;
     std::uint64_t host_count_ = 0;
     double host_seconds_ = 0;
 };

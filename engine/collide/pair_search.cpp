@@ -21,7 +21,8 @@ PairSearch::PairSearch(Context& context)
       kernel_(context, {.name = "collide_pairs", .spirv = collide_pairs_spirv}),
       sort_(context),
       total_(context, {.name = "collide total", .bytes = sizeof(ListTotal)}),
-      readback_(context, {.name = "collide total readback", .bytes = sizeof(ListTotal), .memory = Memory::readback}) {}
+      readback_(context, {.name = "collide total readback", .bytes = sizeof(ListTotal), .memory = Memory::readback}),
+      pace_(context) {}
 
 void PairSearch::set_max_pairs(std::uint64_t count) {
     if (count > most_pairs) fail("set_max_pairs: ", count, " pairs; at most ", most_pairs, " can be told apart");
@@ -43,29 +44,33 @@ std::uint64_t PairSearch::run(const Query& query, std::uint64_t capacity, uint f
     const uint queries = is_within ? query.tree.count : query.box_count;
     if (queries == 0 || query.tree.count == 0) return 0;
     const RadixSort::Pairs out = columns(pairs_, capacity);
-    const PairSearchArgs args{
+    PairSearchArgs args{
         .nodes = query.tree.nodes,
         .queries = is_within ? query.tree.leaves() : query.boxes,
         .first = out.keys,
         .second = out.values,
         .total = total_.ref<ListTotal>(),
-        .query_count = queries,
+        .query_begin = 0,
+        .query_end = 0,
         .leaf_begin = query.tree.leaf_begin,
         .leaf_count = query.tree.count,
         .capacity = static_cast<uint>(capacity),
-        .flags = flags | (is_within ? SEARCH_WITHIN : 0) | (query.other_groups ? SEARCH_OTHER_GROUPS : 0),
-        .reserved = 0};
+        .flags = flags | (is_within ? SEARCH_WITHIN : 0) | (query.other_groups ? SEARCH_OTHER_GROUPS : 0)};
     Commands commands(context_, "collide search");
     {
         const auto pass = commands.pass("collide search start");
         commands.write(total_, ListTotal{0, 0});
     }
-    kernel_.dispatch(commands, args, queries);
+    pace_.record(commands, queries, [&](std::uint64_t first, std::uint64_t count) {
+        args.query_begin = static_cast<uint>(first);
+        args.query_end = static_cast<uint>(first + count);
+        kernel_.dispatch(commands, args, count);
+    });
     {
         const auto pass = commands.pass("collide search readback");
         commands.copy(total_, 0, readback_, 0, sizeof(ListTotal));
     }
-    context_.wait(commands.submit());
+    pace_.finish(commands);
     ListTotal total;
     std::memcpy(&total, readback_.mapped(), sizeof total);
     return std::uint64_t{total.high} << 32 | total.low;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/collide/box_tree.h"
+#include "engine/core/pace.h"
 
 namespace twinray {
 
@@ -57,6 +58,7 @@ class PairSearch {
     Kernel<PairSearchArgs> kernel_;
     RadixSort sort_;
     Buffer pairs_, spare_, counters_, total_, readback_;
+    Pace pace_;
     std::uint64_t max_pairs_ = default_max_pairs;
 };
 

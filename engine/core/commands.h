@@ -30,8 +30,9 @@ struct CallerCommands {
     VkAccessFlags consumer_access = VK_ACCESS_MEMORY_READ_BIT;
 };
 
-// One command buffer, recorded as a straight line of named passes. The end of a pass is a global memory barrier, so
-// each pass sees all that earlier passes wrote; dispatches inside one pass must not depend on each other.
+// A straight line of named passes. The end of a pass is a global memory barrier, so each pass sees all that earlier
+// passes wrote; dispatches inside one pass must not depend on each other. Own commands may become several command
+// buffers, cut between passes, so that none keeps the device busy for too long (engine/core/pace.h).
 class Commands {
   public:
     // Own commands, submitted by submit().
@@ -81,7 +82,9 @@ class Commands {
     void fill(const Buffer& target, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word);
 
     // Tells of a dispatch in the present pass.
-    void count_groups(std::uint64_t groups) { passes_.back().groups += groups; }
+    void count_groups(std::uint64_t groups) { parts_.back().passes.back().groups += groups, count_work(groups); }
+    // The same of work of the driver that is as large as so many groups.
+    void count_work(std::uint64_t groups) { groups_ += groups; }
 
     // Takes ownership until the GPU has finished these commands.
     void keep(Buffer&& temporary) { kept_.push_back(std::move(temporary)); }
@@ -89,7 +92,11 @@ class Commands {
     // Once, at the end, even if it fails. The object may then be destroyed at any time. Throws Error for commands of
     // the caller.
     SyncPoint submit();
-    bool is_of_caller() const { return !pool_; }
+    // The same, and waits. How many seconds the GPU was busy; where the queue has no timestamps, the host waited.
+    double submit_and_wait();
+    // The same with what is recorded so far: more may follow. Not within a pass.
+    double submit_part();
+    bool is_of_caller() const { return is_of_caller_; }
     // When these commands are done: CallerCommands::done, or what submit() returned.
     SyncPoint done() const { return done_; }
 
@@ -98,25 +105,35 @@ class Commands {
     std::vector<PassTiming> timings() const;
 
     Context& context() const { return context_; }
-    VkCommandBuffer handle() const { return handle_; }
+    VkCommandBuffer handle() const { return parts_.back().handle; }  // where the next pass is recorded, until it ends
 
   private:
+    struct Part {
+        VkCommandPool pool = VK_NULL_HANDLE;  // null: the caller's
+        VkCommandBuffer handle = VK_NULL_HANDLE;
+        VkQueryPool queries = VK_NULL_HANDLE;  // null: the queue has no timestamps
+        std::vector<PassWork> passes = {};
+    };
     void write_bytes(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data);
-    void begin();
+    void begin_part();
     void begin_pass(const std::string& name);
     void end_pass();
-    void write_timestamp(std::uint32_t index) const;
+    void write_timestamp(std::size_t index) const;
+    bool is_part_full() const;
+    void retire_parts();
+    std::vector<PassTiming> timings_of(const Part& part) const;
+    std::vector<PassTiming> timings_of_parts() const;
 
-    static constexpr std::uint32_t max_timed_passes_ = 512;  // passes beyond it are recorded but not timed
+    static constexpr std::uint32_t max_timed_passes_ = 512;  // of a part; passes beyond it are recorded but not timed
     Context& context_;
     std::string name_;
-    VkCommandPool pool_ = VK_NULL_HANDLE;  // null: the caller's
-    VkCommandBuffer handle_ = VK_NULL_HANDLE;
-    VkQueryPool queries_ = VK_NULL_HANDLE;  // null: the queue has no timestamps
+    bool is_of_caller_ = false;
+    std::vector<Part> parts_;          // of which the last is recorded into; none where beginning another failed
+    std::vector<PassTiming> earlier_;  // of parts that were submitted before these
+    std::uint64_t groups_ = 0;         // of the last part
     // What follows the commands besides twinray itself.
     VkPipelineStageFlags consumer_stages_ = VK_PIPELINE_STAGE_HOST_BIT;
     VkAccessFlags consumer_access_ = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-    std::vector<PassWork> passes_;
     std::vector<Buffer> kept_;
     bool in_pass_ = false;
     bool is_ended_ = false;

@@ -115,7 +115,7 @@ Context::Context(const AdoptedDevice& adopted)
     vk_.load_instance(instance_);
     vk_.load_device(device_);
     facts_ = check_adoption(adopted, vk_);
-    tuning_ = tuning_for(facts_, asked_tuning());
+    set_tuning(asked_tuning(), adopted.most_submission_seconds);
     try {
         create_own_objects(adopted.allocator, {});
     } catch (...) {
@@ -153,7 +153,7 @@ void Context::create_device(const ContextDesc& desc) {
     facts_ = facts[static_cast<std::size_t>(choice.index)];
     facts_.ray_query &= desc.use_ray_query;
     facts_.ray_tracing_pipeline &= desc.use_ray_tracing_pipeline;
-    tuning_ = tuning_for(facts_, desc.tuning ? desc.tuning : asked_tuning());
+    set_tuning(desc.tuning ? desc.tuning : asked_tuning(), desc.most_submission_seconds);
     queue_family_ = static_cast<std::uint32_t>(compute_queue_family(vk_, physical_device_));
     api_version_ = std::min(facts_.api_version, std::uint32_t{VK_API_VERSION_1_3});
 
@@ -178,6 +178,11 @@ void Context::create_device(const ContextDesc& desc) {
     vk_.load_device(device_);
     vk_.vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
     if (watch_) run_nothing(vk_);
+}
+
+void Context::set_tuning(std::optional<TuningRow> row, std::optional<double> most_submission_seconds) {
+    tuning_ = tuning_for(facts_, row);
+    if (most_submission_seconds) tuning_.most_submission_seconds = std::max(*most_submission_seconds, 0.0);
 }
 
 void Context::create_own_objects(const AllocatorHooks& allocator, const std::filesystem::path& pipeline_folder) {

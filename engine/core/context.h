@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,12 @@ struct SyncPoint {
     std::uint64_t value = 0;
 };
 
+// A primary command buffer, and what it records.
+struct Submission {
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    std::vector<PassWork> passes = {};  // for the error of a lost device, as the name with which it is submitted
+};
+
 // A kernel that is made, and the size of its push constants. Any thread.
 using KernelWatch = std::function<void(const KernelDesc& kernel, std::uint32_t args_bytes)>;
 
@@ -36,6 +43,8 @@ struct ContextDesc {
     bool use_ray_query = true;             // false: leave the extension disabled although the device has it
     bool use_ray_tracing_pipeline = true;  // likewise
     std::optional<TuningRow> tuning = {};  // none: what TWINRAY_TUNING names, else by device
+    // None: by device, as KernelTuning has it; 0: no limit.
+    std::optional<double> most_submission_seconds = {};
     PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;  // null: open the system's loader
     std::filesystem::path pipeline_folder =
         {};        // keeps compiled pipelines between runs, see PipelineStore; empty: none does
@@ -79,13 +88,14 @@ class Context {
     // Stages and accesses of everything that twinray records; used by its barriers.
     VkPipelineStageFlags stages() const;
 
-    // Submits one primary command buffer; returns the point at which it is done. Frees what has been passed. `name` and
-    // `passes` are for the error of a lost device.
-    SyncPoint submit(VkCommandBuffer commands, const std::string& name, std::vector<PassWork> passes);
-    // The next submission, whichever call makes it (Commands::submit, AbstractAccel::sync, ...), runs its `stages` only
-    // once the GPU has reached `point`, on a timeline semaphore of the host, and sees what was written before it; one
-    // that fails leaves it to the one after. The host may submit the work that signals it later, on another
-    // queue; until it is signalled, whoever waits for that submission, this context's end included, waits too.
+    // Submits them one after the other, all or none; returns the point at which the last is done. Frees what has been
+    // passed.
+    SyncPoint submit(const std::string& name, std::vector<Submission> submissions);
+    // The next submission, whichever call makes it (Commands::submit, AbstractAccel::sync, ...), runs its `stages`, and
+    // all that is submitted later does, only once the GPU has reached `point`, on a timeline semaphore of the host, and
+    // sees what was written before it; one that fails leaves it to the one after. The host may submit the work that
+    // signals it later, on another queue; until it is signalled, whoever waits for that submission, this context's end
+    // included, waits too.
     void wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
     SyncPoint last_submission() const { return {timeline_, submitted_}; }
     bool is_reached(SyncPoint point) const;
@@ -125,11 +135,12 @@ class Context {
                                          const VkDebugUtilsMessengerCallbackDataEXT*, void*);
     void create_instance(const ContextDesc& desc);
     void create_device(const ContextDesc& desc);
+    void set_tuning(std::optional<TuningRow> row, std::optional<double> most_submission_seconds);
     void create_own_objects(const AllocatorHooks& allocator, const std::filesystem::path& pipeline_folder);
     void create_timeline();
     void create_pipeline_cache(const PipelineStore& store);
     void keep_pipelines() noexcept;
-    VkResult submit_signalling(VkCommandBuffer commands, std::uint64_t value) const;
+    VkResult enqueue(std::span<const Submission> submissions) const;
     std::string words_of_loss() const;
     void finish() noexcept;
     std::uint64_t reached(VkSemaphore semaphore) const noexcept;  // 0 when it cannot be read

@@ -17,14 +17,15 @@ DeviceList::DeviceList(Context& context, const char* name, std::uint64_t element
     : context_(context),
       name_(name),
       element_bytes_(element_bytes),
-      total_(context, {.name = "total of a list", .bytes = sizeof(ListTotal)}) {}
+      total_(context, {.name = "total of a list", .bytes = sizeof(ListTotal)}),
+      pace_(context) {}
 
 void DeviceList::set_limit(std::uint64_t count) {
     if (count > 0xffffffffu) fail(name_, ": a limit of ", count, "; at most ", 0xffffffffu, " can be told apart");
     limit_ = count;
 }
 
-std::uint64_t DeviceList::fill(const std::function<void(Commands&, const View&)>& record, std::uint64_t expected,
+std::uint64_t DeviceList::fill(const Record& record, std::uint64_t items, std::uint64_t expected,
                                const std::string& action) {
     grow(context_, elements_, name_, std::min(limit_, expected) * element_bytes_);
     for (;;) {
@@ -34,8 +35,10 @@ std::uint64_t DeviceList::fill(const std::function<void(Commands&, const View&)>
             const auto pass = commands.pass("start of a list");
             commands.write(total_, ListTotal{0, 0});
         }
-        record(commands, {elements_.address(), total_.ref<ListTotal>(), static_cast<uint>(room)});
-        commands.submit();
+        const View list{elements_.address(), total_.ref<ListTotal>(), static_cast<uint>(room)};
+        pace_.record(commands, items,
+                     [&](std::uint64_t first, std::uint64_t some) { record(commands, list, first, some); });
+        pace_.finish(commands);
         const ListTotal total = download<ListTotal>(context_, total_, 1).front();
         const std::uint64_t count = std::uint64_t{total.high} << 32 | total.low;
         if (count <= room) return count;

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "engine/core/commands.h"
+#include "engine/core/pace.h"
 
 namespace twinray {
 #include "engine/core/bridge_begin.h"
@@ -26,10 +26,12 @@ class DeviceList {
         Ref<ListTotal> total;
         uint capacity;
     };
-    // Has `record` append, submits and waits: again with room for all where there was too little. Returns how many
-    // elements there are. Throws Error, beginning with `action`, that says so where they are more than the limit.
-    std::uint64_t fill(const std::function<void(Commands&, const View&)>& record, std::uint64_t expected,
-                       const std::string& action);
+    // Appends what `record(commands, list, first, count)` finds for some of `items` items.
+    using Record = std::function<void(Commands&, const View&, std::uint64_t, std::uint64_t)>;
+    // Has `record` append for all items, submits and waits: again with room for all where there was too little. Returns
+    // how many elements there are. Throws Error, beginning with `action`, that says so where they are more than the
+    // limit.
+    std::uint64_t fill(const Record& record, std::uint64_t items, std::uint64_t expected, const std::string& action);
     const Buffer& buffer() const { return elements_; }
 
     std::uint64_t limit() const { return limit_; }
@@ -43,6 +45,7 @@ class DeviceList {
     std::uint64_t element_bytes_;
     std::uint64_t limit_ = default_limit;
     Buffer elements_, total_;
+    Pace pace_;
 };
 
 }  // namespace twinray

@@ -41,6 +41,11 @@ struct KernelTuning {
     // within a block, while a buffer of more than half a block has its own, which goes back to the driver.
     std::uint64_t memory_block_bytes = 0;
 
+    // What keeps the device busy for longer is cut into several submissions (engine/core/pace.h); 0: nothing is.
+    // Drivers of GPUs reset a device that is busy for too long with one, some after a second, above all where it has a
+    // screen.
+    double most_submission_seconds = 0.5;
+
     // Of the driver, whatever the row.
     bool has_fused_fma = false;          // GLSL's fma() is known to round once, which gives the error of a product
     bool folds_constants = true;         // it does not compile what a specialisation constant switches off

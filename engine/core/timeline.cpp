@@ -27,42 +27,47 @@ void Context::wait_before_next_submission(SyncPoint point, VkPipelineStageFlags 
     awaited_.push_back({point, stages});
 }
 
-VkResult Context::submit_signalling(VkCommandBuffer commands, std::uint64_t value) const {
+// Each submission is the driver's own, since each signals: what is merged would count as one that takes longer.
+VkResult Context::enqueue(std::span<const Submission> submissions) const {
     std::vector<VkSemaphore> semaphores;
-    std::vector<std::uint64_t> values;
+    std::vector<std::uint64_t> awaited, signalled(submissions.size());
     std::vector<VkPipelineStageFlags> stages;
     for (const Wait& wait : awaited_) {
         semaphores.push_back(wait.point.semaphore);
-        values.push_back(wait.point.value);
+        awaited.push_back(wait.point.value);
         stages.push_back(wait.stages);
     }
-    VkTimelineSemaphoreSubmitInfo timeline{};
-    timeline.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
-    timeline.waitSemaphoreValueCount = static_cast<std::uint32_t>(values.size());
-    timeline.pWaitSemaphoreValues = values.data();
-    timeline.signalSemaphoreValueCount = 1;
-    timeline.pSignalSemaphoreValues = &value;
-    VkSubmitInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-    info.pNext = &timeline;
-    info.waitSemaphoreCount = static_cast<std::uint32_t>(semaphores.size());
-    info.pWaitSemaphores = semaphores.data();
-    info.pWaitDstStageMask = stages.data();
-    info.commandBufferCount = 1;
-    info.pCommandBuffers = &commands;
-    info.signalSemaphoreCount = 1;
-    info.pSignalSemaphores = &timeline_;
+    std::vector<VkTimelineSemaphoreSubmitInfo> timelines(submissions.size());
+    std::vector<VkSubmitInfo> infos(submissions.size());
+    for (std::size_t i = 0; i < submissions.size(); ++i) {
+        signalled[i] = submitted_ + i + 1;
+        timelines[i].sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
+        timelines[i].signalSemaphoreValueCount = 1;
+        timelines[i].pSignalSemaphoreValues = &signalled[i];
+        infos[i].sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+        infos[i].pNext = &timelines[i];
+        infos[i].commandBufferCount = 1;
+        infos[i].pCommandBuffers = &submissions[i].commands;
+        infos[i].signalSemaphoreCount = 1;
+        infos[i].pSignalSemaphores = &timeline_;
+    }
+    timelines.front().waitSemaphoreValueCount = static_cast<std::uint32_t>(awaited.size());
+    timelines.front().pWaitSemaphoreValues = awaited.data();
+    infos.front().waitSemaphoreCount = static_cast<std::uint32_t>(semaphores.size());
+    infos.front().pWaitSemaphores = semaphores.data();
+    infos.front().pWaitDstStageMask = stages.data();
     if (lock_queue_) lock_queue_();
-    const VkResult result = vk_.vkQueueSubmit(queue_, 1, &info, VK_NULL_HANDLE);
+    const VkResult result =
+        vk_.vkQueueSubmit(queue_, static_cast<std::uint32_t>(infos.size()), infos.data(), VK_NULL_HANDLE);
     if (unlock_queue_) unlock_queue_();
     return result;
 }
 
-SyncPoint Context::submit(VkCommandBuffer commands, const std::string& name, std::vector<PassWork> passes) {
+SyncPoint Context::submit(const std::string& name, std::vector<Submission> submissions) {
     check_alive();
-    check(submit_signalling(commands, submitted_ + 1), "submit to the queue");
-    ++submitted_;
-    in_flight_.submitted(submitted_, name, std::move(passes));
+    if (submissions.empty()) return last_submission();
+    check(enqueue(submissions), "submit to the queue");
+    for (Submission& submission : submissions) in_flight_.submitted(++submitted_, name, std::move(submission.passes));
     awaited_.clear();
     collect();
     return last_submission();

@@ -44,6 +44,13 @@ void in_batches(std::span<const dvec3> points, const Body& body) {
         body(first, points.subspan(first, std::min(batch, points.size() - first)));
 }
 
+void dispatch(Commands& commands, const Kernel<PointSearchArgs>& kernel, PointSearchArgs args, std::uint64_t first,
+              std::uint64_t count) {
+    args.first = static_cast<uint>(first);
+    args.end = static_cast<uint>(first + count);
+    kernel.dispatch(commands, args, count);
+}
+
 }  // namespace
 
 PointFinder::PointFinder(Context& context)
@@ -55,7 +62,8 @@ PointFinder::PointFinder(Context& context)
       order_(context),
       triangles_(context),
       tree_(context),
-      found_(context, "pairs of a point and a triangle", sizeof(PointItem)) {}
+      found_(context, "pairs of a point and a triangle", sizeof(PointItem)),
+      pace_(context) {}
 
 std::uint64_t PointFinder::bytes() const {
     return triangles_.bytes() + tree_.bytes() + order_.bytes() + points_.bytes() + point_boxes_.bytes() +
@@ -101,31 +109,32 @@ PointSearchArgs PointFinder::upload(std::span<const dvec3> points, std::uint64_t
                          .found = {},
                          .total = {},
                          .limit = unlimited,
-                         .count = static_cast<uint>(points.size()),
+                         .first = 0,
+                         .end = static_cast<uint>(points.size()),
                          .leaf_begin = tree.leaf_begin,
                          .leaf_count = tree.count,
                          .capacity = 0,
-                         .scale = scale_,
-                         .reserved = 0};
+                         .scale = scale_};
     Commands commands(context_, "points upload");
     {
         const auto pass = commands.pass("points upload");
         commands.upload(points_, points);
     }
-    boxes_of_points_.dispatch(commands, args, args.count);
-    args.order = order_.record(commands, args.boxes, args.count);
+    boxes_of_points_.dispatch(commands, args, args.end);
+    args.order = order_.record(commands, args.boxes, args.end);
     commands.submit();
     return args;
 }
 
 std::vector<PointItem> PointFinder::found(const Kernel<PointSearchArgs>& kernel, PointSearchArgs args) {
-    const auto record = [&](Commands& commands, const DeviceList::View& list) {
+    const auto record = [&](Commands& commands, const DeviceList::View& list, std::uint64_t first, std::uint64_t some) {
         args.found = {list.address};
         args.total = list.total;
         args.capacity = list.capacity;
-        kernel.dispatch(commands, args, args.count);
+        dispatch(commands, kernel, args, first, some);
     };
-    const std::uint64_t count = found_.fill(record, args.count, "points");
+    const std::uint64_t points = args.end;
+    const std::uint64_t count = found_.fill(record, points, points, "points");
     return download<PointItem>(context_, found_.buffer(), count);
 }
 
@@ -137,8 +146,10 @@ std::vector<ClosestPoint> PointFinder::closest(std::span<const dvec3> points, do
         PointSearchArgs args = upload(some, some.size() * sizeof(NearestPoint));
         args.limit = max_distance;
         Commands commands(context_, "points nearest");
-        nearest_.dispatch(commands, args, args.count);
-        commands.submit();
+        pace_.record(commands, some.size(), [&](std::uint64_t begin, std::uint64_t count) {
+            dispatch(commands, nearest_, args, begin, count);
+        });
+        pace_.finish(commands);
         const std::vector<NearestPoint> nearest = download<NearestPoint>(context_, results_, some.size());
         for (std::size_t i = 0; i < some.size(); ++i) {
             const NearestPoint& of = nearest[i];

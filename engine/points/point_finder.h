@@ -9,7 +9,7 @@
 
 #include "engine/collide/box_tree.h"
 #include "engine/collide/triangle_set.h"
-#include "engine/core/commands.h"
+#include "engine/core/pace.h"
 #include "engine/scene/scene.h"
 
 namespace twinray {
@@ -93,6 +93,7 @@ class PointFinder {
     float scale_ = 1;
     Buffer points_, point_boxes_, results_;
     DeviceList found_;
+    Pace pace_;
     std::uint64_t host_decided_ = 0;
 };
 

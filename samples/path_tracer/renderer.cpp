@@ -72,7 +72,8 @@ Renderer::Renderer(Context& context, const DeviceScene& scene, const RenderSetti
       shadow_(context,
               kernel("path_tracer_shadow", path_tracer_shadow_spirv,
                      constants_of(scene.features(), scene.features().kinds.all_needs(), settings.strategy, false))),
-      accumulate_(context, kernel("path_tracer_accumulate", path_tracer_accumulate_spirv)) {}
+      accumulate_(context, kernel("path_tracer_accumulate", path_tracer_accumulate_spirv)),
+      pace_(context) {}
 
 std::deque<Kernel<ShadeArgs>> Renderer::shade_kernels(bool has_aovs) const {
     std::deque<Kernel<ShadeArgs>> kernels;
@@ -161,11 +162,14 @@ std::vector<FirstSurface> Renderer::first_surfaces(AbstractAccel& accel) {
     return download<FirstSurface>(context_, found, film_size_);
 }
 
-SyncPoint Renderer::submit(Commands& commands) {
-    const SyncPoint done = commands.submit();
+void Renderer::submit(Commands& commands) {
+    commands.submit();
+    add_times(commands);
+}
+
+void Renderer::add_times(const Commands& commands) {
     if (settings_.is_timed)
         for (const PassTiming& pass : commands.timings()) stats_.pass_ms[pass.name] += pass.ms;
-    return done;
 }
 
 std::uint64_t Renderer::device_bytes() const {
@@ -232,7 +236,7 @@ void Renderer::shadow_rounds(const Tracing& tracing, uint count) {
 }
 
 void Renderer::trace(Commands& commands, const Tracing& tracing, const TraceDesc& desc, Uints pixels) {
-    tracing.accel.trace(commands, tracing.view, desc);
+    tracing.accel.trace(commands, tracing.view, desc, pace_);
     if (tracing.observer) tracing.observer->record(commands, desc, pixels);
 }
 
@@ -246,7 +250,8 @@ Counters Renderer::run(Commands& commands, const Tracing& tracing) {
         const auto pass = commands.pass("path tracer counters");
         commands.copy(waves_.counters(), 0, counters_readback_, 0, sizeof(Counters));
     }
-    context_.wait(submit(commands));
+    pace_.finish(commands);
+    add_times(commands);
     Counters counters;
     std::memcpy(&counters, counters_readback_.mapped(), sizeof counters);
     stats_.non_finite = counters.non_finite;

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "engine/accel/abstract_accel.h"
+#include "engine/core/pace.h"
 #include "engine/core/progress.h"
 #include "samples/path_tracer/film.h"
 #include "samples/path_tracer/wave_buffers.h"
@@ -109,7 +110,8 @@ class Renderer {
     std::deque<Kernel<ShadeArgs>> shade_kernels(bool has_aovs) const;
     Counters run(Commands& commands, const Tracing& tracing);
     void clear_appended(Commands& commands);
-    SyncPoint submit(Commands& commands);
+    void submit(Commands& commands);
+    void add_times(const Commands& commands);
     void accumulate();
 
     Context& context_;
@@ -125,6 +127,7 @@ class Renderer {
     std::deque<Kernel<ShadeArgs>> shade_;
     Kernel<ShadowArgs> shadow_;
     Kernel<AccumulateArgs> accumulate_;
+    Pace pace_;
     uint pixel_count_ = 0;  // in pixels_
     uint turn_ = 0;         // whose the wave in flight is
     RenderStats stats_;

@@ -37,8 +37,8 @@ void flush(uint item)
 
 void main()
 {
-    uint i = global_index();
-    if (i >= args.query_count) return;
+    uint i = args.query_begin + global_index();
+    if (i >= args.query_end) return;
     TreeBox query = AT(args.queries, i);
     if (is_empty(query)) return;
     if (has(SEARCH_ANY) && atomicAdd(AT(args.total, 0).low, 0u) != 0u) return;

@@ -25,14 +25,14 @@ bool accept_hit(Candidate candidate, float t, vec2 uv)
     hit.v = uv.y;
     hit.instance_index = candidate.instance_index;
     hit.flags = 0u;
-    AT(args.found, slot).ray = global_index();
+    AT(args.found, slot).ray = args.first + global_index();
     AT(args.found, slot).hit = hit;
     return false;
 }
 
 void main()
 {
-    uint i = global_index();
-    if (i >= args.count) return;
+    uint i = args.first + global_index();
+    if (i >= args.end) return;
     trace(args.scene, AT(args.rays, i), trace_options(args.mask, args.flags | ALL_FILTERED, QUERY_CLOSEST));
 }

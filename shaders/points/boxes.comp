@@ -11,5 +11,5 @@ layout(push_constant, scalar) uniform Push { PointSearchArgs args; };
 void main()
 {
     uint i = global_index();
-    if (i < args.count) AT(args.boxes, i) = tree_box_of(AT(args.points, i).at, i);
+    if (i < args.end) AT(args.boxes, i) = tree_box_of(AT(args.points, i).at, i);
 }

@@ -75,8 +75,9 @@ void search()
 
 void main()
 {
-    if (global_index() >= args.count) return;
-    uint i = AT(args.order, global_index());
+    uint place = args.first + global_index();
+    if (place >= args.end) return;
+    uint i = AT(args.order, place);
     point = AT(args.points, i).at;
     point_box = scaled(box_around(point), args.scale);
     best.squared = args.limit * args.limit;

@@ -21,8 +21,9 @@ bool is_on_line(PointBox p, TreeBox box)
 
 void main()
 {
-    if (global_index() >= args.count) return;
-    uint i = AT(args.order, global_index());
+    uint place = args.first + global_index();
+    if (place >= args.end) return;
+    uint i = AT(args.order, place);
     dvec3 point = AT(args.points, i).at;
     PointBox point_box = box_around(point);
     int winding = 0;

@@ -12,8 +12,9 @@ layout(push_constant, scalar) uniform Push { PointSearchArgs args; };
 
 void main()
 {
-    if (global_index() >= args.count) return;
-    uint i = AT(args.order, global_index());
+    uint place = args.first + global_index();
+    if (place >= args.end) return;
+    uint i = AT(args.order, place);
     dvec3 point = AT(args.points, i).at;
     if (!is_finite_corner(point)) return;
     PointBox point_box = scaled(box_around(point), args.scale);

@@ -18,9 +18,11 @@ struct AllHitsArgs
     REF(Ray) rays;
     REF(RayHit) found; // written, with room for `capacity`; hardware may list a hit more than once
     REF(ListTotal) total;
-    uint count;
+    uint first; // ray of this dispatch
+    uint end;   // of its rays
     uint capacity;
     uint mask;
     uint flags;
+    uint reserved;
 };
 #endif

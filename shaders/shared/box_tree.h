@@ -60,12 +60,12 @@ struct PairSearchArgs
     Uints first;  // written: the item of the query,
     Uints second; // and that of the leaf
     REF(ListTotal) total;
-    uint query_count;
+    uint query_begin; // of this dispatch
+    uint query_end;
     uint leaf_begin;
     uint leaf_count;
     uint capacity; // pairs beyond it are counted, not written
     uint flags;
-    uint reserved;
 };
 
 FUNC TreeBox empty_tree_box()

@@ -46,12 +46,12 @@ struct PointSearchArgs
     REF(PointItem) found;     // near triangles, or undecided crossings; with room for `capacity`
     REF(ListTotal) total;     // of found
     double limit;             // of distance; may be infinite
-    uint count;
+    uint first;               // of this dispatch, in their order
+    uint end;
     uint leaf_begin;
     uint leaf_count;
     uint capacity;
     float scale;              // a power of two that makes the whole tree about 1 large
-    uint reserved;
 };
 
 // A point between floats.

@@ -50,6 +50,12 @@ TEST_F(AdoptedDeviceTest, BothAcceleratorsTraceOnIt) {
     EXPECT_TRUE(host_.device.enabled.shader_int64) << "as the host enabled it";
 }
 
+TEST_F(AdoptedDeviceTest, TheHostSaysHowLongASubmissionMayTake) {
+    ASSERT_TRUE(host_.create());
+    host_.device.most_submission_seconds = 0.125;
+    EXPECT_EQ(Context(host_.device).tuning().most_submission_seconds, 0.125);
+}
+
 // The layer complains of a queue that two threads use at once.
 TEST_F(AdoptedDeviceTest, TheHostSubmitsFromAnotherThreadUnderTheSameLock) {
     ASSERT_TRUE(host_.create());

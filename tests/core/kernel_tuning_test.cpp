@@ -35,6 +35,7 @@ TEST(KernelTuning, OfAGpuGroupsComeInNoOrder) {
     EXPECT_FALSE(tuning.has_stack_in_registers);
     EXPECT_EQ(tuning.sort_threads, 0u);
     EXPECT_EQ(tuning.memory_block_bytes, 0u);
+    EXPECT_EQ(tuning.most_submission_seconds, 0.5) << "drivers watch it";
 }
 
 TEST(KernelTuning, OfACpuDriverGroupsAreItsVectors) {
@@ -44,6 +45,7 @@ TEST(KernelTuning, OfACpuDriverGroupsAreItsVectors) {
     EXPECT_EQ(tuning.rays_per_group, 1024u);
     EXPECT_TRUE(tuning.has_stack_in_registers);
     EXPECT_EQ(tuning.sort_threads, 3u);
+    EXPECT_EQ(tuning.most_submission_seconds, 0) << "nobody watches it";
 }
 
 TEST(KernelTuning, SortsNeedRoomForTheirCounters) {

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// The command buffers of Commands: how they begin, are submitted and timed.
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "engine/core/commands.h"
+#include "engine/core/error.h"
+#include "engine/core/pace.h"
+
+namespace twinray {
+namespace {
+
+VkCommandPool new_pool(Context& context) {
+    VkCommandPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+    info.queueFamilyIndex = context.queue_family();
+    VkCommandPool pool = VK_NULL_HANDLE;
+    vk_check(context.vk().vkCreateCommandPool(context.device(), &info, nullptr, &pool), "create a command pool");
+    return pool;
+}
+
+// Null where the queue has none.
+VkQueryPool new_timestamps(Context& context, VkCommandBuffer commands, std::uint32_t count) {
+    if (context.timestamp_period_ns() == 0) return VK_NULL_HANDLE;
+    VkQueryPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    info.queryCount = count;
+    VkQueryPool pool = VK_NULL_HANDLE;
+    vk_check(context.vk().vkCreateQueryPool(context.device(), &info, nullptr, &pool), "create a timestamp pool");
+    context.vk().vkCmdResetQueryPool(commands, pool, 0, count);
+    return pool;
+}
+
+VkCommandBuffer begun_buffer(Context& context, VkCommandPool pool, const std::string& name) {
+    const VulkanFunctions& vk = context.vk();
+    VkCommandBufferAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    allocate.commandPool = pool;
+    allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    allocate.commandBufferCount = 1;
+    VkCommandBuffer handle = VK_NULL_HANDLE;
+    vk_check(vk.vkAllocateCommandBuffers(context.device(), &allocate, &handle), "allocate a command buffer");
+    context.set_name(VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<std::uint64_t>(handle), name);
+    VkCommandBufferBeginInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    vk_check(vk.vkBeginCommandBuffer(handle, &info), "begin a command buffer");
+    return handle;
+}
+
+double seconds_of(std::span<const PassTiming> passes) {
+    double ms = 0;
+    for (const PassTiming& pass : passes) ms += pass.ms;
+    return ms * 1e-3;
+}
+
+}  // namespace
+
+Commands::Commands(Context& context, const std::string& name) : context_(context), name_(name) {
+    context.check_alive();
+    begin_part();
+}
+
+Commands::Commands(Context& context, const std::string& name, const CallerCommands& caller)
+    : context_(context),
+      name_(name),
+      is_of_caller_(true),
+      consumer_stages_(caller.consumer_stages),
+      consumer_access_(caller.consumer_access | VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT),
+      done_(caller.done) {
+    context.check_alive();
+    if (!caller.handle) fail("commands '", name_, "': the caller's command buffer is null");
+    if (!caller.done.semaphore || !caller.done.value)
+        fail("commands '", name_,
+             "': the caller must say with which semaphore and value (not 0) its commands are done");
+    const VkQueryPool queries = new_timestamps(context, caller.handle, 2 * max_timed_passes_);
+    parts_.push_back({VK_NULL_HANDLE, caller.handle, queries});
+    context.announce(caller.done);
+    VkMemoryBarrier barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    barrier.srcAccessMask = caller.producer_access;
+    barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+    context.vk().vkCmdPipelineBarrier(caller.handle, caller.producer_stages | context.stages(), context.stages(), 0, 1,
+                                      &barrier, 0, nullptr, 0, nullptr);
+}
+
+Commands::~Commands() { retire_parts(); }
+
+void Commands::begin_part() {
+    const VkCommandPool pool = new_pool(context_);
+    try {
+        const VkCommandBuffer handle = begun_buffer(context_, pool, name_);
+        parts_.push_back({pool, handle, new_timestamps(context_, handle, 2 * max_timed_passes_)});
+    } catch (...) {
+        context_.vk().vkDestroyCommandPool(context_.device(), pool, nullptr);
+        throw;
+    }
+    groups_ = 0;
+    // Earlier submissions on this queue are ordered before, but their writes need to be made visible.
+    end_pass();
+}
+
+bool Commands::is_part_full() const {
+    return !is_of_caller_ && groups_ > most_groups(context_.tuning().most_submission_seconds);
+}
+
+void Commands::retire_parts() {
+    for (const Part& part : parts_)
+        context_.retire([&vk = context_.vk(), device = context_.device(), pool = part.pool, queries = part.queries] {
+            vk.vkDestroyCommandPool(device, pool, nullptr);
+            vk.vkDestroyQueryPool(device, queries, nullptr);
+        });
+    parts_.clear();
+}
+
+SyncPoint Commands::submit() {
+    if (is_of_caller_) fail("commands '", name_, "': they are the caller's to submit");
+    if (is_ended_) fail("commands '", name_, "': submitted twice");
+    if (in_pass_) fail("commands '", name_, "': submitted within a pass");
+    is_ended_ = true;
+    std::vector<Submission> submissions;
+    for (const Part& part : parts_) {
+        vk_check(context_.vk().vkEndCommandBuffer(part.handle), "end a command buffer");
+        submissions.push_back({part.handle, part.passes});
+    }
+    done_ = context_.submit(name_, std::move(submissions));
+    kept_.clear();  // retired behind the submission just made
+    return done_;
+}
+
+double Commands::submit_and_wait() {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    context_.wait(submit());
+    if (parts_.front().queries) return seconds_of(timings_of_parts());
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double Commands::submit_part() {
+    const double seconds = submit_and_wait();
+    std::ranges::copy(timings_of_parts(), std::back_inserter(earlier_));
+    retire_parts();
+    begin_part();
+    is_ended_ = false;
+    return seconds;
+}
+
+void Commands::write_timestamp(std::size_t index) const {
+    if (const Part& part = parts_.back(); part.queries && index < 2 * max_timed_passes_)
+        context_.vk().vkCmdWriteTimestamp(part.handle, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, part.queries,
+                                          static_cast<std::uint32_t>(index));
+}
+
+std::vector<PassTiming> Commands::timings() const {
+    context_.wait(done_);
+    std::vector<PassTiming> timings = earlier_;
+    std::ranges::copy(timings_of_parts(), std::back_inserter(timings));
+    return timings;
+}
+
+std::vector<PassTiming> Commands::timings_of_parts() const {
+    std::vector<PassTiming> timings;
+    for (const Part& part : parts_) std::ranges::copy(timings_of(part), std::back_inserter(timings));
+    return timings;
+}
+
+std::vector<PassTiming> Commands::timings_of(const Part& part) const {
+    const std::uint32_t count = std::min(static_cast<std::uint32_t>(part.passes.size()), max_timed_passes_);
+    if (!part.queries || count == 0) return {};
+    std::vector<std::uint64_t> stamps(2 * count);
+    context_.check(context_.vk().vkGetQueryPoolResults(context_.device(), part.queries, 0, 2 * count, stamps.size() * 8,
+                                                       stamps.data(), 8, VK_QUERY_RESULT_64_BIT),
+                   "read timestamps");
+    std::vector<PassTiming> timings;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double ticks = static_cast<double>(stamps[2 * i + 1] - stamps[2 * i]);
+        timings.push_back({part.passes[i].name, ticks * context_.timestamp_period_ns() * 1e-6});
+    }
+    return timings;
+}
+
+}  // namespace twinray
