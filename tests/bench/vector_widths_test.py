@@ -1,0 +1,43 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""llvmpipe with vectors of 128, 256 and 512 bits, and kernels of both rows of KernelTuning: the same hits to the last bit.
+Usage: vector_widths_test.py TWINRAY"""
+import concurrent.futures
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+if "llvmpipe" not in subprocess.run([twinray, "devices"], capture_output=True, text=True).stdout:
+    print("skipped: no device is llvmpipe, which LP_NATIVE_VECTOR_WIDTH is for")
+    sys.exit(77)
+
+
+def hits_of(setting):
+    """Hashes by what was traced."""
+    width, tuning = setting
+    file = here / f"{width}-{tuning}.jsonl"
+    variables = {"LP_NATIVE_VECTOR_WIDTH": str(width), "TWINRAY_TUNING": tuning}
+    command = [twinray, "bench", "--quiet", "--json", str(file), "--pipelines", "", "--device", "llvmpipe", "--scene",
+               "instances:12x80", "--width", "32", "--rounds", "1", "--levels", "fast,watertight,certified", "--contestants", "sw",
+               "--no-embree", "--no-build"]
+    run = subprocess.run(command, capture_output=True, text=True, env={**os.environ, **variables})
+    assert run.returncode == 0, f"{variables}: {run.stdout}{run.stderr}"
+    records = [json.loads(line) for line in file.read_text().splitlines()]
+    device = records[0]["device"]["name"]
+    assert f"{width} bits" in device, f"{device} was to have vectors of {width} bits"
+    return {(r["rays"], r["contestant"]): r["hits_hash"] for r in records}
+
+
+settings = [(width, tuning) for width in (128, 256, 512) for tuning in ("gpu", "cpu_driver")]
+with concurrent.futures.ThreadPoolExecutor(2) as workers:
+    hits = dict(zip(settings, workers.map(hits_of, settings)))
+first = hits[settings[0]]
+assert len(first) >= 27 and all(first.values()) and len(set(first.values())) >= 4, first
+for setting in settings[1:]:
+    differing = sorted(what for what in first.keys() | hits[setting].keys() if first.get(what) != hits[setting].get(what))
+    assert not differing, f"{setting}: other hits than {settings[0]}: {differing}"
+print(f"{len(first)} traces have the same hits with vectors of 128, 256 and 512 bits and kernels of both rows")
