@@ -16,9 +16,7 @@ using test::down;
 using test::error_of;
 using test::square;
 
-class Accel : public test::AccelTest {
-    bool shares_context() const override { return true; }
-};
+class Accel : public test::AccelTest {};
 TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFEREE(Accel);
 
 TEST_P(Accel, FindsTheClosestHitAndFillsEveryField) {

@@ -24,11 +24,14 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
         desc.use_ray_tracing_pipeline = GetParam() == Kind::pipeline;
         return desc;
     }
+    bool shares_context() const override { return true; }
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
         if (!is_ours() && !missing_for_hardware(context().facts()).empty())
             TWINRAY_LACKS("ray_tracing", context().facts().name + " has no such ray tracing");
+        if (!has_level(accel_options().level))
+            TWINRAY_LACKS("float64", context().facts().name + " lacks what this level needs");
         accel_ = make_accel();
     }
     void TearDown() override {
@@ -38,6 +41,12 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
 
     // Not the driver: held to every rule to the letter.
     bool is_ours() const { return GetParam() == Kind::software || GetParam() == Kind::oracle; }
+    // On this device; the referee has all on any.
+    bool has_level(Level level) const {
+        if (GetParam() == Kind::oracle) return true;
+        const auto capability_on = is_ours() ? SwTlas::capability_on : HwTlas::capability_on;
+        return capability_on(context().facts(), feature_of(level)).support != Support::unsupported;
+    }
     // Programs that no test waits for are not compiled.
     virtual AccelOptions accel_options() const { return {.compiles_in_background = false}; }
     std::unique_ptr<AbstractAccel> make_accel() { return make_accel(accel_options()); }

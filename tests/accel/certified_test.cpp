@@ -14,6 +14,12 @@ using test::square;
 
 class Certified : public test::VulkanTest {
   protected:
+    void SetUp() override {
+        VulkanTest::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        if (SwTlas::capability_on(context().facts(), Feature::level_certified).support == Support::unsupported)
+            TWINRAY_LACKS("float64", context().facts().name + " has no float64");
+    }
     // Rays for which SwTlas names another hit than the referee.
     std::size_t wrong(const Scene& scene, std::span<const Ray> rays, Level level, const TraceDesc& desc = {}) {
         SwTlas accel(context(), {.level = level, .compiles_in_background = false});

@@ -106,7 +106,10 @@ TEST_P(SortedRays, GiveAnswersAlone) {
 
 class SortedRaysOfAccels : public SortedRays {
   protected:
-    AccelOptions accel_options() const override { return {.level = is_ours() ? Level::certified : Level::refined}; }
+    AccelOptions accel_options() const override {
+        const Level highest = is_ours() ? Level::certified : Level::refined;
+        return {.level = has_level(highest) ? highest : Level::watertight};
+    }
 };
 TWINRAY_OVER_EVERY_ACCEL(SortedRaysOfAccels);
 

@@ -23,6 +23,7 @@ double microseconds_since(Clock::time_point start) {
 
 class Sync : public test::AccelTest {
   protected:
+    bool shares_context() const override { return false; }  // of memory and submissions, which are counted
     // Keeps the queue busy for a second or two.
     SyncPoint occupy_queue() {
         constexpr std::uint64_t bytes = 256 << 20;

@@ -18,6 +18,12 @@ struct Setting {
 
 class Tunings : public ::testing::TestWithParam<Setting> {
   protected:
+    void SetUp() override {
+        const std::unique_ptr<Context> context = test::make_context();
+        if (!context) return;
+        if (SwTlas::capability_on(context->facts(), feature_of(GetParam().level)).support == Support::unsupported)
+            TWINRAY_LACKS("float64", context->facts().name + " has no float64");
+    }
     // Of all the scenes, hits of the closest and any query, and all hits, as bytes in turn.
     std::vector<std::vector<std::byte>> trace_all(TuningRow row) {
         ContextDesc desc;
@@ -25,8 +31,6 @@ class Tunings : public ::testing::TestWithParam<Setting> {
         const std::unique_ptr<Context> context = test::make_context(desc);
         if (!context) return {};
         EXPECT_EQ(context->tuning().row, row);
-        if (SwTlas::capability_on(context->facts(), feature_of(GetParam().level)).support == Support::unsupported)
-            return {};
         std::vector<std::vector<std::byte>> found;
         trace_scenes(*context, found);
         for (const std::string& message : context->validation_messages()) ADD_FAILURE() << message;

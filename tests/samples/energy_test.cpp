@@ -5,7 +5,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-class Energy : public test::VulkanTest {};
+class Energy : public RenderTest {};
 
 Mesh flat_sphere(uint subdivisions) {
     Mesh mesh = make_icosphere(subdivisions);

@@ -7,7 +7,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-class PathTracer : public test::VulkanTest {};
+class PathTracer : public RenderTest {};
 
 Shot cornell_shot(const Scene& scene) {
     Shot shot;

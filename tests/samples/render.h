@@ -22,6 +22,11 @@ inline bool same_bits(const Picture& a, const Picture& b) {
     return a.rgb.size() == b.rgb.size() && std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(vec3)) == 0;
 }
 
+class RenderTest : public test::VulkanTest {
+  protected:
+    bool shares_context() const override { return true; }
+};
+
 struct Shot {
     RenderSettings settings = {.width = 32, .height = 32, .samples = 64};
     std::unique_ptr<EnvironmentMap> environment = nullptr;  // null: black

@@ -32,11 +32,11 @@ namespace {
 struct SharedContext {
     std::shared_ptr<Context> context;
     std::shared_ptr<std::vector<std::string>> log;
-    bool use_ray_query = false, use_ray_tracing_pipeline = false;
+    ContextDesc desc;
 
-    bool fits(const ContextDesc& desc) const {
-        return context && desc.use_ray_query == use_ray_query &&
-               desc.use_ray_tracing_pipeline == use_ray_tracing_pipeline;
+    bool fits(const ContextDesc& other) const {
+        return context && other.use_ray_query == desc.use_ray_query &&
+               other.use_ray_tracing_pipeline == desc.use_ray_tracing_pipeline && other.tuning == desc.tuning;
     }
     // Fails on what is said meanwhile.
     void let_go() {
@@ -69,7 +69,7 @@ void VulkanTest::SetUp() {
     if (!context_ && HasFailure()) FAIL() << "no device";
     if (!shares_context()) return;
     shared_context.let_go();
-    shared_context = {context_, log_, desc.use_ray_query, desc.use_ray_tracing_pipeline};
+    shared_context = {context_, log_, desc};
 }
 
 bool VulkanTest::was_logged(const std::string& part) const {

@@ -36,7 +36,7 @@ class VulkanTest : public ::testing::Test {
     // Tests that say so take the context of the one before, with all that it compiled, where that has the same
     // features: for a driver that takes a second for a kernel.
     virtual bool shares_context() const { return false; }
-    Context& context() { return *context_; }
+    Context& context() const { return *context_; }
     // Whether a warning that contains this has come.
     bool was_logged(const std::string& part) const;
 
