@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "swtlas/built.h"
 #include "swtlas_trace.spv.h"
+#include "swtlas_trace_int64.spv.h"
 #include "swtlas_trace_refined.spv.h"
 
 namespace twinray {
@@ -21,6 +22,11 @@ std::vector<CompressedRecord> with_clear_gaps(std::vector<CompressedRecord> reco
 }
 
 Bvh empty_bvh(std::uint64_t nodes) { return {vec3(INFINITY), vec3(-INFINITY), {nodes}, NOTHING, 0}; }
+
+std::span<const std::uint32_t> own_module(const KernelTuning& tuning) {
+    if (tuning.has_wide_loads) return swtlas_trace_int64_spirv;
+    return swtlas_trace_spirv;
+}
 
 }  // namespace
 
@@ -240,7 +246,7 @@ void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const Buil
 std::unique_ptr<TraceProgram> SwTlas::create_program(const TraceProgramCode* code, uint features) const {
     return std::make_unique<KernelProgram>(
         context(), id(), features, code ? code->name : "swtlas_trace",
-        code ? code->software : std::span<const std::uint32_t>(swtlas_trace_spirv),
+        code ? code->software : own_module(context().tuning()),
         code ? code->software_refined : std::span<const std::uint32_t>(swtlas_trace_refined_spirv), true);
 }
 

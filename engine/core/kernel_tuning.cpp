@@ -38,6 +38,7 @@ void shape_for_cpu_driver(KernelTuning& tuning, const DeviceFacts& device) {
     tuning.rays_per_group = 1024;
     tuning.groups_per_thread = 16;
     tuning.has_stack_in_registers = true;
+    tuning.has_wide_loads = device.shader_int64;
     tuning.compares_numbers = true;
     tuning.leaves_per_invocation = 256;
     // As many as fit a core's second cache with their records, half a MiB.

@@ -46,7 +46,7 @@ constexpr Part parts[] = {
     {"points", "Closest points, distances and winding numbers (PointFinder)", "PointFinder needs ",
      ", all else works without"},
     {"contacts", "Contacts of triangles (ContactFinder)", "ContactFinder needs ", ", CollisionFinder works without"},
-    {"int64_kernels", "Kernels of a host that have integers of 64 bits", "Kernels with integers of 64 bits need ",
+    {"int64_kernels", "Kernels that have integers of 64 bits, of a host or chosen by KernelTuning", "Kernels with integers of 64 bits need ",
      ", those without work"},
     {"images", "Textures as images (TextureStore)", "Textures as images need ", ", textures in buffers work without"},
 };
@@ -112,7 +112,7 @@ std::vector<Requirement> requirements_of(const DeviceFacts& device) {
          {Float64}},
         {"shaderFloat64", "it computes all distances in float64", points, device.shader_float64, {Float64}},
         {"shaderFloat64", "it decides in float64 which triangles meet", contacts, device.shader_float64, {Float64}},
-        {"shaderInt64", "they compute with them, as none of twinray's does", int64_kernels, device.shader_int64,
+        {"shaderInt64", "they compute with them; twinray's own have twins that do not", int64_kernels, device.shader_int64,
          {Int64}},
         {"descriptor indexing (runtimeDescriptorArray, shaderSampledImageArrayNonUniformIndexing, "
          "descriptorBindingVariableDescriptorCount and descriptorBindingSampledImageUpdateAfterBind)",

@@ -3,6 +3,9 @@
 // (groups_for_rays in engine/accel/trace_program.h), neighbours of which find in the caches what those before them met.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifdef TWINRAY_WIDE_LOADS
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#endif
 #include "twinray/query.glsl"
 #ifdef TWINRAY_PROGRAM
 #include "twinray_program.glsl"

@@ -42,7 +42,20 @@ FUNC bool is_wide_node(CompressedRecord record)
 FUNC bool is_instance(CompressedRecord leaf) { return (leaf.a.w & INSTANCE_BIT) != 0u; }
 FUNC uint index_in(CompressedRecord leaf) { return leaf.a.w & ~(LEAF_BIT | INSTANCE_BIT); } // of the primitive or instance
 
+#ifdef TWINRAY_WIDE_LOADS // of modules of their own, see KernelTuning::has_wide_loads
+REFERENCE(RecordWords, , uint64_t items[], 8)
+FUNC CompressedRecord load_record(REF(CompressedRecord) records, uint index)
+{
+    RecordWords words = RecordWords(address_at(records.address, index, 40u));
+    CompressedRecord record;
+    record.a = uvec4(unpackUint2x32(AT(words, 0)), unpackUint2x32(AT(words, 1)));
+    record.b = uvec4(unpackUint2x32(AT(words, 2)), unpackUint2x32(AT(words, 3)));
+    record.c = unpackUint2x32(AT(words, 4));
+    return record;
+}
+#else
 FUNC CompressedRecord load_record(REF(CompressedRecord) records, uint index) { return AT(records, index); }
+#endif
 FUNC void store_record(REF(CompressedRecord) records, uint index, CompressedRecord record)
 {
     AT(records, index) = record;

@@ -59,6 +59,7 @@ const Family families[] = {
 // What a word of the name says, whatever its family.
 const std::map<std::string, Of> words = {{"hw", Of::ray_queries},       {"rahit", Of::ray_pipelines},
                                          {"rint", Of::ray_pipelines},   {"refined", Of::refinement},
+                                         {"int64", Of::int64_kernels},
                                          {"images", Of::images}};
 
 Parts parts_of(const std::string& module) {
