@@ -6,6 +6,7 @@
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "cli/kernels/builds.h"
 #include "cli/kernels/family.h"
 #include "cli/kernels/kernel_list.h"
 #include "cli/kernels/limits.h"
@@ -40,6 +41,13 @@ std::vector<KernelRow> compile_all(const KernelList& list, const std::string& de
     return rows;
 }
 
+void report_builds(const KernelsOptions& options, const std::string& device, Context& context) {
+    const std::vector<BuildRow> builds = list_builds(context);
+    std::cout << "SwTlas, one mesh of " << build_triangles << " triangles and one instance:\n\n"
+              << table_of(builds) << std::endl;
+    for (const BuildRow& row : builds) append_json(options.json, to_json(row, device));
+}
+
 // Of the device, or of the family where it is not empty.
 std::vector<KernelRow> report(const KernelsOptions& options, const std::string& family) {
     if (!family.empty()) pretend_family(family);
@@ -54,6 +62,7 @@ std::vector<KernelRow> report(const KernelsOptions& options, const std::string& 
     std::cout << device << ": " << facts.name << ", " << facts.driver << "\n\n" << table_of(rows) << std::endl;
     append_json(options.json, {{"device", device}, {"name", facts.name}, {"driver", facts.driver}});
     for (const KernelRow& row : rows) append_json(options.json, to_json(row));
+    if (options.filter.empty()) report_builds(options, device, *list.context);
     return rows;
 }
 
@@ -88,7 +97,8 @@ Command kernels_command() {
             "Compiles every kernel that a program can get from the library, and those of the path tracer, and prints "
             "what the driver tells of each (VK_KHR_pipeline_executable_properties): VGPR, registers of a lane; waves, "
             "how many subgroups a unit keeps at a time; scratch, bytes of memory that stand in for registers, of a "
-            "subgroup; shared, bytes of a group; instructions. What it does not tell is empty. Nothing runs: with "
+            "subgroup; shared, bytes of a group; instructions. What it does not tell is empty. Then what builds of the "
+            "software accelerator record, and the bytes a triangle that they move at least. Nothing runs: with "
             "--family, Mesa's driver RADV compiles for GPUs of AMD that are not there.",
         .sections = {{"Which",
                       {{.name = "--device",

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "engine/core/vulkan_functions.h"
 
@@ -46,8 +47,28 @@ void mute_commands(VulkanFunctions& vk) {
     vk.vkSetDebugUtilsObjectNameEXT = nullptr;
 }
 
+thread_local RecordedWork recorded;
+
+void count_commands(VulkanFunctions& vk) {
+    vk.vkCmdDispatch = [](VkCommandBuffer, std::uint32_t, std::uint32_t, std::uint32_t) { ++recorded.dispatches; };
+    vk.vkCmdDispatchIndirect = [](VkCommandBuffer, VkBuffer, VkDeviceSize) { ++recorded.dispatches; };
+    vk.vkCmdPipelineBarrier = [](VkCommandBuffer, VkPipelineStageFlags, VkPipelineStageFlags, VkDependencyFlags,
+                                 std::uint32_t, const VkMemoryBarrier*, std::uint32_t, const VkBufferMemoryBarrier*,
+                                 std::uint32_t, const VkImageMemoryBarrier*) { ++recorded.barriers; };
+    vk.vkCmdCopyBuffer = [](VkCommandBuffer, VkBuffer, VkBuffer, std::uint32_t, const VkBufferCopy*) {
+        ++recorded.copies;
+    };
+    vk.vkCmdFillBuffer = [](VkCommandBuffer, VkBuffer, VkDeviceSize, VkDeviceSize, std::uint32_t) {
+        ++recorded.copies;
+    };
+    vk.vkCmdUpdateBuffer = [](VkCommandBuffer, VkBuffer, VkDeviceSize, VkDeviceSize, const void*) {
+        ++recorded.copies;
+    };
+}
+
 void record_nothing(VulkanFunctions& vk) {
     mute_commands(vk);
+    count_commands(vk);
     vk.vkCreateCommandPool = [](VkDevice, const VkCommandPoolCreateInfo*, const VkAllocationCallbacks*,
                                 VkCommandPool* pool) { return make(*pool); };
     vk.vkDestroyCommandPool = [](VkDevice, VkCommandPool pool, const VkAllocationCallbacks*) { release(pool); };
@@ -103,6 +124,8 @@ VkResult allocate_buffer(void*, const BufferRequest& request, AllocatedBuffer& r
 void free_buffer(void*, const AllocatedBuffer& buffer) { release(buffer.buffer); }
 
 }  // namespace
+
+RecordedWork take_recorded_work() { return std::exchange(recorded, {}); }
 
 void run_nothing(VulkanFunctions& vk) {
     record_nothing(vk);

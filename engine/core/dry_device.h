@@ -11,6 +11,13 @@ namespace twinray {
 // debuggers.
 void run_nothing(VulkanFunctions& vk);
 
+// What was recorded on such devices by this thread since it asked last.
+struct RecordedWork {
+    std::uint64_t dispatches = 0, barriers = 0;
+    std::uint64_t copies = 0;  // and fills, and updates
+};
+RecordedWork take_recorded_work();
+
 // What belongs with it: handles of nothing, and where the host maps a buffer, zeros. No images.
 AllocatorHooks memoryless_allocator();
 

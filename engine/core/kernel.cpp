@@ -70,8 +70,7 @@ void ComputePipeline::dispatch_groups(Commands& commands, const void* args, std:
     if (group_count == 0) return;
     std::optional<Commands::Pass> own_pass;
     if (!commands.in_pass()) own_pass.emplace(commands, desc_.name);
-    if (context_.watch()) return;
-    bind(commands, args, images);
+    if (!context_.watch()) bind(commands, args, images);
     commands.count_groups(group_count);
     const std::uint64_t rows = (group_count + groups_per_row - 1) / groups_per_row;
     context_.vk().vkCmdDispatch(commands.handle(), static_cast<std::uint32_t>(std::min(group_count, groups_per_row)),
@@ -82,8 +81,7 @@ void ComputePipeline::dispatch_indirect(Commands& commands, const void* args, co
                                         std::uint64_t offset) const {
     std::optional<Commands::Pass> own_pass;
     if (!commands.in_pass()) own_pass.emplace(commands, desc_.name);
-    if (context_.watch()) return;
-    bind(commands, args, VK_NULL_HANDLE);
+    if (!context_.watch()) bind(commands, args, VK_NULL_HANDLE);
     context_.vk().vkCmdDispatchIndirect(commands.handle(), counts.handle(), offset);
 }
 

@@ -46,6 +46,24 @@ class KernelsCommand(unittest.TestCase):
             self.assertIn(scan["subgroup"], (32, 64))
             self.assertTrue(any(line[:1] == ["sort_scan"] and line[-1] == str(scan["instructions"]) for line in lines))
 
+    def test_what_builds_record(self):
+        result = kernels("--family", "navi21", "--json", self.file)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        builds = {row["build"]: row for row in self.rows() if "build" in row}
+        refits = {row["refit"]: row for row in self.rows() if "refit" in row}
+        self.assertEqual(len(builds), 12)
+        for name, refit in refits.items():
+            build = builds[name]
+            self.assertGreater(build["dispatches"], refit["dispatches"])
+            self.assertGreater(build["barriers"], build["dispatches"] / 2)
+            self.assertGreater(refit["dispatches"], 0)
+            self.assertGreater(build["read_bytes_per_triangle"], refit["read_bytes_per_triangle"])
+        # A record of layout bvh4 has a box beside it: there are 5 / 3 a triangle.
+        more = (builds["bvh4 fast"]["written_bytes_per_triangle"] -
+                builds["compressed4 fast"]["written_bytes_per_triangle"])
+        self.assertAlmostEqual(more, 24 * 5 / 3, places=3)
+        self.assertIn("compressed8  ploc", result.stdout)
+
     def test_what_grew_and_what_is_new_is_told(self):
         kernels("--family", "navi21", "--filter", "sort_", "--json", self.file)
         same = kernels("--family", "navi21", "--filter", "sort_", "--against", self.file)
