@@ -24,7 +24,6 @@ std::vector<Wish> wishes_on(const DeviceFacts& device) {
         {"vertices moved", {.can_move = false}, true},
         {"build quality high", {.build_quality = BuildQuality::high, .can_move = false}},
         {"layout compressed8", {.layout = Layout::compressed8, .can_move = false}},
-        {"layout bvh4", {.layout = Layout::bvh4, .can_move = false}},
         {"layout bvh2", {.layout = Layout::bvh2, .can_move = false}},
     };
     if (SwTlas::capability_on(device, Feature::level_refined).support != Support::unsupported)

@@ -14,7 +14,7 @@
 namespace twinray::bench {
 
 struct Keeping {
-    std::string name;  // "needed", "may move", "vertices moved", "layout bvh4", "level refined"
+    std::string name;  // "needed", "may move", "vertices moved", "layout bvh2", "level refined"
     MemoryUsage usage;
     std::vector<double> build_ms;  // of each round: the sync that led to it
 };

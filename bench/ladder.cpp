@@ -24,7 +24,7 @@ constexpr Addition additions[] = {
     {"+ hits", FEATURE_HITS},           {"+ transforms", FEATURE_TRANSFORMS},
     {"+ instances", FEATURE_INSTANCES}, {"+ masks", FEATURE_MASKS},
     {"+ culling", FEATURE_CULLING},     {"+ filters", FEATURE_FILTERS},
-    {"+ boxes", FEATURE_BOXES},         {"+ other layouts", FEATURE_BVH2 | FEATURE_COMPRESSED | FEATURE_BVH4 | FEATURE_COMPRESSED8}};
+    {"+ boxes", FEATURE_BOXES},         {"+ other layouts", FEATURE_BVH2 | FEATURE_COMPRESSED | FEATURE_COMPRESSED8}};
 
 // A scene, traced by one program.
 class RungContestant : public Contestant {

@@ -18,15 +18,14 @@ namespace {
 
 std::size_t bytes_kept(const SwTlas::Tree& tree) {
     return tree.nodes.size() * sizeof(BvhNode) + tree.triangles.size() * sizeof(BvhTriangle) +
-           tree.records.size() * sizeof(CompressedRecord) + tree.record_boxes.size() * sizeof(LeafBox);
+           tree.records.size() * sizeof(CompressedRecord);
 }
 
 std::size_t bytes_used(const SwTlas::Tree& tree) {
     const auto used = static_cast<std::size_t>(std::ranges::count_if(tree.records, [](const CompressedRecord& record) {
         return !is_none(record);
     }));
-    const std::size_t of_record = sizeof(CompressedRecord) + (tree.record_boxes.empty() ? 0 : sizeof(LeafBox));
-    return tree.records.empty() ? bytes_kept(tree) : used * of_record;
+    return tree.records.empty() ? bytes_kept(tree) : used * sizeof(CompressedRecord);
 }
 
 // As rays meet its boxes.
@@ -38,8 +37,7 @@ double sah_of(const SwTlas::Tree& tree, const Mesh& mesh) {
     }
     const Geometry built(mesh, software_unit(mesh.positions));
     boxes = reference::leaves_triangles(built.positions, built.triangles);
-    const CompressedCheck check = check_compressed(tree.bvh, tree.records, boxes);
-    return tree.record_boxes.empty() ? check.sah : check.full_sah;
+    return check_compressed(tree.bvh, tree.records, boxes).sah;
 }
 
 TreeFigures figures_of_tree(Context& context, const Mesh& mesh, Layout layout, BuildQuality quality) {

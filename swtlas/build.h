@@ -37,7 +37,6 @@ class Builder {
     struct Measured {
         Ref<Bvh> tree;
         Ref<CompressedRecord> records;  // null in layout bvh2
-        Ref<LeafBox> record_boxes;      // of layout bvh4, else null
         uint leaf_count;
         CostTarget target;
     };

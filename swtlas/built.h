@@ -22,7 +22,6 @@ struct SwTlas::SwBuiltGeometry : BuiltGeometry {
     Ref<BvhNode> nodes() const { return part<BvhNode>(layout.node_count, layout.nodes); }
     Ref<BvhTriangle> triangles() const { return part<BvhTriangle>(layout.triangle_count, layout.triangles); }
     Ref<CompressedRecord> records() const { return part<CompressedRecord>(layout.record_count, layout.records); }
-    Ref<LeafBox> record_boxes() const { return part<LeafBox>(layout.box_count, layout.record_boxes); }
 
   private:
     template <class T>

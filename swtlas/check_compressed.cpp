@@ -39,16 +39,13 @@ class CompressedWalk {
           leaf_boxes_(leaf_boxes),
           result_(result),
           seen_records_(records.size()),
-          seen_leaves_(leaf_boxes.size()) {
-        result_.boxes.assign(records.size(), empty_box());
-    }
+          seen_leaves_(leaf_boxes.size()) {}
 
     LeafBox visit(uint index, uint depth) {
         if (index >= records_.size()) return violated(text("record ", index, " of ", records_.size()));
         if (seen_records_[index]) return violated(text("record ", index, " is reached twice"));
         seen_records_[index] = true;
-        result_.used.push_back(index);
-        return result_.boxes[index] = visit_record(index, depth);
+        return visit_record(index, depth);
     }
 
     void finish(const Bvh& bvh, const LeafBox& all) {
@@ -57,10 +54,7 @@ class CompressedWalk {
         for (std::size_t i = 0; i < seen_records_.size(); ++i)
             if (!seen_records_[i] && (is_leaf(records_[i]) || children_in(records_[i]) != 0))
                 violated(text("record ", i, " is not reached, and not none"));
-        if (const double root = half_area(all.lo, all.hi); root > 0) {
-            result_.sah = area_ / root;
-            result_.full_sah = full_area_ / root;
-        }
+        if (const double root = half_area(all.lo, all.hi); root > 0) result_.sah = area_ / root;
         for (std::size_t i = 0; i < seen_leaves_.size(); ++i)
             if (!seen_leaves_[i]) violated(text("leaf ", i, " is not reached"));
     }
@@ -125,7 +119,6 @@ class CompressedWalk {
 
     void check_planes(uint index, const Planes& planes, const LeafBox& below, uint slot) {
         area_ += half_area(planes.lo, planes.hi);
-        full_area_ += half_area(below.lo, below.hi);
         if (!is_active(below)) return;
         for (int axis = 0; axis < 3; ++axis)
             if (planes.lo[axis] + least_margin * planes.cell[axis] > double{below.lo[axis]} ||
@@ -138,7 +131,7 @@ class CompressedWalk {
     std::span<const LeafBox> leaf_boxes_;
     CompressedCheck& result_;
     std::vector<bool> seen_records_, seen_leaves_;
-    double area_ = 0, full_area_ = 0;
+    double area_ = 0;
 };
 
 }  // namespace

@@ -12,12 +12,9 @@ namespace twinray {
 
 struct CompressedCheck {
     std::vector<std::string> violations;  // one sentence each, at most 20
-    std::vector<uint> used;               // records that are reached from the root's
-    std::vector<LeafBox> boxes;           // by record: around what is below it, empty where it is not reached
     uint depth = 0;                       // nodes on the longest path
     uint width = 0;                       // how many children a node may have; 0: there is no node
-    double sah = 0;       // the surface-area cost, see surface_area.h, of the boxes as rays meet them in planes
-    double full_sah = 0;  // and in bvh4
+    double sah = 0;       // the surface-area cost, see surface_area.h, of the boxes as rays meet them
 };
 
 // Walks a tree of a layout of records from records[0] and checks what traversal and refits rely on: `bvh` has

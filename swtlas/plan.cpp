@@ -125,8 +125,6 @@ GeometryLayout layout_geometry(uint triangle_count, Layout layout) {
     parts.nodes = arena.take<BvhNode>(parts.node_count);
     parts.triangles = arena.take<BvhTriangle>(parts.triangle_count);
     parts.records = arena.take<CompressedRecord>(parts.record_count);
-    parts.box_count = layout == Layout::bvh4 ? parts.record_count : 0;
-    parts.record_boxes = arena.take<LeafBox>(parts.box_count);
     parts.bytes = arena.bytes;
     return parts;
 }
@@ -135,13 +133,11 @@ SceneLayout layout_scene(uint instance_count, Layout layout) {
     SceneLayout parts;
     parts.node_count = has_records(layout) ? 0 : inner_count(instance_count);
     parts.record_count = has_records(layout) ? record_count(instance_count, width_of(layout)) : 0;
-    parts.box_count = layout == Layout::bvh4 ? parts.record_count : 0;
     Arena arena;
     arena.take<SwScene>(1);
     parts.nodes = arena.take<BvhNode>(parts.node_count);
     parts.instances = arena.take<SwInstance>(instance_count);
     parts.records = arena.take<CompressedRecord>(parts.record_count);
-    parts.record_boxes = arena.take<LeafBox>(parts.box_count);
     parts.bytes = arena.bytes;
     return parts;
 }

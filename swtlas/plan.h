@@ -57,15 +57,15 @@ uint inner_count(uint leaf_count);
 
 // Where the parts of a built geometry lie in its buffer, and how many there are; its SwGeometry is the geometry block.
 struct GeometryLayout {
-    uint node_count = 0, triangle_count = 0, record_count = 0, box_count = 0;
-    std::uint64_t nodes = 0, triangles = 0, records = 0, record_boxes = 0, bytes = 0;
+    uint node_count = 0, triangle_count = 0, record_count = 0;
+    std::uint64_t nodes = 0, triangles = 0, records = 0, bytes = 0;
 };
 GeometryLayout layout_geometry(uint triangle_count, Layout layout);
 
 // Where the parts of a scene lie in its buffer; its SwScene is at 0.
 struct SceneLayout {
-    uint node_count = 0, record_count = 0, box_count = 0;
-    std::uint64_t nodes = 0, instances = 0, records = 0, record_boxes = 0, bytes = 0;
+    uint node_count = 0, record_count = 0;
+    std::uint64_t nodes = 0, instances = 0, records = 0, bytes = 0;
 };
 SceneLayout layout_scene(uint instance_count, Layout layout);
 

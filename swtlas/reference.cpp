@@ -42,15 +42,13 @@ bool is_crowded(std::vector<uint> codes) {
     return codes.size() > CROWD && needs_fine_codes(crowded, static_cast<uint>(codes.size()));
 }
 
-Records records_of(const Hierarchy& tree, BuildTree input, uint width) {
-    Records made{std::vector<CompressedRecord>(record_count(input.count, width)),
-                 std::vector<LeafBox>(record_count(input.count, width), empty_box())};
+std::vector<CompressedRecord> records_of(const Hierarchy& tree, BuildTree input, uint width) {
+    std::vector<CompressedRecord> made(record_count(input.count, width));
     std::vector<uint> places(input.count);
     Bvh bvh{tree.box.lo, tree.box.hi, {}, tree.root, input.count};
     input.bvh = Ref<Bvh>::to(&bvh);
     input.nodes = Ref<BvhNode>::to(tree.nodes.data());
-    input.records = Ref<CompressedRecord>::to(made.records.data());
-    input.record_boxes = Ref<LeafBox>::to(made.boxes.data());
+    input.records = Ref<CompressedRecord>::to(made.data());
     const Uints places_ref = Uints::to(places.data());
     std::vector<CollapseItem> waiting;
     const auto push = [&](const CollapseStep& step) {
@@ -178,8 +176,8 @@ std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::
     return encoded;
 }
 
-Records records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions, std::span<const uvec3> triangles,
-                             uint width) {
+std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions,
+                                                   std::span<const uvec3> triangles, uint width) {
     BuildTree input{};
     input.count = static_cast<uint>(triangles.size());
     if (triangles.empty()) return {};
@@ -188,7 +186,7 @@ Records records_of_triangles(const Hierarchy& tree, std::span<const vec3> positi
     return records_of(tree, input, width);
 }
 
-Records records_of_instances(const Hierarchy& tree, uint leaf_count, uint width) {
+std::vector<CompressedRecord> records_of_instances(const Hierarchy& tree, uint leaf_count, uint width) {
     BuildTree input{};
     input.count = leaf_count;
     return records_of(tree, input, width);

@@ -45,14 +45,10 @@ Hierarchy linked(Hierarchy tree);
 std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
                                           std::span<const uint> order);
 
-// The records of nodes of `width` children, and the boxes of bvh4, for a tree whose references are the leaves' own
-// indices. (The kernels' binary trees refer to places in the order; their records are the same.)
-struct Records {
-    std::vector<CompressedRecord> records;
-    std::vector<LeafBox> boxes;
-};
-Records records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions, std::span<const uvec3> triangles,
-                             uint width);
-Records records_of_instances(const Hierarchy& tree, uint leaf_count, uint width);
+// The records, with nodes of up to `width` children, of a tree whose references are the leaves' own indices. (The
+// kernels' binary trees refer to places in the order; their records are the same.)
+std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions,
+                                                   std::span<const uvec3> triangles, uint width);
+std::vector<CompressedRecord> records_of_instances(const Hierarchy& tree, uint leaf_count, uint width);
 
 }  // namespace twinray::reference

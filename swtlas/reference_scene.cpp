@@ -15,7 +15,7 @@ std::size_t Scene::add_geometry(const MeshView& mesh) {
     const std::vector<uint> order = sort(codes);
     Hierarchy tree = hierarchy(boxes, codes, order, !has_records(layout_), quality_);
     std::vector<BvhTriangle> triangles;
-    Records records;
+    std::vector<CompressedRecord> records;
     if (has_records(layout_))
         records = records_of_triangles(tree, geometry.positions, geometry.triangles, width_of(layout_));
     else {
@@ -32,18 +32,13 @@ uint Scene::root_of(const Hierarchy& tree) const {
     return has_records(layout_) && tree.root != NOTHING ? 0 : tree.root;
 }
 
-Ref<LeafBox> Scene::boxes_of(const Records& records) const {
-    return layout_ == Layout::bvh4 ? Ref<LeafBox>::to(const_cast<LeafBox*>(records.boxes.data())) : Ref<LeafBox>{};
-}
-
 // As the kernels see them, each with the address of its geometry's block.
 std::vector<InstanceRecord> Scene::records_in_built_units() {
     for (BuiltGeometry& built : geometries_) {
         built.block.geometry = {{built.tree.box.lo, built.tree.box.hi, Ref<BvhNode>::to(built.tree.nodes.data()),
                                  root_of(built.tree), static_cast<uint>(built.mesh.triangles.size())},
                                 Ref<BvhTriangle>::to(built.triangles.data()),
-                                Ref<CompressedRecord>::to(built.records.records.data()),
-                                boxes_of(built.records),
+                                Ref<CompressedRecord>::to(built.records.data()),
                                 GEOMETRY_TRIANGLES,
                                 0};
         built.block.source = {Floats::to(&built.mesh.positions.data()->x), Uints::to(&built.mesh.triangles.data()->x),
@@ -68,8 +63,7 @@ void Scene::build() {
     else
         top_ = linked(std::move(top_));
     header_ = {{top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), root_of(top_), count},
-               Ref<CompressedRecord>::to(top_records_.records.data()),
-               boxes_of(top_records_),
+               Ref<CompressedRecord>::to(top_records_.data()),
                Ref<SwInstance>::to(instances_.data()),
                instances_.size(),
                0};

@@ -53,11 +53,10 @@ class Scene {
         Geometry mesh;
         Hierarchy tree;
         std::vector<BvhTriangle> triangles;
-        Records records;
+        std::vector<CompressedRecord> records;
         Block block = {};
     };
     uint root_of(const Hierarchy& tree) const;            // as it is laid out
-    Ref<LeafBox> boxes_of(const Records& records) const;  // null but in layout bvh4
     std::vector<InstanceRecord> records_in_built_units();
     void build_refinement(std::span<const InstanceRecord> records);
 
@@ -68,7 +67,7 @@ class Scene {
     std::vector<SwInstance> instances_;
     std::vector<LeafBox> instance_boxes_;
     Hierarchy top_;
-    Records top_records_;
+    std::vector<CompressedRecord> top_records_;
     SwScene header_{};
     GeometryBox bound_{};  // of the world
     std::vector<RefineInstance> refined_;

@@ -58,7 +58,7 @@ void Builder::record_costs(Commands& commands, std::span<const Measured> trees, 
         for (std::size_t i = 0; i < trees.size(); ++i)
             node_areas_.dispatch_groups(
                 commands,
-                {trees[i].tree, trees[i].records, trees[i].record_boxes, work[i].items,
+                {trees[i].tree, trees[i].records, work[i].items,
                  area_count(trees[i].leaf_count, layout_), 0},
                 work[i].item_count);
     }

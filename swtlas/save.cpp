@@ -42,12 +42,10 @@ AccelHandle SwTlas::push_saved(Commands& commands, SavedGeometry&& saved) {
     saved.bvh.nodes = built->nodes();
     {
         const auto pass = commands.pass("swtlas load");
-        commands.write(block, SwGeometry{saved.bvh, built->triangles(), built->records(), built->record_boxes(),
-                                         saved.mesh.kind, 0});
+        commands.write(block, SwGeometry{saved.bvh, built->triangles(), built->records(), saved.mesh.kind, 0});
         const Commands::Piece pieces[] = {{built->layout.nodes, std::as_bytes(std::span(saved.nodes))},
                                           {built->layout.triangles, std::as_bytes(std::span(saved.leaves))},
-                                          {built->layout.records, std::as_bytes(std::span(saved.records))},
-                                          {built->layout.record_boxes, std::as_bytes(std::span(saved.record_boxes))}};
+                                          {built->layout.records, std::as_bytes(std::span(saved.records))}};
         commands.upload_pieces(built->buffer, pieces);
     }
     return push_built(std::move(saved.mesh), std::move(block), std::move(built), saved.instances);

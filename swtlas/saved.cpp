@@ -123,12 +123,11 @@ BuildTree source_of(const Geometry& mesh) {
     return source;
 }
 
-// Returns the boxes of the records.
-std::vector<LeafBox> check_records(Layout layout, const SavedGeometry& geometry) {
+void check_records(Layout layout, const SavedGeometry& geometry) {
     const auto primitives = static_cast<uint>(geometry.mesh.primitive_count());
     if (const std::size_t count = record_count(primitives, width_of(layout)); geometry.records.size() != count)
         fail("a tree of ", geometry.records.size(), " records for ", primitives, " primitives, not ", count);
-    if (primitives == 0) return {};
+    if (primitives == 0) return;
     const BuildTree source = source_of(geometry.mesh);
     for (const CompressedRecord& record : geometry.records) {
         if (!is_leaf(record)) continue;
@@ -141,20 +140,18 @@ std::vector<LeafBox> check_records(Layout layout, const SavedGeometry& geometry)
     std::vector<LeafBox> boxes;
     boxes.reserve(primitives);
     for (uint i = 0; i < primitives; ++i) boxes.push_back(box_of_primitive(source, i));
-    CompressedCheck check = check_compressed(geometry.bvh, geometry.records, boxes);
+    const CompressedCheck check = check_compressed(geometry.bvh, geometry.records, boxes);
     if (!check.violations.empty()) fail("unsound tree: ", check.violations.front());
     if (check.width != 0 && check.width != width_of(layout))
         fail("nodes of ", check.width, " children in layout ", name_of(layout));
-    return std::move(check.boxes);
 }
 
-void check_structure(Layout layout, SavedGeometry& geometry) {
+void check_structure(Layout layout, const SavedGeometry& geometry) {
     if (has_records(layout) ? !geometry.nodes.empty() || !geometry.leaves.empty() : !geometry.records.empty())
         fail(geometry.nodes.size(), " nodes, ", geometry.leaves.size(), " leaves and ", geometry.records.size(),
              " records in layout ", name_of(layout));
     if (!has_records(layout)) return check_bvh2(geometry);
-    std::vector<LeafBox> boxes = check_records(layout, geometry);
-    if (layout == Layout::bvh4) geometry.record_boxes = std::move(boxes);
+    check_records(layout, geometry);
 }
 
 Geometry read_mesh(Reader& reader, const SavedEntry& entry) {

@@ -19,7 +19,7 @@
 
 namespace twinray {
 
-constexpr uint saved_version = 7;
+constexpr uint saved_version = 8;
 
 struct SavedHeader {
     char magic[8];
@@ -52,8 +52,7 @@ struct SavedGeometry {
     std::vector<BvhNode> nodes;
     std::vector<BvhTriangle> leaves;
     std::vector<CompressedRecord> records;
-    std::vector<InstanceRecord> instances;   // geometry: 0
-    std::vector<LeafBox> record_boxes = {};  // of layout bvh4; not in the file, but found by decode_save
+    std::vector<InstanceRecord> instances;  // geometry: 0
 };
 
 // The file in pieces; those of the body lie in what was given.

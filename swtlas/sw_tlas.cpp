@@ -39,7 +39,7 @@ struct SwTlas::Batch {
     BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const DeviceMesh& mesh) const {
         return {
             plan.first[i],  counts[i],          mesh.positions,   mesh.indices,         {inputs[i].block->address()},
-            target.nodes(), target.triangles(), target.records(), target.record_boxes()};
+            target.nodes(), target.triangles(), target.records()};
     }
 };
 
@@ -53,13 +53,11 @@ struct SwTlas::SwBuiltScene : BuiltScene {
         tree.bvh = {address};
         tree.nodes = nodes();
         tree.records = records();
-        tree.record_boxes = record_boxes();
         return tree;
     }
     Ref<BvhNode> nodes() const { return {layout.node_count ? address + layout.nodes : 0}; }
     Ref<SwInstance> instances() const { return {address + layout.instances}; }
     Ref<CompressedRecord> records() const { return {layout.record_count ? address + layout.records : 0}; }
-    Ref<LeafBox> record_boxes() const { return {layout.box_count ? address + layout.record_boxes : 0}; }
 };
 
 SwTlas::SwTlas(Context& context, const AccelOptions& options)
@@ -109,7 +107,7 @@ std::vector<Builder::Measured> SwTlas::measured(const Batch& batch, std::span<co
     std::vector<Builder::Measured> wanted;
     for (std::size_t i = 0; i < trees.size(); ++i)
         if (const CostTarget& cost = batch.inputs[i].cost; cost.result.address)
-            wanted.push_back({trees[i].bvh, trees[i].records, trees[i].record_boxes, trees[i].count, cost});
+            wanted.push_back({trees[i].bvh, trees[i].records, trees[i].count, cost});
     return wanted;
 }
 
@@ -151,7 +149,6 @@ void SwTlas::record_build(Commands& commands, const Batch& batch, const Buffer& 
             const SwGeometry block{empty_bvh(target.nodes().address),
                                    target.triangles(),
                                    target.records(),
-                                   target.record_boxes(),
                                    input.geometry->kind,
                                    0};
             commands.write(*input.block, block);
@@ -201,7 +198,7 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
         scene = made.get();
     }
     const SwScene header{
-        empty_bvh(scene->nodes().address), scene->records(), scene->record_boxes(), scene->instances(), input.count,
+        empty_bvh(scene->nodes().address), scene->records(), scene->instances(), input.count,
         input.refinement.address};
     {
         const auto pass = commands.pass("swtlas scene input");
@@ -210,7 +207,7 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
     builder_.record_instances(commands, plan_build(std::span(&input.count, 1), options().layout, context().tuning()),
                               scene->tree(input.count), input.records, scene->instances());
     const Builder::Measured measured{
-        {scene->address}, scene->records(), scene->record_boxes(), input.count, input.cost};
+        {scene->address}, scene->records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), true);
     return made;
 }
@@ -239,7 +236,7 @@ void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const Buil
     const auto& scene = static_cast<const SwBuiltScene&>(current);
     builder_.record_refit(commands, plan_build(std::span(&input.count, 1), options().layout, context().tuning()),
                           scene.tree(input.count), input.records, scene.instances());
-    const Builder::Measured measured{{scene.address}, scene.records(), scene.record_boxes(), input.count, input.cost};
+    const Builder::Measured measured{{scene.address}, scene.records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), false);
 }
 
@@ -256,8 +253,7 @@ SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {
     const GeometryLayout& layout = built.layout;
     return {bvh, download<BvhNode>(context(), built.buffer, layout.node_count, layout.nodes),
             download<BvhTriangle>(context(), built.buffer, layout.triangle_count, layout.triangles),
-            with_clear_gaps(download<CompressedRecord>(context(), built.buffer, layout.record_count, layout.records)),
-            download<LeafBox>(context(), built.buffer, layout.box_count, layout.record_boxes)};
+            with_clear_gaps(download<CompressedRecord>(context(), built.buffer, layout.record_count, layout.records))};
 }
 
 SwTlas::Tree SwTlas::download_scene() const {
@@ -268,8 +264,7 @@ SwTlas::Tree SwTlas::download_scene() const {
             download<BvhNode>(context(), built.buffer, of_them.node_count, built.layout.nodes),
             {},
             with_clear_gaps(
-                download<CompressedRecord>(context(), built.buffer, of_them.record_count, built.layout.records)),
-            download<LeafBox>(context(), built.buffer, of_them.box_count, built.layout.record_boxes)};
+                download<CompressedRecord>(context(), built.buffer, of_them.record_count, built.layout.records))};
 }
 
 }  // namespace twinray

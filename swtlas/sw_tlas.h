@@ -41,7 +41,6 @@ class SwTlas final : public AbstractAccel {
         std::vector<BvhNode> nodes;             // of layout bvh2
         std::vector<BvhTriangle> triangles;     // of a geometry in layout bvh2
         std::vector<CompressedRecord> records;  // of all other layouts
-        std::vector<LeafBox> record_boxes;      // of layout bvh4
     };
     Tree download_geometry(AccelHandle handle) const;
     Tree download_scene() const;

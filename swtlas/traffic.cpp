@@ -27,8 +27,6 @@ double node_records(Layout layout) {
     return record_count(many, width_of(layout)) / double{many} - 1;
 }
 
-double record_bytes(Layout layout) { return record + (layout == Layout::bvh4 ? box : 0); }
-
 }  // namespace
 
 BuildTraffic build_traffic(Layout layout, BuildQuality quality) {
@@ -45,8 +43,8 @@ BuildTraffic build_traffic(Layout layout, BuildQuality quality) {
         add(sum, word + mesh_triangle, sizeof(BvhTriangle));
         return sum;
     }
-    add(sum, node, node_records(layout) * record_bytes(layout) + word);  // collapse
-    add(sum, 2 * word + mesh_triangle, record_bytes(layout));            // records of leaves
+    add(sum, node, node_records(layout) * record + word);  // collapse
+    add(sum, 2 * word + mesh_triangle, record);            // records of leaves
     return sum;
 }
 
@@ -60,7 +58,7 @@ BuildTraffic refit_traffic(Layout layout) {
     }
     const double slots = 1 + node_records(layout);
     add(sum, slots * record, slots * 2 * word);                          // parents
-    add(sum, slots * (record + box + word) + mesh_triangle, slots * (record_bytes(layout) + box + word));
+    add(sum, slots * (record + box + word) + mesh_triangle, slots * (record + box + word));
     return sum;
 }
 

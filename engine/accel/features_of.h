@@ -38,7 +38,7 @@ struct TraceFacts {
 };
 
 constexpr uint feature_of_layout(Layout layout) {
-    constexpr uint features[] = {FEATURE_COMPRESSED, FEATURE_BVH2, FEATURE_BVH4, FEATURE_COMPRESSED8};
+    constexpr uint features[] = {FEATURE_COMPRESSED, FEATURE_BVH2, FEATURE_COMPRESSED8};
     return features[static_cast<std::size_t>(layout)];
 }
 

@@ -39,13 +39,12 @@ enum class Level : std::uint8_t {
 enum class Layout : std::uint8_t {
     compressed4,  // four children a node, boxes in 8 bits a plane, primitives among the nodes: the fastest
     bvh2,         // two children a node, boxes in float32
-    bvh4,         // compressed4 with the boxes in float32 as well: half as much memory again
     compressed8,  // eight children a node of 80 bytes, in an order that a ray's signs give: for GPUs
 };
 
-inline constexpr std::array all_layouts = {Layout::compressed4, Layout::bvh2, Layout::bvh4, Layout::compressed8};
+inline constexpr std::array all_layouts = {Layout::compressed4, Layout::bvh2, Layout::compressed8};
 constexpr std::string_view name_of(Layout layout) {
-    constexpr std::string_view names[] = {"compressed4", "bvh2", "bvh4", "compressed8"};
+    constexpr std::string_view names[] = {"compressed4", "bvh2", "compressed8"};
     return names[static_cast<std::size_t>(layout)];
 }
 // Whether trees are of records (shaders/shared/compressed.h).

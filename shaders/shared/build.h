@@ -32,7 +32,6 @@ struct BuildTree
     REF(BvhNode) nodes;            // of the scratch where there are records
     REF(BvhTriangle) triangles;    // of layout bvh2
     REF(CompressedRecord) records; // of all other layouts
-    REF(LeafBox) record_boxes;     // of layout bvh4, else null
 };
 BUFFER_OF(BuildTree, 8);
 
@@ -268,11 +267,6 @@ FUNC vec3 center_of(LeafBox box)
     PRECISE vec3 half_hi = box.hi * 0.5f;
     PRECISE vec3 center = half_lo + half_hi;
     return center;
-}
-
-FUNC void keep_box(BuildTree tree, uint record, LeafBox box)
-{
-    if (!is_null(tree.record_boxes)) store_box(tree.record_boxes, record, box);
 }
 
 FUNC bool has_instances(BuildTree tree) { return is_null(tree.positions); }

@@ -4,7 +4,7 @@
 //   SwScene -> top-level Bvh over instances -> SwInstance -> bottom-level Bvh over triangles
 //
 // Trees are built binary, of BvhNodes. In layout bvh2 they stay; in the other layouts a tree of CompressedRecords takes
-// their place, in bvh4 beside the boxes of all records in full precision.
+// their place.
 //
 // A reference to a child is the index of an inner node, or LEAF_BIT with the index of a leaf. n leaves have n - 1
 // inner nodes; with one leaf the root is that leaf, with none it is NOTHING. Records have their root at 0.
@@ -109,7 +109,6 @@ struct SwGeometry
     Bvh bvh;
     REF(BvhTriangle) triangles;    // of layout bvh2, else null
     REF(CompressedRecord) records; // of all other layouts, else null
-    REF(LeafBox) record_boxes;     // by record, of layout bvh4, else null
     uint kind; // GEOMETRY_*
     uint reserved;
 };
@@ -122,7 +121,6 @@ struct SwInstance
     REF(BvhNode) nodes;
     REF(BvhTriangle) triangles;
     REF(CompressedRecord) records;
-    REF(LeafBox) record_boxes;
     uint root;
     uint custom_index_mask;
     uint flags; // of the instance: INSTANCE_*
@@ -136,7 +134,6 @@ struct SwScene
 {
     Bvh bvh;
     REF(CompressedRecord) records; // as in SwGeometry
-    REF(LeafBox) record_boxes;
     REF(SwInstance) instances;
     Uint64 instance_count;
     Address refinement; // address of a RefineScene, or 0

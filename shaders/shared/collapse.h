@@ -189,7 +189,6 @@ FUNC CollapseStep write_node(BuildTree tree, Uints places, CollapseItem item, No
         if (i >= children.count) continue;
         uint place = place_of(of_children, slot_of(order, i));
         leaves = leaves + leaves_in(children.below[i]);
-        keep_box(tree, place, children.box[i]);
         uint child = children.child[i];
         step.leaves[i] = leaves_of_item(children, i);
         if (step.leaves[i] == 0u)

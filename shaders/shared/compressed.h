@@ -140,9 +140,8 @@ FUNC LeafBox box_in_planes(CompressedRecord node, CompressedRecord second_half, 
     return box;
 }
 
-// Half the areas of the boxes of a node's children, as rays meet them; 0 of other records. `boxes`: of layout bvh4,
-// else null.
-FUNC float areas_in(REF(CompressedRecord) records, REF(LeafBox) boxes, uint index, float unit)
+// Half the areas of the boxes of a node's children, as rays meet them; 0 of other records.
+FUNC float areas_in(REF(CompressedRecord) records, uint index, float unit)
 {
     CompressedRecord node = load_record(records, index);
     if (is_leaf(node) || children_in(node) == 0u) return 0.0f;
@@ -153,7 +152,6 @@ FUNC float areas_in(REF(CompressedRecord) records, REF(LeafBox) boxes, uint inde
     {
         if (!has_child(places, slot)) continue;
         LeafBox box = box_in_planes(node, second_half, slot);
-        if (!is_null(boxes)) box = load_box(boxes, place_of(places, slot));
         sum = sum + half_area(box.lo, box.hi, unit);
     }
     return sum;

@@ -4,7 +4,6 @@
 #define TWINRAY_SHARED_ENTERED_CHILDREN_H
 #include "shaders/shared/enter_binary.h"
 #include "shaders/shared/enter_compressed.h"
-#include "shaders/shared/enter_full.h"
 #include "shaders/shared/enter_wide.h"
 
 const uint ROOT_EDGE = 0u; // in every layout; beside the root there is nothing that a stack could lose
@@ -15,7 +14,6 @@ struct SwTree
     REF(BvhNode) nodes;
     REF(BvhTriangle) triangles;
     REF(CompressedRecord) records;
-    REF(LeafBox) boxes;
     uint root;
 };
 
@@ -48,7 +46,6 @@ FUNC SwTree top_tree(SwScene scene)
     tree.nodes = scene.bvh.nodes;
     tree.triangles = REF(BvhTriangle)(NULL_ADDRESS);
     tree.records = scene.records;
-    tree.boxes = scene.record_boxes;
     tree.root = scene.bvh.root;
     return tree;
 }
@@ -58,23 +55,20 @@ FUNC SwTree tree_of(SwInstance instance)
     tree.nodes = instance.nodes;
     tree.triangles = instance.triangles;
     tree.records = instance.records;
-    tree.boxes = instance.record_boxes;
     tree.root = instance.root;
     return tree;
 }
 
-const uint NARROW_RECORDS = FEATURE_COMPRESSED | FEATURE_BVH4;
-
 FUNC bool is_binary(SwScene scene, TraceOptions options)
 {
     bool may_be = (options.features & FEATURE_BVH2) != 0u;
-    bool may_have_records = (options.features & (NARROW_RECORDS | FEATURE_COMPRESSED8)) != 0u;
+    bool may_have_records = (options.features & (FEATURE_COMPRESSED | FEATURE_COMPRESSED8)) != 0u;
     return may_be && (!may_have_records || is_null(scene.records));
 }
 FUNC bool may_be_wide(TraceOptions options) { return (options.features & FEATURE_COMPRESSED8) != 0u; }
 FUNC bool is_surely_wide(TraceOptions options)
 {
-    return (options.features & (NARROW_RECORDS | FEATURE_COMPRESSED8 | FEATURE_BVH2)) == FEATURE_COMPRESSED8;
+    return (options.features & (FEATURE_COMPRESSED | FEATURE_COMPRESSED8 | FEATURE_BVH2)) == FEATURE_COMPRESSED8;
 }
 
 // The children of a node that the ray enters, the first one first, and the rest as an entry of the stack.
@@ -90,12 +84,7 @@ struct EnteredChildren
 FUNC EnteredChildren children_of_record(CompressedRecord record, SwTree tree, BoxRay ray, Search search, uint target,
                                          TraceOptions options)
 {
-    bool may_be_full = (options.features & FEATURE_BVH4) != 0u;
-    bool may_be_compressed = (options.features & FEATURE_COMPRESSED) != 0u;
-    ChildKeys keys;
-    if (may_be_full && (!may_be_compressed || !is_null(tree.boxes)))
-        keys = enter_full(tree.boxes, record, ray, search.t_min, search.t_best, options.query);
-    else keys = enter_compressed(record, ray, search.t_min, search.t_best, options.query);
+    ChildKeys keys = enter_compressed(record, ray, search.t_min, search.t_best, options.query);
     if (target != NOTHING) keys = keys_from(keys, slot_towards(tree.records, places_in(record, record), target));
     sort_keys(keys);
     EnteredChildren children;

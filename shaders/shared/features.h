@@ -15,9 +15,8 @@ const uint FEATURE_MASKS = 64u;      // software: an instance that the trace's m
 const uint FEATURE_CULLING = 128u;   // software: the trace culls
 const uint FEATURE_TRANSFORMS = 256u; // software: an instance that is, or may be moved, elsewhere than its geometry
 const uint FEATURE_HITS = 512u;      // the trace wants all of each hit, not only whether there is one
-const uint FEATURE_BVH4 = 1024u;     // software: layout bvh4
-const uint FEATURE_COMPRESSED8 = 2048u; // software: layout compressed8
-const uint FEATURES_ALL = 4095u;
+const uint FEATURE_COMPRESSED8 = 1024u; // software: layout compressed8
+const uint FEATURES_ALL = 2047u;
 
 // How a ray is tested against triangles.
 const uint LEVEL_FAST = 0u;       // Moeller-Trumbore: may lose rays at edges

@@ -39,7 +39,6 @@ FUNC uint child_in(SwGeometry geometry, AnyNode node, uint slot)
 // The box of a child as rays meet it.
 FUNC LeafBox box_in(SwGeometry geometry, AnyNode node, uint slot)
 {
-    if (!is_null(geometry.record_boxes)) return load_box(geometry.record_boxes, place_of(node.places, slot));
     if (!is_null(geometry.records)) return box_in_planes(node.record, node.second_half, slot);
     LeafBox box;
     box.lo = slot == 0u ? node.binary.lo0 : node.binary.lo1;

@@ -141,7 +141,6 @@ FUNC SwInstance place_instance(InstanceRecord record, INOUT(LeafBox) box)
     instance.nodes = geometry.bvh.nodes;
     instance.triangles = geometry.triangles;
     instance.records = geometry.records;
-    instance.record_boxes = geometry.record_boxes;
     instance.root = geometry.bvh.root;
     instance.kind = geometry.kind;
     instance.extent = largest_coordinate(geometry.bvh.lo, geometry.bvh.hi);

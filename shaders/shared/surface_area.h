@@ -41,7 +41,6 @@ struct NodeAreasArgs
 {
     REF(Bvh) tree;
     REF(CompressedRecord) records; // null: binary nodes
-    REF(LeafBox) record_boxes;     // of layout bvh4, else null
     REF(AreaItem) items;
     uint count;
     uint reserved;

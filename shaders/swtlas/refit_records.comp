@@ -49,7 +49,6 @@ uint leave(BuildTree tree, uint slot, LeafBox box)
         return NOTHING;
     }
     AT(SharedBoxes(args.slot_boxes.address), base + slot) = box;
-    keep_box(tree, slot, box);
     memoryBarrierBuffer();
     if (atomicAdd(AT(args.missing, base + parent), 0xffffffffu) != 1u) return NOTHING;
     memoryBarrierBuffer();

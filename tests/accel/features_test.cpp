@@ -165,7 +165,6 @@ TEST_P(Features, LeanProgramsFindWhatTheGeneralOneFinds) {
 class FeaturesOfAccel : public Features {};
 INSTANTIATE_TEST_SUITE_P(Some, FeaturesOfAccel,
                          ::testing::Values(std::tuple(Layout::compressed4, Level::watertight),
-                                           std::tuple(Layout::bvh4, Level::watertight),
                                            std::tuple(Layout::compressed8, Level::watertight),
                                            std::tuple(Layout::bvh2, Level::certified)),
                          name_of_features);

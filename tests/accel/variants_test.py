@@ -14,7 +14,7 @@ import frozen_spirv
 QUERY, FEATURES, LEVEL = 0, 100, 101  # ids of the constants
 CLOSEST, ANY, WATERTIGHT = 0, 1, 1
 # What each backend may leave out; of layouts one stays.
-OPTIONAL = {"sw": ["BOXES", "FILTERS", "BVH2", "BVH4", "COMPRESSED8", "INSTANCES", "MASKS", "CULLING", "TRANSFORMS", "HITS"],
+OPTIONAL = {"sw": ["BOXES", "FILTERS", "BVH2", "COMPRESSED8", "INSTANCES", "MASKS", "CULLING", "TRANSFORMS", "HITS"],
             "hw": ["BOXES", "FILTERS", "REMAP", "HITS"]}
 LEAST = {"sw": ["COMPRESSED"], "hw": []}
 # With one of these an any hit of software needs its distance, and the test of triangles without one, which is longer though

@@ -108,8 +108,7 @@ assert list(kept)[0] == "needed" and "bytes/triangle" in said and all(r["build_m
 assert kept["needed"]["total_bytes_per_triangle"] <= 1.01 * min(r["total_bytes_per_triangle"] for r in kept.values())
 assert {name for name, r in kept.items() if r["vertices_bytes_per_triangle"] > 0} == {
     "vertices moved", "level refined", "level certified"}
-assert all(kept[layout]["structures_bytes_per_triangle"] > kept["needed"]["structures_bytes_per_triangle"]
-           for layout in ("layout bvh4", "layout bvh2"))
+assert kept["layout bvh2"]["structures_bytes_per_triangle"] > kept["needed"]["structures_bytes_per_triangle"]
 _, records = bench("--ladder", "--no-build", "--scene", "instances:3x80", "--width", "16", "--layouts", "bvh2", "--ray-kinds",
                    "primary")
 assert [r["rung"] for r in records] == ["needed", "+ masks", "+ culling", "+ filters", "+ boxes", "+ other layouts"]
@@ -117,7 +116,7 @@ assert [r["rung"] for r in records] == ["needed", "+ masks", "+ culling", "+ fil
 # Trees: counts of each layout and quality; a wider node is fetched less often.
 said, records = bench("--trees", "--scene", "sphere:320", "--width", "16", "--ray-kinds", "primary")
 trees = {(r["layout"], r["build_quality"]): r for r in records}
-assert len(trees) == len(records) == 12 and "compressed8 ploc" in said
+assert len(trees) == len(records) == 9 and "compressed8 ploc" in said
 steps = {key: r["steps_per_ray"]["primary"] for key, r in trees.items()}
 for quality in ("fast", "high", "ploc"):
     nodes = [steps[layout, quality]["nodes"] for layout in ("bvh2", "compressed4", "compressed8")]

@@ -51,17 +51,13 @@ class KernelsCommand(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         builds = {row["build"]: row for row in self.rows() if "build" in row}
         refits = {row["refit"]: row for row in self.rows() if "refit" in row}
-        self.assertEqual(len(builds), 12)
+        self.assertEqual(len(builds), 9)
         for name, refit in refits.items():
             build = builds[name]
             self.assertGreater(build["dispatches"], refit["dispatches"])
             self.assertGreater(build["barriers"], build["dispatches"] / 2)
             self.assertGreater(refit["dispatches"], 0)
             self.assertGreater(build["read_bytes_per_triangle"], refit["read_bytes_per_triangle"])
-        # A record of layout bvh4 has a box beside it: there are 5 / 3 a triangle.
-        more = (builds["bvh4 fast"]["written_bytes_per_triangle"] -
-                builds["compressed4 fast"]["written_bytes_per_triangle"])
-        self.assertAlmostEqual(more, 24 * 5 / 3, places=3)
         self.assertIn("compressed8  ploc", result.stdout)
 
     def test_what_grew_and_what_is_new_is_told(self):

@@ -102,7 +102,7 @@ TEST_P(Records, TheSlotTowardsARecordLeadsToIt) {
     const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     const reference::Hierarchy tree = reference::hierarchy(boxes, codes, reference::sort(codes), false);
     const std::vector<CompressedRecord> records =
-        reference::records_of_triangles(tree, geometry.positions, geometry.triangles, GetParam()).records;
+        reference::records_of_triangles(tree, geometry.positions, geometry.triangles, GetParam());
     const auto all = Ref<CompressedRecord>::to(records.data());
     for (uint target = 1; target < records.size(); ++target) {
         if (!is_leaf(records[target]) && children_in(records[target]) == 0) continue;

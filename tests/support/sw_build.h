@@ -35,7 +35,6 @@ inline auto every_build() {
     return testing::Values(How{Layout::compressed4, BuildQuality::fast, of_device},
                            How{Layout::compressed4, BuildQuality::high, of_device},
                            How{Layout::bvh2, BuildQuality::high, of_device},
-                           How{Layout::bvh4, BuildQuality::fast, of_device},
                            How{Layout::compressed4, BuildQuality::high, of_gpu},
                            How{Layout::bvh2, BuildQuality::fast, of_gpu},
                            How{Layout::compressed4, BuildQuality::ploc, of_device},

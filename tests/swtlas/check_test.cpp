@@ -32,7 +32,7 @@ SoupTree some_tree() {
 TEST(CompressedCheck, NamesWhatIsWrong) {
     const auto& [mesh, boxes, tree] = some_tree();
     const std::vector<CompressedRecord> good =
-        reference::records_of_triangles(tree, mesh.positions, mesh.triangles, 4).records;
+        reference::records_of_triangles(tree, mesh.positions, mesh.triangles, 4);
     const Bvh bvh{tree.box.lo, tree.box.hi, {}, 0, 20};
     EXPECT_TRUE(check_compressed(bvh, good, boxes).violations.empty());
     EXPECT_FALSE(check_compressed({tree.box.lo, tree.box.hi, {}, 1, 20}, good, boxes).violations.empty());
@@ -108,7 +108,7 @@ TEST_P(CompressedPaths, AreNoDeeperThanAStackIsMadeFor) {
     EXPECT_TRUE(tree.violations.empty()) << tree.violations.front();
     EXPECT_EQ(tree.depth, DEEPEST_TREE);
     const CompressedCheck check = check_compressed(
-        tall.bvh_of_records(), reference::records_of_instances(tall.tree, tall.leaves, GetParam()).records, tall.boxes);
+        tall.bvh_of_records(), reference::records_of_instances(tall.tree, tall.leaves, GetParam()), tall.boxes);
     EXPECT_TRUE(check.violations.empty()) << check.violations.front();
     EXPECT_LE(check.depth, DEEPEST_RECORDS);
     if (GetParam() == 4) EXPECT_EQ(check.depth, DEEPEST_RECORDS);

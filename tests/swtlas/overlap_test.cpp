@@ -59,8 +59,7 @@ std::set<uint> collect(const SwTlas::Tree& tree, uint reference, std::vector<Box
         for (uint slot = 0; slot < 8; ++slot) {
             if (!has_child(places, slot)) continue;
             const uint child = place_of(places, slot);
-            children.emplace_back(
-                tree.record_boxes.empty() ? box_in_planes(record, second_half, slot) : tree.record_boxes[child], child);
+            children.emplace_back(box_in_planes(record, second_half, slot), child);
         }
     }
     std::set<uint> all;

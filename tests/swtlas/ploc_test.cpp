@@ -28,7 +28,7 @@ class SwPloc : public SwBuildTest {
 };
 INSTANTIATE_TEST_SUITE_P(Every, SwPloc,
                          testing::Values(How{Layout::compressed4, BuildQuality::ploc, KernelShape::of_device},
-                                         How{Layout::bvh4, BuildQuality::ploc, KernelShape::of_device},
+                                         How{Layout::compressed8, BuildQuality::ploc, KernelShape::of_device},
                                          How{Layout::bvh2, BuildQuality::ploc, KernelShape::of_device},
                                          How{Layout::bvh2, BuildQuality::ploc, KernelShape::of_gpu}),
                          name_of_build);

@@ -35,7 +35,7 @@ SavedGeometry saved(Layout layout, const Mesh& mesh, std::size_t instances) {
                 {tree.box.lo, tree.box.hi, {}, count ? 0 : NOTHING, count},
                 {},
                 {},
-                reference::records_of_triangles(tree, geometry.positions, mesh.triangles, width_of(layout)).records,
+                reference::records_of_triangles(tree, geometry.positions, mesh.triangles, width_of(layout)),
                 placed};
     }
     const reference::Hierarchy tree = reference::linked(reference::hierarchy(boxes, codes, order, true));
