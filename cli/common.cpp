@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command/values.h"
-#include "cli/suite/suite.h"
+#include "validation/suite/suite.h"
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 #include "engine/scene/local_origin.h"

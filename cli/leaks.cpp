@@ -11,7 +11,7 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/places.h"
-#include "cli/suite/crossings.h"
+#include "validation/suite/crossings.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "engine/core/progress.h"

@@ -14,9 +14,10 @@ SEES = {  # besides itself and shaders/shared
     "engine/analysis": BASE, "engine/collide": BASE, "engine/picture": BASE, "engine/verify": BASE,
     "engine/points": BASE + ["engine/collide"],
     "swtlas": ENGINE, "hwtlas": ENGINE,
-    "cli": PRODUCT + ["shaders/suite", "shaders/path_tracer", "bench", "samples"],
+    "validation": PRODUCT + ["shaders/suite", "shaders/path_tracer", "samples"],
+    "cli": PRODUCT + ["shaders/path_tracer", "bench", "samples", "validation"],
     "samples": PRODUCT + ["shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"],
-    "bench": PRODUCT, "tests": PRODUCT + ["cli", "samples", "bench"],
+    "bench": PRODUCT, "tests": PRODUCT + ["cli", "samples", "bench", "validation"],
     "shaders/embed_renderer": ["shaders/path_tracer"],
     "shaders/twinray": ["shaders/hwtlas"],  # what users include
     "shaders": ["shaders/engine"],  # each other folder of shaders, but shaders/shared, which sees nothing else

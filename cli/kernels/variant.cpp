@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "cli/kernels/kernel_list.h"
-#include "cli/suite/suite.h"
+#include "validation/suite/suite.h"
 #include "engine/accel/features_of.h"
 #include "samples/path_tracer/shared.h"
 

@@ -8,7 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
-#include "cli/exact/referee.h"
+#include "validation/exact/referee.h"
 #include "swtlas/structures.h"
 
 namespace twinray::exact {

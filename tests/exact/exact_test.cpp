@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "cli/exact/referee.h"
+#include "validation/exact/referee.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/certainty.h"

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "cli/exact/rational.h"
+#include "validation/exact/rational.h"
 #include "engine/collide/pair_class.h"
 
 namespace twinray::exact {

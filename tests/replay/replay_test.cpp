@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "cli/replay/replay.h"
+#include "validation/replay/replay.h"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
 #include <fstream>
 
-#include "cli/replay/scene_file.h"
+#include "validation/replay/scene_file.h"
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "tests/scene/temp_dir.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/report/baseline.h"
+#include "validation/report/baseline.h"
 
 #include <gtest/gtest.h>
 

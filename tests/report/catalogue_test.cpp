@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "cli/suite/suite.h"
+#include "validation/suite/suite.h"
 
 namespace twinray::suite {
 namespace {

@@ -2,7 +2,7 @@
 // Counting crossings, on a device.
 #include <gtest/gtest.h>
 
-#include "cli/suite/case_run.h"
+#include "validation/suite/case_run.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/inside_rays.h"
 #include "tests/support/device.h"

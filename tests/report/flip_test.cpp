@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/suite/flip.h"
+#include "validation/suite/flip.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/suite/judging.h"
+#include "validation/suite/judging.h"
 
 #include <gtest/gtest.h>
 

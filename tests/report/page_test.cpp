@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/report/page.h"
+#include "validation/report/page.h"
 
 #include <gtest/gtest.h>
 

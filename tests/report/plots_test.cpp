@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/report/plots.h"
+#include "validation/report/plots.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "cli/report/figures.h"
+#include "validation/report/figures.h"
 
 namespace twinray::report {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "cli/replay/replay.h"
-#include "cli/replay/scene_file.h"
-#include "cli/report/page.h"
-#include "cli/suite/case_run.h"
-#include "cli/suite/judging.h"
+#include "validation/replay/replay.h"
+#include "validation/replay/scene_file.h"
+#include "validation/report/page.h"
+#include "validation/suite/case_run.h"
+#include "validation/suite/judging.h"
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"

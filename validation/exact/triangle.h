@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// A line against a triangle, decided and computed exactly.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "validation/exact/rational.h"
+#include "engine/verify/triangle64.h"
+
+namespace twinray::exact {
+
+// The points origin + t direction.
+struct Line {
+    Vector origin, direction;
+};
+
+// What a line meets of a closed triangle: its inside, an edge but no corner, or a corner.
+enum class Incidence : std::uint8_t { interior, edge, corner };
+
+struct Crossing {
+    Rational t;     // in units of the line's direction
+    Rational u, v;  // the point is (1-u-v) v0 + u v1 + v v2
+    Incidence incidence = Incidence::interior;
+};
+
+// Six times the signed volumes of (direction, b, c), (direction, c, a) and (direction, a, b), corners a, b, c taken
+// from the origin: the weights of the three corners, times a common factor. The line meets the triangle where they have
+// one sign; one that is 0 puts the line on the edge across from its corner; all 0: the plane contains the line.
+std::array<Rational, 3> edge_values(const Line& line, const Triangle64& triangle);
+
+// Nothing where the line passes the triangle or lies in its plane. Any t, also negative.
+std::optional<Crossing> crossing(const Line& line, const Triangle64& triangle);
+
+}  // namespace twinray::exact

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// What the cases of the section B share.
+#pragma once
+
+#include "validation/suite/case_run.h"
+#include "swtlas/sw_tlas.h"
+
+namespace twinray::suite {
+
+// Records for SwTlas whether the tree of the mesh is sound and within its depth.
+void expect_sound_tree(CaseRun& run, const Mesh& mesh, Values params);
+
+void refit_many_times(CaseRun& run);
+void refit_collapse(CaseRun& run);
+
+}  // namespace twinray::suite

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "validation/suite/judging.h"
+#include "validation/suite/tracing.h"
+
+namespace twinray::suite {
+
+// What a case says about one of its measurements.
+struct Measurement {
+    Values params = {};
+    Values results = {};
+    // Level::fast has to show faults here: it is the negative control, without which "0 faults" would say nothing.
+    // Elsewhere fast promises nothing at edges and is only measured.
+    bool fast_is_control = false;
+    std::size_t reps = 0;  // timed repetitions; 0: as many as the suite takes
+    // Instead of all subjects, SwTlas's kernel compiled as this says, at watertight.
+    std::optional<Control> control = {};
+};
+
+// What was judged, for what a case asks of the answers beyond their classes.
+struct Measured {
+    std::vector<Traced> traces;         // one of each subject
+    std::vector<OracleHit> references;  // one of each ray
+};
+
+// A case while it runs: what it may use, and where its results go.
+class CaseRun {
+  public:
+    CaseRun(const SuiteCase& row, const Settings& settings, Devices& devices, Recorder& recorder)
+        : row_(row), settings_(settings), devices_(devices), recorder_(recorder) {}
+
+    // How many rays, cells, ... by suite.
+    std::size_t amount(std::size_t quick, std::size_t full) const { return settings_.is_full ? full : quick; }
+    std::uint64_t seed() const { return settings_.seed; }
+    Devices& devices() { return devices_; }
+    // Those that can answer here; the others are recorded as not run, once a case. Hardware has one test of its own,
+    // which is not asked again for Level::fast.
+    std::vector<Subject> subjects();
+    // The first level of each backend, watertight or above: for what does not depend on the level.
+    std::vector<Subject> one_subject_each();
+
+    // Traces the closest hits on all subjects, judges them by the referee and records what came out. Ours pass with 0
+    // SW_LEAK, SW_FALSE, T_ERR and 0 hits of invalid rays; a fault of hardware is the driver's.
+    Measured measure(const World& world, std::span<const Ray> rays, const Measurement& measurement = {});
+
+    // Counts how often each ray crosses `world`, all of whose instances are filtered, on the subjects that can (see
+    // CrossingCounter: not the pipeline), and records the counts that are not `right`: those of ours are faults, of
+    // hardware the driver's. Record::counts has them by number: CROSSED_0, CROSSED_2, ..., CROSSED_OFTEN from 8 on.
+    using RightCount = std::function<bool(const Ray&, uint)>;
+    void count_crossings(const World& world, std::span<const Ray> rays, const RightCount& right,
+                         const Measurement& measurement = {});
+    std::vector<Subject> crossing_subjects();
+
+    // The same as measure for answers that a case has traced and judged itself, as the sum of many small scenes.
+    void add_judged(const Subject& subject, const Judgement& judgement, const Measurement& measurement = {});
+
+    // For what no referee judges: `faults` of `n` things were not as specified. `what` says which, and is recorded if
+    // there are any. fault_of: see Record; "" = by the backend. only_measured: why nothing is demanded; "" = it is.
+    struct Outcome {
+        Values params = {};
+        Values results = {};
+        std::uint64_t n = 1;
+        std::uint64_t faults = 0;
+        std::string what = {};
+        std::string reference = "specification";
+        std::string fault_of = {};
+        std::optional<TimeFigures> time = {};
+        std::string only_measured = {};
+    };
+    void expect(const Subject& subject, const Outcome& outcome);
+
+    // A record of this case, to be filled further and added.
+    Record record(const Subject& subject) const;
+    void add(const Record& record) { recorder_.add(record); }
+    // Of the cases before this one, too.
+    std::span<const Record> earlier() const { return recorder_.records(); }
+    void add_not_run(const std::string& reason, const Subject* subject = nullptr);
+    void add_failure(const std::string& what);  // an exception: a fault of ours
+
+  private:
+    Record blank() const;
+    // Writes the ray of judgement.first_fault, if there is one, and returns the file as Record::replay wants it.
+    std::string write_replay(const World& world, std::span<const Ray> rays, const Traced& traced,
+                             const Judgement& judgement) const;
+    std::vector<Subject> control_subject();  // SwTlas at watertight if it was asked for
+
+    const SuiteCase& row_;
+    const Settings& settings_;
+    Devices& devices_;
+    Recorder& recorder_;
+    bool has_told_ = false;  // which subjects cannot answer
+};
+
+}  // namespace twinray::suite

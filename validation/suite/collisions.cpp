@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+// Triangles and instances that touch: classes that are known, or that arithmetic without error gives.
+#include <cmath>
+
+#include "validation/suite/contacts.h"
+#include "engine/collide/collision_finder.h"
+#include "engine/collide/contact_finder.h"
+#include "engine/core/error.h"
+#include "engine/scene/shapes.h"
+
+namespace twinray::suite {
+namespace {
+
+using enum PairClass;
+
+const Corners64 base = {dvec3(0, 0, 0), dvec3(4, 0, 0), dvec3(0, 4, 0)};
+
+Corners64 moved(const Corners64& t, const dvec3& by) { return {t.a + by, t.b + by, t.c + by}; }
+
+void touches(CaseRun& run) {
+    const dvec3 up(0, 0, 1), above(1, 2, 1);
+    ask_classes(run, {{base, {dvec3(0, 0, 0), dvec3(-1, 0, 1), dvec3(0, -1, 1)}, vertex_touch},
+                      {base, {dvec3(2, 0, 0), dvec3(2, -1, 1), above}, vertex_touch},
+                      {base, {dvec3(1, 1, 0), above, dvec3(2, 1, 1)}, vertex_touch},
+                      {base, {dvec3(1, 1, 0), dvec3(1, 2, 0), above}, edge_touch},
+                      {base, {dvec3(1, 0, 0), dvec3(3, 0, 0), dvec3(2, -1, 1)}, edge_touch},
+                      {base, {dvec3(2, -1, -1), dvec3(2, 1, 1), dvec3(2, -5, 5)}, edge_touch},
+                      {base, {dvec3(1, 1, -1), dvec3(1, 1, 1), dvec3(2, 1, 1)}, crossing},
+                      {base, moved(base, up), separate}});
+}
+
+void coplanar(CaseRun& run) {
+    ask_classes(run, {{base, base, coplanar_overlap},
+                      {base, moved(base, dvec3(1, 1, 0)), coplanar_overlap},
+                      {base, {dvec3(1, 1, 0), dvec3(2, 1, 0), dvec3(1, 2, 0)}, coplanar_overlap},
+                      {base, moved(base, dvec3(4, 0, 0)), coplanar_touch},
+                      {base, {dvec3(4, 0, 0), dvec3(0, 4, 0), dvec3(4, 4, 0)}, coplanar_touch},
+                      {base, {dvec3(1, 0, 0), dvec3(3, 0, 0), dvec3(2, -2, 0)}, coplanar_touch},
+                      {base, {dvec3(3, 3, 0), dvec3(4, 3, 0), dvec3(3, 4, 0)}, separate}});
+}
+
+// A corner above, on or below a face by so much.
+void add_gap(std::vector<KnownPair>& pairs, double level, double gap) {
+    const Corners64 pointed = {dvec3(1, 1, level + gap), dvec3(1, 1.5, level + 1), dvec3(2, 1, level + 1)};
+    pairs.push_back({moved(base, dvec3(0, 0, level)), pointed, gap > 0 ? separate : gap < 0 ? crossing : vertex_touch});
+}
+
+void ulps(CaseRun& run) {
+    std::vector<KnownPair> pairs;
+    for (const float level : {0.0f, 1.0f, 1e3f, 1e6f}) {
+        const double ulp = double{std::nextafter(level, INFINITY)} - double{level};
+        for (int k = -4; k <= 4; ++k) add_gap(pairs, level, k * ulp);
+    }
+    ask_classes(run, pairs);
+}
+
+void gaps(CaseRun& run) {
+    std::vector<KnownPair> pairs;
+    for (int exponent = -7; exponent >= -30; --exponent)
+        for (const double sign : {-1.0, 1.0}) add_gap(pairs, 0, sign * std::pow(10.0, exponent));
+    ask_classes(run, pairs);
+}
+
+// Triangles that cross at an angle of 10^-8, also as needles of that width, and the same a little apart.
+void slivers(CaseRun& run) {
+    std::vector<KnownPair> pairs;
+    for (const double width : {1.0, 1e-4, 1e-8}) {
+        const auto tilted = [&](double tilt, double lift) {
+            return Corners64{dvec3(-width, -0.5, lift - 0.5 * tilt), dvec3(width, -0.5, lift - 0.5 * tilt),
+                             dvec3(0, 0.5, lift + 0.5 * tilt)};
+        };
+        pairs.push_back({tilted(0, 0), tilted(1e-8, 0), crossing});
+        pairs.push_back({tilted(0, 0), tilted(1e-8, 1e-8), separate});
+    }
+    ask_classes(run, pairs);
+}
+
+// Turned, what was in one plane or on one line is so but for rounding.
+void lattice(CaseRun& run) {
+    std::vector<TrianglePair> pairs = lattice_pairs(run.amount(20'000, 1'000'000), run.seed());
+    measure_lattice(run, "as it is", pairs);
+    const glm::dmat3 turn(dvec3(2, 2, -1) / 3.0, dvec3(-1, 2, 2) / 3.0, dvec3(2, -1, 2) / 3.0);
+    for (TrianglePair& pair : pairs)
+        for (Corners64* t : {&pair.a, &pair.b}) *t = {turn * t->a, turn * t->b, turn * t->c};
+    measure_lattice(run, "turned", pairs);
+}
+
+void orders(CaseRun& run) {
+    std::vector<KnownPair> pairs;
+    for (const TrianglePair& pair : lattice_pairs(run.amount(200, 10'000), run.seed())) {
+        const PairClass known = exact_class(pair.a, pair.b);
+        for (const Corners64& a : permutations(pair.a))
+            for (const Corners64& b : permutations(pair.b)) {
+                pairs.push_back({a, b, known});
+                pairs.push_back({b, a, known});
+            }
+    }
+    ask_classes(run, pairs, "exact");
+}
+
+// Of which every triangle is a segment or a point.
+void degenerate(CaseRun& run) {
+    std::vector<KnownPair> pairs;
+    for (TrianglePair pair : lattice_pairs(run.amount(20'000, 1'000'000), run.seed() + 1)) {
+        pair.a.c = pairs.size() % 3 == 0 ? pair.a.a : pair.a.b;
+        if (pairs.size() % 2 == 0) pair.b.c = pair.b.a * 2.0 - pair.b.b;
+        if (pairs.size() % 7 == 0) pair.a.b = pair.a.c;
+        pairs.push_back({pair.a, pair.b, exact_class(pair.a, pair.b)});
+    }
+    ask_classes(run, pairs, "exact");
+}
+
+// ------------------------------------------------------------------------------------------------------------------------
+
+Mesh torus(float tube) {
+    Mesh mesh;
+    constexpr uint n = 48, m = 24;
+    for (uint i = 0; i < n; ++i)
+        for (uint j = 0; j < m; ++j) {
+            const float u = 6.2831853f * static_cast<float>(i) / n, v = 6.2831853f * static_cast<float>(j) / m;
+            const float r = 1 + tube * std::cos(v);
+            mesh.positions.push_back({r * std::cos(u), r * std::sin(u), tube * std::sin(v)});
+            const auto at = [](uint a, uint b) { return a % n * m + b % m; };
+            mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    return mesh;
+}
+
+std::size_t triangles_at(const Mesh& mesh, vec3 corner) {
+    std::size_t count = 0;
+    for (const uvec3& t : mesh.triangles)
+        for (int k = 0; k < 3; ++k) count += mesh.positions[t[k]] == corner;
+    return count;
+}
+
+void solids(CaseRun& run) {
+    const Mesh ball = make_icosphere(3), outer = make_box(vec3(-1), vec3(1)), inner = make_box(vec3(-0.5f), vec3(0.5f));
+    const vec3 top = ball.positions.front();
+    const std::size_t around = triangles_at(ball, top);  // each is in one plane with its mirror image in that corner
+    ask_contacts(run, "tangent spheres", {ball}, {{0, {}}, {0, Transform::translation(top * 2.0f)}},
+                 {{coplanar_touch, around}, {vertex_touch, around * (around - 1)}});
+    ask_contacts(run, "nested boxes", {outer, inner}, {{0, {}}, {1, {}}}, {});
+    const Mesh ring = torus(0.25f);
+    const Transform across = {{vec4(1, 0, 0, 1), vec4(0, 0, 1, 0), vec4(0, -1, 0, 0)}};
+    ask_contacts(run, "interlocked tori", {ring}, {{0, {}}, {0, across}}, {});
+}
+
+void walls(CaseRun& run) {
+    const Mesh box = make_box(vec3(-1), vec3(1));
+    for (const float at : {0.0f, 1024.0f})
+        ask_contacts(run, text("boxes wall to wall at ", at), {box},
+                     {{0, Transform::translation(vec3(at, 0, 0))}, {0, Transform::translation(vec3(at + 2, 0, 0))}},
+                     wall_to_wall(), "exact");
+}
+
+void within_a_mesh(CaseRun& run) {
+    const Mesh ball = make_icosphere(4);
+    ask_contacts(run, "sphere with itself", {ball}, {{0, {}}}, {}, "analytic", true);
+    Mesh strip;  // two triangles at one edge, folded flat onto each other
+    strip.positions = {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0), vec3(0.5f, 0.75f, 0)};
+    strip.triangles = {{0, 1, 2}, {1, 0, 3}};
+    ask_contacts(run, "folded strip", {strip}, {{0, {}}}, {{coplanar_overlap, 1}}, "analytic", true);
+}
+
+void baked(CaseRun& run) {
+    const Mesh ball = make_icosphere(4);
+    const vec3 by(0.5f, 0.25f, -0.125f);
+    Mesh rounded = ball, away = ball;
+    for (vec3& p : rounded.positions) p = (p + 16.0f) - 16.0f;  // so that moved ones are exact
+    away.positions = rounded.positions;
+    for (vec3& p : away.positions) p += by;
+    ask_same_contacts(run, {rounded, away}, {{0, {}}, {0, Transform::translation(by)}}, {{0, {}}, {1, {}}});
+}
+
+void identical_boxes(CaseRun& run) {
+    const std::uint64_t n = run.amount(2'000, 10'000);
+    const Mesh box = make_box(vec3(-1), vec3(1));
+    for (const Subject& subject : run.one_subject_each()) {
+        AbstractAccel& accel = run.devices().empty_accel(subject);
+        accel.push(box, std::vector<Transform>(n));
+        CollisionFinder finder(accel.context());
+        const std::uint64_t expected = n * (n - 1) / 2;
+        std::vector<double> times;
+        std::uint64_t wrong = 0;
+        for (int rep = 0; rep < 5; ++rep)
+            times.push_back(seconds_of([&] { wrong += finder.instance_pairs(accel).size() != expected; }) * 1e9 /
+                            static_cast<double>(expected));
+        wrong += finder.count(accel) != expected;
+        run.expect(subject, {.params = {{"boxes", n}},
+                             .results = {{"pairs", expected}},
+                             .n = expected,
+                             .faults = wrong,
+                             .what = "another number of pairs than n (n - 1) / 2",
+                             .reference = "analytic",
+                             .time = time_figures("ns_per_pair", times)});
+    }
+}
+
+}  // namespace
+
+std::vector<SuiteCase> collision_cases() {
+    const std::string classes = "triangles of another class";
+    const std::string none = "no pair has another class";
+    return {
+        {"C01", "corners and edges that touch exactly", classes, none, touches},
+        {"C02", "triangles in one plane", classes, none, coplanar},
+        {"C03", "-4 to 4 ulp between a corner and a face, up to 10^6 from the origin", classes, none, ulps},
+        {"C04", "a corner 10^-7 to 10^-30 above and below a face", classes, none, gaps},
+        {"C05", "pairs on the lattice {-2..2}^3", "time and wrong classes, beside signs of plain arithmetic", none,
+         lattice},
+        {"C06", "triangles and needles that cross at 10^-8", classes, none, slivers},
+        {"C07", "tangent spheres, nested boxes, interlocked tori", "contacts by class", "as many as are known", solids},
+        {"C08", "identical boxes", "pairs of instances, time", "n (n - 1) / 2", identical_boxes},
+        {"C09", "boxes wall to wall", "contacts by class", "as many as are known", walls},
+        {"C10", "triangles and their corners in every order", classes, none, orders},
+        {"C11", "triangles of one mesh", "contacts by class", "none of neighbours; those of a fold", within_a_mesh},
+        {"C12", "triangles without area", classes, none, degenerate},
+        {"C13", "an instance that is moved, and its mesh moved", "contacts of only one of them", "the same contacts",
+         baked},
+    };
+}
+
+}  // namespace twinray::suite

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+// What is near to points, against every triangle in float64. The GPU answers; no accelerator takes part.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "validation/suite/estimators.h"
+#include "validation/suite/queries.h"
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+#include "engine/points/point_finder.h"
+#include "engine/scene/shapes.h"
+#include "engine/verify/point_distance.h"
+
+namespace twinray::suite {
+namespace {
+
+std::vector<dvec3> random_points(std::size_t count, double size, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    const auto one = [&] { return (static_cast<double>(random() >> 11) * 0x1p-52 - 1) * size; };
+    std::vector<dvec3> points;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = one(), y = one();
+        points.emplace_back(x, y, one());
+    }
+    return points;
+}
+
+double distance_to(const Mesh& mesh, const uvec3& t, const dvec3& point) {
+    return distance_to_triangle({dvec3(mesh.positions[t.x]), dvec3(mesh.positions[t.y]), dvec3(mesh.positions[t.z])},
+                                point);
+}
+double nearest_of_all(const Mesh& mesh, const dvec3& point) {
+    double nearest = INFINITY;
+    for (const uvec3& t : mesh.triangles) nearest = std::min(nearest, distance_to(mesh, t, point));
+    return nearest;
+}
+
+// Relative errors may be as large as what some roundings of the coordinates do to a distance.
+void measure_nearest(CaseRun& run, const Mesh& mesh, const std::vector<dvec3>& points, const Values& params) {
+    PointFinder finder(run.devices().context(query_backend));
+    finder.set(std::vector<MeshView>{mesh}, std::vector<MeshInstance>{{0, {}}});
+    std::vector<ClosestPoint> found;
+    std::vector<double> times;
+    for (int rep = 0; rep < 5; ++rep)
+        times.push_back(seconds_of([&] { found = finder.closest(points); }) * 1e9 / static_cast<double>(points.size()));
+    const std::size_t step =
+        std::max<std::size_t>(1, points.size() * mesh.triangles.size() / run.amount(20'000'000, 2'000'000'000));
+    std::vector<double> errors((points.size() + step - 1) / step), slack(errors.size());
+    parallel_for(errors.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const dvec3& point = points[i * step];
+            const ClosestPoint& of = found[i * step];
+            const double known = nearest_of_all(mesh, point);
+            const double of_named =
+                of.is_found ? distance_to(mesh, mesh.triangles[of.triangle], point) : static_cast<double>(INFINITY);
+            errors[i] = std::max(std::abs(of.distance - known), of_named - known) / known;
+            slack[i] = 0x1p-49 * (1 + glm::length(point)) / known;
+        }
+    });
+    std::uint64_t wrong = 0;
+    for (std::size_t i = 0; i < errors.size(); ++i) wrong += !(errors[i] <= slack[i]);
+    Record record = query_record(run, "f64");
+    record.params = params;
+    record.n = errors.size();
+    record.error = error_figures("relative", errors);
+    record.error->floor = 0x1p-53;
+    record.time = time_figures("ns_per_point", times);
+    add_judged(run, record, wrong, "another triangle is nearer");
+}
+
+void sizes(CaseRun& run) {
+    const std::vector<dvec3> points = random_points(run.amount(20'000, 1'000'000), 1.5, run.seed());
+    for (const uint subdivisions : {1u, 3u, 5u}) {
+        const Mesh ball = make_icosphere(subdivisions);
+        measure_nearest(run, ball, points, {{"triangles", ball.triangles.size()}});
+    }
+}
+
+void far_away(CaseRun& run) {
+    for (const double distance : {1e3, 1e9, 1e15})
+        measure_nearest(run, make_icosphere(3), random_points(run.amount(2'000, 100'000), distance, run.seed()),
+                        {{"distance", distance}});
+}
+
+void on_the_surface(CaseRun& run) {
+    const Mesh ball = make_icosphere(4);
+    std::vector<dvec3> points(ball.positions.begin(), ball.positions.end());
+    const std::size_t corners = points.size();
+    for (const uvec3& t : ball.triangles) points.push_back((points[t.x] + points[t.y]) * 0.5);
+    PointFinder finder(run.devices().context(query_backend));
+    finder.set(std::vector<MeshView>{ball}, std::vector<MeshInstance>{{0, {}}});
+    const std::vector<ClosestPoint> found = finder.closest(points);
+    std::uint64_t wrong = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) wrong += !(found[i].distance <= (i < corners ? 0 : 0x1p-52));
+    Record record = query_record(run, "analytic");
+    record.n = points.size();
+    add_judged(run, record, wrong,
+               "a corner is away from its triangle, or the middle of an edge by more than rounding");
+}
+
+void scaled(CaseRun& run) {
+    const Mesh soup = make_soup(500, static_cast<uint>(run.seed()), 0.2f);
+    const std::vector<dvec3> points = random_points(run.amount(1'000, 100'000), 2, run.seed());
+    PointFinder finder(run.devices().context(query_backend));
+    const std::vector<MeshInstance> instance = {{0, {}}};
+    finder.set(std::vector<MeshView>{soup}, instance);
+    const std::vector<ClosestPoint> of_one = finder.closest(points);
+    for (const int exponent : {-120, -60, 60, 120}) {
+        Mesh other = soup;
+        for (vec3& p : other.positions)
+            for (int axis = 0; axis < 3; ++axis) p[axis] = std::ldexp(p[axis], exponent);
+        std::vector<dvec3> others = points;
+        for (dvec3& p : others) p *= std::ldexp(1.0, exponent);
+        finder.set(std::vector<MeshView>{other}, instance);
+        const std::vector<ClosestPoint> found = finder.closest(others);
+        std::uint64_t wrong = 0;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            wrong += found[i].triangle != of_one[i].triangle ||
+                     found[i].distance != std::ldexp(of_one[i].distance, exponent);
+        Record record = query_record(run, "invariance");
+        record.params = {{"scale", text("2^", exponent)}};
+        record.n = points.size();
+        add_judged(run, record, wrong, "another triangle, or another distance, than at a scale of 1");
+    }
+}
+
+void radius(CaseRun& run) {
+    const Mesh ball = make_icosphere(3);
+    const std::vector<dvec3> points = random_points(run.amount(300, 10'000), 1.5, run.seed());
+    PointFinder finder(run.devices().context(query_backend));
+    finder.set(std::vector<MeshView>{ball}, std::vector<MeshInstance>{{0, {}}});
+    const std::vector<NearTriangle> near = finder.within(points, 0.4);
+    std::size_t next = 0;
+    std::uint64_t wrong = 0, count = 0;
+    for (uint i = 0; i < points.size(); ++i)
+        for (uint t = 0; t < ball.triangles.size(); ++t) {
+            const uvec3 of = ball.triangles[t];
+            const double distance = distance_to_triangle(
+                {dvec3(ball.positions[of.x]), dvec3(ball.positions[of.y]), dvec3(ball.positions[of.z])}, points[i]);
+            const bool is_listed = next < near.size() && near[next].point == i && near[next].triangle == t;
+            next += is_listed;
+            count += is_listed;
+            if (std::abs(distance - 0.4) > 0x1p-48) wrong += is_listed != (distance < 0.4);
+        }
+    Record record = query_record(run, "f64");
+    record.n = points.size() * ball.triangles.size();
+    record.results = {{"found", count}};
+    add_judged(run, record, wrong + (near.size() - next),
+               "a triangle within the radius is missing, or one beyond is listed");
+}
+
+// Lines along +x from lattice points meet edges, corners and whole faces of lattice boxes.
+void sides(CaseRun& run) {
+    const Mesh box = make_box(vec3(-2), vec3(2));
+    const int n = static_cast<int>(run.amount(6, 24));
+    std::vector<dvec3> points;
+    for (int i = 0; i < (2 * n + 1) * (2 * n + 1) * (2 * n + 1); ++i)
+        points.push_back(
+            (dvec3(i % (2 * n + 1), i / (2 * n + 1) % (2 * n + 1), i / ((2 * n + 1) * (2 * n + 1))) - double(n)) *
+            (3.0 / n));
+    PointFinder finder(run.devices().context(query_backend));
+    const std::vector<MeshInstance> twice = {{0, {}}, {0, Transform::translation(vec3(1, 0, 0))}};
+    finder.set(std::vector<MeshView>{box}, twice);
+    const std::vector<int> found = finder.winding_numbers(points);
+    std::uint64_t wrong = 0, judged = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto size = [](const dvec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); };
+        const double first = size(points[i]), second = size(points[i] - dvec3(1, 0, 0));
+        if (first == 2 || second == 2) continue;  // on a face
+        ++judged;
+        wrong += found[i] != (first < 2) + (second < 2);
+    }
+    Record record = query_record(run, "analytic");
+    record.n = judged;
+    record.results = {{"host_decided", finder.host_decided()}};
+    add_judged(run, record, wrong, "another winding number than the number of boxes around the point");
+}
+
+}  // namespace
+
+std::vector<SuiteCase> distance_cases() {
+    const std::string error = "relative error of the distance, time";
+    return {
+        {"D01", "nearest triangles of spheres", error, "no other triangle is nearer", sizes},
+        {"D02", "points up to 10^15 away", error, "no other triangle is nearer", far_away},
+        {"D03", "points at corners and on edges", "distances", "0 at corners, rounding on edges", on_the_surface},
+        {"D04", "the scene 2^-120 to 2^120 as large", "triangles, distances", "the same, scaled", scaled},
+        {"D05", "all triangles within a radius", "those that are listed", "as all triangles one by one", radius},
+        {"D06", "winding numbers on a lattice", "numbers", "as many boxes as are around the point", sides},
+    };
+}
+
+}  // namespace twinray::suite

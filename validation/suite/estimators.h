@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// View factors by each estimator, timed one by one, for cases that know the truth.
+#pragma once
+
+#include "validation/suite/case_run.h"
+#include "engine/analysis/pair_exchanges.h"
+
+namespace twinray::suite {
+
+// What is estimated: a view factor between two meshes of a scene.
+struct FactorQuestion {
+    Scene scene;
+    double value;   // the truth
+    uint from = 0;  // mesh
+    uint to = 1;
+    bool of_open = false;  // instead: what of `from` meets nothing, 1 - F where there is nothing else
+    Values params = {};    // by which the question is told from others of the case
+    Values results = {};   // to be told beside
+};
+
+struct EstimatorMethod {
+    PairEstimator estimator;
+    Sequence sequence = Sequence::sobol;
+};
+// "hits, sobol", "contour".
+std::string name(const EstimatorMethod& method);
+std::vector<EstimatorMethod> methods_of(std::span<const PairEstimator> estimators);
+
+// Measures each method on software and on hardware, by ray query where it can, else by pipeline: over ray counts and
+// seeds, of each the error against the truth, how many intervals hold it and the time; with the most rays also the
+// slope of the error over rays. Contours are measured once. A fault is an estimate that misses the truth by more than
+// three times half of its interval, which one in 10^5 does. A measurement fails, too, if fewer intervals hold the truth
+// than 95 % of all could explain.
+void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<const EstimatorMethod> methods);
+
+// The subjects of these cases: software, and hardware once.
+std::vector<Subject> analysis_subjects(CaseRun& run);
+
+// In float64, where nothing is between the meshes.
+double contour_value(const Scene& scene, uint from, uint to);
+
+// Of errors that are not negative, at least one.
+ErrorFigures error_figures(const std::string& metric, std::vector<double> errors);
+
+}  // namespace twinray::suite

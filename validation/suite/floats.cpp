@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#include "validation/suite/floats.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "validation/suite/flush.h"
+#include "validation/suite/twin.h"
+#include "engine/core/error.h"
+#include "engine/scene/shapes.h"
+#include "engine/verify/aimed_rays.h"
+#include "engine/verify/float_probe.h"
+
+namespace twinray::suite {
+namespace {
+
+constexpr std::size_t batch_size = 1 << 20;
+
+Scene scene_with(const Mesh& mesh, std::vector<Transform> transforms = {Transform{}}) {
+    Scene scene;
+    scene.meshes = {mesh};
+    for (const Transform& transform : transforms) scene.instances.push_back({"", 0, transform});
+    return scene;
+}
+
+// What a subject answers and what its twin does, batch by batch.
+Difference compared(CaseRun& run, const Subject& subject, const Scene& scene, std::span<const Ray> rays,
+                    const std::optional<Control>& control = {}) {
+    const World world = world_of(scene);
+    const std::unique_ptr<reference::Scene> twin = twin_of(scene, run.devices().trees());
+    Difference sum;
+    for (std::size_t first = 0; first < rays.size(); first += batch_size) {
+        const auto batch = rays.subspan(first, std::min(batch_size, rays.size() - first));
+        const std::vector<Traced> traced = trace(run.devices(), std::span(&subject, 1), world,
+                                                 {.rays = batch, .reps = 0, .control = control ? &*control : nullptr});
+        sum += difference(batch, traced.front().hits, trace_twin(*twin, batch, subject.level));
+    }
+    return sum;
+}
+
+// SwTlas's subjects whose arithmetic is `precise` throughout.
+std::vector<Subject> precise_subjects(CaseRun& run) {
+    std::vector<Subject> chosen;
+    for (const Subject& subject : run.subjects())
+        if (is_ours(subject.backend) && subject.level != Level::fast) chosen.push_back(subject);
+    return chosen;
+}
+
+// Where contraction does harm: edges of cells far from the origin.
+Mesh far_grid() {
+    Mesh grid = make_grid(32, 32);
+    for (vec3& position : grid.positions) position = position * 32.0f + vec3(1e7f, 0, 1e7f);
+    return grid;
+}
+
+void record_contraction(CaseRun& run, const Subject& subject, const Difference& found, std::size_t count,
+                        const std::optional<Control>& control) {
+    Record record = run.record(subject);
+    record.reference = "invariance";
+    record.n = count;
+    record.faults = found.decisions;
+    record.bound95 = upper_bound_95(found.decisions, count);
+    record.results = {{"other_decisions", found.decisions}, {"other_bits", found.bits}};
+    record.example = found.example;
+    if (control) {
+        record.variant = control->code.name;
+        record.criterion = "none: without `precise` the driver may contract";
+    } else {
+        record.pass = found.decisions == 0;
+        record.fault_of = *record.pass ? "" : "twinray";
+    }
+    run.add(record);
+}
+
+// Instances under rotations and uneven scales, so that the inverse and the transformed ray are in play, too.
+std::vector<Transform> uneven_transforms() {
+    return {Transform{},
+            Transform{{vec4(0.3f, 0.8f, 0.1f, 2), vec4(-0.7f, 0.2f, 0.4f, 0.5f), vec4(0.1f, -0.3f, 1.7f, 1)}},
+            Transform::translation({-3, 0.2f, 1}) * Transform::scaling({2, 0.01f, -1})};
+}
+
+struct NamedScene {
+    const char* name;
+    Scene scene;
+};
+
+std::vector<NamedScene> scenes_for_twins() {
+    return {{"soup", scene_with(make_soup(2000, 5, 0.2f))},
+            {"sphere", scene_with(make_icosphere(5))},
+            {"height field", scene_with(make_grid(64, 64, 0.2f, 3))},
+            {"instances", scene_with(make_soup(500, 6, 0.3f), uneven_transforms())}};
+}
+
+std::vector<Ray> random_and_aimed(const Scene& scene, std::size_t random, std::size_t aimed, std::uint64_t seed) {
+    const Oracle oracle = Oracle::of(scene);
+    std::vector<Ray> rays = random_rays(bounds_of(scene), random, seed);
+    for (const auto& more : {vertex_aimed_rays(oracle, aimed, seed), edge_aimed_rays(oracle, aimed, seed)})
+        rays.insert(rays.end(), more.begin(), more.end());
+    return rays;
+}
+
+// Each coordinate of origins and directions is a denormal, half of the time; the rest is as it was.
+std::vector<Ray> with_denormals(std::vector<Ray> rays, std::uint64_t seed) {
+    std::mt19937 random(static_cast<std::uint32_t>(seed));
+    const auto denormal = [&] {
+        const float magnitude = std::ldexp(1.0f, -127 - static_cast<int>(random() % 20));
+        return random() % 2 ? magnitude : -magnitude;
+    };
+    for (Ray& ray : rays) {
+        const auto kept = static_cast<int>(random() % 3);  // so that the direction is not 0
+        for (int axis = 0; axis < 3; ++axis) {
+            if (random() % 2) ray.origin[axis] = denormal();
+            if (axis != kept && random() % 2) ray.direction[axis] = denormal();
+        }
+        if (std::abs(ray.direction[kept]) < 0x1p-24f) ray.direction[kept] = 1;
+    }
+    return rays;
+}
+
+}  // namespace
+
+void contraction(CaseRun& run) {
+    const Scene scene = scene_with(far_grid());
+    const Oracle oracle = Oracle::of(scene);
+    const std::vector<Ray> rays = edge_aimed_rays(oracle, run.amount(8'192, 1'000'000), run.seed());
+    for (const Subject& subject : precise_subjects(run)) {
+        record_contraction(run, subject, compared(run, subject, scene, rays), rays.size(), {});
+        if (subject.level != Level::watertight) continue;
+        const std::optional<Control> control = without_precise();
+        record_contraction(run, subject, compared(run, subject, scene, rays, control), rays.size(), control);
+    }
+}
+
+void float_probe(CaseRun& run) {
+    for (const Subject& subject : run.one_subject_each()) {
+        if (!is_ours(subject.backend)) continue;
+        const FloatFacts& facts = probe_floats(run.devices().context(subject.backend));
+        const std::vector<std::string> faults = robust_faults(facts);
+        run.expect(subject, {.results = {{"product_ulp", facts.product_ulp},
+                                         {"sum_ulp", facts.sum_ulp},
+                                         {"quotient_ulp", facts.quotient_ulp},
+                                         {"keeps_denormals", facts.keeps_denormals},
+                                         {"has_exact_float64", facts.has_exact_float64}},
+                             .n = robust_conditions,
+                             .faults = faults.size(),
+                             .what = "watertightness cannot be claimed: " + joined(faults),
+                             .fault_of = "driver"});
+    }
+}
+
+// A ray displaced by a denormal passes a shared edge on the other side, so that the triangle may change, but no answer
+// may become wrong.
+void denormals(CaseRun& run) {
+    for (const Subject& subject : precise_subjects(run)) {
+        if (!FlushDenormals::is_able()) {
+            run.add_not_run("the host's denormals cannot be flushed", &subject);
+            continue;
+        }
+        for (const auto& [name, scene] : scenes_for_twins()) {
+            const World world = world_of(scene);
+            const std::size_t count = run.amount(2'000, 1'000'000);
+            const std::vector<Ray> rays =
+                with_denormals(random_and_aimed(scene, count, count / 4, run.seed()), run.seed());
+            const std::unique_ptr<reference::Scene> twin = twin_of(scene, run.devices().trees());
+            const std::vector<Hit> flushed = trace_twin(*twin, rays, subject.level, Denormals::flushed);
+            const std::vector<Traced> traced =
+                trace(run.devices(), std::span(&subject, 1), world, {.rays = rays, .reps = 0});
+            const Difference changed = difference(rays, flushed, trace_twin(*twin, rays, subject.level));
+            Judgement judgement = judge(world.oracle, rays, flushed, subject.backend);
+            const Judgement of_device = judge(world.oracle, rays, traced.front().hits, subject.backend);
+            judgement.classes += of_device.classes;
+            judgement.faults += of_device.faults;
+            if (judgement.example.empty()) judgement.example = of_device.example;
+            run.add_judged(subject, judgement,
+                           {.params = {{"scene", name}}, .results = {{"changed_by_flushing", changed.decisions}}});
+        }
+    }
+}
+
+void device_against_twin(CaseRun& run) {
+    for (const Subject& subject : precise_subjects(run)) {
+        const FloatFacts& facts = probe_floats(run.devices().context(subject.backend));
+        const bool divides_exactly = facts.quotient_ulp <= 0.5;
+        for (const auto& [name, scene] : scenes_for_twins()) {
+            const std::vector<Ray> rays =
+                random_and_aimed(scene, run.amount(25'000, 2'500'000), run.amount(2'500, 250'000), run.seed());
+            const Difference found = compared(run, subject, scene, rays);
+            Record record = run.record(subject);
+            record.params = {{"scene", name}};
+            record.reference = "invariance";
+            record.n = rays.size();
+            record.results = {
+                {"other_decisions", found.decisions}, {"other_bits", found.bits}, {"worst_t_ulp", found.worst_ulp}};
+            record.faults = found.total();
+            record.bound95 = upper_bound_95(found.total(), rays.size());
+            record.example = found.example;
+            if (divides_exactly) {
+                record.pass = found.total() == 0;
+                record.fault_of = *record.pass ? "" : "twinray";
+            } else {
+                record.criterion = "none: this device's division is not correctly rounded";
+            }
+            run.add(record);
+        }
+    }
+}
+
+}  // namespace twinray::suite

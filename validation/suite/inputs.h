@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// Cases of the section N that are about scenes and wrong use.
+#pragma once
+
+#include "validation/suite/case_run.h"
+#include "engine/core/error.h"
+
+namespace twinray::suite {
+
+void vertex_not_a_number_in_x(CaseRun& run);
+void vertex_not_a_number_in_y_or_z(CaseRun& run);
+void infinite_vertex(CaseRun& run);
+void wrong_use(CaseRun& run);
+void empty_and_small(CaseRun& run);
+void too_many(CaseRun& run);
+void masks_and_culling(CaseRun& run);
+
+}  // namespace twinray::suite

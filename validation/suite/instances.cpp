@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+// Instances: transforms that are hard on the ray, on the box and on the inverse.
+#include <cmath>
+#include <cstring>
+
+#include "validation/suite/case_run.h"
+#include "validation/suite/scenes.h"
+#include "validation/suite/spawning.h"
+#include "engine/core/error.h"
+#include "engine/scene/shapes.h"
+#include "engine/verify/aimed_rays.h"
+
+namespace twinray::suite {
+namespace {
+
+Scene instances_of(const Mesh& mesh, std::vector<Transform> transforms) {
+    Scene scene;
+    scene.meshes = {mesh};
+    for (const Transform& transform : transforms) scene.instances.push_back({"", 0, transform});
+    return scene;
+}
+
+void measure_instances(CaseRun& run, const Scene& scene, std::size_t rays, const Values& params = {}) {
+    const World world = world_of(scene);
+    run.measure(world, mixed_rays(world, bounds_of(scene), rays, run.seed()), {.params = params});
+}
+
+void random_rigid(CaseRun& run) {
+    Random random(run.seed());
+    std::vector<Transform> transforms(run.amount(500, 10'000));
+    for (Transform& transform : transforms) transform = Transform::translation(random.in_box(10)) * random.rotation();
+    measure_instances(run, instances_of(make_icosphere(2), transforms), run.amount(4'096, 500'000));
+}
+
+void stretched(CaseRun& run) {
+    for (const float ratio : {1e3f, 1e6f}) {
+        Random random(run.seed());
+        std::vector<Transform> transforms(64);
+        for (Transform& transform : transforms)
+            transform = Transform::translation(random.in_box(5)) * random.rotation() *
+                        Transform::scaling({1, 1 / std::sqrt(ratio), std::sqrt(ratio)}) * random.rotation();
+        measure_instances(run, instances_of(make_icosphere(2), transforms), run.amount(2'048, 500'000),
+                          {{"ratio", ratio}});
+    }
+}
+
+// Which side is the front is decided in object space: mirroring an instance does not exchange the sides.
+void mirrored(CaseRun& run) {
+    const Mesh sphere = make_icosphere(2);
+    std::vector<Transform> transforms;
+    for (uint i = 0; i < 8; ++i) {
+        const auto sign = [&](uint axis) { return i >> axis & 1 ? -1.0f : 1.0f; };
+        transforms.push_back(Transform::translation({3 * static_cast<float>(i), 0, 0}) *
+                             Transform::scaling({sign(0), sign(1), sign(2)}));
+    }
+    const Scene scene = instances_of(sphere, transforms);
+    const World world = world_of(scene);
+    const std::vector<Ray> rays = random_rays(bounds_of(scene), run.amount(2'048, 200'000), run.seed());
+    for (const Subject& subject : run.subjects()) {
+        AbstractAccel& accel = run.devices().empty_accel(subject);
+        world.place(accel);
+        for (const Cull cull : {Cull::none, Cull::back, Cull::front}) {
+            const std::vector<Hit> hits = accel.closest_hits(rays, {.cull = cull, .level = subject.level});
+            CaseRun::Outcome outcome{.params = {{"cull", cull == Cull::none   ? "none"
+                                                         : cull == Cull::back ? "back"
+                                                                              : "front"}},
+                                     .n = rays.size(),
+                                     .reference = "f64"};
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                const OracleHit expected = world.oracle.closest_hit(rays[i], {0xff, flags_of(cull)});
+                // Not the primitive, on which rays at an edge may differ.
+                const bool is_right = (hits[i].hit != 0) == expected.hit &&
+                                      (!expected.hit || hits[i].instance_index == expected.instance) &&
+                                      (!expected.hit || std::abs(hits[i].t - expected.t) < 1e-3 * expected.t + 1e-4);
+                if (!is_right && outcome.faults++ == 0) outcome.what = "differs: " + hexadecimal(rays[i]);
+            }
+            run.expect(subject, outcome);
+        }
+    }
+}
+
+void nearly_singular(CaseRun& run) {
+    for (const float condition : {1e2f, 1e4f, 1e6f, 1e8f, 1e10f, 1e12f}) {
+        Random random(run.seed());
+        std::vector<Transform> transforms(16);
+        for (Transform& transform : transforms)
+            transform = Transform::translation(random.in_box(5)) * random.rotation() *
+                        Transform::scaling({1, 1, 1 / condition}) * random.rotation();
+        measure_instances(run, instances_of(make_icosphere(2), transforms), run.amount(256, 100'000),
+                          {{"condition", condition}});
+    }
+}
+
+void refused_transforms(CaseRun& run) {
+    const std::vector<std::pair<const char*, Transform>> bad = {
+        {"zero", Transform::scaling(vec3(0))},
+        {"flat", Transform::scaling({1, 0, 1})},
+        {"NaN", Transform::scaling({1, nan, 1})},
+        {"infinite", Transform::translation({inf, 0, 0})},
+        {"inverse beyond float32", Transform::scaling(vec3(1e-39f))},
+    };
+    for (const Subject& subject : run.one_subject_each()) {
+        CaseRun::Outcome outcome{.n = bad.size(), .fault_of = "twinray"};
+        for (const auto& [what, transform] : bad) {
+            std::string error;
+            try {
+                run.devices().empty_accel(subject).push(make_box(vec3(0), vec3(1)), transform);
+            } catch (const Error& refusal) {
+                error = refusal.what();
+            }
+            if (error.find("instance") == std::string::npos && outcome.faults++ == 0)
+                outcome.what = text(what, ": ", error.empty() ? "not refused" : error);
+        }
+        run.expect(subject, outcome);
+    }
+}
+
+// Every ray meets every box; the lowest instance counts.
+void identical_boxes(CaseRun& run) {
+    const std::size_t count = run.amount(5'000, 100'000);
+    const Scene scene = instances_of(make_icosphere(0), std::vector<Transform>(count));
+    run.measure(world_of(scene), random_rays(bounds_of(scene), run.amount(32, 256), run.seed()),
+                {.params = {{"instances", count}}, .reps = 1});
+}
+
+void many_instances(CaseRun& run) {
+    const std::size_t count = run.amount(10'000, 1'000'000);
+    const std::size_t rays = run.amount(1'024, 16'384);
+    const Mesh tiny = make_icosphere(0, 0.01f);
+    Random random(run.seed());
+    std::vector<Transform> line, shell;
+    for (std::size_t i = 0; i < count; ++i) {
+        line.push_back(Transform::translation({static_cast<float>(i) * 0.03f, 0, 0}));
+        shell.push_back(random.rotation() * Transform::translation({0, 0, 3}));
+    }
+    measure_instances(run, instances_of(tiny, line), rays, {{"instances", count}, {"placed", "in a line"}});
+    measure_instances(run, instances_of(tiny, shell), rays, {{"instances", count}, {"placed", "on a shell"}});
+}
+
+// The camera is a few units beside it.
+void far_away(CaseRun& run) {
+    for (const float distance : {1e3f, 1e5f, 1e7f}) {
+        const Scene scene =
+            instances_of(make_icosphere(3), {Transform::translation(vec3(distance, -distance, distance))});
+        measure_instances(run, scene, run.amount(2'048, 500'000), {{"translation", distance}});
+    }
+}
+
+// A flat geometry's box has no thickness until it is rotated; what of it rounding takes away loses rays.
+std::vector<Transform> rotations(std::uint64_t seed, std::size_t count) {
+    Random random(seed);
+    std::vector<Transform> transforms(count);
+    for (Transform& transform : transforms) transform = Transform::translation(random.in_box(20)) * random.rotation();
+    return transforms;
+}
+
+void flat_and_rotated(CaseRun& run) {
+    measure_instances(run, instances_of(make_grid(4, 4), rotations(run.seed(), 100)), run.amount(8'192, 1'000'000));
+}
+
+void box_touched_by_rounding(CaseRun& run) {
+    const Mesh square = make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0));
+    Scene scene = instances_of(square, rotations(run.seed() + 1, 100));
+    // Two halves of one plane share an edge within the geometry: rays at it may not slip through the box's rim.
+    const World world = world_of(scene);
+    run.measure(world, edge_aimed_rays(world.oracle, run.amount(8'192, 1'000'000), run.seed()));
+}
+
+// Scaling instance and rays by a power of two changes nothing but the unit: the same ids, u and v, and t to the bit.
+void powers_of_two(CaseRun& run) {
+    const Mesh sphere = make_icosphere(3);
+    const Scene unit = instances_of(sphere, {Transform()});
+    const World world = world_of(unit);
+    const std::vector<Ray> rays = mixed_rays(world, bounds_of(unit), run.amount(1'024, 100'000), run.seed());
+    for (const Subject& subject : run.subjects()) {
+        const auto hits_at = [&](int exponent) {
+            const float scale = std::ldexp(1.0f, exponent);
+            AbstractAccel& accel = run.devices().empty_accel(subject);
+            accel.push(sphere, Transform::scaling(vec3(scale)));
+            std::vector<Ray> scaled = rays;
+            for (Ray& ray : scaled) ray.origin *= scale;
+            std::vector<Hit> hits = accel.closest_hits(scaled, {.level = subject.level});
+            for (Hit& hit : hits)
+                if (hit.hit) hit.t /= scale;
+            return hits;
+        };
+        const std::vector<Hit> expected = hits_at(0);
+        for (const int exponent : {-60, -20, -3, 3, 20, 60}) {
+            const std::vector<Hit> hits = hits_at(exponent);
+            CaseRun::Outcome outcome{.params = {{"exponent", exponent}}, .n = rays.size(), .reference = "invariance"};
+            for (std::size_t i = 0; i < rays.size(); ++i)
+                if (std::memcmp(&hits[i], &expected[i], sizeof(Hit)) != 0 && outcome.faults++ == 0)
+                    outcome.what = "differs from the unit scale: " + hexadecimal(rays[i]);
+            run.expect(subject, outcome);
+        }
+    }
+}
+
+// With an empty second instance there is a top level.
+void with_and_without_top_level(CaseRun& run) {
+    const Mesh mesh = make_soup(static_cast<uint>(run.amount(2'000, 100'000)), 23, 0.1f);
+    const World world = world_of(mesh);
+    const std::vector<Ray> rays = mixed_rays(world, bounds_of(mesh), run.amount(4'096, 500'000), run.seed());
+    for (const Subject& subject : run.subjects()) {
+        AbstractAccel& accel = run.devices().empty_accel(subject);
+        accel.push(mesh);
+        const std::vector<Hit> alone = accel.closest_hits(rays, {.level = subject.level});
+        accel.push(Mesh{});
+        const std::vector<Hit> below_top = accel.closest_hits(rays, {.level = subject.level});
+        CaseRun::Outcome outcome{
+            .n = rays.size(), .what = "a hit differs where there is a top level", .reference = "invariance"};
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            if (std::memcmp(&alone[i], &below_top[i], sizeof(Hit)) != 0) ++outcome.faults;
+        run.expect(subject, outcome);
+    }
+}
+
+}  // namespace
+
+std::vector<SuiteCase> instance_cases() {
+    return {
+        {"I01", "an identity instance beside a path without a top level", "hits", "equal to the last bit",
+         with_and_without_top_level},
+        {"I02", "random rotations and translations", "hits, t", "0 SW_LEAK, SW_FALSE, T_ERR", random_rigid},
+        {"I03", "scales that differ by 1e3 and 1e6, between rotations", "hits, t", "0 SW_LEAK, SW_FALSE, T_ERR",
+         stretched},
+        {"I04", "mirrored instances, culled by either side", "hits", "the front is decided in object space", mirrored},
+        {"I05", "transforms of condition 1e2 to 1e12", "hits, t",
+         "0 SW_LEAK, SW_FALSE, T_ERR within what the condition does to rounding", nearly_singular},
+        {"I06", "singular, NaN and infinite transforms", "errors",
+         "each is refused by an Error that names the instance", refused_transforms},
+        {"I07", "many instances with identical boxes", "hits, time", "0 faults; the lowest instance counts",
+         identical_boxes},
+        {"I08", "many instances in a line and on a shell", "hits, time", "0 faults", many_instances},
+        {"I09", "a translation of up to 1e7, the camera beside it", "hits, t", "0 SW_LEAK, SW_FALSE, T_ERR", far_away},
+        {"I10", "an object offset of 10^3 to 10^5 that the instance cancels",
+         "rays of twinray/spawn.glsl that meet the triangle they leave", "0", leave_cancelled_offsets},
+        {"I11", "flat geometries, rotated", "hits", "0 SW_LEAK, SW_FALSE, T_ERR", flat_and_rotated},
+        {"I12", "boxes that a ray touches only by rounding: edges of rotated squares", "hits",
+         "0 SW_LEAK, SW_FALSE, T_ERR", box_touched_by_rounding},
+        {"I13", "uniform scales 2^-60 to 2^60 of instance and rays", "ids, u, v, t", "equal to the last bit, t scaled",
+         powers_of_two},
+    };
+}
+
+}  // namespace twinray::suite

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "validation/suite/queries.h"
+
+#include <chrono>
+
+namespace twinray::suite {
+
+Record query_record(CaseRun& run, const std::string& reference, const std::string& variant) {
+    Record record = run.record({query_backend, Level::watertight});
+    record.backend = record.level = "";
+    record.variant = variant;
+    record.reference = reference;
+    return record;
+}
+
+void add_judged(CaseRun& run, Record record, std::uint64_t faults, const std::string& what) {
+    record.faults = faults;
+    record.bound95 = upper_bound_95(faults, record.n);
+    record.pass = faults == 0;
+    if (faults > 0) {
+        record.reason = what;
+        record.fault_of = "twinray";
+    }
+    run.add(record);
+}
+
+double seconds_of(const std::function<void()>& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace twinray::suite

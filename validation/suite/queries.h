@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// For cases in which no accelerator takes part: the GPU answers, and the host where it is in doubt.
+#pragma once
+
+#include <functional>
+
+#include "validation/suite/case_run.h"
+
+namespace twinray::suite {
+
+inline constexpr Backend query_backend = Backend::software;  // whose context they use
+
+// A record without a backend and a level.
+Record query_record(CaseRun& run, const std::string& reference, const std::string& variant = {});
+// With the verdict: any fault is ours, and `what` it was.
+void add_judged(CaseRun& run, Record record, std::uint64_t faults, const std::string& what);
+
+double seconds_of(const std::function<void()>& work);
+
+}  // namespace twinray::suite

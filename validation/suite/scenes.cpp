@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include "validation/suite/scenes.h"
+
+#include "engine/verify/aimed_rays.h"
+
+namespace twinray::suite {
+
+vec3 Random::in_box(float extent) {
+    const float x = between(-extent, extent), y = between(-extent, extent);
+    return {x, y, between(-extent, extent)};
+}
+
+vec2 Random::in_triangle() {
+    const float u = between(0, 1), v = between(0, 1);
+    return u + v <= 1 ? vec2(u, v) : vec2(1 - u, 1 - v);
+}
+
+vec3 Random::direction() {
+    for (;;) {
+        const glm::dvec3 p(in_box(1));
+        const double square = glm::dot(p, p);
+        if (square <= 1 && square > 0x1p-20) return vec3(p / std::sqrt(square));
+    }
+}
+
+// Of a random unit quaternion (rejection, as uniform on the sphere of dimension 4), evaluated in float64.
+Transform Random::rotation() {
+    for (;;) {
+        const double w = between(-1, 1), x = between(-1, 1), y = between(-1, 1), z = between(-1, 1);
+        const double square = w * w + x * x + y * y + z * z;
+        if (square > 1 || square < 0.01) continue;
+        const double s = 2 / square;
+        Transform result;
+        result.rows[0] = vec4(1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y), 0);
+        result.rows[1] = vec4(s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x), 0);
+        result.rows[2] = vec4(s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y), 0);
+        return result;
+    }
+}
+
+glm::dvec3 Random::weights(double least) {
+    for (;;) {
+        const double u = between(0, 1), v = between(0, 1);
+        if (u >= least && v >= least && 1 - u - v >= least) return {1 - u - v, u, v};
+    }
+}
+
+void add_triangle(Mesh& mesh, vec3 a, vec3 b, vec3 c) {
+    const uint first = static_cast<uint>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {a, b, c});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+}
+
+void append(Mesh& mesh, const Mesh& part) {
+    const uint base = static_cast<uint>(mesh.positions.size());
+    for (const uvec3& triangle : part.triangles) mesh.triangles.push_back(triangle + base);
+    mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
+}
+
+Mesh scaled(Mesh mesh, float factor) {
+    for (vec3& position : mesh.positions) position *= factor;
+    return mesh;
+}
+
+Mesh moved(Mesh mesh, vec3 offset) {
+    for (vec3& position : mesh.positions) position += offset;
+    return mesh;
+}
+
+vec3 turned(vec3 v, int times) {
+    for (; times > 0; --times) v = vec3(v.z, v.x, v.y);
+    return v;
+}
+
+std::vector<Ray> scaled(std::vector<Ray> rays, float factor) {
+    for (Ray& ray : rays) ray.origin *= factor;
+    return rays;
+}
+
+Ray ray_to(const glm::dvec3& target, const glm::dvec3& origin) {
+    const vec3 rounded(origin);
+    return {rounded, 0, vec3(glm::normalize(target - glm::dvec3(rounded))), inf};
+}
+
+std::vector<Ray> mixed_rays(const World& world, const Bounds& bounds, std::size_t count, std::uint64_t seed) {
+    std::vector<Ray> rays = random_rays(bounds, count / 2, seed);
+    for (const auto& aimed :
+         {vertex_aimed_rays(world.oracle, count / 4, seed), edge_aimed_rays(world.oracle, count / 4, seed)})
+        rays.insert(rays.end(), aimed.begin(), aimed.end());
+    return rays;
+}
+
+}  // namespace twinray::suite

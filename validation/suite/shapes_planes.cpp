@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+// Rays nearly in the planes of triangles, in them, and along edges.
+#include <algorithm>
+#include <cmath>
+
+#include "validation/suite/demands.h"
+#include "validation/suite/scenes.h"
+#include "validation/suite/shapes.h"
+#include "engine/core/error.h"
+#include "engine/scene/shapes.h"
+
+namespace twinray::suite {
+
+// The plane contains two axes, so that heights above it are exact however small; another is turned, and there the
+// roundings of its corners and of the rays limit the cosine.
+void grazing(CaseRun& run) {
+    const Mesh flat = moved(scaled(make_grid(16, 16), 4), vec3(-2, 0, -2));
+    Random random(run.seed());
+    const Transform rotation = random.rotation();
+    Mesh turned_grid = flat;
+    for (vec3& position : turned_grid.positions) position = transform_point(rotation, position);
+    for (int exponent = 1; exponent <= 8; ++exponent) {
+        const double cosine = std::pow(10.0, -exponent);
+        std::vector<Ray> rays, turned_rays;
+        for (std::size_t i = 0; i < run.amount(256, 50'000); ++i) {
+            const vec3 target(random.between(-1, 1), 0, random.between(-1, 1));
+            const double angle = double{random.between(0, 6.2831853f)}, distance = double{random.between(1, 4)};
+            const glm::dvec3 along(std::cos(angle), cosine, std::sin(angle));
+            const vec3 origin(glm::dvec3(target) + distance * along);
+            rays.push_back({origin, 0, vec3(-along), inf});
+            turned_rays.push_back(
+                {transform_point(rotation, origin), 0, transform_vector(rotation, vec3(-along)), inf});
+        }
+        const Values params = {{"cosine", cosine}};
+        expect_refined_t(run, run.measure(world_of(flat), rays, {.params = params, .reps = 1}), rays, 1, params);
+        if (exponent > 5) continue;
+        const Values turned_params = {{"cosine", cosine}, {"turned", true}};
+        const Measured measured = run.measure(world_of(turned_grid), turned_rays, {.params = turned_params, .reps = 1});
+        expect_refined_t(run, measured, turned_rays, 1, turned_params);
+    }
+}
+
+// Planes in which the corners and the rays lie exactly, and still do when seen along the ray: z = 0.375, and x = y.
+void in_the_plane(CaseRun& run) {
+    Random random(run.seed());
+    for (const char* plane : {"z = 0.375", "x = y"}) {
+        const auto placed = [&](float a, float b) { return *plane == 'z' ? vec3(a, b, 0.375f) : vec3(a, a, b); };
+        const auto moving = [&](float a, float b) { return *plane == 'z' ? vec3(a, b, 0) : vec3(a, a, b); };
+        const auto some = [&] { return random.between(-1, 1); };
+        Mesh mesh;
+        for (int i = 0; i < 32; ++i) {
+            vec3 corners[3];
+            for (vec3& corner : corners) {
+                const float a = some();
+                corner = placed(a, some());
+            }
+            add_triangle(mesh, corners[0], corners[1], corners[2]);
+        }
+        std::vector<Ray> rays;
+        for (std::size_t i = 0; i < run.amount(1'024, 100'000); ++i) {
+            const float a = 2 * some(), b = 2 * some(), c = some();
+            rays.push_back({placed(a, b), 0, moving(c, some()), inf});
+        }
+        for (const Traced& traced : trace(run.devices(), run.subjects(), world_of(mesh), {rays, 0})) {
+            CaseRun::Outcome outcome = ask_each(
+                traced, rays, [](std::size_t, const Hit& hit) { return hit.hit ? text("hit at t = ", hit.t) : ""; });
+            outcome.params = {{"plane", plane}};
+            outcome.reference = "exact";
+            run.expect(traced.subject, outcome);
+        }
+    }
+}
+
+// From outside, in the plane of a face and through the edges at its rim: whether the ray is in or out is decided alike
+// by all faces, so it leaves as often as it enters.
+void in_the_plane_of_a_face(CaseRun& run) {
+    Random random(run.seed());
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < run.amount(1'024, 100'000); ++i) {
+        const float height = i / 3 % 2 ? 1.0f : 0.0f;
+        const float enter = random.between(0.25f, 0.75f), leave = random.between(0.25f, 0.75f);
+        const float side = i / 6 % 2 ? 1.0f : -1.0f;
+        const vec3 direction(side, leave - enter, 0);
+        const vec3 edge(side > 0 ? 0.0f : 1.0f, enter, height);
+        rays.push_back(
+            {turned(edge - direction, static_cast<int>(i % 3)), 0, turned(direction, static_cast<int>(i % 3)), inf});
+    }
+    // In the lower planes the rule for ties lets the box begin, in the upper ones it has ended, or the other way round.
+    std::size_t met = 0;
+    const auto is_even = [&](const Ray&, uint count) {
+        met += count == 2;
+        return count % 2 == 0;
+    };
+    run.count_crossings(world_of(make_box(vec3(0), vec3(1)), {}, {.filtered = true}), rays, is_even);
+    if (met == 0) fail("no ray was counted to cross the box twice");
+}
+
+// A sphere whose vertices have whole numbers of 16, so that rays through vertices and middles of edges are exact.
+void tied_axes(CaseRun& run) {
+    Mesh sphere = make_icosphere(2, 64);
+    for (vec3& position : sphere.positions) position = glm::round(position) * 16.0f;
+    Random random(run.seed());
+    std::vector<Ray> rays;
+    for (std::size_t i = 0; i < run.amount(2'048, 200'000); ++i) {
+        const uvec3& triangle = sphere.triangles[i % sphere.triangles.size()];
+        const vec3 a = sphere.positions[triangle.x], b = sphere.positions[triangle.y];
+        const auto sign = [&] { return random.between(-1, 1) < 0 ? -1.0f : 1.0f; };
+        vec3 direction(sign(), sign(), 0);
+        direction.z = sign() * (i % 2 ? 1.0f : 0.5f);
+        direction = turned(direction, static_cast<int>(i % 3));
+        // Towards the middle, so that it is no silhouette that the ray meets.
+        const vec3 target = i % 4 < 2 ? a : (a + b) * 0.5f;
+        if (glm::dot(direction, target) > 0) direction = -direction;
+        rays.push_back({target - 512.0f * direction, 0, direction, inf});
+    }
+    run.measure(world_of(sphere), rays);
+}
+
+// Their length is that of the edge or diagonal, so that the far end is at t = 1.
+void along_edges(CaseRun& run) {
+    const World world = world_of(make_box(vec3(1), vec3(2)));
+    std::vector<Ray> rays;
+    std::vector<bool> is_inward;
+    for (int vertex = 0; vertex < 8; ++vertex)
+        for (int way = 1; way < 8; ++way)
+            for (const float sign : {1.0f, -1.0f}) {
+                vec3 origin(1), direction(0);
+                for (int axis = 0; axis < 3; ++axis) {
+                    if (vertex >> axis & 1) origin[axis] = 2;
+                    if (way >> axis & 1) direction[axis] = sign * (vertex >> axis & 1 ? -1.0f : 1.0f);
+                }
+                rays.push_back({origin, 0, direction, inf});
+                is_inward.push_back(sign > 0);
+            }
+    for (const Traced& traced : trace(run.devices(), run.subjects(), world, {rays, 0})) {
+        CaseRun::Outcome outcome = ask_each(traced, rays, [&](std::size_t i, const Hit& hit) -> std::string {
+            const vec3 size = glm::abs(rays[i].direction);
+            const bool is_through = is_inward[i] && size.x + size.y + size.z == 3;
+            if (!hit.hit) return is_through ? "missed the far vertex" : "";
+            return is_inward[i] && std::abs(hit.t - 1) <= 0x1p-22f ? "" : text("hit at t = ", hit.t);
+        });
+        outcome.reference = "exact";
+        run.expect(traced.subject, outcome);
+    }
+}
+
+}  // namespace twinray::suite

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "validation/suite/spawned_rays.h"
+
+#include <algorithm>
+
+#include "suite_spawn.spv.h"
+
+namespace twinray::suite {
+namespace {
+
+template <class T>
+Buffer uploaded(Context& context, const char* name, std::span<const T> data) {
+    Buffer buffer(context, {.name = name, .bytes = data.size_bytes()});
+    Commands commands(context, name);
+    {
+        const auto pass = commands.pass(name);
+        commands.upload(buffer, data);
+    }
+    commands.submit();
+    return buffer;
+}
+
+}  // namespace
+
+Spawner::Spawner(Context& context)
+    : context_(context), kernel_(context, {.name = "suite_spawn", .spirv = suite_spawn_spirv}) {}
+
+SpawnedRays Spawner::operator()(const Mesh& mesh, const Transform& instance, std::span<const SpawnItem> items) const {
+    InstanceRecord record{};
+    std::copy(instance.rows.begin(), instance.rows.end(), record.object_to_world);
+    const Buffer item_buffer = uploaded(context_, "spawn items", items);
+    const Buffer instances = uploaded(context_, "spawn instance", std::span<const InstanceRecord>(&record, 1));
+    const Buffer positions = uploaded(context_, "spawn positions", std::span<const vec3>(mesh.positions));
+    const Buffer indices = uploaded(context_, "spawn indices", std::span<const uvec3>(mesh.triangles));
+    const std::size_t ray_count = SPAWN_METHODS * items.size();
+    const Buffer rays(context_, {.name = "spawned rays", .bytes = ray_count * sizeof(Ray)});
+    const Buffer prices(context_, {.name = "spawn prices", .bytes = items.size() * sizeof(SpawnPrice)});
+    Commands commands(context_, "spawn");
+    const SpawnArgs args{.items = item_buffer.ref<SpawnItem>(),
+                         .instances = instances.ref<InstanceRecord>(),
+                         .positions = positions.ref<float>(),
+                         .indices = indices.ref<uint>(),
+                         .rays = rays.ref<Ray>(),
+                         .prices = prices.ref<SpawnPrice>(),
+                         .count = static_cast<uint>(items.size()),
+                         .reserved = 0};
+    kernel_.dispatch(commands, args, items.size());
+    commands.submit();
+    return {download<Ray>(context_, rays, ray_count), download<SpawnPrice>(context_, prices, items.size())};
+}
+
+}  // namespace twinray::suite

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "validation/suite/twin.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "validation/suite/flush.h"
+#include "validation/suite/judging.h"
+#include "engine/core/parallel.h"
+
+namespace twinray::suite {
+namespace {
+
+bool is_same_decision(const Hit& a, const Hit& b) {
+    return a.hit == b.hit && a.instance_index == b.instance_index && a.primitive_index == b.primitive_index;
+}
+
+// Steps from one float to the other; both are positive or 0.
+double ulps_between(float a, float b) {
+    return std::abs(double(std::bit_cast<std::int32_t>(a)) - double(std::bit_cast<std::int32_t>(b)));
+}
+
+}  // namespace
+
+std::unique_ptr<reference::Scene> twin_of(const Scene& scene, const AccelOptions& trees) {
+    auto twin = std::make_unique<reference::Scene>(trees.layout, trees.build_quality);
+    for (const Mesh& mesh : scene.meshes) twin->add_geometry(mesh);
+    for (const Instance& instance : scene.instances)
+        twin->add_instance(instance.mesh, make_instance_record(instance.transform));
+    twin->build();
+    return twin;
+}
+
+std::vector<Hit> trace_twin(const reference::Scene& twin, std::span<const Ray> rays, Level level, Denormals denormals) {
+    std::vector<Hit> hits(rays.size());
+    parallel_for(rays.size(), [&](std::size_t begin, std::size_t end) {
+        std::optional<FlushDenormals> flush;
+        if (denormals == Denormals::flushed) flush.emplace();
+        for (std::size_t i = begin; i < end; ++i)
+            hits[i] = twin.trace(rays[i], QUERY_CLOSEST, 0xff, static_cast<uint>(level));
+    });
+    return hits;
+}
+
+Difference& Difference::operator+=(const Difference& other) {
+    decisions += other.decisions;
+    bits += other.bits;
+    worst_ulp = std::max(worst_ulp, other.worst_ulp);
+    if (example.empty()) example = other.example;
+    return *this;
+}
+
+Difference difference(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const Hit> twin) {
+    Difference result;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (std::memcmp(&hits[i], &twin[i], sizeof(Hit)) == 0) continue;
+        if (result.total() == 0) result.example = hexadecimal(rays[i]);
+        if (!is_same_decision(hits[i], twin[i])) {
+            ++result.decisions;
+            continue;
+        }
+        ++result.bits;
+        result.worst_ulp = std::max(result.worst_ulp, ulps_between(hits[i].t, twin[i].t));
+    }
+    return result;
+}
+
+}  // namespace twinray::suite
