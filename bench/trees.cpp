@@ -22,9 +22,8 @@ std::size_t bytes_kept(const SwTlas::Tree& tree) {
 }
 
 std::size_t bytes_used(const SwTlas::Tree& tree) {
-    const auto used = static_cast<std::size_t>(std::ranges::count_if(tree.records, [](const CompressedRecord& record) {
-        return !is_none(record);
-    }));
+    const auto used = static_cast<std::size_t>(
+        std::ranges::count_if(tree.records, [](const CompressedRecord& record) { return !is_none(record); }));
     return tree.records.empty() ? bytes_kept(tree) : used * sizeof(CompressedRecord);
 }
 

@@ -20,12 +20,9 @@ void bench_trees(const CommonOptions& options, const std::string& scene_name, co
     const std::vector<bench::TreeFigures> trees =
         bench::measure_trees(*context, scene, run.kinds, run.width, options.seed);
     bench::print_trees(std::cout, trees);
-    const nlohmann::json base = {{"started", utc_now()},
-                                 {"git", twinray_version},
-                                 {"scene", scene.name},
-                                 {"triangles", count_triangles(scene.scene)},
-                                 {"width", run.width},
-                                 {"seed", options.seed}};
+    const nlohmann::json base = {{"started", utc_now()}, {"git", twinray_version},
+                                 {"scene", scene.name},  {"triangles", count_triangles(scene.scene)},
+                                 {"width", run.width},   {"seed", options.seed}};
     for (const nlohmann::json& record : bench::records_of(base, trees)) append_json(options.json, record);
 }
 

@@ -65,7 +65,7 @@ void run_broad(const CollideOptions& options) {
                              {"device", describe(*context)},
                              {"scene", options.scene.string()},
                              {"origin", list_of(scene.origin)},
-                              {"phase", "broad"},
+                             {"phase", "broad"},
                              {"instances", scene.instances.size()},
                              {"pairs", pairs.size()},
                              {"seconds", seconds}};

@@ -132,8 +132,10 @@ Command devices_command() {
             .examples = {{"twinray devices", "what there is"},
                          {"twinray devices --requirements", "what is needed for what"}},
             .run = [options] {
-                if (options->requirements) print_requirements(usable_devices(), options->json);
-                else print_devices(options->json);
+                if (options->requirements)
+                    print_requirements(usable_devices(), options->json);
+                else
+                    print_devices(options->json);
                 return 0;
             }};
 }

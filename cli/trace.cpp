@@ -99,7 +99,7 @@ Command trace_command() {
         {{.name = "--rays",
           .value = file(options->rays),
           .help = "the rays: 32 bytes each, little endian: float32 origin (3), t_min, direction (3), t_max; or .npy: "
-                   "N x 8 numbers in that order, float64 too",
+                  "N x 8 numbers in that order, float64 too",
           .is_required = true},
          {.name = "--hits",
           .value = file(options->hits),

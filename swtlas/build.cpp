@@ -64,8 +64,8 @@ KernelDesc morton_stage(const Context& context) {
 }
 
 KernelDesc hierarchy_stage(const Context& context, BuildQuality quality) {
-    const KernelDesc desc = grouped(
-        context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv, quality != BuildQuality::ploc), BUILD_GROUP);
+    const KernelDesc desc =
+        grouped(context, stage("swtlas_hierarchy", swtlas_hierarchy_spirv, quality != BuildQuality::ploc), BUILD_GROUP);
     return specialized(desc, quality == BuildQuality::high ? HIERARCHY_HIGH : HIERARCHY_FAST);
 }
 
@@ -120,16 +120,15 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       collapse_level_(context, collapse_stage(COLLAPSE_LEVEL, layout_, needs.records)),
       collapse_subtrees_(context, subtrees_stage(context, layout_, needs.records)),
       encode_records_(context, encode_stage(context, needs.records)),
-      record_parents_(context,
-                      of_width(stage("swtlas_record_parents", swtlas_record_parents_spirv,
-                                     needs.records && needs.moves),
-                               layout_)),
+      record_parents_(
+          context,
+          of_width(stage("swtlas_record_parents", swtlas_record_parents_spirv, needs.records && needs.moves), layout_)),
       refit_records_(
           context,
-          of_width(grouped(context,
-                           stage("swtlas_refit_records", swtlas_refit_records_spirv, needs.records && needs.moves),
-                           BUILD_GROUP),
-                   layout_)),
+          of_width(
+              grouped(context, stage("swtlas_refit_records", swtlas_refit_records_spirv, needs.records && needs.moves),
+                      BUILD_GROUP),
+              layout_)),
       link_nodes_(context, stage("swtlas_link_nodes", swtlas_link_nodes_spirv, needs.binary)),
       leaf_edges_(context, stage("swtlas_leaf_edges", swtlas_leaf_edges_spirv, needs.binary && needs.moves)),
       refit_(context, stage("swtlas_refit", swtlas_refit_spirv, needs.binary && needs.moves)),

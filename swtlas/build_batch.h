@@ -24,7 +24,8 @@ struct Builder::Batch {
 };
 
 inline Buffer build_scratch(Context& context, const BuildPlan& plan) {
-    return Buffer(context, {.name = "swtlas build scratch", .bytes = plan.scratch.bytes, .alignment = cache_line_bytes});
+    return Buffer(context,
+                  {.name = "swtlas build scratch", .bytes = plan.scratch.bytes, .alignment = cache_line_bytes});
 }
 
 }  // namespace twinray

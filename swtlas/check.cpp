@@ -77,9 +77,8 @@ class BinaryWalk {
         if (!same(b.box.lo, node.lo1) || !same(b.box.hi, node.hi1))
             violated(text("node ", index, ": box 1 is not the union of what is below"));
         area_ += half_area(a.box) + half_area(b.box);
-        return {{min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)},
-                a.leaves + b.leaves,
-                1 + std::max(a.height, b.height)};
+        return {
+            {min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)}, a.leaves + b.leaves, 1 + std::max(a.height, b.height)};
     }
 
     std::span<const BvhNode> nodes_;

@@ -29,7 +29,9 @@ Planes planes_of(const CompressedRecord& node, const CompressedRecord& half_node
             origin + cell * glm::dvec3(plane(half_node.b.y), plane(half_node.b.w), plane(half_node.c.y)), cell};
 }
 
-bool are_axes(uint axes) { return axes < 64 && (1u << axis_at(axes, 0) | 1u << axis_at(axes, 1) | 1u << axis_at(axes, 2)) == 7; }
+bool are_axes(uint axes) {
+    return axes < 64 && (1u << axis_at(axes, 0) | 1u << axis_at(axes, 1) | 1u << axis_at(axes, 2)) == 7;
+}
 
 class CompressedWalk {
   public:

@@ -28,8 +28,8 @@ struct TopDown {
         put_half(nodes, node, 1, right);
         NodeHalf both = joined_half(left, right, node);
         if (quality == BuildQuality::high && is_rotated(both))
-            both.below = make_below(leaves_in(both.below),
-                                    rotate(nodes, node, highest_below(leaves.split_after(split)), scale));
+            both.below =
+                make_below(leaves_in(both.below), rotate(nodes, node, highest_below(leaves.split_after(split)), scale));
         return both;
     }
 };

@@ -56,7 +56,7 @@ class Scene {
         std::vector<CompressedRecord> records;
         Block block = {};
     };
-    uint root_of(const Hierarchy& tree) const;            // as it is laid out
+    uint root_of(const Hierarchy& tree) const;  // as it is laid out
     std::vector<InstanceRecord> records_in_built_units();
     void build_refinement(std::span<const InstanceRecord> records);
 

@@ -57,9 +57,7 @@ void Builder::record_costs(Commands& commands, std::span<const Measured> trees, 
         const auto pass = commands.pass(node_areas_.name());
         for (std::size_t i = 0; i < trees.size(); ++i)
             node_areas_.dispatch_groups(
-                commands,
-                {trees[i].tree, trees[i].records, work[i].items,
-                 area_count(trees[i].leaf_count, layout_), 0},
+                commands, {trees[i].tree, trees[i].records, work[i].items, area_count(trees[i].leaf_count, layout_), 0},
                 work[i].item_count);
     }
     areas_.record(commands, std::move(work));

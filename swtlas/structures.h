@@ -51,8 +51,8 @@ inline TraversalSteps& traversal_steps() {
 #include "shaders/shared/traverse.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(BvhNode) == 64 && sizeof(BvhHalf) == 32 && sizeof(BvhTriangle) == 40 &&
-              sizeof(SwInstance) == 96 && sizeof(CompressedRecord) == 40);
+static_assert(sizeof(BvhNode) == 64 && sizeof(BvhHalf) == 32 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 96 &&
+              sizeof(CompressedRecord) == 40);
 static_assert(sizeof(OverlapSum) == 8);
 static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 64 && sizeof(SwScene) == 72);
 }  // namespace twinray

@@ -37,9 +37,8 @@ struct SwTlas::Batch {
 
     // Of input i, over a mesh on the device.
     BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const DeviceMesh& mesh) const {
-        return {
-            plan.first[i],  counts[i],          mesh.positions,   mesh.indices,         {inputs[i].block->address()},
-            target.nodes(), target.triangles(), target.records()};
+        return {plan.first[i],  counts[i],          mesh.positions,  mesh.indices, {inputs[i].block->address()},
+                target.nodes(), target.triangles(), target.records()};
     }
 };
 
@@ -90,9 +89,8 @@ void SwTlas::record_batches(Commands& commands, std::span<const GeometryInput> i
             scratch_share(static_cast<uint>(input.geometry->primitive_count()), options().layout, context().tuning()) +
             source_bytes(input));
     const Batches batches = cut_into_batches(shares, scratch_budget());
-    Buffer scratch(context(), {.name = "swtlas geometry scratch",
-                               .bytes = batches.scratch_bytes,
-                               .alignment = cache_line_bytes});
+    Buffer scratch(context(),
+                   {.name = "swtlas geometry scratch", .bytes = batches.scratch_bytes, .alignment = cache_line_bytes});
     for (const Batches::Run& run : batches.runs) {
         Batch batch{inputs.subspan(run.first, run.count)};
         for (const GeometryInput& input : batch.inputs)
@@ -146,11 +144,8 @@ void SwTlas::record_build(Commands& commands, const Batch& batch, const Buffer& 
             std::unique_ptr<SwBuiltGeometry> made;
             if (!input.current) made = std::make_unique<SwBuiltGeometry>(context(), *input.geometry, options().layout);
             const auto& target = made ? *made : static_cast<const SwBuiltGeometry&>(*input.current);
-            const SwGeometry block{empty_bvh(target.nodes().address),
-                                   target.triangles(),
-                                   target.records(),
-                                   input.geometry->kind,
-                                   0};
+            const SwGeometry block{empty_bvh(target.nodes().address), target.triangles(), target.records(),
+                                   input.geometry->kind, 0};
             commands.write(*input.block, block);
             trees.push_back(batch.tree(i, target, meshes[i]));
             built.push_back(std::move(made));
@@ -191,23 +186,21 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
         made = std::make_unique<SwBuiltScene>();
         made->capacity = capacity;
         made->layout = layout_scene(static_cast<uint>(capacity), options().layout);
-        made->buffer = Buffer(
-            context(), {.name = "SwTlas scene", .bytes = made->layout.bytes, .alignment = cache_line_bytes});
+        made->buffer =
+            Buffer(context(), {.name = "SwTlas scene", .bytes = made->layout.bytes, .alignment = cache_line_bytes});
         made->address = made->buffer.address();
         made->bytes = made->buffer.bytes();
         scene = made.get();
     }
-    const SwScene header{
-        empty_bvh(scene->nodes().address), scene->records(), scene->instances(), input.count,
-        input.refinement.address};
+    const SwScene header{empty_bvh(scene->nodes().address), scene->records(), scene->instances(), input.count,
+                         input.refinement.address};
     {
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
     }
     builder_.record_instances(commands, plan_build(std::span(&input.count, 1), options().layout, context().tuning()),
                               scene->tree(input.count), input.records, scene->instances());
-    const Builder::Measured measured{
-        {scene->address}, scene->records(), input.count, input.cost};
+    const Builder::Measured measured{{scene->address}, scene->records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), true);
     return made;
 }

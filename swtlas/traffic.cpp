@@ -31,15 +31,15 @@ double node_records(Layout layout) {
 
 BuildTraffic build_traffic(Layout layout, BuildQuality quality) {
     BuildTraffic sum;
-    add(sum, mesh_triangle, box);          // leaves
-    add(sum, box, word);                   // Morton codes
+    add(sum, mesh_triangle, box);  // leaves
+    add(sum, box, word);           // Morton codes
     add_sort(sum);
     add(sum, 2 * word + box, node + word);  // hierarchy: each node by its two halves, each box from below
     add(sum, node, 0);
-    if (quality == BuildQuality::high) add(sum, 2 * node, node);              // rotations look two levels down
+    if (quality == BuildQuality::high) add(sum, 2 * node, node);                // rotations look two levels down
     if (quality == BuildQuality::ploc) add(sum, 3 * box + 2 * word, 2 * word);  // clusters, some three rounds
     if (layout == Layout::bvh2) {
-        add(sum, node, word);                                        // edges
+        add(sum, node, word);  // edges
         add(sum, word + mesh_triangle, sizeof(BvhTriangle));
         return sum;
     }
@@ -52,12 +52,12 @@ BuildTraffic refit_traffic(Layout layout) {
     BuildTraffic sum;
     if (layout == Layout::bvh2) {
         add(sum, sizeof(BvhTriangle) + mesh_triangle, box + sizeof(BvhTriangle));
-        add(sum, node, word);                // edges of leaves
-        add(sum, box + word, box + word);    // each node's boxes, by its two children
+        add(sum, node, word);              // edges of leaves
+        add(sum, box + word, box + word);  // each node's boxes, by its two children
         return sum;
     }
     const double slots = 1 + node_records(layout);
-    add(sum, slots * record, slots * 2 * word);                          // parents
+    add(sum, slots * record, slots * 2 * word);  // parents
     add(sum, slots * (record + box + word) + mesh_triangle, slots * (record + box + word));
     return sum;
 }

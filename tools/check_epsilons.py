@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Checks that no decision rests on an absolute epsilon. Every small number (below 1/64) and every name like "eps" in shaders
 and sources must stand in tools/small_numbers.txt, which says what it is a factor of and where it comes from. The settings of
-the cases in cli/ are no decisions and are left out.
+the cases in validation/ are no decisions and are left out.
 Usage: check_epsilons.py [ROOT]; prints file:line of each number without a reason and exits with 1."""
 import pathlib
 import re

@@ -177,8 +177,7 @@ Value words(std::vector<std::string>& target, const std::string& metavar) {
 }
 
 template <class T>
-    requires std::is_arithmetic_v<T>
-Value number(T& target, Range<T> range) {
+requires std::is_arithmetic_v<T> Value number(T& target, Range<T> range) {
     Value value = number_value(range, [&target](const std::vector<T>& given) { target = given.front(); });
     if (contains(range, target)) value.initial = digits_of(target);
     return value;

@@ -30,8 +30,7 @@ Value words(std::vector<std::string>& target, const std::string& metavar);  // s
 
 // T: int, unsigned int, unsigned long, float or double. Whole numbers may be written as 1e6.
 template <class T>
-    requires std::is_arithmetic_v<T>
-Value number(T& target, Range<T> range = {});
+requires std::is_arithmetic_v<T> Value number(T& target, Range<T> range = {});
 template <class T>
 Value number(std::optional<T>& target, Range<T> range = {});
 // As many as there are names in the metavar: "X Y Z".

@@ -15,8 +15,14 @@ namespace {
 
 BuildRow row_of(const char* what, const AccelOptions& options, const BuildTraffic& traffic) {
     const RecordedWork work = take_recorded_work();
-    return {what,          std::string(name_of(options.layout)), std::string(name_of(options.build_quality)), work.dispatches,
-            work.barriers, work.copies,                          traffic.read,                                traffic.written};
+    return {what,
+            std::string(name_of(options.layout)),
+            std::string(name_of(options.build_quality)),
+            work.dispatches,
+            work.barriers,
+            work.copies,
+            traffic.read,
+            traffic.written};
 }
 
 }  // namespace

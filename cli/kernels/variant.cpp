@@ -28,10 +28,17 @@ struct Bit {
 
 void add_features(Words& words, uint features) {
     constexpr Bit bits[] = {
-        {FEATURE_COMPRESSED, "compressed4"}, {FEATURE_COMPRESSED8, "compressed8"}, {FEATURE_BVH2, "bvh2"},
-        {FEATURE_INSTANCES, "instances"},    {FEATURE_MASKS, "masks"},             {FEATURE_CULLING, "culling"},
-        {FEATURE_TRANSFORMS, "transforms"},  {FEATURE_BOXES, "boxes"},             {FEATURE_FILTERS, "filters"},
-        {FEATURE_REMAP, "reordered"},        {FEATURE_HITS, "hits"},
+        {FEATURE_COMPRESSED, "compressed4"},
+        {FEATURE_COMPRESSED8, "compressed8"},
+        {FEATURE_BVH2, "bvh2"},
+        {FEATURE_INSTANCES, "instances"},
+        {FEATURE_MASKS, "masks"},
+        {FEATURE_CULLING, "culling"},
+        {FEATURE_TRANSFORMS, "transforms"},
+        {FEATURE_BOXES, "boxes"},
+        {FEATURE_FILTERS, "filters"},
+        {FEATURE_REMAP, "reordered"},
+        {FEATURE_HITS, "hits"},
     };
     if (features == FEATURES_ALL) return words.add("everything");
     if (features == (FEATURES_ALL & ~FEATURE_BOXES)) return words.add("everything but boxes");

@@ -50,9 +50,7 @@ constexpr std::string_view name_of(Layout layout) {
 // Whether trees are of records (shaders/shared/compressed.h).
 constexpr bool has_records(Layout layout) { return layout != Layout::bvh2; }
 // How many children a node has at most.
-constexpr uint width_of(Layout layout) {
-    return layout == Layout::bvh2 ? 2 : layout == Layout::compressed8 ? 8 : 4;
-}
+constexpr uint width_of(Layout layout) { return layout == Layout::bvh2 ? 2 : layout == Layout::compressed8 ? 8 : 4; }
 
 // How the software accelerator builds its trees. The hits are the same, bit for bit.
 enum class BuildQuality : std::uint8_t {

@@ -30,7 +30,7 @@ struct AdoptedDevice {
     std::function<void()> unlock_queue;
     AllocatorHooks allocator;                         // none: memory comes from an allocator of twinray's own
     VkPipelineCache pipeline_cache = VK_NULL_HANDLE;  // null: one of twinray's own
-    std::optional<double> most_submission_seconds;  // as in ContextDesc
+    std::optional<double> most_submission_seconds;    // as in ContextDesc
     Log log;
 };
 

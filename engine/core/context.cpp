@@ -194,7 +194,7 @@ void Context::create_own_objects(const AllocatorHooks& allocator, const std::fil
     const bool has_hooks = allocator.allocate || allocator.free;
     allocator_ = has_hooks ? std::make_unique<Allocator>(allocator)
                            : std::make_unique<Allocator>(vk_, instance_, physical_device_, device_, api_version_,
-                                                      tuning_.memory_block_bytes);
+                                                         tuning_.memory_block_bytes);
 
     create_timeline();
     if (!pipeline_cache_) create_pipeline_cache(PipelineStore(pipeline_folder, properties.properties));

@@ -39,8 +39,10 @@ std::optional<std::uint32_t> evaluate(std::uint32_t op, std::uint32_t a, std::ui
         case 132: return a * b;
         case 134: return b == 0 ? std::nullopt : std::optional(a / b);
         case 137: return b == 0 ? std::nullopt : std::optional(a % b);
-        case 164: case 170: return a == b;  // of booleans, of numbers
-        case 165: case 171: return a != b;
+        case 164:
+        case 170: return a == b;  // of booleans, of numbers
+        case 165:
+        case 171: return a != b;
         case 166: return a | b;
         case 167: return a & b;
         case 168: return !a;
@@ -113,7 +115,8 @@ class Freezer {
         known_[id] = value;
         if (booleans_.contains(type))
             frozen_.insert(frozen_.end(), {3u << 16 | (value ? ConstantTrue : ConstantFalse), type, id});
-        else frozen_.insert(frozen_.end(), {4u << 16 | Constant, type, id, value});
+        else
+            frozen_.insert(frozen_.end(), {4u << 16 | Constant, type, id, value});
     }
 
     void fold(Words instruction) {
@@ -125,8 +128,10 @@ class Freezer {
             operands[i] = found->second;
         }
         const std::optional<std::uint32_t> value = evaluate(instruction[3], operands[0], operands[1], operands[2]);
-        if (value) define(instruction, *value);
-        else keep(instruction);
+        if (value)
+            define(instruction, *value);
+        else
+            keep(instruction);
     }
 
     std::map<std::uint32_t, std::uint32_t> given_;     // by SpecId

@@ -30,7 +30,7 @@ struct KernelTuning {
     std::uint32_t rays_per_group = 0, groups_per_thread = 0;
     bool has_stack_in_registers = false;  // of a traversal; false: it lies in shared memory
     bool has_wide_loads = false;          // of records by 64-bit words, in batches without a trace program
-    bool compares_numbers = false;  // a minimum that skips NaN is less by a comparison than by its instruction
+    bool compares_numbers = false;        // a minimum that skips NaN is less by a comparison than by its instruction
 
     // Builds: leaves that an invocation of the hierarchy begins with, and those of a subtree that a group collapses
     // whole, at most.

@@ -29,8 +29,7 @@ std::vector<SpecializationConstant> constants_of(const Context& context, const K
     return constants;
 }
 
-VkShaderModule new_module(Context& context, const KernelDesc& desc,
-                          std::span<const SpecializationConstant> constants) {
+VkShaderModule new_module(Context& context, const KernelDesc& desc, std::span<const SpecializationConstant> constants) {
     if (context.tuning().folds_constants) return create_shader_module(context, desc.spirv, desc.name);
     return create_shader_module(context, freeze_constants(desc.spirv, constants), desc.name);
 }

@@ -51,9 +51,9 @@ RadixSort::RadixSort(Context& context, uint threads)
 // Room for the counters of as many groups as groups_of() says, or more, and for what they keep. Subadditive, as shares
 // of a batch are added up.
 std::uint64_t RadixSort::counter_bytes(std::uint64_t count, uint threads) {
-    const std::uint64_t blocks = threads ? std::min(divide_up(count, SORT_CPU_BLOCK),
-                                                        divide_up(count, CPU_GROUP * SORT_LONGEST_RUN) + threads)
-                                             : divide_up(count, SORT_GPU_BLOCK);
+    const std::uint64_t blocks =
+        threads ? std::min(divide_up(count, SORT_CPU_BLOCK), divide_up(count, CPU_GROUP * SORT_LONGEST_RUN) + threads)
+                : divide_up(count, SORT_GPU_BLOCK);
     const std::uint64_t most_kept = threads ? divide_up(count, sizeof(uint)) * sizeof(uint) : 0;
     return (blocks << digit_bits(threads)) * sizeof(uint) + most_kept;
 }

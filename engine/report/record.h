@@ -22,8 +22,7 @@ struct Value {
     Value(std::string value) : is(std::move(value)) {}
     Value(const char* value) : is(std::string(value)) {}
     template <class Number>
-        requires std::is_arithmetic_v<Number>
-    Value(Number value) : is(static_cast<double>(value)) {}
+    requires std::is_arithmetic_v<Number> Value(Number value) : is(static_cast<double>(value)) {}
 
     bool operator==(const Value&) const = default;
     std::string text() const;  // "true", "0.5", "kept"

@@ -120,7 +120,7 @@ struct Rig {
         Place place;
     };
     std::vector<Hidden> hidden;
-    dvec3 origin = dvec3(0);                        // of the scene, which poses are relative to
+    dvec3 origin = dvec3(0);  // of the scene, which poses are relative to
 };
 
 // Of each node of a rig.

@@ -178,7 +178,8 @@ class RaySortTest : public test::VulkanTest {
         const auto count = static_cast<uint>(rays.size());
         const Buffer input(context(), {.name = "rays", .bytes = count * sizeof(Ray)});
         const Buffer written(context(), {.name = "count", .bytes = sizeof(uint)});
-        const Buffer scratch(context(), {.name = "scratch", .bytes = RaySort::scratch_bytes(count, context().tuning())});
+        const Buffer scratch(context(),
+                             {.name = "scratch", .bytes = RaySort::scratch_bytes(count, context().tuning())});
         Commands commands(context(), "ray sort");
         {
             const auto pass = commands.pass("rays");

@@ -134,7 +134,7 @@ TEST_P(CollisionFinderTest, AnyAnswersForTheHandlesThatItWasAskedAbout) {
 TEST_P(CollisionFinderTest, BoxesAreClosed) {
     const float one_up = std::nextafter(1.0f, 2.0f);
     accel().push(unit_cube, std::vector{placed(vec3(0)), placed(vec3(1, 0, 0)), placed(vec3(0, one_up, 0)),
-                                   placed(vec3(-1, -1, -1))});
+                                        placed(vec3(-1, -1, -1))});
     EXPECT_EQ(finder().instance_pairs(accel()), (std::vector<InstancePair>{{0, 1}, {0, 3}}));
 }
 

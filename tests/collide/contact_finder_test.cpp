@@ -72,8 +72,7 @@ std::vector<TriangleContact> brute_force(const std::vector<MeshView>& meshes,
 
 Transform turned(std::mt19937& random, float spread) {
     Transform m = Transform::scaling(vec3(test::uniform(random, 0.5f, 1.5f)));
-    for (vec4& row : m.rows)
-        row += vec4(test::uniform3(random, -0.5f, 0.5f), test::uniform(random, -spread, spread));
+    for (vec4& row : m.rows) row += vec4(test::uniform3(random, -0.5f, 0.5f), test::uniform(random, -spread, spread));
     return m;
 }
 

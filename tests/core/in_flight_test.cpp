@@ -23,9 +23,10 @@ TEST(InFlight, LargePassesComeFirstAndTheRestIsCounted) {
     InFlight work;
     work.submitted(1, "a", {{"copy", 0}, {"small", 1}, {"large", 9}, {"middle", 5}});
     for (std::uint64_t value = 2; value < 6; ++value) work.submitted(value, "b", {{"copy", 0}});
-    EXPECT_EQ(work.sentence(),
-              "; in flight: 'a' (4 passes: 'large' of 9 groups, 'middle' of 5 groups, 'small' of 1 groups, ...), 'b' (1 "
-              "pass: 'copy'), 'b' (1 pass: 'copy'), and 2 more");
+    EXPECT_EQ(
+        work.sentence(),
+        "; in flight: 'a' (4 passes: 'large' of 9 groups, 'middle' of 5 groups, 'small' of 1 groups, ...), 'b' (1 "
+        "pass: 'copy'), 'b' (1 pass: 'copy'), and 2 more");
 }
 
 }  // namespace

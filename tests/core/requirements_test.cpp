@@ -54,9 +54,10 @@ TEST(Requirements, AreToldInSentences) {
     for (const Requirement& requirement : requirements_of(facts))
         if (!requirement.is_met) lacking.push_back(requirement.sentence());
     ASSERT_EQ(lacking.size(), 2u);
-    EXPECT_EQ(lacking[0],
-              "twinray needs scalarBlockLayout because structs have the same bytes on the host and on the GPU; this device "
-              "lacks it");
+    EXPECT_EQ(
+        lacking[0],
+        "twinray needs scalarBlockLayout because structs have the same bytes on the host and on the GPU; this device "
+        "lacks it");
     EXPECT_EQ(lacking[1],
               "HwTlas needs VK_KHR_acceleration_structure because the driver builds its structures; this device lacks "
               "it, SwTlas works without");

@@ -119,8 +119,7 @@ std::size_t point_count() {
 
 Transform turned(std::mt19937& random, float spread) {
     Transform m = Transform::scaling(vec3(test::uniform(random, 0.5f, 1.5f)));
-    for (vec4& row : m.rows)
-        row += vec4(test::uniform3(random, -0.5f, 0.5f), test::uniform(random, -spread, spread));
+    for (vec4& row : m.rows) row += vec4(test::uniform3(random, -0.5f, 0.5f), test::uniform(random, -spread, spread));
     return m;
 }
 
@@ -164,8 +163,7 @@ TEST_F(PointFinderTest, OnNeedlesAndBesideThem) {
         for (int i = 0; i < 200; ++i) {
             const double u = test::uniform(random, 0, 1), v = test::uniform(random, 0, 1) * (1 - u);
             points.push_back(t.a + u * (t.b - t.a) + v * (t.c - t.a));
-            if (i % 2 == 0)
-                points.back() += dvec3(test::uniform3(random, -1, 1)) * std::ldexp(1.0, -exponent - i % 8);
+            if (i % 2 == 0) points.back() += dvec3(test::uniform3(random, -1, 1)) * std::ldexp(1.0, -exponent - i % 8);
         }
         EXPECT_LE(errors_of(points).of_double, 4) << "height of 2^-" << exponent;
     }

@@ -118,8 +118,10 @@ TEST(Furnace, TheFitsBoundTheAlbedoOfAMirror) {
             const glm::dvec2 exact = mirror_albedo_by_quadrature(double{cosine}, double{alpha});
             const glm::dvec2 found(mirror_albedo(mirror(alpha), direction(cosine)));
             for (const int part : {0, 1}) {
-                EXPECT_GE(found[part], exact[part] - (part == 0 ? 0.012 : 0.005)) << alpha << ' ' << cosine << ' ' << part;
-                EXPECT_LE(found[part], exact[part] + (part == 0 ? 0.15 : 0.035)) << alpha << ' ' << cosine << ' ' << part;
+                EXPECT_GE(found[part], exact[part] - (part == 0 ? 0.012 : 0.005))
+                    << alpha << ' ' << cosine << ' ' << part;
+                EXPECT_LE(found[part], exact[part] + (part == 0 ? 0.15 : 0.035))
+                    << alpha << ' ' << cosine << ' ' << part;
             }
         }
 }

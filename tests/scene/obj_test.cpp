@@ -125,8 +125,7 @@ TEST(Obj, TextureCoordinatesMayHaveOneNumberOrThree) {
 }
 
 TEST(Obj, ANormalThatIsNoNumberIsNone) {
-    const Scene scene =
-        load(CORNERS + "vn 0 0 1\nvn nan nan nan\nvn -1.#IND 0 0\nf 1//1 2//2 3//3\nf 1//1 3 4//-1\n");
+    const Scene scene = load(CORNERS + "vn 0 0 1\nvn nan nan nan\nvn -1.#IND 0 0\nf 1//1 2//2 3//3\nf 1//1 3 4//-1\n");
     const Mesh& mesh = scene.meshes[0];
     expect_warnings(scene, {"mesh 'a': 3 of 4 normals are 0, NaN or infinite; triangles show their own there"});
     EXPECT_EQ(mesh.normals, (std::vector<vec3>{{0, 0, 1}, vec3(0), vec3(0), vec3(0)}));

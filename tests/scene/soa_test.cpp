@@ -36,7 +36,8 @@ TEST(HostSoa, GetsWhatWasSetAndRefusesOtherIndices) {
         EXPECT_EQ(soa_get(view, i, &TestQueue::t), 0.0f);
     }
     EXPECT_EQ(what_is_thrown_by([&] { soa_get(view, 10, &TestQueue::t); }), "soa_get: index 10 of 10 items");
-    EXPECT_EQ(what_is_thrown_by([&] { soa_set(view, ~0u, &TestQueue::t, 1); }), "soa_set: index 4294967295 of 10 items");
+    EXPECT_EQ(what_is_thrown_by([&] { soa_set(view, ~0u, &TestQueue::t, 1); }),
+              "soa_set: index 4294967295 of 10 items");
     HostQueue longer = similar_soa(queue, 20);
     EXPECT_EQ(longer.count(), 20u);
     EXPECT_EQ(soa_get(longer.view(), 19, &TestQueue::pixel), 0u);
@@ -107,7 +108,8 @@ TEST_F(SoaTest, KernelsForDebuggingTellOfIndicesOutOfRange) {
     EXPECT_EQ(what_is_thrown_by([&] { from.check_faults(); }),
               "from: kernels met 4 indices out of range, the first is 150 of 100 items");
     run(from, to, 100, 0, true);
-    EXPECT_NE(what_is_thrown_by([&] { to.check_faults(); }).find("to: kernels met 40 indices out of range"), std::string::npos);
+    EXPECT_NE(what_is_thrown_by([&] { to.check_faults(); }).find("to: kernels met 40 indices out of range"),
+              std::string::npos);
 }
 
 TEST_F(SoaTest, UploadsBeyondTheLastItemAreRefused) {
@@ -117,7 +119,8 @@ TEST_F(SoaTest, UploadsBeyondTheLastItemAreRefused) {
     const auto pass = commands.pass("upload");
     EXPECT_EQ(what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), 3); }),
               "queue: upload: 8 items from 3 exceed its 10");
-    EXPECT_NE(what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), ~0u); }), "");
+    EXPECT_NE(what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), ~0u); }),
+              "");
 }
 
 TEST_F(SoaTest, AnEmptyOneIsAllowed) {

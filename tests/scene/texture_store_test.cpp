@@ -218,7 +218,8 @@ TEST_P(Textures, WrongUseIsRefused) {
     store().sync();
     EXPECT_EQ(red_of(texture), 9);
     if (!store().has_images()) return;
-    EXPECT_NE(test::what_is_thrown_by([&] { store().push(gray_image(1, 100'000, 9)); }).find("at most"), std::string::npos);
+    EXPECT_NE(test::what_is_thrown_by([&] { store().push(gray_image(1, 100'000, 9)); }).find("at most"),
+              std::string::npos);
 }
 
 TEST_P(Textures, TheSameSizeIsUpdatedInPlaceAndAnotherIsReplaced) {
@@ -365,7 +366,8 @@ TEST_P(Textures, KernelsAndStoresMustFit) {
     const Kernel<test::TextureTestArgs> without(context(),
                                                 {.name = "test_texture", .spirv = test_texture_buffers_spirv});
     Commands commands(context(), "unfit");
-    EXPECT_EQ(test::what_is_thrown_by([&] { kernel.dispatch(commands, {}, 1); }), "kernel 'test_texture': dispatched without images");
+    EXPECT_EQ(test::what_is_thrown_by([&] { kernel.dispatch(commands, {}, 1); }),
+              "kernel 'test_texture': dispatched without images");
     if (!store().has_images()) return;
     EXPECT_EQ(test::what_is_thrown_by([&] { without.dispatch(commands, {}, 1, store().images()); }),
               "kernel 'test_texture': it takes no images");

@@ -121,8 +121,8 @@ TEST(Bvh2, EveryEdgeLeadsBackToTheRoot) {
     const Geometry geometry(mesh);
     const std::vector<LeafBox> boxes = reference::leaves_triangles(geometry.positions, geometry.triangles);
     const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
-    const reference::Hierarchy tree = reference::linked(
-        reference::hierarchy(boxes, codes, reference::sort(codes), true, BuildQuality::high));
+    const reference::Hierarchy tree =
+        reference::linked(reference::hierarchy(boxes, codes, reference::sort(codes), true, BuildQuality::high));
     const auto nodes = Ref<BvhNode>::to(tree.nodes.data());
     for (uint node = 0; node < tree.nodes.size(); ++node)
         for (const uint side : {0u, 1u}) {

@@ -10,7 +10,8 @@
 
 namespace twinray::test {
 
-// Whether tests must fail rather than skip without this: TWINRAY_REQUIRE is a list of `vulkan`, `ray_tracing`, `embree`.
+// Whether tests must fail rather than skip without this: TWINRAY_REQUIRE is a list of `vulkan`, `ray_tracing`,
+// `embree`.
 bool is_required(const char* what);
 
 // Leaves a test that needs what this device lacks; under TWINRAY_REQUIRE with that name it fails.

@@ -70,9 +70,18 @@ class Reader {
             case MemberDecorate:
                 if (words[3] == decoration_offset) offsets_[{words[1], words[2]}] = words[4];
                 return;
-            case TypeBool: case TypeInt: case TypeFloat: case TypeVector: case TypeMatrix: case TypeArray:
-            case TypeStruct: case TypePointer: defined_[words[1]] = words; return;
-            case Constant: case ConstantComposite: case SpecConstant: case SpecConstantComposite:
+            case TypeBool:
+            case TypeInt:
+            case TypeFloat:
+            case TypeVector:
+            case TypeMatrix:
+            case TypeArray:
+            case TypeStruct:
+            case TypePointer: defined_[words[1]] = words; return;
+            case Constant:
+            case ConstantComposite:
+            case SpecConstant:
+            case SpecConstantComposite:
             case SpecConstantOp: defined_[words[2]] = words; return;
             case Variable: variables_.push_back(words); return;
             default: return;
@@ -88,8 +97,10 @@ class Reader {
     void add(Words variable) {
         if (variable[3] != workgroup && variable[3] != push_constant) return;
         const Id type = definition(variable[1])[3];
-        if (variable[3] == workgroup) needs_.shared_bytes += round_up(size_of(type), 16);
-        else needs_.push_constant_bytes = std::max(needs_.push_constant_bytes, size_of(type));
+        if (variable[3] == workgroup)
+            needs_.shared_bytes += round_up(size_of(type), 16);
+        else
+            needs_.push_constant_bytes = std::max(needs_.push_constant_bytes, size_of(type));
     }
 
     static std::uint64_t round_up(std::uint64_t bytes, std::uint64_t to) { return (bytes + to - 1) / to * to; }
@@ -100,8 +111,10 @@ class Reader {
         const Words words = definition(type);
         switch (op_of(words)) {
             case TypeBool: return 4;
-            case TypeInt: case TypeFloat: return words[2] / 8;
-            case TypeVector: case TypeMatrix: return words[3] * size_of(words[2]);
+            case TypeInt:
+            case TypeFloat: return words[2] / 8;
+            case TypeVector:
+            case TypeMatrix: return words[3] * size_of(words[2]);
             case TypeArray: return value_of(words[3]) * stride_of(words[2]);
             case TypePointer: return 8;
             default: return size_of_struct(words);

@@ -11,11 +11,11 @@
 namespace twinray {
 
 struct SpirvNeeds {
-    std::uint32_t version = 0;              // 0x00010500 is 1.5
-    std::set<std::uint32_t> capabilities;   // those of subgroup operations among them
+    std::uint32_t version = 0;             // 0x00010500 is 1.5
+    std::set<std::uint32_t> capabilities;  // those of subgroup operations among them
     std::set<std::string> extensions;
-    std::uint64_t shared_bytes = 0;         // a vec3 as 16 bytes, which a driver may give it
-    std::uint64_t group_invocations = 0;    // 0: no compute shader
+    std::uint64_t shared_bytes = 0;       // a vec3 as 16 bytes, which a driver may give it
+    std::uint64_t group_invocations = 0;  // 0: no compute shader
     std::uint64_t push_constant_bytes = 0;
 };
 

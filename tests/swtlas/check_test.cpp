@@ -31,8 +31,7 @@ SoupTree some_tree() {
 
 TEST(CompressedCheck, NamesWhatIsWrong) {
     const auto& [mesh, boxes, tree] = some_tree();
-    const std::vector<CompressedRecord> good =
-        reference::records_of_triangles(tree, mesh.positions, mesh.triangles, 4);
+    const std::vector<CompressedRecord> good = reference::records_of_triangles(tree, mesh.positions, mesh.triangles, 4);
     const Bvh bvh{tree.box.lo, tree.box.hi, {}, 0, 20};
     EXPECT_TRUE(check_compressed(bvh, good, boxes).violations.empty());
     EXPECT_FALSE(check_compressed({tree.box.lo, tree.box.hi, {}, 1, 20}, good, boxes).violations.empty());
