@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Where the boxes' centres lie along a Hilbert curve: the lower 30 bits of the boxes in the order given, then the higher of
-// those in the order that sorting by the former made.
+// SPDX-License-Identifier: MIT Where the boxes' centres lie along a Hilbert curve: the lower 30 bits of the boxes in
+// the order given, then the higher of those in the order that sorting by the former made.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"

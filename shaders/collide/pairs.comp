@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
-// The leaves that overlap each query. Within one tree a query begins right of its own leaf, so that each pair is met once.
+// SPDX-License-Identifier: MIT The leaves that overlap each query. Within one tree a query begins right of its own
+// leaf, so that each pair is met once.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"

@@ -33,7 +33,8 @@ void main()
     TriangleName name;
     name.corners = vertices;
     if (!is_null(placed.vertex_ids))
-        name.corners = uvec3(AT(placed.vertex_ids, vertices.x), AT(placed.vertex_ids, vertices.y), AT(placed.vertex_ids, vertices.z));
+        name.corners = uvec3(AT(placed.vertex_ids, vertices.x), AT(placed.vertex_ids, vertices.y),
+                             AT(placed.vertex_ids, vertices.z));
     name.placed = index;
     AT(args.corners, i) = corners;
     AT(args.names, i) = name;

@@ -31,7 +31,8 @@ void main()
     if (object_normal == vec3(0.0))
     {
         vec3 a = AT(instance.vertices, corners.x).position;
-        object_normal = cross(AT(instance.vertices, corners.y).position - a, AT(instance.vertices, corners.z).position - a);
+        object_normal = cross(AT(instance.vertices, corners.y).position - a,
+                              AT(instance.vertices, corners.z).position - a);
     }
     gl_Position = projected(transform_point(to_world_of(instance), vertex.position));
     normal = normalize(transposed_times(to_object_of(instance), object_normal));

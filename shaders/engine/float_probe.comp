@@ -29,6 +29,7 @@ void main()
     answer.error_free = product_error(c.a, c.b, c.product);
     answer.minimum = min(c.a, c.b);
     answer.maximum = max(c.a, c.b);
-    answer.comparisons = (c.a < c.b ? 1u : 0u) | (c.a > c.b ? 2u : 0u) | (c.a == c.b ? 4u : 0u) | (!(c.a > c.b) ? 8u : 0u);
+    answer.comparisons = (c.a < c.b ? 1u : 0u) | (c.a > c.b ? 2u : 0u) | (c.a == c.b ? 4u : 0u) |
+        (!(c.a > c.b) ? 8u : 0u);
     AT(args.answers, i) = answer;
 }

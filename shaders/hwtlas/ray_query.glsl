@@ -36,7 +36,8 @@ void consider_box(HwScene scene, rayQueryEXT query, Ray ray, TraceOptions option
     vec2 at = vec2(0.0f);
     if (!intersect_primitive(candidate, ray_local, t, at)) return;
     if (!(t > ray_local.t_min && t < ray_local.t_max)) return;
-    bool is_filtered = (options.features & FEATURE_FILTERS) != 0u && !rayQueryGetIntersectionCandidateAABBOpaqueEXT(query);
+    bool is_filtered = (options.features & FEATURE_FILTERS) != 0u &&
+        !rayQueryGetIntersectionCandidateAABBOpaqueEXT(query);
     if (is_filtered && !accept_hit(candidate, t_of_given(t, options), at)) return;
     rayQueryGenerateIntersectionEXT(query, t);
     uv = at;
@@ -59,8 +60,9 @@ Hit trace_float32(Address accel, Ray ray, TraceOptions options)
     else
         while (rayQueryProceedEXT(query))
         {
-            bool is_triangle = (options.features & FEATURE_BOXES) == 0u ||
-                               rayQueryGetIntersectionTypeEXT(query, false) == gl_RayQueryCandidateIntersectionTriangleEXT;
+            bool is_triangle =
+                (options.features & FEATURE_BOXES) == 0u ||
+                rayQueryGetIntersectionTypeEXT(query, false) == gl_RayQueryCandidateIntersectionTriangleEXT;
             if (is_triangle) consider_triangle(scene, query, options);
             else consider_box(scene, query, ray, options, uv);
         }

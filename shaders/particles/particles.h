@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Particles in a box: how they move, and the colour that their speed gives them. Read by kernels and by their serial twins.
+// SPDX-License-Identifier: MIT Particles in a box: how they move, and the colour that their speed gives them. Read by
+// kernels and by their serial twins.
 #ifndef TWINRAY_PARTICLES_PARTICLES_H
 #define TWINRAY_PARTICLES_PARTICLES_H
 #include "shaders/shared/instance.h"
@@ -70,7 +70,8 @@ struct Motion
     float velocity;
 };
 
-// A step along an axis between walls at -1 and 1, which throw a particle back. However fast it is, it stays between them.
+// A step along an axis between walls at -1 and 1, which throw a particle back. However fast it is, it stays between
+// them.
 FUNC Motion moved(Motion motion, float radius, float acceleration, float seconds, float bounce)
 {
     PRECISE float velocity = motion.velocity + acceleration * seconds;

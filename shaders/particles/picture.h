@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: MIT
-// What is seen: a lamp, walls and particles. A frame traces the rays of the camera, shades what they met, traces a shadow
-// ray for each, and adds up.
+// SPDX-License-Identifier: MIT What is seen: a lamp, walls and particles. A frame traces the rays of the camera, shades
+// what they met, traces a shadow ray for each, and adds up.
 #ifndef TWINRAY_PARTICLES_PICTURE_H
 #define TWINRAY_PARTICLES_PICTURE_H
 #include "shaders/particles/particles.h"

@@ -39,7 +39,8 @@ vec3 reflected(Surface surface, vec3 normal, vec3 to_eye, vec3 to_lamp)
     float cos_middle = max(dot(normal, middle), 0.0);
     float a2 = pow(surface.roughness, 4.0);
     float spread = cos_middle * cos_middle * (a2 - 1.0) + 1.0;
-    float masking = cos_lamp * sqrt(cos_eye * cos_eye * (1.0 - a2) + a2) + cos_eye * sqrt(cos_lamp * cos_lamp * (1.0 - a2) + a2);
+    float masking = cos_lamp * sqrt(cos_eye * cos_eye * (1.0 - a2) + a2) +
+        cos_eye * sqrt(cos_lamp * cos_lamp * (1.0 - a2) + a2);
     vec3 mirror = mix(vec3(0.04), surface.color, surface.metallic);
     vec3 fresnel = mirror + (1.0 - mirror) * pow(1.0 - max(dot(to_eye, middle), 0.0), 5.0);
     vec3 lobe = fresnel * (a2 / (PI * spread * spread) * 0.5 / max(masking, 0.01));
@@ -61,7 +62,8 @@ void main()
     MeshData mesh = scene.walls;
     if (is_ball) mesh = scene.ball;
     Placement placement = placement_of(AT(scene.instances, hit.instance_index));
-    SurfacePoint point = surface_point(placement, corners_of(mesh.positions, mesh.indices, hit.primitive_index), vec2(hit.u, hit.v));
+    SurfacePoint point = surface_point(placement, corners_of(mesh.positions, mesh.indices, hit.primitive_index),
+                                       vec2(hit.u, hit.v));
     vec3 normal = is_ball ? normalize(point.position - offset_of(placement.to_world)) : point.normal;
 
     Surface surface = Surface(vec3(1.0, 0.0, 1.0), 0.0, 1.0);

@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: MIT
-// KHR_materials_clearcoat: a dielectric film of index 1.5 with a normal and a roughness of its own. What lies below is dimmed
-// by 1 - coat * Fresnel at the normal, as the extension says, of wo or wi, whichever is less, so that it stays reciprocal.
-// Needs bsdf_record.h.
+// SPDX-License-Identifier: MIT KHR_materials_clearcoat: a dielectric film of index 1.5 with a normal and a roughness of
+// its own. What lies below is dimmed by 1 - coat * Fresnel at the normal, as the extension says, of wo or wi, whichever
+// is less, so that it stays reciprocal. Needs bsdf_record.h.
 #ifndef TWINRAY_PATH_TRACER_BSDF_COAT_H
 #define TWINRAY_PATH_TRACER_BSDF_COAT_H
 

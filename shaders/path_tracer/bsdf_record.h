@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: MIT
-// What a surface scatters like, at one point: a base, which is opaque or glass, and the layers over it. Directions are in a
-// local frame with z along the shading normal and wo.z > 0. Needs microfacet.h, LAYER_ of scene.h, and LAYERS, those of
-// them that the scene has.
+// SPDX-License-Identifier: MIT What a surface scatters like, at one point: a base, which is opaque or glass, and the
+// layers over it. Directions are in a local frame with z along the shading normal and wo.z > 0. Needs microfacet.h,
+// LAYER_ of scene.h, and LAYERS, those of them that the scene has.
 #ifndef TWINRAY_PATH_TRACER_BSDF_RECORD_H
 #define TWINRAY_PATH_TRACER_BSDF_RECORD_H
 
@@ -30,7 +29,8 @@ struct BsdfSample
     float pdf;   // by solid angle; 0: a mirror direction, which no other strategy finds
 };
 
-// A direction that a part has chosen. Either it is a mirror direction, or none, with its weight, or of what evaluate() tells.
+// A direction that a part has chosen. Either it is a mirror direction, or none, with its weight, or of what evaluate()
+// tells.
 struct BsdfChoice
 {
     vec3 wi;
@@ -125,7 +125,8 @@ FUNC float facet_lambda(Bsdf bsdf, vec3 w)
     return ggx_lambda(w, bsdf.alpha);
 }
 
-// With the density of the microfacet normals that wo sees (Heitz, "Sampling the GGX Distribution of Visible Normals", 2018).
+// With the density of the microfacet normals that wo sees (Heitz, "Sampling the GGX Distribution of Visible Normals",
+// 2018).
 FUNC vec3 sample_facet(Bsdf bsdf, vec3 wo, vec2 u)
 {
     if (!has_layer(bsdf, LAYER_ANISOTROPY)) return sample_visible_normal(wo, bsdf.alpha, u);
@@ -141,7 +142,8 @@ FUNC float facet_pdf(Bsdf bsdf, vec3 wo, vec3 h)
 // What a random number that chose the second of two things is among those that do.
 FUNC float remapped(float lobe, float chance) { return clamp((lobe - chance) / (1.0f - chance), 0.0f, 0.99999994f); }
 
-// Chance of sampling the first of two things of these albedos; neither is starved, for the shares at other angles differ.
+// Chance of sampling the first of two things of these albedos; neither is starved, for the shares at other angles
+// differ.
 FUNC float chance_of(float first, float second)
 {
     if (first <= 0.0f) return 0.0f;

@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: MIT
-// KHR_materials_sheen: fibres that stand up from a surface. Distribution and shadowing by Estevez and Kulla, "Production
-// Friendly Microfacet Sheen BRDF", 2017. Their lobe reflects more than it gets at low roughness and grazing angles;
-// where it does, it is scaled down on both sides, so that it stays reciprocal. Needs bsdf_record.h and sheen_table.h.
+// SPDX-License-Identifier: MIT KHR_materials_sheen: fibres that stand up from a surface. Distribution and shadowing by
+// Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF", 2017. Their lobe reflects more than it gets at low
+// roughness and grazing angles; where it does, it is scaled down on both sides, so that it stays reciprocal. Needs
+// bsdf_record.h and sheen_table.h.
 #ifndef TWINRAY_PATH_TRACER_BSDF_SHEEN_H
 #define TWINRAY_PATH_TRACER_BSDF_SHEEN_H
 

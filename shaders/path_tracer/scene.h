@@ -24,7 +24,8 @@ const uint PT_HAS_VOLUME = 13u;
 const uint PT_HAS_MEDIA = 14u;       // some material of the scene bounds a volume, in which a path may be anywhere
 const uint PT_HAS_COLORS = 15u;      // vertices have colors
 const uint PT_HAS_SECOND_UVS = 16u;  // some texture takes the second texture coordinates
-const uint PT_HAS_PANES = 17u;       // some material of the scene is a smooth wall without thickness: shadow rays pass it
+// some material of the scene is a smooth wall without thickness: shadow rays pass it
+const uint PT_HAS_PANES = 17u;
 
 const uint STRATEGY_MIS = 0u;    // both of the following, weighted by the power heuristic
 const uint STRATEGY_LIGHTS = 1u; // sample lights only

@@ -8,8 +8,9 @@
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };
 
-// Where shadow rays to a point of a light end, of their way: 16 roundings before it. The point is clear of its triangle,
-// but its way from here is rounded, and a ray that went all of it could meet a light that is small for its distance.
+// Where shadow rays to a point of a light end, of their way: 16 roundings before it. The point is clear of its
+// triangle, but its way from here is rounded, and a ray that went all of it could meet a light that is small for its
+// distance.
 const float SHADOW_END = 1.0 - 9.5367431640625e-07;
 const uint ROULETTE_DEPTH = 3u; // scatterings that no path is spared
 
@@ -49,8 +50,8 @@ void add_emission(Vertex vertex, Ray ray, Hit hit, uint flags)
     add(vertex.path.pixel, vertex.path.throughput * radiance * found_weight(vertex.path.pdf, other));
 }
 
-// The same ray behind a surface that is transparent here, or a pane. Shadow rays pass these, too, so that the light that the ray
-// finds still counts as found by its last scattering.
+// The same ray behind a surface that is transparent here, or a pane. Shadow rays pass these, too, so that the light
+// that the ray finds still counts as found by its last scattering.
 void pass(Vertex vertex, Ray ray)
 {
     vertex.path.progress = with_surface_met(vertex.path.progress);
@@ -128,8 +129,8 @@ void scatter(Vertex vertex, Ray met_by)
     if (path.progress >> 16u >= args.max_depth) return;
     if (path.progress >> 16u >= ROULETTE_DEPTH)
     {
-        // Never less than the throughput: what survives would weigh more and more, and where little is absorbed the mean
-        // would be that of few paths of great weight. Paths that lose nothing end at max_depth.
+        // Never less than the throughput: what survives would weigh more and more, and where little is absorbed the
+        // mean would be that of few paths of great weight. Paths that lose nothing end at max_depth.
         float survival = min(largest(path.throughput), 1.0);
         if (lobe_and_roulette.y >= survival) return;
         path.throughput /= survival;

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: MIT
-// Adds what shadow rays carry where nothing blocks them. With transparent surfaces or panes in the scene a shadow ray looks
-// for its closest hit, is dimmed by it and goes on in the next round, until nothing is left of it or it is through.
+// SPDX-License-Identifier: MIT Adds what shadow rays carry where nothing blocks them. With transparent surfaces or
+// panes in the scene a shadow ray looks for its closest hit, is dimmed by it and goes on in the next round, until
+// nothing is left of it or it is through.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/path_tracer/includes.glsl"
@@ -28,7 +28,8 @@ void pass(Ray ray, vec3 contribution, uint pixel, Hit hit)
     Surface surface = surface_of(scene, ray, hit);
     uint flags = AT(scene.materials, surface.material).flags;
     bool is_transparent = (flags & (MATERIAL_MASKED | MATERIAL_BLENDED)) != 0u;
-    bool is_glass = HAS_PANES && (flags & MATERIAL_UNLIT) == 0u && AT(scene.materials, surface.material).transmission > 0.0;
+    bool is_glass = HAS_PANES && (flags & MATERIAL_UNLIT) == 0u &&
+        AT(scene.materials, surface.material).transmission > 0.0;
     if (!is_transparent && !is_glass) return;
     vec4 color = base_color(scene, surface, flags);
     float opaque = opacity(flags, AT(scene.materials, surface.material).alpha_cutoff, color.a);

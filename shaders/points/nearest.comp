@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: MIT
-// The triangle nearest to each point; of several, the one of lowest number. Near children first; bit k of `waiting` says
-// that the sibling of the node k levels up is still to be searched.
+// SPDX-License-Identifier: MIT The triangle nearest to each point; of several, the one of lowest number. Near children
+// first; bit k of `waiting` says that the sibling of the node k levels up is still to be searched.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require

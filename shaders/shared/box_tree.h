@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: MIT
-// A tree of boxes for finding those that overlap: the complete binary tree over the boxes in Hilbert order. Node 1 is the
-// root, nodes 2 n and 2 n + 1 are the children of n, and leaf i is node leaf_begin + i, leaf_begin being the least power of
-// two that is not below the count. No links, no stack: what comes next follows from a node's number.
+// SPDX-License-Identifier: MIT A tree of boxes for finding those that overlap: the complete binary tree over the boxes
+// in Hilbert order. Node 1 is the root, nodes 2 n and 2 n + 1 are the children of n, and leaf i is node leaf_begin + i,
+// leaf_begin being the least power of two that is not below the count. No links, no stack: what comes next follows from
+// a node's number.
 #ifndef TWINRAY_SHARED_BOX_TREE_H
 #define TWINRAY_SHARED_BOX_TREE_H
 #include "shaders/shared/list.h"

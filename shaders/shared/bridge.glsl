@@ -78,5 +78,7 @@ REFERENCE(Uvec3s, , uvec3 items[], 4)
 #define global_index() (group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x)
 // The same after dealing groups out to `hands` (shaders/shared/workgroup.h), for kernels whose groups take unequal
 // times.
-#define dealt_index(hands) (dealt_group(group_index(), gl_NumWorkGroups.x * gl_NumWorkGroups.y, hands) * gl_WorkGroupSize.x + gl_LocalInvocationID.x)
+#define dealt_index(hands) \
+    (dealt_group(group_index(), gl_NumWorkGroups.x * gl_NumWorkGroups.y, hands) * gl_WorkGroupSize.x + \
+     gl_LocalInvocationID.x)
 #endif

@@ -30,8 +30,14 @@ BUFFER_OF(LeafBox, 8);
 
 // Without NaN, and by comparisons: for what min and max make of NaN, drivers on CPUs take up to eight operations a
 // number.
-FUNC vec3 lesser_of(vec3 a, vec3 b) { return vec3(a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z); }
-FUNC vec3 greater_of(vec3 a, vec3 b) { return vec3(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z); }
+FUNC vec3 lesser_of(vec3 a, vec3 b)
+{
+    return vec3(a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z);
+}
+FUNC vec3 greater_of(vec3 a, vec3 b)
+{
+    return vec3(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z);
+}
 FUNC LeafBox around_both(LeafBox a, LeafBox b)
 {
     LeafBox box;

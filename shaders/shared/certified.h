@@ -1,11 +1,13 @@
-// SPDX-License-Identifier: MIT
-// Level certified: which triangle a ray meets, and in which order, is what float64 says of the ray, the corners and the
-// transform as they were given. float32 only leaves out what it can prove to be no hit, within the bounds of its errors:
+// SPDX-License-Identifier: MIT Level certified: which triangle a ray meets, and in which order, is what float64 says of
+// the ray, the corners and the transform as they were given. float32 only leaves out what it can prove to be no hit,
+// within the bounds of its errors:
 //  - Boxes are padded by what transforming the ray may move it, so that no box of a hit is passed by.
-//  - A triangle is refused where two edges see the ray on opposite sides by more than their error bounds (a floating-point
+//  - A triangle is refused where two edges see the ray on opposite sides by more than their error bounds (a
+//    floating-point
 //    filter: Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997).
 // All else is decided in float64: the watertight test of intersect.h, in world space, with the same rule for ties. Hits
-// keep 48 bits of t, so their order is right where the exact t differ by more than about 2^-46 of what they are made of.
+// keep 48 bits of t, so their order is right where the exact t differ by more than about 2^-46 of what they are made
+// of.
 #ifndef TWINRAY_SHARED_CERTIFIED_H
 #define TWINRAY_SHARED_CERTIFIED_H
 #include "shaders/shared/bvh.h"
@@ -17,17 +19,17 @@ struct CertifiedRay
 {
     vec3 origin;
     vec3 direction;
-    // How far it may run from the exact one, in any coordinate anywhere in the geometry, and a corner of it be sheared to
-    // the wrong place.
+    // How far it may run from the exact one, in any coordinate anywhere in the geometry, and a corner of it be sheared
+    // to the wrong place.
     float error;
 };
 
-// Float64 maps the ray, so that what is left is rounding: with T the instance's place, W the inverse and r its residual, the
-// exact origin o' = W (o - T) and direction d' differ by r o' and r d', by less than 2^-48 |W| (|o| + |T|) (W T has been
-// rounded, and may have cancelled) and 2^-48 |W| |d|, and by a rounding to float32
-// (2^-24). A point of the geometry is at most (|o'| + extent) / |d'| away. The shear along the longest axis doubles what is
-// off, and rounds at most 12 times; another factor of 2 is slack for the roundings in this bound.
-// `is_moved`: the ray is one of advanced(), whose origin is off by a rounding itself.
+// Float64 maps the ray, so that what is left is rounding: with T the instance's place, W the inverse and r its
+// residual, the exact origin o' = W (o - T) and direction d' differ by r o' and r d', by less than 2^-48 |W| (|o| +
+// |T|) (W T has been rounded, and may have cancelled) and 2^-48 |W| |d|, and by a rounding to float32 (2^-24). A point
+// of the geometry is at most (|o'| + extent) / |d'| away. The shear along the longest axis doubles what is off, and
+// rounds at most 12 times; another factor of 2 is slack for the roundings in this bound. `is_moved`: the ray is one of
+// advanced(), whose origin is off by a rounding itself.
 FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray, bool is_moved)
 {
     const float UNKNOWN = 1e37f;                    // larger than any mesh in built units: nothing is refused
@@ -98,8 +100,8 @@ FUNC dvec3 sheared_double(dvec3 corner, dvec3 d, uint axis)
     return dvec3(x, y, p.z);
 }
 
-// Whether the given ray meets the triangle in world space within its interval, and where: t of the traced ray, which begins
-// `advance` behind the given one, as t + t_low.
+// Whether the given ray meets the triangle in world space within its interval, and where: t of the traced ray, which
+// begins `advance` behind the given one, as t + t_low.
 FUNC bool intersect_in_world(uint instance_index, uint primitive_index, TraceOptions options, INOUT(TriangleHit) hit)
 {
     GivenMesh mesh = load_given_mesh(options.instances, instance_index);

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: MIT
-// From a binary tree to nodes of four or eight children, `width`. Where the records of a subtree go follows from the number of its leaves
-// and of those before it, so that the result does not depend on the order in which invocations run.
+// SPDX-License-Identifier: MIT From a binary tree to nodes of four or eight children, `width`. Where the records of a
+// subtree go follows from the number of its leaves and of those before it, so that the result does not depend on the
+// order in which invocations run.
 //
 // A node takes the place of two levels of the binary tree wherever that must be for no path to have more than
 // DEEPEST_RECORDS of them, and where it need not be, of those with the largest boxes. With eight children small

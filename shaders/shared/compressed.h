@@ -40,7 +40,8 @@ FUNC bool is_wide_node(CompressedRecord record)
     return (record.a.w & (LEAF_BIT | WIDE_BIT)) == WIDE_BIT && children_in(record) != 0u;
 }
 FUNC bool is_instance(CompressedRecord leaf) { return (leaf.a.w & INSTANCE_BIT) != 0u; }
-FUNC uint index_in(CompressedRecord leaf) { return leaf.a.w & ~(LEAF_BIT | INSTANCE_BIT); } // of the primitive or instance
+// of the primitive or instance
+FUNC uint index_in(CompressedRecord leaf) { return leaf.a.w & ~(LEAF_BIT | INSTANCE_BIT); }
 
 #ifdef TWINRAY_WIDE_LOADS // of modules of their own, see KernelTuning::has_wide_loads
 REFERENCE(RecordWords, , uint64_t items[], 8)

@@ -154,8 +154,10 @@ FUNC void store_node(REF(CompressedRecord) records, uint index, NodeRecords node
 FUNC CompressedRecord encode_primitive(BvhTriangle t)
 {
     CompressedRecord record;
-    record.a = uvec4(floatBitsToUint(t.v0.x), floatBitsToUint(t.v0.y), floatBitsToUint(t.v0.z), LEAF_BIT | t.primitive_index);
-    record.b = uvec4(floatBitsToUint(t.v1.x), floatBitsToUint(t.v1.y), floatBitsToUint(t.v1.z), floatBitsToUint(t.v2.x));
+    record.a = uvec4(floatBitsToUint(t.v0.x), floatBitsToUint(t.v0.y), floatBitsToUint(t.v0.z),
+                     LEAF_BIT | t.primitive_index);
+    record.b = uvec4(floatBitsToUint(t.v1.x), floatBitsToUint(t.v1.y), floatBitsToUint(t.v1.z),
+                     floatBitsToUint(t.v2.x));
     record.c = uvec2(floatBitsToUint(t.v2.y), floatBitsToUint(t.v2.z));
     return record;
 }

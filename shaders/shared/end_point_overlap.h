@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: MIT
-// The end-point overlap of a tree: over all boxes but the root's, the area of the triangles within that do not lie below it,
-// over the area of all. It is how many boxes a ray enters in vain near where it ends, and tells trees of equal surface-area
-// cost apart (Aila, Karras, Laine, "On Quality Metrics of Bounding Volume Hierarchies", 2013; all costs are 1).
+// SPDX-License-Identifier: MIT The end-point overlap of a tree: over all boxes but the root's, the area of the
+// triangles within that do not lie below it, over the area of all. It is how many boxes a ray enters in vain near where
+// it ends, and tells trees of equal surface-area cost apart (Aila, Karras, Laine, "On Quality Metrics of Bounding
+// Volume Hierarchies", 2013; all costs are 1).
 #ifndef TWINRAY_SHARED_END_POINT_OVERLAP_H
 #define TWINRAY_SHARED_END_POINT_OVERLAP_H
 #include "shaders/shared/node_boxes.h"
@@ -88,11 +88,12 @@ FUNC float area_within(BvhTriangle triangle, LeafBox box, float unit)
 
 FUNC bool is_apart(LeafBox a, LeafBox b)
 {
-    return a.lo.x > b.hi.x || a.lo.y > b.hi.y || a.lo.z > b.hi.z || b.lo.x > a.hi.x || b.lo.y > a.hi.y || b.lo.z > a.hi.z;
+    return a.lo.x > b.hi.x || a.lo.y > b.hi.y || a.lo.z > b.hi.z || b.lo.x > a.hi.x || b.lo.y > a.hi.y ||
+        b.lo.z > a.hi.z;
 }
 
-// Of one triangle, whose leaf is `leaf`: child of a node in layout bvh2, else its record. Boxes above the leaf hold all of the
-// triangle: they are counted with the others, and taken off once it is known how many they are.
+// Of one triangle, whose leaf is `leaf`: child of a node in layout bvh2, else its record. Boxes above the leaf hold all
+// of the triangle: they are counted with the others, and taken off once it is known how many they are.
 FUNC OverlapSum overlap_of(SwGeometry geometry, BvhTriangle triangle, uint leaf)
 {
     OverlapSum sum;

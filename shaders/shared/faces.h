@@ -27,7 +27,10 @@ struct FaceTable
     REF(Face) faces;
 };
 
-FUNC uint face_of(FaceTable table, Hit hit) { return AT(table.instances, hit.instance_index).first + hit.primitive_index; }
+FUNC uint face_of(FaceTable table, Hit hit)
+{
+    return AT(table.instances, hit.instance_index).first + hit.primitive_index;
+}
 
 FUNC Rows to_world_of(FacesOfInstance instance)
 {

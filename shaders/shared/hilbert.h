@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: MIT
-// The order of points along a Hilbert curve through the 2^20 x 2^20 x 2^20 cells of a cube, 60 bits. Unlike a Morton curve
-// it never jumps, so that each stretch of it lies in a small box (Kamel and Faloutsos, "Hilbert R-tree", 1994).
+// SPDX-License-Identifier: MIT The order of points along a Hilbert curve through the 2^20 x 2^20 x 2^20 cells of a
+// cube, 60 bits. Unlike a Morton curve it never jumps, so that each stretch of it lies in a small box (Kamel and
+// Faloutsos, "Hilbert R-tree", 1994).
 #ifndef TWINRAY_SHARED_HILBERT_H
 #define TWINRAY_SHARED_HILBERT_H
 #include "shaders/shared/morton.h"
@@ -30,7 +30,10 @@ FUNC uvec3 hilbert_words(uvec3 cell)
     return uvec3(x.x ^ flips, x.y ^ flips, x.z ^ flips);
 }
 
-FUNC uint interleaved(uvec3 words) { return spread_bits(words.x) << 2u | spread_bits(words.y) << 1u | spread_bits(words.z); }
+FUNC uint interleaved(uvec3 words)
+{
+    return spread_bits(words.x) << 2u | spread_bits(words.y) << 1u | spread_bits(words.z);
+}
 
 // The 30 higher or lower bits of the index of the cell that holds a point of the cube from `lo` with sides `size`.
 FUNC uint hilbert_code(vec3 point, vec3 lo, float size, bool is_higher)

@@ -47,8 +47,8 @@ FUNC Corners64 from_vertex(Corners64 t, uvec3 ids, uvec3 others)
     return turned;
 }
 
-// The class of neighbours: PAIR_SEPARATE where they have no more in common than the vertices that they share, and the edge
-// between two of them.
+// The class of neighbours: PAIR_SEPARATE where they have no more in common than the vertices that they share, and the
+// edge between two of them.
 FUNC uint class_of_neighbours(Corners64 t, uvec3 t_ids, Corners64 u, uvec3 u_ids)
 {
     uint found = class_of(t, u);

@@ -1,8 +1,7 @@
-// SPDX-License-Identifier: MIT
-// Signs of volumes and areas in float64, where they are certain. The bounds are those of the first stage of Shewchuk,
-// "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997: (7 + 56 u) u and (3 + 16 u) u
-// of the magnitudes added up, u = 2^-53, here rounded up to 8 u and 4 u. They hold while nothing over- or underflows, as
-// among corners of world_corner(): see triangle_pair.h.
+// SPDX-License-Identifier: MIT Signs of volumes and areas in float64, where they are certain. The bounds are those of
+// the first stage of Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
+// 1997: (7 + 56 u) u and (3 + 16 u) u of the magnitudes added up, u = 2^-53, here rounded up to 8 u and 4 u. They hold
+// while nothing over- or underflows, as among corners of world_corner(): see triangle_pair.h.
 #ifndef TWINRAY_SHARED_ORIENT_H
 #define TWINRAY_SHARED_ORIENT_H
 
@@ -30,7 +29,8 @@ FUNC int filtered_volume_sign(dvec3 a, dvec3 b, dvec3 c, dvec3 d)
     PRECISE double ab = ad.x * bd.y;
     PRECISE double ba = bd.x * ad.y;
     PRECISE double volume = ad.z * (bc - cb) + bd.z * (ca - ac) + cd.z * (ab - ba);
-    PRECISE double size = (abs(bc) + abs(cb)) * abs(ad.z) + (abs(ca) + abs(ac)) * abs(bd.z) + (abs(ab) + abs(ba)) * abs(cd.z);
+    PRECISE double size = (abs(bc) + abs(cb)) * abs(ad.z) + (abs(ca) + abs(ac)) * abs(bd.z) +
+        (abs(ab) + abs(ba)) * abs(cd.z);
     PRECISE double bound = BOUND * size;
     return certain_sign(volume, bound);
 }

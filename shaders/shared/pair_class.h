@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: MIT
-// How two triangles lie to each other, as sets of points: closed, and a triangle without area is the segment or the point
-// that it covers. The class does not depend on the order of the triangles or of their corners.
+// SPDX-License-Identifier: MIT How two triangles lie to each other, as sets of points: closed, and a triangle without
+// area is the segment or the point that it covers. The class does not depend on the order of the triangles or of their
+// corners.
 #ifndef TWINRAY_SHARED_PAIR_CLASS_H
 #define TWINRAY_SHARED_PAIR_CLASS_H
 #include "shaders/shared/box_tree.h"

@@ -4,7 +4,8 @@
 #define TWINRAY_SHARED_PAIR_RAYS_H
 #include "shaders/shared/view_factors.h"
 
-// Rays between two faces: samples `first` to `first + SAMPLES_OF_CHUNK - 1` of each replicate, in the order of RayChunk.
+// Rays between two faces: samples `first` to `first + SAMPLES_OF_CHUNK - 1` of each replicate, in the order of
+// RayChunk.
 struct PairChunk
 {
     uint a;
@@ -36,7 +37,8 @@ struct PairWeightsArgs
 
 struct PairRay
 {
-    Ray ray;      // from a spawn point to the other: it meets what is between; ends before it begins where `weight` is 0
+    // from a spawn point to the other: it meets what is between; ends before it begins where `weight` is 0
+    Ray ray;
     float weight; // cos cos (distance / r)^2; 0 where a side that does not count is seen, half of it where both do
 };
 

@@ -51,7 +51,10 @@ FUNC bool is_along_an_axis(vec4 row)
     return uint(row.x != 0.0f) + uint(row.y != 0.0f) + uint(row.z != 0.0f) < 2u;
 }
 // Then the box around a geometry's box is that around the geometry.
-FUNC bool keeps_axes(Rows map) { return is_along_an_axis(map.r0) && is_along_an_axis(map.r1) && is_along_an_axis(map.r2); }
+FUNC bool keeps_axes(Rows map)
+{
+    return is_along_an_axis(map.r0) && is_along_an_axis(map.r1) && is_along_an_axis(map.r2);
+}
 
 FUNC bool is_within(LeafBox box, LeafBox outer)
 {

@@ -88,9 +88,9 @@ FUNC TreeBox tree_box_of(dvec3 p, uint item)
     return box;
 }
 
-// Not above the squared distance of any point of the box from the query, which is scaled, in units of 1 / scale. Scaling
-// comes first, so that no difference overflows; what it flushes is below what counts. Each rounding is below 2^-24 of what
-// it rounds. The largest float stands for all that is larger.
+// Not above the squared distance of any point of the box from the query, which is scaled, in units of 1 / scale.
+// Scaling comes first, so that no difference overflows; what it flushes is below what counts. Each rounding is below
+// 2^-24 of what it rounds. The largest float stands for all that is larger.
 FUNC float squared_distance_below(PointBox p, TreeBox box, float scale)
 {
     vec3 gap = max(max(box.lo * scale - p.hi, p.lo - box.hi * scale), vec3(0.0f));

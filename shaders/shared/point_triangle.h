@@ -20,8 +20,8 @@ FUNC bool comes_first(dvec3 p, dvec3 q)
     return p.z < q.z;
 }
 
-// The nearest point of the segment from `from` to `to`, which is at uv_from and uv_to. From either end, and of all triangles
-// that have the edge or the corner, it is the same bits.
+// The nearest point of the segment from `from` to `to`, which is at uv_from and uv_to. From either end, and of all
+// triangles that have the edge or the corner, it is the same bits.
 FUNC TrianglePoint nearest_on_edge(dvec3 p, dvec3 from, dvec3 to, dvec2 uv_from, dvec2 uv_to)
 {
     bool is_turned = comes_first(to, from);
@@ -29,7 +29,8 @@ FUNC TrianglePoint nearest_on_edge(dvec3 p, dvec3 from, dvec3 to, dvec2 uv_from,
     dvec3 last = is_turned ? from : to;
     dvec3 edge = last - first;
     double squared = squared_length(edge);
-    double along = squared > double(0.0f) ? clamp(dot(p - first, edge) / squared, double(0.0f), double(1.0f)) : double(0.0f);
+    double along = double(0.0f);
+    if (squared > double(0.0f)) along = clamp(dot(p - first, edge) / squared, double(0.0f), double(1.0f));
     TrianglePoint found;
     found.offset = along == double(1.0f) ? last - p : (first - p) + along * edge;
     found.squared = squared_length(found.offset);
@@ -43,15 +44,18 @@ FUNC TrianglePoint nearer_of(TrianglePoint a, TrianglePoint b)
     return a;
 }
 
-FUNC bool is_within_triangle(dvec2 uv) { return uv.x > double(0.0f) && uv.y > double(0.0f) && uv.x + uv.y < double(1.0f); }
+FUNC bool is_within_triangle(dvec2 uv)
+{
+    return uv.x > double(0.0f) && uv.y > double(0.0f) && uv.x + uv.y < double(1.0f);
+}
 
 const uint MOST_CORRECTIONS = 8u;
 
-// The nearest of the edges' points and, where it lies within, the foot of the perpendicular. Barycentric coordinates of a
-// needle's are off by 2^-53 over its height, for sides of about 1; they are solved for again in what is left within the
-// plane, which gains as many digits each time. A foot within that of an edge, or in a triangle so thin that nothing is
-// gained, is as near to that edge as float64 can tell. So the distance is off by at most some 2^-50 of the largest of the
-// triangle's sides and the distance, whatever its shape.
+// The nearest of the edges' points and, where it lies within, the foot of the perpendicular. Barycentric coordinates of
+// a needle's are off by 2^-53 over its height, for sides of about 1; they are solved for again in what is left within
+// the plane, which gains as many digits each time. A foot within that of an edge, or in a triangle so thin that nothing
+// is gained, is as near to that edge as float64 can tell. So the distance is off by at most some 2^-50 of the largest
+// of the triangle's sides and the distance, whatever its shape.
 FUNC TrianglePoint nearest_on_triangle(dvec3 p, Corners64 t)
 {
     const double ONE = double(1.0f);

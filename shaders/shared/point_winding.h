@@ -1,14 +1,15 @@
-// SPDX-License-Identifier: MIT
-// How a closed surface winds around a point: the signed number of triangles that the line from the point along +x
-// crosses, those counted up of which the front is met last. The line is moved infinitesimally, by e in y and e^2 in z, so
-// that it meets no edge and no corner ("Simulation of Simplicity", Edelsbrunner and Muecke 1990): nothing is counted
-// twice or lost. Whoever includes this has declared volume_sign and area_sign: see triangle_pair.h.
+// SPDX-License-Identifier: MIT How a closed surface winds around a point: the signed number of triangles that the line
+// from the point along +x crosses, those counted up of which the front is met last. The line is moved infinitesimally,
+// by e in y and e^2 in z, so that it meets no edge and no corner ("Simulation of Simplicity", Edelsbrunner and Muecke
+// 1990): nothing is counted twice or lost. Whoever includes this has declared volume_sign and area_sign: see
+// triangle_pair.h.
 #ifndef TWINRAY_SHARED_POINT_WINDING_H
 #define TWINRAY_SHARED_POINT_WINDING_H
 #include "shaders/shared/orient.h"
 #include "shaders/shared/pair_class.h"
 
-// On which side of the edge from a to b, seen against +x, the moved line passes: 1: left. 0: the edge is seen as a point.
+// On which side of the edge from a to b, seen against +x, the moved line passes: 1: left. 0: the edge is seen as a
+// point.
 FUNC int moved_side(dvec3 a, dvec3 b, dvec3 p)
 {
     int side = area_sign(a, b, p, 0u);

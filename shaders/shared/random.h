@@ -4,8 +4,9 @@
 #ifndef TWINRAY_SHARED_RANDOM_H
 #define TWINRAY_SHARED_RANDOM_H
 
-// pcg4d of Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020. Its low bits are correlated by up to 0.2 between
-// neighbouring keys, and Owen's scrambling makes them the first of a number: the last step mixes the high ones in.
+// pcg4d of Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020. Its low bits are correlated by up to 0.2
+// between neighbouring keys, and Owen's scrambling makes them the first of a number: the last step mixes the high ones
+// in.
 FUNC uvec4 random_words(uvec4 key)
 {
     uvec4 v = key * 1664525u + 1013904223u;

@@ -41,8 +41,8 @@ struct BoxRay
 
 FUNC float reciprocal(float d)
 {
-    // 1/0 is written out: Vulkan leaves the division undefined. Of either zero it is positive, as compilers may turn one
-    // into the other, and the order of children depends on it.
+    // 1/0 is written out: Vulkan leaves the division undefined. Of either zero it is positive, as compilers may turn
+    // one into the other, and the order of children depends on it.
     return d == 0.0f ? uintBitsToFloat(0x7f800000u) : 1.0f / d;
 }
 
@@ -77,7 +77,8 @@ FUNC BoxRay box_ray(RaySpace space)
     PRECISE vec3 near_inverse = inverse * NEAR_FACTOR;
     PRECISE vec3 far_inverse = inverse * FAR_FACTOR;
     // Of the near inverse, whose signs tests of boxes ask for.
-    vec3 shift = vec3(near_inverse.x < 0.0f ? -pad : pad, near_inverse.y < 0.0f ? -pad : pad, near_inverse.z < 0.0f ? -pad : pad);
+    vec3 shift = vec3(near_inverse.x < 0.0f ? -pad : pad, near_inverse.y < 0.0f ? -pad : pad,
+                      near_inverse.z < 0.0f ? -pad : pad);
     PRECISE vec3 near_origin = space.origin + shift;
     PRECISE vec3 far_origin = space.origin - shift;
     BoxRay ray;
@@ -128,7 +129,8 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
 
 // How far aside of a ray a corner may be sheared, rounded: 8 of 2^-24 of its distance along an axis. A triangle is hit
 // where its sheared corners say so, and its box must be, too, however near to the ray's origin that is.
-FUNC float corner_pad(vec3 origin, float extent) { return (largest_entry(origin) + extent) * 9.5367431640625e-07f; } // 2^-20
+// 2^-20
+FUNC float corner_pad(vec3 origin, float extent) { return (largest_entry(origin) + extent) * 9.5367431640625e-07f; }
 
 // The interval in which a ray is inside of all three slabs, begun with its own, which a NaN (of products out of range)
 // leaves as it was.

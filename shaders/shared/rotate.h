@@ -53,15 +53,19 @@ FUNC Rotated rotate_node(NodeHalves nodes, uint node, NodeHalf a, NodeHalf b, ui
     {
         b0 = get_half(nodes, b.child, 0u);
         b1 = get_half(nodes, b.child, 1u);
-        keep_better(best, move, area_b - area_around(a, b1, scale), 0u, max(height_in(b0.below), height_above(a, b1)) < limit);
-        keep_better(best, move, area_b - area_around(a, b0, scale), 1u, max(height_in(b1.below), height_above(a, b0)) < limit);
+        keep_better(best, move, area_b - area_around(a, b1, scale), 0u,
+                    max(height_in(b0.below), height_above(a, b1)) < limit);
+        keep_better(best, move, area_b - area_around(a, b0, scale), 1u,
+                    max(height_in(b1.below), height_above(a, b0)) < limit);
     }
     if (is_inner(a))
     {
         a0 = get_half(nodes, a.child, 0u);
         a1 = get_half(nodes, a.child, 1u);
-        keep_better(best, move, area_a - area_around(b, a1, scale), 2u, max(height_in(a0.below), height_above(b, a1)) < limit);
-        keep_better(best, move, area_a - area_around(b, a0, scale), 3u, max(height_in(a1.below), height_above(b, a0)) < limit);
+        keep_better(best, move, area_a - area_around(b, a1, scale), 2u,
+                    max(height_in(a0.below), height_above(b, a1)) < limit);
+        keep_better(best, move, area_a - area_around(b, a0, scale), 3u,
+                    max(height_in(a1.below), height_above(b, a0)) < limit);
     }
     if (is_inner(a) && is_inner(b))
     {
@@ -107,7 +111,8 @@ struct Rotation
     uint turns;  // in which the node itself was rotated
     uint next;   // the node to rotate next; NOTHING: all are
     uint levels; // that changes of the next one are followed down
-    uint waiting[ROTATE_LEVELS + 1u]; // node | levels << 28, the next first; NOTHING: no more. Indexed by constants alone
+    // node | levels << 28, the next first; NOTHING: no more. Indexed by constants alone
+    uint waiting[ROTATE_LEVELS + 1u];
 };
 
 FUNC Rotation no_rotation()

@@ -5,7 +5,8 @@
 #define TWINRAY_SHARED_SORT_H
 #include "shaders/shared/workgroup.h"
 
-// A group has counters for each digit and thread: on a GPU many threads, on a CPU many digits, so that there are fewer passes.
+// A group has counters for each digit and thread: on a GPU many threads, on a CPU many digits, so that there are fewer
+// passes.
 const uint DIGIT_BITS_CONSTANT = 0u;
 const uint PLACES_CONSTANT = 3u;
 const uint SORT_GPU_GROUP = 64u;
@@ -24,7 +25,8 @@ struct SortArgs
     Uints keys_out;
     Uints values_out;
     Uints counts;
-    Uints kept; // [block][digit][thread]: where the thread's items begin among those of the block's digit; 0: counted again
+    // [block][digit][thread]: where the thread's items begin among those of the block's digit; 0: counted again
+    Uints kept;
     uint count;
     uint shift;
     uint block_count;

@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: MIT
-// Points on triangles from which rays start without meeting their own triangle, and without an absolute epsilon: a bound
-// of all rounding errors between the triangle and the ray as an accelerator sees it, in the manner of Bitterli et al.,
-// "Self-Intersection Avoidance", NVIDIA 2023.
+// SPDX-License-Identifier: MIT Points on triangles from which rays start without meeting their own triangle, and
+// without an absolute epsilon: a bound of all rounding errors between the triangle and the ray as an accelerator sees
+// it, in the manner of Bitterli et al., "Self-Intersection Avoidance", NVIDIA 2023.
 //
 //     SurfacePoint point = surface_point(placement, corners, vec2(hit.u, hit.v));
 //     ray.origin = spawn_position(point, dot(ray.direction, point.normal) > 0.0);
@@ -11,8 +10,10 @@
 //  - in object space the roundings of the point (u of itself, 3 u of the way from the first corner), and of the
 //    triangle test (TEST_ERROR of the triangle's extent);
 //  - in world space those of the map (3 u of |M| |p|, u of the sum) and of adding the offset (u);
-//  - those of an accelerator's way back (INVERSE_ERROR). It inverts M itself: W is wrong by some u |W| |M| |W|, which is
-//    |W| for scales and translations and more where an inverse is hard. The largest of 1.5 * 10^6 placements of condition
+//  - those of an accelerator's way back (INVERSE_ERROR). It inverts M itself: W is wrong by some u |W| |M| |W|, which
+//    is
+//    |W| for scales and translations and more where an inverse is hard. The largest of 1.5 * 10^6 placements of
+//    condition
 //    up to 10^3, in units of u |W| |M| |W| (|P| + |t|): 3.2 for twinray's inverse, 4.1 for plain float32 cofactors.
 //    tests/shared/spawn_test.cpp holds the whole bound against both.
 // It holds for meshes of 2^-60 to 2^60 under instances that keep world coordinates within 2^-100 to 2^100. It cannot
@@ -44,7 +45,8 @@ struct Corners
 struct SurfacePoint
 {
     vec3 position;      // world; up to `offset` beside the triangle, as an accelerator sees it
-    vec3 normal;        // geometric, unit, world; of the side on which the corners turn counter-clockwise in object space
+    // geometric, unit, world; of the side on which the corners turn counter-clockwise in object space
+    vec3 normal;
     float offset;       // world: how far along the normal a ray must start to be clear of the triangle
     float feature;      // world: the least height of the triangle. offset / feature is the price: what lies within
                         // `offset` of the triangle is skipped, and near 1 float32 cannot resolve the triangle
@@ -128,7 +130,8 @@ FUNC SurfacePoint surface_point(Placement placement, Corners corners, vec2 uv)
     vec3 normal = transposed_times(placement.to_object, point.normal_object);
     float stretch = scaled_length(normal);
     point.normal = normal / stretch;
-    point.feature = least_height(transform_vector(placement.to_world, edge1), transform_vector(placement.to_world, edge2));
+    point.feature = least_height(transform_vector(placement.to_world, edge1),
+                                 transform_vector(placement.to_world, edge2));
 
     float extent = largest_entry(abs(edge1) + abs(edge2) + abs(edge1 - edge2));
     vec3 error_world = (magnitude(placement.to_world, position_object) * 3.0f + abs(point.position) * 2.0f) * HALF_ULP;

@@ -28,7 +28,10 @@ FUNC float row_point(vec4 row, vec3 p)
     return sum;
 }
 
-FUNC vec3 transform_vector(Rows m, vec3 v) { return vec3(row_vector(m.r0, v), row_vector(m.r1, v), row_vector(m.r2, v)); }
+FUNC vec3 transform_vector(Rows m, vec3 v)
+{
+    return vec3(row_vector(m.r0, v), row_vector(m.r1, v), row_vector(m.r2, v));
+}
 FUNC vec3 transform_point(Rows m, vec3 p) { return vec3(row_point(m.r0, p), row_point(m.r1, p), row_point(m.r2, p)); }
 
 // The largest power of two that is not above a positive float (0 for denormals).
@@ -67,9 +70,9 @@ FUNC float greater_of(float a, float b) { return a > b ? a : b; }
 FUNC float largest_entry(vec3 v) { return greater_of(abs(v.x), greater_of(abs(v.y), abs(v.z))); }
 FUNC float largest_coordinate(vec3 lo, vec3 hi) { return greater_of(largest_entry(lo), largest_entry(hi)); }
 
-// The inverse of an invertible map: cofactors over the determinant, both in doubled precision, so that each entry of the
-// linear part is right to a few roundings of itself for condition numbers up to about 10^7. Rows are scaled by powers
-// of two before, which is exact, so that products neither overflow nor vanish.
+// The inverse of an invertible map: cofactors over the determinant, both in doubled precision, so that each entry of
+// the linear part is right to a few roundings of itself for condition numbers up to about 10^7. Rows are scaled by
+// powers of two before, which is exact, so that products neither overflow nor vanish.
 FUNC Rows inverse_of(Rows m)
 {
     vec3 a0 = vec3(m.r0.x, m.r0.y, m.r0.z);

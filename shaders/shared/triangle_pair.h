@@ -58,7 +58,8 @@ FUNC ivec3 sides_of(Corners64 plane, Corners64 t)
                  volume_sign(plane.a, plane.b, plane.c, t.c));
 }
 
-// In one plane -----------------------------------------------------------------------------------------------------------
+// In one plane
+// ---------------------------------------------------------------------------------------------------------------------
 
 // Whether the line from p to q has t on one side and what has the sign `own` not on that side.
 struct Separation
@@ -111,7 +112,8 @@ FUNC uint coplanar_class(Hull t, Hull u, uint axis)
     return has_area ? PAIR_COPLANAR_OVERLAP : PAIR_COPLANAR_TOUCH;
 }
 
-// Two triangles that are not in one plane --------------------------------------------------------------------------------
+// Two triangles that are not in one plane
+// --------------------------------------------------------------------------------
 
 // A line through two corners of a triangle that meets the plane of the other one, upwards.
 struct Cut
@@ -170,7 +172,8 @@ FUNC Cuts cuts_of(Corners64 t, ivec3 s)
     return cuts;
 }
 
-// On the line where the planes meet, on which side of q p is: one sign for all cuts p of one triangle and q of the other.
+// On the line where the planes meet, on which side of q p is: one sign for all cuts p of one triangle and q of the
+// other.
 FUNC int order_of(Cut p, Cut q) { return volume_sign(p.from, p.to, q.from, q.to); }
 
 FUNC bool is_touch_of_corner(int order, Cut p, Cut q) { return order == 0 && (p.is_corner || q.is_corner); }
@@ -203,7 +206,8 @@ FUNC uint triangles_class(Hull t, Hull u)
     return cuts_class(cuts_of(t.at, of_t), cuts_of(u.at, of_u));
 }
 
-// Segments and points ----------------------------------------------------------------------------------------------------
+// Segments and points
+// ---------------------------------------------------------------------------------------------------------------------
 
 FUNC uint segment_triangle_class(Hull segment, Hull t)
 {
@@ -214,7 +218,8 @@ FUNC uint segment_triangle_class(Hull segment, Hull t)
     if (p_side == q_side && (p_side == 1 || p_side == -1)) return PAIR_SEPARATE;
     if (p_side == UNKNOWN_SIGN || q_side == UNKNOWN_SIGN) return PAIR_UNDECIDED;
     if (p_side == 0 && q_side == 0) return coplanar_class(segment, t, t.axis);
-    ivec3 s = ivec3(volume_sign(p, q, t.at.a, t.at.b), volume_sign(p, q, t.at.b, t.at.c), volume_sign(p, q, t.at.c, t.at.a));
+    ivec3 s = ivec3(volume_sign(p, q, t.at.a, t.at.b), volume_sign(p, q, t.at.b, t.at.c),
+                    volume_sign(p, q, t.at.c, t.at.a));
     if (has_sign(s, 1) && has_sign(s, -1)) return PAIR_SEPARATE;
     if (!is_known(s)) return PAIR_UNDECIDED;
     if (p_side == 0 || q_side == 0) return PAIR_VERTEX_TOUCH;
@@ -262,7 +267,7 @@ FUNC uint hulls_class(Hull t, Hull u)
     return segments_class(t, u);
 }
 
-// ------------------------------------------------------------------------------------------------------------------------
+// ---------------------------------------------------------------------------------------------------------------------
 
 FUNC uint class_of(Corners64 t, Corners64 u)
 {

@@ -155,7 +155,8 @@ FUNC bool intersect_box(BvhTriangle box, InInstance inside, RaySpace space, floa
 FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, float t_min, float t_best,
                          TraceOptions options, INOUT(TriangleHit) hit)
 {
-    if ((options.features & FEATURE_BOXES) != 0u && inside.has_boxes) return intersect_box(leaf, inside, space, t_min, t_best, options, hit);
+    if ((options.features & FEATURE_BOXES) != 0u && inside.has_boxes)
+        return intersect_box(leaf, inside, space, t_min, t_best, options, hit);
     bool is_met = false;
 #ifdef TWINRAY_REFINED
     if (options.level == LEVEL_CERTIFIED)
@@ -249,9 +250,11 @@ FUNC bool find_in_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, Trac
     bool is_first = false;
     if (intersect_leaf(leaf, inside, space, search.t_min, search.t_best, options, hit))
     {
-        is_first = comes_after(hit, search.t_min, options) && comes_before(hit, inside.index, leaf.primitive_index, search, options);
+        is_first = comes_after(hit, search.t_min, options) &&
+            comes_before(hit, inside.index, leaf.primitive_index, search, options);
         if ((options.features & FEATURE_FILTERS) != 0u && is_first && inside.is_filtered)
-            is_first = accept_hit(candidate_of(inside, leaf.primitive_index, options), t_of_given(hit.t, options), vec2(hit.u, hit.v));
+            is_first = accept_hit(candidate_of(inside, leaf.primitive_index, options), t_of_given(hit.t, options),
+                                  vec2(hit.u, hit.v));
         if (is_first)
         {
             search.t_best = hit.t;

@@ -10,8 +10,8 @@ const uint GROUPS_PER_ROW = 32768u;
 const uint GROUP_SIZE_CONSTANT = 1u;
 // Of kernels that write nodes of records: how many children these have at most.
 const uint NODE_WIDTH_CONSTANT = 2u;
-// On a CPU, of sorts; of others at least, up to the lanes of its vectors: more would take turns between barriers, and leave threads
-// without a group.
+// On a CPU, of sorts; of others at least, up to the lanes of its vectors: more would take turns between barriers, and
+// leave threads without a group.
 const uint CPU_GROUP = 8u;
 
 // Whose work group `index` of `count` does. Where each thread gets one stretch of a dispatch (KernelTuning::threads),

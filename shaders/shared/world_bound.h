@@ -70,7 +70,8 @@ FUNC float reach_below(vec4 row, vec3 lo, vec3 hi)
 FUNC GeometryBox box_in_world(GeometryBox box, Rows m)
 {
     GeometryBox world;
-    world.lo = vec3(reach_below(m.r0, box.lo, box.hi), reach_below(m.r1, box.lo, box.hi), reach_below(m.r2, box.lo, box.hi));
+    world.lo = vec3(reach_below(m.r0, box.lo, box.hi), reach_below(m.r1, box.lo, box.hi),
+                    reach_below(m.r2, box.lo, box.hi));
     world.hi = -vec3(reach_below(-m.r0, box.lo, box.hi), reach_below(-m.r1, box.lo, box.hi),
                      reach_below(-m.r2, box.lo, box.hi));
     return world;

@@ -1,8 +1,8 @@
-// SPDX-License-Identifier: MIT
-// The corners of an instance's triangles in world space, as collisions define them: from float32 positions p and rows r,
+// SPDX-License-Identifier: MIT The corners of an instance's triangles in world space, as collisions define them: from
+// float32 positions p and rows r,
 //     ((r.x p.x + r.y p.y) + r.z p.z) + r.w
-// in float64. The products are exact, each sum rounds to nearest. All are multiples of 2^-298 below 2^259, so that products
-// of three differences, and what rounds off them, neither over- nor underflow float64.
+// in float64. The products are exact, each sum rounds to nearest. All are multiples of 2^-298 below 2^259, so that
+// products of three differences, and what rounds off them, neither over- nor underflow float64.
 #ifndef TWINRAY_SHARED_WORLD_CORNER_H
 #define TWINRAY_SHARED_WORLD_CORNER_H
 #include "shaders/shared/pair_class.h"
@@ -24,7 +24,8 @@ FUNC dvec3 world_corner(PlacedMesh mesh, uint vertex)
 
 FUNC uvec3 vertices_of(PlacedMesh mesh, uint primitive)
 {
-    return uvec3(AT(mesh.indices, 3u * primitive), AT(mesh.indices, 3u * primitive + 1u), AT(mesh.indices, 3u * primitive + 2u));
+    return uvec3(AT(mesh.indices, 3u * primitive), AT(mesh.indices, 3u * primitive + 1u),
+                 AT(mesh.indices, 3u * primitive + 2u));
 }
 
 FUNC Corners64 world_corners(PlacedMesh mesh, uvec3 vertices)

@@ -20,7 +20,8 @@ vec3 start_of(SurfacePoint point, uint method, bool is_front)
     if (method == SPAWN_BOUND) return spawn_position(point, is_front);
     if (method != SPAWN_INTEGER) return point.position;
     vec3 normal = is_front ? point.normal : -point.normal;
-    return vec3(moved(point.position.x, normal.x), moved(point.position.y, normal.y), moved(point.position.z, normal.z));
+    return vec3(moved(point.position.x, normal.x), moved(point.position.y, normal.y),
+                moved(point.position.z, normal.z));
 }
 
 void main()

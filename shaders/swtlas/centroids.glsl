@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Adds the centres of a block's leaves to their tree's CentroidBounds: each invocation those of its own leaves, then a tree
-// in workgroup memory, then six atomics.
+// SPDX-License-Identifier: MIT Adds the centres of a block's leaves to their tree's CentroidBounds: each invocation
+// those of its own leaves, then a tree in workgroup memory, then six atomics.
 #ifndef TWINRAY_SWTLAS_CENTROIDS_GLSL
 #define TWINRAY_SWTLAS_CENTROIDS_GLSL
 #include "shaders/shared/build.h"

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Binary trees become trees of NODE_WIDTH children a node, level by level: the items of one level leave those of the next,
-// and those of subtrees that a group can do whole. Begun once per tree.
+// SPDX-License-Identifier: MIT Binary trees become trees of NODE_WIDTH children a node, level by level: the items of
+// one level leave those of the next, and those of subtrees that a group can do whole. Begun once per tree.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -44,7 +43,8 @@ ItemLists reserve(ItemLists counts)
 {
     const uint LEVEL_BYTES = 16u;
     ItemLists places;
-    places.next = reserve(REF(CollapseLevel)(address_after(args.level.address, LEVEL_BYTES)), counts.next, COLLAPSE_GROUP);
+    places.next = reserve(REF(CollapseLevel)(address_after(args.level.address, LEVEL_BYTES)), counts.next,
+                          COLLAPSE_GROUP);
     places.subtrees = reserve(args.subtree_level, counts.subtrees, 1u);
     return places;
 }

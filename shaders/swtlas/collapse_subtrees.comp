@@ -34,7 +34,8 @@ void main()
     if (group_index() >= AT(args.subtree_level, 0).count) return;
     CollapseItem root = load_item(args.subtrees, group_index());
     BuildTree tree = AT(args.trees, root.tree);
-    Queue queue = Queue(address_at(args.queues.address, queue_begin(tree.first, root.below + 1u - records_of_node(NODE_WIDTH)), 16u));
+    Queue queue = Queue(address_at(args.queues.address,
+                                   queue_begin(tree.first, root.below + 1u - records_of_node(NODE_WIDTH)), 16u));
     if (gl_LocalInvocationID.x == 0u)
     {
         AT(queue, 0) = root;

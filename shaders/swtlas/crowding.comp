@@ -13,7 +13,8 @@ bool begins_crowd(uint position)
 {
     if (position + CROWD >= args.count) return false;
     uint code = AT(args.codes, position);
-    return code != INACTIVE_CODE && code == AT(args.codes, position + CROWD) && tree_at(position) == tree_at(position + CROWD);
+    return code != INACTIVE_CODE && code == AT(args.codes, position + CROWD) &&
+        tree_at(position) == tree_at(position + CROWD);
 }
 
 void dispatch_second_sort()

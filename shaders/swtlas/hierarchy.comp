@@ -66,7 +66,8 @@ void climb(BuildTree tree, NodeHalves nodes, float scale, Range range)
         uint other = atomicExchange(AT(args.meeting, split), joins_right ? range.first : range.last);
         if (other == NOTHING) return;
         memoryBarrierBuffer();
-        Rotation rotation = join(range.top, get_half(nodes, node, joins_right ? 1u : 0u), node, joins_right ? right : left);
+        Rotation rotation = join(range.top, get_half(nodes, node, joins_right ? 1u : 0u), node,
+                                 joins_right ? right : left);
         while (rotation.next != NOTHING) rotate_one(nodes, rotation, range.top, scale);
         if (joins_right) range.last = other;
         else range.first = other;
@@ -176,7 +177,8 @@ void build_run(BuildTree tree, float scale, uint begin, uint end)
     Rotation rotation = no_rotation();
     while (run.place != end)
     {
-        for (uint i = 0u; i < MOST_STEPS && run.place != end && rotation.next == NOTHING; ++i) rotation = advance(tree, nodes, run);
+        for (uint i = 0u; i < MOST_STEPS && run.place != end && rotation.next == NOTHING; ++i)
+            rotation = advance(tree, nodes, run);
         if (rotation.next != NOTHING) rotate_one(nodes, rotation, run.top, scale);
     }
     if (begin == tree.first && end == tree.first + tree.count) finish(tree, run.top);

@@ -147,7 +147,10 @@ uint lowest_but(uint other, uint begin, uint count)
 {
     uint lowest = other == 0u ? 1u : 0u;
     for (uint j = lowest + 1u; j < count; ++j)
-        if (j != other && height_in(clusters[begin + j].top.below) < height_in(clusters[begin + lowest].top.below)) lowest = j;
+    {
+        uint height = height_in(clusters[begin + j].top.below);
+        if (j != other && height < height_in(clusters[begin + lowest].top.below)) lowest = j;
+    }
     return lowest;
 }
 

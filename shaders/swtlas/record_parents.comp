@@ -25,6 +25,7 @@ void main()
     if (group_index() >= args.block_count) return;
     BuildBlock block = AT(args.blocks, group_index());
     BuildTree tree = AT(args.trees, block.tree);
-    for (uint slot = slots_begin(tree, block) + gl_LocalInvocationIndex; slot < slots_end(tree, block); slot += BUILD_GROUP)
+    for (uint slot = slots_begin(tree, block) + gl_LocalInvocationIndex; slot < slots_end(tree, block);
+         slot += BUILD_GROUP)
         visit(tree, slot);
 }

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Elements of a MultiTypeSet in kernels: what MultiTypeSet::view() gives, declared by TWINRAY_SET_VIEW.
+// SPDX-License-Identifier: MIT Elements of a MultiTypeSet in kernels: what MultiTypeSet::view() gives, declared by
+// TWINRAY_SET_VIEW.
 //
 //     vec3 color_of(Diffuse diffuse, vec2 uv) { ... }
 //     vec3 color_of(Glass glass, vec2 uv) { ... }
@@ -8,7 +8,8 @@
 //     vec3 color = vec3(1, 0, 1); // what a key that names nothing gives
 //     WITH_INDEX(MATERIALS, push.materials, key, COLOR_OF)
 //
-// A key that names nothing calls nothing. Kernels compiled with TWINRAY_DEBUG note it, for MultiTypeSet::check_faults().
+// A key that names nothing calls nothing. Kernels compiled with TWINRAY_DEBUG note it, for
+// MultiTypeSet::check_faults().
 #ifndef TWINRAY_MULTI_TYPE_SET_GLSL
 #define TWINRAY_MULTI_TYPE_SET_GLSL
 #include "twinray/faults.glsl"

@@ -1,10 +1,9 @@
-// SPDX-License-Identifier: MIT
-// Textures of a TextureStore in kernels: what TextureStore::view() gives.
+// SPDX-License-Identifier: MIT Textures of a TextureStore in kernels: what TextureStore::view() gives.
 //
 //     vec4 color = sample_texture(push.textures, material.base_color, uv);
 //
-// Compiled with TWINRAY_BINDLESS for stores whose textures are images (TextureStore::has_images()), and without for those
-// whose textures lie in buffers. With it set 0, binding 0 is the store's array of images.
+// Compiled with TWINRAY_BINDLESS for stores whose textures are images (TextureStore::has_images()), and without for
+// those whose textures lie in buffers. With it set 0, binding 0 is the store's array of images.
 //
 // A reference that names nothing, TextureRef(0) too, is white, so that it changes no factor. Kernels compiled with
 // TWINRAY_DEBUG note those that are not TextureRef(0), for TextureStore::check_faults().

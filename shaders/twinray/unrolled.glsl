@@ -41,5 +41,6 @@
 
 // ACTION(element) for the element at an index: a switch. An index out of range calls nothing.
 #define GET_CASE_(P, number, Type, name) case uint(number): SECOND_ P(FIRST_ P.name); break;
-#define GET_UNROLLED(LIST, tuple, index, ACTION) switch (uint(index)) { LIST(GET_CASE_, (tuple, ACTION, 0)) default: break; }
+#define GET_UNROLLED(LIST, tuple, index, ACTION) \
+    switch (uint(index)) { LIST(GET_CASE_, (tuple, ACTION, 0)) default: break; }
 #endif
