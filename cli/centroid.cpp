@@ -48,7 +48,7 @@ ScenePicture picture_of(const CentroidOptions& options, const Analysed& analysed
     if (result.mean)
         picture.page.subtitle =
             text("mean of ", result.point_count, " points: ", place_text(*result.mean, analysed.scene.origin));
-    picture.page.legend.entries = {{categorical::vermillion, "mean"}, {categorical::blue, "points"}};
+    picture.page.legend.entries = {{categorical::vermilion, "mean"}, {categorical::blue, "points"}};
     picture.colors.assign(count_triangles(analysed.scene), plain_color);
     const std::size_t count = std::min(result.points.size(), most_points);
     for (std::size_t i = 0; i < count; ++i)
@@ -57,7 +57,7 @@ ScenePicture picture_of(const CentroidOptions& options, const Analysed& analysed
     if (result.mean) {
         picture.dots.push_back({.position = *result.mean, .radius = radius + 2, .color = paper, .is_on_top = true});
         picture.dots.push_back(
-            {.position = *result.mean, .radius = radius, .color = categorical::vermillion, .is_on_top = true});
+            {.position = *result.mean, .radius = radius, .color = categorical::vermilion, .is_on_top = true});
     }
     return picture;
 }

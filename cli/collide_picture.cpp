@@ -9,7 +9,7 @@ namespace {
 // By class, from the most harmless to the worst, which is also their order.
 constexpr std::array<Rgb, all_pair_classes.size()> class_colors = {plain_color,         categorical::sky_blue,
                                                                    categorical::green,  categorical::yellow,
-                                                                   categorical::purple, categorical::vermillion};
+                                                                   categorical::purple, categorical::vermilion};
 
 Rgb color_of(PairClass pair_class) { return class_colors[static_cast<std::size_t>(pair_class)]; }
 

@@ -58,8 +58,8 @@ ScenePicture picture_of_view_factors(const PictureOptions& options, const ViewFa
     const std::vector<double> values = by_face(groups, factors_of(rows[*shown.from], rows.size()));
     ScenePicture picture = picture_of_values(options, values, "F", ColorScale::log);
     for (std::size_t face = 0; face < groups.size(); ++face)
-        if (groups[face] == *shown.from) picture.colors[face] = categorical::vermillion;
-    picture.page.legend.entries.push_back({categorical::vermillion, text("row ", *shown.from)});
+        if (groups[face] == *shown.from) picture.colors[face] = categorical::vermilion;
+    picture.page.legend.entries.push_back({categorical::vermilion, text("row ", *shown.from)});
     picture.page.title = text(scene, ": view factors of row ", *shown.from);
     picture.page.subtitle = "part of its diffuse radiation that meets each group of faces";
     return picture;

@@ -27,7 +27,13 @@ function(twinray_compile_shader target name input)
     endif()
     set(folder ${CMAKE_CURRENT_BINARY_DIR}/spirv)
     file(MAKE_DIRECTORY ${folder})
-    set(flags --quiet -V --target-env vulkan1.2 ${ARGN})
+    set(flags
+        --quiet
+        -V
+        --target-env
+        vulkan1.2
+        ${ARGN}
+    )
     foreach(include ${TWINRAY_SHADER_FOLDERS})
         list(APPEND flags -I${include})
     endforeach()
@@ -36,12 +42,14 @@ function(twinray_compile_shader target name input)
     add_custom_command(
         OUTPUT ${module} ${header}
         COMMAND ${TWINRAY_GLSLANG_VALIDATOR} ${flags} --depfile ${module}.d -o ${module} ${input}
-        COMMAND ${CMAKE_COMMAND} -DMODULE=${module} -DNAME=${name}_spirv -DHEADER=${header}
-                -P ${TWINRAY_SPIRV_HEADER_SCRIPT}
+        COMMAND
+            ${CMAKE_COMMAND} -DMODULE=${module} -DNAME=${name}_spirv -DHEADER=${header} -P
+            ${TWINRAY_SPIRV_HEADER_SCRIPT}
         DEPENDS ${input} ${TWINRAY_SPIRV_HEADER_SCRIPT}
         DEPFILE ${module}.d
         COMMENT "shader ${name}"
-        VERBATIM)
+        VERBATIM
+    )
     target_sources(${target} PRIVATE ${header})
     target_include_directories(${target} PRIVATE ${folder})
     set_property(TARGET ${target} APPEND PROPERTY TWINRAY_SPIRV ${module})
@@ -68,12 +76,19 @@ function(twinray_add_trace_program target name file)
     twinray_compile_shader(${target} ${name}_sw ${root}/shaders/engine/trace.comp ${flags} -DTWINRAY_SW)
     twinray_compile_shader(${target} ${name}_hw ${root}/shaders/engine/trace.comp ${flags} -DTWINRAY_HW)
     twinray_compile_shader(${target} ${name}_sw_refined ${root}/shaders/engine/trace.comp ${flags} -DTWINRAY_SW
-        -DTWINRAY_REFINED)
+        -DTWINRAY_REFINED
+    )
     twinray_compile_shader(${target} ${name}_hw_refined ${root}/shaders/engine/trace.comp ${flags} -DTWINRAY_HW
-        -DTWINRAY_REFINED)
+        -DTWINRAY_REFINED
+    )
     twinray_compile_shader(${target} ${name}_rahit ${root}/shaders/hwtlas/trace.rahit ${flags})
     twinray_compile_shader(${target} ${name}_rint ${root}/shaders/hwtlas/trace.rint ${flags})
-    file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/spirv/${name}.trace_program.h @ONLY CONTENT [[
+    file(
+        CONFIGURE
+        OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/spirv/${name}.trace_program.h
+        @ONLY
+        CONTENT
+            [[
 #pragma once
 #include <cstdint>
 
@@ -88,5 +103,6 @@ function(twinray_add_trace_program target name file)
 inline const twinray::TraceProgramCode @name@{"@name@",         @name@_sw_spirv,    @name@_sw_refined_spirv,
                                               @name@_hw_spirv, @name@_hw_refined_spirv,
                                               @name@_rahit_spirv, @name@_rint_spirv};
-]])
+]]
+    )
 endfunction()

@@ -22,8 +22,13 @@ if(TARGET twinray_cli)
 endif()
 
 # Headers whose types come from a private dependency stay behind.
-install(DIRECTORY engine swtlas hwtlas DESTINATION ${headers_dir}
-        FILES_MATCHING PATTERN "*.h" PATTERN "gltf_*.h" EXCLUDE)
+install(
+    DIRECTORY engine swtlas hwtlas
+    DESTINATION ${headers_dir}
+    FILES_MATCHING
+    PATTERN "*.h"
+    PATTERN "gltf_*.h" EXCLUDE
+)
 install(DIRECTORY shaders/shared shaders/hwtlas shaders/engine DESTINATION ${headers_dir}/shaders)
 install(DIRECTORY shaders/twinray/ DESTINATION ${headers_dir})
 
@@ -41,11 +46,17 @@ endif()
 list(TRANSFORM TWINRAY_LIBRARIES PREPEND "-l" OUTPUT_VARIABLE link_flags)
 list(REVERSE link_flags)
 list(JOIN link_flags " " link_flags)
-configure_package_config_file(cmake/twinrayConfig.cmake.in ${generated_dir}/twinrayConfig.cmake
-                              INSTALL_DESTINATION ${package_dir} PATH_VARS headers_dir)
+configure_package_config_file(
+    cmake/twinrayConfig.cmake.in
+    ${generated_dir}/twinrayConfig.cmake
+    INSTALL_DESTINATION ${package_dir}
+    PATH_VARS headers_dir
+)
 write_basic_package_version_file(${generated_dir}/twinrayConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${generated_dir}/twinrayConfig.cmake ${generated_dir}/twinrayConfigVersion.cmake
-        DESTINATION ${package_dir})
+install(
+    FILES ${generated_dir}/twinrayConfig.cmake ${generated_dir}/twinrayConfigVersion.cmake
+    DESTINATION ${package_dir}
+)
 install(FILES cmake/TwinrayShaders.cmake cmake/TwinraySpirvHeader.cmake DESTINATION ${package_dir})
 
 # Relative to the file itself, so that an installed tree can be moved.

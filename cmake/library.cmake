@@ -16,9 +16,12 @@ function(twinray_add_library name)
         # Without the first, position-independent code does not inline what another library could replace. The sections
         # let a host that links with --gc-sections leave out what it does not use, as from an archive of many objects.
         # Without the last, variables of inline functions stay global whatever objcopy is told.
-        target_compile_options(${part} PRIVATE
-            "$<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition;-ffunction-sections;-fdata-sections>"
-            $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-gnu-unique>)
+        target_compile_options(
+            ${part}
+            PRIVATE
+                "$<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition;-ffunction-sections;-fdata-sections>"
+                $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-gnu-unique>
+        )
         list(APPEND objects $<TARGET_OBJECTS:${part}>)
     endforeach()
 
@@ -29,18 +32,27 @@ function(twinray_add_library name)
         COMMAND ${merge} ${CMAKE_LINKER} ${CMAKE_NM} ${CMAKE_OBJCOPY} ${library} ${objects}
         DEPENDS ${merge} ${objects}
         COMMENT "Merging twinray_${name}.o"
-        COMMAND_EXPAND_LISTS VERBATIM)
+        COMMAND_EXPAND_LISTS
+        VERBATIM
+    )
 
     add_library(twinray_${name} ${library})
     add_library(twinray::${name} ALIAS twinray_${name})
-    set_target_properties(twinray_${name} PROPERTIES
-        EXPORT_NAME ${name}
-        LINKER_LANGUAGE CXX
-        VERSION ${PROJECT_VERSION}
-        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+    set_target_properties(
+        twinray_${name}
+        PROPERTIES
+            EXPORT_NAME ${name}
+            LINKER_LANGUAGE CXX
+            VERSION ${PROJECT_VERSION}
+            SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    )
     target_compile_features(twinray_${name} PUBLIC cxx_std_20)
     target_include_directories(twinray_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
-    target_link_libraries(twinray_${name} PUBLIC ${arg_SEES} Vulkan::Headers glm::glm Threads::Threads PRIVATE ${arg_USES})
+    target_link_libraries(
+        twinray_${name}
+        PUBLIC ${arg_SEES} Vulkan::Headers glm::glm Threads::Threads
+        PRIVATE ${arg_USES}
+    )
     set(TWINRAY_LIBRARIES ${TWINRAY_LIBRARIES} twinray_${name} PARENT_SCOPE)
     set(TWINRAY_PARTS ${TWINRAY_PARTS} ${arg_PARTS} PARENT_SCOPE)
 endfunction()

@@ -23,8 +23,10 @@ function(twinray_validate_shaders)
         get_target_property(modules ${target} TWINRAY_SPIRV)
         foreach(module ${modules})
             get_filename_component(name ${module} NAME_WE)
-            add_test(NAME spirv_val.${name}
-                     COMMAND ${SPIRV_VAL} --target-env vulkan1.2 --scalar-block-layout ${module})
+            add_test(
+                NAME spirv_val.${name}
+                COMMAND ${SPIRV_VAL} --target-env vulkan1.2 --scalar-block-layout ${module}
+            )
             set_tests_properties(spirv_val.${name} PROPERTIES LABELS cpu)
         endforeach()
     endforeach()

@@ -5,11 +5,15 @@ target_compile_features(twinray_options INTERFACE cxx_std_20)
 # No code of ours calls a global vk* function; in the headers this would decide for the host, too.
 target_compile_definitions(twinray_options INTERFACE VK_NO_PROTOTYPES=)
 target_include_directories(twinray_options INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_options(twinray_options INTERFACE
-    $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -ffp-contract=off>)
+target_compile_options(
+    twinray_options
+    INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -ffp-contract=off>
+)
 # What Clang's words say beyond those of GCC.
-target_compile_options(twinray_options INTERFACE
-    $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-sign-conversion -Wno-missing-braces>)
+target_compile_options(
+    twinray_options
+    INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,Clang>:-Wno-sign-conversion -Wno-missing-braces>
+)
 # Where files are compiled together, GCC takes what a source file declares for a header's.
 if(CMAKE_UNITY_BUILD)
     target_compile_options(twinray_options INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)

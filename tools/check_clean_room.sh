@@ -40,7 +40,7 @@ fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tools/lib.sh
 
-# shellcheck disable=SC2317
+# shellcheck disable=SC2317,SC2329
 leave() {
     if mountpoint -q "$room/proc"; then umount "$room/proc"; fi
     if ((!keep)); then rm -rf --one-file-system "$room"; fi

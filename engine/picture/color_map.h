@@ -21,7 +21,7 @@ inline constexpr Rgb no_value_color = {158, 158, 158};
 // For kinds of things, told apart by people of any colour vision (Okabe and Ito 2008).
 namespace categorical {
 inline constexpr Rgb orange = {230, 159, 0}, sky_blue = {86, 180, 233}, green = {0, 158, 115}, yellow = {240, 228, 66},
-                     blue = {0, 114, 178}, vermillion = {213, 94, 0}, purple = {204, 121, 167};
+                     blue = {0, 114, 178}, vermilion = {213, 94, 0}, purple = {204, 121, 167};
 }  // namespace categorical
 
 }  // namespace twinray

@@ -38,14 +38,14 @@ bool is_optional_by_nature(const std::string& extension) {
 }
 
 std::string_view advice(const std::string& extension) {
-    static const std::map<std::string_view, std::string_view> advices = {
+    static const std::map<std::string_view, std::string_view> remedies = {
         {"KHR_draco_mesh_compression", "decompress it, for example with `gltf-transform copy in.glb out.glb`"},
         {"EXT_meshopt_compression", "decompress it, for example with `gltf-transform copy in.glb out.glb`"},
         {"KHR_meshopt_compression", "decompress it, for example with `gltf-transform copy in.glb out.glb`"},
         {"KHR_texture_basisu", "convert its images, for example with `gltf-transform ktxdecompress in.glb out.glb`"},
         {"EXT_texture_webp", "convert its images to PNG, for example with `gltf-transform png in.glb out.glb`"}};
-    const auto found = advices.find(extension);
-    return found != advices.end() ? found->second : "export it again without this extension";
+    const auto found = remedies.find(extension);
+    return found != remedies.end() ? found->second : "export it again without this extension";
 }
 
 [[noreturn]] void refuse(const GltfFile& file, const std::string& extension) {

