@@ -170,7 +170,7 @@ TEST_P(SavedFile, OtherFormatsAreNamed) {
     expect_contains(edited([](SavedHeader& h) { h.leaf_bytes = 48; }), "its leaf has 48 bytes; this library's has 40");
     expect_contains(edited([](SavedHeader& h) { h.header_bytes = 64; }), "its header has 64 bytes");
     expect_contains(edited([](SavedHeader& h) { h.instance_bytes = 72; }), "its instance has 72 bytes");
-    expect_contains(edited([](SavedHeader& h) { h.layout = 3; }), "unknown layout 3");
+    expect_contains(edited([](SavedHeader& h) { h.layout = all_layouts.size(); }), "unknown layout 3");
     expect_contains(edited([](SavedHeader& h) { h.entry_bytes = 80; }), "its entry has 80 bytes");
     expect_contains(edited([](SavedHeader& h) { h.record_bytes = 0; }), "its record has 0 bytes");
 }
