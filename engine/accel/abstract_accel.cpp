@@ -283,6 +283,11 @@ std::size_t AbstractAccel::n_instances(AccelHandle handle) const {
     return found == placements_.end() ? 0 : found->second.instances.records.size();
 }
 
+std::size_t AbstractAccel::n_primitives(AccelHandle handle) const {
+    const auto found = placements_.find(handle.id);
+    return found == placements_.end() ? 0 : found->second.geometry.primitive_count();
+}
+
 std::vector<AccelHandle> AbstractAccel::handles() const {
     std::vector<AccelHandle> alive;
     for (const auto& [id, placement] : placements_) alive.push_back({id});

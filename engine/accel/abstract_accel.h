@@ -108,6 +108,7 @@ class AbstractAccel {
     std::size_t n_instances() const;
     std::size_t n_instances(AccelHandle handle) const;  // 0 for a dead handle
     std::size_t n_geometries() const { return placements_.size(); }
+    std::size_t n_primitives(AccelHandle handle) const;  // triangles or boxes of its geometry; 0 for a dead handle
     std::vector<AccelHandle> handles() const;  // those alive, in push order
 
     // Builds what changed since the last sync and returns the point at which the GPU has built it; a clean

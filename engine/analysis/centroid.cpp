@@ -86,7 +86,7 @@ void finish(Centroid& result, const Sums& sums, const RayGridPlan& plan) {
 }  // namespace
 
 Centroid centroid(AbstractAccel& accel, const Scene& scene, const CentroidDesc& desc) {
-    check_filled(accel, scene.instances.size(), "centroid");
+    check_filled(accel, triangle_counts(scene), "centroid");
     const RayGridPlan plan = plan_ray_grid(scene, desc.grid);
     Centroid result;
     result.ray_count = plan.ray_count;

@@ -55,6 +55,25 @@ dvec3 area_vector(const Scene& scene, Face face) {
     return twice * (determinant(instance.transform) < 0 ? -0.5 : 0.5);
 }
 
+std::vector<std::size_t> triangle_counts(const Scene& scene) {
+    std::vector<std::size_t> counts;
+    for (const Instance& instance : scene.instances) counts.push_back(scene.meshes[instance.mesh].triangles.size());
+    return counts;
+}
+
+void check_filled(const AbstractAccel& accel, std::span<const std::size_t> triangle_counts, const char* action) {
+    constexpr const char* advice = "; fill it by push_scene() from the same scene";
+    if (accel.n_instances() != triangle_counts.size())
+        fail(accel.name(), ": ", action, ": it has ", accel.n_instances(), " instances and the scene ",
+             triangle_counts.size(), advice);
+    std::size_t instance = 0;
+    for (const AccelHandle handle : accel.handles())
+        for (std::size_t i = 0; i < accel.n_instances(handle); ++i, ++instance)
+            if (accel.n_primitives(handle) != triangle_counts[instance])
+                fail(accel.name(), ": ", action, ": its instance ", instance, " has ", accel.n_primitives(handle),
+                     " primitives and the scene's ", triangle_counts[instance], " triangles", advice);
+}
+
 Faces::Faces(Context& context, const Scene& scene)
     : mesh_count_(scene.meshes.size()), material_count_(scene.materials.size()) {
     const std::uint64_t count = count_faces(scene);
@@ -83,6 +102,7 @@ Faces::Faces(Context& context, const Scene& scene)
                                  static_cast<uint>(faces_.size()),
                                  triangles});
             mesh_of_instance_.push_back(instance.mesh);
+            triangle_counts_.push_back(triangles);
             for (uint primitive = 0; primitive < triangles; ++primitive) faces_.push_back({i, primitive});
         }
         instance_buffer_ = Buffer(context, {.name = "faces of instances", .bytes = std::span(instances).size_bytes()});

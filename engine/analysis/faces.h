@@ -2,10 +2,12 @@
 // The faces of a scene, on the device and with what the host computes of them.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/accel/abstract_accel.h"
 #include "engine/accel/spawn.h"
 #include "engine/core/buffer.h"
 #include "engine/scene/scene.h"
@@ -41,6 +43,14 @@ dvec3 area_vector(const Scene& scene, Face face);
 // Of meshes, instances and the materials of triangles: all that tells the faces of one scene from those of another.
 std::uint32_t checksum_of(const Scene& scene);
 
+// Of each instance.
+std::vector<std::size_t> triangle_counts(const Scene& scene);
+
+// Throws Error, beginning with the accelerator's name and `action`, unless it holds these instances, of geometries with
+// so many triangles each, in this order: push_scene() filled it from the scene that they were counted in. What a kernel
+// reads of a hit's face is then within its tables.
+void check_filled(const AbstractAccel& accel, std::span<const std::size_t> triangle_counts, const char* action);
+
 // A copy of the scene's triangles on the device, as they were when it was made. Instances come in the order of the
 // scene, which is that of an accelerator into which push_scene() put it: hits of that tell faces.
 class Faces {
@@ -58,6 +68,8 @@ class Faces {
     // meets.
     const std::vector<double>& areas() const { return areas_; }
     Face operator[](std::size_t face) const { return faces_[face]; }
+    // By instance.
+    const std::vector<std::size_t>& triangle_counts() const { return triangle_counts_; }
 
     // One for each face, below their count. Throws Error, and changes nothing, for any other count or number.
     void set_custom_groups(std::vector<uint> groups);
@@ -76,6 +88,7 @@ class Faces {
     std::vector<double> areas_;
     std::vector<Face> faces_;
     std::vector<uint> mesh_of_instance_;
+    std::vector<std::size_t> triangle_counts_;
     std::vector<std::vector<uint>> materials_;  // by mesh; empty: all 0
     std::vector<uint> custom_groups_;           // of faces
     std::size_t mesh_count_ = 0, material_count_ = 0;

@@ -107,7 +107,7 @@ void check_faces(const Scene& scene, const Faces& faces) {
 
 Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& faces, const IlluminationDesc& desc) {
     check_faces(scene, faces);
-    check_filled(accel, scene.instances.size(), "illumination");
+    check_filled(accel, faces.triangle_counts(), "illumination");
     const RayGridPlan plan = plan_ray_grid(scene, desc.grid);
     const std::vector<double> unobstructed = unobstructed_areas(scene, faces, plan, desc.sides);
     Illumination result{.groups = std::vector<LitArea>(faces.group_count(desc.by)),

@@ -102,6 +102,7 @@ KnownExchange exchange_of(const PlannedPair& pair, const Estimate& sampled, cons
 
 PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Scene& scene, const Faces& faces,
                                  const ViewFactorOptions& options, PairEstimator estimator, Progress* progress) {
+    check_filled(accel, faces.triangle_counts(), "exchanges of pairs");
     const std::vector<std::vector<uint>> members = faces.members(options.grouping);
     const PairPlan plan = plan_pairs(FacePolygons(scene), members, {estimator, options.sides, options.rays}, progress);
     const std::vector<double> areas = faces.areas_of(members);

@@ -122,12 +122,6 @@ std::vector<RayBatch> ray_batches(std::uint64_t ray_count) {
     return batches;
 }
 
-void check_filled(const AbstractAccel& accel, std::size_t instance_count, const char* action) {
-    if (accel.n_instances() != instance_count)
-        fail(accel.name(), ": ", action, ": it has ", accel.n_instances(), " instances and the scene ", instance_count,
-             "; fill it by push_scene() from the same scene");
-}
-
 RayGridTrace::RayGridTrace(AbstractAccel& accel, const RayGridPlan& plan)
     : accel_(accel),
       grid_(plan.grid),

@@ -50,10 +50,6 @@ std::vector<RayBatch> ray_batches(std::uint64_t ray_count);
 // As long as 1; throws Error for a direction that is 0 or not finite.
 dvec3 unit_direction(dvec3 direction);
 
-// Throws Error unless the accelerator has so many instances: push_scene() must have filled it from a scene with as
-// many.
-void check_filled(const AbstractAccel& accel, std::size_t instance_count, const char* action);
-
 // Makes the rays of batches and traces them.
 class RayGridTrace {
   public:

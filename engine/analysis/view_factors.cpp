@@ -87,6 +87,7 @@ ViewFactors::ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFac
       areas_(faces.areas_of(members_)),
       known_(members_.size()),
       pace_(accel.context()) {
+    check_filled(accel, faces.triangle_counts(), "view factors");
     for (const KnownExchange& exchange : known) {
         known_[exchange.i].push_back(factor_of(exchange, exchange.j, areas_[exchange.i]));
         if (exchange.i != exchange.j) known_[exchange.j].push_back(factor_of(exchange, exchange.i, areas_[exchange.j]));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/accel/scene_push.h"
+#include "engine/analysis/pair_exchanges.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/analysis/view_factor_scenes.h"
 
@@ -269,6 +270,30 @@ TEST_P(ViewFactorsTest, TrianglesWithoutAreaHaveNoRays) {
     EXPECT_TRUE(all[2].factors.empty());
     EXPECT_EQ(all[1].rays, 0u);
     EXPECT_GT(all[0].rays, 0u);
+}
+
+// Its kernels read what a hit names from tables of the scene's faces.
+TEST_P(ViewFactorsTest, AnAcceleratorOfAnotherSceneIsRefused) {
+    const Scene scene = test::parallel_squares(1);
+    const Faces faces(context(), scene);
+    const auto refusal_of = [&](const Scene& other) {
+        const auto accel = make_accel();
+        push_scene(*accel, other);
+        return test::error_of([&] { ViewFactors(*accel, faces, {}); });
+    };
+    EXPECT_EQ(refusal_of(scene), "");
+    Scene more = scene;
+    more.instances.push_back(more.instances.back());
+    EXPECT_NE(refusal_of(more).find("view factors: it has 3 instances and the scene 2"), std::string::npos);
+    Scene finer = scene;
+    finer.meshes[1] = make_icosphere(2);
+    EXPECT_NE(refusal_of(finer).find("its instance 1 has 320 primitives and the scene's 2 triangles"),
+              std::string::npos);
+    const auto accel = make_accel();
+    push_scene(*accel, more);
+    const std::string refusal =
+        test::error_of([&] { exchanges_of_pairs(*accel, scene, faces, {}, PairEstimator::area, nullptr); });
+    EXPECT_NE(refusal.find("exchanges of pairs: it has 3 instances"), std::string::npos) << refusal;
 }
 
 TEST_P(ViewFactorsTest, OptionsOutOfRangeAreRefused) {
