@@ -102,9 +102,9 @@ TEST(KernelVariant, SaysWhatConstantsChoose) {
     const auto variant = [](const char* name, std::vector<SpecializationConstant> constants) {
         return variant_of({.name = name, .spirv = {}, .constants = std::move(constants)});
     };
-    const uint features = FEATURE_BVH4 | FEATURE_INSTANCES;
+    const uint features = FEATURE_COMPRESSED8 | FEATURE_INSTANCES;
     EXPECT_EQ(variant("trace", {{RAY_GROUP_CONSTANT, 64}, {FEATURES_CONSTANT, features}, {LEVEL_CONSTANT, LEVEL_FAST}}),
-              "bvh4 instances fast");
+              "compressed8 instances fast");
     EXPECT_EQ(variant("trace", {{FEATURES_CONSTANT, FEATURES_ALL}, {LEVEL_CONSTANT, LEVEL_CERTIFIED}}),
               "everything certified");
     EXPECT_EQ(variant("swtlas_hierarchy", {{1, 64}, {0, 1}}), "high");
