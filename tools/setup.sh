@@ -16,7 +16,7 @@ demo_packages=(
 )
 packages=(
     "${demo_packages[@]}" pkg-config python3-minimal python3-venv libvulkan-volk-dev vulkan-tools vulkan-validationlayers spirv-tools
-    libgtest-dev libgmp-dev libeigen3-dev assimp-testmodels chromium-common
+    libgtest-dev libgmp-dev libeigen3-dev assimp-testmodels chromium-common graphviz
 )
 if [[ $(uname -m) == x86_64 ]]; then packages+=(libembree-dev); fi # twinray bench measures it, too
 oldest_mesa=24 # the first whose lavapipe has acceleration structures and ray queries
