@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks who includes whom. Usage: check_layers.py [ROOT]; prints file:line of each violation and exits with 1."""
+"""Checks who includes whom, and how many headers a host compiles behind the few that it includes.
+Usage: check_layers.py [ROOT]; prints file:line of each violation and exits with 1."""
 import os
 import re
 import sys
@@ -21,6 +22,9 @@ SEES = {  # besides itself and shaders/shared
     "shaders/embed_renderer": ["shaders/path_tracer"],
     "shaders/twinray": ["shaders/hwtlas"],  # what users include
     "shaders": ["shaders/engine"],  # each other folder of shaders, but shaders/shared, which sees nothing else
+}
+MOST_HEADERS = {  # of this project behind a public one, directly or not; lower them whenever they fall
+    "engine/accel/abstract_accel.h": 57, "hwtlas/hw_tlas.h": 67, "swtlas/sw_tlas.h": 90,
 }
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all
 SOURCE = re.compile(r"\.(h|hpp|c|cc|cpp|inl)$|" + GLSL.pattern)
@@ -49,6 +53,21 @@ def violation(root, source, bracket, target):
     return f"{origin} must not see {seen}"
 
 
+def includes_of(root, source):
+    with open(os.path.join(root, source), encoding="utf-8") as lines:
+        return [(number, m[1], m[2]) for number, line in enumerate(lines, 1) if (m := INCLUDE.match(line))]
+
+
+def headers_behind(root, header):
+    behind, to_read = set(), [header]
+    while to_read:
+        targets = {target for _, bracket, target in includes_of(root, to_read.pop()) if bracket == '"'}
+        new = {target for target in targets - behind - {header} if os.path.isfile(os.path.join(root, target))}
+        behind |= new
+        to_read += new
+    return behind
+
+
 root, found = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(__file__) + "/.."), []
 for top in sorted({name.split("/")[0] for name in SEES}):
     for folder, _, names in sorted(os.walk(os.path.join(root, top))):
@@ -56,10 +75,13 @@ for top in sorted({name.split("/")[0] for name in SEES}):
             if layer(source) not in SEES and not source.startswith("shaders/"):
                 found.append(f"{source}:1: the table in tools/check_layers.py has no folder {layer(source)}")
                 continue
-            with open(os.path.join(root, source), encoding="utf-8") as lines:
-                includes = [(number, INCLUDE.match(line)) for number, line in enumerate(lines, 1)]
-            reasons = [(n, m[2], violation(root, source, m[1], m[2])) for n, m in includes if m]
+            reasons = [(n, target, violation(root, source, bracket, target))
+                       for n, bracket, target in includes_of(root, source)]
             found += [f'{source}:{n}: "{target}": {reason}' for n, target, reason in reasons if reason]
-print("\n".join(found) or "check_layers: every include keeps to the table")
+counts = {header: len(headers_behind(root, header)) for header in MOST_HEADERS}
+found += [f"{header}:1: {counts[header]} headers of this project behind it, at most {most}"
+          for header, most in MOST_HEADERS.items() if counts[header] > most]
+behind = ", ".join(f"{count} headers behind {header}" for header, count in counts.items())
+print("\n".join(found) or f"check_layers: every include keeps to the table; {behind}")
 sys.exit(1 if found else 0)
 
