@@ -109,7 +109,7 @@ class AbstractAccel {
     std::size_t n_instances(AccelHandle handle) const;  // 0 for a dead handle
     std::size_t n_geometries() const { return placements_.size(); }
     std::size_t n_primitives(AccelHandle handle) const;  // triangles or boxes of its geometry; 0 for a dead handle
-    std::vector<AccelHandle> handles() const;  // those alive, in push order
+    std::vector<AccelHandle> handles() const;            // those alive, in push order
 
     // Builds what changed since the last sync and returns the point at which the GPU has built it; a clean
     // accelerator does nothing. Where only transforms and vertices changed, everything is refitted in place and views
