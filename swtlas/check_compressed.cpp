@@ -33,6 +33,11 @@ bool are_axes(uint axes) {
     return axes < 64 && (1u << axis_at(axes, 0) | 1u << axis_at(axes, 1) | 1u << axis_at(axes, 2)) == 7;
 }
 
+// Of records, first to last; none where the first is larger.
+struct Span {
+    uint first, last;
+};
+
 class CompressedWalk {
   public:
     CompressedWalk(std::span<const CompressedRecord> records, std::span<const LeafBox> leaf_boxes,
@@ -69,6 +74,7 @@ class CompressedWalk {
   private:
     LeafBox visit_record(uint index, uint depth) {
         const CompressedRecord& record = records_[index];
+        below_ = {1, 0};
         if (is_leaf(record)) return visit_leaf(index_in(record));
         if (depth >= DEEPEST_RECORDS) return violated(text("depth exceeds ", DEEPEST_RECORDS));
         result_.depth = std::max(result_.depth, depth + 1);
@@ -92,13 +98,27 @@ class CompressedWalk {
         const CompressedRecord& second_half = records_[width == 8 ? index + 1 : index];
         const ChildPlaces places = places_in(node, second_half);
         LeafBox all = empty_box();
+        std::vector<Span> spans;
         for (uint slot = 0; slot < 8; ++slot)
             if (has_child(places, slot)) {
                 const LeafBox below = visit_child(places, slot, depth);
                 check_planes(index, planes_of(node, slot < 4 ? node : second_half, slot), below, slot);
                 if (is_active(below)) all = {min(all.lo, below.lo), max(all.hi, below.hi)};
+                if (below_.first <= below_.last) spans.push_back(below_);
             }
+        check_apart(index, places, std::move(spans));
         return all;
+    }
+
+    // Records below different children do not mix: a ray finds its way back to one by where children's own begin.
+    void check_apart(uint index, const ChildPlaces& places, std::vector<Span> spans) {
+        std::ranges::sort(spans, {}, &Span::first);
+        below_ = {places.first, places_end(places) - 1};
+        for (std::size_t i = 0; i < spans.size(); ++i) {
+            if (i > 0 && spans[i].first <= spans[i - 1].last)
+                violated(text("records below the children of record ", index, " mix"));
+            below_ = {std::min(below_.first, spans[i].first), std::max(below_.last, spans[i].last)};
+        }
     }
 
     // Of a node of eight: its slots hold as many children as it says.
@@ -123,8 +143,8 @@ class CompressedWalk {
         area_ += half_area(planes.lo, planes.hi);
         if (!is_active(below)) return;
         for (int axis = 0; axis < 3; ++axis)
-            if (planes.lo[axis] + least_margin * planes.cell[axis] > double{below.lo[axis]} ||
-                planes.hi[axis] - least_margin * planes.cell[axis] < double{below.hi[axis]})
+            if (!(planes.lo[axis] + least_margin * planes.cell[axis] <= double{below.lo[axis]}) ||
+                !(planes.hi[axis] - least_margin * planes.cell[axis] >= double{below.hi[axis]}))
                 violated(text("record ", index, ": child ", slot, " from ", below.lo[axis], " to ", below.hi[axis],
                               " lies in planes ", planes.lo[axis], " and ", planes.hi[axis]));
     }
@@ -134,6 +154,7 @@ class CompressedWalk {
     CompressedCheck& result_;
     std::vector<bool> seen_records_, seen_leaves_;
     double area_ = 0;
+    Span below_{1, 0};  // records below the one that was visited last
 };
 
 }  // namespace

@@ -126,6 +126,7 @@ std::uint64_t ViewFactors::rounds_of(const Row& row) {
 }
 
 std::vector<ViewFactorRow> ViewFactors::rows(std::size_t first, std::size_t last) {
+    check_filled(accel_, faces_.triangle_counts(), "view factors");
     accel_.sync();
     std::vector<Row> rows(last - first);
     for (std::size_t i = first; i < last; ++i) {

@@ -91,8 +91,9 @@ FUNC void open_child(REF(BvhNode) nodes, uint node, uint i, INOUT(NodeChildren) 
 // How many levels of the binary tree may be below the children of a node.
 FUNC uint tallest_below(uint level) { return 2u * (DEEPEST_RECORDS - 1u - level); }
 
-// Which child is opened next, the one with the most. Of those too small to fill half a node of eight one is left with
-// two children at most; no more than two are left so, as nothing else is opened before them.
+// Which child is opened next, the one with the most; below 0: it has no children of its own. Never NaN, so that a node
+// with room has leaves alone, on which the bounds of record_count rest. Of eight children, subtrees of two or three
+// leaves go first, so that two of them are left in a full node at most.
 FUNC float priority_of(NodeChildren children, uint i, float unit, uint tallest, uint width)
 {
     const float SMALL = 3.402823466e+38f;
@@ -100,7 +101,8 @@ FUNC float priority_of(NodeChildren children, uint i, float unit, uint tallest, 
     if (i >= children.count || (children.child[i] & LEAF_BIT) != 0u) return -1.0f;
     if (width == 8u && leaves_in(children.below[i]) < 4u) return SMALL;
     bool is_too_tall = height_in(children.below[i]) > tallest;
-    return is_too_tall ? TALL : half_area(children.box[i].lo, children.box[i].hi, unit);
+    float area = half_area(children.box[i].lo, children.box[i].hi, unit);
+    return is_too_tall ? TALL : (area > 0.0f ? area : 0.0f);
 }
 
 // Opens a child, if one has children itself.

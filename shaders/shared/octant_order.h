@@ -40,9 +40,13 @@ FUNC uint in_order_of_octant(uint slots, uint octant)
 // halves. Of an odd number the lower half is the larger one.
 FUNC uint upper_halves(NodeChildren children, uint slots, uint axis)
 {
+    const float LARGEST_FLOAT = uintBitsToFloat(0x7f7fffffu);
     float center[8];
     UNROLL for (uint i = 0u; i < 8u; i = i + 1u)
-        center[i] = is_active(children.box[i]) ? center_of(children.box[i])[axis] : 0.0f;
+    {
+        float middle = center_of(children.box[i])[axis];
+        center[i] = abs(middle) <= LARGEST_FLOAT ? middle : 0.0f; // NaN of a box without an end
+    }
     uint upper = 0u;
     UNROLL for (uint i = 0u; i < 8u; i = i + 1u)
     {

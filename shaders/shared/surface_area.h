@@ -49,7 +49,8 @@ struct NodeAreasArgs
 // Half the area of a box in squares of `unit`, which keeps it in range. Neither too small nor infinite: else 0.
 FUNC float half_area(vec3 lo, vec3 hi, float unit)
 {
-    if (!(lo.x <= hi.x) || !(unit > 1e-37f)) return 0.0f;
+    const float LARGEST_FLOAT = uintBitsToFloat(0x7f7fffffu);
+    if (!(lo.x <= hi.x) || !(unit > 1e-37f && unit <= LARGEST_FLOAT)) return 0.0f;
     PRECISE vec3 size = (hi - lo) / unit;
     PRECISE float area = size.x * size.y + size.y * size.z + size.z * size.x;
     return area;

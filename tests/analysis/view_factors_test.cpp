@@ -290,7 +290,10 @@ TEST_P(ViewFactorsTest, AnAcceleratorOfAnotherSceneIsRefused) {
     EXPECT_NE(refusal_of(finer).find("its instance 1 has 320 primitives and the scene's 2 triangles"),
               std::string::npos);
     const auto accel = make_accel();
-    push_scene(*accel, more);
+    push_scene(*accel, scene);
+    ViewFactors factors(*accel, faces, {});
+    accel->push(make_icosphere(0));
+    EXPECT_NE(test::error_of([&] { factors.rows(0, 1); }).find("it has 3 instances"), std::string::npos);
     const std::string refusal =
         test::error_of([&] { exchanges_of_pairs(*accel, scene, faces, {}, PairEstimator::area, nullptr); });
     EXPECT_NE(refusal.find("exchanges of pairs: it has 3 instances"), std::string::npos) << refusal;

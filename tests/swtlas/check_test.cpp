@@ -91,6 +91,42 @@ TEST(Compressed, OriginsKeepAnExponentAndLieCloseBelow) {
     }
 }
 
+TEST(CompressedCheck, RecordsBelowDifferentChildrenMayNotMix) {
+    const LeafBox box{vec3(0), vec3(1)};
+    NodeChildren children{};
+    children.count = 2;
+    children.box[0] = children.box[1] = box;
+    const auto node = [&](uint first) { return encode_node(children, given_order(3, 0), first, 4).first; };
+    const auto violations = [&](uint of_first, uint of_second, uint of_grandchild) {
+        std::vector<CompressedRecord> records = {node(1), node(of_first), node(of_second)};
+        for (uint leaf = 0, record = 3; record < 9; ++record)
+            records.push_back(record == of_first ? node(of_grandchild) : encode_instance(leaf++));
+        const std::vector<LeafBox> boxes(5, box);
+        return check_compressed({box.lo, box.hi, {}, 0, 5}, records, boxes).violations;
+    };
+    EXPECT_EQ(violations(3, 7, 5), std::vector<std::string>{});
+    EXPECT_EQ(violations(3, 5, 7), std::vector<std::string>{"records below the children of record 0 mix"});
+}
+
+// Their sizes are infinite, and the middles of some are none.
+TEST(Compressed, BoxesWithoutAnEndAreLeavesAsAnyOther) {
+    const vec3 most(3e38f), end(INFINITY);
+    for (const uint width : {4u, 8u})
+        for (const uint n : {2u, 4u, 8u, 16u, 100u}) {
+            std::vector<LeafBox> boxes(n, {-most, most});
+            boxes[n / 2] = {-end, end};
+            boxes[n - 1] = {vec3(0, -INFINITY, 0), vec3(1, INFINITY, 1)};
+            const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
+            const reference::Hierarchy tree = reference::hierarchy(boxes, codes, reference::sort(codes), false);
+            const std::vector<CompressedRecord> records = reference::records_of_instances(tree, n, width);
+            ASSERT_EQ(records.size(), record_count(n, width));
+            const CompressedCheck check = check_compressed({tree.box.lo, tree.box.hi, {}, 0, n}, records, boxes);
+            for (const std::string& violation : check.violations)
+                EXPECT_NE(violation.find("lies in planes"), std::string::npos)  // which end at 2^120
+                    << n << " leaves, nodes of " << width << ": " << violation;
+        }
+}
+
 class CompressedPaths : public testing::TestWithParam<uint> {};
 INSTANTIATE_TEST_SUITE_P(OfNodesOf, CompressedPaths, testing::Values(4u, 8u));
 
