@@ -77,7 +77,9 @@ TEST_P(ShortStacks, KeepTheLastEntriesAndSayThatTheyHaveLostOthers) {
             push_entry(stack, all.back(), ~all.back(), has_two_words);
         } else if (fetch_last(stack, has_two_words); stack.last != NO_STACK_ENTRY) {
             ASSERT_EQ(stack.last, all.back()) << turn;
-            if (has_two_words) ASSERT_EQ(stack.second, ~all.back()) << turn;
+            if (has_two_words) {
+                ASSERT_EQ(stack.second, ~all.back()) << turn;
+            }
             stack.last = NO_STACK_ENTRY;
             all.pop_back();
         } else {

@@ -146,7 +146,9 @@ TEST_P(CompressedPaths, AreNoDeeperThanAStackIsMadeFor) {
         tall.bvh_of_records(), reference::records_of_instances(tall.tree, tall.leaves, GetParam()), tall.boxes);
     EXPECT_TRUE(check.violations.empty()) << check.violations.front();
     EXPECT_LE(check.depth, DEEPEST_RECORDS);
-    if (GetParam() == 4) EXPECT_EQ(check.depth, DEEPEST_RECORDS);
+    if (GetParam() == 4) {
+        EXPECT_EQ(check.depth, DEEPEST_RECORDS);
+    }
 }
 
 TEST(TreeCheck, NamesWhatIsWrong) {
