@@ -92,11 +92,11 @@ std::vector<TreeFigures> measure_trees(Context& context, const BenchScene& scene
     for (const Layout layout : all_layouts)
         for (const BuildQuality quality : all_build_qualities) {
             TreeFigures figures = figures_of_tree(context, mesh, layout, quality);
-            reference::Scene twin(layout, quality);
-            twin.add_instance(twin.add_geometry(mesh), make_instance_record(Transform{}, {}));
-            twin.build();
+            reference::Scene on_host(layout, quality);
+            on_host.add_instance(on_host.add_geometry(mesh), make_instance_record(Transform{}, {}));
+            on_host.build();
             for (const RayKind kind : kinds) {
-                const Followed followed = follow(twin, rays[static_cast<std::size_t>(kind)], query_of(kind));
+                const Followed followed = follow(on_host, rays[static_cast<std::size_t>(kind)], query_of(kind));
                 figures.steps[kind] = followed.steps;
                 if (hits.emplace(kind, followed.hits).first->second != followed.hits)
                     fail("bench: layout ", name_of(layout), ", build quality ", name_of(quality), ": ", followed.hits,

@@ -30,8 +30,8 @@ struct TreeFigures {
     std::map<RayKind, RaySteps> steps;
 };
 
-// Of every layout and quality. Trees are built and measured by SwTlas; rays are followed by its serial twin, at level
-// watertight. Throws Error where the twin finds other hits.
+// Of every layout and quality. Trees are built and measured by SwTlas; rays are followed by its CPU reference, at level
+// watertight. Throws Error where trees differ in how many rays hit.
 std::vector<TreeFigures> measure_trees(Context& context, const BenchScene& scene, std::span<const RayKind> kinds,
                                        uint width, std::uint64_t seed);
 

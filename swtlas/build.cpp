@@ -236,9 +236,10 @@ void Builder::record_fine_order(Commands& commands, const BuildPlan& plan, const
     gather(batch.codes, sort(fine, plan.tree_bits));
 }
 
+// Lists of clusters lie in the half of the ping-pong that the sort has left.
 void Builder::record_hierarchy(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
                                bool leaves_are_sorted) const {
-    if (quality_ == BuildQuality::ploc) return record_ploc(commands, batch, sorted, leaves_are_sorted);
+    const RadixSort::Pairs& lists = batch.other(sorted);
     const HierarchyArgs args{batch.trees,
                              batch.blocks,
                              batch.boxes,
@@ -248,31 +249,17 @@ void Builder::record_hierarchy(Commands& commands, const Batch& batch, const Rad
                              sorted.values,
                              batch.meeting,
                              batch.centroids,
+                             lists.keys,
+                             lists.values,
                              batch.block_count,
                              leaves_are_sorted ? 1u : 0u,
                              run_,
                              0};
-    hierarchy_.dispatch(commands, args, std::uint64_t{batch.block_count} * (BUILD_GROUP / run_));
-}
-
-// Lists of clusters lie in the half of the ping-pong that the sort has left.
-void Builder::record_ploc(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
-                          bool leaves_are_sorted) const {
-    const RadixSort::Pairs& lists = batch.other(sorted);
-    const PlocArgs args{batch.trees,
-                        batch.blocks,
-                        batch.boxes,
-                        sorted.keys,
-                        batch.fine_codes,
-                        batch.crowding,
-                        sorted.values,
-                        batch.meeting,
-                        batch.centroids,
-                        lists.keys,
-                        lists.values,
-                        batch.block_count,
-                        leaves_are_sorted ? 1u : 0u};
-    ploc_.dispatch(commands, args, std::uint64_t{batch.block_count} * BUILD_GROUP);
+    const std::uint64_t leaves = std::uint64_t{batch.block_count} * BUILD_GROUP;
+    if (quality_ == BuildQuality::ploc)
+        ploc_.dispatch(commands, args, leaves);
+    else
+        hierarchy_.dispatch(commands, args, leaves / run_);
 }
 
 void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,

@@ -58,8 +58,6 @@ class Builder {
                            const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const;
     void record_hierarchy(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
                           bool leaves_are_sorted) const;
-    void record_ploc(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
-                     bool leaves_are_sorted) const;
     void record_links(Commands& commands, const Batch& batch) const;
     void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch,
                          const RadixSort::Pairs& sorted) const;
@@ -80,7 +78,7 @@ class Builder {
     Kernel<FineCodesArgs> fine_codes_;
     Kernel<GatherKeysArgs> gather_keys_;
     Kernel<HierarchyArgs> hierarchy_;
-    Kernel<PlocArgs> ploc_;
+    Kernel<HierarchyArgs> ploc_;
     Kernel<EncodeTrianglesArgs> encode_triangles_;
     Kernel<CollapseArgs> collapse_roots_, collapse_level_, collapse_subtrees_;
     Kernel<EncodeRecordsArgs> encode_records_;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What the stages of one build share: where in the scratch each array lies.
 #pragma once
 
 #include "swtlas/build.h"

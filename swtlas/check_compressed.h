@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What traversal and refits rely on in a tree of records, checked on the host.
 #pragma once
 
 #include <span>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The software accelerator: trees that compute shaders build and traverse.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// How much memory a build moves: what a time on a device is to be compared with.
 #pragma once
 
 #include "engine/accel/trace_desc.h"

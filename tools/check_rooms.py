@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks docs/architecture.md against the tree: each folder has its sentence under "## Rooms", and each sentence its folder;
-files that the page and its figures name exist, and so do functions that figures name.
+"""Checks docs/architecture.md against the tree: each folder has its sentence under "## Rooms", and each sentence its
+folder; files that the page and its figures name exist, and so do functions that figures name.
 Usage: check_rooms.py [ROOT]; prints what is wrong and exits with 1."""
 import os
 import pathlib

@@ -15,7 +15,8 @@ if ! git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
     exit 77
 fi
 if [[ "$(cat build/lint/tools 2>/dev/null)" != "${tools[*]}" ]]; then
-    if ! { python3 -m venv --clear build/lint && $bin/pip install --quiet --disable-pip-version-check "${tools[@]}"; }; then
+    if ! { python3 -m venv --clear build/lint &&
+        $bin/pip install --quiet --disable-pip-version-check "${tools[@]}"; }; then
         echo "lint: ${tools[*]} cannot be installed" >&2
         exit 77
     fi

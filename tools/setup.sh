@@ -15,7 +15,8 @@ demo_packages=(
     libglm-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev libopenexr-dev zlib1g-dev
 )
 packages=(
-    "${demo_packages[@]}" pkg-config python3-minimal python3-venv libvulkan-volk-dev vulkan-tools vulkan-validationlayers spirv-tools
+    "${demo_packages[@]}" pkg-config python3-minimal python3-venv libvulkan-volk-dev vulkan-tools
+    vulkan-validationlayers spirv-tools
     libgtest-dev libgmp-dev libeigen3-dev assimp-testmodels chromium-common graphviz
 )
 if [[ $(uname -m) == x86_64 ]]; then packages+=(libembree-dev); fi # twinray bench measures it, too

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The contract of both accelerators: geometry and instances by handles, a sync that builds, views that trace.
 #pragma once
 
 #include <map>

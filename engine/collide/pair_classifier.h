@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Pairs of triangles by how they touch, decided on the device and, where that cannot tell, exactly on the host.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Pairs of boxes that overlap, found on the device by a tree of boxes.
 #pragma once
 
 #include <string>

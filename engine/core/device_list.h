@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A list that kernels append to, made longer and filled again where it was too short.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What of a scene is near to points: closest points, signed distances, winding numbers, all within a distance.
 #pragma once
 
 #include <limits>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A picture by path tracing in waves of rays, with the error that is left in it.
 #pragma once
 
 #include <deque>

@@ -132,6 +132,7 @@ struct GatherKeysArgs
 const uint HIERARCHY_FAST = 0u;
 const uint HIERARCHY_HIGH = 1u; // with rotations
 
+// Of both kernels that make hierarchies.
 struct HierarchyArgs
 {
     REF(BuildTree) trees;
@@ -143,31 +144,16 @@ struct HierarchyArgs
     Uints order;
     Uints meeting;          // by inner node: the far end of the range that arrived first, NOTHING before
     REF(CentroidBounds) centroids;
+    Uints tops;             // of quality ploc: of clusters, by the place of the first leaf of their range
+    Uints last_leaves;      // and so their last leaves
     uint block_count;
     uint leaves_are_sorted; // 1: leaf references count sorted leaves; 0: they are the leaf's own index
-    uint run;               // leaves of an invocation, a divisor of BUILD_GROUP
+    uint run;               // leaves of an invocation but of quality ploc, a divisor of BUILD_GROUP
     uint reserved;
 };
 
-// The hierarchy by clusters, see ploc.h.
+// Of quality ploc, see ploc.h.
 const uint PLOC_GROUP = 32u; // invocations at most, as many as clusters that they merge
-
-struct PlocArgs
-{
-    REF(BuildTree) trees;
-    REF(BuildBlock) blocks;
-    REF(LeafBox) boxes;
-    Uints codes;            // in order
-    Uints fine_codes;       // by leaf
-    REF(Crowding) crowding;
-    Uints order;
-    Uints meeting;          // as in HierarchyArgs
-    REF(CentroidBounds) centroids;
-    Uints tops;             // of clusters
-    Uints last_leaves;      // of clusters
-    uint block_count;
-    uint leaves_are_sorted;
-};
 
 // Links the nodes of built trees of layout bvh2 to those above them.
 struct LinkNodesArgs

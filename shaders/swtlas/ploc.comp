@@ -11,7 +11,7 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
-layout(push_constant, scalar) uniform Push { PlocArgs args; };
+layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
 
 // As seen by all groups, not through caches of one.
 REFERENCE(NodeHalves, coherent, BvhHalf items[], 16)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""llvmpipe with vectors of 128, 256 and 512 bits, and kernels of both rows of KernelTuning: the same hits to the last bit.
+"""llvmpipe with vectors of 128, 256 and 512 bits, and kernels of both rows of KernelTuning: the same hits to the last
+bit.
 Usage: vector_widths_test.py TWINRAY"""
 import concurrent.futures
 import json
@@ -22,7 +23,8 @@ def hits_of(setting):
     file = here / f"{width}-{tuning}.jsonl"
     variables = {"LP_NATIVE_VECTOR_WIDTH": str(width), "TWINRAY_TUNING": tuning}
     command = [twinray, "bench", "--quiet", "--json", str(file), "--pipelines", "", "--device", "llvmpipe", "--scene",
-               "instances:12x80", "--width", "32", "--rounds", "1", "--levels", "fast,watertight,certified", "--contestants", "sw",
+               "instances:12x80", "--width", "32", "--rounds", "1", "--levels", "fast,watertight,certified",
+               "--contestants", "sw",
                "--no-embree", "--no-build"]
     run = subprocess.run(command, capture_output=True, text=True, env={**os.environ, **variables})
     assert run.returncode == 0, f"{variables}: {run.stdout}{run.stderr}"
@@ -38,6 +40,7 @@ with concurrent.futures.ThreadPoolExecutor(2) as workers:
 first = hits[settings[0]]
 assert len(first) >= 27 and all(first.values()) and len(set(first.values())) >= 4, first
 for setting in settings[1:]:
-    differing = sorted(what for what in first.keys() | hits[setting].keys() if first.get(what) != hits[setting].get(what))
+    everything = first.keys() | hits[setting].keys()
+    differing = sorted(what for what in everything if first.get(what) != hits[setting].get(what))
     assert not differing, f"{setting}: other hits than {settings[0]}: {differing}"
 print(f"{len(first)} traces have the same hits with vectors of 128, 256 and 512 bits and kernels of both rows")

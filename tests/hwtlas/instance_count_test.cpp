@@ -53,7 +53,7 @@ class Row {
 };
 
 TEST_P(InstanceCountTest, EachChangeOfItRebuilds) {
-    if (context().timestamp_period_ns() == 0) GTEST_SKIP() << "passes are told by their times";
+    if (context().timestamp_period_ns() == 0) TWINRAY_LACKS("ray_tracing", "passes are told by their times");
     Row row(accel());
     for (int i = 0; i < 3; ++i) row.push();
     row.move(0), row.check();
