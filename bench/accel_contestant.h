@@ -5,7 +5,7 @@
 
 #include "bench/contestant.h"
 #include "bench/stopwatch.h"
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 
 namespace twinray::bench {
 

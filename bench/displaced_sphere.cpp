@@ -5,13 +5,11 @@
 #include <cmath>
 #include <map>
 
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/draws.h"
 
 namespace twinray::bench {
 namespace {
-
-using glm::dvec3;
 
 // In [-1, 1), one for each point of the integer lattice.
 double lattice_value(int x, int y, int z) {
@@ -26,10 +24,10 @@ double faded(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 double noise(const dvec3& p) {
     const dvec3 cell = floor(p);
     const dvec3 way(faded(p.x - cell.x), faded(p.y - cell.y), faded(p.z - cell.z));
-    const glm::ivec3 corner(cell);
+    const ivec3 corner(cell);
     double sum = 0;
     for (int i = 0; i < 8; ++i) {
-        const glm::ivec3 step(i & 1, i >> 1 & 1, i >> 2);
+        const ivec3 step(i & 1, i >> 1 & 1, i >> 2);
         const double weight =
             (step.x ? way.x : 1 - way.x) * (step.y ? way.y : 1 - way.y) * (step.z ? way.z : 1 - way.z);
         sum += weight * lattice_value(corner.x + step.x, corner.y + step.y, corner.z + step.z);

@@ -6,7 +6,7 @@
 #include "bench/report.h"
 #include "bench/table.h"
 #include "engine/accel/scene_push.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace twinray::bench {
 namespace {

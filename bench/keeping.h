@@ -8,7 +8,7 @@
 
 #include "bench/measure.h"
 #include "bench/scenes.h"
-#include "engine/accel/memory.h"
+#include <twinray/abstract_accel.h>
 #include "engine/accel/trace_desc.h"
 
 namespace twinray::bench {

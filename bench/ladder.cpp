@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "engine/accel/trace_program.h"
 #include "bench/ladder.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 #include "bench/table.h"
 #include "engine/accel/scene_push.h"
 #include "ladder_program.trace_program.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace twinray::bench {
 namespace {

@@ -6,8 +6,7 @@
 #include "bench/accel_contestant.h"
 #include "bench/embree_contestant.h"
 #include "engine/core/error.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace twinray::bench {
 namespace {
@@ -40,7 +39,7 @@ class Maker {
     void add_hardware(Context& context) {
         if (!missing_for_hardware(context.facts()).empty()) return;
         for (const Level level : options_.levels) add_hardware(context, BuildOrder::automatic, level);
-        if (context.tuning().builds_in_input_order && context.facts().ray_query)
+        if (context.state().tuning().builds_in_input_order && context.facts().ray_query)
             add_hardware(context, BuildOrder::input, options_.levels.front());
     }
 

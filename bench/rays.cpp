@@ -8,7 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/draws.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace twinray::bench {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "bench/displaced_sphere.h"
 #include "engine/core/error.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "engine/verify/draws.h"
 
@@ -59,10 +60,10 @@ Transform random_placement(uint count, uint index) {
     Draws draws(seed, index);
     const glm::dmat3 rotation = random_rotation(draws);
     const double size = draws.between(0.6, 1.2) / std::cbrt(count);
-    const glm::dvec3 scale(size, size * draws.between(0.7, 1.3), size);
+    const dvec3 scale(size, size * draws.between(0.7, 1.3), size);
     Transform placement;
     for (int row = 0; row < 3; ++row) {
-        const glm::dvec3 linear = glm::dvec3(rotation[0][row], rotation[1][row], rotation[2][row]) * scale;
+        const dvec3 linear = dvec3(rotation[0][row], rotation[1][row], rotation[2][row]) * scale;
         placement.rows[static_cast<std::size_t>(row)] = vec4(vec3(linear), draws.between(-1, 1));
     }
     return placement;

@@ -11,24 +11,24 @@
 #include "swtlas/check_compressed.h"
 #include "swtlas/plan.h"
 #include "swtlas/reference_scene.h"
-#include "swtlas/sw_tlas.h"
+#include "swtlas/tree.h"
 
 namespace twinray::bench {
 namespace {
 
-std::size_t bytes_kept(const SwTlas::Tree& tree) {
+std::size_t bytes_kept(const BuiltTree& tree) {
     return tree.nodes.size() * sizeof(BvhNode) + tree.triangles.size() * sizeof(BvhTriangle) +
            tree.records.size() * sizeof(CompressedRecord);
 }
 
-std::size_t bytes_used(const SwTlas::Tree& tree) {
+std::size_t bytes_used(const BuiltTree& tree) {
     const auto used = static_cast<std::size_t>(
         std::ranges::count_if(tree.records, [](const CompressedRecord& record) { return !is_none(record); }));
     return tree.records.empty() ? bytes_kept(tree) : used * sizeof(CompressedRecord);
 }
 
 // As rays meet its boxes.
-double sah_of(const SwTlas::Tree& tree, const Mesh& mesh) {
+double sah_of(const BuiltTree& tree, const Mesh& mesh) {
     std::vector<LeafBox> boxes;
     if (tree.records.empty()) {
         for (const BvhTriangle& triangle : tree.triangles) boxes.push_back(box_of_triangle(triangle));
@@ -43,14 +43,14 @@ TreeFigures figures_of_tree(Context& context, const Mesh& mesh, Layout layout, B
     SwTlas accel(context, {.layout = layout, .build_quality = quality, .can_move = false});
     const AccelHandle handle = accel.push(mesh);
     accel.sync();
-    const SwTlas::Tree tree = accel.download_geometry(handle);
+    const BuiltTree tree = download_geometry(accel, handle);
     const auto triangles = static_cast<double>(std::max<std::size_t>(mesh.triangles.size(), 1));
     return {layout,
             quality,
             static_cast<double>(bytes_kept(tree)) / triangles,
             static_cast<double>(bytes_used(tree)) / triangles,
             sah_of(tree, mesh),
-            accel.end_point_overlap(handle),
+            end_point_overlap(accel, handle),
             {}};
 }
 

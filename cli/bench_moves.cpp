@@ -8,9 +8,8 @@
 
 #include "cli/bench_kinds.h"
 #include "engine/report/statistics.h"
-#include "engine/scene/shapes.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/geometry.h>
+#include <twinray/tlas.h>
 
 namespace twinray::cli {
 namespace {

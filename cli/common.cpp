@@ -13,8 +13,7 @@
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 #include "engine/scene/local_origin.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace twinray::cli {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cli/command/command.h"
-#include "engine/accel/accel_choice.h"
+#include <twinray/tlas.h>
 
 namespace twinray {
 class AbstractAccel;

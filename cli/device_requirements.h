@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-#include "engine/core/device_choice.h"
+#include <twinray/context.h>
 
 namespace twinray::cli {
 

@@ -8,8 +8,7 @@
 #include "cli/common.h"
 #include "cli/device_requirements.h"
 #include "engine/core/error.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace twinray::cli {
 namespace {

@@ -14,8 +14,6 @@
 namespace twinray::cli {
 namespace {
 
-using glm::dvec3;
-
 // A rectangle of points, row 0 on top.
 struct Slice {
     uint columns, rows;

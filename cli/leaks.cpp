@@ -18,7 +18,7 @@
 #include "engine/report/statistics.h"
 #include "engine/verify/inside_rays.h"
 #include "engine/scene/scene.h"
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 
 namespace twinray::cli {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray::cli {
 

@@ -11,8 +11,6 @@
 namespace twinray::cli {
 namespace {
 
-using glm::dvec3;
-
 constexpr std::uint64_t most_points = 1u << 28, most_cells = 640;
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace twinray::cli {
 
 // Of the scene, grown by a tenth of its largest side on all sides. Throws Error where there is no triangle.
 struct QueryBox {
-    glm::dvec3 lo, size;
+    dvec3 lo, size;
 };
 QueryBox query_box(const Scene& scene);
 
@@ -24,12 +24,12 @@ struct QueryPointOptions {
     bool is_asked_for() const { return !file.empty() || random > 0 || grid > 0; }
     // The last two in query_box(): of a grid, the centres of its cells, x fastest. None if nothing was asked for.
     // Throws Error naming the file and the line.
-    std::vector<glm::dvec3> make(const Scene& scene, std::uint64_t seed) const;
+    std::vector<dvec3> make(const Scene& scene, std::uint64_t seed) const;
 };
 // --points, --random, --grid: at most one of them.
 std::vector<Option> query_point_options(QueryPointOptions& options);
 
 // x,y,z a line, under a heading or none; from each `origin` is subtracted.
-std::vector<glm::dvec3> read_points(const std::filesystem::path& file, const dvec3& origin);
+std::vector<dvec3> read_points(const std::filesystem::path& file, const dvec3& origin);
 
 }  // namespace twinray::cli

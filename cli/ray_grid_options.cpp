@@ -85,7 +85,7 @@ std::string speed_text(std::uint64_t rays, double seconds) {
                 " million a second");
 }
 
-std::string text_of(const glm::dvec3& v) { return text("(", v.x, ", ", v.y, ", ", v.z, ")"); }
+std::string text_of(const dvec3& v) { return text("(", v.x, ", ", v.y, ", ", v.z, ")"); }
 
 CsvFile::CsvFile(const std::filesystem::path& file, const std::string& header) : file_(file), out_(file) {
     out_ << header << '\n';

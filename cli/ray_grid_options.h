@@ -49,7 +49,7 @@ double seconds_of(const std::function<void()>& work);
 // "1000000 rays in 0.5 s with copies, 2 million a second".
 std::string speed_text(std::uint64_t rays, double seconds);
 // "(1, 0, 0)".
-std::string text_of(const glm::dvec3& v);
+std::string text_of(const dvec3& v);
 
 // A table of numbers. Throws Error if it cannot be written.
 class CsvFile {

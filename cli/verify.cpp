@@ -15,7 +15,7 @@
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
 #include "engine/verify/aimed_rays.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 #include "twinray_version.h"
 
 namespace twinray::cli {

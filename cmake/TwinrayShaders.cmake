@@ -1,7 +1,7 @@
 # Compiles GLSL for twinray, in its own build and in that of a host that found it. Each function gives <target> headers,
 # to be included by name:
 #
-#   twinray_add_kernel(<target> <name> <file> [REFINED])   a compute kernel that includes twinray/query.glsl, once for each
+#   twinray_add_kernel(<target> <name> <file> [REFINED])   a compute kernel that includes twinray/glsl/query.glsl, once for each
 #                                                      accelerator, REFINED with the levels that need
 #                                                      float64: "<name>_sw.spv.h" with <name>_sw_spirv[], and
 #                                                      "<name>_hw.spv.h" with <name>_hw_spirv[]
@@ -11,12 +11,12 @@
 #                                                      of glslangValidator
 find_program(TWINRAY_GLSLANG_VALIDATOR glslangValidator DOC "compiler of GLSL to SPIR-V, of package glslang-tools")
 
-# Where "shaders/shared/..." and "twinray/query.glsl" are found: in the source tree, or beside the installed headers.
+# Where "twinray/glsl/query.glsl" is found, and "shaders/shared/..." which it needs: in the source tree, or installed.
 get_filename_component(twinray_root ${CMAKE_CURRENT_LIST_DIR}/.. ABSOLUTE)
-if(EXISTS ${twinray_root}/shaders/twinray/query.glsl)
-    set(TWINRAY_SHADER_FOLDERS ${twinray_root} ${twinray_root}/shaders CACHE INTERNAL "")
+if(EXISTS ${twinray_root}/include/twinray/glsl/query.glsl)
+    set(TWINRAY_SHADER_FOLDERS ${twinray_root} ${twinray_root}/include CACHE INTERNAL "")
 else()
-    set(TWINRAY_SHADER_FOLDERS ${TWINRAY_INCLUDE_DIR} ${TWINRAY_INCLUDE_DIR}/.. CACHE INTERNAL "")
+    set(TWINRAY_SHADER_FOLDERS ${TWINRAY_INCLUDE_DIR}/twinray/glsl ${TWINRAY_INCLUDE_DIR} CACHE INTERNAL "")
 endif()
 
 set(TWINRAY_SPIRV_HEADER_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/TwinraySpirvHeader.cmake CACHE INTERNAL "")
@@ -98,7 +98,7 @@ function(twinray_add_trace_program target name file)
 #include "@name@_rint.spv.h"
 #include "@name@_sw.spv.h"
 #include "@name@_sw_refined.spv.h"
-#include "engine/accel/trace_program.h"
+#include <twinray/trace.h>
 
 inline const twinray::TraceProgramCode @name@{"@name@",         @name@_sw_spirv,    @name@_sw_refined_spirv,
                                               @name@_hw_spirv, @name@_hw_refined_spirv,

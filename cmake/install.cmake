@@ -3,7 +3,7 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(headers_dir ${CMAKE_INSTALL_INCLUDEDIR}/twinray)
+set(headers_dir ${CMAKE_INSTALL_INCLUDEDIR})
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/twinray)
 set(generated_dir ${PROJECT_BINARY_DIR}/package)
 
@@ -21,16 +21,18 @@ if(TARGET twinray_cli)
     endif()
 endif()
 
-# Headers whose types come from a private dependency stay behind.
+# The public face alone; beside its GLSL what that needs.
+install(DIRECTORY include/twinray DESTINATION ${headers_dir})
+set(glsl_dir ${headers_dir}/twinray/glsl)
+install(DIRECTORY shaders/shared DESTINATION ${glsl_dir}/shaders)
+install(FILES shaders/engine/trace.comp DESTINATION ${glsl_dir}/shaders/engine)
 install(
-    DIRECTORY engine swtlas hwtlas
-    DESTINATION ${headers_dir}
+    DIRECTORY shaders/hwtlas
+    DESTINATION ${glsl_dir}/shaders
     FILES_MATCHING
-    PATTERN "*.h"
-    PATTERN "gltf_*.h" EXCLUDE
+    PATTERN "*.glsl"
+    PATTERN "trace.r*"
 )
-install(DIRECTORY shaders/shared shaders/hwtlas shaders/engine DESTINATION ${headers_dir}/shaders)
-install(DIRECTORY shaders/twinray/ DESTINATION ${headers_dir})
 
 # A static library leaves it to the host to link what it uses itself.
 set(find_link_only "")

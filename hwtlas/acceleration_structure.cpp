@@ -24,7 +24,7 @@ std::uint64_t scratch_alignment(const Context& context) {
     VkPhysicalDeviceProperties2 properties{};
     properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
     properties.pNext = &structure;
-    context.vk().vkGetPhysicalDeviceProperties2(context.physical_device(), &properties);
+    context.state().vk().vkGetPhysicalDeviceProperties2(context.physical_device(), &properties);
     return structure.minAccelerationStructureScratchOffsetAlignment;
 }
 
@@ -56,7 +56,7 @@ VkAccelerationStructureBuildSizesInfoKHR sizes_of(const Context& context, const 
     const VkAccelerationStructureBuildGeometryInfoKHR info = build_info(build);
     VkAccelerationStructureBuildSizesInfoKHR sizes{};
     sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
-    context.vk().vkGetAccelerationStructureBuildSizesKHR(
+    context.state().vk().vkGetAccelerationStructureBuildSizesKHR(
         context.device(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &build.primitive_count, &sizes);
     return sizes;
 }
@@ -72,7 +72,7 @@ AccelerationStructure::AccelerationStructure(Context& context, const std::string
                          .bytes = bytes,
                          .usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR,
                          .alignment = storage_alignment}) {
-    const VulkanFunctions& vk = context.vk();
+    const VulkanFunctions& vk = context.state().vk();
     VkAccelerationStructureCreateInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR;
     info.buffer = storage_.handle();
@@ -84,12 +84,12 @@ AccelerationStructure::AccelerationStructure(Context& context, const std::string
     address.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR;
     address.accelerationStructure = handle_;
     address_ = vk.vkGetAccelerationStructureDeviceAddressKHR(context.device(), &address);
-    context.set_name(VK_OBJECT_TYPE_ACCELERATION_STRUCTURE_KHR, reinterpret_cast<std::uint64_t>(handle_), name);
+    context.state().set_name(VK_OBJECT_TYPE_ACCELERATION_STRUCTURE_KHR, reinterpret_cast<std::uint64_t>(handle_), name);
 }
 
 AccelerationStructure::~AccelerationStructure() {
     if (!handle_) return;
-    context_->retire([&vk = context_->vk(), device = context_->device(), handle = handle_] {
+    context_->state().retire([&vk = context_->state().vk(), device = context_->device(), handle = handle_] {
         vk.vkDestroyAccelerationStructureKHR(device, handle, nullptr);
     });
 }
@@ -126,7 +126,7 @@ void record_builds(Commands& commands, const std::string& pass_name, std::span<c
     for (const StructureWork& one : work) primitives += one.build.primitive_count;
     const auto pass = commands.pass(pass_name);
     commands.count_work(primitives / primitives_of_group);
-    commands.context().vk().vkCmdBuildAccelerationStructuresKHR(
+    commands.context().state().vk().vkCmdBuildAccelerationStructuresKHR(
         commands.handle(), static_cast<std::uint32_t>(infos.size()), infos.data(), range_of.data());
 }
 

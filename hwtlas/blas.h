@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "engine/accel/geometry.h"
-#include "engine/accel/memory.h"
+#include <twinray/abstract_accel.h>
 #include "hwtlas/compaction.h"
 #include "hwtlas/hw_scene.h"
 

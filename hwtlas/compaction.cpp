@@ -12,7 +12,7 @@ CompactedSizes::CompactedSizes(Commands& commands, std::span<const AccelerationS
       bytes_(
           context_,
           {.name = "compacted sizes", .bytes = structures.size() * sizeof(std::uint64_t), .memory = Memory::readback}) {
-    const VulkanFunctions& vk = context_.vk();
+    const VulkanFunctions& vk = context_.state().vk();
     std::vector<VkAccelerationStructureKHR> handles;
     for (const AccelerationStructure* structure : structures) handles.push_back(structure->handle());
     const auto count = static_cast<std::uint32_t>(handles.size());
@@ -33,7 +33,7 @@ CompactedSizes::CompactedSizes(Commands& commands, std::span<const AccelerationS
 }
 
 CompactedSizes::~CompactedSizes() {
-    context_.retire([&vk = context_.vk(), device = context_.device(), queries = queries_] {
+    context_.state().retire([&vk = context_.state().vk(), device = context_.device(), queries = queries_] {
         vk.vkDestroyQueryPool(device, queries, nullptr);
     });
 }
@@ -57,7 +57,7 @@ AccelerationStructure record_compaction(Commands& commands, const std::string& n
     info.src = structure.handle();
     info.dst = compacted.handle();
     info.mode = VK_COPY_ACCELERATION_STRUCTURE_MODE_COMPACT_KHR;
-    commands.context().vk().vkCmdCopyAccelerationStructureKHR(commands.handle(), &info);
+    commands.context().state().vk().vkCmdCopyAccelerationStructureKHR(commands.handle(), &info);
     return compacted;
 }
 

@@ -1,56 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "hwtlas/hw_tlas.h"
+#include <twinray/tlas.h>
 
-#include <cstddef>
-#include <utility>
-
-#include "engine/core/error.h"
-#include "hwtlas/moving_blas.h"
-#include "hwtlas_trace_query.spv.h"
-#include "hwtlas_trace_query_refined.spv.h"
-#include "hwtlas/pipeline_program.h"
+#include "hwtlas/hw_backend.h"
 
 namespace twinray {
-namespace {
-
-Context& checked(Context& context) {
-    const std::vector<std::string> missing = missing_for_hardware(context.facts());
-    if (!missing.empty()) fail("HwTlas: device '", context.facts().name, "' lacks ", joined(missing));
-    return context;
-}
-
-}  // namespace
-
-struct HwTlas::HwBuiltGeometry : BuiltGeometry {
-    explicit HwBuiltGeometry(Blas&& built) : blas(std::move(built)) { bytes = blas.bytes(); }
-    Blas blas;
-
-    static const Blas* of(const BuiltGeometry* built) {
-        return built ? &static_cast<const HwBuiltGeometry*>(built)->blas : nullptr;
-    }
-};
-
-struct HwTlas::HwTopLevel : BuiltScene {
-    explicit HwTopLevel(Tlas&& built) : tlas(std::move(built)) {
-        address = tlas.scene.address();
-        bytes = tlas.bytes();
-        scratch_bytes = tlas.scratch_bytes();
-        capacity = tlas.capacity;
-    }
-    Tlas tlas;
-};
 
 HwTlas::HwTlas(Context& context, BuildOrder order, const AccelOptions& options)
-    : AbstractAccel(checked(context), "HwTlas", options),
-      reorder_(order == BuildOrder::morton ||
-               (order == BuildOrder::automatic && context.tuning().builds_in_input_order)),
-      moving_(std::make_unique<MovingBlasBuilder>(context, reorder_)),
-      tlas_builder_(context, reorder_) {
-    if (const Capability level = capability(feature_of(options.level)); level.support == Support::unsupported)
-        fail(this->name(), ": ", name_of(level.feature), " is unsupported: ", level.note);
-}
-
-HwTlas::~HwTlas() = default;
+    : AbstractAccel(std::make_unique<HwBackend>(context, order, options)) {}
 
 Capability HwTlas::capability_on(const DeviceFacts& device, Feature feature) {
     switch (feature) {
@@ -70,117 +26,7 @@ Capability HwTlas::capability_on(const DeviceFacts& device, Feature feature) {
     }
 }
 
-std::unique_ptr<TraceProgram> HwTlas::create_program(const TraceProgramCode* code, uint features) const {
-    if (!context().facts().ray_query) return std::make_unique<PipelineProgram>(context(), id(), features, code);
-    return std::make_unique<KernelProgram>(
-        context(), id(), features, code ? code->name : "hwtlas_trace",
-        code ? code->ray_query : std::span<const std::uint32_t>(hwtlas_trace_query_spirv),
-        code ? code->ray_query_refined : std::span<const std::uint32_t>(hwtlas_trace_query_refined_spirv), false);
-}
-
 const char* HwTlas::trace_path() const { return context().facts().ray_query ? "ray query" : "ray tracing pipeline"; }
-
-// Those whose vertices the host alone has.
-void HwTlas::build_still(Commands& commands, std::span<const GeometryInput> inputs, Built& built) {
-    std::vector<const Geometry*> geometries;
-    std::vector<std::size_t> places;
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-        if (inputs[i].mesh.indices.address) continue;
-        geometries.push_back(inputs[i].geometry);
-        places.push_back(i);
-    }
-    if (places.empty()) return;
-    std::vector<Blas> blases = build_blases(commands, geometries, {reorder_, scratch_budget()});
-    const auto pass = commands.pass("hwtlas geometry blocks");
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        commands.write(*inputs[places[i]].block, blases[i].block());
-        built[places[i]] = std::make_unique<HwBuiltGeometry>(std::move(blases[i]));
-    }
-}
-
-// Into the memory of `current` where it was made for meshes that move.
-MovingMesh HwTlas::prepare_moving(const GeometryInput& input, std::unique_ptr<BuiltGeometry>& built) const {
-    const auto count = static_cast<uint>(input.geometry->triangles.size());
-    const Blas* blas = HwBuiltGeometry::of(input.current);
-    if (!blas || !blas->can_update) {
-        built = std::make_unique<HwBuiltGeometry>(moving_->make(input.geometry->name, count));
-        blas = HwBuiltGeometry::of(built.get());
-    }
-    return {input.mesh, count, input.block, blas, input.cost};
-}
-
-HwTlas::Built HwTlas::build_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
-    Built built(inputs.size());
-    build_still(commands, inputs, built);
-    std::vector<MovingMesh> moving;
-    for (std::size_t i = 0; i < inputs.size(); ++i)
-        if (inputs[i].mesh.indices.address) moving.push_back(prepare_moving(inputs[i], built[i]));
-    moving_->record(commands, moving, BuildMode::build, scratch_budget());
-    return built;
-}
-
-// The first time, a structure that can be updated must be built: nothing is paid for that before.
-HwTlas::Built HwTlas::refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
-    Built built(inputs.size());
-    std::vector<MovingMesh> builds, updates;
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-        const MovingMesh mesh = prepare_moving(inputs[i], built[i]);
-        (built[i] ? builds : updates).push_back(mesh);
-    }
-    moving_->record(commands, builds, BuildMode::build, scratch_budget());
-    moving_->record(commands, updates, BuildMode::update, scratch_budget());
-    return built;
-}
-
-BuildBytes HwTlas::geometry_bytes(std::span<const GeometrySize> geometries) const {
-    return blas_bytes(context(), geometries, {reorder_, scratch_budget()});
-}
-
-BuildBytes HwTlas::scene_bytes(std::size_t count, std::size_t capacity) const {
-    return tlas_builder_.bytes(count, capacity);
-}
-
-bool HwTlas::can_compact(const BuiltGeometry& built, SyncPoint done) const {
-    const Blas& blas = *HwBuiltGeometry::of(&built);
-    const auto bytes = blas.compacted ? blas.compacted->of(blas.place, done) : std::nullopt;
-    return bytes && *bytes < blas.structure.bytes();
-}
-
-HwTlas::Built HwTlas::compact_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
-    Built built;
-    if (inputs.empty()) return built;
-    const auto pass = commands.pass("hwtlas_compact_blases");
-    for (const GeometryInput& input : inputs) {
-        const Blas& large = *HwBuiltGeometry::of(input.current);
-        Blas blas;
-        blas.kind = large.kind;
-        blas.bounds = large.bounds;
-        blas.structure = record_compaction(commands, "blas " + input.geometry->name, large.structure,
-                                           large.compacted->bytes_of(large.place));
-        blas.original = large.original;
-        commands.write(*input.block, blas.structure.address(), offsetof(HwGeometry, blas));
-        built.push_back(std::make_unique<HwBuiltGeometry>(std::move(blas)));
-    }
-    return built;
-}
-
-std::unique_ptr<AbstractAccel::BuiltScene> HwTlas::build_scene(Commands& commands, const SceneInput& input,
-                                                               const BuiltScene* current) {
-    const auto* level = static_cast<const HwTopLevel*>(current);
-    std::unique_ptr<HwTopLevel> made;
-    const std::size_t capacity = capacity_for(input.count, level ? level->tlas.capacity : 0);
-    if (!level || capacity != level->tlas.capacity) {
-        made = std::make_unique<HwTopLevel>(tlas_builder_.make(commands, capacity, input.refinement));
-        level = made.get();
-    }
-    tlas_builder_.record_build(commands, level->tlas, {input.records, input.count, input.bound, input.cost},
-                               input.will_move);
-    return made;
-}
-
-void HwTlas::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
-    tlas_builder_.record_update(commands, static_cast<const HwTopLevel&>(current).tlas,
-                                {input.records, input.count, input.bound, input.cost});
-}
+bool HwTlas::reorders() const { return backend().reorders(); }
 
 }  // namespace twinray

@@ -89,7 +89,7 @@ std::uint64_t MovingBlasBuilder::scratch_bytes(const MovingMesh& mesh, BuildMode
     const uint n = mesh.triangle_count;
     return scratch_bytes_of(context_, work_of(mesh, mode, {})) + corner_bytes(n) + sizeof(WorldBoundBits) +
            aligned(area_of(mesh, mode).bytes()) +
-           (reorder_ && mode == BuildMode::build ? SortScratch{0, n, context_.tuning()}.bytes() : 0);
+           (reorder_ && mode == BuildMode::build ? SortScratch{0, n, context_.state().tuning()}.bytes() : 0);
 }
 
 MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<const MovingMesh> meshes,
@@ -105,8 +105,8 @@ MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<
         batch.areas.push_back(area_of(mesh, mode));
         SurfaceArea::place(take(aligned(batch.areas.back().bytes())), std::span(&batch.areas.back(), 1));
         if (reorder_ && mode == BuildMode::build) {
-            const SortScratch sort{0, n, context_.tuning()};
-            batch.sorts.push_back({take(sort.bytes()), n, context_.tuning()});
+            const SortScratch sort{0, n, context_.state().tuning()};
+            batch.sorts.push_back({take(sort.bytes()), n, context_.state().tuning()});
         }
         const Floats corners{take(corner_bytes(n))};
         batch.work.push_back(work_of(mesh, mode, corners));

@@ -40,13 +40,13 @@ std::vector<uint> morton_order(std::span<const vec3> centers) {
         if (!is_last(center)) bounds.include(center);
     // One scale for all axes keeps the cells cubes: a long scene is halved along its length first. In float64, since
     // the extent of finite floats may exceed the largest float.
-    const glm::dvec3 lo(bounds.lo), size = glm::dvec3(bounds.hi) - lo;
+    const dvec3 lo(bounds.lo), size = dvec3(bounds.hi) - lo;
     const double extent = std::max({size.x, size.y, size.z});
     const double scale = extent > 0 ? cells_per_axis / extent : 0;
 
     std::vector<Keyed> keys(centers.size());
     for (std::size_t i = 0; i < centers.size(); ++i) {
-        const glm::dvec3 p = glm::dvec3(centers[i]) - lo;
+        const dvec3 p = dvec3(centers[i]) - lo;
         const std::uint64_t code = is_last(centers[i]) ? UINT64_MAX
                                                        : spread(cell(p.x, scale)) << 2 | spread(cell(p.y, scale)) << 1 |
                                                              spread(cell(p.z, scale));

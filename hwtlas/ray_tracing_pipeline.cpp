@@ -27,7 +27,7 @@ VkPhysicalDeviceRayTracingPipelinePropertiesKHR limits_of(const Context& context
     VkPhysicalDeviceProperties2 properties{};
     properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
     properties.pNext = &limits;
-    context.vk().vkGetPhysicalDeviceProperties2(context.physical_device(), &properties);
+    context.state().vk().vkGetPhysicalDeviceProperties2(context.physical_device(), &properties);
     limits.pNext = nullptr;
     return limits;
 }
@@ -38,7 +38,7 @@ class Stages {
     explicit Stages(Context& context) : context_(context) {}
     ~Stages() {
         for (const VkPipelineShaderStageCreateInfo& stage : stages_)
-            context_.vk().vkDestroyShaderModule(context_.device(), stage.module, nullptr);
+            context_.state().vk().vkDestroyShaderModule(context_.device(), stage.module, nullptr);
     }
     Stages(const Stages&) = delete;
     Stages& operator=(const Stages&) = delete;
@@ -102,17 +102,18 @@ RayTracingPipeline::RayTracingPipeline(Context& context, const RayTracingPipelin
         create_pipeline(desc);
         create_shader_binding_table();
     } catch (...) {
-        context.vk().vkDestroyPipeline(context.device(), pipeline_, nullptr);
-        context.vk().vkDestroyPipelineLayout(context.device(), layout_, nullptr);
+        context.state().vk().vkDestroyPipeline(context.device(), pipeline_, nullptr);
+        context.state().vk().vkDestroyPipelineLayout(context.device(), layout_, nullptr);
         throw;
     }
 }
 
 RayTracingPipeline::~RayTracingPipeline() {
-    context_.retire([&vk = context_.vk(), device = context_.device(), layout = layout_, pipeline = pipeline_] {
-        vk.vkDestroyPipeline(device, pipeline, nullptr);
-        vk.vkDestroyPipelineLayout(device, layout, nullptr);
-    });
+    context_.state().retire(
+        [&vk = context_.state().vk(), device = context_.device(), layout = layout_, pipeline = pipeline_] {
+            vk.vkDestroyPipeline(device, pipeline, nullptr);
+            vk.vkDestroyPipelineLayout(device, layout, nullptr);
+        });
 }
 
 void RayTracingPipeline::create_pipeline(const RayTracingPipelineDesc& desc) {
@@ -142,10 +143,10 @@ void RayTracingPipeline::create_pipeline(const RayTracingPipelineDesc& desc) {
     info.pGroups = groups.data();
     info.maxPipelineRayRecursionDepth = 1;
     info.layout = layout_;
-    const VkResult result = context_.vk().vkCreateRayTracingPipelinesKHR(
-        context_.device(), VK_NULL_HANDLE, context_.pipeline_cache(), 1, &info, nullptr, &pipeline_);
+    const VkResult result = context_.state().vk().vkCreateRayTracingPipelinesKHR(
+        context_.device(), VK_NULL_HANDLE, context_.state().pipeline_cache(), 1, &info, nullptr, &pipeline_);
     if (result != VK_SUCCESS) fail("ray tracing pipeline '", name_, "': ", name_of(result));
-    context_.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), name_);
+    context_.state().set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), name_);
 }
 
 // One record per group, each at a multiple of the base alignment, where regions may start; the hit records are one
@@ -155,8 +156,8 @@ void RayTracingPipeline::create_shader_binding_table() {
     const std::uint64_t alignment = std::max(limits_.shaderGroupBaseAlignment, limits_.shaderGroupHandleAlignment);
     record_bytes_ = (handle_bytes + alignment - 1) / alignment * alignment;
     std::vector<std::byte> handles(std::size_t{handle_bytes} * group_count);
-    vk_check(context_.vk().vkGetRayTracingShaderGroupHandlesKHR(context_.device(), pipeline_, 0, group_count,
-                                                                handles.size(), handles.data()),
+    vk_check(context_.state().vk().vkGetRayTracingShaderGroupHandlesKHR(context_.device(), pipeline_, 0, group_count,
+                                                                        handles.size(), handles.data()),
              "get the shader group handles");
     table_ = Buffer(context_, {.name = name_ + " shader binding table",
                                .bytes = record_bytes_ * group_count,
@@ -168,7 +169,7 @@ void RayTracingPipeline::create_shader_binding_table() {
 }
 
 void RayTracingPipeline::trace(Commands& commands, const TraceArgs& args) const {
-    const VulkanFunctions& vk = context_.vk();
+    const VulkanFunctions& vk = context_.state().vk();
     const auto region = [&](Group group) {
         return VkStridedDeviceAddressRegionKHR{table_.address() + group * record_bytes_, record_bytes_, record_bytes_};
     };

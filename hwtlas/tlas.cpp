@@ -58,7 +58,7 @@ TlasBuilder::Sizes TlasBuilder::sizes(std::size_t capacity) const {
 BuildBytes TlasBuilder::bytes(std::size_t count, std::size_t capacity) const {
     const Sizes sizes = this->sizes(capacity);
     const std::uint64_t sort = reorder_ && count ? 4 * ((count * sizeof(uint) + 15) / 16 * 16) +
-                                                       RadixSort::counter_bytes(count, context_.tuning())
+                                                       RadixSort::counter_bytes(count, context_.state().tuning())
                                                  : 0;
     const AreaWork areas{count, {}, {}, false};
     return {sizes.structure + (reorder_ ? capacity * sizeof(HwInstance) : 0) + sizeof(HwScene),
@@ -86,7 +86,7 @@ Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) cons
     if (!reorder_ || input.count == 0) return {};
     const std::uint64_t bytes = (std::uint64_t{input.count} * sizeof(uint) + 15) / 16 * 16;
     Buffer scratch(context_, {.name = "tlas sort scratch",
-                              .bytes = 4 * bytes + RadixSort::counter_bytes(input.count, context_.tuning())});
+                              .bytes = 4 * bytes + RadixSort::counter_bytes(input.count, context_.state().tuning())});
     const auto part = [&](std::uint64_t i) { return scratch.ref<uint>(i * bytes); };
     codes_.dispatch(commands, {input.records, input.bound, part(0), input.count, 0}, input.count);
     const RadixSort::Pairs sorted = sort_.record_places(commands, part(0), {part(0), part(1)}, {part(2), part(3)},

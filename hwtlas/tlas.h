@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "engine/accel/memory.h"
+#include <twinray/abstract_accel.h>
 #include "engine/core/kernel.h"
 #include "engine/core/radix_sort.h"
 #include "engine/accel/refinement.h"

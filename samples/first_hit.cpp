@@ -2,9 +2,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "engine/scene/shapes.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/geometry.h>
+#include <twinray/tlas.h>
 
 int main() try {
     using namespace twinray;

@@ -2,7 +2,7 @@
 // How much of the sky each cell of a horizontal grid sees: the part of cosine-weighted rays that meet nothing.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "twinray/query.glsl"
+#include "twinray/glsl/query.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
 {

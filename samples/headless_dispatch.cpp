@@ -10,8 +10,7 @@
 #include "engine/core/kernel.h"
 #include "headless_dispatch_hw.spv.h"
 #include "headless_dispatch_sw.spv.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 using namespace twinray;
 
@@ -30,8 +29,7 @@ std::vector<float> sky_view(AbstractAccel& accel, const Scene& scene, Args args)
     const AccelView view = accel.view();
     const std::span<const uint> modules[] = {headless_dispatch_hw_spirv, headless_dispatch_sw_spirv};
     const Kernel<Args> kernel(
-        context,
-        {.name = "sky view", .spirv = modules[accel.is_software()], .constants = {{FEATURES_CONSTANT, view.features}}});
+        context, {.name = "sky view", .spirv = modules[accel.is_software()], .constants = {view.features_constant()}});
     const Buffer result(context, {.name = "sky view", .bytes = args.count * sizeof(float)});
     args.accel = view.scene;
     args.sky_view = result.ref<float>();

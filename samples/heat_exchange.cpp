@@ -6,8 +6,9 @@
 #include "engine/accel/scene_push.h"
 #include "engine/analysis/radiosity.h"
 #include "engine/analysis/reciprocity.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace {
 

@@ -2,8 +2,8 @@
 // A picture of swatches, each of the material that its key names.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "twinray/multi_type_set.glsl"
-#include "twinray/textures.glsl"
+#include "twinray/glsl/multi_type_set.glsl"
+#include "twinray/glsl/textures.glsl"
 #include "samples/materials.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { SwatchArgs args; };

@@ -12,9 +12,9 @@
 #include "materials_images.spv.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "samples/materials.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 }  // namespace twinray
 
 using namespace twinray;

@@ -43,7 +43,7 @@ KernelDesc specialized(KernelDesc desc, uint value) {
 // Of which `own_size` invocations make a group, or as many as a vector has lanes (KernelTuning::vector_lanes): a power
 // of two, as those that add up in halves need, and no more than have a share of a group of areas.
 KernelDesc grouped(const Context& context, KernelDesc desc, uint own_size, uint most = AREA_GROUP) {
-    const uint lanes = context.tuning().vector_lanes;
+    const uint lanes = context.state().tuning().vector_lanes;
     desc.group_size = lanes ? std::clamp(lanes, CPU_GROUP, most) : own_size;
     desc.constants.push_back({GROUP_SIZE_CONSTANT, desc.group_size});
     return desc;
@@ -102,7 +102,7 @@ Builder::Builder(Context& context, const AccelOptions& options) : Builder(contex
 Builder::Builder(Context& context, const AccelOptions& options, const Needs& needs)
     : layout_(options.layout),
       quality_(options.build_quality),
-      run_(context.tuning().leaves_per_invocation),
+      run_(context.state().tuning().leaves_per_invocation),
       sort_(context),
       areas_(context),
       leaves_triangles_(context, leaves_stage(context, "swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),

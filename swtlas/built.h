@@ -3,11 +3,11 @@
 #pragma once
 
 #include "swtlas/plan.h"
-#include "swtlas/sw_tlas.h"
+#include "swtlas/sw_backend.h"
 
 namespace twinray {
 
-struct SwTlas::SwBuiltGeometry : BuiltGeometry {
+struct SwBackend::SwBuiltGeometry : BuiltGeometry {
     GeometryLayout layout;
     Buffer buffer;
 

@@ -14,7 +14,7 @@ bool same(vec3 a, vec3 b) { return a == b; }
 
 double half_area(const LeafBox& box) {
     if (!is_active(box)) return 0;
-    const glm::dvec3 size = glm::dvec3(box.hi) - glm::dvec3(box.lo);
+    const dvec3 size = dvec3(box.hi) - dvec3(box.lo);
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 

@@ -10,23 +10,23 @@ namespace {
 
 constexpr double least_margin = 1.0 / 512;  // of a cell: half of what is added, the rest may round
 
-double half_area(glm::dvec3 lo, glm::dvec3 hi) {
-    const glm::dvec3 size = hi - lo;
+double half_area(dvec3 lo, dvec3 hi) {
+    const dvec3 size = hi - lo;
     return lo.x <= hi.x ? size.x * size.y + size.y * size.z + size.z * size.x : 0;
 }
 
 // The planes of the boxes of a node's children, exactly.
 struct Planes {
-    glm::dvec3 lo, hi;
-    glm::dvec3 cell;
+    dvec3 lo, hi;
+    dvec3 cell;
 };
 
 Planes planes_of(const CompressedRecord& node, const CompressedRecord& half_node, uint slot) {
     const auto plane = [&](uint word) { return static_cast<double>(word >> 8 * (slot & 3) & 0xff); };
-    const glm::dvec3 origin(grid_origin(node));
-    const glm::dvec3 cell(grid_cell(node));
-    return {origin + cell * glm::dvec3(plane(half_node.b.x), plane(half_node.b.z), plane(half_node.c.x)),
-            origin + cell * glm::dvec3(plane(half_node.b.y), plane(half_node.b.w), plane(half_node.c.y)), cell};
+    const dvec3 origin(grid_origin(node));
+    const dvec3 cell(grid_cell(node));
+    return {origin + cell * dvec3(plane(half_node.b.x), plane(half_node.b.z), plane(half_node.c.x)),
+            origin + cell * dvec3(plane(half_node.b.y), plane(half_node.b.w), plane(half_node.c.y)), cell};
 }
 
 bool are_axes(uint axes) {

@@ -6,7 +6,7 @@
 
 namespace twinray {
 
-double SwTlas::end_point_overlap(AccelHandle handle) const {
+double SwBackend::end_point_overlap(AccelHandle handle) const {
     const auto& built = static_cast<const SwBuiltGeometry&>(built_geometry(handle));
     if (geometry(handle).kind == GEOMETRY_BOXES)
         fail("SwTlas: end_point_overlap: the geometry has boxes, not triangles");

@@ -4,15 +4,14 @@
 #include "engine/scene/bytes.h"
 #include "swtlas/built.h"
 #include "swtlas/saved.h"
-#include "swtlas/sw_tlas.h"
 
 namespace twinray {
 
-void SwTlas::save(const std::filesystem::path& file) const {
+void SwBackend::save(const std::filesystem::path& file) const {
     check_synced("save");
     std::vector<SavedGeometry> geometries;
     for (const AccelHandle handle : handles()) {
-        Tree tree = download_geometry(handle);
+        BuiltTree tree = download_geometry(handle);
         tree.bvh.nodes = {};
         std::vector<InstanceRecord> instances;
         for (const InstanceState& state : get_instances(handle))
@@ -26,17 +25,7 @@ void SwTlas::save(const std::filesystem::path& file) const {
     write_file(file, pieces);
 }
 
-SwTlas::Loaded SwTlas::load(Context& context, const std::filesystem::path& file) {
-    DecodedSave saved = decode_save(read_file(file), file.string());
-    Loaded loaded{std::make_unique<SwTlas>(context, AccelOptions{.layout = saved.layout}), {}};
-    Commands commands(context, "SwTlas load");
-    for (SavedGeometry& geometry : saved.geometries)
-        loaded.handles.push_back(loaded.accel->push_saved(commands, std::move(geometry)));
-    commands.submit();
-    return loaded;
-}
-
-AccelHandle SwTlas::push_saved(Commands& commands, SavedGeometry&& saved) {
+AccelHandle SwBackend::push_saved(Commands& commands, SavedGeometry&& saved) {
     Buffer block(context(), {.name = "geometry block", .bytes = geometry_block_bytes});
     auto built = std::make_unique<SwBuiltGeometry>(context(), saved.mesh, options().layout);
     saved.bvh.nodes = built->nodes();

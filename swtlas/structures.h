@@ -17,9 +17,9 @@ using glm::findMSB;
 struct BvhHalf;
 using NodeHalves = Ref<BvhHalf>;
 
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/short_stack_size.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // The slots of a traversal's stack, of the thread that traces.
 inline std::array<uint, STACK_SIZE>& stack_slots() {
@@ -39,7 +39,7 @@ inline TraversalSteps& traversal_steps() {
     return steps;
 }
 
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/build.h"
 #include "shaders/shared/collapse.h"
 #include "shaders/shared/end_point_overlap.h"
@@ -49,7 +49,7 @@ inline TraversalSteps& traversal_steps() {
 #include "shaders/shared/rotate.h"
 #include "shaders/shared/splits.h"
 #include "shaders/shared/traverse.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhHalf) == 32 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 96 &&
               sizeof(CompressedRecord) == 40);

@@ -1,66 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
-#include <algorithm>
-#include <cmath>
-
-#include "engine/accel/batches.h"
-#include "engine/core/error.h"
-#include "swtlas/built.h"
-#include "swtlas_trace.spv.h"
-#include "swtlas_trace_int64.spv.h"
-#include "swtlas_trace_refined.spv.h"
+#include "engine/core/files.h"
+#include "swtlas/saved.h"
+#include "swtlas/sw_backend.h"
 
 namespace twinray {
-namespace {
-
-// Builds mark a record that no node leads to by one word; with 0 in the others, equal trees are equal bytes.
-std::vector<CompressedRecord> with_clear_gaps(std::vector<CompressedRecord> records) {
-    for (CompressedRecord& record : records)
-        if (is_none(record)) record = no_record();
-    return records;
-}
-
-Bvh empty_bvh(std::uint64_t nodes) { return {vec3(INFINITY), vec3(-INFINITY), {nodes}, NOTHING, 0}; }
-
-std::span<const std::uint32_t> own_module(const KernelTuning& tuning) {
-    if (tuning.has_wide_loads) return swtlas_trace_int64_spirv;
-    return swtlas_trace_spirv;
-}
-
-}  // namespace
-
-struct SwTlas::Batch {
-    std::span<const GeometryInput> inputs;
-    std::vector<uint> counts = {};
-    BuildPlan plan = {};
-
-    // Of input i, over a mesh on the device.
-    BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const DeviceMesh& mesh) const {
-        return {plan.first[i],  counts[i],          mesh.positions,  mesh.indices, {inputs[i].block->address()},
-                target.nodes(), target.triangles(), target.records()};
-    }
-};
-
-struct SwTlas::SwBuiltScene : BuiltScene {
-    Buffer buffer;
-    SceneLayout layout;
-
-    BuildTree tree(uint count) const {
-        BuildTree tree{};
-        tree.count = count;
-        tree.bvh = {address};
-        tree.nodes = nodes();
-        tree.records = records();
-        return tree;
-    }
-    Ref<BvhNode> nodes() const { return {layout.node_count ? address + layout.nodes : 0}; }
-    Ref<SwInstance> instances() const { return {address + layout.instances}; }
-    Ref<CompressedRecord> records() const { return {layout.record_count ? address + layout.records : 0}; }
-};
 
 SwTlas::SwTlas(Context& context, const AccelOptions& options)
-    : AbstractAccel(context, "SwTlas", options), builder_(context, options) {}
+    : AbstractAccel(std::make_unique<SwBackend>(context, options)) {}
+
+SwBackend& SwTlas::backend() const { return static_cast<SwBackend&>(AbstractAccel::backend()); }
 
 Capability SwTlas::capability_on(const DeviceFacts& device, Feature feature) {
     switch (feature) {
@@ -73,191 +23,22 @@ Capability SwTlas::capability_on(const DeviceFacts& device, Feature feature) {
     }
 }
 
-// Bytes of what must be uploaded to build from it.
-std::uint64_t SwTlas::source_bytes(const GeometryInput& input) {
-    if (input.mesh.indices.address) return 0;
-    return std::span(input.geometry->positions).size_bytes() + std::span(input.geometry->triangles).size_bytes() +
-           std::span(input.geometry->boxes).size_bytes();
+void SwTlas::save(const std::filesystem::path& file) const { backend().save(file); }
+
+SwTlas::Loaded SwTlas::load(Context& context, const std::filesystem::path& file) {
+    DecodedSave saved = decode_save(read_file(file), file.string());
+    Loaded loaded{std::make_unique<SwTlas>(context, AccelOptions{.layout = saved.layout}), {}};
+    Commands commands(context, "SwTlas load");
+    for (SavedGeometry& geometry : saved.geometries)
+        loaded.handles.push_back(loaded.accel->backend().push_saved(commands, std::move(geometry)));
+    commands.submit();
+    return loaded;
 }
 
-// Calls `record` for one batch after the other, all in the same scratch: that of the build, then the sources.
-void SwTlas::record_batches(Commands& commands, std::span<const GeometryInput> inputs,
-                            const std::function<void(const Batch&, const Buffer& scratch)>& record) {
-    std::vector<std::uint64_t> shares;
-    for (const GeometryInput& input : inputs)
-        shares.push_back(
-            scratch_share(static_cast<uint>(input.geometry->primitive_count()), options().layout, context().tuning()) +
-            source_bytes(input));
-    const Batches batches = cut_into_batches(shares, scratch_budget());
-    Buffer scratch(context(),
-                   {.name = "swtlas geometry scratch", .bytes = batches.scratch_bytes, .alignment = cache_line_bytes});
-    for (const Batches::Run& run : batches.runs) {
-        Batch batch{inputs.subspan(run.first, run.count)};
-        for (const GeometryInput& input : batch.inputs)
-            batch.counts.push_back(static_cast<uint>(input.geometry->primitive_count()));
-        batch.plan = plan_build(batch.counts, options().layout, context().tuning());
-        record(batch, scratch);
-    }
-    commands.keep(std::move(scratch));
+BuiltTree download_geometry(const SwTlas& accel, AccelHandle handle) {
+    return accel.backend().download_geometry(handle);
 }
-
-std::vector<Builder::Measured> SwTlas::measured(const Batch& batch, std::span<const BuildTree> trees) {
-    std::vector<Builder::Measured> wanted;
-    for (std::size_t i = 0; i < trees.size(); ++i)
-        if (const CostTarget& cost = batch.inputs[i].cost; cost.result.address)
-            wanted.push_back({trees[i].bvh, trees[i].records, trees[i].count, cost});
-    return wanted;
-}
-
-// Where the meshes lie on the device; those that are not there yet are uploaded.
-std::vector<DeviceMesh> SwTlas::record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch) {
-    std::vector<Commands::Piece> pieces;
-    std::uint64_t next = batch.plan.scratch.bytes;
-    const auto place = [&](std::span<const std::byte> data) {
-        pieces.push_back({next, data});
-        next += data.size();
-        return scratch.address() + pieces.back().offset;
-    };
-    std::vector<DeviceMesh> meshes;
-    for (const GeometryInput& input : batch.inputs) {
-        meshes.push_back(input.mesh);
-        if (input.mesh.indices.address) continue;
-        const Geometry& geometry = *input.geometry;
-        if (geometry.kind == GEOMETRY_BOXES) {
-            meshes.back().positions.address = place(std::as_bytes(std::span(geometry.boxes)));
-            continue;
-        }
-        meshes.back().positions.address = place(std::as_bytes(std::span(geometry.positions)));
-        meshes.back().indices.address = place(std::as_bytes(std::span(geometry.triangles)));
-    }
-    commands.upload_pieces(scratch, pieces);
-    return meshes;
-}
-
-void SwTlas::record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built) {
-    std::vector<BuildTree> trees;
-    {
-        const auto pass = commands.pass("swtlas geometry input");
-        const std::vector<DeviceMesh> meshes = record_meshes(commands, batch, scratch);
-        for (std::size_t i = 0; i < batch.inputs.size(); ++i) {
-            const GeometryInput& input = batch.inputs[i];
-            std::unique_ptr<SwBuiltGeometry> made;
-            if (!input.current) made = std::make_unique<SwBuiltGeometry>(context(), *input.geometry, options().layout);
-            const auto& target = made ? *made : static_cast<const SwBuiltGeometry&>(*input.current);
-            const SwGeometry block{empty_bvh(target.nodes().address), target.triangles(), target.records(),
-                                   input.geometry->kind, 0};
-            commands.write(*input.block, block);
-            trees.push_back(batch.tree(i, target, meshes[i]));
-            built.push_back(std::move(made));
-        }
-    }
-    builder_.record_triangles(commands, batch.plan, trees, scratch);
-    builder_.record_costs(commands, measured(batch, trees), true);
-}
-
-SwTlas::Built SwTlas::build_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
-    Built built;
-    record_batches(commands, inputs,
-                   [&](const Batch& batch, const Buffer& scratch) { record_build(commands, batch, scratch, built); });
-    return built;
-}
-
-SwTlas::Built SwTlas::refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) {
-    record_batches(commands, inputs, [&](const Batch& batch, const Buffer& scratch) {
-        std::vector<BuildTree> trees;
-        for (std::size_t i = 0; i < batch.inputs.size(); ++i)
-            trees.push_back(
-                batch.tree(i, static_cast<const SwBuiltGeometry&>(*batch.inputs[i].current), batch.inputs[i].mesh));
-        std::vector<Builder::Measured> as_built = measured(batch, trees);
-        std::erase_if(as_built, [](const Builder::Measured& tree) { return !tree.target.is_first; });
-        builder_.record_costs(commands, as_built, true);
-        builder_.record_triangle_refit(commands, batch.plan, trees, scratch);
-        builder_.record_costs(commands, measured(batch, trees), false);
-    });
-    return Built(inputs.size());
-}
-
-std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& commands, const SceneInput& input,
-                                                               const BuiltScene* current) {
-    const auto* scene = static_cast<const SwBuiltScene*>(current);
-    std::unique_ptr<SwBuiltScene> made;
-    if (const std::size_t capacity = capacity_for(input.count, scene ? scene->capacity : 0);
-        !scene || capacity != scene->capacity) {
-        made = std::make_unique<SwBuiltScene>();
-        made->capacity = capacity;
-        made->layout = layout_scene(static_cast<uint>(capacity), options().layout);
-        made->buffer =
-            Buffer(context(), {.name = "SwTlas scene", .bytes = made->layout.bytes, .alignment = cache_line_bytes});
-        made->address = made->buffer.address();
-        made->bytes = made->buffer.bytes();
-        scene = made.get();
-    }
-    const SwScene header{empty_bvh(scene->nodes().address), scene->records(), scene->instances(), input.count,
-                         input.refinement.address};
-    {
-        const auto pass = commands.pass("swtlas scene input");
-        commands.write(scene->buffer, header);
-    }
-    builder_.record_instances(commands, plan_build(std::span(&input.count, 1), options().layout, context().tuning()),
-                              scene->tree(input.count), input.records, scene->instances());
-    const Builder::Measured measured{{scene->address}, scene->records(), input.count, input.cost};
-    builder_.record_costs(commands, std::span(&measured, 1), true);
-    return made;
-}
-
-BuildBytes SwTlas::geometry_bytes(std::span<const GeometrySize> geometries) const {
-    BuildBytes bytes;
-    std::vector<std::uint64_t> shares;
-    for (const GeometrySize& size : geometries) {
-        const auto count = static_cast<uint>(size.triangles);
-        bytes.structures += layout_geometry(count, options().layout).bytes;
-        shares.push_back(scratch_share(count, options().layout, context().tuning()) + size.vertices * sizeof(vec3) +
-                         size.triangles * sizeof(uvec3));
-    }
-    bytes.scratch = cut_into_batches(shares, scratch_budget()).scratch_bytes;
-    return bytes;
-}
-
-BuildBytes SwTlas::scene_bytes(std::size_t count, std::size_t capacity) const {
-    const auto leaves = static_cast<uint>(count);
-    return {layout_scene(static_cast<uint>(capacity), options().layout).bytes,
-            plan_build(std::span(&leaves, 1), options().layout, context().tuning()).scratch.bytes +
-                Builder::cost_bytes(leaves, options().layout)};
-}
-
-void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
-    const auto& scene = static_cast<const SwBuiltScene&>(current);
-    builder_.record_refit(commands, plan_build(std::span(&input.count, 1), options().layout, context().tuning()),
-                          scene.tree(input.count), input.records, scene.instances());
-    const Builder::Measured measured{{scene.address}, scene.records(), input.count, input.cost};
-    builder_.record_costs(commands, std::span(&measured, 1), false);
-}
-
-std::unique_ptr<TraceProgram> SwTlas::create_program(const TraceProgramCode* code, uint features) const {
-    return std::make_unique<KernelProgram>(
-        context(), id(), features, code ? code->name : "swtlas_trace",
-        code ? code->software : own_module(context().tuning()),
-        code ? code->software_refined : std::span<const std::uint32_t>(swtlas_trace_refined_spirv), true);
-}
-
-SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {
-    const auto& built = static_cast<const SwBuiltGeometry&>(built_geometry(handle));
-    const Bvh bvh = download<SwGeometry>(context(), geometry_block(handle), 1).front().bvh;
-    const GeometryLayout& layout = built.layout;
-    return {bvh, download<BvhNode>(context(), built.buffer, layout.node_count, layout.nodes),
-            download<BvhTriangle>(context(), built.buffer, layout.triangle_count, layout.triangles),
-            with_clear_gaps(download<CompressedRecord>(context(), built.buffer, layout.record_count, layout.records))};
-}
-
-SwTlas::Tree SwTlas::download_scene() const {
-    const auto& built = static_cast<const SwBuiltScene&>(built_scene());
-    const Bvh bvh = download<SwScene>(context(), built.buffer, 1).front().bvh;
-    const SceneLayout of_them = layout_scene(bvh.leaf_count, options().layout);
-    return {bvh,
-            download<BvhNode>(context(), built.buffer, of_them.node_count, built.layout.nodes),
-            {},
-            with_clear_gaps(
-                download<CompressedRecord>(context(), built.buffer, of_them.record_count, built.layout.records))};
-}
+BuiltTree download_scene(const SwTlas& accel) { return accel.backend().download_scene(); }
+double end_point_overlap(const SwTlas& accel, AccelHandle handle) { return accel.backend().end_point_overlap(handle); }
 
 }  // namespace twinray

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Checks an installed folder of headers: that each finds what it includes, that none needs more of other libraries than
-# Vulkan and GLM, and that a kernel of a host finds the shared GLSL.
-#   tools/check_headers.sh CXX GLSLANG_VALIDATOR FOLDER
+# Checks the public face: that each header compiles alone, that none needs more of other projects than Vulkan, and that
+# a kernel of an application finds the GLSL.
+#   tools/check_headers.sh CXX GLSLANG_VALIDATOR FOLDER     FOLDER: where twinray/twinray.h is
 set -euo pipefail
 
 if (($# != 3)); then
@@ -13,28 +13,32 @@ cxx=$1 glslang=$2 folder=$(realpath "$3")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# The bridge's two halves and what stands between them are parts of other headers; the adapter goes with the host's
-# own Vulkan Memory Allocator.
-mapfile -t headers < <(cd "$folder" && find engine swtlas hwtlas -name '*.h' ! -name 'bridge_*.h' ! -name vma_adapter.h | sort)
-printf '#include "%s"\n' "${headers[@]}" >"$work/all.cpp"
-"$cxx" -std=c++20 -I"$folder" -fsyntax-only -Wall -Wextra -Werror -MD -MF "$work/all.d" "$work/all.cpp"
+# The adapter goes with the application's own Vulkan Memory Allocator.
+mapfile -t headers < <(cd "$folder" && ls twinray/*.h | grep -v vma_adapter)
+for header in "${headers[@]}"; do
+    echo "#include <$header>" | "$cxx" -std=c++20 -I"$folder" -fsyntax-only -Wall -Wextra -Wconversion -Werror \
+        -MD -MF "$work/$(basename "$header").d" -x c++ -
+done
 
-private='/(vk_mem_alloc|stb_[a-z_]*|tiny_gltf[a-z_0-9]*|zlib|gmp(xx)?)\.h|/(OpenEXR|Imath|nlohmann)/'
-if leaks=$(grep -oE "[^ ]*($private)[^ ]*" "$work/all.d"); then
-    printf '%s\n' "$leaks"
-    echo "check_headers: the private headers above are reached from public ones" >&2
+# What is neither ours, Vulkan's, the compiler's nor the C library's.
+others=$(cat "$work"/*.d | tr -d '\\' | tr ' ' '\n' | grep '^/' | sort -u |
+    grep -vE "^$folder/|/vulkan/|/vk_video/|/c\+\+/|/lib/(gcc|llvm|clang)|^/usr/include/([a-z0-9_-]+-linux-gnu/|sys/|bits/|asm[a-z-]*/|linux/|gnu/)?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*\.h$" || true)
+others+=$(cat "$work"/*.d | tr ' ' '\n' | grep -E '/(glm|nlohmann|CLI|OpenEXR|Imath|eigen3|Eigen)/|(vk_mem_alloc|volk|stb_[a-z_]*|tiny_gltf[a-z_0-9]*|zlib|gmp(xx)?)\.h' || true)
+if [[ -n $others ]]; then
+    printf '%s\n' "$others" >&2
+    echo "check_headers: the headers above, of other projects, are reached from public ones" >&2
     exit 1
 fi
 
 cat >"$work/kernel.comp" <<'GLSL'
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "twinray/query.glsl"
-#include "twinray/spawn.glsl"
-#include "twinray/multi_type_set.glsl"
-#include "twinray/soa.glsl"
-#include "twinray/textures.glsl"
-#include "twinray/unrolled.glsl"
+#include "twinray/glsl/query.glsl"
+#include "twinray/glsl/spawn.glsl"
+#include "twinray/glsl/multi_type_set.glsl"
+#include "twinray/glsl/soa.glsl"
+#include "twinray/glsl/textures.glsl"
+#include "twinray/glsl/unrolled.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };
 
@@ -49,7 +53,7 @@ void main()
 }
 GLSL
 for accel in SW HW; do
-    "$glslang" --quiet -V --target-env vulkan1.2 -DTWINRAY_$accel -I"$folder" -I"$folder/.." \
+    "$glslang" --quiet -V --target-env vulkan1.2 -DTWINRAY_$accel -I"$folder" -I"$folder/twinray/glsl" \
         -o "$work/kernel.spv" "$work/kernel.comp"
 done
-echo "check_headers: ${#headers[@]} headers and a kernel need nothing private"
+echo "check_headers: ${#headers[@]} headers, each alone, and a kernel need nothing but Vulkan"

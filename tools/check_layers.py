@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Checks who includes whom, and how many headers a host compiles behind the few that it includes.
+"""Checks who includes whom, how large the public face in include/ is, and how much of the project is behind a header.
 Usage: check_layers.py [ROOT]; prints file:line of each violation and exits with 1."""
 import os
 import re
@@ -9,7 +9,8 @@ import sys
 BASE = ["engine/core", "engine/scene", "engine/accel", "engine/report"]
 ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/picture", "engine/points", "engine/verify"]
 PRODUCT = ENGINE + ["swtlas", "hwtlas"]
-SEES = {  # besides itself and shaders/shared
+SEES = {  # besides itself, include and shaders/shared
+    "include": ["shaders/hwtlas"],  # the public face; its GLSL has parts there and in shaders/shared
     "engine": ENGINE,  # headers that gather the others
     "engine/core": [], "engine/scene": BASE[:1], "engine/accel": BASE[:2], "engine/report": BASE[:1],
     "engine/analysis": BASE, "engine/collide": BASE, "engine/picture": BASE, "engine/verify": BASE,
@@ -20,16 +21,22 @@ SEES = {  # besides itself and shaders/shared
     "samples": PRODUCT + ["shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"],
     "bench": PRODUCT, "tests": PRODUCT + ["cli", "samples", "bench", "validation"],
     "shaders/embed_renderer": ["shaders/path_tracer"],
-    "shaders/twinray": ["shaders/hwtlas"],  # what users include
     "shaders": ["shaders/engine"],  # each other folder of shaders, but shaders/shared, which sees nothing else
 }
-MOST_HEADERS = {  # of this project behind a public one, directly or not; lower them whenever they fall
-    "engine/accel/abstract_accel.h": 57, "hwtlas/hw_tlas.h": 67, "swtlas/sw_tlas.h": 90,
+MOST_HEADERS = {  # of this project behind a header, directly or not; lower them whenever they fall
+    "include/twinray/tlas.h": 12, "engine/accel/accel_backend.h": 70,
 }
+MOST_PUBLIC = {"headers": 12, "lines": 1800}  # of include/twinray, its GLSL apart
+MOST_LINES = {"include/twinray/abstract_accel.h": 200}
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all
 SOURCE = re.compile(r"\.(h|hpp|c|cc|cpp|inl)$|" + GLSL.pattern)
-GENERATED = re.compile(r"\.(spv|trace_program)\.h$|^twinray_program\.glsl$|^twinray/|^twinray_version\.h$|^kernel_modules\.h$|\.py\.h$")  # by the build, or as installed
+GENERATED = re.compile(r"\.(spv|trace_program)\.h$|^twinray_program\.glsl$|^twinray_version\.h$|^kernel_modules\.h$|\.py\.h$")  # by the build, or as installed
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def file_of(root, target):
+    """The file that an include names: <twinray/...>, and its GLSL in quotes, lie in include/."""
+    return "include/" + target if target.startswith("twinray/") else target
 
 
 def layer(path):
@@ -38,17 +45,18 @@ def layer(path):
 
 
 def violation(root, source, bracket, target):
-    exists = os.path.isfile(os.path.join(root, target))
-    if bracket == "<":
+    file = file_of(root, target)
+    exists = os.path.isfile(os.path.join(root, file))
+    if bracket == "<" and not file.startswith("include/"):
         return "a file of this project is included with quotes" if exists else None
     if GENERATED.search(target):
         return None
     if not exists or ".." in target.split("/"):
         return "no such file; includes are written from the root, those of other projects in <>"
-    origin, seen = layer(source), layer(target)
+    origin, seen = layer(source), layer(file)
     kernels_of_others = GLSL.search(source) and not origin.startswith("shaders/") and seen.startswith("shaders/")
     sees = [] if origin == "shaders/shared" else SEES[origin if origin in SEES else "shaders"]
-    if seen in [origin, "shaders/shared"] + sees or kernels_of_others:
+    if seen in [origin, "include", "shaders/shared"] + sees or kernels_of_others:
         return None
     return f"{origin} must not see {seen}"
 
@@ -61,11 +69,16 @@ def includes_of(root, source):
 def headers_behind(root, header):
     behind, to_read = set(), [header]
     while to_read:
-        targets = {target for _, bracket, target in includes_of(root, to_read.pop()) if bracket == '"'}
+        targets = {file_of(root, target) for _, _, target in includes_of(root, to_read.pop())}
         new = {target for target in targets - behind - {header} if os.path.isfile(os.path.join(root, target))}
         behind |= new
         to_read += new
     return behind
+
+
+def lines_of(root, path):
+    with open(os.path.join(root, path), encoding="utf-8") as lines:
+        return sum(1 for _ in lines)
 
 
 root, found = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(__file__) + "/.."), []
@@ -81,7 +94,12 @@ for top in sorted({name.split("/")[0] for name in SEES}):
 counts = {header: len(headers_behind(root, header)) for header in MOST_HEADERS}
 found += [f"{header}:1: {counts[header]} headers of this project behind it, at most {most}"
           for header, most in MOST_HEADERS.items() if counts[header] > most]
-behind = ", ".join(f"{count} headers behind {header}" for header, count in counts.items())
+face = [f"include/twinray/{name}" for name in sorted(os.listdir(os.path.join(root, "include/twinray"))) if name.endswith(".h")]
+size = {"headers": len(face), "lines": sum(lines_of(root, header) for header in face)}
+found += [f"include/twinray:1: {size[what]} {what}, at most {most}" for what, most in MOST_PUBLIC.items() if size[what] > most]
+found += [f"{header}:1: {lines_of(root, header)} lines, at most {most}"
+          for header, most in MOST_LINES.items() if lines_of(root, header) > most]
+behind = f"a public face of {size['headers']} headers and {size['lines']} lines; " + ", ".join(f"{count} headers behind {header}" for header, count in counts.items())
 print("\n".join(found) or f"check_layers: every include keeps to the table; {behind}")
 sys.exit(1 if found else 0)
 

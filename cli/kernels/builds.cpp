@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "engine/core/dry_device.h"
-#include "engine/scene/shapes.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/geometry.h>
+#include <twinray/tlas.h>
 #include "swtlas/traffic.h"
 
 namespace twinray::cli {

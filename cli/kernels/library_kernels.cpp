@@ -9,15 +9,16 @@
 #include "engine/analysis/sky_rays.h"
 #include "engine/collide/collision_finder.h"
 #include "engine/collide/contact_finder.h"
-#include "engine/core/device_choice.h"
+#include <twinray/context.h>
 #include "engine/points/point_finder.h"
 #include "engine/scene/animation.h"
 #include "engine/scene/deformer.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "engine/verify/float_probe.h"
 #include "engine/verify/oracle_accel.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
+#include "swtlas/tree.h"
 
 namespace twinray::cli {
 namespace {
@@ -34,7 +35,7 @@ void make_builds(Context& context) {
             SwTlas accel(context, options_for(context.facts(), layout, quality));
             const AccelHandle mesh = accel.push(make_box(vec3(0), vec3(1)));
             accel.sync();
-            accel.end_point_overlap(mesh);
+            end_point_overlap(accel, mesh);
         }
     const RaySort sort(context);
     const OracleAccel oracle(context);

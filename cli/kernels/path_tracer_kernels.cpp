@@ -8,7 +8,7 @@
 #include "samples/path_tracer/moving_scene.h"
 #include "samples/path_tracer/renderer.h"
 #include "samples/path_tracer/scene_upload.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace twinray::cli {
 namespace {

@@ -2,10 +2,9 @@
 // What both accelerators trace with.
 
 #include "cli/kernels/kernel_list.h"
-#include "engine/core/device_choice.h"
-#include "engine/scene/shapes.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/context.h>
+#include <twinray/geometry.h>
+#include <twinray/tlas.h>
 
 namespace twinray::cli {
 namespace {

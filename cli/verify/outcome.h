@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/verify/classify.h"
 
 namespace twinray::cli {

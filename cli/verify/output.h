@@ -4,7 +4,7 @@
 
 #include "cli/common.h"
 #include "cli/verify/outcome.h"
-#include "hwtlas/hw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace twinray::cli {
 

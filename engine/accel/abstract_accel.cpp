@@ -1,342 +1,108 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/abstract_accel.h"
-
-#include <algorithm>
-#include <atomic>
-#include <utility>
-
-#include "engine/accel/ray_sort.h"
-#include "engine/core/error.h"
+// The contract, handed on to what is behind it.
+#include "engine/accel/accel_backend.h"
 
 namespace twinray {
-namespace {
 
-std::uint64_t next_accel_id() {
-    static std::atomic<std::uint64_t> last{0};
-    return ++last;
-}
+SpecializationConstant AccelView::features_constant() const { return {FEATURES_CONSTANT, features}; }
 
-// Handles are unique in the process, so that one accelerator's are dead in another.
-std::uint64_t next_handle() {
-    static std::atomic<std::uint64_t> last{0};
-    return ++last;
-}
-
-InstanceState state_of(const InstanceRecord& record) { return {transform_of(record), options_of(record)}; }
-
-}  // namespace
-
-AbstractAccel::AbstractAccel(Context& context, std::string name, const AccelOptions& options)
-    : context_(context),
-      name_(std::move(name)),
-      id_(next_accel_id()),
-      options_(options),
-      vertices_(context),
-      instances_(context),
-      bound_(context),
-      scene_costs_(context) {
-    if (options.level < Level::refined) return;
-    if (!context.facts().shader_float64)
-        fail(name_, ": ", name_of(feature_of(options.level)), " needs float64, which device '", context.facts().name,
-             "' has not enabled");
-    refinement_ = std::make_unique<Refinement>(context);
-}
-
+AbstractAccel::AbstractAccel(std::unique_ptr<AccelBackend> backend) : backend_(std::move(backend)) {}
 AbstractAccel::~AbstractAccel() = default;
-
 AccelHandle AbstractAccel::push(const MeshView& mesh, const Transform& transform, const InstanceOptions& options) {
-    return place(Geometry(mesh, unit_of(mesh.positions)), std::span(&transform, 1), std::span(&options, 1));
+    return backend_->push(mesh, transform, options);
 }
 AccelHandle AbstractAccel::push(const MeshView& mesh, std::span<const Transform> transforms,
                                 std::span<const InstanceOptions> options) {
-    return place(Geometry(mesh, unit_of(mesh.positions)), transforms, options);
+    return backend_->push(mesh, transforms, options);
 }
 AccelHandle AbstractAccel::push(const BoxesView& boxes, const Transform& transform, const InstanceOptions& options) {
-    return place(Geometry(boxes), std::span(&transform, 1), std::span(&options, 1));
+    return backend_->push(boxes, transform, options);
 }
 AccelHandle AbstractAccel::push(const BoxesView& boxes, std::span<const Transform> transforms,
                                 std::span<const InstanceOptions> options) {
-    return place(Geometry(boxes), transforms, options);
+    return backend_->push(boxes, transforms, options);
 }
-
-AccelHandle AbstractAccel::place(Geometry&& geometry, std::span<const Transform> transforms,
-                                 std::span<const InstanceOptions> options) {
-    if (!options.empty() && options.size() != transforms.size())
-        fail(name_, ": mesh '", geometry.name, "': ", options.size(), " instance options for ", transforms.size(),
-             " transforms; the lengths must match");
-    Placement placement{std::move(geometry),
-                        Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}),
-                        nullptr,
-                        {},
-                        {},
-                        {}};
-    for (std::size_t i = 0; i < transforms.size(); ++i)
-        placement.instances.records.push_back(
-            checked_record(placement, i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
-    warn_of_inactive_triangles(placement.geometry);
-    const AccelHandle handle{next_handle()};
-    placements_.emplace(handle.id, std::move(placement));
-    mark(Dirty::structure);
-    return handle;
-}
-
-AccelHandle AbstractAccel::push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
-                                      std::span<const InstanceRecord> records) {
-    Placement placement{std::move(geometry), std::move(block), std::move(built), {}, {}, {}};
-    for (const InstanceRecord& record : records) {
-        placement.instances.records.push_back(make_instance_record(transform_of(record), options_of(record)));
-        placement.instances.records.back().geometry = placement.block.address();
-    }
-    const AccelHandle handle{next_handle()};
-    placements_.emplace(handle.id, std::move(placement));
-    mark(Dirty::structure);
-    return handle;
-}
-
-bool AbstractAccel::erase(AccelHandle handle) {
-    const auto found = placements_.find(handle.id);
-    if (found == placements_.end()) return false;
-    if (found->second.built) erased_.push_back(std::move(found->second.built));
-    placements_.erase(found);
-    mark(Dirty::structure);
-    return true;
-}
-
-void AbstractAccel::update(AccelHandle handle, const MeshView& mesh) {
-    live(handle, "update");
-    replace(handle, Geometry(mesh, unit_of(mesh.positions)));
-}
-void AbstractAccel::update(AccelHandle handle, const BoxesView& boxes) {
-    live(handle, "update");
-    replace(handle, Geometry(boxes));
-}
-
-void AbstractAccel::replace(AccelHandle handle, Geometry&& geometry) {
-    Placement& placement = live(handle, "update");
-    warn_of_inactive_triangles(geometry);
-    if (placement.built) erased_.push_back(std::move(placement.built));
-    placement.geometry = std::move(geometry);
-    placement.has_source = false;
-    placement.vertices = {};
-    mark(Dirty::structure);
-}
-
-AbstractAccel::Placement& AbstractAccel::checked_for_vertices(AccelHandle handle, std::size_t count) {
-    Placement& placement = live(handle, "update_vertices");
-    const Geometry& geometry = placement.geometry;
-    if (geometry.kind == GEOMETRY_BOXES)
-        fail(name_, ": update_vertices: handle ", handle.id, " holds boxes, '", geometry.name, "', not triangles");
-    if (const std::size_t n = geometry.positions.size(); count != n)
-        fail(name_, ": update_vertices: mesh '", geometry.name, "': ", count, " positions for its ", n,
-             " vertices; update() changes their number");
-    return placement;
-}
-
+bool AbstractAccel::erase(AccelHandle handle) { return backend_->erase(handle); }
+void AbstractAccel::update(AccelHandle handle, const MeshView& mesh) { backend_->update(handle, mesh); }
+void AbstractAccel::update(AccelHandle handle, const BoxesView& boxes) { backend_->update(handle, boxes); }
 void AbstractAccel::update_vertices(AccelHandle handle, std::span<const vec3> positions) {
-    Placement& placement = checked_for_vertices(handle, positions.size());
-    Geometry& geometry = placement.geometry;
-    const std::size_t inactive = count_non_finite_triangles({geometry.name, positions, geometry.triangles});
-    geometry.move_to(positions);
-    geometry.non_finite_triangles = inactive;
-    warn_of_inactive_triangles(geometry);
-    if (geometry.triangles.empty()) return;
-    placement.vertices.incoming = {};
-    placement.vertices.device_wrote = false;
-    placement.vertices.edited = placement.built || placement.vertices.on_device();
-    mark(Dirty::moves);
+    backend_->update_vertices(handle, positions);
 }
-
 void AbstractAccel::update_vertices(AccelHandle handle, Floats positions, std::size_t count) {
-    Placement& placement = checked_for_vertices(handle, count);
-    if (!works_on_device()) fail(name_, ": update_vertices: vertices in device memory are unsupported");
-    if (!positions.address || positions.address % 4)
-        fail(name_, ": update_vertices: device address ", positions.address, " must be a multiple of 4 and not 0");
-    if (placement.geometry.triangles.empty()) return;
-    placement.vertices.incoming = positions;
-    placement.vertices.edited = true;
-    mark(Dirty::moves);
+    backend_->update_vertices(handle, positions, count);
 }
-
-void AbstractAccel::Placement::add_to(SceneFacts& facts) const {
-    if (instances.records.empty()) return;
-    facts.has_boxes |= geometry.kind == GEOMETRY_BOXES;
-    facts.has_transforms |= geometry.scale != 1;
-    facts.instances += instances.records.size();
-    for (const InstanceRecord& record : instances.records) {
-        facts.has_filters |= (flags_of(record) & INSTANCE_FILTERED) != 0;
-        facts.common_mask &= mask_of(record);
-        facts.has_transforms |= transform_of(record) != Transform{};
-    }
-}
-
-SceneFacts AbstractAccel::facts_of_placements() const {
-    SceneFacts facts{.instances = 0, .has_transforms = options_.can_move};
-    for (const auto& [id, placement] : placements_) placement.add_to(facts);
-    return facts;
-}
-
-InstanceRecord AbstractAccel::checked_record(const Placement& placement, std::size_t index, const Transform& transform,
-                                             const InstanceOptions& options) const {
-    std::string fault = fault_of(transform);
-    if (options.custom_index > max_custom_index)
-        fault = text("custom index ", options.custom_index, " exceeds 24 bits (at most ", max_custom_index, ")");
-    if (!fault.empty()) fail(name_, ": mesh '", placement.geometry.name, "', instance ", index, ": ", fault);
-    InstanceRecord record = make_instance_record(transform, options);
-    record.geometry = placement.block.address();
-    return record;
-}
-
-void AbstractAccel::warn_of_inactive_triangles(const Geometry& geometry) const {
-    if (geometry.non_finite_triangles)
-        context_.warn(text(name_, ": mesh '", geometry.name, "': ", geometry.non_finite_triangles, " of ",
-                           geometry.triangles.size(), " triangles have a non-finite vertex and are inactive"));
-}
-
-const AbstractAccel::Placement& AbstractAccel::live(AccelHandle handle, const char* action) const {
-    const auto found = placements_.find(handle.id);
-    if (found == placements_.end()) fail(name_, ": ", action, ": handle ", handle.id, " is not alive");
-    return found->second;
-}
-
-AbstractAccel::Placement& AbstractAccel::live(AccelHandle handle, const char* action) {
-    return const_cast<Placement&>(std::as_const(*this).live(handle, action));
-}
-
 void AbstractAccel::update_transform(AccelHandle handle, const Transform& transform) {
-    if (const std::size_t n = live(handle, "update_transform").instances.records.size(); n != 1)
-        fail(name_, ": update_transform: handle ", handle.id, " has ", n, " instances, not 1; use update_transforms");
-    update_transform_at(handle, 0, transform);
+    backend_->update_transform(handle, transform);
 }
-
-void AbstractAccel::check_movable(const char* action) const {
-    if (!options_.can_move) fail(name_, ": ", action, ": the accelerator was made with AccelOptions::can_move = false");
-}
-
 void AbstractAccel::update_transforms(AccelHandle handle, std::span<const Transform> transforms) {
-    Placement& placement = live(handle, "update_transforms");
-    check_movable("update_transforms");
-    check_count(handle, placement, transforms.size());
-    std::vector<InstanceRecord> records;
-    records.reserve(transforms.size());
-    for (std::size_t i = 0; i < transforms.size(); ++i)
-        records.push_back(checked_record(placement, i, transforms[i], options_of(placement.instances.records[i])));
-    placement.instances.edit_all(std::move(records));
-    mark(Dirty::moves);
+    backend_->update_transforms(handle, transforms);
 }
-
-void AbstractAccel::update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count) {
-    Placement& placement = live(handle, "update_transforms");
-    check_movable("update_transforms");
-    check_count(handle, placement, count);
-    if (!transforms.address || transforms.address % 4)
-        fail(name_, ": update_transforms: device address ", transforms.address, " must be a multiple of 4 and not 0");
-    placement.instances.replace_transforms(transforms);
-    mark(Dirty::moves);
-}
-
-void AbstractAccel::check_count(AccelHandle handle, const Placement& placement, std::size_t count) const {
-    if (const std::size_t n = placement.instances.records.size(); count != n)
-        fail(name_, ": update_transforms: ", count, " transforms for the ", n, " instances of handle ", handle.id);
-}
-
-void AbstractAccel::check_index(AccelHandle handle, const Placement& placement, std::size_t index,
-                                const char* action) const {
-    if (const std::size_t n = placement.instances.records.size(); index >= n)
-        fail(name_, ": ", action, ": index ", index, " of the ", n, " instances of handle ", handle.id);
-}
-
 void AbstractAccel::update_transform_at(AccelHandle handle, std::size_t index, const Transform& transform) {
-    Placement& placement = live(handle, "update_transform_at");
-    check_movable("update_transform_at");
-    check_index(handle, placement, index, "update_transform_at");
-    const InstanceOptions options = options_of(placement.instances.records[index]);
-    placement.instances.edit(index, checked_record(placement, index, transform, options));
-    mark(Dirty::moves);
+    backend_->update_transform_at(handle, index, transform);
 }
-
-InstanceRange AbstractAccel::instance_buffer(AccelHandle handle) const {
-    const Placement& placement = live(handle, "instance_buffer");
-    if (dirty_ == Dirty::structure || !placement.instances.first)
-        fail(name_, ": instance_buffer: edits are pending; call sync() first");
-    const std::uint64_t offset = *placement.instances.first * sizeof(InstanceRecord);
-    const Buffer& buffer = instances_.buffer();
-    return {buffer.handle(), offset, buffer.ref<InstanceRecord>(offset), placement.instances.records.size()};
+void AbstractAccel::update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count) {
+    backend_->update_transforms(handle, transforms, count);
 }
-
-void AbstractAccel::mark_transforms_dirty(AccelHandle handle) {
-    Placement& placement = live(handle, "mark_transforms_dirty");
-    check_movable("mark_transforms_dirty");
-    if (!placement.instances.first)
-        fail(name_, ": mark_transforms_dirty: handle ", handle.id, " is not on the device yet; call sync() first");
-    placement.instances.device_wrote = true;
-    mark(Dirty::moves);
-}
-
-std::size_t AbstractAccel::n_instances() const {
-    std::size_t count = 0;
-    for (const auto& [id, placement] : placements_) count += placement.instances.records.size();
-    return count;
-}
-
-std::size_t AbstractAccel::n_instances(AccelHandle handle) const {
-    const auto found = placements_.find(handle.id);
-    return found == placements_.end() ? 0 : found->second.instances.records.size();
-}
-
-std::size_t AbstractAccel::n_primitives(AccelHandle handle) const {
-    const auto found = placements_.find(handle.id);
-    return found == placements_.end() ? 0 : found->second.geometry.primitive_count();
-}
-
-std::vector<AccelHandle> AbstractAccel::handles() const {
-    std::vector<AccelHandle> alive;
-    for (const auto& [id, placement] : placements_) alive.push_back({id});
-    return alive;
-}
-
+InstanceRange AbstractAccel::instance_buffer(AccelHandle handle) const { return backend_->instance_buffer(handle); }
+void AbstractAccel::mark_transforms_dirty(AccelHandle handle) { backend_->mark_transforms_dirty(handle); }
+bool AbstractAccel::is_valid(AccelHandle handle) const { return backend_->is_valid(handle); }
 InstanceState AbstractAccel::get_instance(AccelHandle handle, std::size_t index) const {
-    check_index(handle, live(handle, "get_instance"), index, "get_instance");
-    return get_instances(handle)[index];
+    return backend_->get_instance(handle, index);
 }
-
 std::vector<InstanceState> AbstractAccel::get_instances(AccelHandle handle) const {
-    const InstanceSlice& slice = live(handle, "get_instances").instances;
-    std::vector<InstanceRecord> records = slice.records;
-    if (slice.device_wrote && slice.first)
-        records = download<InstanceRecord>(context_, instances_.buffer(), records.size(),
-                                           *slice.first * sizeof(InstanceRecord));
-    for (const std::size_t i : slice.edited) records[i] = slice.records[i];
-    std::vector<InstanceState> states;
-    for (const InstanceRecord& record : records) states.push_back(state_of(record));
-    return states;
+    return backend_->get_instances(handle);
 }
-
-const AbstractAccel::BuiltGeometry& AbstractAccel::built_geometry(AccelHandle handle) const {
-    const Placement& placement = live(handle, "built geometry");
-    if (!placement.built) fail(name_, ": handle ", handle.id, " is not built yet; call sync() first");
-    return *placement.built;
+std::size_t AbstractAccel::n_instances() const { return backend_->n_instances(); }
+std::size_t AbstractAccel::n_instances(AccelHandle handle) const { return backend_->n_instances(handle); }
+std::size_t AbstractAccel::n_geometries() const { return backend_->n_geometries(); }
+std::size_t AbstractAccel::n_primitives(AccelHandle handle) const { return backend_->n_primitives(handle); }
+std::vector<AccelHandle> AbstractAccel::handles() const { return backend_->handles(); }
+SyncPoint AbstractAccel::sync() { return backend_->sync(); }
+void AbstractAccel::sync(Commands& commands) { backend_->sync(commands); }
+bool AbstractAccel::compact() { return backend_->compact(); }
+std::uint64_t AbstractAccel::scratch_budget() const { return backend_->scratch_budget(); }
+void AbstractAccel::set_scratch_budget(std::uint64_t bytes) { backend_->set_scratch_budget(bytes); }
+AccelView AbstractAccel::view() const { return backend_->view(); }
+std::uint64_t AbstractAccel::revision() const { return backend_->revision(); }
+Bounds AbstractAccel::world_bound() const { return backend_->world_bound(); }
+std::optional<Bounds> AbstractAccel::world_bound_if_ready() const { return backend_->world_bound_if_ready(); }
+Ref<WorldBound> AbstractAccel::world_bound_on_device() const { return backend_->world_bound_on_device(); }
+std::optional<double> AbstractAccel::sah() const { return backend_->sah(); }
+std::optional<double> AbstractAccel::sah(AccelHandle handle) const { return backend_->sah(handle); }
+std::optional<double> AbstractAccel::sah_if_ready() const { return backend_->sah_if_ready(); }
+std::optional<double> AbstractAccel::sah_if_ready(AccelHandle handle) const { return backend_->sah_if_ready(handle); }
+double AbstractAccel::rebuild_ratio() const { return backend_->rebuild_ratio(); }
+void AbstractAccel::set_rebuild_ratio(double ratio) { backend_->set_rebuild_ratio(ratio); }
+void AbstractAccel::trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const {
+    backend_->trace(commands, view, desc);
 }
-
-const Buffer& AbstractAccel::geometry_block(AccelHandle handle) const { return live(handle, "geometry block").block; }
-
-Geometry AbstractAccel::geometry(AccelHandle handle) const {
-    const Placement& placement = live(handle, "geometry");
-    Geometry geometry = placement.geometry;
-    if (!placement.vertices.device_wrote) return geometry;
-    geometry.positions = download<vec3>(context_, placement.vertices.positions, geometry.positions.size());
-    geometry.non_finite_triangles = count_non_finite_triangles({geometry.name, geometry.positions, geometry.triangles});
-    return geometry;
+void AbstractAccel::trace(Commands& commands, const AccelView& view, const TraceDesc& desc, Pace& pace) const {
+    backend_->trace(commands, view, desc, pace);
 }
-
-const AbstractAccel::BuiltScene& AbstractAccel::built_scene() const {
-    if (!scene_) fail(name_, ": the scene is not built yet; call sync() first");
-    return *scene_;
+std::vector<Hit> AbstractAccel::closest_hits(std::span<const Ray> rays, const TraceDesc& desc) {
+    return backend_->closest_hits(rays, desc);
 }
-
-std::vector<Capability> AbstractAccel::capabilities() const {
-    std::vector<Capability> all;
-    for (std::size_t i = 0; i < feature_count; ++i) all.push_back(capability(static_cast<Feature>(i)));
-    return all;
+std::vector<Hit> AbstractAccel::any_hits(std::span<const Ray> rays, const TraceDesc& desc) {
+    return backend_->any_hits(rays, desc);
 }
+uint AbstractAccel::features_for(const TraceDesc& desc) const { return backend_->features_for(desc); }
+void AbstractAccel::wait_for_programs() const { backend_->wait_for_programs(); }
+std::unique_ptr<TraceProgram> AbstractAccel::make_program(const TraceProgramCode& code, uint features) const {
+    return backend_->make_program(code, features);
+}
+Capability AbstractAccel::capability(Feature feature) const { return backend_->capability(feature); }
+std::vector<Capability> AbstractAccel::capabilities() const { return backend_->capabilities(); }
+bool AbstractAccel::is_software() const { return backend_->is_software(); }
+void AbstractAccel::wait_for_gpu() { backend_->wait_for_gpu(); }
+std::vector<PassTiming> AbstractAccel::build_timings() const { return backend_->build_timings(); }
+MemoryUsage AbstractAccel::memory_usage() const { return backend_->memory_usage(); }
+BuildBytes AbstractAccel::memory_requirements() const { return backend_->memory_requirements(); }
+BuildBytes AbstractAccel::memory_requirements(std::span<const GeometrySize> geometries,
+                                              std::size_t instance_count) const {
+    return backend_->memory_requirements(geometries, instance_count);
+}
+const AccelOptions& AbstractAccel::options() const { return backend_->options(); }
+Context& AbstractAccel::context() const { return backend_->context(); }
+const std::string& AbstractAccel::name() const { return backend_->name(); }
 
 }  // namespace twinray

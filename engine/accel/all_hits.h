@@ -4,13 +4,13 @@
 #include <span>
 #include <vector>
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/core/device_list.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/all_hits.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(RayHit) == 36);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/capability.h"
+#include <twinray/trace.h>
 
 namespace twinray {
 

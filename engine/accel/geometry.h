@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: MIT
+// Meshes and boxes as accelerators keep them, and the records of instances.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include <twinray/trace.h>
+
 #include "engine/accel/instance_record.h"
-#include "engine/core/transform.h"
 #include "engine/scene/mesh.h"
 
 namespace twinray {
-
-// Boxes in object space that stand for primitives of the user's, not owned. A trace program says how rays meet them.
-struct BoxesView {
-    std::string_view name;
-    std::span<const Bounds> boxes;
-};
 
 // A mesh or boxes as an accelerator keeps them: its own copy of what tracing needs.
 struct Geometry {
@@ -43,19 +39,6 @@ struct Geometry {
 
     // Leaf positions have 25 bits in the bound on the tree's depth, and records of a tree 26 (see compressed.h).
     static constexpr std::size_t max_primitives = (1u << 25) - 1;
-};
-
-constexpr std::size_t max_instances = (1u << 24) - 1;  // of an accelerator; what Vulkan guarantees at least
-constexpr uint max_custom_index = (1u << 24) - 1;
-
-struct InstanceOptions {
-    uint custom_index = 0;     // returned in Hit::custom_index; at most 2^24 - 1
-    std::uint8_t mask = 0xff;  // an instance is seen by rays whose mask shares a bit
-    bool no_culling = false;   // both sides are hit by rays that cull, too
-    bool turned = false;       // front and back exchanged
-    bool filtered = false;     // not opaque: a trace program decides about each hit
-
-    bool operator==(const InstanceOptions&) const = default;
 };
 
 // The record of one instance, geometry address left 0, for a transform without fault_of() and a custom index up to

@@ -7,12 +7,12 @@
 
 #include "engine/accel/instance_record.h"
 #include "engine/core/kernel.h"
-#include "engine/core/transform.h"
+#include <twinray/geometry.h>
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/copy_transforms.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // How many instances to make room for: what there is room for already where `count` fits well, else `count` with spare
 // room when it grows.

@@ -2,12 +2,12 @@
 // InstanceRecord for C++.
 #pragma once
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/instance.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(InstanceRecord) == 64);
 }  // namespace twinray

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/memory.h"
+#include <twinray/abstract_accel.h>
 
-#include "engine/accel/abstract_accel.h"
+#include "engine/accel/accel_backend.h"
 
 namespace twinray {
 
-MemoryUsage AbstractAccel::memory_usage() const {
+MemoryUsage AccelBackend::memory_usage() const {
     MemoryUsage usage;
     if (scene_) usage.scene = scene_->bytes;
     if (scene_) usage.scratch = scene_->scratch_bytes;
@@ -18,7 +18,7 @@ MemoryUsage AbstractAccel::memory_usage() const {
     return usage;
 }
 
-BuildBytes AbstractAccel::memory_requirements() const {
+BuildBytes AccelBackend::memory_requirements() const {
     std::vector<GeometrySize> sizes;
     for (const auto& [id, placement] : placements_)
         if (!placement.built)
@@ -33,8 +33,8 @@ BuildBytes AbstractAccel::memory_requirements() const {
     return bytes;
 }
 
-BuildBytes AbstractAccel::memory_requirements(std::span<const GeometrySize> geometries,
-                                              std::size_t instance_count) const {
+BuildBytes AccelBackend::memory_requirements(std::span<const GeometrySize> geometries,
+                                             std::size_t instance_count) const {
     const BuildBytes bottom = geometry_bytes(geometries);
     const BuildBytes top = scene_bytes(instance_count, capacity_for(instance_count, 0));
     return {bottom.structures + top.structures, bottom.scratch + top.scratch};

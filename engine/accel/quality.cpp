@@ -2,48 +2,48 @@
 // How good and how small the structures are, and when that makes a sync rebuild or compact them.
 #include <algorithm>
 
-#include "engine/accel/abstract_accel.h"
+#include "engine/accel/accel_backend.h"
 #include "engine/core/error.h"
 
 namespace twinray {
 
-std::optional<double> AbstractAccel::sah_of(const CostLog& costs, Wait wait) const {
+std::optional<double> AccelBackend::sah_of(const CostLog& costs, Wait wait) const {
     if (!works_on_device()) return std::nullopt;
     if (wait == Wait::yes && costs.last_point().value) context_.wait(costs.last_point());
     const std::optional<TreeCost> cost = costs.newest(context_);
     return cost ? std::optional<double>(cost->now) : std::nullopt;
 }
 
-std::optional<double> AbstractAccel::sah(AccelHandle handle) const {
+std::optional<double> AccelBackend::sah(AccelHandle handle) const {
     return sah_of(live(handle, "sah").vertices.costs, Wait::yes);
 }
 
-std::optional<double> AbstractAccel::sah_if_ready(AccelHandle handle) const {
+std::optional<double> AccelBackend::sah_if_ready(AccelHandle handle) const {
     return sah_of(live(handle, "sah_if_ready").vertices.costs, Wait::no);
 }
 
-void AbstractAccel::set_rebuild_ratio(double ratio) {
+void AccelBackend::set_rebuild_ratio(double ratio) {
     if (!(ratio >= 1)) fail(name_, ": rebuild ratio ", ratio, " must be at least 1");
     rebuild_ratio_ = ratio;
 }
 
-bool AbstractAccel::has_degraded(const CostLog& costs) const {
+bool AccelBackend::has_degraded(const CostLog& costs) const {
     const std::optional<TreeCost> cost = works_on_device() ? costs.newest(context_) : std::nullopt;
     return cost && cost->now > rebuild_ratio_ * cost->at_build;
 }
 
-bool AbstractAccel::is_compactable(const Placement& placement) const {
+bool AccelBackend::is_compactable(const Placement& placement) const {
     return placement.built && !placement.vertices.edited && can_compact(*placement.built, placement.built_at);
 }
 
-bool AbstractAccel::compact() {
+bool AccelBackend::compact() {
     const bool any = std::any_of(placements_.begin(), placements_.end(),
                                  [&](const auto& entry) { return is_compactable(entry.second); });
     if (any) mark(Dirty::compaction);
     return any;
 }
 
-std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> AbstractAccel::compact_geometries(
+std::vector<std::unique_ptr<AccelBackend::BuiltGeometry>> AccelBackend::compact_geometries(
     Commands&, std::span<const GeometryInput> inputs) {
     return std::vector<std::unique_ptr<BuiltGeometry>>(inputs.size());
 }

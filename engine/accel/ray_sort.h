@@ -7,9 +7,9 @@
 #include "engine/core/radix_sort.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/ray_order.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // Sorts the numbers of rays by their keys; the rays stay where they are.
 class RaySort {

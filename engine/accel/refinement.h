@@ -8,10 +8,10 @@
 #include "engine/core/kernel.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/trace.h"
 #include "shaders/shared/refine.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(RefineInstance) == 176 && sizeof(RefineScene) == 16);
 

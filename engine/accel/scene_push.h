@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/scene/scene.h"
 
 namespace twinray {

@@ -11,9 +11,9 @@
 #include "engine/core/kernel.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/surface_area.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(AreaItem) == 28 && sizeof(TreeCost) == 8);
 

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/accel/abstract_accel.h"
+#include "engine/accel/accel_backend.h"
 #include "engine/accel/scene_update.h"
 #include "engine/core/error.h"
 
 namespace twinray {
 
 // Geometries of which the same is wanted.
-struct AbstractAccel::Work {
+struct AccelBackend::Work {
     std::vector<Placement*> placements;
     std::vector<GeometryInput> inputs;
 
@@ -20,7 +20,7 @@ struct AbstractAccel::Work {
     }
 };
 
-void AbstractAccel::Staged::add(const Work& work, std::vector<std::unique_ptr<BuiltGeometry>>&& done) {
+void AccelBackend::Staged::add(const Work& work, std::vector<std::unique_ptr<BuiltGeometry>>&& done) {
     for (std::size_t i = 0; i < done.size(); ++i) {
         if (!done[i]) continue;  // what it had was adapted
         building.push_back(work.placements[i]);
@@ -28,7 +28,7 @@ void AbstractAccel::Staged::add(const Work& work, std::vector<std::unique_ptr<Bu
     }
 }
 
-SyncPoint AbstractAccel::sync() {
+SyncPoint AccelBackend::sync() {
     if (dirty_ == Dirty::no) return synced_;
     auto commands = std::make_unique<Commands>(context_, name_ + " sync");
     Staged staged = stage(*commands);
@@ -37,12 +37,12 @@ SyncPoint AbstractAccel::sync() {
     return synced_;
 }
 
-void AbstractAccel::sync(Commands& commands) {
+void AccelBackend::sync(Commands& commands) {
     if (!commands.is_of_caller()) fail(name_, ": sync: own commands are not for recording into; call sync()");
     if (dirty_ != Dirty::no) commit(stage(commands), commands.done());
 }
 
-AbstractAccel::Staged AbstractAccel::stage(Commands& commands) {
+AccelBackend::Staged AccelBackend::stage(Commands& commands) {
     if (const std::size_t n = n_instances(); n > max_instances)
         fail(name_, ": sync: ", n, " instances; at most ", max_instances, " fit");
     warn_of_unusable_instances();
@@ -55,7 +55,7 @@ AbstractAccel::Staged AbstractAccel::stage(Commands& commands) {
     return staged;
 }
 
-void AbstractAccel::stage_vertices(Commands& commands, Staged& staged) {
+void AccelBackend::stage_vertices(Commands& commands, Staged& staged) {
     std::vector<VertexArrays::Item> items;
     for (auto& [id, placement] : placements_)
         if (placement.vertices.edited) items.push_back({&placement.geometry, &placement.vertices});
@@ -66,12 +66,12 @@ void AbstractAccel::stage_vertices(Commands& commands, Staged& staged) {
 }
 
 // Whether refining lacks its mesh on the device, which no edit brings there.
-bool AbstractAccel::lacks_refinement(const Placement& placement) const {
+bool AccelBackend::lacks_refinement(const Placement& placement) const {
     return refinement_ && !placement.vertices.edited && !placement.vertices.on_device() &&
            placement.geometry.kind == GEOMETRY_TRIANGLES;
 }
 
-void AbstractAccel::stage_sources(Commands& commands, Staged& staged) {
+void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
     for (auto& [id, placement] : placements_)
         if (!placement.has_source) staged.sources.push_back(&placement);
     if (staged.sources.empty()) return;
@@ -83,7 +83,7 @@ void AbstractAccel::stage_sources(Commands& commands, Staged& staged) {
     }
 }
 
-void AbstractAccel::stage_geometries(Commands& commands, Staged& staged) {
+void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
     stage_vertices(commands, staged);
     Work builds, refits, compactions;
     for (auto& [id, placement] : placements_) {
@@ -106,7 +106,7 @@ void AbstractAccel::stage_geometries(Commands& commands, Staged& staged) {
     staged.add(compactions, compact_geometries(commands, compactions.inputs));
 }
 
-void AbstractAccel::stage_scene(Commands& commands, Staged& staged) {
+void AccelBackend::stage_scene(Commands& commands, Staged& staged) {
     staged.has_moved = has_moved_ || (scene_ && dirty_ == Dirty::moves);
     const SceneInput input{staged.instances.records, static_cast<uint>(staged.instances.count),
                            bound_.result(),          staged.has_moved,
@@ -125,7 +125,7 @@ void AbstractAccel::stage_scene(Commands& commands, Staged& staged) {
         refit_scene(commands, input, *scene_);
 }
 
-void AbstractAccel::commit(Staged&& staged, SyncPoint done) {
+void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     for (std::size_t i = 0; i < staged.building.size(); ++i) {
         staged.building[i]->built = std::move(staged.built[i]);
         staged.building[i]->built_at = done;
@@ -146,29 +146,29 @@ void AbstractAccel::commit(Staged&& staged, SyncPoint done) {
     synced_ = done;
 }
 
-void AbstractAccel::warn_of_unusable_instances() {
+void AccelBackend::warn_of_unusable_instances() {
     if (!synced_.value || !context_.is_reached(synced_)) return;
     const uint count = bound_.read().unusable_count;
     if (count && count != warned_unusable_)
-        context_.warn(text(name_, ": ", count,
-                           " instances have a transform that is singular or not finite, written on "
-                           "the device; they are inactive"));
+        context_.state().warn(text(name_, ": ", count,
+                                   " instances have a transform that is singular or not finite, written on "
+                                   "the device; they are inactive"));
     warned_unusable_ = count;
 }
 
-Bounds AbstractAccel::world_bound() const {
+Bounds AccelBackend::world_bound() const {
     context_.wait(synced_);
     return world_bound_if_ready().value_or(Bounds{});
 }
 
-std::optional<Bounds> AbstractAccel::world_bound_if_ready() const {
+std::optional<Bounds> AccelBackend::world_bound_if_ready() const {
     if (!synced_.value) return Bounds{};
     if (!context_.is_reached(synced_)) return std::nullopt;
     const WorldBound bound = bound_.read();
     return Bounds{bound.lo, bound.hi};
 }
 
-std::vector<PassTiming> AbstractAccel::build_timings() const {
+std::vector<PassTiming> AccelBackend::build_timings() const {
     return last_build_ ? last_build_->timings() : std::vector<PassTiming>{};
 }
 

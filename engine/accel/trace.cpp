@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tracing through AbstractAccel: what every accelerator checks, and the host's convenience.
-#include "engine/accel/abstract_accel.h"
+// Tracing through AccelBackend: what every accelerator checks, and the host's convenience.
+#include "engine/accel/accel_backend.h"
 #include "engine/accel/ray_sort.h"
 #include "engine/core/error.h"
 #include "engine/core/pace.h"
@@ -28,23 +28,23 @@ TraceDesc part_of(const TraceDesc& desc, std::uint64_t first, std::uint64_t coun
 
 }  // namespace
 
-void AbstractAccel::check_synced(const char* action) const {
+void AccelBackend::check_synced(const char* action) const {
     if (dirty_ != Dirty::no) fail(name_, ": ", action, ": edits are pending; call sync() first");
 }
 
-AccelView AbstractAccel::view() const {
+AccelView AccelBackend::view() const {
     check_synced("view");
     return {scene_->address, id_, revision_, features_of(accel_facts(), facts_, TraceFacts::of_every_kind())};
 }
 
-void AbstractAccel::trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const {
+void AccelBackend::trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const {
     check_desc(view, desc);
     if (desc.count == 0) return;
     check_buffers(desc);
     record_rays(commands, view, desc);
 }
 
-void AbstractAccel::trace(Commands& commands, const AccelView& view, const TraceDesc& desc, Pace& pace) const {
+void AccelBackend::trace(Commands& commands, const AccelView& view, const TraceDesc& desc, Pace& pace) const {
     check_desc(view, desc);
     if (desc.indirect_count.address) fail(name_, ": trace: a count on the device cannot be cut into parts");
     if (desc.count == 0) return;
@@ -54,14 +54,14 @@ void AbstractAccel::trace(Commands& commands, const AccelView& view, const Trace
     });
 }
 
-void AbstractAccel::check_buffers(const TraceDesc& desc) const {
+void AccelBackend::check_buffers(const TraceDesc& desc) const {
     if (!desc.rays.address || !desc.hits.address) fail(name_, ": trace: the address of rays or hits is 0");
     const std::uint64_t bytes = desc.count * sizeof(Ray), rays = desc.rays.address, hits = desc.hits.address;
     if ((rays < hits ? hits - rays : rays - hits) < bytes)
         fail(name_, ": trace: ", bytes, " bytes of rays at ", rays, " and of hits at ", hits, " must not overlap");
 }
 
-void AbstractAccel::record_rays(Commands& commands, const AccelView& view, const TraceDesc& desc) const {
+void AccelBackend::record_rays(Commands& commands, const AccelView& view, const TraceDesc& desc) const {
     const TraceProgram& program = program_for(desc);
     const TraceArgs args{.scene = view.scene,
                          .rays = desc.rays,
@@ -77,17 +77,18 @@ void AbstractAccel::record_rays(Commands& commands, const AccelView& view, const
 }
 
 // As TraceArgs::order.
-Uints AbstractAccel::record_order(Commands& commands, const TraceDesc& desc) const {
+Uints AccelBackend::record_order(Commands& commands, const TraceDesc& desc) const {
     if (desc.order == RayOrder::given || !works_on_device()) return {};
     if (!ray_sort_) ray_sort_ = std::make_unique<RaySort>(context_);
     const auto count = static_cast<uint>(desc.count);
-    Buffer scratch(context_, {.name = "ray sort scratch", .bytes = RaySort::scratch_bytes(count, context_.tuning())});
+    Buffer scratch(context_,
+                   {.name = "ray sort scratch", .bytes = RaySort::scratch_bytes(count, context_.state().tuning())});
     const Uints order = ray_sort_->record(commands, scratch, desc.rays, count, desc.indirect_count).values;
     commands.keep(std::move(scratch));
     return order;
 }
 
-void AbstractAccel::check_desc(const AccelView& view, const TraceDesc& desc) const {
+void AccelBackend::check_desc(const AccelView& view, const TraceDesc& desc) const {
     if (view.accel != id_) fail(name_, ": trace: the view belongs to another accelerator");
     if (view.revision != revision_)
         fail(name_, ": trace: stale view of revision ", view.revision, "; the accelerator is at ", revision_);
@@ -104,12 +105,12 @@ void AbstractAccel::check_desc(const AccelView& view, const TraceDesc& desc) con
              name_of(feature_of(options_.level)), "; see AccelOptions");
 }
 
-uint AbstractAccel::features_for(const TraceDesc& desc) const {
+uint AccelBackend::features_for(const TraceDesc& desc) const {
     check_synced("features_for");
     return features_of(accel_facts(), facts_, TraceFacts::of(desc));
 }
 
-const TraceProgram& AbstractAccel::own_program(uint features, const TraceDesc& desc) const {
+const TraceProgram& AccelBackend::own_program(uint features, const TraceDesc& desc) const {
     if (!own_programs_) {
         const uint all = features_of(accel_facts(), SceneFacts::of_every_kind(), TraceFacts::of_every_kind());
         own_programs_ = std::make_unique<OwnPrograms>([this](uint wanted) { return create_program(nullptr, wanted); },
@@ -118,12 +119,12 @@ const TraceProgram& AbstractAccel::own_program(uint features, const TraceDesc& d
     return own_programs_->get(features, desc.query, desc.level);
 }
 
-void AbstractAccel::wait_for_programs() const {
+void AccelBackend::wait_for_programs() const {
     if (own_programs_) own_programs_->wait();
 }
 
 // Boxes that nothing can meet, and hits that nobody judges, are no answer.
-const TraceProgram& AbstractAccel::program_for(const TraceDesc& desc) const {
+const TraceProgram& AccelBackend::program_for(const TraceDesc& desc) const {
     const uint needed = features_of(accel_facts(), facts_, TraceFacts::of(desc));
     if (const uint of_user = needed & (FEATURE_BOXES | FEATURE_FILTERS); !desc.program && of_user)
         fail(name_, ": trace: the scene has ", words_for(of_user), ", and TraceDesc::program is not set");
@@ -136,27 +137,27 @@ const TraceProgram& AbstractAccel::program_for(const TraceDesc& desc) const {
     return program;
 }
 
-std::unique_ptr<TraceProgram> AbstractAccel::make_program(const TraceProgramCode& code, uint features) const {
+std::unique_ptr<TraceProgram> AccelBackend::make_program(const TraceProgramCode& code, uint features) const {
     const uint of_any_scene = features_of(accel_facts(), {.has_transforms = options_.can_move}, {});
-    std::unique_ptr<TraceProgram> program = create_program(&code, features | of_any_scene);
+    std::unique_ptr<TraceProgram> program = create_program(&code, (features & FEATURES_ALL) | of_any_scene);
     program->prepare(Query::closest, Level::watertight);
     return program;
 }
 
-std::vector<Hit> AbstractAccel::closest_hits(std::span<const Ray> rays, const TraceDesc& desc) {
+std::vector<Hit> AccelBackend::closest_hits(std::span<const Ray> rays, const TraceDesc& desc) {
     TraceDesc closest = desc;
     closest.query = Query::closest;
     return trace_host(rays, closest);
 }
 
-std::vector<Hit> AbstractAccel::any_hits(std::span<const Ray> rays, const TraceDesc& desc) {
+std::vector<Hit> AccelBackend::any_hits(std::span<const Ray> rays, const TraceDesc& desc) {
     TraceDesc any = desc;
     any.query = Query::any;
     any.answer_only = false;
     return trace_host(rays, any);
 }
 
-std::vector<Hit> AbstractAccel::trace_host(std::span<const Ray> rays, TraceDesc desc) {
+std::vector<Hit> AccelBackend::trace_host(std::span<const Ray> rays, TraceDesc desc) {
     sync();
     if (rays.empty()) return {};
     const Buffer ray_buffer(context_, {.name = "rays", .bytes = rays.size_bytes()});

@@ -5,9 +5,9 @@
 #include "engine/core/ray.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/trace.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(TraceArgs) == 64);
 }  // namespace twinray

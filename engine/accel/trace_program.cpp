@@ -27,13 +27,13 @@ KernelProgram::KernelProgram(Context& context, std::uint64_t accel, uint feature
 
 void KernelProgram::record(Commands& commands, const TraceArgs& args, Query query, Level level) const {
     kernel(query, level)
-        .dispatch_groups(commands, args, groups_for_rays(args.count, context_.tuning(), is_software_).count);
+        .dispatch_groups(commands, args, groups_for_rays(args.count, context_.state().tuning(), is_software_).count);
 }
 
 const Kernel<TraceArgs>& KernelProgram::kernel(Query query, Level level) const {
     std::unique_ptr<Kernel<TraceArgs>>& kernel =
         kernels_[static_cast<std::size_t>(query)][static_cast<std::size_t>(level)];
-    const KernelTuning& tuning = context_.tuning();
+    const KernelTuning& tuning = context_.state().tuning();
     const uint group_size = groups_for_rays(0, tuning, is_software_).size;
     const uint stack = tuning.has_stack_in_registers ? STACK_REGISTERS : STACK_SHARED;
     if (!kernel)

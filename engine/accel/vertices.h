@@ -9,9 +9,9 @@
 #include "engine/core/kernel.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/copy_floats.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // A mesh in device memory: 3 floats a vertex, 3 indices a triangle. Null: it is on the host alone.
 struct DeviceMesh {

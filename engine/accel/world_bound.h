@@ -7,9 +7,9 @@
 #include "engine/core/ray.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/world_bound.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(WorldBound) == 32 && sizeof(WorldBoundBits) == 32);
 

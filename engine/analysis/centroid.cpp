@@ -80,7 +80,7 @@ void finish(Centroid& result, const Sums& sums, const RayGridPlan& plan) {
     const dvec3 mean = sums.points / sums.count;
     const dvec3 variance = sums.squares - 2.0 * mean * sums.products + mean * mean * sums.odd;
     result.mean = plan.center + mean;
-    if (plan.grid.points == GRID_AT_RANDOM) result.standard_error = glm::sqrt(max(variance, dvec3(0))) / sums.count;
+    if (plan.grid.points == GRID_AT_RANDOM) result.standard_error = sqrt(max(variance, dvec3(0))) / sums.count;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 template <class Real>
 class Contours {
   public:
-    using Vec3 = glm::vec<3, Real>;
+    using Vec3 = Vec<3, Real>;
 
     struct Sum {
         Real value = 0, error = 0;
@@ -47,12 +47,12 @@ class Contours {
     static constexpr std::size_t most_pieces = 16;  // of one length
 
     // Along the longer edge in closed form: along a short one that would be a small difference of large terms.
-    Contours(const Edge& of_a, const Edge& of_b) : Contours(of_a, of_b, length(of_a) <= length(of_b)) {}
+    Contours(const Edge& of_a, const Edge& of_b) : Contours(of_a, of_b, length_of(of_a) <= length_of(of_b)) {}
     Contours(const Edge& of_a, const Edge& of_b, bool b_is_longer) : outer_(b_is_longer ? of_a : of_b) {
         const Edge& inner = b_is_longer ? of_b : of_a;
         way_ = outer_.to - outer_.from;
         to_edge_ = inner.from;
-        length_ = length(inner);
+        length_ = length_of(inner);
         if (length_ > 0) along_ = (inner.to - inner.from) / length_;
     }
 
@@ -60,11 +60,11 @@ class Contours {
         const Real factor = dot(way_, along_);
         if (factor == 0) return {};
         const Sum sum = halved();
-        const Real rounded = 4 * std::numeric_limits<Real>::epsilon() * glm::length(way_);  // of the factor
+        const Real rounded = 4 * std::numeric_limits<Real>::epsilon() * length(way_);  // of the factor
         return {sum.value * factor, sum.error * std::abs(factor) + rounded * std::abs(sum.value), sum.evaluations};
     }
 
-    static Real length(const Edge& edge) { return glm::length(edge.to - edge.from); }
+    static Real length_of(const Edge& edge) { return length(edge.to - edge.from); }
 
     // A value, and the size of what was added up to it: what both roundings of that and of coordinates are a part of.
     struct Term {
@@ -178,7 +178,7 @@ ContourExchange exchange(const Polygon64& a, const Polygon64& b, double unit) {
 
 ContourExchange contour_exchange(const Polygon64& a, const Polygon64& b) {
     // In units of the distance, so that logarithms of far polygons are small.
-    const double unit = std::max({a.longest_edge(), b.longest_edge(), glm::length(a.corners[0] - b.corners[0])});
+    const double unit = std::max({a.longest_edge(), b.longest_edge(), length(a.corners[0] - b.corners[0])});
     const ContourExchange first = exchange<double>(a, b, unit);
     constexpr double enough = 0x1p-32;  // of the flow: less than float32 keeps
     if (first.error <= enough * first.flow) return first;

@@ -5,7 +5,7 @@
 #include <array>
 #include <string_view>
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 

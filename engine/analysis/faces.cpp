@@ -26,7 +26,7 @@ double largest_coordinate_of(const Scene& scene, Face face) {
     const uvec3 triangle = mesh.triangles[face.primitive];
     double largest = 0;
     for (const uint vertex : {triangle.x, triangle.y, triangle.z}) {
-        const dvec3 p = glm::abs(in_world(instance.transform, mesh.positions[vertex]));
+        const dvec3 p = abs(in_world(instance.transform, mesh.positions[vertex]));
         largest = std::max({largest, p.x, p.y, p.z});
     }
     return largest;
@@ -115,7 +115,7 @@ Faces::Faces(Context& context, const Scene& scene)
     areas_.resize(count);
     parallel_for(count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t face = begin; face < end; ++face) {
-            areas_[face] = glm::length(area_vector(scene, faces_[face]));
+            areas_[face] = length(area_vector(scene, faces_[face]));
             const double largest = areas_[face] > 0 ? largest_coordinate_of(scene, faces_[face]) : 0;
             if (!(largest <= largest_coordinate))
                 fail("faces: triangle ", faces_[face].primitive, " of instance ", faces_[face].instance,

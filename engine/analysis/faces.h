@@ -7,15 +7,15 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/accel/spawn.h"
 #include "engine/core/buffer.h"
 #include "engine/scene/scene.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/faces.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // Which sides of faces radiate or receive; either one stops rays.
 enum class Sides : std::uint8_t {

@@ -13,7 +13,7 @@ namespace {
 std::vector<double> unobstructed_areas(const Scene& scene, const Faces& faces, const RayGridPlan& plan, Sides sides) {
     std::vector<double> areas(faces.count());
     if (plan.ray_count == 0) return areas;
-    const dvec3 along = glm::normalize(dvec3(plan.grid.direction));
+    const dvec3 along = normalize(dvec3(plan.grid.direction));
     parallel_for(areas.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t face = begin; face < end; ++face) {
             const double towards = -dot(area_vector(scene, faces[face]), along);

@@ -7,9 +7,9 @@
 #include "engine/report/statistics.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/count_faces.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(GroupCount) == 8 && sizeof(CountFacesArgs) == 48);
 

@@ -9,7 +9,7 @@
 #include "engine/analysis/view_factors.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "engine/core/transform.h"
+#include <twinray/geometry.h>
 
 namespace twinray {
 namespace {
@@ -161,7 +161,7 @@ class Planner {
     }
 
     SampledPair sampled(const FacePair& faces) const {
-        const double distance = glm::length(polygons_.faces[faces.a].middle() - polygons_.faces[faces.b].middle());
+        const double distance = length(polygons_.faces[faces.a].middle() - polygons_.faces[faces.b].middle());
         return {faces.a, faces.b, distance, contour_of(faces).flow, faces.in_between.has_value()};
     }
 

@@ -4,16 +4,16 @@
 
 #include <glm/integer.hpp>
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/analysis/faces.h"
 #include "engine/analysis/pair_sums.h"
 #include "engine/analysis/view_factors.h"
 #include "engine/core/pace.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/pair_rays.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 static_assert(sizeof(PairChunk) == 16 && sizeof(PairRaysArgs) == 56 && sizeof(PairWeightsArgs) == 24);
 
 class PairSampler {

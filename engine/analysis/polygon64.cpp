@@ -15,7 +15,7 @@ dvec3 Polygon64::area_vector() const {
 
 double Polygon64::longest_edge() const {
     double longest = 0;
-    for (std::size_t i = 0; i < count; ++i) longest = std::max(longest, glm::length(after(i) - corners[i]));
+    for (std::size_t i = 0; i < count; ++i) longest = std::max(longest, length(after(i) - corners[i]));
     return longest;
 }
 
@@ -42,14 +42,14 @@ Extent extent_of(const Polygon64& polygon, const dvec3& axis) {
 
 PolygonBox box_of(const Polygon64& polygon) {
     PolygonBox box{polygon.corners.front(), polygon.corners.front()};
-    for (const dvec3& point : polygon.points()) box = {glm::min(box.low, point), glm::max(box.high, point)};
+    for (const dvec3& point : polygon.points()) box = {min(box.low, point), max(box.high, point)};
     return box;
 }
 
 double rounding_of(double size) { return 16 * std::numeric_limits<double>::epsilon() * size; }
 
 Polygon64 before(const Polygon64& polygon, const Polygon64& triangle, double rounding) {
-    const dvec3 normal = glm::normalize(triangle.area_vector());
+    const dvec3 normal = normalize(triangle.area_vector());
     std::array<double, 4> distances = {};
     double highest = 0;
     for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -63,7 +63,7 @@ Polygon64 before(const Polygon64& polygon, const Polygon64& triangle, double rou
         const double here = distances[i], next = distances[(i + 1) % polygon.count];
         if (here >= 0) left.add(polygon.corners[i]);
         if ((here > 0 && next < 0) || (here < 0 && next > 0))
-            left.add(glm::mix(polygon.corners[i], polygon.after(i), here / (here - next)));
+            left.add(mix(polygon.corners[i], polygon.after(i), here / (here - next)));
     }
     return left;
 }
@@ -75,9 +75,9 @@ FacingPair facing_parts(const Polygon64& a, const Polygon64& b, double rounding)
 double gap_over_size(const Polygon64& a, const Polygon64& b) {
     double gap = 0;
     for (const dvec3& axis : {a.area_vector(), b.area_vector(), b.middle() - a.middle()}) {
-        const double length = glm::length(axis);
-        if (length == 0) continue;
-        gap = std::max(gap, extent_of(a, axis / length).gap_to(extent_of(b, axis / length)));
+        const double size = length(axis);
+        if (size == 0) continue;
+        gap = std::max(gap, extent_of(a, axis / size).gap_to(extent_of(b, axis / size)));
     }
     return gap / std::max(a.longest_edge(), b.longest_edge());
 }

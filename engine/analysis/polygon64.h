@@ -8,7 +8,7 @@
 #include <limits>
 #include <span>
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 

@@ -25,8 +25,8 @@ struct Axes {
 Axes axes_of(dvec3 direction) {
     const dvec3 along = unit_direction(dvec3(vec3(unit_direction(direction))));
     const dvec3 other = std::abs(along.x) < 0.9 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-    const dvec3 across = glm::normalize(cross(along, other));
-    return {across, glm::normalize(cross(along, across)), along};
+    const dvec3 across = normalize(cross(along, other));
+    return {across, normalize(cross(along, across)), along};
 }
 
 // What lies between the least and the largest coordinates on the axes.
@@ -76,9 +76,9 @@ void check_range(dvec3 point) {
 dvec3 unit_direction(dvec3 direction) {
     // Squares of components may leave float64.
     const double largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
-    if (!(largest > 0) || glm::any(glm::isnan(direction)) || glm::any(glm::isinf(direction)))
+    if (!(largest > 0) || any(isnan(direction)) || any(isinf(direction)))
         fail("the direction ", text_of(direction), " must be finite and not 0");
-    return glm::normalize(direction / largest);
+    return normalize(direction / largest);
 }
 
 RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc) {

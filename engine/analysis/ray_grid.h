@@ -4,15 +4,15 @@
 
 #include <glm/integer.hpp>
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/analysis/faces.h"
 #include "engine/core/pace.h"
 
 namespace twinray {
 using glm::bitfieldReverse;
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/ray_grid.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(RayGrid) == 64);
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/analysis/estimate.h"
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 

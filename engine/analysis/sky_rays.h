@@ -7,10 +7,9 @@
 #include "engine/analysis/illumination.h"
 
 namespace twinray {
-using glm::sqrt;
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/sky_rays.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(SkyRaysArgs) == 72 && sizeof(CountFreeArgs) == 40);
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/analysis/estimate.h"
 #include "engine/analysis/exchange.h"
 #include "engine/analysis/faces.h"
@@ -13,9 +13,9 @@
 #include "engine/core/sampling.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/view_factors.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 static_assert(REPLICATES == replicate_count && CHUNK == REPLICATES * SAMPLES_OF_CHUNK);
 
 enum class Sequence : std::uint8_t { sobol, random };

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/collide/pair_search.h"
 
 namespace twinray {

@@ -6,9 +6,9 @@
 namespace twinray {
 namespace {
 
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/neighbours.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // Where a line through corners meets the plane of another triangle.
 dvec3 point_of(const Cut& cut, const Corners64& plane) {

@@ -9,9 +9,9 @@
 
 namespace twinray {
 
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/orient.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // det(a - d, b - d, c - d), and its sign: 1 where d sees a, b, c turn clockwise.
 Expansion volume_of(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "engine/collide/expansion.h"
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 namespace {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/exact_double.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // The rounding error of the sum s = fl(a + b) (Knuth's TwoSum).
 double sum_error(double a, double b, double s) {

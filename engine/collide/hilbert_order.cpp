@@ -27,7 +27,7 @@ HilbertOrder::HilbertOrder(Context& context)
 
 void HilbertOrder::prepare(std::size_t count) {
     grow(context_, scratch_, "collide sort",
-         4 * count * sizeof(uint) + RadixSort::counter_bytes(count, context_.tuning()));
+         4 * count * sizeof(uint) + RadixSort::counter_bytes(count, context_.state().tuning()));
 }
 
 // By 60 bits in two stable sorts.

@@ -8,11 +8,10 @@
 #include "engine/accel/world_bound.h"
 
 namespace twinray {
-using glm::dvec2;
 
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/pair_class.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(Corners64) == 72 && sizeof(PlacedMesh) == 80 && sizeof(TriangleName) == 16);
 

@@ -100,7 +100,7 @@ DevicePairs PairSearch::find_sorted(const Query& query, uint largest_item, const
         spare_ = {};
         spare_ = Buffer(context_, {.name = "collide pairs sorting", .bytes = found.count * 2 * sizeof(uint)});
     }
-    const std::uint64_t counter_bytes = RadixSort::counter_bytes(found.count, context_.tuning());
+    const std::uint64_t counter_bytes = RadixSort::counter_bytes(found.count, context_.state().tuning());
     if (counters_.bytes() < counter_bytes)
         counters_ = Buffer(context_, {.name = "collide counters", .bytes = counter_bytes});
     const auto bits = static_cast<uint>(std::bit_width(largest_item));

@@ -12,9 +12,9 @@
 
 namespace twinray {
 namespace {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/world_corner.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // The least coordinate of the box under a row, lower by more than float64 rounds.
 double least_coordinate(const vec4& row, const Bounds& box) {

@@ -6,7 +6,7 @@
 
 #include "engine/collide/pair_class.h"
 #include "engine/core/kernel.h"
-#include "engine/core/transform.h"
+#include <twinray/geometry.h>
 #include "engine/scene/mesh.h"
 
 namespace twinray {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "engine/core/device_facts.h"
 #include "engine/core/error.h"
+#include "engine/core/requirement.h"
 
 namespace twinray {
 namespace {

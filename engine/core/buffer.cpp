@@ -22,23 +22,24 @@ VkBufferUsageFlags usage_of(const Context& context, const BufferDesc& desc) {
 Buffer::Buffer(Context& context, const BufferDesc& desc) : context_(&context), bytes_(desc.bytes), name_(desc.name) {
     if (name_.empty()) fail("buffer of ", bytes_, " bytes: a name is required");
     if (bytes_ == 0) return;
-    made_ = context.allocator().allocate({name_.c_str(), bytes_, usage_of(context, desc), desc.memory, desc.alignment});
+    made_ = context.state().allocator().allocate(
+        {name_.c_str(), bytes_, usage_of(context, desc), desc.memory, desc.alignment});
     VkBufferDeviceAddressInfo address{};
     address.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO;
     address.buffer = made_.buffer;
-    address_ = context.vk().vkGetBufferDeviceAddress(context.device(), &address);
+    address_ = context.state().vk().vkGetBufferDeviceAddress(context.device(), &address);
     if (!address_ || address_ % desc.alignment) {
-        context.allocator().free(made_, bytes_);
+        context.state().allocator().free(made_, bytes_);
         fail("buffer '", name_, "' of ", bytes_, " bytes: the allocator gave the device address ", address_,
              "; it must be a multiple of ", desc.alignment, " and not 0");
     }
-    context.set_name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(made_.buffer), name_);
+    context.state().set_name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(made_.buffer), name_);
 }
 
 Buffer::~Buffer() {
     if (!made_.buffer) return;
-    context_->retire(
-        [&allocator = context_->allocator(), made = made_, bytes = bytes_] { allocator.free(made, bytes); });
+    context_->state().retire(
+        [&allocator = context_->state().allocator(), made = made_, bytes = bytes_] { allocator.free(made, bytes); });
 }
 
 Buffer::Buffer(Buffer&& other) noexcept { *this = std::move(other); }

@@ -17,25 +17,27 @@ VkCommandPool new_pool(Context& context) {
     info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
     info.queueFamilyIndex = context.queue_family();
     VkCommandPool pool = VK_NULL_HANDLE;
-    vk_check(context.vk().vkCreateCommandPool(context.device(), &info, nullptr, &pool), "create a command pool");
+    vk_check(context.state().vk().vkCreateCommandPool(context.device(), &info, nullptr, &pool),
+             "create a command pool");
     return pool;
 }
 
 // Null where the queue has none.
 VkQueryPool new_timestamps(Context& context, VkCommandBuffer commands, std::uint32_t count) {
-    if (context.timestamp_period_ns() == 0) return VK_NULL_HANDLE;
+    if (context.state().timestamp_period_ns() == 0) return VK_NULL_HANDLE;
     VkQueryPoolCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
     info.queryCount = count;
     VkQueryPool pool = VK_NULL_HANDLE;
-    vk_check(context.vk().vkCreateQueryPool(context.device(), &info, nullptr, &pool), "create a timestamp pool");
-    context.vk().vkCmdResetQueryPool(commands, pool, 0, count);
+    vk_check(context.state().vk().vkCreateQueryPool(context.device(), &info, nullptr, &pool),
+             "create a timestamp pool");
+    context.state().vk().vkCmdResetQueryPool(commands, pool, 0, count);
     return pool;
 }
 
 VkCommandBuffer begun_buffer(Context& context, VkCommandPool pool, const std::string& name) {
-    const VulkanFunctions& vk = context.vk();
+    const VulkanFunctions& vk = context.state().vk();
     VkCommandBufferAllocateInfo allocate{};
     allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
     allocate.commandPool = pool;
@@ -43,7 +45,7 @@ VkCommandBuffer begun_buffer(Context& context, VkCommandPool pool, const std::st
     allocate.commandBufferCount = 1;
     VkCommandBuffer handle = VK_NULL_HANDLE;
     vk_check(vk.vkAllocateCommandBuffers(context.device(), &allocate, &handle), "allocate a command buffer");
-    context.set_name(VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<std::uint64_t>(handle), name);
+    context.state().set_name(VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<std::uint64_t>(handle), name);
     VkCommandBufferBeginInfo info{};
     info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
     info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
@@ -59,125 +61,128 @@ double seconds_of(std::span<const PassTiming> passes) {
 
 }  // namespace
 
-Commands::Commands(Context& context, const std::string& name) : context_(context), name_(name) {
-    context.check_alive();
-    begin_part();
+Commands::Commands(Context& context, const std::string& name) : state_(new State{.context = context, .name = name}) {
+    context.state().check_alive();
+    state_->begin_part();
 }
 
 Commands::Commands(Context& context, const std::string& name, const CallerCommands& caller)
-    : context_(context),
-      name_(name),
-      is_of_caller_(true),
-      consumer_stages_(caller.consumer_stages),
-      consumer_access_(caller.consumer_access | VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT),
-      done_(caller.done) {
-    context.check_alive();
-    if (!caller.handle) fail("commands '", name_, "': the caller's command buffer is null");
+    : state_(
+          new State{.context = context,
+                    .name = name,
+                    .is_of_caller = true,
+                    .consumer_stages = caller.consumer_stages,
+                    .consumer_access = caller.consumer_access | VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
+                    .done = caller.done}) {
+    context.state().check_alive();
+    if (!caller.handle) fail("commands '", state_->name, "': the caller's command buffer is null");
     if (!caller.done.semaphore || !caller.done.value)
-        fail("commands '", name_,
+        fail("commands '", state_->name,
              "': the caller must say with which semaphore and value (not 0) its commands are done");
-    const VkQueryPool queries = new_timestamps(context, caller.handle, 2 * max_timed_passes_);
-    parts_.push_back({VK_NULL_HANDLE, caller.handle, queries});
+    const VkQueryPool queries = new_timestamps(context, caller.handle, 2 * State::max_timed_passes);
+    state_->parts.push_back({VK_NULL_HANDLE, caller.handle, queries});
     context.announce(caller.done);
     VkMemoryBarrier barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
     barrier.srcAccessMask = caller.producer_access;
     barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-    context.vk().vkCmdPipelineBarrier(caller.handle, caller.producer_stages | context.stages(), context.stages(), 0, 1,
-                                      &barrier, 0, nullptr, 0, nullptr);
+    context.state().vk().vkCmdPipelineBarrier(caller.handle, caller.producer_stages | context.state().stages(),
+                                              context.state().stages(), 0, 1, &barrier, 0, nullptr, 0, nullptr);
 }
 
-Commands::~Commands() { retire_parts(); }
+Commands::~Commands() { state_->retire_parts(); }
 
-void Commands::begin_part() {
-    const VkCommandPool pool = new_pool(context_);
+void Commands::State::begin_part() {
+    const VkCommandPool pool = new_pool(context);
     try {
-        const VkCommandBuffer handle = begun_buffer(context_, pool, name_);
-        parts_.push_back({pool, handle, new_timestamps(context_, handle, 2 * max_timed_passes_)});
+        const VkCommandBuffer handle = begun_buffer(context, pool, name);
+        parts.push_back({pool, handle, new_timestamps(context, handle, 2 * max_timed_passes)});
     } catch (...) {
-        context_.vk().vkDestroyCommandPool(context_.device(), pool, nullptr);
+        context.state().vk().vkDestroyCommandPool(context.device(), pool, nullptr);
         throw;
     }
-    groups_ = 0;
+    groups = 0;
     // Earlier submissions on this queue are ordered before, but their writes need to be made visible.
     end_pass();
 }
 
-bool Commands::is_part_full() const {
-    return !is_of_caller_ && groups_ > most_groups(context_.tuning().most_submission_seconds);
+bool Commands::State::is_part_full() const {
+    return !is_of_caller && groups > most_groups(context.state().tuning().most_submission_seconds);
 }
 
-void Commands::retire_parts() {
-    for (const Part& part : parts_)
-        context_.retire([&vk = context_.vk(), device = context_.device(), pool = part.pool, queries = part.queries] {
-            vk.vkDestroyCommandPool(device, pool, nullptr);
-            vk.vkDestroyQueryPool(device, queries, nullptr);
-        });
-    parts_.clear();
+void Commands::State::retire_parts() {
+    for (const Part& part : parts)
+        context.state().retire(
+            [&vk = context.state().vk(), device = context.device(), pool = part.pool, queries = part.queries] {
+                vk.vkDestroyCommandPool(device, pool, nullptr);
+                vk.vkDestroyQueryPool(device, queries, nullptr);
+            });
+    parts.clear();
 }
 
 SyncPoint Commands::submit() {
-    if (is_of_caller_) fail("commands '", name_, "': they are the caller's to submit");
-    if (is_ended_) fail("commands '", name_, "': submitted twice");
-    if (in_pass_) fail("commands '", name_, "': submitted within a pass");
-    is_ended_ = true;
+    if (state_->is_of_caller) fail("commands '", state_->name, "': they are the caller's to submit");
+    if (state_->is_ended) fail("commands '", state_->name, "': submitted twice");
+    if (state_->in_pass) fail("commands '", state_->name, "': submitted within a pass");
+    state_->is_ended = true;
     std::vector<Submission> submissions;
-    for (const Part& part : parts_) {
-        vk_check(context_.vk().vkEndCommandBuffer(part.handle), "end a command buffer");
+    for (const State::Part& part : state_->parts) {
+        vk_check(state_->context.state().vk().vkEndCommandBuffer(part.handle), "end a command buffer");
         submissions.push_back({part.handle, part.passes});
     }
-    done_ = context_.submit(name_, std::move(submissions));
-    kept_.clear();  // retired behind the submission just made
-    return done_;
+    state_->done = state_->context.state().submit(state_->name, std::move(submissions));
+    state_->kept.clear();  // retired behind the submission just made
+    return state_->done;
 }
 
 double Commands::submit_and_wait() {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    context_.wait(submit());
-    if (parts_.front().queries) return seconds_of(timings_of_parts());
+    state_->context.wait(submit());
+    if (state_->parts.front().queries) return seconds_of(state_->timings_of_parts());
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 double Commands::submit_part() {
     const double seconds = submit_and_wait();
-    std::ranges::copy(timings_of_parts(), std::back_inserter(earlier_));
-    retire_parts();
-    begin_part();
-    is_ended_ = false;
+    std::ranges::copy(state_->timings_of_parts(), std::back_inserter(state_->earlier));
+    state_->retire_parts();
+    state_->begin_part();
+    state_->is_ended = false;
     return seconds;
 }
 
-void Commands::write_timestamp(std::size_t index) const {
-    if (const Part& part = parts_.back(); part.queries && index < 2 * max_timed_passes_)
-        context_.vk().vkCmdWriteTimestamp(part.handle, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, part.queries,
-                                          static_cast<std::uint32_t>(index));
+void Commands::State::write_timestamp(std::size_t index) const {
+    if (const Part& part = parts.back(); part.queries && index < 2 * max_timed_passes)
+        context.state().vk().vkCmdWriteTimestamp(part.handle, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, part.queries,
+                                                 static_cast<std::uint32_t>(index));
 }
 
 std::vector<PassTiming> Commands::timings() const {
-    context_.wait(done_);
-    std::vector<PassTiming> timings = earlier_;
-    std::ranges::copy(timings_of_parts(), std::back_inserter(timings));
+    state_->context.wait(state_->done);
+    std::vector<PassTiming> timings = state_->earlier;
+    std::ranges::copy(state_->timings_of_parts(), std::back_inserter(timings));
     return timings;
 }
 
-std::vector<PassTiming> Commands::timings_of_parts() const {
+std::vector<PassTiming> Commands::State::timings_of_parts() const {
     std::vector<PassTiming> timings;
-    for (const Part& part : parts_) std::ranges::copy(timings_of(part), std::back_inserter(timings));
+    for (const Part& part : parts) std::ranges::copy(timings_of(part), std::back_inserter(timings));
     return timings;
 }
 
-std::vector<PassTiming> Commands::timings_of(const Part& part) const {
-    const std::uint32_t count = std::min(static_cast<std::uint32_t>(part.passes.size()), max_timed_passes_);
+std::vector<PassTiming> Commands::State::timings_of(const Part& part) const {
+    const std::uint32_t count = std::min(static_cast<std::uint32_t>(part.passes.size()), max_timed_passes);
     if (!part.queries || count == 0) return {};
     std::vector<std::uint64_t> stamps(2 * count);
-    context_.check(context_.vk().vkGetQueryPoolResults(context_.device(), part.queries, 0, 2 * count, stamps.size() * 8,
-                                                       stamps.data(), 8, VK_QUERY_RESULT_64_BIT),
-                   "read timestamps");
+    context.state().check(
+        context.state().vk().vkGetQueryPoolResults(context.device(), part.queries, 0, 2 * count, stamps.size() * 8,
+                                                   stamps.data(), 8, VK_QUERY_RESULT_64_BIT),
+        "read timestamps");
     std::vector<PassTiming> timings;
     for (std::uint32_t i = 0; i < count; ++i) {
         const double ticks = static_cast<double>(stamps[2 * i + 1] - stamps[2 * i]);
-        timings.push_back({part.passes[i].name, ticks * context_.timestamp_period_ns() * 1e-6});
+        timings.push_back({part.passes[i].name, ticks * context.state().timestamp_period_ns() * 1e-6});
     }
     return timings;
 }

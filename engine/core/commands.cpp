@@ -16,43 +16,61 @@ void check_range(const Buffer& buffer, std::uint64_t offset, std::uint64_t bytes
 
 }  // namespace
 
-Commands::Pass::Pass(Commands& commands, const std::string& name) : commands_(commands) { commands_.begin_pass(name); }
+Commands::Pass::Pass(Commands& commands, const std::string& name) : commands_(commands) {
+    commands.state_->begin_pass(name);
+}
 
 Commands::Pass::~Pass() {
-    Commands& c = commands_;
-    c.write_timestamp(2 * c.parts_.back().passes.size() - 1);
-    c.end_pass();
-    if (c.context_.vk().vkCmdEndDebugUtilsLabelEXT) c.context_.vk().vkCmdEndDebugUtilsLabelEXT(c.handle());
+    State& state = *commands_.state_;
+    state.write_timestamp(2 * state.parts.back().passes.size() - 1);
+    state.end_pass();
+    const VulkanFunctions& vk = state.context.state().vk();
+    if (vk.vkCmdEndDebugUtilsLabelEXT) vk.vkCmdEndDebugUtilsLabelEXT(state.handle());
 }
 
-void Commands::begin_pass(const std::string& name) {
-    if (in_pass_)
-        fail("commands '", name_, "': pass '", name, "' starts inside pass '", parts_.back().passes.back().name, "'");
-    if (is_ended_) fail("commands '", name_, "': pass '", name, "' recorded after submit");
+void Commands::State::begin_pass(const std::string& pass) {
+    if (in_pass)
+        fail("commands '", name, "': pass '", pass, "' starts inside pass '", parts.back().passes.back().name, "'");
+    if (is_ended) fail("commands '", name, "': pass '", pass, "' recorded after submit");
     if (is_part_full()) begin_part();
-    in_pass_ = true;
-    parts_.back().passes.push_back({name});
-    if (context_.vk().vkCmdBeginDebugUtilsLabelEXT) {
+    in_pass = true;
+    parts.back().passes.push_back({pass});
+    if (context.state().vk().vkCmdBeginDebugUtilsLabelEXT) {
         VkDebugUtilsLabelEXT label{};
         label.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
-        label.pLabelName = name.c_str();
-        context_.vk().vkCmdBeginDebugUtilsLabelEXT(handle(), &label);
+        label.pLabelName = pass.c_str();
+        context.state().vk().vkCmdBeginDebugUtilsLabelEXT(handle(), &label);
     }
-    write_timestamp(2 * parts_.back().passes.size() - 2);
+    write_timestamp(2 * parts.back().passes.size() - 2);
 }
 
-void Commands::end_pass() {
+void Commands::State::end_pass() {
     barrier();
-    in_pass_ = false;
+    in_pass = false;
 }
 
-void Commands::barrier() {
+void Commands::State::barrier() {
     VkMemoryBarrier barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
     barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-    barrier.dstAccessMask = consumer_access_;
-    context_.vk().vkCmdPipelineBarrier(handle(), context_.stages(), context_.stages() | consumer_stages_, 0, 1,
-                                       &barrier, 0, nullptr, 0, nullptr);
+    barrier.dstAccessMask = consumer_access;
+    context.state().vk().vkCmdPipelineBarrier(handle(), context.state().stages(),
+                                              context.state().stages() | consumer_stages, 0, 1, &barrier, 0, nullptr, 0,
+                                              nullptr);
+}
+
+void Commands::barrier() { state_->barrier(); }
+bool Commands::in_pass() const { return state_->in_pass; }
+bool Commands::is_of_caller() const { return state_->is_of_caller; }
+SyncPoint Commands::done() const { return state_->done; }
+Context& Commands::context() const { return state_->context; }
+VkCommandBuffer Commands::handle() const { return state_->handle(); }
+void Commands::keep(Buffer&& temporary) { state_->kept.push_back(std::move(temporary)); }
+void Commands::count_work(std::uint64_t groups) { state_->groups += groups; }
+
+void Commands::count_groups(std::uint64_t groups) {
+    state_->parts.back().passes.back().groups += groups;
+    count_work(groups);
 }
 
 void Commands::upload(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data) {
@@ -62,7 +80,7 @@ void Commands::upload(const Buffer& target, std::uint64_t offset, std::span<cons
 
 void Commands::write_bytes(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data) {
     check_range(target, offset, data.size(), "write");
-    context_.vk().vkCmdUpdateBuffer(handle(), target.handle(), offset, data.size(), data.data());
+    state_->context.state().vk().vkCmdUpdateBuffer(handle(), target.handle(), offset, data.size(), data.data());
 }
 
 void Commands::upload_pieces(const Buffer& target, std::span<const Piece> pieces) {
@@ -75,15 +93,15 @@ void Commands::upload_pieces(const Buffer& target, std::span<const Piece> pieces
         bytes += piece.data.size();
     }
     if (regions.empty()) return;
-    Buffer staging(context_, {.name = "staging for " + target.name(), .bytes = bytes, .memory = Memory::upload});
+    Buffer staging(state_->context, {.name = "staging for " + target.name(), .bytes = bytes, .memory = Memory::upload});
     std::byte* next = staging.mapped();
     for (const Piece& piece : pieces) {
         if (piece.data.empty()) continue;
         std::memcpy(next, piece.data.data(), piece.data.size());
         next += piece.data.size();
     }
-    context_.vk().vkCmdCopyBuffer(handle(), staging.handle(), target.handle(),
-                                  static_cast<std::uint32_t>(regions.size()), regions.data());
+    state_->context.state().vk().vkCmdCopyBuffer(handle(), staging.handle(), target.handle(),
+                                                 static_cast<std::uint32_t>(regions.size()), regions.data());
     keep(std::move(staging));
 }
 
@@ -93,27 +111,27 @@ void Commands::copy(const Buffer& from, std::uint64_t from_offset, const Buffer&
     check_range(from, from_offset, bytes, "copy");
     check_range(to, to_offset, bytes, "copy");
     const VkBufferCopy region{from_offset, to_offset, bytes};
-    context_.vk().vkCmdCopyBuffer(handle(), from.handle(), to.handle(), 1, &region);
+    state_->context.state().vk().vkCmdCopyBuffer(handle(), from.handle(), to.handle(), 1, &region);
 }
 
 void Commands::fill(const Buffer& target, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word) {
     if (bytes == 0) return;
     check_range(target, offset, bytes, "fill");
-    context_.vk().vkCmdFillBuffer(handle(), target.handle(), offset, bytes, word);
+    state_->context.state().vk().vkCmdFillBuffer(handle(), target.handle(), offset, bytes, word);
 }
 
-std::vector<std::byte> download_bytes(Context& context, const Buffer& buffer, std::uint64_t offset,
-                                      std::uint64_t bytes) {
-    if (bytes == 0) return {};
-    check_range(buffer, offset, bytes, "download");
-    Buffer readback(context, {.name = "readback of " + buffer.name(), .bytes = bytes, .memory = Memory::readback});
+void download_bytes(Context& context, const Buffer& buffer, std::uint64_t offset, std::span<std::byte> into) {
+    if (into.empty()) return;
+    check_range(buffer, offset, into.size(), "download");
+    const Buffer readback(context,
+                          {.name = "readback of " + buffer.name(), .bytes = into.size(), .memory = Memory::readback});
     Commands commands(context, "download");
     {
         const auto pass = commands.pass("download");
-        commands.copy(buffer, offset, readback, 0, bytes);
+        commands.copy(buffer, offset, readback, 0, into.size());
     }
     context.wait(commands.submit());
-    return {readback.mapped(), readback.mapped() + bytes};
+    std::memcpy(into.data(), readback.mapped(), into.size());
 }
 
 }  // namespace twinray

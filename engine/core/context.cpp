@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "engine/core/device_facts.h"
 #include "engine/core/dry_device.h"
 #include "engine/core/error.h"
 #include "engine/core/statistics_feature.h"
@@ -84,7 +85,7 @@ void disable_features(ContextDesc& desc, const std::string& list) {
     }
 }
 
-Context::Context(const ContextDesc& desc) : log_(desc.log), watch_(desc.watch_kernels) {
+Context::State::State(const ContextDesc& desc) : log_(desc.log), watch_(desc.watch_kernels) {
     vk_.load_global(desc.get_instance_proc_addr);
     try {
         create_instance(desc);
@@ -96,7 +97,7 @@ Context::Context(const ContextDesc& desc) : log_(desc.log), watch_(desc.watch_ke
     }
 }
 
-Context::Context(const AdoptedDevice& adopted)
+Context::State::State(const AdoptedDevice& adopted)
     : log_(adopted.log),
       owns_device_(false),
       instance_(adopted.instance),
@@ -124,13 +125,13 @@ Context::Context(const AdoptedDevice& adopted)
     }
 }
 
-Context::~Context() {
+Context::State::~State() {
     finish();
     keep_pipelines();
     destroy_everything();
 }
 
-void Context::create_instance(const ContextDesc& desc) {
+void Context::State::create_instance(const ContextDesc& desc) {
     instance_ = new_instance(vk_, desc.name, desc.validation);
     vk_.load_instance(instance_);
     if (!desc.validation) return;
@@ -144,7 +145,7 @@ void Context::create_instance(const ContextDesc& desc) {
     vk_check(vk_.vkCreateDebugUtilsMessengerEXT(instance_, &info, nullptr, &messenger_), "create a debug messenger");
 }
 
-void Context::create_device(const ContextDesc& desc) {
+void Context::State::create_device(const ContextDesc& desc) {
     const std::vector<VkPhysicalDevice> devices = physical_devices(vk_, instance_);
     const std::vector<DeviceFacts> facts = facts_of(vk_, devices);
     const DeviceChoice choice = choose_device(facts, desc.device);
@@ -180,12 +181,12 @@ void Context::create_device(const ContextDesc& desc) {
     if (watch_) run_nothing(vk_);
 }
 
-void Context::set_tuning(std::optional<TuningRow> row, std::optional<double> most_submission_seconds) {
+void Context::State::set_tuning(std::optional<TuningRow> row, std::optional<double> most_submission_seconds) {
     tuning_ = tuning_for(facts_, row);
     if (most_submission_seconds) tuning_.most_submission_seconds = std::max(*most_submission_seconds, 0.0);
 }
 
-void Context::create_own_objects(const AllocatorHooks& allocator, const std::filesystem::path& pipeline_folder) {
+void Context::State::create_own_objects(const AllocatorHooks& allocator, const std::filesystem::path& pipeline_folder) {
     VkPhysicalDeviceProperties2 properties{};
     properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
     vk_.vkGetPhysicalDeviceProperties2(physical_device_, &properties);
@@ -200,7 +201,7 @@ void Context::create_own_objects(const AllocatorHooks& allocator, const std::fil
     if (!pipeline_cache_) create_pipeline_cache(PipelineStore(pipeline_folder, properties.properties));
 }
 
-void Context::create_pipeline_cache(const PipelineStore& store) {
+void Context::State::create_pipeline_cache(const PipelineStore& store) {
     const Bytes kept = store.load([&](std::string_view sentence) { warn(sentence); });
     VkPipelineCacheCreateInfo cache{};
     cache.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
@@ -213,7 +214,7 @@ void Context::create_pipeline_cache(const PipelineStore& store) {
 }
 
 // Caches only grow: as many bytes are the same.
-void Context::keep_pipelines() noexcept {
+void Context::State::keep_pipelines() noexcept {
     std::size_t size = 0;
     if (pipeline_store_.file().empty() || !owns_pipeline_cache_ || is_lost_) return;
     if (vk_.vkGetPipelineCacheData(device_, pipeline_cache_, &size, nullptr) != VK_SUCCESS) return;
@@ -227,7 +228,7 @@ void Context::keep_pipelines() noexcept {
     }
 }
 
-void Context::destroy_everything() noexcept {
+void Context::State::destroy_everything() noexcept {
     for (Retired& retired : retired_) retired.destroy();
     retired_.clear();
     pipelines_.clear();
@@ -241,7 +242,7 @@ void Context::destroy_everything() noexcept {
     if (instance_) vk_.vkDestroyInstance(instance_, nullptr);
 }
 
-VkPipelineStageFlags Context::stages() const {
+VkPipelineStageFlags Context::State::stages() const {
     VkPipelineStageFlags stages =
         VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
     if (facts_.acceleration_structure) stages |= VK_PIPELINE_STAGE_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
@@ -249,19 +250,19 @@ VkPipelineStageFlags Context::stages() const {
     return stages;
 }
 
-void Context::warn(std::string_view message) const {
+void Context::State::warn(std::string_view message) const {
     if (log_)
         log_(message);
     else
         std::fprintf(stderr, "twinray: %.*s\n", static_cast<int>(message.size()), message.data());
 }
 
-std::vector<std::string> Context::validation_messages() const {
+std::vector<std::string> Context::State::validation_messages() const {
     const std::lock_guard lock(messages_mutex_);
     return messages_;
 }
 
-void Context::set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const {
+void Context::State::set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const {
     if (!vk_.vkSetDebugUtilsObjectNameEXT) return;
     VkDebugUtilsObjectNameInfoEXT info{};
     info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
@@ -271,9 +272,9 @@ void Context::set_name(VkObjectType type, std::uint64_t handle, const std::strin
     vk_.vkSetDebugUtilsObjectNameEXT(device_, &info);
 }
 
-VkBool32 VKAPI_PTR Context::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
-                                       const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
-    Context& context = *static_cast<Context*>(user);
+VkBool32 VKAPI_PTR Context::State::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                              const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+    State& context = *static_cast<State*>(user);
     {
         const std::lock_guard lock(context.messages_mutex_);
         context.messages_.emplace_back(data->pMessage);
@@ -281,6 +282,24 @@ VkBool32 VKAPI_PTR Context::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, V
     context.warn(data->pMessage);
     return VK_FALSE;
 }
+
+Context::Context(const ContextDesc& desc) : state_(std::make_unique<State>(desc)) {}
+Context::Context(const AdoptedDevice& adopted) : state_(std::make_unique<State>(adopted)) {}
+Context::~Context() = default;
+VkDevice Context::device() const { return state_->device(); }
+VkPhysicalDevice Context::physical_device() const { return state_->physical_device(); }
+std::uint32_t Context::queue_family() const { return state_->queue_family(); }
+const DeviceFacts& Context::facts() const { return state_->facts(); }
+std::uint64_t Context::allocated_bytes() const { return state_->allocator().live_bytes(); }
+void Context::wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages) {
+    state_->wait_before_next_submission(point, stages);
+}
+SyncPoint Context::last_submission() const { return state_->last_submission(); }
+bool Context::is_reached(SyncPoint point) const { return state_->is_reached(point); }
+void Context::wait(SyncPoint point) const { state_->wait(point); }
+void Context::wait_for_gpu() { state_->wait_for_gpu(); }
+void Context::announce(SyncPoint point) { state_->announce(point); }
+std::vector<std::string> Context::validation_messages() const { return state_->validation_messages(); }
 
 std::vector<DeviceFacts> list_devices(PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
     VulkanFunctions vk;

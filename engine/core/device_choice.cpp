@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/device_choice.h"
+#include <twinray/context.h>
 
 #include <algorithm>
 #include <cctype>
 #include <tuple>
 
 #include "engine/core/error.h"
+#include "engine/core/requirement.h"
 
 namespace twinray {
 namespace {

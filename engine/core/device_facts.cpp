@@ -6,6 +6,7 @@
 
 #include "engine/core/cpu_threads.h"
 #include "engine/core/error.h"
+#include "engine/core/requirement.h"
 
 namespace twinray {
 namespace {
@@ -115,29 +116,50 @@ DeviceFacts enabled_facts(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkIn
     return facts;
 }
 
-DeviceRequirements::DeviceRequirements(const DeviceFacts& supported) : supported_(supported) {
+struct DeviceRequirements::State {
+    explicit State(const DeviceFacts& device) : supported(device) {}
+    void switch_on(VkDeviceCreateInfo& info, FeatureStructs& structs) const {
+        for (const FeatureBit& bit : feature_bits())
+            if (supported.*bit.fact) provide_bit(info, structs, bit) = VK_TRUE;
+    }
+
+    DeviceFacts supported;
+    std::vector<const char*> extensions, all_extensions;
+    VkDeviceCreateInfo alone{};
+    FeatureStructs alone_structs, added_structs;
+};
+
+DeviceRequirements::DeviceRequirements(const DeviceFacts& supported) : state_(new State(supported)) {
+    std::vector<const char*>& extensions = state_->extensions;
     if (supported.acceleration_structure)
-        extensions_ = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
-    if (supported.ray_query) extensions_.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
-    if (supported.ray_tracing_pipeline) extensions_.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
-    if (supported.device_fault) extensions_.push_back(VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
-    switch_on(alone_, alone_structs_);
+        extensions = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
+    if (supported.ray_query) extensions.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
+    if (supported.ray_tracing_pipeline) extensions.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+    if (supported.device_fault) extensions.push_back(VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
+    state_->switch_on(state_->alone, state_->alone_structs);
+}
+
+DeviceRequirements::~DeviceRequirements() = default;
+const DeviceFacts& DeviceRequirements::supported() const { return state_->supported; }
+const std::vector<const char*>& DeviceRequirements::extensions() const { return state_->extensions; }
+const void* DeviceRequirements::features() const { return state_->alone.pNext; }
+
+std::vector<std::string> DeviceRequirements::sentences() const {
+    std::vector<std::string> sentences;
+    for (const Requirement& requirement : requirements_of(state_->supported))
+        sentences.push_back(requirement.sentence());
+    return sentences;
 }
 
 void DeviceRequirements::add_to(VkDeviceCreateInfo& info) {
     const std::span host(info.ppEnabledExtensionNames, info.enabledExtensionCount);
-    all_extensions_.assign(host.begin(), host.end());
-    for (const char* ours : extensions_)
+    state_->all_extensions.assign(host.begin(), host.end());
+    for (const char* ours : state_->extensions)
         if (std::ranges::none_of(host, [&](const char* theirs) { return std::strcmp(ours, theirs) == 0; }))
-            all_extensions_.push_back(ours);
-    info.enabledExtensionCount = static_cast<std::uint32_t>(all_extensions_.size());
-    info.ppEnabledExtensionNames = all_extensions_.data();
-    switch_on(info, added_structs_);
-}
-
-void DeviceRequirements::switch_on(VkDeviceCreateInfo& info, FeatureStructs& structs) const {
-    for (const FeatureBit& bit : feature_bits())
-        if (supported_.*bit.fact) provide_bit(info, structs, bit) = VK_TRUE;
+            state_->all_extensions.push_back(ours);
+    info.enabledExtensionCount = static_cast<std::uint32_t>(state_->all_extensions.size());
+    info.ppEnabledExtensionNames = state_->all_extensions.data();
+    state_->switch_on(info, state_->added_structs);
 }
 
 }  // namespace twinray

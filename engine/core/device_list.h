@@ -8,9 +8,9 @@
 #include "engine/core/pace.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/list.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // A buffer of at least so many bytes; what it held is lost where it grows.
 void grow(Context& context, Buffer& buffer, const char* name, std::uint64_t bytes);

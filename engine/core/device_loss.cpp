@@ -6,18 +6,18 @@
 
 namespace twinray {
 
-std::string Context::words_of_loss() const {
+std::string Context::State::words_of_loss() const {
     if (!fault_) fault_ = facts_.device_fault ? sentence(query_device_fault(vk_, device_)) : "";
     return name_of(VK_ERROR_DEVICE_LOST) + in_flight_.sentence() + *fault_;
 }
 
-void Context::check(VkResult result, const char* action) const {
+void Context::State::check(VkResult result, const char* action) const {
     is_lost_ |= result == VK_ERROR_DEVICE_LOST;
     if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(text(action, ": ", words_of_loss()));
     vk_check(result, action);
 }
 
-void Context::check_alive() const {
+void Context::State::check_alive() const {
     if (is_lost_) throw DeviceLost(text("device '", facts_.name, "': ", words_of_loss()));
 }
 

@@ -7,9 +7,9 @@
 #include "engine/core/buffer.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/faults.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 class FaultLog {
   public:

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "engine/core/device_choice.h"
+#include <twinray/context.h>
 #include "engine/core/vulkan_functions.h"
 
 namespace twinray {

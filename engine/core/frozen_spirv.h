@@ -6,12 +6,9 @@
 #include <span>
 #include <vector>
 
-namespace twinray {
+#include <twinray/commands.h>
 
-struct SpecializationConstant {
-    std::uint32_t id;
-    std::uint32_t value;  // VkBool32 for bools
-};
+namespace twinray {
 
 // The module with these values, and its own defaults, in place of its specialisation constants and of what is computed
 // of them: for drivers that compile both sides of a branch on one.

@@ -16,7 +16,7 @@ VkImageView create_view(Context& context, VkImage image, VkFormat format) {
     info.format = format;
     info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     VkImageView view = VK_NULL_HANDLE;
-    vk_check(context.vk().vkCreateImageView(context.device(), &info, nullptr, &view), "create an image view");
+    vk_check(context.state().vk().vkCreateImageView(context.device(), &info, nullptr, &view), "create an image view");
     return view;
 }
 
@@ -24,7 +24,7 @@ VkImageView create_view(Context& context, VkImage image, VkFormat format) {
 
 Samplers::~Samplers() {
     for (const auto& [kind, sampler] : samplers_)
-        context_.retire([&vk = context_.vk(), device = context_.device(), sampler = sampler] {
+        context_.state().retire([&vk = context_.state().vk(), device = context_.device(), sampler = sampler] {
             vk.vkDestroySampler(device, sampler, nullptr);
         });
 }
@@ -37,13 +37,13 @@ VkSampler Samplers::get(VkSamplerAddressMode wrap_u, VkSamplerAddressMode wrap_v
     info.addressModeU = wrap_u;
     info.addressModeV = wrap_v;
     VkSampler sampler = VK_NULL_HANDLE;
-    vk_check(context_.vk().vkCreateSampler(context_.device(), &info, nullptr, &sampler), "create a sampler");
+    vk_check(context_.state().vk().vkCreateSampler(context_.device(), &info, nullptr, &sampler), "create a sampler");
     return samplers_[{wrap_u, wrap_v, filter}] = sampler;
 }
 
 // A variable count takes no more than it has; the limit is for update-after-bind descriptors, of which devices have at
 // least 500 000, though none is updated after it was bound.
-VkDescriptorSetLayout Context::image_array_layout() {
+VkDescriptorSetLayout Context::State::image_array_layout() {
     const std::lock_guard lock(image_array_mutex_);
     if (image_array_layout_) return image_array_layout_;
     if (!facts_.has_image_arrays())
@@ -76,21 +76,21 @@ SampledImage::SampledImage(Context& context, const SampledImageDesc& desc) : con
     info.mipLevels = info.arrayLayers = 1;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
     info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    made_ = context.allocator().allocate(ImageRequest{desc_.name.c_str(), &info});
+    made_ = context.state().allocator().allocate(ImageRequest{desc_.name.c_str(), &info});
     try {
         view_ = create_view(context, made_.image, desc.format);
     } catch (...) {
         retire();
         throw;
     }
-    context.set_name(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<std::uint64_t>(made_.image), desc_.name);
+    context.state().set_name(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<std::uint64_t>(made_.image), desc_.name);
 }
 
 void SampledImage::retire() noexcept {
     if (!made_.image) return;
-    context_->retire([&context = *context_, made = made_, view = view_] {
-        context.vk().vkDestroyImageView(context.device(), view, nullptr);
-        context.allocator().free(made);
+    context_->state().retire([&context = *context_, made = made_, view = view_] {
+        context.state().vk().vkDestroyImageView(context.device(), view, nullptr);
+        context.state().allocator().free(made);
     });
 }
 
@@ -116,8 +116,8 @@ void SampledImage::change_layout(Commands& commands, VkImageLayout from, VkImage
     barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.image = made_.image;
     barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    context_->vk().vkCmdPipelineBarrier(commands.handle(), context_->stages(), context_->stages(), 0, 0, nullptr, 0,
-                                        nullptr, 1, &barrier);
+    context_->state().vk().vkCmdPipelineBarrier(commands.handle(), context_->state().stages(),
+                                                context_->state().stages(), 0, 0, nullptr, 0, nullptr, 1, &barrier);
 }
 
 void SampledImage::upload(Commands& commands, std::span<const std::byte> texels) {
@@ -128,8 +128,8 @@ void SampledImage::upload(Commands& commands, std::span<const std::byte> texels)
     region.imageExtent = {desc_.width, desc_.height, 1};
     // What it held is overwritten: its old layout does not matter.
     change_layout(commands, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    context_->vk().vkCmdCopyBufferToImage(commands.handle(), staging.handle(), made_.image,
-                                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+    context_->state().vk().vkCmdCopyBufferToImage(commands.handle(), staging.handle(), made_.image,
+                                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
     change_layout(commands, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     commands.keep(std::move(staging));
 }
@@ -138,8 +138,8 @@ ImageArray::ImageArray(Context& context, std::span<const VkDescriptorImageInfo> 
     if (images.empty() || images.size() > max_images)
         fail("image array of ", images.size(), " images; 1 to ", max_images, " fit");
     const auto count = static_cast<std::uint32_t>(images.size());
-    const VulkanFunctions& vk = context.vk();
-    const VkDescriptorSetLayout layout = context.image_array_layout();
+    const VulkanFunctions& vk = context.state().vk();
+    const VkDescriptorSetLayout layout = context.state().image_array_layout();
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, count};
     VkDescriptorPoolCreateInfo pool{};
     pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
@@ -173,7 +173,7 @@ ImageArray::ImageArray(Context& context, std::span<const VkDescriptorImageInfo> 
 
 ImageArray::~ImageArray() {
     if (!pool_) return;
-    context_->retire([&vk = context_->vk(), device = context_->device(), pool = pool_] {
+    context_->state().retire([&vk = context_->state().vk(), device = context_->device(), pool = pool_] {
         vk.vkDestroyDescriptorPool(device, pool, nullptr);
     });
 }

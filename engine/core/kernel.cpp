@@ -20,9 +20,9 @@ VkShaderModule create_shader_module(Context& context, std::span<const std::uint3
     info.codeSize = spirv.size_bytes();
     info.pCode = spirv.data();
     VkShaderModule module = VK_NULL_HANDLE;
-    const VkResult result = context.vk().vkCreateShaderModule(context.device(), &info, nullptr, &module);
+    const VkResult result = context.state().vk().vkCreateShaderModule(context.device(), &info, nullptr, &module);
     if (result != VK_SUCCESS) fail("shader '", name, "': ", name_of(result));
-    context.set_name(VK_OBJECT_TYPE_SHADER_MODULE, reinterpret_cast<std::uint64_t>(module), name);
+    context.state().set_name(VK_OBJECT_TYPE_SHADER_MODULE, reinterpret_cast<std::uint64_t>(module), name);
     return module;
 }
 
@@ -36,28 +36,28 @@ VkPipelineLayout create_push_constant_layout(Context& context, VkShaderStageFlag
     info.pushConstantRangeCount = 1;
     info.pPushConstantRanges = &range;
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    vk_check(context.vk().vkCreatePipelineLayout(context.device(), &info, nullptr, &layout),
+    vk_check(context.state().vk().vkCreatePipelineLayout(context.device(), &info, nullptr, &layout),
              "create a pipeline layout");
     return layout;
 }
 
 ComputePipeline::ComputePipeline(Context& context, const KernelDesc& desc, std::uint32_t args_bytes)
     : context_(context), desc_(desc), args_bytes_(args_bytes) {
-    if (context.watch()) context.watch()(desc, args_bytes);
-    if (context.watch() || desc.compiles_when_used) return;
-    compiled_ = context.pipelines().get(context, desc, args_bytes);
+    if (context.state().watch()) context.state().watch()(desc, args_bytes);
+    if (context.state().watch() || desc.compiles_when_used) return;
+    compiled_ = context.state().pipelines().get(context, desc, args_bytes);
     desc_.spirv = {};
 }
 
 ComputePipeline::~ComputePipeline() {
-    if (compiled_) context_.pipelines().give_back(context_, std::move(compiled_));
+    if (compiled_) context_.state().pipelines().give_back(context_, std::move(compiled_));
 }
 
 void ComputePipeline::bind(Commands& commands, const void* args, VkDescriptorSet images) const {
     if (desc_.has_images != (images != VK_NULL_HANDLE))
         fail("kernel '", desc_.name, "': ", desc_.has_images ? "dispatched without images" : "it takes no images");
-    if (!compiled_) compiled_ = context_.pipelines().get(context_, desc_, args_bytes_);
-    const VulkanFunctions& vk = context_.vk();
+    if (!compiled_) compiled_ = context_.state().pipelines().get(context_, desc_, args_bytes_);
+    const VulkanFunctions& vk = context_.state().vk();
     vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, compiled_->pipeline);
     if (images)
         vk.vkCmdBindDescriptorSets(commands.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, compiled_->layout, 0, 1, &images,
@@ -70,19 +70,20 @@ void ComputePipeline::dispatch_groups(Commands& commands, const void* args, std:
     if (group_count == 0) return;
     std::optional<Commands::Pass> own_pass;
     if (!commands.in_pass()) own_pass.emplace(commands, desc_.name);
-    if (!context_.watch()) bind(commands, args, images);
+    if (!context_.state().watch()) bind(commands, args, images);
     commands.count_groups(group_count);
     const std::uint64_t rows = (group_count + groups_per_row - 1) / groups_per_row;
-    context_.vk().vkCmdDispatch(commands.handle(), static_cast<std::uint32_t>(std::min(group_count, groups_per_row)),
-                                static_cast<std::uint32_t>(rows), 1);
+    context_.state().vk().vkCmdDispatch(commands.handle(),
+                                        static_cast<std::uint32_t>(std::min(group_count, groups_per_row)),
+                                        static_cast<std::uint32_t>(rows), 1);
 }
 
 void ComputePipeline::dispatch_indirect(Commands& commands, const void* args, const Buffer& counts,
                                         std::uint64_t offset) const {
     std::optional<Commands::Pass> own_pass;
     if (!commands.in_pass()) own_pass.emplace(commands, desc_.name);
-    if (!context_.watch()) bind(commands, args, VK_NULL_HANDLE);
-    context_.vk().vkCmdDispatchIndirect(commands.handle(), counts.handle(), offset);
+    if (!context_.state().watch()) bind(commands, args, VK_NULL_HANDLE);
+    context_.state().vk().vkCmdDispatchIndirect(commands.handle(), counts.handle(), offset);
 }
 
 }  // namespace twinray

@@ -68,7 +68,7 @@ std::uint32_t told_subgroup_size(const Context& context, VkPipeline pipeline) {
     VkPipelineExecutablePropertiesKHR properties{};
     properties.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR;
     std::uint32_t count = 1;  // a compute pipeline is one executable
-    context.vk().vkGetPipelineExecutablePropertiesKHR(context.device(), &which, &count, &properties);
+    context.state().vk().vkGetPipelineExecutablePropertiesKHR(context.device(), &which, &count, &properties);
     return count ? properties.subgroupSize : 0;
 }
 
@@ -77,7 +77,7 @@ std::vector<Statistic> told_statistics(const Context& context, VkPipeline pipeli
     which.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR;
     which.pipeline = pipeline;
     const auto ask = [&](std::uint32_t& count, VkPipelineExecutableStatisticKHR* rows) {
-        vk_check(context.vk().vkGetPipelineExecutableStatisticsKHR(context.device(), &which, &count, rows),
+        vk_check(context.state().vk().vkGetPipelineExecutableStatisticsKHR(context.device(), &which, &count, rows),
                  "read the statistics of a pipeline");
     };
     std::uint32_t count = 0;
@@ -94,8 +94,9 @@ std::vector<Statistic> told_statistics(const Context& context, VkPipeline pipeli
 }  // namespace
 
 KernelStatistics compile_for_statistics(Context& context, const KernelDesc& desc, std::uint32_t args_bytes) {
-    if (!context.watch()) fail("kernel '", desc.name, "': statistics need a context with ContextDesc::watch_kernels");
-    const bool can_tell = context.vk().vkGetPipelineExecutableStatisticsKHR != nullptr;
+    if (!context.state().watch())
+        fail("kernel '", desc.name, "': statistics need a context with ContextDesc::watch_kernels");
+    const bool can_tell = context.state().vk().vkGetPipelineExecutableStatisticsKHR != nullptr;
     const auto kernel = compile(context, desc, args_bytes, can_tell ? Telling::statistics : Telling::nothing);
     if (!can_tell) return {};
     return {told_statistics(context, kernel->pipeline), told_subgroup_size(context, kernel->pipeline)};

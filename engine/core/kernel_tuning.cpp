@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "engine/core/device_choice.h"
+#include <twinray/context.h>
 #include "engine/core/error.h"
 #include "engine/core/sort_args.h"
 

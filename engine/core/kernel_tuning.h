@@ -7,15 +7,9 @@
 #include <optional>
 #include <string_view>
 
+#include <twinray/context.h>
+
 namespace twinray {
-
-struct DeviceFacts;
-
-enum class TuningRow : std::uint8_t {
-    gpu,        // what any device gets that is not known to want another
-    cpu_driver  // Mesa's lavapipe: groups one after the other on each core, and no memory of their own
-};
-const char* name_of(TuningRow row);
 
 struct KernelTuning {
     TuningRow row = TuningRow::gpu;

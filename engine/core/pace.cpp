@@ -36,7 +36,7 @@ std::uint64_t most_groups(double most_seconds) {
 }
 
 Pace::Pace(const Context& context)
-    : most_seconds_(context.tuning().most_submission_seconds), allowed_(first_items(most_seconds_)) {}
+    : most_seconds_(context.state().tuning().most_submission_seconds), allowed_(first_items(most_seconds_)) {}
 
 std::uint64_t Pace::next(std::uint64_t left) const { return most_seconds_ == 0 ? left : std::min(left, allowed_); }
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "engine/core/commands.h"
+#include <twinray/commands.h>
 
 namespace twinray {
 
@@ -26,33 +26,5 @@ std::uint64_t next_items(std::uint64_t allowed, const MeasuredWork& last, double
 // How many groups of passes that nobody measures, of little work per invocation, may share a submission: a quarter of
 // what takes `most_seconds` at 2^17 groups a second. Any number where that is 0.
 std::uint64_t most_groups(double most_seconds);
-
-// Cuts work of one kind into submissions of less than KernelTuning::most_submission_seconds each, by how long the ones
-// before took. Results must not depend on where it cuts. Remembers the rate from one use to the next.
-class Pace {
-  public:
-    explicit Pace(const Context& context);
-
-    // Has `record(first, count)` record all of `count` items in order, in as many parts as it takes: all but the last
-    // are submitted and waited for, with what the commands held before. Commands of the caller stay whole.
-    template <class Record>
-    void record(Commands& commands, std::uint64_t count, const Record& record) {
-        for (std::uint64_t first = 0; first < count; first += pending_) {
-            if (first > 0) took(commands.submit_part());
-            pending_ = commands.is_of_caller() ? count : next(count - first);
-            record(first, pending_);
-        }
-    }
-    // Submits the last part, waits for it and learns from it.
-    void finish(Commands& commands);
-
-  private:
-    std::uint64_t next(std::uint64_t left) const;
-    void took(double seconds);
-
-    double most_seconds_;  // 0: no limit
-    std::uint64_t allowed_;
-    std::uint64_t pending_ = 0;  // items that are recorded
-};
 
 }  // namespace twinray

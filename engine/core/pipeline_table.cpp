@@ -24,13 +24,13 @@ std::string key_of(const KernelDesc& desc, std::uint32_t args_bytes) {
 
 std::vector<SpecializationConstant> constants_of(const Context& context, const KernelDesc& desc) {
     std::vector<SpecializationConstant> constants = desc.constants;
-    constants.push_back({fused_fma_constant, context.tuning().has_fused_fma});
-    constants.push_back({compares_numbers_constant, context.tuning().compares_numbers});
+    constants.push_back({fused_fma_constant, context.state().tuning().has_fused_fma});
+    constants.push_back({compares_numbers_constant, context.state().tuning().compares_numbers});
     return constants;
 }
 
 VkShaderModule new_module(Context& context, const KernelDesc& desc, std::span<const SpecializationConstant> constants) {
-    if (context.tuning().folds_constants) return create_shader_module(context, desc.spirv, desc.name);
+    if (context.state().tuning().folds_constants) return create_shader_module(context, desc.spirv, desc.name);
     return create_shader_module(context, freeze_constants(desc.spirv, constants), desc.name);
 }
 
@@ -55,12 +55,12 @@ VkPipeline new_pipeline(Context& context, const KernelDesc& desc, VkPipelineLayo
     info.layout = layout;
     if (telling == Telling::statistics) info.flags = VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
     VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkPipelineCache cache = telling == Telling::statistics ? VK_NULL_HANDLE : context.pipeline_cache();
+    const VkPipelineCache cache = telling == Telling::statistics ? VK_NULL_HANDLE : context.state().pipeline_cache();
     const VkResult result =
-        context.vk().vkCreateComputePipelines(context.device(), cache, 1, &info, nullptr, &pipeline);
-    context.vk().vkDestroyShaderModule(context.device(), module, nullptr);
+        context.state().vk().vkCreateComputePipelines(context.device(), cache, 1, &info, nullptr, &pipeline);
+    context.state().vk().vkDestroyShaderModule(context.device(), module, nullptr);
     if (result != VK_SUCCESS) fail("kernel '", desc.name, "': create the pipeline: ", name_of(result));
-    context.set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), desc.name);
+    context.state().set_name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), desc.name);
     return pipeline;
 }
 
@@ -73,9 +73,10 @@ CompiledKernel::~CompiledKernel() {
 
 std::shared_ptr<CompiledKernel> compile(Context& context, const KernelDesc& desc, std::uint32_t args_bytes,
                                         Telling telling) {
-    auto kernel = std::make_shared<CompiledKernel>(context.vk(), context.device());
-    kernel->layout = create_push_constant_layout(context, VK_SHADER_STAGE_COMPUTE_BIT, args_bytes,
-                                                 desc.has_images ? context.image_array_layout() : VK_NULL_HANDLE);
+    auto kernel = std::make_shared<CompiledKernel>(context.state().vk(), context.device());
+    kernel->layout =
+        create_push_constant_layout(context, VK_SHADER_STAGE_COMPUTE_BIT, args_bytes,
+                                    desc.has_images ? context.state().image_array_layout() : VK_NULL_HANDLE);
     kernel->pipeline = new_pipeline(context, desc, kernel->layout, telling);
     return kernel;
 }
@@ -104,7 +105,7 @@ void PipelineTable::give_back(Context& context, std::shared_ptr<CompiledKernel> 
         kernel.reset();
         gone = take_oldest_unused();
     }
-    if (gone) context.retire([gone] {});
+    if (gone) context.state().retire([gone] {});
 }
 
 // Null while there are not too many.

@@ -39,7 +39,7 @@ KernelDesc scan_kernel(uint threads) {
 
 }  // namespace
 
-RadixSort::RadixSort(Context& context) : RadixSort(context, context.tuning().sort_threads) {}
+RadixSort::RadixSort(Context& context) : RadixSort(context, context.state().tuning().sort_threads) {}
 
 RadixSort::RadixSort(Context& context, uint threads)
     : threads_(threads),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/requirement.h"
 
-#include "engine/core/device_choice.h"
+#include <twinray/context.h>
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -37,7 +37,7 @@ constexpr Part parts[] = {
      "illumination, centroids, collisions of boxes and the path tracer",
      "twinray needs ", ""},
     {"hardware", "HwTlas", "HwTlas needs ", ", SwTlas works without"},
-    {"ray_queries", "Kernels that query HwTlas themselves (twinray/query.glsl, all hits of a ray)",
+    {"ray_queries", "Kernels that query HwTlas themselves (twinray/glsl/query.glsl, all hits of a ray)",
      "Kernels that query HwTlas need ", ", batches of rays work without"},
     {"ray_pipelines", "HwTlas on a device without ray queries", "HwTlas without ray queries needs ",
      ", SwTlas works without"},

@@ -3,13 +3,9 @@
 // the test of all kernels read it.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
+#include <twinray/context.h>
 
 namespace twinray {
-
-struct DeviceFacts;
 
 // The most that any kernel takes. Where it may take more on a device that has more (KernelTuning), it asks.
 struct KernelLimits {

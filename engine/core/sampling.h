@@ -4,15 +4,14 @@
 
 #include <glm/integer.hpp>
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 using glm::bitfieldReverse;
-using glm::sqrt;
 
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/random.h"
 #include "shaders/shared/sampling.h"
 #include "shaders/shared/sobol.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 }  // namespace twinray

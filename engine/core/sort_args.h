@@ -2,10 +2,10 @@
 // The sort's kernel arguments for C++.
 #pragma once
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/sort.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 }  // namespace twinray

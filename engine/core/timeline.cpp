@@ -10,7 +10,7 @@
 
 namespace twinray {
 
-void Context::create_timeline() {
+void Context::State::create_timeline() {
     VkSemaphoreTypeCreateInfo type{};
     type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
     type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
@@ -21,14 +21,14 @@ void Context::create_timeline() {
     set_name(VK_OBJECT_TYPE_SEMAPHORE, reinterpret_cast<std::uint64_t>(timeline_), "twinray timeline");
 }
 
-void Context::wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages) {
+void Context::State::wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages) {
     if (!point.semaphore || !point.value || !stages)
         fail("wait before the next submission: the semaphore, its value and the stages must not be 0");
     awaited_.push_back({point, stages});
 }
 
 // Each submission is the driver's own, since each signals: what is merged would count as one that takes longer.
-VkResult Context::enqueue(std::span<const Submission> submissions) const {
+VkResult Context::State::enqueue(std::span<const Submission> submissions) const {
     std::vector<VkSemaphore> semaphores;
     std::vector<std::uint64_t> awaited, signalled(submissions.size());
     std::vector<VkPipelineStageFlags> stages;
@@ -63,7 +63,7 @@ VkResult Context::enqueue(std::span<const Submission> submissions) const {
     return result;
 }
 
-SyncPoint Context::submit(const std::string& name, std::vector<Submission> submissions) {
+SyncPoint Context::State::submit(const std::string& name, std::vector<Submission> submissions) {
     check_alive();
     if (submissions.empty()) return last_submission();
     check(enqueue(submissions), "submit to the queue");
@@ -73,14 +73,14 @@ SyncPoint Context::submit(const std::string& name, std::vector<Submission> submi
     return last_submission();
 }
 
-bool Context::is_reached(SyncPoint point) const {
+bool Context::State::is_reached(SyncPoint point) const {
     check_alive();
     std::uint64_t value = 0;
     check(vk_.vkGetSemaphoreCounterValue(device_, point.semaphore, &value), "read the timeline");
     return value >= point.value;
 }
 
-void Context::wait(SyncPoint point) const {
+void Context::State::wait(SyncPoint point) const {
     check_alive();
     if (!point.semaphore || !point.value) return;
     VkSemaphoreWaitInfo info{};
@@ -92,14 +92,14 @@ void Context::wait(SyncPoint point) const {
     if (point.semaphore == timeline_) in_flight_.reached(point.value);
 }
 
-void Context::wait_for_gpu() {
+void Context::State::wait_for_gpu() {
     wait(last_submission());
     for (const SyncPoint point : announced_) wait(point);
     announced_.clear();
     collect();
 }
 
-void Context::announce(SyncPoint point) {
+void Context::State::announce(SyncPoint point) {
     for (SyncPoint& known : announced_) {
         if (known.semaphore != point.semaphore) continue;
         known.value = std::max(known.value, point.value);
@@ -108,18 +108,18 @@ void Context::announce(SyncPoint point) {
     announced_.push_back(point);
 }
 
-void Context::retire(std::function<void()> destroy) {
+void Context::State::retire(std::function<void()> destroy) {
     retired_.push_back({submitted_, announced_, std::move(destroy)});
 }
 
-std::uint64_t Context::reached(VkSemaphore semaphore) const noexcept {
+std::uint64_t Context::State::reached(VkSemaphore semaphore) const noexcept {
     std::uint64_t value = 0;
     const VkResult result = vk_.vkGetSemaphoreCounterValue(device_, semaphore, &value);
     is_lost_ |= result == VK_ERROR_DEVICE_LOST;
     return result == VK_SUCCESS ? value : 0;
 }
 
-void Context::collect() noexcept {
+void Context::State::collect() noexcept {
     if (retired_.empty() || !timeline_) return;
     std::erase_if(announced_, [&](SyncPoint point) { return reached(point.semaphore) >= point.value; });
     const std::uint64_t own = reached(timeline_);
@@ -133,7 +133,7 @@ void Context::collect() noexcept {
 }
 
 // What the GPU still uses must not be destroyed, even where waiting for it fails: reading the timeline needs no memory.
-void Context::finish() noexcept {
+void Context::State::finish() noexcept {
     try {
         wait(last_submission());
     } catch (const Error& error) {

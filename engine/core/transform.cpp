@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/transform.h"
 
 #include <cmath>
 
-#include <glm/gtc/matrix_access.hpp>
+#include <twinray/geometry.h>
 
 #include "engine/core/error.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray {
 namespace {
@@ -19,9 +19,9 @@ dmat3 linear_part(const Transform& t) {
     return m;
 }
 
-glm::dvec3 offset(const Transform& t) { return {t.rows[0].w, t.rows[1].w, t.rows[2].w}; }
+dvec3 offset(const Transform& t) { return {t.rows[0].w, t.rows[1].w, t.rows[2].w}; }
 
-Transform rounded(const dmat3& linear, const glm::dvec3& offset) {
+Transform rounded(const dmat3& linear, const dvec3& offset) {
     Transform t;
     for (int row = 0; row < 3; ++row) t.rows[row] = vec4(linear[0][row], linear[1][row], linear[2][row], offset[row]);
     return t;
@@ -46,18 +46,17 @@ Transform Transform::scaling(vec3 factors) {
     return t;
 }
 
-Transform Transform::of(const glm::mat4& matrix) {
-    if (glm::row(matrix, 3) != vec4(0, 0, 0, 1)) fail("transform: the fourth row of the matrix must be 0 0 0 1");
-    return {{glm::row(matrix, 0), glm::row(matrix, 1), glm::row(matrix, 2)}};
+Transform Transform::of_columns(const std::array<vec4, 4>& columns) {
+    const auto row = [&](int i) { return vec4(columns[0][i], columns[1][i], columns[2][i], columns[3][i]); };
+    if (row(3) != vec4(0, 0, 0, 1)) fail("transform: the fourth row of the matrix must be 0 0 0 1");
+    return {{row(0), row(1), row(2)}};
 }
 
 vec3 transform_point(const Transform& transform, vec3 point) {
-    return vec3(linear_part(transform) * glm::dvec3(point) + offset(transform));
+    return vec3(linear_part(transform) * dvec3(point) + offset(transform));
 }
 
-vec3 transform_vector(const Transform& transform, vec3 vector) {
-    return vec3(linear_part(transform) * glm::dvec3(vector));
-}
+vec3 transform_vector(const Transform& transform, vec3 vector) { return vec3(linear_part(transform) * dvec3(vector)); }
 
 Transform operator*(const Transform& a, const Transform& b) {
     return rounded(linear_part(a) * linear_part(b), linear_part(a) * offset(b) + offset(a));

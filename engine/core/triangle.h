@@ -5,7 +5,7 @@
 #include "engine/core/ray.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/triangle.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 }  // namespace twinray

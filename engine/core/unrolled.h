@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Loops over tuples, unrolled at compile time. Functors capture nothing: what they need is passed as arguments, so that
-// the same functor may stand in a constant expression, and its GLSL counterpart (shaders/twinray/unrolled.glsl) is
+// the same functor may stand in a constant expression, and its GLSL counterpart (include/twinray/glsl/unrolled.glsl) is
 // written alike. Nothing here allocates.
 #pragma once
 

@@ -8,7 +8,7 @@
 #include <vk_mem_alloc.h>
 
 #include "engine/core/vma.h"
-#include "engine/core/vma_adapter.h"
+#include <twinray/vma_adapter.h>
 
 namespace twinray {
 VmaAllocator create_vma(const VulkanFunctions& vk, VkInstance instance, VkPhysicalDevice physical_device,

@@ -33,7 +33,7 @@ class Shader {
     vec3 operator()(const Ray& ray, const Hit& hit) const {
         if (hit.hit == 0) return linear_of(background);
         const dvec3 normal = normal_of(scene_, hit), direction(ray.direction);
-        const double sizes = glm::length(normal) * glm::length(direction);
+        const double sizes = length(normal) * length(direction);
         const auto cosine = static_cast<float>(sizes > 0 ? std::abs(dot(normal, direction)) / sizes : 1);
         return linear_of(colors_[first_faces_[hit.instance_index] + hit.primitive_index]) *
                (light_at_least + (1 - light_at_least) * cosine);

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/picture/raster.h"
 #include "engine/picture/view.h"
 

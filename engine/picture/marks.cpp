@@ -43,7 +43,7 @@ float nearest(const Stretch& stretch, vec2 at) {
 // Along a line in perspective it is the inverse of depth that is linear in the picture.
 float depth_at(const FacePicture& picture, const Stretch& stretch, float place) {
     const float a = stretch.from.depth, b = stretch.to.depth;
-    return picture.plane.is_orthographic ? glm::mix(a, b, place) : 1 / glm::mix(1 / a, 1 / b, place);
+    return picture.plane.is_orthographic ? mix(a, b, place) : 1 / mix(1 / a, 1 / b, place);
 }
 
 void draw(FacePicture& picture, const Stretch& stretch) {
@@ -55,7 +55,7 @@ void draw(FacePicture& picture, const Stretch& stretch) {
         for (uint x = static_cast<uint>(low.x); static_cast<float>(x) < high.x; ++x) {
             const vec2 center = vec2(x, y) + 0.5f;
             const float place = nearest(stretch, center);
-            const float distance = length(center - glm::mix(stretch.from.at, stretch.to.at, place));
+            const float distance = length(center - mix(stretch.from.at, stretch.to.at, place));
             const float coverage = std::clamp(stretch.radius + 0.5f - distance, 0.0f, 1.0f);
             if (coverage == 0) continue;
             const float depth = depth_at(picture, stretch, place), thickness = 2 * std::max(stretch.radius, 1.0f);

@@ -4,7 +4,7 @@
 namespace twinray {
 
 void blend(Rgb& under, Rgb color, float opacity) {
-    under = opacity >= 1 ? color : rgb_of_linear(glm::mix(linear_of(under), linear_of(color), opacity));
+    under = opacity >= 1 ? color : rgb_of_linear(mix(linear_of(under), linear_of(color), opacity));
 }
 
 void fill(Raster& raster, Rect rect, Rgb color) {

@@ -43,7 +43,7 @@ dvec3 mean_normal(const Scene& scene) {
     for_each_triangle(scene, [&](const dvec3& a, const dvec3& b, const dvec3& c, double side) {
         const dvec3 normal = cross(b - a, c - a);
         sum += normal * side;
-        area += glm::length(normal);
+        area += length(normal);
     });
     return area > 0 ? sum / area : sum;
 }
@@ -52,10 +52,10 @@ dvec3 mean_normal(const Scene& scene) {
 vec3 usual_backward(const Scene& scene) {
     const vec3 three_quarters = normalize(vec3(0.55f, 0.4f, 1));
     const dvec3 facing = mean_normal(scene);
-    const double strength = glm::length(facing);
+    const double strength = length(facing);
     if (strength < 0.02) return three_quarters;
     const auto weight = static_cast<float>(std::min((strength - 0.02) / 0.1, 0.95));
-    vec3 direction = glm::mix(three_quarters, vec3(facing / strength), weight);
+    vec3 direction = mix(three_quarters, vec3(facing / strength), weight);
     // Not from straight above, where up is no longer up, nor from far below.
     const float across = length(vec2(direction.x, direction.z));
     direction.y = std::clamp(direction.y, -0.2f * across, 1.2f * across);

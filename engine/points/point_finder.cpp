@@ -17,9 +17,9 @@
 
 namespace twinray {
 namespace {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/point_winding.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 constexpr std::size_t batch = 1 << 20;  // points
 

@@ -14,9 +14,9 @@
 #include "engine/scene/scene.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/point_search.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(QueryPoint) == 24 && sizeof(NearestPoint) == 56 && sizeof(PointItem) == 16);
 

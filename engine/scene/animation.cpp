@@ -6,7 +6,7 @@
 namespace twinray {
 namespace {
 
-glm::dmat3 rotation_matrix(const glm::dvec4& q) {
+glm::dmat3 rotation_matrix(const dvec4& q) {
     const double x = q.x, y = q.y, z = q.z, w = q.w;
     const double s = 2 / (x * x + y * y + z * z + w * w);  // files round their unit quaternions
     return {1 - s * (y * y + z * z), s * (x * y + z * w),     s * (x * z - y * w),

@@ -9,16 +9,16 @@
 
 #include <glm/mat4x4.hpp>
 
-#include "engine/core/transform.h"
+#include <twinray/geometry.h>
 #include "engine/scene/scene.h"
 
 namespace twinray {
 
 // The place of a node in its parent: scaled, then rotated, then moved.
 struct Trs {
-    glm::dvec3 translation = glm::dvec3(0);
-    glm::dvec4 rotation = glm::dvec4(0, 0, 0, 1);  // quaternion x y z w, of any length but 0
-    glm::dvec3 scale = glm::dvec3(1);
+    dvec3 translation = dvec3(0);
+    dvec4 rotation = dvec4(0, 0, 0, 1);  // quaternion x y z w, of any length but 0
+    dvec3 scale = dvec3(1);
 };
 glm::dmat4 matrix_of(const Trs& trs);
 // With 1 in place of scales of 0: the axes that are left when it has shrunk to nothing.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 
 namespace twinray {

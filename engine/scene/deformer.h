@@ -7,9 +7,9 @@
 #include "engine/scene/animation.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/deform.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // Moves the vertices of a rig's meshes on the device, as deformed() does on the host: one dispatch a mesh. What it
 // writes is laid out as AbstractAccel::update_vertices() takes it.

@@ -31,7 +31,7 @@ bool is_finite(vec3 point) { return std::isfinite(point.x) && std::isfinite(poin
 bool is_decomposable(const Transform& transform) {
     const auto column = [&](int i) { return dvec3(transform.rows[0][i], transform.rows[1][i], transform.rows[2][i]); };
     const auto perpendicular = [&](int i, int j) {
-        return std::abs(dot(column(i), column(j))) <= 0x1p-20 * glm::length(column(i)) * glm::length(column(j));
+        return std::abs(dot(column(i), column(j))) <= 0x1p-20 * length(column(i)) * length(column(j));
     };
     return perpendicular(0, 1) && perpendicular(1, 2) && perpendicular(0, 2);
 }

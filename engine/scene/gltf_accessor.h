@@ -2,7 +2,7 @@
 // Reading accessors, with every byte range, type and sparse index checked before memory is touched.
 #pragma once
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 #include "engine/scene/gltf_file.h"
 
 namespace twinray {
@@ -14,9 +14,9 @@ std::vector<float> read_floats(const GltfFile& file, int accessor, int component
 
 // The same as vectors of N floats.
 template <int N>
-std::vector<glm::vec<N, float>> read_vectors(const GltfFile& file, int accessor, const std::string& object) {
+std::vector<Vec<N, float>> read_vectors(const GltfFile& file, int accessor, const std::string& object) {
     const std::vector<float> floats = read_floats(file, accessor, N, object);
-    std::vector<glm::vec<N, float>> vectors(floats.size() / N);
+    std::vector<Vec<N, float>> vectors(floats.size() / N);
     for (std::size_t i = 0; i < floats.size(); ++i) vectors[i / N][static_cast<int>(i % N)] = floats[i];
     return vectors;
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "engine/core/transform.h"
+#include <twinray/geometry.h>
 
 namespace twinray {
 
@@ -16,9 +16,9 @@ inline float clamped_factor(double factor, double lo, double hi) {
 inline float unit_factor(double factor) { return clamped_factor(factor, 0, 1); }
 
 template <int N>
-glm::vec<N, float> color_factor(const std::vector<double>& factors, glm::vec<N, float> fallback, double most = 1) {
+Vec<N, float> color_factor(const std::vector<double>& factors, Vec<N, float> fallback, double most = 1) {
     if (factors.size() != N) return fallback;
-    glm::vec<N, float> color;
+    Vec<N, float> color;
     for (int i = 0; i < N; ++i) color[i] = clamped_factor(factors[std::size_t(i)], 0, most);
     return color;
 }

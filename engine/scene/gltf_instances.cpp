@@ -30,7 +30,7 @@ class Placements {
 
   private:
     template <int N>
-    std::vector<glm::vec<N, float>> read(const tinygltf::Value& attributes, const char* name) {
+    std::vector<Vec<N, float>> read(const tinygltf::Value& attributes, const char* name) {
         const int accessor = index_of(attributes, name);
         if (accessor < 0) return {};
         auto values = read_vectors<N>(file_, accessor, text(name_, " EXT_mesh_gpu_instancing ", name));
@@ -41,11 +41,11 @@ class Placements {
         return values;
     }
 
-    template <class Vector>
-    static std::vector<double> entry(const std::vector<Vector>& values, std::size_t i) {
+    template <int N>
+    static std::vector<double> entry(const std::vector<Vec<N, float>>& values, std::size_t i) {
         std::vector<double> numbers;
         if (!values.empty())
-            for (int k = 0; k < Vector::length(); ++k) numbers.push_back(values[i][k]);
+            for (std::size_t k = 0; k < N; ++k) numbers.push_back(values[i][k]);
         return numbers;
     }
 

@@ -115,9 +115,9 @@ class MeshReader {
         GltfVertices own = picked(shared, corners);
         std::vector<uvec3> own_triangles;
         for (uint i = 0; i + 2 < own.positions.size(); i += 3) {
-            const glm::dvec3 a(own.positions[i]), b(own.positions[i + 1]), c(own.positions[i + 2]);
-            const glm::dvec3 normal = unit_or_zero(glm::cross(b - a, c - a));
-            std::fill_n(&own.normals[i], 3, normal == glm::dvec3(0) ? vec3(0, 0, 1) : vec3(normal));
+            const dvec3 a(own.positions[i]), b(own.positions[i + 1]), c(own.positions[i + 2]);
+            const dvec3 normal = unit_or_zero(cross(b - a, c - a));
+            std::fill_n(&own.normals[i], 3, normal == dvec3(0) ? vec3(0, 0, 1) : vec3(normal));
             own_triangles.emplace_back(i, i + 1, i + 2);
         }
         add_triangles(own_triangles, append_vertices(own), primitive, object);

@@ -15,7 +15,7 @@ namespace {
 
 using glm::dmat4;
 
-dmat4 translation(const dvec3& offset) { return glm::translate(dmat4(1), offset); }
+dmat4 translation(const dvec3& offset) { return glm::translate(dmat4(1), to_glm(offset)); }
 
 // Before any instance is rounded.
 Bounds64 world_bounds(const Scene& scene, const Rig& rig, const Pose& pose) {

@@ -18,10 +18,10 @@ void check_count(const GltfFile& file, std::size_t count, std::size_t vertex_cou
 }
 
 template <int N>
-std::vector<glm::vec<N, float>> read_attribute(const GltfFile& file, const Primitive& primitive, const char* name,
-                                               std::size_t vertex_count, const std::string& object) {
+std::vector<Vec<N, float>> read_attribute(const GltfFile& file, const Primitive& primitive, const char* name,
+                                          std::size_t vertex_count, const std::string& object) {
     const int accessor = attribute_of(primitive, name);
-    if (accessor < 0) return std::vector<glm::vec<N, float>>(vertex_count, glm::vec<N, float>(0));
+    if (accessor < 0) return std::vector<Vec<N, float>>(vertex_count, Vec<N, float>(0));
     auto values = read_vectors<N>(file, accessor, text(object, " ", name));
     check_count(file, values.size(), vertex_count, object, name);
     return values;

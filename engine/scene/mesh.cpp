@@ -13,6 +13,11 @@ bool is_finite(vec3 point) { return std::isfinite(point.x) && std::isfinite(poin
 
 }  // namespace
 
+void Bounds::include(vec3 point) { lo = min(lo, point), hi = max(hi, point); }
+void Bounds::include(const Bounds& other) { lo = min(lo, other.lo), hi = max(hi, other.hi); }
+vec3 Bounds::size() const { return is_empty() ? vec3(0) : hi - lo; }
+vec3 Bounds::center() const { return lo * 0.5f + hi * 0.5f; }
+
 vec3 normal_or_none(const dvec3& normal) { return is_finite(vec3(normal)) ? vec3(normal) : vec3(0); }
 
 Bounds bounds_of(const MeshView& mesh) {
@@ -41,8 +46,8 @@ std::size_t count_non_finite_triangles(const MeshView& mesh) {
 }
 
 dvec3 unit_or_zero(dvec3 v) {
-    const double length = glm::length(v);
-    return length > 0 && std::isfinite(length) ? v / length : dvec3(0);
+    const double size = length(v);
+    return size > 0 && std::isfinite(size) ? v / size : dvec3(0);
 }
 
 std::size_t count_undirected_normals(const Mesh& mesh) {

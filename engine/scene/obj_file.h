@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 

@@ -11,8 +11,6 @@
 namespace twinray {
 namespace {
 
-using glm::dvec2;
-
 // The corners in the plane that the polygon faces most, turned so that its area is positive, as whole numbers up to
 // 2^52: differences of them are exact. That costs no more than their own rounding where they are farthest from 0.
 std::vector<dvec2> flattened(std::span<const dvec3> corners) {
@@ -94,7 +92,7 @@ class PointTree {
 
     void build(std::span<const dvec2> points, std::size_t node, Place first, Place last) {
         Box2 box{points[*first], points[*first]};
-        for (Place i = first; i != last; ++i) box = {glm::min(box.lo, points[*i]), glm::max(box.hi, points[*i])};
+        for (Place i = first; i != last; ++i) box = {min(box.lo, points[*i]), max(box.hi, points[*i])};
         boxes_[node] = box;
         if (last - first == 1) return;
         const Place middle = first + (last - first) / 2;

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/transform.h"
+#include <twinray/geometry.h>
 #include "engine/scene/mesh.h"
 
 namespace twinray {

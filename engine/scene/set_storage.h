@@ -11,9 +11,9 @@
 #include "engine/core/fault_log.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/multi_type_set.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // What a set's view holds of each type.
 struct SetSlot {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/shapes.h"
-
 #include <algorithm>
 #include <map>
 #include <random>
 
+#include <twinray/geometry.h>
+
 #include "engine/core/error.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray {
 namespace {
@@ -48,7 +49,7 @@ void subdivide(Mesh& mesh) {
     std::map<std::pair<uint, uint>, uint> middles;
     const auto middle = [&](uint i, uint j) {
         const auto [entry, is_new] = middles.try_emplace(std::minmax(i, j), static_cast<uint>(mesh.positions.size()));
-        if (is_new) mesh.positions.push_back(glm::normalize(mesh.positions[i] + mesh.positions[j]));
+        if (is_new) mesh.positions.push_back(normalize(mesh.positions[i] + mesh.positions[j]));
         return entry->second;
     };
     std::vector<uvec3> triangles;
@@ -66,7 +67,7 @@ Mesh make_quad(vec3 corner, vec3 u, vec3 v) {
     mesh.name = "quad";
     mesh.positions = {corner, corner + u, corner + u + v, corner + v};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    mesh.normals.assign(4, glm::normalize(cross(u, v)));
+    mesh.normals.assign(4, normalize(cross(u, v)));
     mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     return mesh;
 }

@@ -12,9 +12,9 @@
 #include "engine/core/type_list.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/soa.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 // Where the arrays of `count` items lie in one piece of memory.
 struct SoaLayout {

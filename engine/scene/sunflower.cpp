@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 
 namespace twinray {
@@ -16,7 +17,7 @@ vec3 petal_color(float along) {
                               {0.86f, 0.72f, 0.42f}, {0.82f, 0.26f, 0.10f}, {0.42f, 0.035f, 0.07f}};
     const float at = along * 4.999f;
     const auto stop = static_cast<uint>(at);
-    return glm::mix(stops[stop], stops[stop + 1], at - static_cast<float>(stop));
+    return mix(stops[stop], stops[stop + 1], at - static_cast<float>(stop));
 }
 
 std::vector<Material> sunflower_materials() {

@@ -11,7 +11,7 @@ namespace {
 uint longest_image_side(const Context& context) {
     VkPhysicalDeviceProperties2 properties{};
     properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-    context.vk().vkGetPhysicalDeviceProperties2(context.physical_device(), &properties);
+    context.state().vk().vkGetPhysicalDeviceProperties2(context.physical_device(), &properties);
     return properties.properties.limits.maxImageDimension2D;
 }
 
@@ -36,7 +36,7 @@ uint wrap_word(Wrap wrap) {
 }  // namespace
 
 TextureStorage TextureStore::best_storage(const Context& context) {
-    const bool has_images = context.facts().has_image_arrays() && context.allocator().has_images();
+    const bool has_images = context.facts().has_image_arrays() && context.state().allocator().has_images();
     return has_images ? TextureStorage::images : TextureStorage::buffers;
 }
 

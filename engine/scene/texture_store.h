@@ -11,9 +11,9 @@
 #include "engine/scene/set_storage.h"
 
 namespace twinray {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/textures.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(TextureRecord) == 32 && sizeof(TextureTable) == 32);
 

@@ -29,11 +29,10 @@ struct EqualBits {
     }
 };
 
-template <class Vector>
-void put(Key& key, std::size_t first, const std::vector<Vector>& values, std::size_t vertex) {
+template <int N>
+void put(Key& key, std::size_t first, const std::vector<Vec<N, float>>& values, std::size_t vertex) {
     if (values.empty()) return;
-    for (int i = 0; i < Vector::length(); ++i)
-        key[first + static_cast<std::size_t>(i)] = values[vertex][i] + 0.0f;  // -0 -> 0
+    for (std::size_t i = 0; i < N; ++i) key[first + i] = values[vertex][i] + 0.0f;  // -0 -> 0
 }
 
 template <class Vector>

@@ -9,18 +9,18 @@
 namespace twinray {
 namespace {
 
-Ray endless(const vec3& origin, const glm::dvec3& direction) {
+Ray endless(const vec3& origin, const dvec3& direction) {
     return {origin, 0.0f, vec3(direction), std::numeric_limits<float>::infinity()};
 }
 
-vec3 to_finite(const glm::dvec3& p) {
+vec3 to_finite(const dvec3& p) {
     constexpr double largest = std::numeric_limits<float>::max();
-    return vec3(glm::clamp(p, glm::dvec3(-largest), glm::dvec3(largest)));
+    return vec3(clamp(p, dvec3(-largest), dvec3(largest)));
 }
 
 // A length to place origins by; that of the coordinates where the box has no extent.
 double diagonal_of(const Box64& box) {
-    const double diagonal = box.is_empty() ? 0 : glm::length(box.corners[1] - box.corners[0]);
+    const double diagonal = box.is_empty() ? 0 : length(box.corners[1] - box.corners[0]);
     if (diagonal > 0) return diagonal;
     return box.max_abs() > 0 ? box.max_abs() : 1.0;
 }
@@ -41,7 +41,7 @@ Triangle64 draw_triangle(Draws& draws, const Oracle& scene, const std::vector<ui
     while (geometry.find(primitive) == nullptr) primitive = (primitive + 1) % uint(geometry.triangle_count());
     Triangle64 corners = geometry.find(primitive)->corners64();
     const Placement64& placement = scene.placement(instance);
-    for (glm::dvec3& corner : corners) corner = placement.to_world * corner + placement.offset;
+    for (dvec3& corner : corners) corner = placement.to_world * corner + placement.offset;
     return corners;
 }
 
@@ -54,14 +54,14 @@ std::vector<Ray> aimed_rays(const Oracle& scene, std::size_t count, std::uint64_
     rays.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
         Draws draws(seed, i);
-        const glm::dvec3 target = pick(draws, draw_triangle(draws, scene, targets));
+        const dvec3 target = pick(draws, draw_triangle(draws, scene, targets));
         double distance = draws.between(0.05, 2.0) * diagonal_of(scene.bounds());
         vec3 origin = to_finite(target + distance * draws.direction());
-        while (glm::dvec3(origin) == target) {  // rounding swallows the distance of a tiny, far triangle
+        while (dvec3(origin) == target) {  // rounding swallows the distance of a tiny, far triangle
             distance *= 2;
             origin = to_finite(target + distance * draws.direction());
         }
-        rays.push_back(endless(origin, glm::normalize(target - glm::dvec3(origin))));
+        rays.push_back(endless(origin, normalize(target - dvec3(origin))));
     }
     return rays;
 }
@@ -70,14 +70,14 @@ std::vector<Ray> aimed_rays(const Oracle& scene, std::size_t count, std::uint64_
 
 std::vector<Ray> random_rays(const Bounds& bounds, std::size_t count, std::uint64_t seed) {
     Box64 box;
-    box.include(bounds.is_empty() ? glm::dvec3(-0.5) : glm::dvec3(bounds.lo));
-    box.include(bounds.is_empty() ? glm::dvec3(0.5) : glm::dvec3(bounds.hi));
+    box.include(bounds.is_empty() ? dvec3(-0.5) : dvec3(bounds.lo));
+    box.include(bounds.is_empty() ? dvec3(0.5) : dvec3(bounds.hi));
     std::vector<Ray> rays;
     rays.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
         Draws draws(seed, i);
         const double margin = diagonal_of(box) * (i % 2 == 0 ? 0.1 : 1.0);
-        glm::dvec3 origin;
+        dvec3 origin;
         for (int axis = 0; axis < 3; ++axis)
             origin[axis] = draws.between(box.corners[0][axis] - margin, box.corners[1][axis] + margin);
         rays.push_back(endless(to_finite(origin), draws.direction()));

@@ -33,25 +33,25 @@ struct Binning {
 
 }  // namespace
 
-void Box64::include(const glm::dvec3& point) {
-    corners[0] = glm::min(corners[0], point);
-    corners[1] = glm::max(corners[1], point);
+void Box64::include(const dvec3& point) {
+    corners[0] = min(corners[0], point);
+    corners[1] = max(corners[1], point);
 }
 
 void Box64::include(const Box64& other) {
-    corners[0] = glm::min(corners[0], other.corners[0]);
-    corners[1] = glm::max(corners[1], other.corners[1]);
+    corners[0] = min(corners[0], other.corners[0]);
+    corners[1] = max(corners[1], other.corners[1]);
 }
 
 double Box64::half_area() const {
     if (is_empty()) return 0;
-    const glm::dvec3 e = corners[1] - corners[0];
+    const dvec3 e = corners[1] - corners[0];
     return e.x * e.y + e.y * e.z + e.z * e.x;
 }
 
 double Box64::max_abs() const {
     if (is_empty()) return 0;
-    const glm::dvec3 m = glm::max(glm::abs(corners[0]), glm::abs(corners[1]));
+    const dvec3 m = max(abs(corners[0]), abs(corners[1]));
     return std::max({m.x, m.y, m.z});
 }
 
@@ -59,7 +59,7 @@ Interval64 intersection(const Interval64& a, const Interval64& b) {
     return {std::max(a.near, b.near), std::min(a.far, b.far)};
 }
 
-SlabRay::SlabRay(const glm::dvec3& origin, const glm::dvec3& direction, double pad) {
+SlabRay::SlabRay(const dvec3& origin, const dvec3& direction, double pad) {
     for (int axis = 0; axis < 3; ++axis) {
         inverse_[axis] = 1.0 / direction[axis];
         const bool backwards = std::signbit(inverse_[axis]);
@@ -86,7 +86,7 @@ class Bvh64::Builder {
 
     Bvh64& bvh_;
     std::span<const Box64> boxes_;
-    std::vector<glm::dvec3> centroids_;
+    std::vector<dvec3> centroids_;
 };
 
 Bvh64::Builder::Builder(Bvh64& bvh, std::span<const Box64> boxes) : bvh_(bvh), boxes_(boxes) {

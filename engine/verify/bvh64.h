@@ -13,16 +13,16 @@
 #include <span>
 #include <vector>
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 
 // Closed box; the default is empty.
 struct Box64 {
-    std::array<glm::dvec3, 2> corners = {glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};  // low, high
+    std::array<dvec3, 2> corners = {dvec3(INFINITY), dvec3(-INFINITY)};  // low, high
 
     bool is_empty() const { return !(corners[0].x <= corners[1].x); }
-    void include(const glm::dvec3& point);
+    void include(const dvec3& point);
     void include(const Box64& other);
     double half_area() const;  // 0 when empty
     double max_abs() const;    // largest coordinate by magnitude, 0 when empty
@@ -41,7 +41,7 @@ Interval64 intersection(const Interval64& a, const Interval64& b);
 // A ray prepared for slab tests against boxes grown by `pad` on every side (units of the boxes).
 class SlabRay {
   public:
-    SlabRay(const glm::dvec3& origin, const glm::dvec3& direction, double pad);
+    SlabRay(const dvec3& origin, const dvec3& direction, double pad);
 
     // The t at which the ray is inside the grown box. A zero direction component constrains nothing while the
     // origin is between the planes; 0 * infinity = NaN arises only on a plane and is dropped by the comparisons.
@@ -58,8 +58,8 @@ class SlabRay {
     }
 
   private:
-    glm::dvec3 near_origin_, far_origin_, inverse_;
-    glm::ivec3 near_side_;  // which corner holds the near plane, by the sign bit, so that -0 works
+    dvec3 near_origin_, far_origin_, inverse_;
+    ivec3 near_side_;  // which corner holds the near plane, by the sign bit, so that -0 works
 };
 
 class Bvh64 {

@@ -11,8 +11,6 @@
 namespace twinray {
 namespace {
 
-using glm::dvec3;
-
 using Corner = std::array<float, 3>;  // ordered by comparing numbers, so that -0 equals 0
 
 Corner corner_of(const vec3& p) { return {p.x, p.y, p.z}; }
@@ -104,7 +102,7 @@ std::optional<vec3> ClosedMesh::point_inside(std::uint64_t seed, std::uint64_t i
             return true;
         });
         if (chord == unlimited) continue;
-        const vec3 point = foot + draws.between(0.25, 0.75) * chord * direction;
+        const vec3 point(foot + draws.between(0.25, 0.75) * chord * direction);
         bool is_inside = !comes_within(clearance(), point);
         for (int i = 0; i < 3 && is_inside; ++i) is_inside = crossings(point, draws.direction()) % 2 == 1;
         if (is_inside) return point;

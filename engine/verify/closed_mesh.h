@@ -34,9 +34,9 @@ class ClosedMesh {
 
     // How often the ray crosses the mesh at t > 0. Exact up to float64, and counted twice where the ray passes an edge
     // exactly: choose a direction that does not.
-    std::size_t crossings(const glm::dvec3& origin, const glm::dvec3& direction) const;
+    std::size_t crossings(const dvec3& origin, const dvec3& direction) const;
     // Whether a triangle comes closer than `distance` to the point, all in units of the mesh.
-    bool comes_within(double distance, const glm::dvec3& point) const;
+    bool comes_within(double distance, const dvec3& point) const;
 
     // Up to `count` points from which three random rays have an odd number of crossings, and which are farther from
     // every triangle than clearance(). Point i depends on (seed, i) alone; where 256 tries give none it is left out.

@@ -13,7 +13,6 @@
 namespace twinray {
 namespace {
 
-using glm::dvec2;
 using Corner = std::array<float, 3>;  // ordered by comparing numbers, so that -0 equals 0
 
 Corner key_of(const vec3& p) { return {p.x, p.y, p.z}; }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 
@@ -22,11 +22,11 @@ class Draws {
     uint below(std::size_t n) { return static_cast<uint>((bits() >> 32) * n >> 32); }
 
     // Uniform on the unit sphere, by rejection: only correctly rounded operations.
-    glm::dvec3 direction() {
+    dvec3 direction() {
         for (;;) {
             const double z = between(-1, 1), y = between(-1, 1), x = between(-1, 1);
             const double square = x * x + y * y + z * z;
-            if (square <= 1 && square > 0x1p-20) return glm::dvec3(x, y, z) / std::sqrt(square);
+            if (square <= 1 && square > 0x1p-20) return dvec3(x, y, z) / std::sqrt(square);
         }
     }
 

@@ -11,11 +11,11 @@ namespace {
 
 constexpr uint inactive = std::numeric_limits<uint>::max();
 
-double max_abs(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+double max_abs(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 Box64 box_of(const std::array<vec3, 3>& corners) {
     Box64 box;
-    for (const vec3& corner : corners) box.include(glm::dvec3(corner));
+    for (const vec3& corner : corners) box.include(dvec3(corner));
     return box;
 }
 
@@ -25,12 +25,10 @@ std::array<vec3, 3> corners_of(const MeshView& mesh, const uvec3& triangle) {
 
 }  // namespace
 
-ObjectRay::ObjectRay(const glm::dvec3& origin, const glm::dvec3& direction, double scale)
+ObjectRay::ObjectRay(const dvec3& origin, const dvec3& direction, double scale)
     : slabs(origin, direction, 0x1p-48 * (max_abs(origin) + scale)), sheared(origin, direction) {}
 
-Triangle64 ActiveTriangle::corners64() const {
-    return {glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])};
-}
+Triangle64 ActiveTriangle::corners64() const { return {dvec3(corners[0]), dvec3(corners[1]), dvec3(corners[2])}; }
 
 std::optional<TriangleHit64> ActiveTriangle::intersect(const ObjectRay& ray, const Interval64& clip) const {
     const Interval64 inside = intersection(ray.slabs.clip(box_of(corners)), clip);

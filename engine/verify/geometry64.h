@@ -21,7 +21,7 @@ struct ObjectRay {
 
     // scale: largest coordinate of what it will be tested against. The pad covers, with a wide margin, the
     // few roundings (2^-53 each) by which the triangle test accepts rays just outside a triangle.
-    ObjectRay(const glm::dvec3& origin, const glm::dvec3& direction, double scale);
+    ObjectRay(const dvec3& origin, const dvec3& direction, double scale);
 };
 
 // A triangle that rays can hit: finite, not degenerate.

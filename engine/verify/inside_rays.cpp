@@ -11,8 +11,6 @@
 namespace twinray {
 namespace {
 
-using glm::dvec3;
-
 // Whether a float32 kernel may find a triangle behind the origin that lies before it, or the other way round.
 bool is_undecided_at_origin(const ClosedMesh& mesh, const Ray& ray) {
     const Tube tube(ray, Placement64(), Accelerator::software);
@@ -43,7 +41,7 @@ Ray InsideRays::ray(std::uint64_t index) const {
     const bool at_vertex = aim_ == Aim::vertices || (aim_ == Aim::both && index % 2 == 0);
     const double w = at_vertex ? 0 : draws.unit();
     const dvec3 target = (1 - w) * corners[corner] + w * corners[(corner + 1) % 3];
-    return {origin, 0, vec3(glm::normalize(target - dvec3(origin))), std::numeric_limits<float>::infinity()};
+    return {origin, 0, vec3(normalize(target - dvec3(origin))), std::numeric_limits<float>::infinity()};
 }
 
 std::vector<Ray> InsideRays::rays(std::uint64_t first, std::size_t count) const {
@@ -59,7 +57,7 @@ Parity judge_crossings(const ClosedMesh& mesh, const Ray& ray, std::size_t count
     if (is_undecided_at_origin(mesh, ray)) return Parity::unspecified;
     const dvec3 direction(ray.direction);
     Draws draws(counted, 0);
-    const dvec3 turned = direction + 0x1p-40 * glm::length(direction) * draws.direction();
+    const dvec3 turned = direction + 0x1p-40 * length(direction) * draws.direction();
     return counted < mesh.crossings(ray.origin, turned) ? Parity::leak : Parity::double_hit;
 }
 

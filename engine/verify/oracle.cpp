@@ -16,18 +16,18 @@ double infinity_norm(const glm::dmat3& m) {
     return norm;
 }
 
-glm::dmat3 absolute(const glm::dmat3& m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
+glm::dmat3 absolute(const glm::dmat3& m) { return {abs(m[0]), abs(m[1]), abs(m[2])}; }
 
 // A box around the transformed box, rounding included: that of centre and half extent, and that of rays on their way
 // to object space, which the inverse amplifies and which does not shrink where large offsets cancel.
 Box64 box_in_world(const Box64& box, const Placement64& placement) {
-    const glm::dvec3 center = box.corners[0] * 0.5 + box.corners[1] * 0.5;
-    const glm::dvec3 half = box.corners[1] * 0.5 - box.corners[0] * 0.5;
-    const glm::dvec3 center_world = placement.to_world * center + placement.offset;
+    const dvec3 center = box.corners[0] * 0.5 + box.corners[1] * 0.5;
+    const dvec3 half = box.corners[1] * 0.5 - box.corners[0] * 0.5;
+    const dvec3 center_world = placement.to_world * center + placement.offset;
     const glm::dmat3 linear = absolute(placement.to_world);
-    const glm::dvec3 sizes = linear * (glm::abs(center) + half) + glm::abs(placement.offset);
-    const glm::dvec3 rounding = 0x1p-48 * placement.condition * sizes;
-    const glm::dvec3 half_world = linear * half + rounding;
+    const dvec3 sizes = linear * (abs(center) + half) + abs(placement.offset);
+    const dvec3 rounding = 0x1p-48 * placement.condition * sizes;
+    const dvec3 half_world = linear * half + rounding;
     Box64 world;
     world.include(center_world - half_world);
     world.include(center_world + half_world);
@@ -75,8 +75,8 @@ struct Oracle::Search {
           t_min(std::max(0.0, double{world.t_min})),
           t_limit(world.t_max),
           // Object space answers for a world ray that is off by the roundings of the inverse.
-          slabs(glm::dvec3(world.origin), glm::dvec3(world.direction),
-                0x1p-48 * oracle.condition_ * (glm::length(glm::dvec3(world.origin)) + oracle.bounds().max_abs())) {}
+          slabs(dvec3(world.origin), dvec3(world.direction),
+                0x1p-48 * oracle.condition_ * (length(dvec3(world.origin)) + oracle.bounds().max_abs())) {}
 
     bool is_done() const { return any && best.hit; }
 
@@ -129,9 +129,8 @@ void Oracle::search_instance(uint instance, Search& search) const {
     const Geometry64& geometry = *geometries_[placed.geometry];
     const Interval64 clip = search.slabs.clip(placed.world_box);
     if (clip.is_empty()) return;
-    const ObjectRay ray(placed.placement.point_to_object(glm::dvec3(search.ray.origin)),
-                        placed.placement.vector_to_object(glm::dvec3(search.ray.direction)),
-                        geometry.bounds().max_abs());
+    const ObjectRay ray(placed.placement.point_to_object(dvec3(search.ray.origin)),
+                        placed.placement.vector_to_object(dvec3(search.ray.direction)), geometry.bounds().max_abs());
     const auto test = [&](const ActiveTriangle& triangle) {
         const auto hit = triangle.intersect(ray, clip);
         if (hit && !is_culled(placed.options, search.query.flags, hit->along))

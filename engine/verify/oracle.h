@@ -8,7 +8,7 @@
 
 #include "engine/accel/geometry.h"
 #include "engine/core/ray.h"
-#include "engine/core/transform.h"
+#include <twinray/geometry.h>
 #include "engine/scene/scene.h"
 #include "engine/verify/geometry64.h"
 
@@ -42,7 +42,7 @@ struct OracleHit {
 // An affine map in float64 and its inverse.
 struct Placement64 {
     glm::dmat3 to_world{1.0}, to_object{1.0};  // linear parts
-    glm::dvec3 offset{0.0};                    // of to_world
+    dvec3 offset{0.0};                         // of to_world
     bool is_identity = true;
     double condition = 1;  // infinity norm of |to_object| |to_world|: how much the inverse amplifies rounding
 
@@ -50,8 +50,8 @@ struct Placement64 {
     // Throws Error, naming `object`, when an entry is not finite or the linear part is singular.
     Placement64(const Transform& transform, const char* object);
 
-    glm::dvec3 point_to_object(const glm::dvec3& p) const { return is_identity ? p : to_object * (p - offset); }
-    glm::dvec3 vector_to_object(const glm::dvec3& v) const { return is_identity ? v : to_object * v; }
+    dvec3 point_to_object(const dvec3& p) const { return is_identity ? p : to_object * (p - offset); }
+    dvec3 vector_to_object(const dvec3& v) const { return is_identity ? v : to_object * v; }
 };
 
 // Answers by the rules of docs and shaders/shared/ray.h: t_min < t < t_max, both exclusive; a negative t_min counts

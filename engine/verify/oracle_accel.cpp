@@ -5,13 +5,19 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <utility>
 
+#include "engine/accel/accel_backend.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "engine_copy_items.spv.h"
 
 namespace twinray {
+#include "twinray/glsl/cpp_begin.h"
+#include "shaders/shared/copy_items.h"
+#include "twinray/glsl/cpp_end.h"
+
 namespace {
 
 // Exact: the corners are float32.
@@ -46,35 +52,73 @@ std::optional<float> reported_t(double t, const Ray& ray) {
     return std::clamp(float(t), least, most);
 }
 
-struct OracleAccel::OracleGeometry : BuiltGeometry {
+class OracleBackend final : public AccelBackend {
+  public:
+    explicit OracleBackend(Context& context);
+
+    Capability capability(Feature feature) const override;
+    bool is_software() const override { return true; }
+
+  private:
+    struct OracleGeometry;
+    struct OracleScene;
+    class OracleProgram;
+    std::vector<std::unique_ptr<BuiltGeometry>> build_geometries(Commands& commands,
+                                                                 std::span<const GeometryInput> inputs) override;
+    std::vector<std::unique_ptr<BuiltGeometry>> refit_geometries(Commands& commands,
+                                                                 std::span<const GeometryInput> inputs) override;
+    BuildBytes geometry_bytes(std::span<const GeometrySize>) const override { return {}; }
+    BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
+    bool works_on_device() const override { return false; }
+    std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
+                                            const BuiltScene* current) override;
+    void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
+    std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
+    std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc) override;
+
+    template <class T>
+    void record_copy(Commands& commands, Ref<T> from, Ref<T> to, std::size_t count) const;
+    template <class T>
+    Buffer read(Ref<T> from, std::size_t count) const;
+    Oracle oracle() const;
+    void record_trace(Commands& commands, const TraceArgs& args) const;
+
+    Kernel<CopyItemsArgs> copy_items_;
+    // By the address of the block that instances point at; ends with the geometry it names.
+    std::map<std::uint64_t, std::weak_ptr<const Geometry64>> geometries_;
+};
+
+struct OracleBackend::OracleGeometry : BuiltGeometry {
     std::shared_ptr<const Geometry64> geometry;
 };
 
 // What the last sync left: the instance records, once its commands have run, and what they may point at.
-struct OracleAccel::OracleScene : BuiltScene {
+struct OracleBackend::OracleScene : BuiltScene {
     Buffer records;
     std::map<std::uint64_t, std::shared_ptr<const Geometry64>> geometries;  // by the address of their block
     uint count = 0;
 };
 
 // The closest hit is one of those that Query::any may find.
-class OracleAccel::OracleProgram final : public TraceProgram {
+class OracleBackend::OracleProgram final : public TraceProgram {
   public:
-    explicit OracleProgram(const OracleAccel& accel) : TraceProgram(accel.id(), 0, "oracle"), accel_(accel) {}
+    explicit OracleProgram(const OracleBackend& accel) : TraceProgram(accel.id(), 0, "oracle"), accel_(accel) {}
     void prepare(Query, Level) const override {}
     void record(Commands& commands, const TraceArgs& args, Query, Level) const override {
         accel_.record_trace(commands, args);
     }
 
   private:
-    const OracleAccel& accel_;
+    const OracleBackend& accel_;
 };
 
-OracleAccel::OracleAccel(Context& context)
-    : AbstractAccel(context, "OracleAccel"),
+OracleAccel::OracleAccel(Context& context) : AbstractAccel(std::make_unique<OracleBackend>(context)) {}
+
+OracleBackend::OracleBackend(Context& context)
+    : AccelBackend(context, "OracleAccel"),
       copy_items_(context, {.name = "engine_copy_items", .spirv = engine_copy_items_spirv}) {}
 
-Capability OracleAccel::capability(Feature feature) const {
+Capability OracleBackend::capability(Feature feature) const {
     switch (feature) {
         case Feature::boxes:
         case Feature::filters: return {feature, Support::unsupported, "the host runs no GPU code"};
@@ -89,21 +133,21 @@ Capability OracleAccel::capability(Feature feature) const {
     }
 }
 
-std::unique_ptr<TraceProgram> OracleAccel::create_program(const TraceProgramCode* code, uint) const {
+std::unique_ptr<TraceProgram> OracleBackend::create_program(const TraceProgramCode* code, uint) const {
     if (code)
         fail(name(), ": program '", code->name, "': the host runs no GPU code; boxes and filters are unsupported");
     return std::make_unique<OracleProgram>(*this);
 }
 
 template <class T>
-void OracleAccel::record_copy(Commands& commands, Ref<T> from, Ref<T> to, std::size_t count) const {
+void OracleBackend::record_copy(Commands& commands, Ref<T> from, Ref<T> to, std::size_t count) const {
     copy_items_.dispatch(commands, {{from.address}, {to.address}, static_cast<uint>(count), sizeof(T) / sizeof(uint)},
                          count);
 }
 
 // What lies there after all that has been submitted to the queue.
 template <class T>
-Buffer OracleAccel::read(Ref<T> from, std::size_t count) const {
+Buffer OracleBackend::read(Ref<T> from, std::size_t count) const {
     Buffer buffer(context(), {.name = "oracle input", .bytes = count * sizeof(T), .memory = Memory::readback});
     Commands commands(context(), "oracle input");
     record_copy(commands, from, buffer.ref<T>(), count);
@@ -111,7 +155,7 @@ Buffer OracleAccel::read(Ref<T> from, std::size_t count) const {
     return buffer;
 }
 
-std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> OracleAccel::build_geometries(
+std::vector<std::unique_ptr<AccelBackend::BuiltGeometry>> OracleBackend::build_geometries(
     Commands& commands, std::span<const GeometryInput> inputs) {
     if (inputs.empty()) return {};
     std::vector<std::unique_ptr<BuiltGeometry>> built;
@@ -128,17 +172,17 @@ std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> OracleAccel::build_ge
 }
 
 // The host's vertices are the latest: those in device memory are refused.
-std::vector<std::unique_ptr<AbstractAccel::BuiltGeometry>> OracleAccel::refit_geometries(
+std::vector<std::unique_ptr<AccelBackend::BuiltGeometry>> OracleBackend::refit_geometries(
     Commands& commands, std::span<const GeometryInput> inputs) {
     return build_geometries(commands, inputs);
 }
 
-BuildBytes OracleAccel::scene_bytes(std::size_t count, std::size_t) const {
+BuildBytes OracleBackend::scene_bytes(std::size_t count, std::size_t) const {
     return {std::max<std::size_t>(count, 1) * sizeof(InstanceRecord), 0};
 }
 
-std::unique_ptr<AbstractAccel::BuiltScene> OracleAccel::build_scene(Commands& commands, const SceneInput& input,
-                                                                    const BuiltScene*) {
+std::unique_ptr<AccelBackend::BuiltScene> OracleBackend::build_scene(Commands& commands, const SceneInput& input,
+                                                                     const BuiltScene*) {
     auto made = std::make_unique<OracleScene>();
     made->count = input.count;
     made->bytes = std::max(input.count, 1u) * sizeof(InstanceRecord);
@@ -149,14 +193,14 @@ std::unique_ptr<AbstractAccel::BuiltScene> OracleAccel::build_scene(Commands& co
     return made;
 }
 
-void OracleAccel::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
+void OracleBackend::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
     if (input.count)
         record_copy(commands, input.records, static_cast<const OracleScene&>(current).records.ref<InstanceRecord>(),
                     input.count);
 }
 
 // Of the scene as the last sync, which must be done, has left it.
-Oracle OracleAccel::oracle() const {
+Oracle OracleBackend::oracle() const {
     const auto& scene = static_cast<const OracleScene&>(built_scene());
     std::vector<InstanceRecord> records(scene.count);
     if (scene.count) std::memcpy(records.data(), scene.records.mapped(), scene.count * sizeof(InstanceRecord));
@@ -177,7 +221,7 @@ Oracle OracleAccel::oracle() const {
 }
 
 // The rays go ahead of the commands of the trace: host memory needs none.
-std::vector<Hit> OracleAccel::trace_host(std::span<const Ray> rays, TraceDesc desc) {
+std::vector<Hit> OracleBackend::trace_host(std::span<const Ray> rays, TraceDesc desc) {
     sync();
     if (rays.empty()) return {};
     const Buffer input(context(), {.name = "rays", .bytes = rays.size_bytes(), .memory = Memory::upload});
@@ -192,7 +236,7 @@ std::vector<Hit> OracleAccel::trace_host(std::span<const Ray> rays, TraceDesc de
     return download<Hit>(context(), hits, rays.size());
 }
 
-void OracleAccel::record_trace(Commands& commands, const TraceArgs& args) const {
+void OracleBackend::record_trace(Commands& commands, const TraceArgs& args) const {
     std::size_t count = args.count;
     if (args.indirect_count.address) {
         const Buffer written = read(args.indirect_count, 1);

@@ -7,30 +7,28 @@
 #include <cmath>
 #include <limits>
 
-#include <glm/glm.hpp>
-
 namespace twinray {
 
-// Of a point to the segment from a to b, in the plane (glm::dvec2) or in space (glm::dvec3).
+// Of a point to the segment from a to b, in the plane (dvec2) or in space (dvec3).
 template <class Point>
 double distance_to_segment(const Point& a, const Point& b, const Point& point) {
     const Point edge = b - a;
-    const double square = glm::dot(edge, edge);
-    const double along = square > 0 ? std::clamp(glm::dot(point - a, edge) / square, 0.0, 1.0) : 0.0;
-    return glm::length(a + along * edge - point);
+    const double square = dot(edge, edge);
+    const double along = square > 0 ? std::clamp(dot(point - a, edge) / square, 0.0, 1.0) : 0.0;
+    return length(a + along * edge - point);
 }
 
 // Of a point to a triangle that has an area.
-inline double distance_to_triangle(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& point) {
-    const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+inline double distance_to_triangle(const std::array<dvec3, 3>& corners, const dvec3& point) {
+    const dvec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     bool is_above = true;  // the triangle, along its normal
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 3; ++i) {
-        const glm::dvec3 &a = corners[i], &b = corners[(i + 1) % 3];
-        is_above = is_above && glm::dot(glm::cross(b - a, point - a), normal) >= 0;
+        const dvec3 &a = corners[i], &b = corners[(i + 1) % 3];
+        is_above = is_above && dot(cross(b - a, point - a), normal) >= 0;
         nearest = std::min(nearest, distance_to_segment(a, b, point));
     }
-    return is_above ? std::abs(glm::dot(point - corners[0], glm::normalize(normal))) : nearest;
+    return is_above ? std::abs(dot(point - corners[0], normalize(normal))) : nearest;
 }
 
 }  // namespace twinray

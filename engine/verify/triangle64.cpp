@@ -39,8 +39,8 @@ bool is_sum_zero(const std::array<double, 6>& terms) {
     return std::all_of(parts.begin(), parts.end(), [](double part) { return part == 0; });
 }
 
-int longest_axis(const glm::dvec3& v) {
-    const glm::dvec3 a = glm::abs(v);
+int longest_axis(const dvec3& v) {
+    const dvec3 a = abs(v);
     if (a.x >= a.y && a.x >= a.z) return 0;
     return a.y >= a.z ? 1 : 2;
 }
@@ -55,22 +55,22 @@ bool has_area(const std::array<vec3, 3>& triangle) {
     return false;
 }
 
-ShearedRay::ShearedRay(const glm::dvec3& origin, const glm::dvec3& direction) : origin_(origin) {
+ShearedRay::ShearedRay(const dvec3& origin, const dvec3& direction) : origin_(origin) {
     const int z = longest_axis(direction);
     axes_ = {(z + 1) % 3, (z + 2) % 3, z};
     shear_ = {direction[axes_.x] / direction[z], direction[axes_.y] / direction[z], 1.0 / direction[z]};
 }
 
-glm::dvec3 ShearedRay::project(const glm::dvec3& point) const {
-    const glm::dvec3 p = point - origin_;
+dvec3 ShearedRay::project(const dvec3& point) const {
+    const dvec3 p = point - origin_;
     const double z = p[axes_.z];
     return {p[axes_.x] - shear_.x * z, p[axes_.y] - shear_.y * z, z};
 }
 
 std::optional<TriangleHit64> ShearedRay::intersect(const Triangle64& triangle) const {
-    const glm::dvec3 a = project(triangle[0]);
-    const glm::dvec3 b = project(triangle[1]);
-    const glm::dvec3 c = project(triangle[2]);
+    const dvec3 a = project(triangle[0]);
+    const dvec3 b = project(triangle[1]);
+    const dvec3 c = project(triangle[2]);
     const double weight_a = c.x * b.y - c.y * b.x;
     const double weight_b = a.x * c.y - a.y * c.x;
     const double weight_c = b.x * a.y - b.y * a.x;

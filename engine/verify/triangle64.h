@@ -5,11 +5,11 @@
 #include <array>
 #include <optional>
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 
-using Triangle64 = std::array<glm::dvec3, 3>;
+using Triangle64 = std::array<dvec3, 3>;
 
 struct TriangleHit64 {
     double t = 0;  // in units of the ray's direction
@@ -27,17 +27,17 @@ bool has_area(const std::array<vec3, 3>& triangle);
 // 3e38; products of four of them stay inside the range of float64. Build without contraction (-ffp-contract=off).
 class ShearedRay {
   public:
-    ShearedRay(const glm::dvec3& origin, const glm::dvec3& direction);
+    ShearedRay(const dvec3& origin, const dvec3& direction);
 
     // Any t, also negative. Triangles seen exactly edge-on are missed; their neighbours own the ray.
     std::optional<TriangleHit64> intersect(const Triangle64& triangle) const;
 
   private:
-    glm::dvec3 project(const glm::dvec3& point) const;
+    dvec3 project(const dvec3& point) const;
 
-    glm::dvec3 origin_;
-    glm::ivec3 axes_;  // the last one is the direction's longest
-    glm::dvec3 shear_;
+    dvec3 origin_;
+    ivec3 axes_;  // the last one is the direction's longest
+    dvec3 shear_;
 };
 
 }  // namespace twinray

@@ -10,71 +10,71 @@ namespace {
 
 constexpr double rounding32 = 16 * 0x1p-24, rounding64 = 32 * 0x1p-53;
 
-double cross2(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+double cross2(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
 
-glm::dvec3 absolute_product(const glm::dmat3& m, const glm::dvec3& v) {
-    return glm::abs(m[0]) * std::abs(v.x) + glm::abs(m[1]) * std::abs(v.y) + glm::abs(m[2]) * std::abs(v.z);
+dvec3 absolute_product(const glm::dmat3& m, const dvec3& v) {
+    return abs(m[0]) * std::abs(v.x) + abs(m[1]) * std::abs(v.y) + abs(m[2]) * std::abs(v.z);
 }
 
 // Positive inside, negative outside; a triangle seen edge-on has no inside.
-double margin_of(const std::array<glm::dvec2, 3>& corners) {
+double margin_of(const std::array<dvec2, 3>& corners) {
     double distance = INFINITY;
     bool any_negative = false, any_positive = false;
     for (std::size_t i = 0; i < 3; ++i) {
-        const glm::dvec2& a = corners[i];
-        const glm::dvec2& b = corners[(i + 1) % 3];
+        const dvec2& a = corners[i];
+        const dvec2& b = corners[(i + 1) % 3];
         const double side = cross2(a, b);
         any_negative |= side < 0;
         any_positive |= side > 0;
-        distance = std::min(distance, distance_to_segment(a, b, glm::dvec2(0)));
+        distance = std::min(distance, distance_to_segment(a, b, dvec2(0)));
     }
     return any_negative != any_positive ? distance : -distance;
 }
 
 // What slope and thinness do to depths.
 struct Plane {
-    double determinant;   // twice the projected area, signed
-    glm::dvec2 gradient;  // of depth
+    double determinant;  // twice the projected area, signed
+    dvec2 gradient;      // of depth
 };
 
-Plane plane_of(const std::array<glm::dvec2, 3>& corners, const std::array<double, 3>& z) {
-    const glm::dvec2 a = corners[1] - corners[0];
-    const glm::dvec2 b = corners[2] - corners[0];
+Plane plane_of(const std::array<dvec2, 3>& corners, const std::array<double, 3>& z) {
+    const dvec2 a = corners[1] - corners[0];
+    const dvec2 b = corners[2] - corners[0];
     const double za = z[1] - z[0];
     const double zb = z[2] - z[0];
     const double determinant = cross2(a, b);
-    return {determinant, glm::dvec2(za * b.y - zb * a.y, a.x * zb - b.x * za) / determinant};
+    return {determinant, dvec2(za * b.y - zb * a.y, a.x * zb - b.x * za) / determinant};
 }
 
 }  // namespace
 
 double Footprint::distance_to(double u, double v) const {
-    return glm::length((1 - u - v) * corners[0] + u * corners[1] + v * corners[2]);
+    return length((1 - u - v) * corners[0] + u * corners[1] + v * corners[2]);
 }
 
 Tube::Tube(const Ray& ray, const Placement64& placement, Accelerator accelerator)
     : rounding_(accelerator == Accelerator::referee ? rounding64 : rounding32),
       has_accurate_weights_(accelerator == Accelerator::software) {
-    const glm::dvec3 origin(ray.origin);
-    const glm::dvec3 direction(ray.direction);
+    const dvec3 origin(ray.origin);
+    const dvec3 direction(ray.direction);
     origin_ = placement.point_to_object(origin);
     direction_ = placement.vector_to_object(direction);
-    length_ = glm::length(direction_);
+    length_ = length(direction_);
     if (!placement.is_identity) {
         const double inverse_error = accelerator == Accelerator::software ? 1.0 : placement.condition;
-        const glm::dvec3 shift =
+        const dvec3 shift =
             absolute_product(placement.to_object, origin) + absolute_product(placement.to_object, placement.offset);
-        origin_error_ = inverse_error * glm::length(shift);
-        direction_error_ = inverse_error * glm::length(absolute_product(placement.to_object, direction)) / length_;
+        origin_error_ = inverse_error * length(shift);
+        direction_error_ = inverse_error * length(absolute_product(placement.to_object, direction)) / length_;
     }
-    const glm::dvec3 along = direction_ / length_;
-    const glm::dvec3 size = glm::abs(along);
+    const dvec3 along = direction_ / length_;
+    const dvec3 size = abs(along);
     const int shortest = size.x <= size.y && size.x <= size.z ? 0 : (size.y <= size.z ? 1 : 2);
     longest_ = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-    glm::dvec3 other(0.0);
+    dvec3 other(0.0);
     other[shortest] = 1;
-    const glm::dvec3 across = glm::normalize(glm::cross(along, other));
-    frame_ = {across, glm::cross(along, across), along};
+    const dvec3 across = normalize(cross(along, other));
+    frame_ = {across, cross(along, across), along};
 }
 
 double Tube::radius_at(double distance) const {
@@ -83,7 +83,7 @@ double Tube::radius_at(double distance) const {
 
 double Tube::max_radius(const Box64& box) const {
     if (box.is_empty()) return 0;
-    return radius_at(glm::length(glm::max(glm::abs(box.corners[0] - origin_), glm::abs(box.corners[1] - origin_))));
+    return radius_at(length(max(abs(box.corners[0] - origin_), abs(box.corners[1] - origin_))));
 }
 
 Footprint Tube::footprint(const Triangle64& triangle) const {
@@ -91,13 +91,13 @@ Footprint Tube::footprint(const Triangle64& triangle) const {
     Depths depths{{}, INFINITY, -INFINITY};
     double distance = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-        const glm::dvec3 p = triangle[i] - origin_;
-        footprint.corners[i] = {glm::dot(p, frame_[0]), glm::dot(p, frame_[1])};
-        depths.z[i] = glm::dot(p, frame_[2]);
+        const dvec3 p = triangle[i] - origin_;
+        footprint.corners[i] = {dot(p, frame_[0]), dot(p, frame_[1])};
+        depths.z[i] = dot(p, frame_[2]);
         const double z_sheared = p[longest_] / direction_[longest_] * length_;
         depths.low = std::min({depths.low, depths.z[i], z_sheared});
         depths.high = std::max({depths.high, depths.z[i], z_sheared});
-        distance = std::max(distance, glm::length(p));
+        distance = std::max(distance, length(p));
     }
     footprint.radius = radius_at(distance);
     footprint.margin = margin_of(footprint.corners);
@@ -108,21 +108,21 @@ Footprint Tube::footprint(const Triangle64& triangle) const {
 void Tube::set_depth_bounds(Footprint& footprint, const Depths& depths) const {
     const auto& corners = footprint.corners;
     const Plane plane = plane_of(corners, depths.z);
-    const auto [nearest, farthest] = std::minmax_element(
-        corners.begin(), corners.end(),
-        [](const glm::dvec2& first, const glm::dvec2& second) { return glm::length(first) < glm::length(second); });
-    const double reach = glm::length(*farthest);
+    const auto [nearest, farthest] =
+        std::minmax_element(corners.begin(), corners.end(),
+                            [](const dvec2& first, const dvec2& second) { return length(first) < length(second); });
+    const double reach = length(*farthest);
     // Displaced corners change each edge function by up to `edge_error` and the area by up to three of them. Where
     // that may swallow the area, rounding chooses the weights and only the corners' depths bound t.
     const double edge_error = 2 * footprint.radius * reach;
     const double area = std::abs(plane.determinant);
     const double least_area = std::max(0.0, area - 3 * edge_error);
     const double weight_error = edge_error / least_area;
-    const double z = depths.z[static_cast<std::size_t>(nearest - corners.begin())] - glm::dot(plane.gradient, *nearest);
+    const double z = depths.z[static_cast<std::size_t>(nearest - corners.begin())] - dot(plane.gradient, *nearest);
     const double depth = depths.high - depths.low;
     // SwTlas's weights are those of its displaced corners (its edge functions are accurate to a rounding), so that it
     // meets their plane, whose slope differs by what displacements of two corners change; others round the weights.
-    const double slope = (glm::length(plane.gradient) * area + 4 * footprint.radius * depth) / least_area;
+    const double slope = (length(plane.gradient) * area + 4 * footprint.radius * depth) / least_area;
     const double moved = has_accurate_weights_ ? footprint.radius * slope : weight_error * depth;
     const double spread = footprint.radius + moved;
     double low = depths.low - footprint.radius;
@@ -137,7 +137,7 @@ void Tube::set_depth_bounds(Footprint& footprint, const Depths& depths) const {
     if (std::isfinite(z)) {  // else seen exactly edge-on
         // A kernel that refines t in float64 reports the plane of an outside ray, which may lie beyond the corners;
         // its roundings displace the ray by 2^-24 of the radius at most.
-        const double refined_error = footprint.radius * (1 + 0x1p-24 * glm::length(plane.gradient));
+        const double refined_error = footprint.radius * (1 + 0x1p-24 * length(plane.gradient));
         low = std::min(low, z - refined_error);
         high = std::max(high, z + refined_error);
         footprint.t = z / length_;

@@ -12,11 +12,11 @@ enum class Accelerator { software, hardware, referee };
 
 // One triangle seen along a ray, in object units, float64. The ray is the point (0, 0).
 struct Footprint {
-    std::array<glm::dvec2, 3> corners;  // perpendicular to the ray
-    double radius = 0;                  // the kernel sees each corner displaced by up to this
-    double margin = 0;                  // distance from the ray to the outline: positive inside, negative outside
-    double t = 0;                       // where the ray meets the triangle's plane, in units of its direction
-    double t_low = 0;                   // a kernel that accepts the triangle finds a t in [t_low, t_high]
+    std::array<dvec2, 3> corners;  // perpendicular to the ray
+    double radius = 0;             // the kernel sees each corner displaced by up to this
+    double margin = 0;             // distance from the ray to the outline: positive inside, negative outside
+    double t = 0;                  // where the ray meets the triangle's plane, in units of its direction
+    double t_low = 0;              // a kernel that accepts the triangle finds a t in [t_low, t_high]
     double t_high = 0;
     double point_error = 0;  // how far from the ray the point of its u, v may lie
 
@@ -54,12 +54,12 @@ class Tube {
 
     double rounding_;  // 16e, or 32e
     bool has_accurate_weights_;
-    glm::dvec3 origin_, direction_;
-    double length_;                    // of direction_
-    int longest_;                      // axis of direction_
-    std::array<glm::dvec3, 3> frame_;  // orthonormal, the last one along the ray
-    double origin_error_ = 0;          // in units of rounding_
-    double direction_error_ = 0;       // relative, in units of rounding_
+    dvec3 origin_, direction_;
+    double length_;               // of direction_
+    int longest_;                 // axis of direction_
+    std::array<dvec3, 3> frame_;  // orthonormal, the last one along the ray
+    double origin_error_ = 0;     // in units of rounding_
+    double direction_error_ = 0;  // relative, in units of rounding_
 };
 
 }  // namespace twinray

@@ -4,7 +4,7 @@
 #include <vk_mem_alloc.h>
 
 #include "engine/core/error.h"
-#include "engine/core/vma_adapter.h"
+#include <twinray/vma_adapter.h>
 
 namespace twinray::embed_renderer {
 namespace {

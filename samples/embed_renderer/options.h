@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray::embed_renderer {
 

@@ -12,15 +12,15 @@
 #include "embed_renderer_rays.spv.h"
 #include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
-#include "hwtlas/hw_tlas.h"
+#include <twinray/tlas.h>
 #include "samples/path_tracer/camera.h"
-#include "swtlas/sw_tlas.h"
 
 namespace twinray::embed_renderer {
 namespace {
 
-const vec3 to_sun = glm::normalize(vec3(-0.8f, 1, 0.25f));
+const vec3 to_sun = normalize(vec3(-0.8f, 1, 0.25f));
 const vec3 sun_color(1.25f, 1.15f, 1.0f), sky_color(0.3f, 0.36f, 0.45f);
 constexpr float ao_reach = 0.15f;     // of the scene's diagonal
 constexpr float near_plane = 0.001f;  // likewise
@@ -100,7 +100,7 @@ Renderer::~Renderer() { context_.wait_for_gpu(); }
 
 FrameData Renderer::frame_data(const Stage& stage, const Options& options) const {
     const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
-    const float diagonal = glm::length(stage.bounds.size());
+    const float diagonal = length(stage.bounds.size());
     FrameData data{};
     data.instances = scene_.instances();
     data.extras = scene_.extras();
@@ -198,7 +198,8 @@ void Renderer::make_rays(VkCommandBuffer commands) {
     rays_kernel_.bind(commands, RaysArgs{frame_.ref<FrameData>(), counts_.ref<RayCounts>(), pixels_.ref<PixelRays>(),
                                          shadow_rays_.ref<Ray>(), ao_rays_.ref<Ray>()});
     over_pixels(commands);
-    barrier(commands, compute, VK_ACCESS_SHADER_WRITE_BIT, context_.stages() | compute | VK_PIPELINE_STAGE_TRANSFER_BIT,
+    barrier(commands, compute, VK_ACCESS_SHADER_WRITE_BIT,
+            context_.state().stages() | compute | VK_PIPELINE_STAGE_TRANSFER_BIT,
             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_READ_BIT);
 }
 

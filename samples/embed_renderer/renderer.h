@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "engine/accel/accel_choice.h"
-#include "engine/accel/abstract_accel.h"
+#include <twinray/tlas.h>
+#include <twinray/abstract_accel.h>
 #include "samples/embed_renderer/frame_commands.h"
 #include "samples/embed_renderer/options.h"
 #include "samples/embed_renderer/pipelines.h"

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <span>
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 #include "samples/embed_renderer/device.h"
 
 typedef struct VmaAllocation_T* VmaAllocation;

@@ -11,7 +11,7 @@ using path_tracer::SurfaceInstance;
 using path_tracer::SurfaceMaterial;
 using path_tracer::VertexExtras;
 
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/embed_renderer/frame.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 }  // namespace twinray::embed_renderer

@@ -6,9 +6,8 @@
 
 #include "engine/core/cpu_vectors.h"
 #include "engine/core/error.h"
-#include "hwtlas/hw_tlas.h"
+#include <twinray/tlas.h>
 #include "samples/particles/report.h"
-#include "swtlas/sw_tlas.h"
 
 namespace twinray::particles {
 namespace {

@@ -11,10 +11,10 @@
 namespace twinray::particles {
 using std::sin;
 
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/particles/particles.h"
 #include "shaders/particles/picture.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(MoveArgs) == 112 && sizeof(PictureScene) == 80 && sizeof(ShadeArgs) <= 128);
 using Materials = TWINRAY_MULTI_TYPE_SET(ParticleMaterials, PARTICLE_MATERIALS);

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "particles_move.spv.h"
 
 namespace twinray::particles {

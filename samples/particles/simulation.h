@@ -2,7 +2,7 @@
 // Balls in a box with an open front: the host places them, a kernel does the rest.
 #pragma once
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/core/kernel.h"
 #include "samples/particles/shared.h"
 

@@ -16,8 +16,8 @@ vec3 default_radiance(vec3 direction) {
     const vec3 zenith(0.33f, 0.52f, 0.95f), horizon(0.95f, 0.98f, 1.02f), ground(0.34f, 0.32f, 0.30f);
     const vec3 sun_direction = normalize(vec3(-0.5f, 0.9f, 0.6f));
     const float sun_cosine = std::cos(0.09f);  // a disc of about five degrees: shadows with soft edges
-    if (direction.y < 0) return glm::mix(horizon, ground, std::min(-8 * direction.y, 1.0f));
-    const vec3 sky = glm::mix(horizon, zenith, std::pow(direction.y, 0.6f));
+    if (direction.y < 0) return mix(horizon, ground, std::min(-8 * direction.y, 1.0f));
+    const vec3 sky = mix(horizon, zenith, std::pow(direction.y, 0.6f));
     return dot(direction, sun_direction) > sun_cosine ? sky + vec3(110, 104, 92) : sky;
 }
 

@@ -26,7 +26,7 @@ vec3 tone_mapped(vec3 color) {
     const float peak = largest(color);
     if (peak < start) return color;
     const float room = 1 - start, compressed = 1 - room * room / (peak + room - start);
-    return glm::mix(color * (compressed / peak), vec3(compressed), 1 - 1 / (desaturation * (peak - compressed) + 1));
+    return mix(color * (compressed / peak), vec3(compressed), 1 - 1 / (desaturation * (peak - compressed) + 1));
 }
 
 void write_exposed(const std::filesystem::path& file, const Picture& picture, float exposure) {

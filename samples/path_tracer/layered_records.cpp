@@ -12,8 +12,8 @@ namespace {
 // length 0 is 0.
 vec3 extinction_of(const Material& material) {
     if (!std::isfinite(material.attenuation_distance)) return vec3(0);
-    const vec3 extinction = -glm::log(material.attenuation_color) / material.attenuation_distance;
-    return glm::min(extinction, vec3(std::numeric_limits<float>::max()));
+    const vec3 extinction = -log(material.attenuation_color) / material.attenuation_distance;
+    return min(extinction, vec3(std::numeric_limits<float>::max()));
 }
 
 LayeredMaterial record_of(const Material& material, TextureList& textures) {

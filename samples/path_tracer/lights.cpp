@@ -39,10 +39,10 @@ float mean_texture(const Scene& scene, const Texture& texture, const Mesh& mesh,
 }
 
 double world_area(const Mesh& mesh, const uvec3& triangle, const Transform& transform) {
-    const glm::dvec3 a(transform_point(transform, mesh.positions[triangle.x]));
-    const glm::dvec3 b(transform_point(transform, mesh.positions[triangle.y]));
-    const glm::dvec3 c(transform_point(transform, mesh.positions[triangle.z]));
-    return 0.5 * glm::length(glm::cross(b - a, c - a));
+    const dvec3 a(transform_point(transform, mesh.positions[triangle.x]));
+    const dvec3 b(transform_point(transform, mesh.positions[triangle.y]));
+    const dvec3 c(transform_point(transform, mesh.positions[triangle.z]));
+    return 0.5 * length(cross(b - a, c - a));
 }
 
 // Collects weights first; probabilities follow when the sum is known.
@@ -125,7 +125,7 @@ std::vector<SetKey> LightSet::put(const LocalLights& lights) {
 LocalLights collect_lights(const Scene& scene) {
     Collector collector{scene};
     for (uint i = 0; i < scene.instances.size(); ++i) collector.add_instance(i);
-    const float radius = 0.5f * glm::length(bounds_of(scene).size());
+    const float radius = 0.5f * length(bounds_of(scene).size());
     for (const Light& light : scene.lights) collector.add_punctual(light, radius);
     collector.finish();
     return std::move(collector.lights);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/scene/deformer.h"
 #include "samples/path_tracer/scene_upload.h"
 

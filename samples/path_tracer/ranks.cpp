@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/core/device_choice.h"
+#include <twinray/context.h>
 
 namespace twinray::path_tracer {
 

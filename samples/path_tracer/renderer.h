@@ -5,7 +5,7 @@
 #include <deque>
 #include <map>
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/core/pace.h"
 #include "engine/core/progress.h"
 #include "samples/path_tracer/film.h"

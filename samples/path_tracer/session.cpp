@@ -12,11 +12,10 @@
 #include "engine/scene/pose_scene.h"
 #include "engine/scene/shapes.h"
 #include "engine/scene/variants.h"
-#include "hwtlas/hw_tlas.h"
+#include <twinray/tlas.h>
 #include "samples/path_tracer/camera.h"
 #include "samples/path_tracer/film_file.h"
 #include "samples/path_tracer/stopped_lights.h"
-#include "swtlas/sw_tlas.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -50,7 +49,7 @@ Scene load(const Options& options) {
 }
 
 template <class T>
-glm::vec<3, T> vector_of(const std::vector<T>& values) {
+Vec<3, T> vector_of(const std::vector<T>& values) {
     return {values[0], values[1], values[2]};
 }
 

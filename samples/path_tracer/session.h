@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "engine/accel/accel_choice.h"
+#include <twinray/tlas.h>
 #include "samples/path_tracer/configuration.h"
 #include "samples/path_tracer/options.h"
 #include "samples/path_tracer/ranks.h"

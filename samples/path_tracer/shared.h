@@ -9,15 +9,10 @@
 #include "engine/scene/texture_store.h"
 
 namespace twinray::path_tracer {
-using glm::clamp;
-using glm::exp;
-using glm::log;
-using glm::mix;
-using glm::pow;
 
 constexpr uint LAYERS = ~0u;  // in kernels specialisation constants
 
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/move_vertices.h"
 #include "shaders/path_tracer/wave.h"
@@ -33,7 +28,7 @@ constexpr uint LAYERS = ~0u;  // in kernels specialisation constants
 #include "shaders/path_tracer/bsdf_sheen.h"
 #include "shaders/path_tracer/bsdf_coat.h"
 #include "shaders/path_tracer/bsdf.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(SurfaceVertex) == 48 && sizeof(SurfaceTriangle) == 16 && sizeof(SurfaceInstance) == 120);
 static_assert(sizeof(SurfaceMaterial) == 216 && sizeof(PunctualLight) == 56 && sizeof(SceneData) == 184);

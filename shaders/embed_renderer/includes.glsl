@@ -6,7 +6,7 @@
 #include "shaders/shared/ray.h"
 #include "shaders/shared/soa.h"
 #include "shaders/shared/spawn.h"
-#include "twinray/textures.glsl"
+#include "twinray/glsl/textures.glsl"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/extras.glsl"
 #include "shaders/path_tracer/wave.h"

@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define TWINRAY_PROGRAM
-#include "twinray/query.glsl"
+#include "twinray/glsl/query.glsl"
 #include "shaders/shared/all_hits.h"
 #include "shaders/engine/list.glsl"
 layout(local_size_x = 64) in;

@@ -6,7 +6,7 @@
 #ifdef TWINRAY_WIDE_LOADS
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #endif
-#include "twinray/query.glsl"
+#include "twinray/glsl/query.glsl"
 #ifdef TWINRAY_PROGRAM
 #include "twinray_program.glsl"
 #endif

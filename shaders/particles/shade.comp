@@ -2,8 +2,8 @@
 // Light that the lamp sends to the camera from what a ray met, by the material that the instance's key names.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "twinray/multi_type_set.glsl"
-#include "twinray/spawn.glsl"
+#include "twinray/glsl/multi_type_set.glsl"
+#include "twinray/glsl/spawn.glsl"
 #include "shaders/particles/picture.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The GLSL side of the bridge: gives shared headers the words that both languages understand.
-// Its C++ twin is engine/core/shader_bridge.h; no shared header contains a language #ifdef.
+// Its C++ twin is twinray/glsl/cpp.h; no shared header contains a language #ifdef.
 #ifndef TWINRAY_BRIDGE_GLSL
 #define TWINRAY_BRIDGE_GLSL
 #extension GL_EXT_scalar_block_layout : require

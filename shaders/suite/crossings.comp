@@ -4,7 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define TWINRAY_PROGRAM
-#include "twinray/query.glsl"
+#include "twinray/glsl/query.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
 {

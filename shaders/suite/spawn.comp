@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Rays that leave points of triangles, by twinray/spawn.glsl or by what it is compared with.
+// Rays that leave points of triangles, by twinray/glsl/spawn.glsl or by what it is compared with.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "twinray/spawn.glsl"
+#include "twinray/glsl/spawn.glsl"
 #include "shaders/suite/spawn_args.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { SpawnArgs args; };

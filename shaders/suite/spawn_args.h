@@ -22,7 +22,7 @@ struct SpawnPrice
 BUFFER_OF(SpawnPrice, 8);
 
 // How it is kept from meeting its own triangle. The rays of method m begin at m * count.
-const uint SPAWN_BOUND = 0u;   // twinray/spawn.glsl
+const uint SPAWN_BOUND = 0u;   // twinray/glsl/spawn.glsl
 const uint SPAWN_NONE = 1u;    // not at all
 const uint SPAWN_T_MIN = 2u;   // t_min = 1e-4
 const uint SPAWN_INTEGER = 3u; // Waechter and Binder, Ray Tracing Gems, chapter 6, 2019: integers added to the bits

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/accel_choice.h"
+#include <twinray/tlas.h>
 
 #include <gtest/gtest.h>
 

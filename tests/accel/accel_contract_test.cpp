@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <random>
 
+#include "engine/accel/world_bound.h"
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/classify.h"
 #include "tests/accel/accel_fixture.h"
@@ -522,8 +523,8 @@ TEST_P(Accel, KernelsMoveInstancesInTheirBuffer) {
     Commands commands(context(), "move");
     {
         const auto pass = commands.pass("move");
-        context().vk().vkCmdUpdateBuffer(commands.handle(), range.buffer, range.offset + sizeof(InstanceRecord),
-                                         sizeof up, &up);
+        context().state().vk().vkCmdUpdateBuffer(commands.handle(), range.buffer, range.offset + sizeof(InstanceRecord),
+                                                 sizeof up, &up);
     }
     commands.submit();
     accel().mark_transforms_dirty(handle);
@@ -653,7 +654,7 @@ TEST_P(Accel, TheWorldBoundIsThatOfFloat64RoundedOutward) {
     const auto handle = accel().push(mesh, std::vector<Transform>(7));
     for (int round = 0; round < 20; ++round) {
         std::vector<Transform> transforms(7);
-        glm::dvec3 lo(INFINITY), hi(-INFINITY);
+        dvec3 lo(INFINITY), hi(-INFINITY);
         for (Transform& transform : transforms) {
             for (vec4& row : transform.rows) row = vec4(unit(random), unit(random), unit(random), 30 * unit(random));
             for (int axis = 0; axis < 3; ++axis) {

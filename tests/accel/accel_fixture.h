@@ -6,10 +6,9 @@
 #include <functional>
 
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/oracle_accel.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 #include "tests/support/device.h"
 
 namespace twinray::test {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/capability.h"
+#include <twinray/trace.h>
 
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace twinray {
 namespace {

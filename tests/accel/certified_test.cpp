@@ -2,6 +2,7 @@
 // Level::certified: which triangle is hit, and in which order, is decided by float64.
 #include <random>
 
+#include "engine/accel/trace_desc.h"
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/oracle.h"
 #include "tests/accel/accel_fixture.h"

@@ -54,7 +54,7 @@ class Churn : public test::AccelTest {
     void expect_agreement(std::size_t rays);
     std::uint64_t memory() {
         context().wait_for_gpu();
-        return allocated_bytes(context().allocator());
+        return context().allocated_bytes();
     }
 
     std::mt19937 random_{20'261'121};

@@ -6,7 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/vma.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "tests/accel/fault_world.h"
 #include "tests/support/caller.h"
 #include "tests/support/device.h"
@@ -118,8 +118,8 @@ void Faults::check_that_it_stays_lost(World& world) {
         {"any_hits", [&] { accel.any_hits(world_rays); }},
         {"sync", [&] { accel.push(make_box(vec3(0), vec3(1))), accel.sync(); }},
         {"commands", [&] { const Commands commands(context, "after the loss"); }},
-        {"submit", [&] { context.submit("nothing", {}); }},
-        {"build_timings", [&] { accel.revision() ? (void)accel.build_timings() : context.check_alive(); }},
+        {"submit", [&] { context.state().submit("nothing", {}); }},
+        {"build_timings", [&] { accel.revision() ? (void)accel.build_timings() : context.state().check_alive(); }},
     };
     for (const auto& [name, use] : uses) EXPECT_EQ(outcome_of(use), Outcome::lost) << name;
     EXPECT_EQ(accel.n_instances(), n_instances + 1) << "edits need no device";
@@ -147,14 +147,14 @@ TEST_P(Faults, CreatingTheAccelerator) {
     for (std::uint64_t n = 1; !HasFailure(); ++n) {
         context.wait_for_gpu();
         const Counts before = faults().live_objects();
-        const std::uint64_t bytes = allocated_bytes(context.allocator());
+        const std::uint64_t bytes = context.allocated_bytes();
         faults().inject({.first = n});
         std::string what;
         const Outcome outcome = outcome_of([&] { make_accel(context, GetParam()); }, &what);
         faults().heal();
         SCOPED_TRACE(text("call ", n, ", ", faults().failed(), ": ", what));
         context.wait_for_gpu();
-        EXPECT_EQ(allocated_bytes(context.allocator()), bytes);
+        EXPECT_EQ(context.allocated_bytes(), bytes);
         EXPECT_EQ(faults().live_objects(), before);
         if (!faults().injected()) {
             EXPECT_EQ(outcome, Outcome::done) << what;
@@ -400,7 +400,7 @@ TEST_P(Faults, AdoptingADevice) {
     device.physical_device = host.physical_device();
     device.device = host.device();
     device.queue_family = host.queue_family();
-    host.vk().vkGetDeviceQueue(host.device(), host.queue_family(), 0, &device.queue);
+    host.state().vk().vkGetDeviceQueue(host.device(), host.queue_family(), 0, &device.queue);
     device.get_instance_proc_addr = faults().entry();
     device.api_version = VK_API_VERSION_1_2;
     device.enabled = host.facts();

@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "engine/core/vma.h"
-#include "engine/scene/shapes.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/geometry.h>
+#include <twinray/tlas.h>
 
 namespace twinray {
 namespace {
@@ -137,7 +136,7 @@ World::State World::state() {
     for (const vec3& corner : {accel().world_bound().lo, accel().world_bound().hi})
         state.world_bound.insert(state.world_bound.end(), {corner.x, corner.y, corner.z});
     state.live = faults_.live_objects();
-    state.allocated_bytes = allocated_bytes(context().allocator());
+    state.allocated_bytes = context().allocated_bytes();
     return state;
 }
 

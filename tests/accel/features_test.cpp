@@ -4,6 +4,7 @@
 #include <map>
 #include <random>
 
+#include "engine/accel/features_of.h"
 #include "engine/verify/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 #include "test_program.trace_program.h"

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <random>
 
+#include "engine/accel/trace_desc.h"
 #include "engine/verify/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 #include "test_program.trace_program.h"

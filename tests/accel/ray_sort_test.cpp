@@ -179,7 +179,7 @@ class RaySortTest : public test::VulkanTest {
         const Buffer input(context(), {.name = "rays", .bytes = count * sizeof(Ray)});
         const Buffer written(context(), {.name = "count", .bytes = sizeof(uint)});
         const Buffer scratch(context(),
-                             {.name = "scratch", .bytes = RaySort::scratch_bytes(count, context().tuning())});
+                             {.name = "scratch", .bytes = RaySort::scratch_bytes(count, context().state().tuning())});
         Commands commands(context(), "ray sort");
         {
             const auto pass = commands.pass("rays");

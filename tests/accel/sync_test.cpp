@@ -84,13 +84,13 @@ TEST_P(Sync, ACleanOneIsFree) {
     accel().push(square(0));
     const SyncPoint done = accel().sync();
     context().wait_for_gpu();
-    const std::uint64_t bytes = allocated_bytes(context().allocator());
+    const std::uint64_t bytes = context().allocated_bytes();
     const auto start = Clock::now();
     for (int i = 0; i < 1000; ++i) ASSERT_EQ(accel().sync().value, done.value);
     const double each = microseconds_since(start) / 1000;
     std::printf("a clean sync takes %.4f microseconds\n", each);
     EXPECT_LT(each, 1);
-    EXPECT_EQ(allocated_bytes(context().allocator()), bytes);
+    EXPECT_EQ(context().allocated_bytes(), bytes);
     EXPECT_EQ(context().last_submission().value, done.value);
 }
 
@@ -112,7 +112,7 @@ TEST_P(Sync, TheScratchBudgetBoundsWhatABuildTakes) {
             context().wait_for_gpu();
             const SyncPoint busy = occupy_queue();
             built->sync();
-            in_flight[i][step] = allocated_bytes(context().allocator());
+            in_flight[i][step] = context().allocated_bytes();
             EXPECT_FALSE(context().is_reached(busy)) << "the queue was not busy for long enough to show anything";
             for (std::size_t k = 0; k < meshes.size(); ++k) built->update_vertices(handles[k], meshes[k].positions);
         }
@@ -164,11 +164,11 @@ TEST_P(Sync, WhatTheCallersCommandsUseOutlivesThem) {
         Commands commands(context(), "late frame", buffer);
         accel().trace(commands, view, {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
     }
-    const std::uint64_t bytes = allocated_bytes(context().allocator());
+    const std::uint64_t bytes = context().allocated_bytes();
     drop_accel();
     context().wait(Commands(context(), "collects").submit());
     Commands(context(), "collects").submit();
-    EXPECT_EQ(allocated_bytes(context().allocator()), bytes) << "freed before the caller's commands are done";
+    EXPECT_EQ(context().allocated_bytes(), bytes) << "freed before the caller's commands are done";
     caller.submit(buffer);
     EXPECT_NEAR(download<Hit>(context(), hits, 1).front().t, 9.0f, 0.1f);
 }

@@ -2,7 +2,7 @@
 // A kernel as a user writes it: its own closest and any hits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "twinray/query.glsl"
+#include "twinray/glsl/query.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
 {

@@ -2,6 +2,7 @@
 // Boxes, filters and kernels of users: the same GLSL on every accelerator.
 #include <random>
 
+#include "engine/accel/trace_desc.h"
 #include "engine/verify/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 #include "test_kernel_hw.spv.h"
@@ -49,16 +50,16 @@ class Program : public test::AccelTest {
 TWINRAY_OVER_EVERY_ACCEL(Program);
 
 // By float64, of spheres under one transform that scales and moves.
-Hit expected_sphere(std::span<const Sphere> spheres, const Ray& ray, double scale, glm::dvec3 offset) {
+Hit expected_sphere(std::span<const Sphere> spheres, const Ray& ray, double scale, dvec3 offset) {
     Hit best = miss();
     double best_t = INFINITY;
     for (std::size_t i = 0; i < spheres.size(); ++i) {
-        const glm::dvec3 center = glm::dvec3(spheres[i].center) * scale + offset, d(ray.direction);
-        const double radius = spheres[i].radius * scale, a = glm::dot(d, d);
-        const glm::dvec3 to_center = center - glm::dvec3(ray.origin);
-        const double middle = glm::dot(to_center, d) / a;
-        const glm::dvec3 miss_by = to_center - middle * d;
-        const double square = radius * radius - glm::dot(miss_by, miss_by);
+        const dvec3 center = dvec3(spheres[i].center) * scale + offset, d(ray.direction);
+        const double radius = spheres[i].radius * scale, a = dot(d, d);
+        const dvec3 to_center = center - dvec3(ray.origin);
+        const double middle = dot(to_center, d) / a;
+        const dvec3 miss_by = to_center - middle * d;
+        const double square = radius * radius - dot(miss_by, miss_by);
         if (square < 0) continue;
         const double half_chord = std::sqrt(square / a), near = middle - half_chord, far = middle + half_chord;
         const double t = near > 0 ? near : far;

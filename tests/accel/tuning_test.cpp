@@ -30,7 +30,7 @@ class Tunings : public ::testing::TestWithParam<Setting> {
         desc.tuning = row;
         const std::unique_ptr<Context> context = test::make_context(desc);
         if (!context) return {};
-        EXPECT_EQ(context->tuning().row, row);
+        EXPECT_EQ(context->state().tuning().row, row);
         std::vector<std::vector<std::byte>> found;
         trace_scenes(*context, found);
         for (const std::string& message : context->validation_messages()) ADD_FAILURE() << message;

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "engine/analysis/pair_plan.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "tests/analysis/plain_scenes.h"
 #include "tests/analysis/polygon_scenes.h"
 
@@ -80,7 +80,7 @@ TEST(Contour, OfRoomsRoundedToFloat32IsAsExactAsOfOthers) {
                 sum.error += part.error;
                 EXPECT_LE(part.evaluations, most_evaluations) << angle;
             }
-            const double area = glm::length(room[i].area_vector());
+            const double area = length(room[i].area_vector());
             EXPECT_LE(std::abs(sum.flow - area), sum.error + 1e-15 * area) << angle << ": the room is closed";
             EXPECT_LE(sum.error, 1e-11 * area) << angle;
         }
@@ -143,9 +143,9 @@ TEST(FacingParts, AreWhatLiesBeforeTheOther) {
     const Polygon64 floor(dvec3(-1, -1, 0), dvec3(1, -1, 0), dvec3(0, 1, 0));
     const Polygon64 through(dvec3(0, 0, -1), dvec3(0, 1, 1), dvec3(0, -1, 1));  // looks to -x
     const FacingPair pair = facing_parts(floor, through, rounding_of(1));
-    EXPECT_NEAR(glm::length(pair.b.area_vector()), 1.5, 1e-15) << "above the floor";
+    EXPECT_NEAR(length(pair.b.area_vector()), 1.5, 1e-15) << "above the floor";
     EXPECT_EQ(pair.b.count, 4u);
-    EXPECT_NEAR(glm::length(pair.a.area_vector()), 1, 1e-15) << "on the side to which the other looks";
+    EXPECT_NEAR(length(pair.a.area_vector()), 1, 1e-15) << "on the side to which the other looks";
     EXPECT_TRUE(facing_parts(floor, floor, rounding_of(1)).is_empty()) << "in one plane";
     const Polygon64 above(dvec3(-1, -1, 1), dvec3(1, -1, 1), dvec3(0, 1, 1));
     EXPECT_TRUE(facing_parts(floor, above, rounding_of(1)).is_empty()) << "that one looks away";

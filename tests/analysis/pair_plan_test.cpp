@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "tests/analysis/plain_scenes.h"
 

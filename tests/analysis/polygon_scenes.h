@@ -18,7 +18,7 @@ inline Surface quad(const dvec3& corner, const dvec3& u, const dvec3& v) {
 
 inline double area_of(const Surface& surface) {
     double area = 0;
-    for (const Polygon64& polygon : surface) area += glm::length(polygon.area_vector());
+    for (const Polygon64& polygon : surface) area += length(polygon.area_vector());
     return area;
 }
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "tests/analysis/polygon_scenes.h"
 
 namespace twinray {

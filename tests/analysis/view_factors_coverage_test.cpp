@@ -29,7 +29,7 @@ struct Known {
 
 double area_of(const Scene& scene) {
     double area = 0;
-    for (uint i = 0; i < scene.meshes[0].triangles.size(); ++i) area += glm::length(area_vector(scene, {0, i}));
+    for (uint i = 0; i < scene.meshes[0].triangles.size(); ++i) area += length(area_vector(scene, {0, i}));
     return area;
 }
 

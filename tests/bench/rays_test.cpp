@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/oracle.h"

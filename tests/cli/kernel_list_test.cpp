@@ -44,7 +44,7 @@ TEST_F(KernelListTest, HoldsEveryComputeModule) {
     if (!facts().ray_query) TWINRAY_LACKS("ray_tracing", "modules of the hardware accelerator need ray queries");
     const KernelList list = list_kernels({});
     const std::string_view of_other_tuning =
-        list.context->tuning().has_wide_loads ? "swtlas_trace" : "swtlas_trace_int64";
+        list.context->state().tuning().has_wide_loads ? "swtlas_trace" : "swtlas_trace_int64";
     std::size_t count = 0;
     for (const auto& [name, spirv] : kernel_modules) {
         if (!is_compute(spirv) || name == of_other_tuning) continue;

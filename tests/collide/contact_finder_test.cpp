@@ -42,7 +42,7 @@ class ContactFinderTest : public test::VulkanTest {
 
 dvec3 placed(const Transform& m, vec3 p) {
     const auto row = [&](std::size_t i) {
-        const glm::dvec4 r(m.rows[i]);
+        const dvec4 r(m.rows[i]);
         return ((r.x * p.x + r.y * p.y) + r.z * p.z) + r.w;
     };
     return {row(0), row(1), row(2)};
@@ -151,7 +151,7 @@ TEST_F(ContactFinderTest, TangentSpheres) {
 TEST_F(ContactFinderTest, ATranslationIsTheSameAsABakedOne) {
     std::mt19937 random(8);
     Soup a, b;
-    const auto point = [&] { return glm::floor(test::uniform3(random, -64, 64)) / 64.0f; };
+    const auto point = [&] { return floor(test::uniform3(random, -64, 64)) / 64.0f; };
     for (int i = 0; i < 60; ++i) {
         const vec3 p = point(), q = point();
         a.add(p, q, point());

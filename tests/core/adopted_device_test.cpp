@@ -4,10 +4,10 @@
 #include <mutex>
 #include <thread>
 
+#include "engine/core/context.h"
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/geometry.h>
+#include <twinray/tlas.h>
 #include "tests/core/host_device.h"
 
 namespace twinray {
@@ -53,7 +53,7 @@ TEST_F(AdoptedDeviceTest, BothAcceleratorsTraceOnIt) {
 TEST_F(AdoptedDeviceTest, TheHostSaysHowLongASubmissionMayTake) {
     ASSERT_TRUE(host_.create());
     host_.device.most_submission_seconds = 0.125;
-    EXPECT_EQ(Context(host_.device).tuning().most_submission_seconds, 0.125);
+    EXPECT_EQ(Context(host_.device).state().tuning().most_submission_seconds, 0.125);
 }
 
 // The layer complains of a queue that two threads use at once.
@@ -138,7 +138,7 @@ TEST_F(AdoptedDeviceTest, PipelinesGoIntoTheHostsCache) {
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
     VkPipelineCache& cache = host_.device.pipeline_cache;
     ASSERT_EQ(vkCreatePipelineCache(host_.device.device, &info, nullptr, &cache), VK_SUCCESS);
-    EXPECT_EQ(Context(host_.device).pipeline_cache(), cache);
+    EXPECT_EQ(Context(host_.device).state().pipeline_cache(), cache);
     expect_both_trace(host_.device);
     vkDestroyPipelineCache(host_.device.device, cache, nullptr);
 }

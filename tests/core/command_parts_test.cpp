@@ -54,7 +54,7 @@ TEST_F(CommandPartsTest, AreCutBetweenPassesThatAreTooLargeTogether) {
     context().wait(commands.submit());
     EXPECT_EQ(submissions(), before + 4);
     EXPECT_EQ(*reinterpret_cast<const uint*>(to.mapped()), 42u);
-    if (context().timestamp_period_ns() > 0) {
+    if (context().state().timestamp_period_ns() > 0) {
         EXPECT_EQ(names(commands.timings()), (std::vector<std::string>{"nothing", "nothing", "nothing", "copy"}));
     }
 }
@@ -89,21 +89,21 @@ TEST_F(CommandPartsTest, AllWaitForTheHost) {
 TEST_F(CommandPartsTest, APartRunsAtOnceAndMoreMayFollow) {
     const Buffer target(context(), {.name = "target", .bytes = 8});
     Commands commands(context(), "parts");
-    const std::uint64_t bytes = allocated_bytes(context().allocator());
+    const std::uint64_t bytes = context().allocated_bytes();
     const auto write = [&](const std::string& name, uint value, std::uint64_t offset) {
         const auto pass = commands.pass(name);
         commands.upload(target, offset, std::as_bytes(std::span(&value, 1)));
     };
     write("first", 1, 0);
-    EXPECT_GT(allocated_bytes(context().allocator()), bytes);
+    EXPECT_GT(context().allocated_bytes(), bytes);
     EXPECT_GE(commands.submit_part(), 0);
     context().wait_for_gpu();
-    EXPECT_EQ(allocated_bytes(context().allocator()), bytes) << "staging goes with its part";
+    EXPECT_EQ(context().allocated_bytes(), bytes) << "staging goes with its part";
     EXPECT_EQ(download<uint>(context(), target, 1).front(), 1u);
     write("second", 2, 4);
     commands.submit();
     EXPECT_EQ(download<uint>(context(), target, 2), (std::vector<uint>{1, 2}));
-    if (context().timestamp_period_ns() > 0) {
+    if (context().state().timestamp_period_ns() > 0) {
         EXPECT_EQ(names(commands.timings()), (std::vector<std::string>{"first", "second"}));
     }
     EXPECT_EQ(test::outcome_of([&] { commands.submit_part(); }), test::Outcome::error) << "submitted twice";

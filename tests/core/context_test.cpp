@@ -77,7 +77,7 @@ TEST_F(ContextTest, ABufferNeedsAName) { EXPECT_THROW(Buffer(context(), {.name =
 TEST_F(ContextTest, MemoryIsFreedAfterTheWorkThatMayUseIt) {
     constexpr std::uint64_t bytes = 64 << 20;
     context().wait_for_gpu();
-    const std::uint64_t before = allocated_bytes(context().allocator());
+    const std::uint64_t before = context().allocated_bytes();
     SyncPoint filled;
     {
         const Buffer buffer(context(), {.name = "temporary", .bytes = bytes});
@@ -90,9 +90,9 @@ TEST_F(ContextTest, MemoryIsFreedAfterTheWorkThatMayUseIt) {
     }
     Commands(context(), "collects").submit();
     ASSERT_FALSE(context().is_reached(filled)) << "the fills were over too soon to show anything";
-    EXPECT_GE(allocated_bytes(context().allocator()), before + bytes) << "freed while the GPU may write it";
+    EXPECT_GE(context().allocated_bytes(), before + bytes) << "freed while the GPU may write it";
     context().wait_for_gpu();
-    EXPECT_EQ(allocated_bytes(context().allocator()), before);
+    EXPECT_EQ(context().allocated_bytes(), before);
 }
 
 TEST_F(ContextTest, PassesAreTimedByName) {
@@ -130,10 +130,10 @@ TEST(Validation, IsHeard) {
     if (!context) return;
     VkBufferCreateInfo wrong{};
     wrong.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;  // size 0 and no usage are both forbidden
-    const auto create =
-        reinterpret_cast<PFN_vkCreateBuffer>(context->vk().vkGetDeviceProcAddr(context->device(), "vkCreateBuffer"));
-    const auto destroy =
-        reinterpret_cast<PFN_vkDestroyBuffer>(context->vk().vkGetDeviceProcAddr(context->device(), "vkDestroyBuffer"));
+    const auto create = reinterpret_cast<PFN_vkCreateBuffer>(
+        context->state().vk().vkGetDeviceProcAddr(context->device(), "vkCreateBuffer"));
+    const auto destroy = reinterpret_cast<PFN_vkDestroyBuffer>(
+        context->state().vk().vkGetDeviceProcAddr(context->device(), "vkDestroyBuffer"));
     VkBuffer buffer = VK_NULL_HANDLE;
     create(context->device(), &wrong, nullptr, &buffer);
     destroy(context->device(), buffer, nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/device_choice.h"
+#include <twinray/context.h>
 
 #include <gtest/gtest.h>
 

@@ -92,7 +92,7 @@ TEST_F(FaultsOfCore, RecordingForTheHost) {
     for (std::uint64_t n = 1; !HasFailure(); ++n) {
         context().wait_for_gpu();
         const Counts before = faults().live_objects();
-        const std::uint64_t bytes = allocated_bytes(context().allocator());
+        const std::uint64_t bytes = context().allocated_bytes();
         const CallerCommands recorded = host.begin();
         faults().inject({.first = n});
         const Outcome outcome = outcome_of([&] {
@@ -108,7 +108,7 @@ TEST_F(FaultsOfCore, RecordingForTheHost) {
         EXPECT_FALSE(n == 1 && must_wait()) << "for commands that were never begun";
         host.submit(recorded);
         context().wait_for_gpu();
-        EXPECT_EQ(allocated_bytes(context().allocator()), bytes);
+        EXPECT_EQ(context().allocated_bytes(), bytes);
         EXPECT_EQ(faults().live_objects(), before);
         if (is_over) break;
     }

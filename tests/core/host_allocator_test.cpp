@@ -4,9 +4,8 @@
 #include <set>
 
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/geometry.h>
+#include <twinray/tlas.h>
 #include "tests/core/host_device.h"
 
 namespace twinray {
@@ -106,7 +105,7 @@ class HostAllocator : public test::HostTest {
         try {
             const Buffer buffer(context, desc);
         } catch (const Error& error) {
-            EXPECT_EQ(context.allocator().live_bytes(), 0u);
+            EXPECT_EQ(context.state().allocator().live_bytes(), 0u);
             return error.what();
         }
         return "no failure";
@@ -136,7 +135,7 @@ TEST_F(HostAllocator, ServesBothAccelerators) {
     EXPECT_GT(memory_.live(), 0u);
     context.wait_for_gpu();
     EXPECT_EQ(memory_.live(), 0u) << "freed when the GPU is done";
-    EXPECT_EQ(allocated_bytes(context.allocator()), 0u);
+    EXPECT_EQ(context.allocated_bytes(), 0u);
 }
 
 // The n-th allocation fails, for every n that there is.

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "engine/core/device_choice.h"
+#include "engine/core/requirement.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/sort_args.h"

@@ -4,7 +4,7 @@
 
 #include <vulkan/vulkan_core.h>
 
-#include "engine/core/device_choice.h"
+#include <twinray/context.h>
 #include "engine/core/error.h"
 
 namespace twinray {

@@ -3,7 +3,7 @@
 
 #include "engine/core/kernel.h"
 #include "engine/core/radix_sort.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 #include "tests/support/device.h"
 #include "test_nothing.spv.h"
 
@@ -16,7 +16,7 @@ struct NoArgs {
 
 class PipelineTableTest : public test::VulkanTest {
   protected:
-    std::size_t size() { return context().pipelines().size(); }
+    std::size_t size() { return context().state().pipelines().size(); }
     // Constants that a shader does not have are ignored, but make another pipeline.
     KernelDesc desc(uint constant) {
         return {.name = "nothing", .spirv = test_nothing_spirv, .constants = {{77, constant}}};

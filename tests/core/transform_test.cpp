@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/transform.h"
+#include <twinray/geometry.h>
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ Transform random_transform(std::mt19937& random, float scale) {
 
 TEST(Transform, OfAGlmMatrixHasItsRows) {
     glm::mat4 matrix(1);
-    matrix[3] = glm::vec4(5, 6, 7, 1);  // GLM is column-major: the translation
+    matrix[3] = vec4(5, 6, 7, 1);  // GLM is column-major: the translation
     EXPECT_EQ(Transform::of(matrix), Transform::translation({5, 6, 7}));
     matrix[0][3] = 1;
     EXPECT_THROW(Transform::of(matrix), Error);
@@ -75,7 +75,7 @@ TEST(WorldBound, IsNotAboveWhereOffsetsCancel) {
     for (int i = 0; i < 100'000; ++i) {
         const vec3 a(unit(random), unit(random), unit(random));
         const vec3 b = vec3(1e6f) + 1e5f * vec3(unit(random), unit(random), unit(random));
-        const double exact = glm::dot(glm::dvec3(a), glm::dvec3(b));
+        const double exact = dot(dvec3(a), dvec3(b));
         const auto c = static_cast<float>(unit(random) - exact);
         // Products of float32 are exact in float64, and their sum to 2^-52 of 3e6.
         ASSERT_LE(double{dot_below(a, b, c)}, exact + c + 3e6 * 0x1p-51) << i;

@@ -27,7 +27,7 @@ struct Draws {
     dmat3 rotation() {
         std::normal_distribution<double> normal;
         const double w = normal(engine), x = normal(engine), y = normal(engine);
-        return glm::mat3_cast(glm::normalize(glm::dquat(w, x, y, normal(engine))));
+        return glm::mat3_cast(normalize(glm::dquat(w, x, y, normal(engine))));
     }
 };
 
@@ -48,7 +48,7 @@ Sample sample(Draws& draws, double stretch, double place, double distance) {
     const dvec3 offset = place * draws.in_box();
     Sample made;
     for (int row = 0; row < 3; ++row)
-        made.transform.rows[static_cast<std::size_t>(row)] = vec4(glm::dvec4(linear[row], offset[row]));
+        made.transform.rows[static_cast<std::size_t>(row)] = vec4(dvec4(linear[row], offset[row]));
     made.a = vec3(draws.in_box());
     made.b = vec3(draws.in_box());
     const double along = draws.between(0, 1), aside = std::exp2(draws.between(-30, -6));

@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;  // NOLINT
 
-const Triangle64 corner_triangle = {glm::dvec3(0, 0, 3), glm::dvec3(4, 0, 3), glm::dvec3(0, 4, 3)};
+const Triangle64 corner_triangle = {dvec3(0, 0, 3), dvec3(4, 0, 3), dvec3(0, 4, 3)};
 
 Line line(vec3 origin, vec3 direction) { return {vector_of(origin), vector_of(direction)}; }
 
@@ -194,7 +194,7 @@ TEST(Referee, FindsWhatRoundingPutsOutsideOfItsBox) {
     for (int n = 1; n < 200; ++n) {
         const float scale = static_cast<float>(n);
         const Oracle oracle = oracle_of(soup, Transform::scaling({scale, scale, 1}));
-        outside += oracle.placement(0).vector_to_object(glm::dvec3(scale, 0, 0)).x < 1;
+        outside += oracle.placement(0).vector_to_object(dvec3(scale, 0, 0)).x < 1;
         const auto hit = Referee(oracle).closest_hit(make_ray({scale, scale / 2, 0}, {0, 0, 1}));
         ASSERT_TRUE(hit) << n;
         EXPECT_EQ(hit->crossing.incidence, Incidence::edge);

@@ -3,8 +3,8 @@
 // to.
 #include "engine/core/error.h"
 #include "engine/core/vma.h"
-#include "engine/scene/shapes.h"
-#include "hwtlas/hw_tlas.h"
+#include <twinray/geometry.h>
+#include <twinray/tlas.h>
 #include "tests/support/device.h"
 #include "tests/support/fault_injection.h"
 
@@ -126,7 +126,7 @@ TEST_F(Compaction, LeavesMeshesAloneWhoseVerticesMove) {
 TEST_F(Compaction, FreesWhatItReplaces) {
     accel().sync();
     context().wait_for_gpu();
-    const std::uint64_t before = allocated_bytes(context().allocator());
+    const std::uint64_t before = context().allocated_bytes();
     const AccelHandle box = push_box(0);
     sync_and_wait();
     EXPECT_TRUE(accel().compact());
@@ -134,7 +134,7 @@ TEST_F(Compaction, FreesWhatItReplaces) {
     accel().erase(box);
     accel().sync();
     context().wait_for_gpu();
-    EXPECT_EQ(allocated_bytes(context().allocator()), before);
+    EXPECT_EQ(context().allocated_bytes(), before);
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 #include <optional>
 #include <random>
 
-#include "hwtlas/hw_tlas.h"
+#include <twinray/tlas.h>
+#include "engine/core/ray.h"
 #include "tests/support/device.h"
 
 namespace twinray::test {
@@ -68,7 +69,7 @@ class BruteForce {
         for (uint i = 0; i < mesh.triangles.size(); ++i) {
             Triangle triangle{{}, instance_count_, i};
             for (int k = 0; k < 3; ++k)
-                triangle.corners[k] = world(transform, glm::dvec3(mesh.positions[mesh.triangles[i][k]]));
+                triangle.corners[k] = world(transform, dvec3(mesh.positions[mesh.triangles[i][k]]));
             triangles_.push_back(triangle);
         }
         ++instance_count_;
@@ -94,26 +95,26 @@ class BruteForce {
 
   private:
     struct Triangle {
-        glm::dvec3 corners[3];
+        dvec3 corners[3];
         uint instance, primitive;
     };
-    static glm::dvec3 world(const Transform& transform, const glm::dvec3& p) {
-        glm::dvec3 result;
+    static dvec3 world(const Transform& transform, const dvec3& p) {
+        dvec3 result;
         for (int row = 0; row < 3; ++row) {
-            const glm::dvec4 m(transform.rows[static_cast<std::size_t>(row)]);
+            const dvec4 m(transform.rows[static_cast<std::size_t>(row)]);
             result[row] = m.x * p.x + m.y * p.y + m.z * p.z + m.w;
         }
         return result;
     }
     // The smallest of the three barycentric coordinates; NaN for degenerate and non-finite triangles.
     static double intersect(const Triangle& triangle, const Ray& ray, ReferenceHit& hit) {
-        const glm::dvec3 d(ray.direction), a = triangle.corners[0];
-        const glm::dvec3 e1 = triangle.corners[1] - a, e2 = triangle.corners[2] - a, s = glm::dvec3(ray.origin) - a;
-        const glm::dvec3 p = glm::cross(d, e2), q = glm::cross(s, e1);
-        const double determinant = glm::dot(e1, p);
+        const dvec3 d(ray.direction), a = triangle.corners[0];
+        const dvec3 e1 = triangle.corners[1] - a, e2 = triangle.corners[2] - a, s = dvec3(ray.origin) - a;
+        const dvec3 p = cross(d, e2), q = cross(s, e1);
+        const double determinant = dot(e1, p);
         if (determinant == 0) return NAN;
-        hit = {glm::dot(e2, q) / determinant, glm::dot(s, p) / determinant, glm::dot(d, q) / determinant,
-               triangle.instance, triangle.primitive};
+        hit = {dot(e2, q) / determinant, dot(s, p) / determinant, dot(d, q) / determinant, triangle.instance,
+               triangle.primitive};
         return std::min({hit.u, hit.v, 1 - hit.u - hit.v});
     }
 

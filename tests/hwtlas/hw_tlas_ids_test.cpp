@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Ids against a float64 brute force: whatever is reordered, replaced or left out, the user's numbering comes back.
+#include "engine/core/ray.h"
 #include "tests/hwtlas/hw_test.h"
 
 #include <algorithm>
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 
 namespace twinray::test {
 namespace {
@@ -124,7 +125,7 @@ class HwTlasOrder : public VulkanTest {
 };
 
 TEST_F(HwTlasOrder, FollowsTheDriverUnlessTold) {
-    EXPECT_EQ(HwTlas(context()).reorders(), context().tuning().builds_in_input_order);
+    EXPECT_EQ(HwTlas(context()).reorders(), context().state().tuning().builds_in_input_order);
 }
 
 TEST_F(HwTlasOrder, ChangesNoBitOfTheHitsAndCostsNothingWhenOff) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "hwtlas/hw_tlas.h"
+#include <twinray/tlas.h>
 
+#include "engine/core/ray.h"
 #include "engine/core/error.h"
 #include "tests/hwtlas/hw_test.h"
 #include "engine/scene/shapes.h"

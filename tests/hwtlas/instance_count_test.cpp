@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Instances come and go between moves: the driver's structure is rebuilt then, and updated where they only move.
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "tests/hwtlas/hw_test.h"
 
 namespace twinray::test {
@@ -53,7 +53,7 @@ class Row {
 };
 
 TEST_P(InstanceCountTest, EachChangeOfItRebuilds) {
-    if (context().timestamp_period_ns() == 0) TWINRAY_LACKS("ray_tracing", "passes are told by their times");
+    if (context().state().timestamp_period_ns() == 0) TWINRAY_LACKS("ray_tracing", "passes are told by their times");
     Row row(accel());
     for (int i = 0; i < 3; ++i) row.push();
     row.move(0), row.check();

@@ -53,14 +53,14 @@ TEST(MortonOrder, OfRandomPointsIsAPermutationWithShortSteps) {
     const std::vector<uint> order = morton_order(centers);
     std::vector<uint> sorted = order;
     std::sort(sorted.begin(), sorted.end());
-    double length = 0, length_before = 0;
+    double total = 0, total_before = 0;
     for (uint i = 0; i < order.size(); ++i) {
         ASSERT_EQ(sorted[i], i);
         if (i == 0) continue;
-        length += glm::length(centers[order[i]] - centers[order[i - 1]]);
-        length_before += glm::length(centers[i] - centers[i - 1]);
+        total += length(centers[order[i]] - centers[order[i - 1]]);
+        total_before += length(centers[i] - centers[i - 1]);
     }
-    EXPECT_LT(length, 0.1 * length_before);
+    EXPECT_LT(total, 0.1 * total_before);
 }
 
 TEST(TriangleCenters, AreThoseOfTheBoxesAndNanForNonFiniteCorners) {

@@ -75,7 +75,7 @@ class PointFinderTest : public test::VulkanTest {
         double size = side_of(own->corners);
         for (std::size_t i = 0; i < placed_.size(); ++i) {
             const Corners64& corners = placed_[i].corners;
-            const double to_corner = glm::distance(point, corners.a);
+            const double to_corner = distance(point, corners.a);
             if (to_corner - sides_[i] > static_cast<double>(least) + 1e-9 * to_corner) continue;
             const long double distance = test::distance(point, corners);
             if (distance < least) {
@@ -83,20 +83,20 @@ class PointFinderTest : public test::VulkanTest {
                 size = sides_[i];
             }
         }
-        const auto reached = static_cast<long double>(glm::distance(found.position, point));
-        const double unit = std::max({static_cast<double>(least), size, glm::length(point)}) * 0x1p-52;
+        const auto reached = static_cast<long double>(distance(found.position, point));
+        const double unit = std::max({static_cast<double>(least), size, length(point)}) * 0x1p-52;
         const Corners64& t = own->corners;
         const dvec3 by_uv = (1 - found.uv.x - found.uv.y) * t.a + found.uv.x * t.b + found.uv.y * t.c;
         const long double error =
             std::max({std::abs(found.distance - least), std::abs(reached - least), of_named - least,
-                      static_cast<long double>(glm::distance(by_uv, found.position)) / 4});
+                      static_cast<long double>(distance(by_uv, found.position)) / 4});
         const auto as_float = static_cast<float>(least);
         return {static_cast<double>(error) / unit,
                 std::abs(static_cast<double>(static_cast<float>(found.distance)) - as_float) /
                     (std::nextafter(as_float, INFINITY) - as_float)};
     }
     static double side_of(const Corners64& t) {
-        return std::max({glm::distance(t.a, t.b), glm::distance(t.b, t.c), glm::distance(t.c, t.a)});
+        return std::max({distance(t.a, t.b), distance(t.b, t.c), distance(t.c, t.a)});
     }
 
     std::unique_ptr<PointFinder> finder_;

@@ -32,7 +32,7 @@ Real squared_distance_to_segment(const Vector& p, const Vector& a, const Vector&
 
 dvec3 placed(const Transform& m, vec3 p) {
     const auto row = [&](std::size_t i) {
-        const glm::dvec4 r(m.rows[i]);
+        const dvec4 r(m.rows[i]);
         return ((r.x * p.x + r.y * p.y) + r.z * p.z) + r.w;
     };
     return {row(0), row(1), row(2)};
@@ -72,9 +72,9 @@ double solid_winding(const dvec3& point, std::span<const PlacedTriangle> triangl
     double sum = 0;
     for (const PlacedTriangle& each : triangles) {
         const dvec3 a = each.corners.a - point, b = each.corners.b - point, c = each.corners.c - point;
-        const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+        const double la = length(a), lb = length(b), lc = length(c);
         const double angle =
-            2 * std::atan2(dot(a, glm::cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+            2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
         sum += each.is_mirrored ? -angle : angle;
     }
     return sum / (4 * std::numbers::pi);

@@ -8,6 +8,7 @@
 
 #include "validation/replay/scene_file.h"
 #include "engine/core/error.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "tests/scene/temp_dir.h"
 

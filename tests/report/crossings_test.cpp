@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "validation/suite/case_run.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "engine/verify/inside_rays.h"
 #include "tests/support/device.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 
 namespace twinray::suite {
 namespace {

@@ -10,7 +10,7 @@
 #include "validation/suite/case_run.h"
 #include "validation/suite/judging.h"
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/aimed_rays.h"
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/error.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "samples/path_tracer/camera.h"
 #include "samples/path_tracer/image_io.h"

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "tests/support/device.h"
 

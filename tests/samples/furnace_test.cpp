@@ -91,23 +91,23 @@ TEST(Furnace, AColoredInterfaceReturnsNoMoreThanAWhiteOne) {
 
 // Albedo of a white mirror and Schlick's part of it, in double, over the microfacets that wo sees (Dupuy and Benyoub
 // 2023).
-glm::dvec2 mirror_albedo_by_quadrature(double cosine, double alpha) {
+dvec2 mirror_albedo_by_quadrature(double cosine, double alpha) {
     constexpr int steps = 200;
     const double sine = std::sqrt(1 - cosine * cosine);
-    const glm::dvec3 wo(sine, 0, cosine), stretched = glm::normalize(glm::dvec3(alpha * sine, 0, cosine));
-    const auto lambda = [&](glm::dvec3 w) {
+    const dvec3 wo(sine, 0, cosine), stretched = normalize(dvec3(alpha * sine, 0, cosine));
+    const auto lambda = [&](dvec3 w) {
         return 0.5 * (std::sqrt(1 + alpha * alpha * (w.x * w.x + w.y * w.y) / (w.z * w.z)) - 1);
     };
-    glm::dvec2 sum(0);
+    dvec2 sum(0);
     for (int i = 0; i < steps * steps; ++i) {
         const double z = (1 - (i / steps + 0.5) / steps) * (1 + stretched.z) - stretched.z;
         const double angle = 2 * std::numbers::pi * (i % steps + 0.5) / steps, radius = std::sqrt(1 - z * z);
-        const glm::dvec3 cap = glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), z) + stretched;
-        const glm::dvec3 h = glm::normalize(glm::dvec3(alpha * cap.x, alpha * cap.y, cap.z));
-        const glm::dvec3 wi = 2 * dot(wo, h) * h - wo;
+        const dvec3 cap = dvec3(radius * std::cos(angle), radius * std::sin(angle), z) + stretched;
+        const dvec3 h = normalize(dvec3(alpha * cap.x, alpha * cap.y, cap.z));
+        const dvec3 wi = 2 * dot(wo, h) * h - wo;
         if (wi.z <= 0) continue;
         const double shadowing = (1 + lambda(wo)) / (1 + lambda(wo) + lambda(wi));
-        sum += glm::dvec2(shadowing, shadowing * std::pow(1 - dot(wo, h), 5));
+        sum += dvec2(shadowing, shadowing * std::pow(1 - dot(wo, h), 5));
     }
     return sum / static_cast<double>(steps * steps);
 }
@@ -115,8 +115,8 @@ glm::dvec2 mirror_albedo_by_quadrature(double cosine, double alpha) {
 TEST(Furnace, TheFitsBoundTheAlbedoOfAMirror) {
     for (const float alpha : {0.0015f, 0.008f, 0.03f, 0.13f, 0.37f, 0.9f})
         for (const float cosine : {0.97f, 0.63f, 0.31f, 0.11f, 0.06f, 0.023f}) {
-            const glm::dvec2 exact = mirror_albedo_by_quadrature(double{cosine}, double{alpha});
-            const glm::dvec2 found(mirror_albedo(mirror(alpha), direction(cosine)));
+            const dvec2 exact = mirror_albedo_by_quadrature(double{cosine}, double{alpha});
+            const dvec2 found(mirror_albedo(mirror(alpha), direction(cosine)));
             for (const int part : {0, 1}) {
                 EXPECT_GE(found[part], exact[part] - (part == 0 ? 0.012 : 0.005))
                     << alpha << ' ' << cosine << ' ' << part;
@@ -129,12 +129,11 @@ TEST(Furnace, TheFitsBoundTheAlbedoOfAMirror) {
 // What is diffuse is divided by what the means leave: they must not be greater than the means of what it is dimmed by.
 TEST(Furnace, MeansAreThoseOfTheFits) {
     for (const float alpha : {0.0f, 0.0015f, 0.02f, 0.1f, 0.37f, 0.9f, 1.0f}) {
-        glm::dvec2 sum(0);
+        dvec2 sum(0);
         constexpr int steps = 20000;
         for (int i = 0; i < steps; ++i)
-            sum +=
-                glm::dvec2(mirror_albedo(mirror(alpha), direction(std::sqrt((static_cast<float>(i) + 0.5f) / steps))));
-        const glm::dvec2 mean(mean_mirror_albedo(mirror(alpha)));
+            sum += dvec2(mirror_albedo(mirror(alpha), direction(std::sqrt((static_cast<float>(i) + 0.5f) / steps))));
+        const dvec2 mean(mean_mirror_albedo(mirror(alpha)));
         for (const int part : {0, 1}) {
             EXPECT_LE(mean[part], sum[part] / steps + 1e-5) << alpha << ' ' << part;
             EXPECT_GE(mean[part], sum[part] / steps - 0.002) << alpha << ' ' << part;

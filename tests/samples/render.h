@@ -8,10 +8,9 @@
 
 #include "engine/accel/scene_push.h"
 #include "engine/scene/shapes.h"
-#include "hwtlas/hw_tlas.h"
+#include <twinray/tlas.h>
 #include "samples/path_tracer/camera.h"
 #include "samples/path_tracer/cross_check.h"
-#include "swtlas/sw_tlas.h"
 #include "tests/support/device.h"
 
 namespace twinray::path_tracer {

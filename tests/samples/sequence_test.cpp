@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/error.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 
 namespace twinray::path_tracer {

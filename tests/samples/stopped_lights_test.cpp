@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "samples/path_tracer/material_kinds.h"
 

@@ -46,7 +46,7 @@ std::shared_ptr<Rig> random_rig(const Mesh& mesh, uint influences, float size = 
     for (uint i = 1; i <= joint_count; ++i) {
         Trs& rest = rig->nodes[i].rest;
         rest.translation = dvec3(draws.point()) * double{size};
-        rest.rotation = glm::dvec4(0, draws.in(-0.4f, 0.4f), draws.in(-0.4f, 0.4f), 1);
+        rest.rotation = dvec4(0, draws.in(-0.4f, 0.4f), draws.in(-0.4f, 0.4f), 1);
         rest.scale = {-1, double{draws.in(0.8f, 1.2f)}, double{draws.in(0.8f, 1.2f)}};
         skin.joints.push_back(i);
         skin.inverse_binds.emplace_back(1);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "tests/scene/temp_dir.h"
 

@@ -251,8 +251,8 @@ TEST(GltfMaterial, TextureTransformsTurnAsTheKhronosSampleDoes) {
 
     transform = {{"offset", {0.5, -0.25}}, {"scale", {2, 4}}, {"rotation", 1.5707963267948966}};
     const Texture all = gltf.load().materials[0].base_color_texture;
-    EXPECT_NEAR(glm::length(all.uv_row0 - vec3(0, 4, 0.5f)), 0, 1e-6);
-    EXPECT_NEAR(glm::length(all.uv_row1 - vec3(-2, 0, -0.25f)), 0, 1e-6);
+    EXPECT_NEAR(length(all.uv_row0 - vec3(0, 4, 0.5f)), 0, 1e-6);
+    EXPECT_NEAR(length(all.uv_row1 - vec3(-2, 0, -0.25f)), 0, 1e-6);
 }
 
 // Of each texture by itself, those of extensions, too; KHR_texture_transform has the last word.

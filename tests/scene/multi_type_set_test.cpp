@@ -227,17 +227,17 @@ TEST_F(MultiTypeSetTest, ACleanSyncDoesNothing) {
     set().push(glass(1));
     const SyncPoint done = set().sync();
     context().wait_for_gpu();
-    const std::uint64_t bytes = allocated_bytes(context().allocator());
+    const std::uint64_t bytes = context().allocated_bytes();
     for (int i = 0; i < 100; ++i) EXPECT_EQ(set().sync().value, done.value);
     EXPECT_EQ(context().last_submission().value, done.value);
-    EXPECT_EQ(allocated_bytes(context().allocator()), bytes);
+    EXPECT_EQ(context().allocated_bytes(), bytes);
 }
 
 TEST_F(MultiTypeSetTest, TenThousandPushesAndUpdatesLeakNothing) {
     std::mt19937 random(6);
     std::vector<SetKey> keys;
     std::uint64_t most = 0;
-    const std::uint64_t start = allocated_bytes(context().allocator());
+    const std::uint64_t start = context().allocated_bytes();
     for (int i = 0; i < 10'000; ++i) {
         if (random() % 2 || keys.empty())
             keys.push_back(set().push(layered(static_cast<float>(i))));
@@ -245,11 +245,11 @@ TEST_F(MultiTypeSetTest, TenThousandPushesAndUpdatesLeakNothing) {
             set().update(keys[random() % keys.size()], layered(static_cast<float>(i % 1000)));
         if (i % 20 == 0) set().sync();
         if (i % 1000 == 0) context().wait_for_gpu();
-        most = std::max(most, allocated_bytes(context().allocator()));
+        most = std::max(most, context().allocated_bytes());
     }
     set().sync();
     context().wait_for_gpu();
-    const std::uint64_t held = allocated_bytes(context().allocator()) - start;
+    const std::uint64_t held = context().allocated_bytes() - start;
     EXPECT_EQ(held, 8192 * sizeof(Layered)) << "a power of two times 16 that " << keys.size() << " fit in";
     EXPECT_LT(most - start, 4 * held);
     const std::vector<float> values = run(keys);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "twinray/multi_type_set.glsl"
-#include "twinray/unrolled.glsl"
+#include "twinray/glsl/multi_type_set.glsl"
+#include "twinray/glsl/unrolled.glsl"
 #include "tests/scene/set_kernel.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { SetTestArgs args; };

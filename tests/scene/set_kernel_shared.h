@@ -6,9 +6,9 @@
 #include "engine/scene/soa.h"
 
 namespace twinray::test {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "tests/scene/set_kernel.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(Diffuse) == 16 && sizeof(Glass) == 4 && sizeof(Layered) == 56);
 static_assert(sizeof(TestSet) == 64 && sizeof(SetTestArgs) == 88 && sizeof(TestQueue) == 48);

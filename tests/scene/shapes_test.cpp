@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 
 #include <map>
@@ -29,7 +30,7 @@ bool is_closed(const Mesh& mesh) {
 
 vec3 face_normal(const Mesh& mesh, std::size_t triangle) {
     const uvec3 t = mesh.triangles[triangle];
-    return glm::normalize(cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]));
+    return normalize(cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]));
 }
 
 TEST(Shapes, TheQuadFacesAlongTheCrossOfItsEdges) {
@@ -58,8 +59,8 @@ TEST(Shapes, TheIcosphereIsClosedRoundAndFacesOutwards) {
         EXPECT_TRUE(is_closed(sphere));
         EXPECT_GT(signed_volume(sphere), 0);
         for (std::size_t i = 0; i < sphere.positions.size(); ++i) {
-            EXPECT_NEAR(glm::length(sphere.positions[i]), 2, 1e-6);
-            EXPECT_NEAR(glm::length(sphere.normals[i] * 2.0f - sphere.positions[i]), 0, 1e-6);
+            EXPECT_NEAR(length(sphere.positions[i]), 2, 1e-6);
+            EXPECT_NEAR(length(sphere.normals[i] * 2.0f - sphere.positions[i]), 0, 1e-6);
         }
     }
     EXPECT_NEAR(signed_volume(make_icosphere(4, 2)), 33.51, 0.15);
@@ -82,8 +83,8 @@ TEST(Shapes, TheGridCoversTheUnitSquareFacingUp) {
 TEST(Shapes, TheSoupIsSeparateTrianglesOfTheSizeAsked) {
     const Mesh soup = make_soup(500, 42, 0.25f);
     EXPECT_EQ(soup.positions.size(), 1500u);
-    for (const uvec3& t : soup.triangles) EXPECT_LE(glm::length(soup.positions[t.x] - soup.positions[t.y]), 0.5f);
-    EXPECT_LT(glm::length(bounds_of(soup).center() - vec3(0.5f)), 0.1f);
+    for (const uvec3& t : soup.triangles) EXPECT_LE(length(soup.positions[t.x] - soup.positions[t.y]), 0.5f);
+    EXPECT_LT(length(bounds_of(soup).center() - vec3(0.5f)), 0.1f);
 }
 
 TEST(Shapes, TheSameSeedGivesTheSameBits) {

@@ -2,7 +2,7 @@
 // Shifts all items of a queue, and asks for some that are not there.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "twinray/soa.glsl"
+#include "twinray/glsl/soa.glsl"
 #include "tests/scene/set_kernel.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { SoaTestArgs args; };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "twinray/textures.glsl"
+#include "twinray/glsl/textures.glsl"
 #include "tests/scene/texture_kernel.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { TextureTestArgs args; };

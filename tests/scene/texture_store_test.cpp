@@ -17,9 +17,9 @@
 
 namespace twinray {
 namespace test {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "tests/scene/texture_kernel.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 static_assert(sizeof(TextureQuestion) == 20 && sizeof(TextureAnswer) == 40);
 }  // namespace test
 
@@ -91,9 +91,9 @@ class Textures : public test::VulkanTest, public ::testing::WithParamInterface<T
         return download<TextureAnswer>(context(), ask(questions, is_debug), questions.size());
     }
     long red_of(TextureRef texture) {
-        return std::lround(255 * answers_to({{texture, 0, 0, vec2(0.5f)}}).front().texel.r);
+        return std::lround(255 * answers_to({{texture, 0, 0, vec2(0.5f)}}).front().texel.x);
     }
-    std::uint64_t live_bytes() { return allocated_bytes(context().allocator()); }
+    std::uint64_t live_bytes() { return context().allocated_bytes(); }
 
     test::FaultInjector injector_;
 
@@ -111,7 +111,7 @@ vec4 texel_of(const Image& image, int x, int y, bool is_srgb) {
     const std::uint8_t* bytes = &image.rgba[4 * (static_cast<std::size_t>(y) * image.width + static_cast<uint>(x))];
     vec4 color(bytes[0], bytes[1], bytes[2], bytes[3]);
     color /= 255.0f;
-    return is_srgb ? vec4(to_linear(color.r), to_linear(color.g), to_linear(color.b), color.a) : color;
+    return is_srgb ? vec4(to_linear(color.x), to_linear(color.y), to_linear(color.z), color.w) : color;
 }
 
 // Which texel stands for one outside.
@@ -131,13 +131,12 @@ vec4 filtered(const Image& image, const TextureOptions& options, vec2 uv) {
                         inside(static_cast<int>(low.y) + dy, static_cast<int>(image.height), options.wrap_v),
                         options.is_srgb);
     };
-    return glm::mix(glm::mix(texel(0, 0), texel(1, 0), weight.x), glm::mix(texel(0, 1), texel(1, 1), weight.x),
-                    weight.y);
+    return mix(mix(texel(0, 0), texel(1, 0), weight.x), mix(texel(0, 1), texel(1, 1), weight.x), weight.y);
 }
 
 // Nearer than the 8 bits in which samplers tell texels apart.
 bool is_near_an_edge(const Image& image, vec2 uv) {
-    const vec2 at = uv * vec2(image.width, image.height), off = abs(at - glm::round(at));
+    const vec2 at = uv * vec2(image.width, image.height), off = abs(at - round(at));
     return std::min(off.x, off.y) < 0.01f;
 }
 
@@ -276,7 +275,7 @@ TEST_P(Textures, WorkInFlightKeepsWhatItWasGiven) {
     }
     for (std::size_t i = 0; i < answers.size(); ++i)
         for (const TextureAnswer& answer : download<TextureAnswer>(context(), answers[i], 500))
-            ASSERT_NEAR(255 * answer.color.r, static_cast<float>(i + 1), 0.1f);
+            ASSERT_NEAR(255 * answer.color.x, static_cast<float>(i + 1), 0.1f);
 }
 
 // The host's commands are recorded with the old texture, and submitted when it has been replaced.
@@ -299,7 +298,7 @@ TEST_P(Textures, WhatRecordedCommandsUseOutlivesAnUpdate) {
     const TextureAnswer answer = download<TextureAnswer>(context(), answers, 1).front();
     // Buffers are found through the table, which is up to date; descriptors are those that were recorded.
     EXPECT_EQ(answer.size, store().has_images() ? uvec2(8) : uvec2(9));
-    EXPECT_EQ(std::lround(255 * answer.texel.r), store().has_images() ? 50 : 60);
+    EXPECT_EQ(std::lround(255 * answer.texel.x), store().has_images() ? 50 : 60);
 }
 
 TEST_P(Textures, ACleanSyncDoesNothing) {

@@ -4,8 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <glm/glm.hpp>
-
 #include "engine/verify/draws.h"
 #include "swtlas/structures.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/accel/geometry.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "swtlas/reference.h"
 
 namespace twinray {

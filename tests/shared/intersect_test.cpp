@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "engine/accel/geometry.h"
 #include "swtlas/reference_scene.h"
@@ -129,8 +130,7 @@ TEST(ActiveTriangle, IsDecidedExactlyForCornersOnALine) {
         EXPECT_FALSE(is_active_triangle(a * scale, b * scale, c * scale));
         vec3 moved = b;
         moved[static_cast<int>(random() % 3)] += 0.25f;
-        const bool still_flat =
-            cross(glm::dvec3(moved) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a)) == glm::dvec3(0);
+        const bool still_flat = cross(dvec3(moved) - dvec3(a), dvec3(c) - dvec3(a)) == dvec3(0);
         EXPECT_EQ(is_active_triangle(a * scale, moved * scale, c * scale), !still_flat);
         flat += still_flat;
     }

@@ -15,7 +15,6 @@ namespace twinray {
 namespace {
 
 using glm::dmat3;
-using glm::dvec3;
 
 class Random {
   public:
@@ -52,8 +51,7 @@ class Random {
 
 Rows rows_of(const dmat3& linear, const dvec3& offset) {
     const dmat3 rows = transpose(linear);
-    return {vec4(glm::dvec4(rows[0], offset.x)), vec4(glm::dvec4(rows[1], offset.y)),
-            vec4(glm::dvec4(rows[2], offset.z))};
+    return {vec4(dvec4(rows[0], offset.x)), vec4(dvec4(rows[1], offset.y)), vec4(dvec4(rows[2], offset.z))};
 }
 dmat3 linear_of(const Rows& m) { return transpose(dmat3(dvec3(m.r0), dvec3(m.r1), dvec3(m.r2))); }
 

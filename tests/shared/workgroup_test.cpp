@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/accel/trace_program.h"
-#include "engine/core/device_choice.h"
+#include <twinray/context.h>
 
 namespace twinray {
 namespace {

@@ -9,7 +9,7 @@ namespace twinray::test {
 
 class Caller {
   public:
-    explicit Caller(Context& context) : context_(context), vk_(context.vk()) {
+    explicit Caller(Context& context) : context_(context), vk_(context.state().vk()) {
         VkSemaphoreTypeCreateInfo type{};
         type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
         type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;

@@ -21,7 +21,7 @@ std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed) {
     return Geometry(mesh, software_unit((pushed ? pushed : &mesh)->positions)).positions;
 }
 
-void expect_sound(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes, const std::string& name) {
+void expect_sound(const BuiltTree& tree, const std::vector<LeafBox>& boxes, const std::string& name) {
     const auto report = [&](const std::vector<std::string>& violations) {
         for (const std::string& violation : violations) ADD_FAILURE() << name << ": " << violation;
     };
@@ -29,21 +29,21 @@ void expect_sound(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes, c
     report(check_compressed(tree.bvh, tree.records, boxes).violations);
 }
 
-std::vector<LeafBox> leaf_boxes(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed) {
+std::vector<LeafBox> leaf_boxes(const BuiltTree& tree, const Mesh& mesh, const Mesh* pushed) {
     return has_records(tree) ? reference::leaves_triangles(built(mesh, pushed), mesh.triangles)
                              : boxes_of(tree.triangles, mesh, pushed);
 }
 
-void expect_sound(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed) {
+void expect_sound(const BuiltTree& tree, const Mesh& mesh, const Mesh* pushed) {
     expect_sound(tree, leaf_boxes(tree, mesh, pushed), mesh.name);
 }
 
-double sah_of(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes) {
+double sah_of(const BuiltTree& tree, const std::vector<LeafBox>& boxes) {
     if (!has_records(tree)) return check_tree(tree.bvh, tree.nodes, boxes).sah;
     return check_compressed(tree.bvh, tree.records, boxes).sah;
 }
 
-void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh, BuildQuality quality) {
+void expect_twin(const BuiltTree& tree, const Mesh& mesh, BuildQuality quality) {
     const std::vector<LeafBox> boxes = reference::leaves_triangles(built(mesh), mesh.triangles);
     const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
@@ -78,7 +78,7 @@ std::vector<Transform> scattered(std::size_t count, uint seed) {
         const vec3 offset(place(random), place(random), place(random));
         const float angle = i % 2 ? place(random) : 0;
         transforms.push_back(Transform::translation(offset) *
-                             Transform::of(glm::rotate(glm::mat4(1), angle, vec3(0.6f, 0, 0.8f))) *
+                             Transform::of(glm::rotate(glm::mat4(1), angle, glm::vec3(0.6f, 0, 0.8f))) *
                              Transform::scaling({1.5f, -0.25f, 3}));
     }
     return transforms;

@@ -9,8 +9,9 @@
 #include "engine/scene/shapes.h"
 #include "swtlas/check.h"
 #include "swtlas/check_compressed.h"
+#include "swtlas/plan.h"
 #include "swtlas/reference_scene.h"
-#include "swtlas/sw_tlas.h"
+#include "swtlas/tree.h"
 #include "tests/support/device.h"
 
 namespace twinray::test {
@@ -54,23 +55,23 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed = nullptr);
 
 // By the leaf index that references of the tree use.
-std::vector<LeafBox> leaf_boxes(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
+std::vector<LeafBox> leaf_boxes(const BuiltTree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
 // The boxes of the scene tree's leaves over these placements of one mesh, by the serial twin.
 std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms,
                                     const AccelOptions& options);
 // Every other one is rotated.
 std::vector<Transform> scattered(std::size_t count, uint seed);
 
-inline bool has_records(const SwTlas::Tree& tree) { return !tree.records.empty(); }
+inline bool has_records(const BuiltTree& tree) { return !tree.records.empty(); }
 // Of a tree with records: how many children a node has at most. One leaf has room for a node in compressed8 alone.
-inline uint width_of(const SwTlas::Tree& tree) {
+inline uint width_of(const BuiltTree& tree) {
     return tree.records.size() == 2 || is_wide_node(tree.records.front()) ? 8 : 4;
 }
 
 // Of a tree whose references are the leaves' own indices, or with records.
-void expect_sound(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes, const std::string& name);
-void expect_sound(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
-void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh, BuildQuality quality);
-double sah_of(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes);
+void expect_sound(const BuiltTree& tree, const std::vector<LeafBox>& boxes, const std::string& name);
+void expect_sound(const BuiltTree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
+void expect_twin(const BuiltTree& tree, const Mesh& mesh, BuildQuality quality);
+double sah_of(const BuiltTree& tree, const std::vector<LeafBox>& boxes);
 
 }  // namespace twinray::test

@@ -13,11 +13,11 @@ using namespace test;
 class SwBuild : public SwBuildTest {
   protected:
     // The tree of a mesh alone, which is sound and equal to its twin.
-    SwTlas::Tree checked_tree(const Mesh& mesh) {
+    BuiltTree checked_tree(const Mesh& mesh) {
         SwTlas accel(context(), options());
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
-        SwTlas::Tree tree = accel.download_geometry(handle);
+        BuiltTree tree = download_geometry(accel, handle);
         expect_sound(tree, mesh);
         expect_twin(tree, mesh, quality());
         return tree;
@@ -44,7 +44,7 @@ TEST_P(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsTwin) {
     }
     accel.sync();
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const SwTlas::Tree tree = accel.download_geometry(handles[i]);
+        const BuiltTree tree = download_geometry(accel, handles[i]);
         expect_sound(tree, meshes[i]);
         expect_twin(tree, meshes[i], quality());
     }
@@ -75,7 +75,7 @@ TEST_P(SwBuild, EqualCodesThatAreNoCrowdKeepTheirOrder) {
     std::vector<AccelHandle> handles;
     for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
     accel.sync();
-    for (std::size_t i = 0; i < 3; ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
+    for (std::size_t i = 0; i < 3; ++i) expect_twin(download_geometry(accel, handles[i]), meshes[i], quality());
 }
 
 TEST_P(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
@@ -85,7 +85,7 @@ TEST_P(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
     for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
     accel.sync();
     for (std::size_t i = 0; i < handles.size(); ++i)
-        expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
+        expect_twin(download_geometry(accel, handles[i]), meshes[i], quality());
 }
 
 TEST_P(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
@@ -98,16 +98,16 @@ TEST_P(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
         for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
         accel.sync();
         for (std::size_t i = 0; i < meshes.size(); ++i)
-            expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
+            expect_twin(download_geometry(accel, handles[i]), meshes[i], quality());
         for (std::size_t i = 0; i < meshes.size(); ++i) accel.update_vertices(handles[i], meshes[i].positions);
         accel.sync();
         for (std::size_t i = 0; i < meshes.size(); ++i)
-            expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
+            expect_twin(download_geometry(accel, handles[i]), meshes[i], quality());
     }
 }
 
 TEST_P(SwBuild, TreesOfABatchWithLevelsAndSubtreesAreEqualToTheirTwins) {
-    const uint most = plan_build({}, Layout::compressed4, context().tuning()).subtree_leaves;
+    const uint most = plan_build({}, Layout::compressed4, context().state().tuning()).subtree_leaves;
     SwTlas accel(context(), options());
     std::vector<Mesh> meshes;
     std::vector<AccelHandle> handles;
@@ -117,7 +117,7 @@ TEST_P(SwBuild, TreesOfABatchWithLevelsAndSubtreesAreEqualToTheirTwins) {
     }
     accel.sync();
     for (std::size_t i = 0; i < meshes.size(); ++i)
-        expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
+        expect_twin(download_geometry(accel, handles[i]), meshes[i], quality());
 }
 
 // A triangle beside each power of two, along the axes in turn, and behind these `count` that lie close together.
@@ -136,13 +136,14 @@ Mesh chain_before_a_clump(uint depth, uint count) {
 }
 
 TEST_P(SwBuild, ALargeSubtreeIsLeftBelowTheLastLevel) {
-    const uint most = plan_build({}, Layout::compressed4, context().tuning()).subtree_leaves;
+    const uint most = plan_build({}, Layout::compressed4, context().state().tuning()).subtree_leaves;
     const Mesh mesh = chain_before_a_clump(57, most + 300);
     const auto count = static_cast<uint>(mesh.triangles.size());
-    const SwTlas::Tree tree = checked_tree(mesh);
+    const BuiltTree tree = checked_tree(mesh);
     // Others make it less deep.
     if (!has_records(tree) || width_of(tree) == 8 || quality() != BuildQuality::fast) return;
-    const uint levels = plan_build(std::span(&count, 1), Layout::compressed4, context().tuning()).collapse_levels;
+    const uint levels =
+        plan_build(std::span(&count, 1), Layout::compressed4, context().state().tuning()).collapse_levels;
     EXPECT_GT(check_compressed(tree.bvh, tree.records, leaf_boxes(tree, mesh)).depth, levels + 10);
 }
 
@@ -152,7 +153,7 @@ TEST_P(SwBuild, LargeMeshesAreSound) {
         const Mesh mesh = make_soup(n, 7, 0.01f);
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
-        const SwTlas::Tree tree = accel.download_geometry(handle);
+        const BuiltTree tree = download_geometry(accel, handle);
         expect_sound(tree, mesh);
         if (n == 100'000) expect_twin(tree, mesh, quality());
     }
@@ -160,7 +161,7 @@ TEST_P(SwBuild, LargeMeshesAreSound) {
 
 TEST_P(SwBuild, EqualCentroidsAreSplitByPosition) {
     const Mesh mesh = equal_triangles(1000);
-    const SwTlas::Tree tree = checked_tree(mesh);
+    const BuiltTree tree = checked_tree(mesh);
     const std::vector<LeafBox> boxes = leaf_boxes(tree, mesh);
     EXPECT_LE(has_records(tree) ? check_compressed(tree.bvh, tree.records, boxes).depth
                                 : check_tree(tree.bvh, tree.nodes, boxes).depth,
@@ -173,7 +174,7 @@ TEST_P(SwBuild, NonFiniteTrianglesAreInactiveAndKeepTheirIndex) {
         const float bad[] = {NAN, INFINITY, -INFINITY};
         mesh.positions[3 * i + i % 3][static_cast<int>(i / 7 % 3)] = bad[i % 3];
     }
-    const SwTlas::Tree tree = checked_tree(mesh);
+    const BuiltTree tree = checked_tree(mesh);
     EXPECT_TRUE(std::isfinite(tree.bvh.lo.x) && std::isfinite(tree.bvh.hi.x));
 }
 
@@ -183,19 +184,19 @@ TEST_P(SwBuild, AMeshOfNothingButNansIsEmpty) {
     SwTlas accel(context(), options());
     const AccelHandle handle = accel.push(mesh);
     accel.sync();
-    EXPECT_GT(accel.download_geometry(handle).bvh.lo.x, accel.download_geometry(handle).bvh.hi.x);
+    EXPECT_GT(download_geometry(accel, handle).bvh.lo.x, download_geometry(accel, handle).bvh.hi.x);
     const Hit hit = accel.closest_hits(std::vector<Ray>{{vec3(0.5f, 0.5f, -1), 0, vec3(0, 0, 1), INFINITY}}).front();
     EXPECT_EQ(hit.hit, 0u);
 }
 
 TEST_P(SwBuild, ASecondBuildIsBitIdentical) {
     const Mesh mesh = make_soup(50'000, 5, 0.02f);
-    SwTlas::Tree trees[2];
-    for (SwTlas::Tree& tree : trees) {
+    BuiltTree trees[2];
+    for (BuiltTree& tree : trees) {
         SwTlas accel(context(), options());
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
-        tree = accel.download_geometry(handle);
+        tree = download_geometry(accel, handle);
     }
     EXPECT_TRUE(same_bytes(trees[0].nodes, trees[1].nodes));
     EXPECT_TRUE(same_bytes(trees[0].triangles, trees[1].triangles));
@@ -209,7 +210,7 @@ TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
         const std::vector<Transform> transforms = scattered(n, 3);
         accel.push(mesh, transforms);
         accel.sync();
-        const SwTlas::Tree tree = accel.download_scene();
+        const BuiltTree tree = download_scene(accel);
         const std::vector<LeafBox> boxes = instance_boxes(mesh, transforms, options());
         expect_sound(tree, boxes, "instances");
         const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
@@ -222,7 +223,7 @@ TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
 }
 
 // The area of all boxes, but for the root's: what a stray triangle must not change.
-double area_below_root(const SwTlas::Tree& tree, const Mesh& mesh) {
+double area_below_root(const BuiltTree& tree, const Mesh& mesh) {
     const vec3 size = tree.bvh.hi - tree.bvh.lo;
     const double root =
         double{size.x} * double{size.y} + double{size.y} * double{size.z} + double{size.z} * double{size.x};
@@ -235,13 +236,13 @@ TEST_P(SwBuild, AStrayTriangleDoesNotSpoilTheOrderOfTheOthers) {
     SwTlas accel(context(), options());
     const AccelHandle alone = accel.push(mesh);
     accel.sync();
-    const double area = area_below_root(accel.download_geometry(alone), mesh);
+    const double area = area_below_root(download_geometry(accel, alone), mesh);
     const auto first = static_cast<uint>(mesh.positions.size());
     for (const vec3& corner : {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)}) mesh.positions.push_back(vec3(3000) + corner);
     mesh.triangles.push_back(uvec3(first, first + 1, first + 2));
     const AccelHandle handle = accel.push(mesh);
     accel.sync();
-    const SwTlas::Tree tree = accel.download_geometry(handle);
+    const BuiltTree tree = download_geometry(accel, handle);
     expect_sound(tree, mesh);
     expect_twin(tree, mesh, quality());
     // In planes of grids its topmost boxes lie far apart.
@@ -254,10 +255,10 @@ TEST_P(SwBuild, AStrayTriangleDoesNotSpoilTheOrderOfTheOthers) {
     std::vector<AccelHandle> handles;
     for (const Mesh& each : {pairs, mesh, soup}) handles.push_back(of_many.push(each));
     of_many.sync();
-    expect_twin(of_many.download_geometry(handles[0]), pairs, quality());
-    expect_twin(of_many.download_geometry(handles[2]), soup, quality());
-    EXPECT_TRUE(same_bytes(of_many.download_geometry(handles[1]).records, tree.records));
-    EXPECT_TRUE(same_bytes(of_many.download_geometry(handles[1]).nodes, tree.nodes));
+    expect_twin(download_geometry(of_many, handles[0]), pairs, quality());
+    expect_twin(download_geometry(of_many, handles[2]), soup, quality());
+    EXPECT_TRUE(same_bytes(download_geometry(of_many, handles[1]).records, tree.records));
+    EXPECT_TRUE(same_bytes(download_geometry(of_many, handles[1]).nodes, tree.nodes));
 }
 
 // Triangles of many sizes and shapes, as architecture has: long walls, panels, small parts.
@@ -289,7 +290,7 @@ TEST_P(SwQuality, HighAndPlocCostRaysLess) {
             SwTlas accel(context(), {.layout = GetParam(), .build_quality = quality});
             const AccelHandle handle = accel.push(mesh);
             accel.sync();
-            const SwTlas::Tree tree = accel.download_geometry(handle);
+            const BuiltTree tree = download_geometry(accel, handle);
             sah[static_cast<std::size_t>(quality)] = sah_of(tree, leaf_boxes(tree, mesh));
         }
         std::printf("surface-area cost of %zu triangles: fast %.2f, high %.2f, ploc %.2f\n", mesh.triangles.size(),

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "engine/accel/geometry.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "swtlas/check.h"
 #include "swtlas/check_compressed.h"
 #include "swtlas/reference.h"

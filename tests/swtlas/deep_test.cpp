@@ -3,9 +3,9 @@
 #include <cmath>
 #include <string>
 
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "swtlas/saved.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"
 #include "tests/support/tall_tree.h"

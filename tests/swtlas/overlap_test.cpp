@@ -4,19 +4,19 @@
 #include <set>
 
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/geometry.h>
+#include "swtlas/tree.h"
 #include "tests/support/device.h"
 
 namespace twinray {
 namespace {
 
-using Corners = std::vector<glm::dvec3>;
+using Corners = std::vector<dvec3>;
 
 Corners cut(const Corners& whole, int axis, double plane, double side) {
     Corners part;
     for (std::size_t i = 0; i < whole.size(); ++i) {
-        const glm::dvec3 &from = whole[i], &to = whole[(i + 1) % whole.size()];
+        const dvec3 &from = whole[i], &to = whole[(i + 1) % whole.size()];
         const double a = (from[axis] - plane) * side, b = (to[axis] - plane) * side;
         if (a >= 0) part.push_back(from);
         if ((a < 0) != (b < 0)) part.push_back(from + (to - from) * (a / (a - b)));
@@ -25,7 +25,7 @@ Corners cut(const Corners& whole, int axis, double plane, double side) {
 }
 
 double area_of(const Corners& corners) {
-    glm::dvec3 twice(0);
+    dvec3 twice(0);
     for (std::size_t i = 2; i < corners.size(); ++i)
         twice += cross(corners[i - 1] - corners[0], corners[i] - corners[0]);
     return length(twice) / 2;
@@ -45,7 +45,7 @@ struct Box {
     std::set<uint> below;
 };
 
-std::set<uint> collect(const SwTlas::Tree& tree, uint reference, std::vector<Box>& boxes) {
+std::set<uint> collect(const BuiltTree& tree, uint reference, std::vector<Box>& boxes) {
     std::vector<std::pair<LeafBox, uint>> children;
     if (tree.records.empty()) {
         if (reference & LEAF_BIT) return {tree.triangles[reference & ~LEAF_BIT].primitive_index};
@@ -71,7 +71,7 @@ std::set<uint> collect(const SwTlas::Tree& tree, uint reference, std::vector<Box
     return all;
 }
 
-double overlap_of(const SwTlas::Tree& tree, const Mesh& mesh) {
+double overlap_of(const BuiltTree& tree, const Mesh& mesh) {
     std::vector<Box> boxes;
     collect(tree, tree.bvh.root, boxes);
     double overlap = 0, area = 0;
@@ -96,8 +96,8 @@ TEST_P(SwOverlap, IsThatOfItsDefinition) {
     for (const Mesh& mesh : {make_soup(300, 1, 0.5f), make_icosphere(2), far}) {
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
-        const double expected = overlap_of(accel.download_geometry(handle), mesh);
-        EXPECT_NEAR(accel.end_point_overlap(handle), expected, 1e-4 * expected + 1e-5);
+        const double expected = overlap_of(download_geometry(accel, handle), mesh);
+        EXPECT_NEAR(end_point_overlap(accel, handle), expected, 1e-4 * expected + 1e-5);
         EXPECT_GT(expected, 0.01) << "the test would see nothing";
     }
 }
@@ -115,12 +115,12 @@ TEST_P(SwOverlap, IsNothingWhereBoxesHoldTheirOwnAlone) {
     for (const Mesh& mesh : {apart, one, Mesh{}}) {
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
-        EXPECT_NEAR(accel.end_point_overlap(handle), 0, 1e-5);
+        EXPECT_NEAR(end_point_overlap(accel, handle), 0, 1e-5);
     }
     const std::vector<Bounds> boxes = {{vec3(0), vec3(1)}};
     const AccelHandle of_boxes = accel.push(BoxesView{"boxes", boxes});
     accel.sync();
-    EXPECT_THROW(accel.end_point_overlap(of_boxes), Error);
+    EXPECT_THROW(end_point_overlap(accel, of_boxes), Error);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "swtlas/reference_scene.h"
 
@@ -22,21 +23,21 @@ LeafBox placed(Layout layout, const Mesh& mesh, const Transform& transform) {
 
 // Around all vertices, in float64.
 struct Exact {
-    glm::dvec3 lo = glm::dvec3(INFINITY), hi = glm::dvec3(-INFINITY);
+    dvec3 lo = dvec3(INFINITY), hi = dvec3(-INFINITY);
 };
 Exact around(const std::vector<vec3>& points, const Transform& transform) {
     Exact box;
     for (const vec3& point : points) {
-        glm::dvec3 there;
+        dvec3 there;
         for (int axis = 0; axis < 3; ++axis)
-            there[axis] = glm::dot(glm::dvec4(transform.rows[static_cast<std::size_t>(axis)]), glm::dvec4(point, 1));
-        box = {glm::min(box.lo, there), glm::max(box.hi, there)};
+            there[axis] = dot(dvec4(transform.rows[static_cast<std::size_t>(axis)]), dvec4(point, 1));
+        box = {min(box.lo, there), max(box.hi, there)};
     }
     return box;
 }
 template <class Box>
 double area(const Box& box) {
-    const glm::dvec3 size = glm::dvec3(box.hi) - glm::dvec3(box.lo);
+    const dvec3 size = dvec3(box.hi) - dvec3(box.lo);
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
@@ -49,7 +50,9 @@ std::vector<vec3> corners_of(const Mesh& mesh) {
     return corners;
 }
 
-Transform turned(float angle, vec3 axis) { return Transform::of(glm::rotate(glm::mat4(1), angle, normalize(axis))); }
+Transform turned(float angle, vec3 axis) {
+    return Transform::of(glm::rotate(glm::mat4(1), angle, to_glm(normalize(axis))));
+}
 
 Transform any_map(std::mt19937& random) {
     std::uniform_real_distribution<float> unit(-1, 1);

@@ -17,7 +17,7 @@ class SwPloc : public SwBuildTest {
         SwTlas accel(context(), options());
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
-        const SwTlas::Tree tree = accel.download_geometry(handle);
+        const BuiltTree tree = download_geometry(accel, handle);
         expect_sound(tree, mesh);
         expect_twin(tree, mesh, quality());
         const std::vector<LeafBox> boxes = leaf_boxes(tree, mesh);

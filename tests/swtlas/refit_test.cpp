@@ -14,7 +14,7 @@ using namespace test;
 class SwRefit : public SwBuildTest {};
 INSTANTIATE_TEST_SUITE_P(Every, SwRefit, every_build(), name_of_build);
 
-void expect_same_topology(const SwTlas::Tree& after, const SwTlas::Tree& before) {
+void expect_same_topology(const BuiltTree& after, const BuiltTree& before) {
     ASSERT_EQ(after.nodes.size(), before.nodes.size());
     for (std::size_t i = 0; i < before.nodes.size(); ++i) {
         EXPECT_EQ(after.nodes[i].child0, before.nodes[i].child0);
@@ -47,22 +47,22 @@ TEST_P(SwRefit, ARefittedSceneTreeIsSoundAndKeepsItsTopology) {
         accel.sync();
         accel.update_transforms(handle, scattered(count, 2));  // the first move rebuilds
         accel.sync();
-        const SwTlas::Tree before = accel.download_scene();
+        const BuiltTree before = download_scene(accel);
         const std::vector<Transform> moved = scattered(count, 3);
         accel.update_transforms(handle, moved);
         accel.sync();
-        const SwTlas::Tree after = accel.download_scene();
+        const BuiltTree after = download_scene(accel);
         expect_sound(after, instance_boxes(mesh, moved, options()), text(count, " instances"));
         expect_same_topology(after, before);
     }
 }
 
 // All of them under the map, in float64.
-void expect_around(const SwTlas::Tree& scene, const std::vector<vec3>& points, const Transform& map, double slack) {
+void expect_around(const BuiltTree& scene, const std::vector<vec3>& points, const Transform& map, double slack) {
     for (int axis = 0; axis < 3; ++axis) {
         double lo = INFINITY, hi = -INFINITY;
         for (const vec3& point : points) {
-            const double x = glm::dot(glm::dvec4(map.rows[static_cast<std::size_t>(axis)]), glm::dvec4(point, 1));
+            const double x = dot(dvec4(map.rows[static_cast<std::size_t>(axis)]), dvec4(point, 1));
             lo = std::min(lo, x);
             hi = std::max(hi, x);
         }
@@ -74,20 +74,20 @@ void expect_around(const SwTlas::Tree& scene, const std::vector<vec3>& points, c
 
 TEST_P(SwRefit, ARotatedInstanceHasABoxAroundWhatItsGeometryHasBecome) {
     const Transform map =
-        Transform::translation({3, 0, -2}) * Transform::of(glm::rotate(glm::mat4(1), 0.8f, vec3(0.6f, 0, 0.8f)));
+        Transform::translation({3, 0, -2}) * Transform::of(glm::rotate(glm::mat4(1), 0.8f, glm::vec3(0.6f, 0, 0.8f)));
     Mesh ball = make_icosphere(4);
     SwTlas accel(context(), options());
     const AccelHandle handle = accel.push(ball, map);
     accel.sync();
-    expect_around(accel.download_scene(), ball.positions, map, 0.5);
+    expect_around(download_scene(accel), ball.positions, map, 0.5);
     for (vec3& point : ball.positions) point = point * vec3(1, 2, 1) + vec3(0, 0.5f * point.x, 0);
     accel.update_vertices(handle, ball.positions);
     accel.sync();
-    expect_around(accel.download_scene(), ball.positions, map, 0.9);
+    expect_around(download_scene(accel), ball.positions, map, 0.9);
 }
 
 TEST_P(SwRefit, RotatedBoxesLieInTheirBox) {
-    const Transform map = Transform::of(glm::rotate(glm::mat4(1), 0.8f, vec3(0.6f, 0, 0.8f)));
+    const Transform map = Transform::of(glm::rotate(glm::mat4(1), 0.8f, glm::vec3(0.6f, 0, 0.8f)));
     std::vector<Bounds> boxes;
     std::vector<vec3> corners;
     for (const vec3& center : make_icosphere(2).positions) {
@@ -99,21 +99,21 @@ TEST_P(SwRefit, RotatedBoxesLieInTheirBox) {
     accel.push(BoxesView{"boxes", boxes}, map);
     accel.sync();
     for (vec3& corner : corners) corner *= 1 - 1e-6f;  // centres and halves were added in float32
-    expect_around(accel.download_scene(), corners, map, 0.6);
+    expect_around(download_scene(accel), corners, map, 0.6);
 }
 
 TEST_P(SwRefit, ARefittedGeometryIsSoundAndKeepsItsTopology) {
     SwTlas accel(context(), options());
     std::vector<Mesh> meshes;
     std::vector<AccelHandle> handles;
-    std::vector<SwTlas::Tree> before;
+    std::vector<BuiltTree> before;
     for (const uint n : {1u, 2u, 3u, 255u, 256u, 257u, 1000u}) {
         meshes.push_back(make_soup(n, n));
         handles.push_back(accel.push(meshes.back()));
     }
     const std::vector<Mesh> pushed = meshes;
     accel.sync();
-    for (const AccelHandle handle : handles) before.push_back(accel.download_geometry(handle));
+    for (const AccelHandle handle : handles) before.push_back(download_geometry(accel, handle));
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         meshes[i].positions = make_soup(static_cast<uint>(meshes[i].triangles.size()), 77).positions;
         if (i > 3) meshes[i].positions[100].y = NAN;
@@ -121,7 +121,7 @@ TEST_P(SwRefit, ARefittedGeometryIsSoundAndKeepsItsTopology) {
     }
     accel.sync();
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const SwTlas::Tree after = accel.download_geometry(handles[i]);
+        const BuiltTree after = download_geometry(accel, handles[i]);
         expect_sound(after, meshes[i], &pushed[i]);
         expect_same_topology(after, before[i]);
         EXPECT_EQ(after.bvh.nodes.address, before[i].bvh.nodes.address);
@@ -144,7 +144,7 @@ TEST_P(SwRefit, TheCostOnTheDeviceIsThatOfTheChecker) {
         const AccelHandle handle = accel.push(mesh, transforms);
         accel.sync();
         EXPECT_EQ(accel.sah(handle), std::nullopt) << "not measured before its vertices move";
-        const SwTlas::Tree top = accel.download_scene();
+        const BuiltTree top = download_scene(accel);
         const double expected = sah_of(top, instance_boxes(mesh, transforms, options()));
         EXPECT_NEAR(*accel.sah(), expected, 1e-5 * expected) << n;
         for (const uint seed : {6u, 7u}) {
@@ -152,7 +152,7 @@ TEST_P(SwRefit, TheCostOnTheDeviceIsThatOfTheChecker) {
             if (n > 3) mesh.positions[5].x = INFINITY;
             accel.update_vertices(handle, mesh.positions);
             accel.sync();
-            const SwTlas::Tree tree = accel.download_geometry(handle);
+            const BuiltTree tree = download_geometry(accel, handle);
             const double cost = sah_of(tree, leaf_boxes(tree, mesh));
             EXPECT_NEAR(*accel.sah(handle), cost, 1e-5 * cost) << n;
             EXPECT_EQ(accel.sah_if_ready(handle), accel.sah(handle));

@@ -10,9 +10,9 @@
 
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/aimed_rays.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"
 #include "test_program.trace_program.h"

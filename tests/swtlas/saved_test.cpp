@@ -9,7 +9,7 @@
 #include <functional>
 
 #include "engine/scene/bytes.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "swtlas/reference.h"
 #include "tests/scene/temp_dir.h"
 

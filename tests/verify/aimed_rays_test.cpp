@@ -17,15 +17,15 @@ constexpr std::uint64_t seed = 2026;
 
 bool same_bytes(const Ray& a, const Ray& b) { return std::memcmp(&a, &b, sizeof(Ray)) == 0; }
 
-double distance_to_line(const glm::dvec3& point, const Ray& ray) {
-    const glm::dvec3 d = glm::normalize(glm::dvec3(ray.direction));
-    return glm::length(glm::cross(point - glm::dvec3(ray.origin), d));
+double distance_to_line(const dvec3& point, const Ray& ray) {
+    const dvec3 d = normalize(dvec3(ray.direction));
+    return length(cross(point - dvec3(ray.origin), d));
 }
 
 void expect_valid(const std::vector<Ray>& rays) {
     for (const Ray& ray : rays) {
         ASSERT_TRUE(is_traceable(ray));
-        ASSERT_NEAR(glm::length(ray.direction), 1, 1e-6);
+        ASSERT_NEAR(length(ray.direction), 1, 1e-6);
         ASSERT_EQ(ray.t_min, 0);
         ASSERT_EQ(ray.t_max, INFINITY);
     }
@@ -59,12 +59,12 @@ TEST(AimedRays, RandomRaysStartInAndAroundTheBoxAndPointEverywhere) {
     const Bounds box{vec3(1, 2, 3), vec3(2, 4, 6)};
     const std::vector<Ray> rays = random_rays(box, 20000, seed);
     expect_valid(rays);
-    glm::dvec3 sum(0.0), squares(0.0);
+    dvec3 sum(0.0), squares(0.0);
     std::size_t inside = 0;
     for (const Ray& ray : rays) {
-        sum += glm::dvec3(ray.direction);
-        squares += glm::dvec3(ray.direction * ray.direction);
-        inside += ray.origin == glm::clamp(ray.origin, box.lo, box.hi);
+        sum += dvec3(ray.direction);
+        squares += dvec3(ray.direction * ray.direction);
+        inside += ray.origin == clamp(ray.origin, box.lo, box.hi);
     }
     for (int axis = 0; axis < 3; ++axis) {
         EXPECT_NEAR(sum[axis] / 20000, 0, 0.02) << "seed " << seed;  // 5 standard deviations of 1/sqrt(3n)
@@ -84,7 +84,7 @@ TEST(AimedRays, VertexAimedRaysPassAVertexWithinRounding) {
     for (const Ray& ray : rays) {
         double nearest = INFINITY;
         for (const vec3& p : soup.positions)
-            nearest = std::min(nearest, distance_to_line(placement.to_world * glm::dvec3(p) + placement.offset, ray));
+            nearest = std::min(nearest, distance_to_line(placement.to_world * dvec3(p) + placement.offset, ray));
         ASSERT_LT(nearest, 1e-6) << "seed " << seed;
     }
 }
@@ -112,8 +112,8 @@ TEST(AimedRays, OriginsAreTwentiethToTwoDiagonalsAway) {
     for (const Ray& ray : vertex_aimed_rays(oracle_of(soup), 500, seed)) {
         double nearest = INFINITY;
         for (const vec3& p : soup.positions)
-            if (distance_to_line(glm::dvec3(p), ray) < 1e-6)
-                nearest = std::min(nearest, glm::length(glm::dvec3(p) - glm::dvec3(ray.origin)));
+            if (distance_to_line(dvec3(p), ray) < 1e-6)
+                nearest = std::min(nearest, length(dvec3(p) - dvec3(ray.origin)));
         ASSERT_LT(nearest, 2.01 * diagonal) << "seed " << seed;
         ASSERT_GT(nearest, 0.049 * diagonal) << "seed " << seed;
     }
@@ -139,7 +139,7 @@ TEST(AimedRays, InactiveTrianglesAreNotTargets) {
     for (const Ray& ray : vertex_aimed_rays(oracle_of(soup), 200, seed)) {
         double nearest = INFINITY;
         for (std::size_t i = 60; i < 63; ++i)
-            nearest = std::min(nearest, distance_to_line(glm::dvec3(soup.positions[i]), ray));
+            nearest = std::min(nearest, distance_to_line(dvec3(soup.positions[i]), ray));
         ASSERT_LT(nearest, 1e-6) << "seed " << seed;
     }
 }

@@ -8,7 +8,7 @@
 namespace twinray {
 namespace {
 
-Box64 box_at(const glm::dvec3& low, double size) {
+Box64 box_at(const dvec3& low, double size) {
     Box64 box;
     box.include(low);
     box.include(low + size);
@@ -16,7 +16,7 @@ Box64 box_at(const glm::dvec3& low, double size) {
 }
 
 // The items in the leaves that a ray visits, each expected once.
-std::set<uint> visited(const Bvh64& bvh, const glm::dvec3& origin, const glm::dvec3& direction) {
+std::set<uint> visited(const Bvh64& bvh, const dvec3& origin, const dvec3& direction) {
     std::set<uint> items;
     const double no_limit = INFINITY;
     bvh.visit_leaves(SlabRay(origin, direction, 0), 0, no_limit, [&](uint first, uint last) {
@@ -61,8 +61,8 @@ TEST(SlabRay, IntervalOfABoxContainsThatOfEveryBoxInside) {
     for (int i = 0; i < 2000; ++i) {
         const auto fraction = [&](int k) { return std::fmod(i * 0.618033988749895 * k, 1.0); };
         const Box64 inner = box_at({-fraction(1), -fraction(2), fraction(3) - 1}, fraction(4));
-        const glm::dvec3 origin(fraction(5) * 5 - 2.5, fraction(6) * 5 - 2.5, i % 3 == 0 ? -1 : fraction(7));
-        const glm::dvec3 direction(fraction(8) - 0.5, i % 2 == 0 ? 0.0 : fraction(9) - 0.5, i % 3 == 0 ? -0.0 : 0.1);
+        const dvec3 origin(fraction(5) * 5 - 2.5, fraction(6) * 5 - 2.5, i % 3 == 0 ? -1 : fraction(7));
+        const dvec3 direction(fraction(8) - 0.5, i % 2 == 0 ? 0.0 : fraction(9) - 0.5, i % 3 == 0 ? -0.0 : 0.1);
         const SlabRay ray(origin, direction, 0);
         const Interval64 wide = ray.clip(outer), narrow = ray.clip(inner);
         ASSERT_LE(wide.near, narrow.near) << i;

@@ -112,10 +112,10 @@ TEST(ClosedMesh, NothingIsEnclosedByNothing) {
 TEST(ClosedMesh, CrossingsAreCounted) {
     const Soup soup = hollow_sphere();
     const ClosedMesh hollow(soup.view());
-    const glm::dvec3 direction(0.3, -0.5, 0.7);
-    EXPECT_EQ(hollow.crossings(glm::dvec3(0), direction), 2u);
-    EXPECT_EQ(hollow.crossings(0.8 * glm::normalize(direction), direction), 1u);
-    EXPECT_EQ(hollow.crossings(-0.8 * glm::normalize(direction), direction), 3u);
+    const dvec3 direction(0.3, -0.5, 0.7);
+    EXPECT_EQ(hollow.crossings(dvec3(0), direction), 2u);
+    EXPECT_EQ(hollow.crossings(0.8 * normalize(direction), direction), 1u);
+    EXPECT_EQ(hollow.crossings(-0.8 * normalize(direction), direction), 3u);
     EXPECT_EQ(hollow.crossings(-3.0 * direction, direction), 4u);
     EXPECT_EQ(hollow.crossings(3.0 * direction, direction), 0u);
 }
@@ -123,7 +123,7 @@ TEST(ClosedMesh, CrossingsAreCounted) {
 TEST(ClosedMesh, DistancesAreThoseToTheNearestTriangle) {
     const Soup soup = cube();
     const ClosedMesh closed(soup.view());
-    const auto expect_distance = [&](const glm::dvec3& point, double distance) {
+    const auto expect_distance = [&](const dvec3& point, double distance) {
         EXPECT_TRUE(closed.comes_within(distance * 1.0001, point)) << distance;
         EXPECT_FALSE(closed.comes_within(distance * 0.9999, point)) << distance;
     };
@@ -140,8 +140,8 @@ TEST(ClosedMesh, PointsInsideAreInTheWall) {
     const std::vector<vec3> points = hollow.points_inside(200, 5);
     ASSERT_EQ(points.size(), 200u);
     for (const vec3& point : points) {
-        EXPECT_GT(glm::length(point), 0.49f);
-        EXPECT_LT(glm::length(point), 1.0f);
+        EXPECT_GT(length(point), 0.49f);
+        EXPECT_LT(length(point), 1.0f);
         EXPECT_FALSE(hollow.comes_within(hollow.clearance(), point));
     }
     const std::vector<vec3> few = hollow.points_inside(3, 5), other = hollow.points_inside(3, 6);

@@ -18,8 +18,7 @@ Coverage coverage_of(const Soup& soup, const Ray& ray) {
     std::vector<PatchTriangle> patch;
     for (const uvec3& t : soup.triangles) {
         const std::array<vec3, 3> corners = {soup.positions[t.x], soup.positions[t.y], soup.positions[t.z]};
-        patch.push_back(
-            {corners, tube.footprint({glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])})});
+        patch.push_back({corners, tube.footprint({dvec3(corners[0]), dvec3(corners[1]), dvec3(corners[2])})});
     }
     return coverage(patch);
 }

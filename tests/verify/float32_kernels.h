@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/core/ray.h"
-#include "engine/core/transform.h"
+#include <twinray/geometry.h>
 #include "engine/verify/oracle.h"
 #include "tests/verify/meshes.h"
 
@@ -91,15 +91,15 @@ inline Hit refined(const Oracle& oracle, const Ray& ray, Hit hit) {
     const ActiveTriangle* triangle = oracle.geometry(hit.instance_index).find(hit.primitive_index);
     const Placement64& placement = oracle.placement(hit.instance_index);
     const Triangle64 corners = triangle->corners64();
-    const glm::dvec3 o = placement.point_to_object(glm::dvec3(ray.origin));
-    const glm::dvec3 d = placement.vector_to_object(glm::dvec3(ray.direction));
-    const glm::dvec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0], s = o - corners[0];
-    const double sum = glm::dot(e1, glm::cross(d, e2));
-    const float t = float(glm::dot(e2, glm::cross(s, e1)) / sum);
+    const dvec3 o = placement.point_to_object(dvec3(ray.origin));
+    const dvec3 d = placement.vector_to_object(dvec3(ray.direction));
+    const dvec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0], s = o - corners[0];
+    const double sum = dot(e1, cross(d, e2));
+    const float t = float(dot(e2, cross(s, e1)) / sum);
     if (!(t > ray.t_min && t < ray.t_max)) return hit;
     hit.t = t;
-    hit.u = float(glm::dot(s, glm::cross(d, e2)) / sum);
-    hit.v = float(glm::dot(d, glm::cross(s, e1)) / sum);
+    hit.u = float(dot(s, cross(d, e2)) / sum);
+    hit.v = float(dot(d, cross(s, e1)) / sum);
     return hit;
 }
 

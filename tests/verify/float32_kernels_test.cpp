@@ -60,7 +60,7 @@ Soup slivers(std::uint32_t seed, float width) {
     for (int i = 0; i < 300; ++i) {
         const vec3 a = uniform3(random, -1, 1);
         const vec3 b = uniform3(random, -1, 1);
-        soup.add(a, b, glm::mix(a, b, uniform(random, 0, 1)) + width * uniform3(random, -1, 1));
+        soup.add(a, b, mix(a, b, uniform(random, 0, 1)) + width * uniform3(random, -1, 1));
     }
     return soup;
 }

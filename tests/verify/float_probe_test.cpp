@@ -15,7 +15,7 @@ TEST_F(FloatProbe, FindsArithmeticThatTheRobustLevelsCanRestOn) {
     EXPECT_LE(facts.product_ulp, 0.5);
     EXPECT_LE(facts.sum_ulp, 0.5);
     EXPECT_EQ(facts.has_float64, context().facts().shader_float64);
-    EXPECT_TRUE(facts.fuses_fma || !context().tuning().has_fused_fma);
+    EXPECT_TRUE(facts.fuses_fma || !context().state().tuning().has_fused_fma);
     EXPECT_EQ(&probe_floats(context()), &facts) << "once for each driver";
     RecordProperty("quotient_ulp", std::to_string(facts.quotient_ulp));
 }

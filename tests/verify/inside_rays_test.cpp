@@ -12,9 +12,9 @@ namespace {
 
 using namespace test;  // NOLINT
 
-double distance_to_line(const glm::dvec3& point, const Ray& ray) {
-    const glm::dvec3 d = glm::normalize(glm::dvec3(ray.direction));
-    return glm::length(glm::cross(point - glm::dvec3(ray.origin), d));
+double distance_to_line(const dvec3& point, const Ray& ray) {
+    const dvec3 d = normalize(dvec3(ray.direction));
+    return length(cross(point - dvec3(ray.origin), d));
 }
 
 double nearest_vertex(const Soup& soup, const Ray& ray) {
@@ -34,7 +34,7 @@ TEST_F(InsideRaysTest, StartInsideAndPassTheirTargets) {
     const std::vector<Ray> both = InsideRays(closed_, Aim::both, 3).rays(0, 400);
     for (std::size_t i = 0; i < both.size(); ++i) {
         ASSERT_TRUE(is_traceable(both[i]));
-        EXPECT_LT(glm::length(both[i].origin), 1.0f);
+        EXPECT_LT(length(both[i].origin), 1.0f);
         const bool at_vertex = nearest_vertex(soup_, both[i]) < 1e-6;
         EXPECT_TRUE(at_vertex || i % 2 == 1) << i;
         at_vertices += at_vertex;

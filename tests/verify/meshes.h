@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/core/ray.h"
-#include "engine/core/transform.h"
+#include <twinray/geometry.h>
 #include "engine/scene/mesh.h"
 #include "engine/verify/oracle.h"
 
@@ -94,7 +94,7 @@ inline Soup sphere(int level) {
             const auto [found, is_new] = middles.try_emplace(std::minmax(a, b), 0u);
             if (is_new) {
                 found->second = static_cast<uint>(soup.positions.size());
-                soup.positions.push_back(glm::normalize(soup.positions[a] + soup.positions[b]));
+                soup.positions.push_back(normalize(soup.positions[a] + soup.positions[b]));
             }
             return found->second;
         };
@@ -131,8 +131,8 @@ inline std::vector<Ray> rays_from_inside(const Soup& soup, const Transform& tran
         const vec3 origin = transform_point(transform, uniform3(random, -0.3f, 0.3f));
         const uvec3& triangle = soup.triangles[random() % soup.triangles.size()];
         const float w = i % 2 == 0 ? 0.0f : uniform(random, 0, 1);
-        const vec3 target = glm::mix(transform_point(transform, soup.positions[triangle.x]),
-                                     transform_point(transform, soup.positions[triangle.y]), w);
+        const vec3 target = mix(transform_point(transform, soup.positions[triangle.x]),
+                                transform_point(transform, soup.positions[triangle.y]), w);
         rays.push_back(make_ray(origin, target - origin));
     }
     return rays;

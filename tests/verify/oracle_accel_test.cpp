@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "tests/scene/temp_dir.h"
 #include "tests/support/caller.h"
 #include "tests/support/device.h"

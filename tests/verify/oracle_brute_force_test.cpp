@@ -28,7 +28,7 @@ std::vector<Ray> all_kinds_of_rays(const Oracle& oracle, std::size_t count, std:
         const int axis = static_cast<int>(i % 3);
         ray.direction = vec3(i % 2 == 0 ? 0.0f : -0.0f);
         ray.direction[axis] = i % 4 < 2 ? 2.0f : -2.0f;
-        if (i % 5 == 0) ray.origin = glm::round(ray.origin);  // onto the planes of grids and cubes
+        if (i % 5 == 0) ray.origin = round(ray.origin);  // onto the planes of grids and cubes
         rays.push_back(ray);
     }
     return rays;
@@ -94,7 +94,7 @@ TEST(OracleSearch, EqualsBruteForceOnSliversSeenEdgeOn) {
     for (int i = 0; i < 500; ++i) {
         const vec3 a = uniform3(random, -1, 1);
         const vec3 b = uniform3(random, -1, 1);
-        soup.add(a, b, glm::mix(a, b, 0.5f) + 1e-6f * uniform3(random, -1, 1));
+        soup.add(a, b, mix(a, b, 0.5f) + 1e-6f * uniform3(random, -1, 1));
     }
     const Oracle oracle = oracle_of(soup);
     expect_equals_brute_force(oracle, 51);

@@ -28,15 +28,14 @@ TEST(Oracle, FindsWhatAPlainPlaneEquationFinds) {
     const Oracle oracle = oracle_of(soup);
     for (const Ray& ray : random_rays({vec3(-1), vec3(1)}, 2000, seed)) {
         double best = INFINITY;
-        const glm::dvec3 o(ray.origin), d(ray.direction);
+        const dvec3 o(ray.origin), d(ray.direction);
         for (const uvec3& index : soup.triangles) {
-            const glm::dvec3 a(soup.positions[index.x]), b(soup.positions[index.y]), c(soup.positions[index.z]);
-            const glm::dvec3 n = glm::cross(b - a, c - a);
-            const double t = glm::dot(a - o, n) / glm::dot(d, n);
-            const glm::dvec3 p = o + t * d;
-            const bool is_inside = glm::dot(glm::cross(b - a, p - a), n) >= 0 &&
-                                   glm::dot(glm::cross(c - b, p - b), n) >= 0 &&
-                                   glm::dot(glm::cross(a - c, p - c), n) >= 0;
+            const dvec3 a(soup.positions[index.x]), b(soup.positions[index.y]), c(soup.positions[index.z]);
+            const dvec3 n = cross(b - a, c - a);
+            const double t = dot(a - o, n) / dot(d, n);
+            const dvec3 p = o + t * d;
+            const bool is_inside = dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
+                                   dot(cross(a - c, p - c), n) >= 0;
             if (is_inside && t > 0) best = std::min(best, t);
         }
         const OracleHit hit = oracle.closest_hit(ray);
@@ -44,10 +43,9 @@ TEST(Oracle, FindsWhatAPlainPlaneEquationFinds) {
         if (!hit.hit) continue;
         ASSERT_NEAR(hit.t, best, 1e-10 * best) << "seed " << seed;
         const uvec3 index = soup.triangles[hit.primitive];
-        const glm::dvec3 point = (1 - hit.u - hit.v) * glm::dvec3(soup.positions[index.x]) +
-                                 hit.u * glm::dvec3(soup.positions[index.y]) +
-                                 hit.v * glm::dvec3(soup.positions[index.z]);
-        ASSERT_LT(glm::length(point - (o + hit.t * d)), 1e-10) << "seed " << seed;
+        const dvec3 point = (1 - hit.u - hit.v) * dvec3(soup.positions[index.x]) +
+                            hit.u * dvec3(soup.positions[index.y]) + hit.v * dvec3(soup.positions[index.z]);
+        ASSERT_LT(length(point - (o + hit.t * d)), 1e-10) << "seed " << seed;
     }
 }
 
@@ -188,8 +186,8 @@ TEST(Oracle, CullingKeepsTheTrianglesWhoseNormalTellsSo) {
         std::vector<uint> kept[2];
         for (uint i = 0; i < soup.triangles.size(); ++i) {
             const uvec3 t = soup.triangles[i];
-            const glm::dvec3 a(soup.positions[t.x]), b(soup.positions[t.y]), c(soup.positions[t.z]);
-            const bool is_back = glm::dot(glm::cross(b - a, c - a), glm::dvec3(ray.direction)) > 0;
+            const dvec3 a(soup.positions[t.x]), b(soup.positions[t.y]), c(soup.positions[t.z]);
+            const bool is_back = dot(cross(b - a, c - a), dvec3(ray.direction)) > 0;
             sides[is_back].positions = soup.positions;
             sides[is_back].triangles.push_back(t);
             kept[is_back].push_back(i);

@@ -28,7 +28,7 @@ TEST(HasArea, IsFalseForNonFiniteCorners) {
 
 TEST(ShearedRay, FindsTUAndVOfASkewedTriangle) {
     const ShearedRay ray({0.25, 0.5, -1}, {0, 0, 0.5});
-    const auto hit = ray.intersect({glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 2), glm::dvec3(0, 1, 3)});
+    const auto hit = ray.intersect({dvec3(0, 0, 1), dvec3(1, 0, 2), dvec3(0, 1, 3)});
     ASSERT_TRUE(hit);
     EXPECT_EQ(hit->u, 0.25);
     EXPECT_EQ(hit->v, 0.5);
@@ -36,9 +36,9 @@ TEST(ShearedRay, FindsTUAndVOfASkewedTriangle) {
 }
 
 TEST(ShearedRay, CountsEdgesAndCornersAsInsideInEitherWinding) {
-    const Triangle64 triangle = {glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 1), glm::dvec3(0, 1, 1)};
+    const Triangle64 triangle = {dvec3(0, 0, 1), dvec3(1, 0, 1), dvec3(0, 1, 1)};
     const Triangle64 flipped = {triangle[1], triangle[0], triangle[2]};
-    for (const glm::dvec2 point : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0.5, 0.5), glm::dvec2(0.25, 0)}) {
+    for (const dvec2 point : {dvec2(0, 0), dvec2(1, 0), dvec2(0.5, 0.5), dvec2(0.25, 0)}) {
         const ShearedRay ray({point, 0}, {0, 0, 1});
         EXPECT_TRUE(ray.intersect(triangle)) << point.x << " " << point.y;
         EXPECT_TRUE(ray.intersect(flipped)) << point.x << " " << point.y;
@@ -48,7 +48,7 @@ TEST(ShearedRay, CountsEdgesAndCornersAsInsideInEitherWinding) {
 
 TEST(ShearedRay, MissesATriangleSeenEdgeOn) {
     const ShearedRay ray({0.25, 0.25, 0}, {0, 0, 1});
-    EXPECT_FALSE(ray.intersect({glm::dvec3(0, 0.25, 1), glm::dvec3(1, 0.25, 1), glm::dvec3(0, 0.25, 2)}));
+    EXPECT_FALSE(ray.intersect({dvec3(0, 0.25, 1), dvec3(1, 0.25, 1), dvec3(0, 0.25, 2)}));
 }
 
 }  // namespace

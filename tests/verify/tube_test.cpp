@@ -18,7 +18,7 @@ Footprint footprint(const Triangle64& triangle, const Transform& transform = {},
     return Tube(along_z, Placement64(transform, "test"), accelerator).footprint(triangle);
 }
 
-const Triangle64 facing = {glm::dvec3(-3, -3, 4), glm::dvec3(3, -3, 4), glm::dvec3(0, 3, 4)};
+const Triangle64 facing = {dvec3(-3, -3, 4), dvec3(3, -3, 4), dvec3(0, 3, 4)};
 
 TEST(Tube, FootprintOfAFacingTriangle) {
     const Footprint seen = footprint(facing);
@@ -32,18 +32,17 @@ TEST(Tube, FootprintOfAFacingTriangle) {
 }
 
 TEST(Tube, MarginIsNegativeOutsideAndEdgeOn) {
-    EXPECT_NEAR(footprint({glm::dvec3(1, -3, 4), glm::dvec3(3, -3, 4), glm::dvec3(1, 3, 4)}).margin, -1, 1e-12);
-    EXPECT_NEAR(footprint({glm::dvec3(2, -1, 4), glm::dvec3(2, 1, 4), glm::dvec3(2, 0, 9)}).margin, -2, 1e-12);
-    EXPECT_EQ(footprint({glm::dvec3(0, -1, 4), glm::dvec3(0, 1, 4), glm::dvec3(0, 0, 9)}).margin, 0);
+    EXPECT_NEAR(footprint({dvec3(1, -3, 4), dvec3(3, -3, 4), dvec3(1, 3, 4)}).margin, -1, 1e-12);
+    EXPECT_NEAR(footprint({dvec3(2, -1, 4), dvec3(2, 1, 4), dvec3(2, 0, 9)}).margin, -2, 1e-12);
+    EXPECT_EQ(footprint({dvec3(0, -1, 4), dvec3(0, 1, 4), dvec3(0, 0, 9)}).margin, 0);
 }
 
 TEST(Tube, SteepTrianglesHaveWiderBoundsThatEndAtTheirCorners) {
-    const Footprint steep = footprint({glm::dvec3(-1, -1, 0), glm::dvec3(-1, 1, 0), glm::dvec3(1, 0, 2000)});
+    const Footprint steep = footprint({dvec3(-1, -1, 0), dvec3(-1, 1, 0), dvec3(1, 0, 2000)});
     EXPECT_GT(steep.t_high - steep.t_low, 500 * 2 * steep.radius);
     EXPECT_LT(steep.t_high - steep.t_low, 100);
     for (const double width : {0.0, 1e-7}) {  // within the radius: rounding chooses the point
-        const Footprint sliver =
-            footprint({glm::dvec3(-1, -width, 4), glm::dvec3(1, -width, 8), glm::dvec3(0, width, 6)});
+        const Footprint sliver = footprint({dvec3(-1, -width, 4), dvec3(1, -width, 8), dvec3(0, width, 6)});
         EXPECT_NEAR(sliver.t_low, 2, 1e-5) << width;
         EXPECT_NEAR(sliver.t_high, 4, 1e-5) << width;
         EXPECT_EQ(sliver.point_error, INFINITY) << width;
@@ -55,7 +54,7 @@ TEST(Tube, TransformsAddTheErrorOfOriginAndDirection) {
     const Transform sheared = {{vec4(1, 0, 100, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0)}};
     const Footprint near = footprint(facing, sheared);
     Triangle64 moved = facing;
-    for (glm::dvec3& corner : moved) corner += glm::dvec3(-1e6, 0, 1e4);
+    for (dvec3& corner : moved) corner += dvec3(-1e6, 0, 1e4);
     const Footprint far = footprint(moved, sheared);
     EXPECT_NEAR(near.radius / footprint(facing).radius, 2, 1e-3);  // |W||d| = |W d| here
     EXPECT_NEAR(far.radius / footprint(moved).radius, 2, 1e-3);
@@ -71,7 +70,7 @@ TEST(Tube, NoTriangleInABoxExceedsItsMaxRadius) {
     for (int i = 0; i < 1000; ++i) {
         Box64 box;
         Triangle64 triangle;
-        for (glm::dvec3& corner : triangle) box.include(corner = glm::dvec3(uniform3(random, -9, 9)));
+        for (dvec3& corner : triangle) box.include(corner = dvec3(uniform3(random, -9, 9)));
         ASSERT_LE(tube.footprint(triangle).radius, tube.max_radius(box)) << "seed 5";
     }
 }

@@ -4,7 +4,7 @@
 
 #include <gmpxx.h>
 
-#include "engine/core/shader_bridge.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray::exact {
 
@@ -17,7 +17,7 @@ struct Vector {
 };
 
 // Of finite numbers.
-inline Vector vector_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+inline Vector vector_of(const dvec3& v) { return {v.x, v.y, v.z}; }
 
 inline Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }

@@ -7,7 +7,8 @@ namespace twinray::suite {
 
 std::vector<SuiteCase> arithmetic_cases() {
     return {
-        {"F01", "outward rays from points of a convex sphere, by twinray/spawn.glsl, without offset, and otherwise",
+        {"F01",
+         "outward rays from points of a convex sphere, by twinray/glsl/spawn.glsl, without offset, and otherwise",
          "hits of the sphere", "0 self-hits; without offset about half (control)", leave_a_sphere},
         {"F02", "separate triangles: ten settings of size, position, shape and instance, and four more",
          "rays that meet the triangle they leave", "0", leave_triangles_of_all_kinds},

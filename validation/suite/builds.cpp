@@ -9,11 +9,13 @@
 #include "validation/suite/builds.h"
 #include "validation/suite/scenes.h"
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/aimed_rays.h"
 #include "swtlas/check.h"
 #include "swtlas/check_compressed.h"
+#include "swtlas/plan.h"
 #include "swtlas/reference.h"
+#include "swtlas/tree.h"
 
 namespace twinray::suite {
 namespace {
@@ -21,7 +23,7 @@ namespace {
 // As the traversal's stack is made for: 60 bits of Morton codes, then the position among equal codes.
 uint depth_limit(std::size_t leaves) { return 60 + static_cast<uint>(std::bit_width(leaves)); }
 
-TreeCheck check(const SwTlas::Tree& tree, const Mesh& mesh) {
+TreeCheck check(const BuiltTree& tree, const Mesh& mesh) {
     const std::vector<LeafBox> by_primitive =
         reference::leaves_triangles(Geometry(mesh, software_unit(mesh.positions)).positions, mesh.triangles);
     if (!tree.records.empty()) {
@@ -39,7 +41,7 @@ void append_bytes(std::vector<std::byte>& bytes, const std::vector<T>& values) {
     bytes.insert(bytes.end(), more.begin(), more.end());
 }
 
-std::vector<std::byte> bytes_of(const SwTlas::Tree& tree) {
+std::vector<std::byte> bytes_of(const BuiltTree& tree) {
     std::vector<std::byte> bytes;
     append_bytes(bytes, tree.nodes);
     append_bytes(bytes, tree.records);
@@ -54,7 +56,7 @@ void expect_sound_tree(CaseRun& run, const Mesh& mesh, Values params) {
         auto& accel = dynamic_cast<SwTlas&>(run.devices().empty_accel(subject));
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
-        const TreeCheck tree = check(accel.download_geometry(handle), mesh);
+        const TreeCheck tree = check(download_geometry(accel, handle), mesh);
         const bool is_deep = tree.depth > depth_limit(mesh.triangles.size());
         params.insert_or_assign("measured", "tree");
         run.expect(subject, {.params = params,
@@ -183,7 +185,7 @@ void repeated_builds(CaseRun& run) {
             const AccelHandle handle = accel.push(mesh);
             const std::vector<Hit> now = accel.closest_hits(rays, {.level = subject.level});
             const auto* software = dynamic_cast<SwTlas*>(&accel);
-            const auto tree = software ? bytes_of(software->download_geometry(handle)) : std::vector<std::byte>();
+            const auto tree = software ? bytes_of(download_geometry(*software, handle)) : std::vector<std::byte>();
             if (i == 0) nodes = tree, hits = now;
             if (!same_bytes(nodes, tree) || !same_bytes(hits, now)) ++outcome.faults;
         }
@@ -217,7 +219,7 @@ void quantised_nodes(CaseRun& run) {
         for (const auto& [name, mesh] : meshes) {
             const AccelHandle handle = accel.push(mesh);
             accel.sync();
-            const TreeCheck tree = check(accel.download_geometry(handle), mesh);
+            const TreeCheck tree = check(download_geometry(accel, handle), mesh);
             run.expect(subject, {.params = {{"mesh", name}},
                                  .results = {{"depth", tree.depth}, {"sah", tree.sah}},
                                  .n = mesh.triangles.size(),

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "validation/suite/case_run.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace twinray::suite {
 

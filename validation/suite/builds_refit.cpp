@@ -6,7 +6,7 @@
 
 #include "validation/suite/builds.h"
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/aimed_rays.h"
 
 namespace twinray::suite {

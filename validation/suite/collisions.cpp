@@ -6,7 +6,7 @@
 #include "engine/collide/collision_finder.h"
 #include "engine/collide/contact_finder.h"
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 
 namespace twinray::suite {
 namespace {

@@ -7,7 +7,7 @@
 #include "validation/suite/plain_class.h"
 #include "engine/collide/exact_class.h"
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 
 namespace twinray::suite {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "validation/suite/suite.h"
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 #include "engine/core/kernel.h"
 
 namespace twinray::suite {

@@ -5,8 +5,7 @@
 #include <iostream>
 
 #include "engine/core/error.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace twinray::suite {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "validation/suite/crossings.h"
-#include "engine/accel/abstract_accel.h"
+#include <twinray/abstract_accel.h>
 
 namespace twinray::suite {
 

@@ -9,7 +9,7 @@
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "engine/points/point_finder.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/point_distance.h"
 
 namespace twinray::suite {
@@ -55,7 +55,7 @@ void measure_nearest(CaseRun& run, const Mesh& mesh, const std::vector<dvec3>& p
             const double of_named =
                 of.is_found ? distance_to(mesh, mesh.triangles[of.triangle], point) : static_cast<double>(INFINITY);
             errors[i] = std::max(std::abs(of.distance - known), of_named - known) / known;
-            slack[i] = 0x1p-49 * (1 + glm::length(point)) / known;
+            slack[i] = 0x1p-49 * (1 + length(point)) / known;
         }
     });
     std::uint64_t wrong = 0;

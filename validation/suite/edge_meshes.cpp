@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/draws.h"
 
 namespace twinray::suite {
@@ -57,7 +57,7 @@ void add_fan(Mesh& mesh, const Fan& fan, Draws& draws) {
     for (uint i = 0; i < fan.valence; ++i) {
         const double angle = 2 * std::numbers::pi * (i + draws.between(0, 0.2)) / fan.valence;
         const double x = 0.4 * std::cos(angle), z = 0.4 * std::sin(angle);
-        mesh.positions.push_back(vec3(glm::dvec3(fan.hub) + glm::dvec3(x, depth + tilt_x * x + tilt_z * z, z)));
+        mesh.positions.push_back(vec3(dvec3(fan.hub) + dvec3(x, depth + tilt_x * x + tilt_z * z, z)));
         mesh.triangles.emplace_back(hub, hub + 1 + (i + 1) % fan.valence, hub + 1 + i);
     }
 }

@@ -2,7 +2,7 @@
 // Edges, vertices, watertightness: the catalogue, and rays from inside closed meshes.
 #include "validation/suite/edge_meshes.h"
 #include "validation/suite/edges.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/inside_rays.h"
 

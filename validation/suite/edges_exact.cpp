@@ -6,7 +6,7 @@
 #include "validation/suite/edge_meshes.h"
 #include "validation/suite/edges.h"
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/draws.h"
 #include "engine/verify/inside_rays.h"
 
@@ -98,11 +98,11 @@ void jittered_grid(CaseRun& run) {
         const uint vertex = inner(draws) * (cells + 1) + inner(draws);
         const uint neighbours[] = {vertex + 1, vertex + cells + 1, vertex + cells};  // to the right, below, diagonal
         const double w = i % 2 == 0 ? 0 : draws.unit();
-        const glm::dvec3 target =
-            (1 - w) * glm::dvec3(grid.positions[vertex]) + w * glm::dvec3(grid.positions[neighbours[draws.below(3)]]);
+        const dvec3 target =
+            (1 - w) * dvec3(grid.positions[vertex]) + w * dvec3(grid.positions[neighbours[draws.below(3)]]);
         const double height = draws.between(2, 12) * (draws.below(2) ? 1 : -1);
-        const vec3 origin(target + height * glm::dvec3(draws.between(-0.25, 0.25), 1, draws.between(-0.25, 0.25)));
-        rays.push_back(make_ray(origin, vec3(target - glm::dvec3(origin))));
+        const vec3 origin(target + height * dvec3(draws.between(-0.25, 0.25), 1, draws.between(-0.25, 0.25)));
+        rays.push_back(make_ray(origin, vec3(target - dvec3(origin))));
     }
     measure_both(run, grid, rays, is_one, {.fast_is_control = true});
 }

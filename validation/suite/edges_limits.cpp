@@ -5,15 +5,13 @@
 
 #include "validation/suite/edge_meshes.h"
 #include "validation/suite/edges.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/draws.h"
 #include "engine/verify/inside_rays.h"
 
 namespace twinray::suite {
 namespace {
-
-using glm::dvec3;
 
 // Two triangles whose common edge has a corner m on one side only: (a, b, c) against (a, m, d) and (m, b, d).
 struct TJunction {
@@ -22,9 +20,9 @@ struct TJunction {
 
 TJunction add_t_junction(Mesh& mesh, Draws& draws) {
     const dvec3 centre = 4.0 * draws.direction(), along = draws.direction();
-    const dvec3 across = glm::normalize(glm::cross(along, draws.direction()));
+    const dvec3 across = normalize(cross(along, draws.direction()));
     const vec3 a(centre - along), b(centre + along), c(centre + across), d(centre - across);
-    const vec3 m(glm::mix(dvec3(a), dvec3(b), draws.between(0.3, 0.7)));
+    const vec3 m(mix(dvec3(a), dvec3(b), draws.between(0.3, 0.7)));
     const uint first = static_cast<uint>(mesh.positions.size());
     mesh.positions.insert(mesh.positions.end(), {a, b, c, d, m});
     for (const uvec3 triangle : {uvec3(0, 1, 2), uvec3(0, 4, 3), uvec3(4, 1, 3)})
@@ -54,7 +52,7 @@ std::vector<ConvexEdge> edges_of(const Mesh& mesh) {
 }
 
 bool shows_front(const Triangle64& face, const dvec3& eye) {
-    return glm::dot(glm::cross(face[1] - face[0], face[2] - face[0]), eye - face[0]) > 0;
+    return dot(cross(face[1] - face[0], face[2] - face[0]), eye - face[0]) > 0;
 }
 
 // From random points outside, through vertices and points of edges that separate what is seen from what is hidden.
@@ -65,7 +63,7 @@ std::vector<Ray> silhouette_rays(const Mesh& mesh, std::size_t count, std::uint6
     std::vector<Ray> rays;
     for (std::size_t eye = 0; rays.size() < count; ++eye) {
         Draws draws(seed, eye);
-        const double distance = draws.between(1, 5) * glm::length(dvec3(bounds.size()));
+        const double distance = draws.between(1, 5) * length(dvec3(bounds.size()));
         const vec3 origin(dvec3(bounds.center()) + distance * draws.direction());
         std::vector<const ConvexEdge*> outline;
         for (const ConvexEdge& edge : edges)
@@ -112,7 +110,7 @@ Transform rotation(const dvec3& axis, double angle) {
     for (int column = 0; column < 3; ++column) {
         dvec3 unit(0);
         unit[column] = 1;
-        const dvec3 turned = c * unit + s * glm::cross(axis, unit) + (1 - c) * glm::dot(axis, unit) * axis;
+        const dvec3 turned = c * unit + s * cross(axis, unit) + (1 - c) * dot(axis, unit) * axis;
         for (int row = 0; row < 3; ++row) result.rows[static_cast<std::size_t>(row)][column] = float(turned[row]);
     }
     return result;
@@ -120,7 +118,7 @@ Transform rotation(const dvec3& axis, double angle) {
 
 // A transform that rounds everything.
 Transform general_placement() {
-    return Transform::translation({10.3f, -7.1f, 4.7f}) * rotation(glm::normalize(dvec3(1, 2, 3)), 1.1) *
+    return Transform::translation({10.3f, -7.1f, 4.7f}) * rotation(normalize(dvec3(1, 2, 3)), 1.1) *
            Transform::scaling({1.3f, 0.7f, 1.9f});
 }
 
@@ -148,7 +146,7 @@ void with_one_matrix(CaseRun& run) {
 std::vector<Part> halves_by_two_matrices() {
     const Mesh left = make_quad(vec3(-1, 0, -1), vec3(0, 0, 2), vec3(1, 0, 0));
     Mesh right = make_quad(vec3(0, 0, -1), vec3(0, 0, 2), vec3(1, 0, 0));
-    const dvec3 axis = glm::normalize(dvec3(3, -1, 2));
+    const dvec3 axis = normalize(dvec3(3, -1, 2));
     for (vec3& position : right.positions) position = transform_point(rotation(axis, -0.7), position);
     return {{left, general_placement()}, {right, general_placement() * rotation(axis, 0.7)}};
 }
@@ -221,7 +219,7 @@ void t_junctions(CaseRun& run) {
     for (std::size_t i = 0; i < run.amount(4'096, 1'000'000); ++i) {
         Draws draws(run.seed(), i + (1u << 20));
         const TJunction& junction = junctions[i % junctions.size()];
-        const dvec3 target = glm::mix(dvec3(junction.a), dvec3(junction.b), draws.between(0.05, 0.95));
+        const dvec3 target = mix(dvec3(junction.a), dvec3(junction.b), draws.between(0.05, 0.95));
         const vec3 origin(target + draws.between(0.5, 3) * draws.direction());
         rays.push_back(make_ray(origin, vec3((i % 2 == 0 ? dvec3(junction.m) : target) - dvec3(origin))));
     }

@@ -92,7 +92,7 @@ class Estimators {
     static double area_of(const FactorQuestion& question) {
         double area = 0;
         for (uint i = 0; i < question.scene.meshes[question.from].triangles.size(); ++i)
-            area += glm::length(area_vector(question.scene, {question.from, i}));
+            area += length(area_vector(question.scene, {question.from, i}));
         return area;
     }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 
 namespace twinray::suite {

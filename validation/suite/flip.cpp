@@ -143,7 +143,7 @@ Plane features(const Planes& opponent, double pixels_per_degree, bool is_points)
 Planes opponent_planes(const path_tracer::Picture& picture) {
     Planes planes{static_cast<int>(picture.width), static_cast<int>(picture.height), {}};
     for (const vec3& pixel : picture.rgb) {
-        const dvec3 color = opponent_of(glm::clamp(dvec3(pixel), dvec3(0), dvec3(1)));
+        const dvec3 color = opponent_of(clamp(dvec3(pixel), dvec3(0), dvec3(1)));
         for (std::size_t channel = 0; channel < 3; ++channel)
             planes.of[channel].push_back(color[static_cast<int>(channel)]);
     }
@@ -151,7 +151,7 @@ Planes opponent_planes(const path_tracer::Picture& picture) {
 }
 
 dvec3 color_seen(const Planes& planes, std::size_t i) {
-    return hunt_lab_of(glm::clamp(rgb_of_opponent(planes.at(i)), dvec3(0), dvec3(1)));
+    return hunt_lab_of(clamp(rgb_of_opponent(planes.at(i)), dvec3(0), dvec3(1)));
 }
 
 // Compressed: up to 0.4 of the largest difference fills 0.95 of the range.

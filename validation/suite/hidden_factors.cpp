@@ -6,6 +6,7 @@
 #include "validation/suite/factor_scenes.h"
 #include "engine/accel/scene_push.h"
 #include "engine/analysis/reciprocity.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 
 namespace twinray::suite {
@@ -105,7 +106,7 @@ double area_of(const Mesh& mesh) {
     double area = 0;
     for (const uvec3& t : mesh.triangles) {
         const dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
-        area += glm::length(cross(b - a, c - a)) / 2;
+        area += length(cross(b - a, c - a)) / 2;
     }
     return area;
 }

@@ -5,7 +5,7 @@
 
 #include "validation/suite/inputs.h"
 #include "validation/suite/scenes.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/aimed_rays.h"
 
 namespace twinray::suite {

@@ -5,6 +5,7 @@
 
 #include "validation/suite/inputs.h"
 #include "validation/suite/scenes.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 

@@ -7,6 +7,7 @@
 #include "validation/suite/scenes.h"
 #include "validation/suite/spawning.h"
 #include "engine/core/error.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 
@@ -234,7 +235,7 @@ std::vector<SuiteCase> instance_cases() {
         {"I08", "many instances in a line and on a shell", "hits, time", "0 faults", many_instances},
         {"I09", "a translation of up to 1e7, the camera beside it", "hits, t", "0 SW_LEAK, SW_FALSE, T_ERR", far_away},
         {"I10", "an object offset of 10^3 to 10^5 that the instance cancels",
-         "rays of twinray/spawn.glsl that meet the triangle they leave", "0", leave_cancelled_offsets},
+         "rays of twinray/glsl/spawn.glsl that meet the triangle they leave", "0", leave_cancelled_offsets},
         {"I11", "flat geometries, rotated", "hits", "0 SW_LEAK, SW_FALSE, T_ERR", flat_and_rotated},
         {"I12", "boxes that a ray touches only by rounding: edges of rotated squares", "hits",
          "0 SW_LEAK, SW_FALSE, T_ERR", box_touched_by_rounding},

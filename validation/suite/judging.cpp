@@ -21,7 +21,7 @@ bool is_fault(Class kind) {
     return is_fault_of_ours(kind) || is_fault_of_hardware(kind) || kind == Class::invalid_input;
 }
 
-using Vector = glm::vec<3, long double>;
+using Vector = Vec<3, long double>;
 
 // t of the triangle's plane, from its corners in world space. The oracle's t is a mean of the corners' depths, which
 // loses 3 units in the last place of float32 where these are 1e10 times as far as the hit; here it keeps 2^-64.
@@ -33,11 +33,10 @@ std::optional<double> t_of_plane(const Oracle& oracle, const Ray& ray, const Ora
         corners[i] =
             glm::mat<3, 3, long double>(placement.to_world) * corner + Vector(placement.offset) - Vector(ray.origin);
     }
-    const Vector normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
-    const Vector& nearest = *std::min_element(corners.begin(), corners.end(), [](const Vector& a, const Vector& b) {
-        return glm::dot(a, a) < glm::dot(b, b);
-    });
-    const long double t = glm::dot(normal, nearest) / glm::dot(normal, Vector(ray.direction));
+    const Vector normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const Vector& nearest = *std::min_element(corners.begin(), corners.end(),
+                                              [](const Vector& a, const Vector& b) { return dot(a, a) < dot(b, b); });
+    const long double t = dot(normal, nearest) / dot(normal, Vector(ray.direction));
     return std::isfinite(t) ? std::optional(static_cast<double>(t)) : std::nullopt;
 }
 

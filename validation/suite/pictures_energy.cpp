@@ -5,6 +5,7 @@
 
 #include "validation/suite/estimators.h"
 #include "validation/suite/pictures.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "samples/path_tracer/camera.h"
 
@@ -111,7 +112,7 @@ double seen_over_pi(const Mesh& mesh, double height) {
                                       b = up + dvec3(mesh.positions[triangle.y]),
                                       c = up + dvec3(mesh.positions[triangle.z]);
         const dvec3 middle = (a + b + c) / 3.0, area = cross(b - a, c - a) / 2.0;
-        sum += std::max(-dot(area, middle), 0.0) * middle.y / std::pow(glm::length(middle), 4);
+        sum += std::max(-dot(area, middle), 0.0) * middle.y / std::pow(length(middle), 4);
     }
     return sum / std::numbers::pi;
 }

@@ -5,6 +5,7 @@
 
 #include "validation/suite/estimators.h"
 #include "validation/suite/pictures.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "samples/path_tracer/camera.h"
 

@@ -6,7 +6,7 @@
 
 #include "validation/suite/estimators.h"
 #include "validation/suite/pictures.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 
 namespace twinray::suite {
 namespace {

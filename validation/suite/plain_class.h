@@ -12,18 +12,18 @@ PairClass class_by_float64(const Corners64& a, const Corners64& b);
 // Of det(a - d, b - d, c - d).
 template <class Real>
 int plain_volume_sign(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
-    using Vector = glm::vec<3, Real>;
+    using Vector = Vec<3, Real>;
     const Vector from(d);
-    const Real volume = glm::dot(Vector(a) - from, glm::cross(Vector(b) - from, Vector(c) - from));
+    const Real volume = dot(Vector(a) - from, cross(Vector(b) - from, Vector(c) - from));
     return (volume > 0) - (volume < 0);
 }
 
 // Of det(a - c, b - c) as seen along an axis.
 template <class Real>
 int plain_area_sign(const dvec3& a, const dvec3& b, const dvec3& c, uint axis) {
-    using Vector = glm::vec<3, Real>;
+    using Vector = Vec<3, Real>;
     const Vector from(c);
-    const Real area = glm::cross(Vector(a) - from, Vector(b) - from)[static_cast<int>(axis)];
+    const Real area = cross(Vector(a) - from, Vector(b) - from)[static_cast<int>(axis)];
     return (area > 0) - (area < 0);
 }
 

@@ -11,9 +11,9 @@ int area_sign(const dvec3& a, const dvec3& b, const dvec3& c, uint axis) {
     return plain_area_sign<double>(a, b, c, axis);
 }
 
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/triangle_pair.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 #include "validation/suite/scale.h"
 #include "validation/suite/scenes.h"
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 
 namespace twinray::suite {
 
@@ -25,7 +25,7 @@ namespace {
 
 // From about `distance` away and above, in the fewest steps of the direction's last places with which the line passes
 // within `tolerance` of the target, though the origin is rounded to units far larger than that.
-Ray far_ray(Random& random, const glm::dvec3& target, double distance, double tolerance) {
+Ray far_ray(Random& random, const dvec3& target, double distance, double tolerance) {
     vec3 direction = random.direction();
     direction.y = -std::max(std::abs(direction.y), 0.3f);
     vec3 origin(0);
@@ -42,9 +42,9 @@ Ray far_ray(Random& random, const glm::dvec3& target, double distance, double to
     return {origin, 0, direction, inf};
 }
 
-glm::dvec3 point_of(const Mesh& mesh, uint primitive, double u, double v) {
+dvec3 point_of(const Mesh& mesh, uint primitive, double u, double v) {
     const uvec3& triangle = mesh.triangles[primitive];
-    const glm::dvec3 a(mesh.positions[triangle.x]), b(mesh.positions[triangle.y]), c(mesh.positions[triangle.z]);
+    const dvec3 a(mesh.positions[triangle.x]), b(mesh.positions[triangle.y]), c(mesh.positions[triangle.z]);
     return (1 - u - v) * a + u * b + v * c;
 }
 
@@ -64,8 +64,8 @@ void expect_right_points(CaseRun& run, const Measured& measured, const Mesh& mes
                 return "missed";
             }
             if (hit.primitive_index != reference.primitive) ++wrong;
-            const double error = glm::length(point_of(mesh, hit.primitive_index, double{hit.u}, double{hit.v}) -
-                                             point_of(mesh, reference.primitive, reference.u, reference.v));
+            const double error = length(point_of(mesh, hit.primitive_index, double{hit.u}, double{hit.v}) -
+                                        point_of(mesh, reference.primitive, reference.u, reference.v));
             largest = std::max(largest, error);
             const bool is_same = hit.primitive_index == reference.primitive;
             return error <= (is_same ? same_bound : other_bound) ? ""
@@ -91,7 +91,7 @@ void far_camera(CaseRun& run) {
         Random random(run.seed());
         std::vector<Ray> rays;
         for (std::size_t i = 0; i < run.amount(96, 20'000); ++i)
-            rays.push_back(far_ray(random, glm::dvec3(random.in_box(half / 2)) * glm::dvec3(1, 0, 1), distance, 1));
+            rays.push_back(far_ray(random, dvec3(random.in_box(half / 2)) * dvec3(1, 0, 1), distance, 1));
         const Measured measured = run.measure(world, rays, {.params = {{"cells_away", distance}}});
         expect_right_points(run, measured, field, rays, distance, half);
     }

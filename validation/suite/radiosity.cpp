@@ -6,6 +6,7 @@
 #include "validation/suite/estimators.h"
 #include "engine/accel/scene_push.h"
 #include "engine/analysis/radiosity.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 
 namespace twinray::suite {

@@ -9,6 +9,7 @@
 #include "validation/suite/demands.h"
 #include "validation/suite/scenes.h"
 #include "engine/core/error.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 
@@ -103,8 +104,8 @@ std::vector<Ray> rays_inside(const Mesh& gear, std::size_t count, std::uint64_t 
     for (std::size_t i = 0; i < count; ++i) {
         const uvec3& triangle = gear.triangles[i % gear.triangles.size()];
         const double along = i % 2 ? random.between(0, 1) : 0;
-        const glm::dvec3 a(gear.positions[triangle.x]), b(gear.positions[triangle.y]);
-        rays.push_back(ray_to(a * (1 - along) + b * along, glm::dvec3(middle + random.in_box(1e-7f))));
+        const dvec3 a(gear.positions[triangle.x]), b(gear.positions[triangle.y]);
+        rays.push_back(ray_to(a * (1 - along) + b * along, dvec3(middle + random.in_box(1e-7f))));
     }
     return rays;
 }
@@ -120,8 +121,8 @@ void gear_on_a_floor(CaseRun& run) {
         Random random(run.seed());
         std::vector<Ray> rays;
         for (std::size_t i = 0; i < count; ++i)
-            rays.push_back(ray_to(glm::dvec3(gear.positions[i % gear.positions.size()]),
-                                  glm::dvec3(random.in_box(0.5f) + vec3(0, 1, 0)) * double{height}));
+            rays.push_back(ray_to(dvec3(gear.positions[i % gear.positions.size()]),
+                                  dvec3(random.in_box(0.5f) + vec3(0, 1, 0)) * double{height}));
         run.measure(world, rays, {.params = {{"from", text("a height of ", height)}}});
     }
     const std::vector<Ray> inside = rays_inside(gear, count, run.seed());
@@ -154,10 +155,10 @@ void mixed_sizes(CaseRun& run) {
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < run.amount(4'096, 200'000); ++i) {
         const uint first = static_cast<uint>(3 * (i % mesh.triangles.size()));
-        const glm::dvec3 weights = random.weights(0);
-        glm::dvec3 target(0);
-        for (uint k = 0; k < 3; ++k) target += weights[static_cast<int>(k)] * glm::dvec3(mesh.positions[first + k]);
-        rays.push_back(ray_to(target, glm::dvec3(point())));
+        const dvec3 weights = random.weights(0);
+        dvec3 target(0);
+        for (uint k = 0; k < 3; ++k) target += weights[static_cast<int>(k)] * dvec3(mesh.positions[first + k]);
+        rays.push_back(ray_to(target, dvec3(point())));
     }
     const Measured measured = run.measure(world_of(mesh), rays);
     expect_refined_t(run, measured, rays, 1, {});
@@ -172,7 +173,7 @@ void smallest_beside_largest(CaseRun& run) {
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < run.amount(512, 50'000); ++i) {
         vec3 target(0);
-        const glm::dvec3 weights = random.weights(0.01);
+        const dvec3 weights = random.weights(0.01);
         for (uint k = 0; k < 3; ++k) target += static_cast<float>(weights[static_cast<int>(k)]) * small.positions[k];
         const float height = i % 2 ? 2e-18f : 0x1p-10f;
         rays.push_back({target + vec3(0, 0, height), 0, vec3(0, 0, -1), inf});

@@ -7,7 +7,7 @@
 #include "validation/suite/scale.h"
 #include "validation/suite/scenes.h"
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/aimed_rays.h"
 
 namespace twinray::suite {
@@ -172,8 +172,8 @@ void denormal_coordinates(CaseRun& run) {
         expect_those_of_zeros(run, measured, from_zero, rays, {{"origin", size}});
     }
     for (std::size_t i = 0; i < count; ++i)
-        rays[i] = ray_to(glm::dvec3(i % 2 ? random.in_box(0.4f) : vec3(0)) * glm::dvec3(1, 1, 0),
-                         glm::dvec3(random.in_box(0.5f) + vec3(0, 0, 2)));
+        rays[i] = ray_to(dvec3(i % 2 ? random.in_box(0.4f) : vec3(0)) * dvec3(1, 1, 0),
+                         dvec3(random.in_box(0.5f) + vec3(0, 0, 2)));
     const std::vector<Traced> at_zero = trace(run.devices(), run.subjects(), world_of(fan_about(0)), {rays, 0});
     for (const float size : {1e-38f, 1e-42f, 1e-45f}) {
         const Measured measured =

@@ -17,8 +17,8 @@ vec2 Random::in_triangle() {
 
 vec3 Random::direction() {
     for (;;) {
-        const glm::dvec3 p(in_box(1));
-        const double square = glm::dot(p, p);
+        const dvec3 p(in_box(1));
+        const double square = dot(p, p);
         if (square <= 1 && square > 0x1p-20) return vec3(p / std::sqrt(square));
     }
 }
@@ -38,7 +38,7 @@ Transform Random::rotation() {
     }
 }
 
-glm::dvec3 Random::weights(double least) {
+dvec3 Random::weights(double least) {
     for (;;) {
         const double u = between(0, 1), v = between(0, 1);
         if (u >= least && v >= least && 1 - u - v >= least) return {1 - u - v, u, v};
@@ -77,9 +77,9 @@ std::vector<Ray> scaled(std::vector<Ray> rays, float factor) {
     return rays;
 }
 
-Ray ray_to(const glm::dvec3& target, const glm::dvec3& origin) {
+Ray ray_to(const dvec3& target, const dvec3& origin) {
     const vec3 rounded(origin);
-    return {rounded, 0, vec3(glm::normalize(target - glm::dvec3(rounded))), inf};
+    return {rounded, 0, vec3(normalize(target - dvec3(rounded))), inf};
 }
 
 std::vector<Ray> mixed_rays(const World& world, const Bounds& bounds, std::size_t count, std::uint64_t seed) {

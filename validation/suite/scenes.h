@@ -22,7 +22,7 @@ class Random {
     vec2 in_triangle();    // (u, v), uniform
     uint below(std::size_t count) { return static_cast<uint>(engine_()) % static_cast<uint>(count); }
     // Positive weights of three corners, which sum to 1 and are at least `least`.
-    glm::dvec3 weights(double least);
+    dvec3 weights(double least);
 
   private:
     std::mt19937 engine_;
@@ -38,7 +38,7 @@ vec3 turned(vec3 v, int times);
 std::vector<Ray> scaled(std::vector<Ray> rays, float factor);
 
 // From an origin, which is rounded first, to the target: passes it within float32 rounding. |direction| = 1.
-Ray ray_to(const glm::dvec3& target, const glm::dvec3& origin);
+Ray ray_to(const dvec3& target, const dvec3& origin);
 // Half of them spread over the bounds, a quarter each aimed at vertices and at edges.
 std::vector<Ray> mixed_rays(const World& world, const Bounds& bounds, std::size_t count, std::uint64_t seed);
 

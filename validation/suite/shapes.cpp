@@ -12,6 +12,7 @@
 #include "validation/suite/demands.h"
 #include "validation/suite/scenes.h"
 #include "engine/core/error.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 
@@ -50,7 +51,7 @@ void slivers(CaseRun& run, float height) {
     Random random(run.seed());
     AimedRays aimed;
     for (std::size_t i = 0; i < run.amount(512, 50'000); ++i) {
-        const glm::dvec3 weights = random.weights(0.05);
+        const dvec3 weights = random.weights(0.05);
         const auto x = static_cast<float>(weights.y + 0.75 * weights.z), y = static_cast<float>(weights.z) * height;
         const float slope = i % 2 ? random.between(0, 0.5f) : 0;
         const int axis = static_cast<int>(i % 3);
@@ -72,10 +73,10 @@ void turned_slivers(CaseRun& run, float height) {
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < run.amount(1'024, 100'000); ++i) {
         const uint first = static_cast<uint>(3 * (i % 64));
-        const glm::dvec3 weights = random.weights(0.01);
-        glm::dvec3 target(0);
-        for (uint k = 0; k < 3; ++k) target += weights[static_cast<int>(k)] * glm::dvec3(mesh.positions[first + k]);
-        rays.push_back(ray_to(target, target + 2.0 * glm::dvec3(random.direction())));
+        const dvec3 weights = random.weights(0.01);
+        dvec3 target(0);
+        for (uint k = 0; k < 3; ++k) target += weights[static_cast<int>(k)] * dvec3(mesh.positions[first + k]);
+        rays.push_back(ray_to(target, target + 2.0 * dvec3(random.direction())));
     }
     run.measure(world_of(mesh), rays, {.params = {{"aspect", 1 / height}, {"turned", true}}});
 }
@@ -102,7 +103,7 @@ void fan_of_needles(CaseRun& run) {
         vec3 from = random.direction();
         from.y = std::max(0.5f, std::abs(from.y));
         const vec3 target = hub + random.in_box(i % 2 ? 1e-8f : 0);
-        rays.push_back(ray_to(glm::dvec3(target), glm::dvec3(hub + random.between(0.5f, 4) * from)));
+        rays.push_back(ray_to(dvec3(target), dvec3(hub + random.between(0.5f, 4) * from)));
     }
     run.measure(world_of(fan), rays, {.params = {{"needles", needles}}, .fast_is_control = true});
 }
@@ -114,7 +115,7 @@ void degenerate_triangles(CaseRun& run) {
     const std::size_t sound = mesh.triangles.size();
     for (std::size_t i = 0; i < run.amount(200, 20'000); ++i) {
         // On a lattice, so that the points of a line are exactly on it.
-        const vec3 a = glm::round(random.in_box(32)) / 64.0f, step = glm::round(random.in_box(8)) / 64.0f;
+        const vec3 a = round(random.in_box(32)) / 64.0f, step = round(random.in_box(8)) / 64.0f;
         if (i % 4 == 0) add_triangle(mesh, a, a, a);
         if (i % 4 == 1) add_triangle(mesh, a, a + step, a + 3.0f * step);
         if (i % 4 == 2) add_triangle(mesh, a, a + step, a);
@@ -124,7 +125,7 @@ void degenerate_triangles(CaseRun& run) {
     for (std::size_t i = 0; i < run.amount(1'024, 100'000); ++i) {
         const uvec3& triangle = mesh.triangles[sound + i % (mesh.triangles.size() - sound)];
         const vec3 a = mesh.positions[triangle.x], b = mesh.positions[triangle.y];
-        rays.push_back(ray_to(glm::dvec3(a * 0.25f + b * 0.75f), glm::dvec3(random.in_box(i % 2 ? 0.4f : 3))));
+        rays.push_back(ray_to(dvec3(a * 0.25f + b * 0.75f), dvec3(random.in_box(i % 2 ? 0.4f : 3))));
     }
     // Those of the sphere come last, so that indices are seen to stay.
     std::reverse(mesh.triangles.begin(), mesh.triangles.end());

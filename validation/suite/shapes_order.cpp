@@ -8,7 +8,7 @@
 #include "validation/suite/scenes.h"
 #include "validation/suite/shapes.h"
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/aimed_rays.h"
 
 namespace twinray::suite {
@@ -67,13 +67,13 @@ void expect_order(CaseRun& run, const Measured& measured, const Mesh& mesh, std:
         CaseRun::Outcome outcome = ask_each(traced, rays, [&](std::size_t i, const Hit& hit) -> std::string {
             const OracleHit& nearest = measured.references[i];
             if (!hit.hit || !nearest.hit) return "";
-            const ShearedRay line(glm::dvec3(rays[i].origin), glm::dvec3(rays[i].direction));
+            const ShearedRay line(dvec3(rays[i].origin), dvec3(rays[i].direction));
             const auto other = line.intersect(world.oracle.geometry(0).find(hit.primitive_index)->corners64());
             if (!other || other->t <= nearest.t) return "";
             ++farther;
             // From certified on 2^-46 of what t is made of can be told apart, else what a float of it can.
             const bool is_certified = traced.subject.level == Level::certified;
-            const double reach = glm::length(glm::dvec3(rays[i].origin)) / glm::length(glm::dvec3(rays[i].direction));
+            const double reach = length(dvec3(rays[i].origin)) / length(dvec3(rays[i].direction));
             if (is_certified ? other->t - nearest.t <= 0x1p-46 * (reach + other->t)
                              : static_cast<float>(other->t) == static_cast<float>(nearest.t))
                 return "";
@@ -114,8 +114,8 @@ void coplanar_tessellations(CaseRun& run) {
     Random random(run.seed());
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < run.amount(2'048, 200'000); ++i)
-        rays.push_back(ray_to(glm::dvec3(random.between(0.1f, 0.9f), 0, random.between(0.1f, 0.9f)),
-                              glm::dvec3(random.in_box(1) + vec3(0.5f, 2, 0.5f))));
+        rays.push_back(ray_to(dvec3(random.between(0.1f, 0.9f), 0, random.between(0.1f, 0.9f)),
+                              dvec3(random.in_box(1) + vec3(0.5f, 2, 0.5f))));
     const Measured measured = run.measure(world_of(both), rays);
     expect_refined_t(run, measured, rays, 1, {});
     const std::vector<Traced> first = trace(run.devices(), run.subjects(), world_of(coarse), {rays, 0});
@@ -166,8 +166,8 @@ void fighting_sheets(CaseRun& run) {
     Random random(run.seed());
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < run.amount(2'048, 1'000'000); ++i)
-        rays.push_back(ray_to(glm::dvec3(random.between(0.1f, 0.9f), 1.25f, random.between(0.1f, 0.9f)),
-                              glm::dvec3(random.in_box(0.5f) + vec3(0.5f, 3, 0.5f))));
+        rays.push_back(ray_to(dvec3(random.between(0.1f, 0.9f), 1.25f, random.between(0.1f, 0.9f)),
+                              dvec3(random.in_box(0.5f) + vec3(0.5f, 3, 0.5f))));
     expect_order(run, run.measure(world_of(mesh), rays), mesh, rays, {});
 }
 

@@ -7,7 +7,7 @@
 #include "validation/suite/scenes.h"
 #include "validation/suite/shapes.h"
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 
 namespace twinray::suite {
 
@@ -25,8 +25,8 @@ void grazing(CaseRun& run) {
         for (std::size_t i = 0; i < run.amount(256, 50'000); ++i) {
             const vec3 target(random.between(-1, 1), 0, random.between(-1, 1));
             const double angle = double{random.between(0, 6.2831853f)}, distance = double{random.between(1, 4)};
-            const glm::dvec3 along(std::cos(angle), cosine, std::sin(angle));
-            const vec3 origin(glm::dvec3(target) + distance * along);
+            const dvec3 along(std::cos(angle), cosine, std::sin(angle));
+            const vec3 origin(dvec3(target) + distance * along);
             rays.push_back({origin, 0, vec3(-along), inf});
             turned_rays.push_back(
                 {transform_point(rotation, origin), 0, transform_vector(rotation, vec3(-along)), inf});
@@ -98,7 +98,7 @@ void in_the_plane_of_a_face(CaseRun& run) {
 // A sphere whose vertices have whole numbers of 16, so that rays through vertices and middles of edges are exact.
 void tied_axes(CaseRun& run) {
     Mesh sphere = make_icosphere(2, 64);
-    for (vec3& position : sphere.positions) position = glm::round(position) * 16.0f;
+    for (vec3& position : sphere.positions) position = round(position) * 16.0f;
     Random random(run.seed());
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < run.amount(2'048, 200'000); ++i) {
@@ -110,7 +110,7 @@ void tied_axes(CaseRun& run) {
         direction = turned(direction, static_cast<int>(i % 3));
         // Towards the middle, so that it is no silhouette that the ray meets.
         const vec3 target = i % 4 < 2 ? a : (a + b) * 0.5f;
-        if (glm::dot(direction, target) > 0) direction = -direction;
+        if (dot(direction, target) > 0) direction = -direction;
         rays.push_back({target - 512.0f * direction, 0, direction, inf});
     }
     run.measure(world_of(sphere), rays);
@@ -134,7 +134,7 @@ void along_edges(CaseRun& run) {
             }
     for (const Traced& traced : trace(run.devices(), run.subjects(), world, {rays, 0})) {
         CaseRun::Outcome outcome = ask_each(traced, rays, [&](std::size_t i, const Hit& hit) -> std::string {
-            const vec3 size = glm::abs(rays[i].direction);
+            const vec3 size = abs(rays[i].direction);
             const bool is_through = is_inward[i] && size.x + size.y + size.z == 3;
             if (!hit.hit) return is_through ? "missed the far vertex" : "";
             return is_inward[i] && std::abs(hit.t - 1) <= 0x1p-22f ? "" : text("hit at t = ", hit.t);

@@ -8,9 +8,9 @@
 #include "engine/scene/mesh.h"
 
 namespace twinray::suite {
-#include "engine/core/bridge_begin.h"
+#include "twinray/glsl/cpp_begin.h"
 #include "shaders/suite/spawn_args.h"
-#include "engine/core/bridge_end.h"
+#include "twinray/glsl/cpp_end.h"
 
 struct SpawnedRays {
     std::vector<Ray> rays;           // of every method, one an item

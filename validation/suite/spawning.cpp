@@ -6,12 +6,10 @@
 #include <map>
 
 #include "validation/suite/scenes.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 
 namespace twinray::suite {
 namespace {
-
-using glm::dvec3;
 
 Values prices_of(std::span<const SpawnPrice> prices) {
     std::vector<double> shares;

@@ -5,12 +5,10 @@
 
 #include "validation/suite/scenes.h"
 #include "validation/suite/spawning.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 
 namespace twinray::suite {
 namespace {
-
-using glm::dvec3;
 
 // Triangles 0 and 1, and 2 and 3.
 Mesh two_quads(const Mesh& first, const Mesh& second) {

@@ -7,6 +7,7 @@
 #include "validation/suite/factor_scenes.h"
 #include "engine/accel/scene_push.h"
 #include "engine/analysis/reciprocity.h"
+#include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 
 namespace twinray::suite {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "twinray/query.glsl"
+#include "twinray/glsl/query.glsl"
 layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Push
 {

@@ -5,12 +5,9 @@
 #include <stdexcept>
 
 #include "cube.trace_program.h"
-#include "engine/core/kernel.h"
-#include "engine/scene/shapes.h"
 #include "host_kernel_hw.spv.h"
 #include "host_kernel_sw.spv.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 namespace {
 

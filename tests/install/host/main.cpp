@@ -6,10 +6,7 @@
 #include <limits>
 #include <memory>
 
-#include "engine/core/error.h"
-#include "engine/scene/shapes.h"
-#include "hwtlas/hw_tlas.h"
-#include "swtlas/sw_tlas.h"
+#include <twinray/tlas.h>
 
 // After twinray's headers, which must not decide for these whether vk* are functions.
 #ifdef VK_NO_PROTOTYPES
@@ -19,7 +16,7 @@
 #endif
 #include <vk_mem_alloc.h>
 
-#include "engine/core/vma_adapter.h"
+#include <twinray/vma_adapter.h>
 
 namespace {
 
@@ -50,7 +47,7 @@ twinray::AdoptedDevice create_device() {
 
     twinray::DeviceRequirements requirements(
         twinray::query_device_facts(vkGetInstanceProcAddr, host.instance, host.physical_device));
-    for (const twinray::Requirement& requirement : requirements.in_words()) std::cout << requirement.sentence() << '\n';
+    for (const std::string& sentence : requirements.sentences()) std::cout << sentence << '\n';
     const float priority = 1;
     VkDeviceQueueCreateInfo queue{};
     queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;

@@ -9,7 +9,7 @@
 // Soa::check_faults(). Where i is known to be in range, AT(push.queue.direction, i) is the same without the comparison.
 #ifndef TWINRAY_SOA_GLSL
 #define TWINRAY_SOA_GLSL
-#include "twinray/faults.glsl"
+#include "twinray/glsl/faults.glsl"
 #include "shaders/shared/soa.h"
 
 // Statements; `queue` is a variable or a member, not a call.

@@ -21,7 +21,7 @@ layout(constant_id = FEATURES_CONSTANT) const uint TRACE_FEATURES = FEATURES_ALL
 layout(constant_id = LEVEL_CONSTANT) const uint TRACE_LEVEL = LEVEL_WATERTIGHT;
 
 #if defined(TWINRAY_SW)
-#include "twinray/stack.glsl"
+#include "twinray/glsl/stack.glsl"
 #include "shaders/shared/traverse.h"
 Hit trace_float32(Address accel, Ray ray, TraceOptions options)
 {
@@ -32,7 +32,7 @@ Address refinement_of(Address accel) { return AT(REF(SwScene)(accel), 0).refinem
 #extension GL_EXT_ray_query : require
 #include "shaders/hwtlas/ray_query.glsl"
 #else
-#error "twinray/query.glsl: define TWINRAY_SW or TWINRAY_HW"
+#error "twinray/glsl/query.glsl: define TWINRAY_SW or TWINRAY_HW"
 #endif
 
 #ifdef TWINRAY_REFINED

@@ -4,10 +4,10 @@
 #pragma once
 
 #ifndef AMD_VULKAN_MEMORY_ALLOCATOR_H
-#error "include vk_mem_alloc.h before engine/core/vma_adapter.h"
+#error "include vk_mem_alloc.h before twinray/vma_adapter.h"
 #endif
 
-#include "engine/core/allocator.h"
+#include <twinray/context.h>
 
 namespace twinray {
 namespace vma_adapter {

@@ -12,7 +12,7 @@
 #ifdef TWINRAY_BINDLESS
 #extension GL_EXT_nonuniform_qualifier : require
 #endif
-#include "twinray/faults.glsl"
+#include "twinray/glsl/faults.glsl"
 #include "shaders/shared/textures.h"
 
 bool has_texture(TextureTable table, TextureRef ref)

@@ -12,7 +12,7 @@
 // MultiTypeSet::check_faults().
 #ifndef TWINRAY_MULTI_TYPE_SET_GLSL
 #define TWINRAY_MULTI_TYPE_SET_GLSL
-#include "twinray/faults.glsl"
+#include "twinray/glsl/faults.glsl"
 #include "shaders/shared/multi_type_set.h"
 
 // The parts of what lists pass on to each type.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The hardware accelerator, on VK_KHR_acceleration_structure.
+// What is behind HwTlas: structures that the driver builds.
 #pragma once
 
-#include "engine/accel/abstract_accel.h"
+#include <twinray/tlas.h>
+
+#include "engine/accel/accel_backend.h"
 #include "hwtlas/tlas.h"
 
 namespace twinray {
@@ -10,31 +12,16 @@ namespace twinray {
 class MovingBlasBuilder;
 struct MovingMesh;
 
-// The order in which triangles and instances go to the driver. Results do not depend on it.
-enum class BuildOrder : std::uint8_t {
-    automatic,  // morton where KernelTuning::builds_in_input_order, else input
-    input,      // as pushed; no table to map ids back exists then
-    morton,
-};
-
-// The accelerator on VK_KHR_acceleration_structure. Traces with ray queries where they are enabled, else with a ray
-// tracing pipeline. Where the driver finds two triangles at the same distance, the driver chooses.
-class HwTlas : public AbstractAccel {
+class HwBackend final : public AccelBackend {
   public:
-    // Throws Error naming the device and what it lacks.
-    explicit HwTlas(Context& context, BuildOrder order = BuildOrder::automatic, const AccelOptions& options = {});
-    ~HwTlas() override;
+    HwBackend(Context& context, BuildOrder order, const AccelOptions& options);
+    ~HwBackend() override;
 
-    // What the hardware accelerator can do on a device that it runs on.
-    static Capability capability_on(const DeviceFacts& device, Feature feature);
-    Capability capability(Feature feature) const override { return capability_on(context().facts(), feature); }
+    Capability capability(Feature feature) const override { return HwTlas::capability_on(context().facts(), feature); }
     bool is_software() const override { return false; }
-
-    // "ray query" or "ray tracing pipeline".
-    const char* trace_path() const;
     bool reorders() const override { return reorder_; }
 
-  protected:
+  private:
     using Built = std::vector<std::unique_ptr<BuiltGeometry>>;
     Built build_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
     Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
@@ -47,7 +34,6 @@ class HwTlas : public AbstractAccel {
     void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
 
-  private:
     struct HwBuiltGeometry;
     struct HwTopLevel;
     void build_still(Commands& commands, std::span<const GeometryInput> inputs, Built& built);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Safe points for rays to start from, for kernels that trace by twinray/query.glsl or write rays for a batch:
+// Safe points for rays to start from, for kernels that trace by twinray/glsl/query.glsl or write rays for a batch:
 //
 //     Placement placement = placement_of(AT(push.instances, 0));   // AbstractAccel::instance_buffer().records
 //     Corners corners = corners_of(push.positions, push.indices, hit.primitive_index);

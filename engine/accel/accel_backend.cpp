@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: MIT
+#include "engine/accel/accel_backend.h"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "engine/accel/ray_sort.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+std::uint64_t next_accel_id() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
+
+// Handles are unique in the process, so that one accelerator's are dead in another.
+std::uint64_t next_handle() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
+
+InstanceState state_of(const InstanceRecord& record) { return {transform_of(record), options_of(record)}; }
+
+}  // namespace
+
+AccelBackend::AccelBackend(Context& context, std::string name, const AccelOptions& options)
+    : context_(context),
+      name_(std::move(name)),
+      id_(next_accel_id()),
+      options_(options),
+      vertices_(context),
+      instances_(context),
+      bound_(context),
+      scene_costs_(context) {
+    if (options.level < Level::refined) return;
+    if (!context.facts().shader_float64)
+        fail(name_, ": ", name_of(feature_of(options.level)), " needs float64, which device '", context.facts().name,
+             "' has not enabled");
+    refinement_ = std::make_unique<Refinement>(context);
+}
+
+AccelBackend::~AccelBackend() = default;
+
+AccelHandle AccelBackend::push(const MeshView& mesh, const Transform& transform, const InstanceOptions& options) {
+    return place(Geometry(mesh, unit_of(mesh.positions)), std::span(&transform, 1), std::span(&options, 1));
+}
+AccelHandle AccelBackend::push(const MeshView& mesh, std::span<const Transform> transforms,
+                               std::span<const InstanceOptions> options) {
+    return place(Geometry(mesh, unit_of(mesh.positions)), transforms, options);
+}
+AccelHandle AccelBackend::push(const BoxesView& boxes, const Transform& transform, const InstanceOptions& options) {
+    return place(Geometry(boxes), std::span(&transform, 1), std::span(&options, 1));
+}
+AccelHandle AccelBackend::push(const BoxesView& boxes, std::span<const Transform> transforms,
+                               std::span<const InstanceOptions> options) {
+    return place(Geometry(boxes), transforms, options);
+}
+
+AccelHandle AccelBackend::place(Geometry&& geometry, std::span<const Transform> transforms,
+                                std::span<const InstanceOptions> options) {
+    if (!options.empty() && options.size() != transforms.size())
+        fail(name_, ": mesh '", geometry.name, "': ", options.size(), " instance options for ", transforms.size(),
+             " transforms; the lengths must match");
+    Placement placement{std::move(geometry),
+                        Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}),
+                        nullptr,
+                        {},
+                        {},
+                        {}};
+    for (std::size_t i = 0; i < transforms.size(); ++i)
+        placement.instances.records.push_back(
+            checked_record(placement, i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
+    warn_of_inactive_triangles(placement.geometry);
+    const AccelHandle handle{next_handle()};
+    placements_.emplace(handle.id, std::move(placement));
+    mark(Dirty::structure);
+    return handle;
+}
+
+AccelHandle AccelBackend::push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
+                                     std::span<const InstanceRecord> records) {
+    Placement placement{std::move(geometry), std::move(block), std::move(built), {}, {}, {}};
+    for (const InstanceRecord& record : records) {
+        placement.instances.records.push_back(make_instance_record(transform_of(record), options_of(record)));
+        placement.instances.records.back().geometry = placement.block.address();
+    }
+    const AccelHandle handle{next_handle()};
+    placements_.emplace(handle.id, std::move(placement));
+    mark(Dirty::structure);
+    return handle;
+}
+
+bool AccelBackend::erase(AccelHandle handle) {
+    const auto found = placements_.find(handle.id);
+    if (found == placements_.end()) return false;
+    if (found->second.built) erased_.push_back(std::move(found->second.built));
+    placements_.erase(found);
+    mark(Dirty::structure);
+    return true;
+}
+
+void AccelBackend::update(AccelHandle handle, const MeshView& mesh) {
+    live(handle, "update");
+    replace(handle, Geometry(mesh, unit_of(mesh.positions)));
+}
+void AccelBackend::update(AccelHandle handle, const BoxesView& boxes) {
+    live(handle, "update");
+    replace(handle, Geometry(boxes));
+}
+
+void AccelBackend::replace(AccelHandle handle, Geometry&& geometry) {
+    Placement& placement = live(handle, "update");
+    warn_of_inactive_triangles(geometry);
+    if (placement.built) erased_.push_back(std::move(placement.built));
+    placement.geometry = std::move(geometry);
+    placement.has_source = false;
+    placement.vertices = {};
+    mark(Dirty::structure);
+}
+
+AccelBackend::Placement& AccelBackend::checked_for_vertices(AccelHandle handle, std::size_t count) {
+    Placement& placement = live(handle, "update_vertices");
+    const Geometry& geometry = placement.geometry;
+    if (geometry.kind == GEOMETRY_BOXES)
+        fail(name_, ": update_vertices: handle ", handle.id, " holds boxes, '", geometry.name, "', not triangles");
+    if (const std::size_t n = geometry.positions.size(); count != n)
+        fail(name_, ": update_vertices: mesh '", geometry.name, "': ", count, " positions for its ", n,
+             " vertices; update() changes their number");
+    return placement;
+}
+
+void AccelBackend::update_vertices(AccelHandle handle, std::span<const vec3> positions) {
+    Placement& placement = checked_for_vertices(handle, positions.size());
+    Geometry& geometry = placement.geometry;
+    const std::size_t inactive = count_non_finite_triangles({geometry.name, positions, geometry.triangles});
+    geometry.move_to(positions);
+    geometry.non_finite_triangles = inactive;
+    warn_of_inactive_triangles(geometry);
+    if (geometry.triangles.empty()) return;
+    placement.vertices.incoming = {};
+    placement.vertices.device_wrote = false;
+    placement.vertices.edited = placement.built || placement.vertices.on_device();
+    mark(Dirty::moves);
+}
+
+void AccelBackend::update_vertices(AccelHandle handle, Floats positions, std::size_t count) {
+    Placement& placement = checked_for_vertices(handle, count);
+    if (!works_on_device()) fail(name_, ": update_vertices: vertices in device memory are unsupported");
+    if (!positions.address || positions.address % 4)
+        fail(name_, ": update_vertices: device address ", positions.address, " must be a multiple of 4 and not 0");
+    if (placement.geometry.triangles.empty()) return;
+    placement.vertices.incoming = positions;
+    placement.vertices.edited = true;
+    mark(Dirty::moves);
+}
+
+void AccelBackend::Placement::add_to(SceneFacts& facts) const {
+    if (instances.records.empty()) return;
+    facts.has_boxes |= geometry.kind == GEOMETRY_BOXES;
+    facts.has_transforms |= geometry.scale != 1;
+    facts.instances += instances.records.size();
+    for (const InstanceRecord& record : instances.records) {
+        facts.has_filters |= (flags_of(record) & INSTANCE_FILTERED) != 0;
+        facts.common_mask &= mask_of(record);
+        facts.has_transforms |= transform_of(record) != Transform{};
+    }
+}
+
+SceneFacts AccelBackend::facts_of_placements() const {
+    SceneFacts facts{.instances = 0, .has_transforms = options_.can_move};
+    for (const auto& [id, placement] : placements_) placement.add_to(facts);
+    return facts;
+}
+
+InstanceRecord AccelBackend::checked_record(const Placement& placement, std::size_t index, const Transform& transform,
+                                            const InstanceOptions& options) const {
+    std::string fault = fault_of(transform);
+    if (options.custom_index > max_custom_index)
+        fault = text("custom index ", options.custom_index, " exceeds 24 bits (at most ", max_custom_index, ")");
+    if (!fault.empty()) fail(name_, ": mesh '", placement.geometry.name, "', instance ", index, ": ", fault);
+    InstanceRecord record = make_instance_record(transform, options);
+    record.geometry = placement.block.address();
+    return record;
+}
+
+void AccelBackend::warn_of_inactive_triangles(const Geometry& geometry) const {
+    if (geometry.non_finite_triangles)
+        context_.state().warn(text(name_, ": mesh '", geometry.name, "': ", geometry.non_finite_triangles, " of ",
+                                   geometry.triangles.size(), " triangles have a non-finite vertex and are inactive"));
+}
+
+const AccelBackend::Placement& AccelBackend::live(AccelHandle handle, const char* action) const {
+    const auto found = placements_.find(handle.id);
+    if (found == placements_.end()) fail(name_, ": ", action, ": handle ", handle.id, " is not alive");
+    return found->second;
+}
+
+AccelBackend::Placement& AccelBackend::live(AccelHandle handle, const char* action) {
+    return const_cast<Placement&>(std::as_const(*this).live(handle, action));
+}
+
+void AccelBackend::update_transform(AccelHandle handle, const Transform& transform) {
+    if (const std::size_t n = live(handle, "update_transform").instances.records.size(); n != 1)
+        fail(name_, ": update_transform: handle ", handle.id, " has ", n, " instances, not 1; use update_transforms");
+    update_transform_at(handle, 0, transform);
+}
+
+void AccelBackend::check_movable(const char* action) const {
+    if (!options_.can_move) fail(name_, ": ", action, ": the accelerator was made with AccelOptions::can_move = false");
+}
+
+void AccelBackend::update_transforms(AccelHandle handle, std::span<const Transform> transforms) {
+    Placement& placement = live(handle, "update_transforms");
+    check_movable("update_transforms");
+    check_count(handle, placement, transforms.size());
+    std::vector<InstanceRecord> records;
+    records.reserve(transforms.size());
+    for (std::size_t i = 0; i < transforms.size(); ++i)
+        records.push_back(checked_record(placement, i, transforms[i], options_of(placement.instances.records[i])));
+    placement.instances.edit_all(std::move(records));
+    mark(Dirty::moves);
+}
+
+void AccelBackend::update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count) {
+    Placement& placement = live(handle, "update_transforms");
+    check_movable("update_transforms");
+    check_count(handle, placement, count);
+    if (!transforms.address || transforms.address % 4)
+        fail(name_, ": update_transforms: device address ", transforms.address, " must be a multiple of 4 and not 0");
+    placement.instances.replace_transforms(transforms);
+    mark(Dirty::moves);
+}
+
+void AccelBackend::check_count(AccelHandle handle, const Placement& placement, std::size_t count) const {
+    if (const std::size_t n = placement.instances.records.size(); count != n)
+        fail(name_, ": update_transforms: ", count, " transforms for the ", n, " instances of handle ", handle.id);
+}
+
+void AccelBackend::check_index(AccelHandle handle, const Placement& placement, std::size_t index,
+                               const char* action) const {
+    if (const std::size_t n = placement.instances.records.size(); index >= n)
+        fail(name_, ": ", action, ": index ", index, " of the ", n, " instances of handle ", handle.id);
+}
+
+void AccelBackend::update_transform_at(AccelHandle handle, std::size_t index, const Transform& transform) {
+    Placement& placement = live(handle, "update_transform_at");
+    check_movable("update_transform_at");
+    check_index(handle, placement, index, "update_transform_at");
+    const InstanceOptions options = options_of(placement.instances.records[index]);
+    placement.instances.edit(index, checked_record(placement, index, transform, options));
+    mark(Dirty::moves);
+}
+
+InstanceRange AccelBackend::instance_buffer(AccelHandle handle) const {
+    const Placement& placement = live(handle, "instance_buffer");
+    if (dirty_ == Dirty::structure || !placement.instances.first)
+        fail(name_, ": instance_buffer: edits are pending; call sync() first");
+    const std::uint64_t offset = *placement.instances.first * sizeof(InstanceRecord);
+    const Buffer& buffer = instances_.buffer();
+    return {buffer.handle(), offset, buffer.ref<InstanceRecord>(offset), placement.instances.records.size()};
+}
+
+void AccelBackend::mark_transforms_dirty(AccelHandle handle) {
+    Placement& placement = live(handle, "mark_transforms_dirty");
+    check_movable("mark_transforms_dirty");
+    if (!placement.instances.first)
+        fail(name_, ": mark_transforms_dirty: handle ", handle.id, " is not on the device yet; call sync() first");
+    placement.instances.device_wrote = true;
+    mark(Dirty::moves);
+}
+
+std::size_t AccelBackend::n_instances() const {
+    std::size_t count = 0;
+    for (const auto& [id, placement] : placements_) count += placement.instances.records.size();
+    return count;
+}
+
+std::size_t AccelBackend::n_instances(AccelHandle handle) const {
+    const auto found = placements_.find(handle.id);
+    return found == placements_.end() ? 0 : found->second.instances.records.size();
+}
+
+std::size_t AccelBackend::n_primitives(AccelHandle handle) const {
+    const auto found = placements_.find(handle.id);
+    return found == placements_.end() ? 0 : found->second.geometry.primitive_count();
+}
+
+std::vector<AccelHandle> AccelBackend::handles() const {
+    std::vector<AccelHandle> alive;
+    for (const auto& [id, placement] : placements_) alive.push_back({id});
+    return alive;
+}
+
+InstanceState AccelBackend::get_instance(AccelHandle handle, std::size_t index) const {
+    check_index(handle, live(handle, "get_instance"), index, "get_instance");
+    return get_instances(handle)[index];
+}
+
+std::vector<InstanceState> AccelBackend::get_instances(AccelHandle handle) const {
+    const InstanceSlice& slice = live(handle, "get_instances").instances;
+    std::vector<InstanceRecord> records = slice.records;
+    if (slice.device_wrote && slice.first)
+        records = download<InstanceRecord>(context_, instances_.buffer(), records.size(),
+                                           *slice.first * sizeof(InstanceRecord));
+    for (const std::size_t i : slice.edited) records[i] = slice.records[i];
+    std::vector<InstanceState> states;
+    for (const InstanceRecord& record : records) states.push_back(state_of(record));
+    return states;
+}
+
+const AccelBackend::BuiltGeometry& AccelBackend::built_geometry(AccelHandle handle) const {
+    const Placement& placement = live(handle, "built geometry");
+    if (!placement.built) fail(name_, ": handle ", handle.id, " is not built yet; call sync() first");
+    return *placement.built;
+}
+
+const Buffer& AccelBackend::geometry_block(AccelHandle handle) const { return live(handle, "geometry block").block; }
+
+Geometry AccelBackend::geometry(AccelHandle handle) const {
+    const Placement& placement = live(handle, "geometry");
+    Geometry geometry = placement.geometry;
+    if (!placement.vertices.device_wrote) return geometry;
+    geometry.positions = download<vec3>(context_, placement.vertices.positions, geometry.positions.size());
+    geometry.non_finite_triangles = count_non_finite_triangles({geometry.name, geometry.positions, geometry.triangles});
+    return geometry;
+}
+
+const AccelBackend::BuiltScene& AccelBackend::built_scene() const {
+    if (!scene_) fail(name_, ": the scene is not built yet; call sync() first");
+    return *scene_;
+}
+
+std::vector<Capability> AccelBackend::capabilities() const {
+    std::vector<Capability> all;
+    for (std::size_t i = 0; i < feature_count; ++i) all.push_back(capability(static_cast<Feature>(i)));
+    return all;
+}
+
+}  // namespace twinray

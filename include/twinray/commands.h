@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+// Buffers, commands and kernels: what an application needs to prepare rays on the device and to read what they met.
+//
+//     Buffer rays(context, {.name = "rays", .bytes = count * sizeof(Ray)});
+//     Kernel<Args> make_rays(context, {.name = "make rays", .spirv = make_rays_spirv});
+//     Commands commands(context, "frame");
+//     make_rays.dispatch(commands, {rays.ref<Ray>(), count}, count);
+//     commands.submit();
+#pragma once
+
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <twinray/context.h>
+
+namespace twinray {
+
+struct CompiledKernel;
+
+struct BufferDesc {
+    std::string name;         // required: shows in errors, debuggers and validation messages
+    std::uint64_t bytes = 0;  // 0 is allowed and gives an empty buffer with address 0
+    Memory memory = Memory::device;
+    VkBufferUsageFlags usage = 0;  // beyond storage, transfer and device address
+    std::uint64_t alignment = 16;  // of the device address; a power of two
+};
+
+// A named range of device memory. Move-only; when destroyed it is freed after all work submitted so far.
+class Buffer {
+  public:
+    Buffer() = default;
+    // Throws Error naming the buffer and its size when memory is out.
+    Buffer(Context& context, const BufferDesc& desc);
+    ~Buffer();
+    Buffer(Buffer&& other) noexcept;
+    Buffer& operator=(Buffer&& other) noexcept;
+
+    VkBuffer handle() const { return made_.buffer; }
+    std::uint64_t address() const { return address_; }
+    std::uint64_t bytes() const { return bytes_; }
+    const std::string& name() const { return name_; }
+    std::byte* mapped() const { return static_cast<std::byte*>(made_.mapped); }  // for upload and readback
+
+    // The typed address of what lies at an offset, as kernels take it.
+    template <class T>
+    Ref<T> ref(std::uint64_t byte_offset = 0) const {
+        return {address_ + byte_offset};
+    }
+
+  private:
+    Context* context_ = nullptr;
+    AllocatedBuffer made_;
+    std::uint64_t address_ = 0;
+    std::uint64_t bytes_ = 0;
+    std::string name_;
+};
+
+// GPU time of one named pass.
+struct PassTiming {
+    std::string name;
+    double ms = 0;
+};
+
+// A command buffer of the caller: begun, outside a render pass, for a queue of Context::queue_family(), submitted once.
+struct CallerCommands {
+    VkCommandBuffer handle = VK_NULL_HANDLE;
+    // A value of a timeline semaphore of the caller that the submission will signal. Until it is reached, twinray keeps
+    // what the commands use; so it must be reached, from the host or by a later value, even if they are given up.
+    SyncPoint done;
+    // The caller's earlier work whose writes twinray must see, and the later work that uses what twinray writes.
+    VkPipelineStageFlags producer_stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
+    VkAccessFlags producer_access = VK_ACCESS_MEMORY_WRITE_BIT;
+    VkPipelineStageFlags consumer_stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
+    VkAccessFlags consumer_access = VK_ACCESS_MEMORY_READ_BIT;
+};
+
+// A straight line of named passes. The end of a pass is a global memory barrier, so each pass sees all that earlier
+// passes wrote; dispatches inside one pass must not depend on each other. Own commands may become several command
+// buffers, cut between passes, so that none keeps the device busy for too long (see Pace).
+class Commands {
+  public:
+    // Own commands, submitted by submit().
+    Commands(Context& context, const std::string& name);
+    // Records into the caller's. Throws Error unless caller.handle and caller.done are set.
+    Commands(Context& context, const std::string& name, const CallerCommands& caller);
+    ~Commands();
+    Commands(const Commands&) = delete;
+    Commands& operator=(const Commands&) = delete;
+
+    // A scope: everything recorded while it lives belongs to it.
+    class Pass {
+      public:
+        Pass(Commands& commands, const std::string& name);
+        ~Pass();
+        Pass(const Pass&) = delete;
+        Pass& operator=(const Pass&) = delete;
+
+      private:
+        Commands& commands_;
+    };
+    [[nodiscard]] Pass pass(const std::string& name) { return Pass(*this, name); }
+    bool in_pass() const;
+    // Within a pass: what follows sees what went before, as from one pass to the next.
+    void barrier();
+
+    // Copies into `target` through a staging buffer that lives until the GPU has read it.
+    void upload(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data);
+    template <class T>
+    void upload(const Buffer& target, std::span<const T> data, std::uint64_t offset = 0) {
+        upload(target, offset, std::as_bytes(data));
+    }
+    // A value of at most 64 KiB, without staging.
+    template <class T>
+    void write(const Buffer& target, const T& value, std::uint64_t offset = 0) {
+        write_bytes(target, offset, std::as_bytes(std::span(&value, 1)));
+    }
+    // Many pieces through one staging buffer and one copy.
+    struct Piece {
+        std::uint64_t offset;  // in the target
+        std::span<const std::byte> data;
+    };
+    void upload_pieces(const Buffer& target, std::span<const Piece> pieces);
+    void copy(const Buffer& from, std::uint64_t from_offset, const Buffer& to, std::uint64_t to_offset,
+              std::uint64_t bytes);
+    // bytes must be a multiple of 4.
+    void fill(const Buffer& target, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word);
+
+    // Tells of a dispatch of so many groups in the present pass: what names the work of a device that is lost, and says
+    // where commands are cut.
+    void count_groups(std::uint64_t groups);
+    // The same of work of the driver that is as large as so many groups.
+    void count_work(std::uint64_t groups);
+
+    // Takes ownership until the GPU has finished these commands.
+    void keep(Buffer&& temporary);
+
+    // Once, at the end, even if it fails. The object may then be destroyed at any time. Throws Error for commands of
+    // the caller.
+    SyncPoint submit();
+    // The same, and waits. How many seconds the GPU was busy; where the queue has no timestamps, the host waited.
+    double submit_and_wait();
+    // The same with what is recorded so far: more may follow. Not within a pass.
+    double submit_part();
+    bool is_of_caller() const;
+    // When these commands are done: CallerCommands::done, or what submit() returned.
+    SyncPoint done() const;
+
+    // After the submission: waits for the GPU; one entry per pass in recording order, none where the queue has no
+    // timestamps.
+    std::vector<PassTiming> timings() const;
+
+    Context& context() const;
+    VkCommandBuffer handle() const;  // where the next pass is recorded, until it ends
+
+  private:
+    void write_bytes(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data);
+
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+// Copies a range back to the host; submits and waits.
+void download_bytes(Context& context, const Buffer& buffer, std::uint64_t offset, std::span<std::byte> into);
+
+template <class T>
+std::vector<T> download(Context& context, const Buffer& buffer, std::uint64_t count, std::uint64_t byte_offset = 0) {
+    std::vector<T> values(count);
+    download_bytes(context, buffer, byte_offset, std::as_writable_bytes(std::span(values)));
+    return values;
+}
+
+struct SpecializationConstant {
+    std::uint32_t id;
+    std::uint32_t value;  // VkBool32 for bools
+};
+
+struct KernelDesc {
+    std::string name = {};                 // folder_stem: the label, the timing and the twin have this name too
+    std::span<const std::uint32_t> spirv;  // embedded at build time
+    std::uint32_t group_size = 64;         // local_size_x of the shader
+    std::vector<SpecializationConstant> constants = {};
+    bool compiles_when_used =
+        false;                // by the first dispatch, which then throws what the constructor would; spirv stays valid
+    bool has_images = false;  // it reads an ImageArray, which each dispatch then takes
+};
+
+// A compute pipeline whose only input is one push-constant block and, where it has images, an ImageArray, shared with
+// all others of the context that are made from the same. Use Kernel<Args>.
+class ComputePipeline {
+  public:
+    ComputePipeline(Context& context, const KernelDesc& desc, std::uint32_t args_bytes);
+    ~ComputePipeline();
+    ComputePipeline(const ComputePipeline&) = delete;
+    ComputePipeline& operator=(const ComputePipeline&) = delete;
+
+    void dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count,
+                         VkDescriptorSet images = VK_NULL_HANDLE) const;
+    // As many groups as the VkDispatchIndirectCommand at `offset` of `counts` says.
+    void dispatch_indirect(Commands& commands, const void* args, const Buffer& counts, std::uint64_t offset) const;
+
+    const std::string& name() const { return desc_.name; }
+    std::uint32_t group_size() const { return desc_.group_size; }
+
+  private:
+    void bind(Commands& commands, const void* args, VkDescriptorSet images) const;
+
+    Context& context_;
+    KernelDesc desc_;
+    std::uint32_t args_bytes_;
+    mutable std::shared_ptr<CompiledKernel> compiled_;  // null: not compiled yet
+};
+
+// A compute kernel that takes one Args struct, shared with its GLSL, as push constants (128 bytes are guaranteed).
+template <class Args>
+class Kernel {
+    static_assert(sizeof(Args) <= 128 && sizeof(Args) % 4 == 0);
+
+  public:
+    Kernel(Context& context, const KernelDesc& desc) : pipeline_(context, desc, sizeof(Args)) {}
+
+    // Runs at least `count` invocations; the shader must ignore global_index() >= count. Opens a pass with the
+    // kernel's name unless one is open.
+    // `images`: of a TextureStore, for kernels made with KernelDesc::has_images.
+    void dispatch(Commands& commands, const Args& args, std::uint64_t count,
+                  VkDescriptorSet images = VK_NULL_HANDLE) const {
+        dispatch_groups(commands, args, (count + pipeline_.group_size() - 1) / pipeline_.group_size(), images);
+    }
+    void dispatch_groups(Commands& commands, const Args& args, std::uint64_t group_count,
+                         VkDescriptorSet images = VK_NULL_HANDLE) const {
+        pipeline_.dispatch_groups(commands, &args, group_count, images);
+    }
+    void dispatch_indirect(Commands& commands, const Args& args, const Buffer& counts, std::uint64_t offset) const {
+        pipeline_.dispatch_indirect(commands, &args, counts, offset);
+    }
+    const std::string& name() const { return pipeline_.name(); }
+
+  private:
+    ComputePipeline pipeline_;
+};
+
+// Cuts work of one kind into submissions of less than ContextDesc::most_submission_seconds each, by how long the ones
+// before took. Results must not depend on where it cuts. Remembers the rate from one use to the next.
+class Pace {
+  public:
+    explicit Pace(const Context& context);
+
+    // Has `record(first, count)` record all of `count` items in order, in as many parts as it takes: all but the last
+    // are submitted and waited for, with what the commands held before. Commands of the caller stay whole.
+    template <class Record>
+    void record(Commands& commands, std::uint64_t count, const Record& record) {
+        for (std::uint64_t first = 0; first < count; first += pending_) {
+            if (first > 0) took(commands.submit_part());
+            pending_ = commands.is_of_caller() ? count : next(count - first);
+            record(first, pending_);
+        }
+    }
+    // Submits the last part, waits for it and learns from it.
+    void finish(Commands& commands);
+
+  private:
+    std::uint64_t next(std::uint64_t left) const;
+    void took(double seconds);
+
+    double most_seconds_;  // 0: no limit
+    std::uint64_t allowed_;
+    std::uint64_t pending_ = 0;  // items that are recorded
+};
+
+}  // namespace twinray

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+// What all of twinray speaks of: errors, vectors, maps, boxes, rays, hits and meshes.
+//
+//     twinray::Mesh mesh = twinray::make_icosphere(4);
+//     mesh.positions.push_back(glm::vec3(0, 1, 2));  // vectors of any library with x, y and z
+//
+// Lengths are in the units of the scene, angles in radians, indices count from 0.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace twinray {
+
+// The one exception of the library. Its text names the object, the value and the limit that it broke, or, for failures
+// of the world (no device, out of memory, bad file), what to do.
+class Error : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+// The GPU stopped answering (VK_ERROR_DEVICE_LOST). Everything of that Context throws this from then on; only
+// destroying is left.
+class DeviceLost : public Error {
+  public:
+    using Error::Error;
+};
+
+// Vectors of two to four numbers: plain data, of which GLM's, or an application's own with the same members, convert to
+// and from. They do no arithmetic, which is for the application's own.
+
+using uint = std::uint32_t;
+
+template <int N, class T>
+struct Vec;
+
+template <class V>
+concept Scalar = std::is_arithmetic_v<V>;
+template <class V>
+concept HasXy = requires(const V& v) {
+    { v.x } -> std::convertible_to<double>;
+    { v.y } -> std::convertible_to<double>;
+};
+template <class V>
+concept HasXyz = HasXy<V> && requires(const V& v) {
+    { v.z } -> std::convertible_to<double>;
+};
+template <class V>
+concept HasXyzw = HasXyz<V> && requires(const V& v) {
+    { v.w } -> std::convertible_to<double>;
+};
+template <class V>
+constexpr bool is_twinray_vector = false;
+template <int N, class T>
+constexpr bool is_twinray_vector<Vec<N, T>> = true;
+// A vector of the application's.
+template <class V, int N>
+concept ForeignVector = !is_twinray_vector<V> && HasXy<V> && (N < 3 || HasXyz<V>)&&(N < 4 || HasXyzw<V>);
+template <class V, int N>
+concept ForeignVectorOf = ForeignVector<V, N> && HasXyz<V>
+== (N > 2) && HasXyzw<V> == (N > 3);
+// Conversions that lose nothing need no words.
+template <class From, class To>
+constexpr bool is_widened = std::same_as<From, To> ||
+                            (std::floating_point<From> && std::floating_point<To> && sizeof(From) < sizeof(To));
+template <class V>
+using component_t = std::remove_cvref_t<decltype(std::declval<V>().x)>;
+
+template <class T>
+struct Vec<2, T> {
+    T x = 0, y = 0;
+
+    constexpr Vec() = default;
+    constexpr explicit Vec(Scalar auto all) : x(T(all)), y(T(all)) {}
+    constexpr Vec(Scalar auto x_, Scalar auto y_) : x(T(x_)), y(T(y_)) {}
+    template <int M, class U>
+    constexpr explicit(M > 2 || !is_widened<U, T>) Vec(const Vec<M, U>& v) : x(T(v.x)), y(T(v.y)) {}
+    template <ForeignVector<2> V>
+    constexpr explicit(!ForeignVectorOf<V, 2> || !is_widened<component_t<V>, T>) Vec(const V& v)
+        : x(T(v.x)), y(T(v.y)) {}
+    template <ForeignVectorOf<2> V>
+    constexpr explicit(!is_widened<T, component_t<V>>) operator V() const {
+        return V(component_t<V>(x), component_t<V>(y));
+    }
+    constexpr T& operator[](std::size_t i) { return i == 0 ? x : y; }
+    constexpr const T& operator[](std::size_t i) const { return i == 0 ? x : y; }
+    constexpr bool operator==(const Vec&) const = default;
+};
+
+template <class T>
+struct Vec<3, T> {
+    T x = 0, y = 0, z = 0;
+
+    constexpr Vec() = default;
+    constexpr explicit Vec(Scalar auto all) : x(T(all)), y(T(all)), z(T(all)) {}
+    constexpr Vec(Scalar auto x_, Scalar auto y_, Scalar auto z_) : x(T(x_)), y(T(y_)), z(T(z_)) {}
+    constexpr Vec(const Vec<2, T>& xy, Scalar auto z_) : x(xy.x), y(xy.y), z(T(z_)) {}
+    template <int M, class U>
+    requires(M > 2) constexpr explicit(M > 3 || !is_widened<U, T>) Vec(const Vec<M, U>& v)
+        : x(T(v.x)), y(T(v.y)), z(T(v.z)) {}
+    template <ForeignVector<3> V>
+    constexpr explicit(!ForeignVectorOf<V, 3> || !is_widened<component_t<V>, T>) Vec(const V& v)
+        : x(T(v.x)), y(T(v.y)), z(T(v.z)) {}
+    template <ForeignVectorOf<3> V>
+    constexpr explicit(!is_widened<T, component_t<V>>) operator V() const {
+        return V(component_t<V>(x), component_t<V>(y), component_t<V>(z));
+    }
+    constexpr T& operator[](std::size_t i) { return i == 0 ? x : i == 1 ? y : z; }
+    constexpr const T& operator[](std::size_t i) const { return i == 0 ? x : i == 1 ? y : z; }
+    constexpr bool operator==(const Vec&) const = default;
+};
+
+template <class T>
+struct Vec<4, T> {
+    T x = 0, y = 0, z = 0, w = 0;
+
+    constexpr Vec() = default;
+    constexpr explicit Vec(Scalar auto all) : x(T(all)), y(T(all)), z(T(all)), w(T(all)) {}
+    constexpr Vec(Scalar auto x_, Scalar auto y_, Scalar auto z_, Scalar auto w_)
+        : x(T(x_)), y(T(y_)), z(T(z_)), w(T(w_)) {}
+    constexpr Vec(const Vec<3, T>& xyz, Scalar auto w_) : x(xyz.x), y(xyz.y), z(xyz.z), w(T(w_)) {}
+    constexpr Vec(const Vec<2, T>& xy, const Vec<2, T>& zw) : x(xy.x), y(xy.y), z(zw.x), w(zw.y) {}
+    template <class U>
+    constexpr explicit(!is_widened<U, T>) Vec(const Vec<4, U>& v) : x(T(v.x)), y(T(v.y)), z(T(v.z)), w(T(v.w)) {}
+    template <ForeignVector<4> V>
+    constexpr explicit(!is_widened<component_t<V>, T>) Vec(const V& v) : x(T(v.x)), y(T(v.y)), z(T(v.z)), w(T(v.w)) {}
+    template <ForeignVectorOf<4> V>
+    constexpr explicit(!is_widened<T, component_t<V>>) operator V() const {
+        return V(component_t<V>(x), component_t<V>(y), component_t<V>(z), component_t<V>(w));
+    }
+    constexpr T& operator[](std::size_t i) { return i == 0 ? x : i == 1 ? y : i == 2 ? z : w; }
+    constexpr const T& operator[](std::size_t i) const { return i == 0 ? x : i == 1 ? y : i == 2 ? z : w; }
+    constexpr bool operator==(const Vec&) const = default;
+};
+
+using vec2 = Vec<2, float>;
+using vec3 = Vec<3, float>;
+using vec4 = Vec<4, float>;
+using dvec2 = Vec<2, double>;
+using dvec3 = Vec<3, double>;
+using dvec4 = Vec<4, double>;
+using ivec2 = Vec<2, std::int32_t>;
+using ivec3 = Vec<3, std::int32_t>;
+using ivec4 = Vec<4, std::int32_t>;
+using uvec2 = Vec<2, uint>;
+using uvec3 = Vec<3, uint>;
+using uvec4 = Vec<4, uint>;
+
+// An affine map, 3x4 row-major, the bytes of VkTransformMatrixKHR: point' = rows * (point, 1).
+struct Transform {
+    std::array<vec4, 3> rows = {vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0)};
+
+    static Transform translation(vec3 offset);
+    static Transform scaling(vec3 factors);
+    // Of a column-major matrix m[column][row], as GLM's, whose fourth row must be (0, 0, 0, 1). Throws Error otherwise.
+    template <class Matrix>
+    static Transform of(const Matrix& m) {
+        return of_columns({vec4(m[0][0], m[0][1], m[0][2], m[0][3]), vec4(m[1][0], m[1][1], m[1][2], m[1][3]),
+                           vec4(m[2][0], m[2][1], m[2][2], m[2][3]), vec4(m[3][0], m[3][1], m[3][2], m[3][3])});
+    }
+    static Transform of_columns(const std::array<vec4, 4>& columns);
+
+    bool operator==(const Transform&) const = default;
+};
+static_assert(sizeof(Transform) == 48);
+
+// Evaluated in float64, rounded once.
+vec3 transform_point(const Transform& transform, vec3 point);
+vec3 transform_vector(const Transform& transform, vec3 vector);
+
+// a after b.
+Transform operator*(const Transform& a, const Transform& b);
+
+// Determinant of the linear part, in float64.
+double determinant(const Transform& transform);
+
+// Why the map cannot place an instance, "" if it can: an entry is not finite, the linear part is singular (a
+// determinant of exactly 0), or the inverse exceeds float32.
+std::string fault_of(const Transform& transform);
+
+// The inverse, computed in float64 and rounded once. Throws Error, naming `object`, when there is a
+// fault_of(transform).
+Transform inverse(const Transform& transform, const char* object);
+
+// Axis-aligned box; the default is empty (lo > hi).
+struct Bounds {
+    vec3 lo = vec3(std::numeric_limits<float>::infinity());
+    vec3 hi = vec3(-std::numeric_limits<float>::infinity());
+
+    bool is_empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
+    void include(vec3 point);
+    void include(const Bounds& other);
+    vec3 size() const;  // 0 where it is empty
+    vec3 center() const;
+};
+
+// A device address of items of type T, as kernels take it in their arguments; 0: none.
+template <class T>
+struct Ref {
+    // GLSL has two words for it, so that structs are to be aligned as there.
+    using Address [[gnu::aligned(4)]] = std::uint64_t;
+    Address address = 0;
+
+    // Of memory of the host, for code that both run.
+    T& operator[](std::size_t i) const { return reinterpret_cast<T*>(address)[i]; }
+    static Ref to(const T* host) { return {reinterpret_cast<std::uint64_t>(host)}; }
+};
+using Floats = Ref<float>;
+using Uints = Ref<uint>;
+
+// Ray and Hit, 32 bytes each, for kernels and in files too.
+#include "twinray/glsl/cpp_begin.h"
+#include "twinray/glsl/ray.h"
+#include "twinray/glsl/cpp_end.h"
+static_assert(sizeof(Ray) == 32 && sizeof(Hit) == 32);
+
+// An indexed triangle mesh with what shading needs. Triangle i keeps its index i everywhere.
+// normals, tangents, uvs, second_uvs and colors are empty or have one entry per position; materials is empty (all 0) or
+// has one entry per triangle, an index into Scene::materials.
+struct Mesh {
+    std::string name;
+    std::vector<vec3> positions;
+    std::vector<uvec3> triangles;
+    std::vector<vec3> normals;   // 0 where there is none: shading takes the triangle's own
+    std::vector<vec4> tangents;  // xyz and the sign of the bitangent, as glTF
+    std::vector<vec2> uvs;
+    std::vector<vec2> second_uvs;
+    std::vector<vec4> colors;  // linear, from 0 to 1: factors of the base colour and its alpha
+    std::vector<uint> materials;
+
+    // Texture coordinates as Texture::uv_set names them; the first stand in for a second set that the mesh lacks.
+    const std::vector<vec2>& uv_set(uint set) const { return set == 1 && !second_uvs.empty() ? second_uvs : uvs; }
+    uint material(std::size_t triangle) const { return materials.empty() ? 0 : materials[triangle]; }
+};
+
+// What an accelerator needs of a mesh, not owned.
+struct MeshView {
+    std::string_view name;
+    std::span<const vec3> positions;
+    std::span<const uvec3> triangles;
+
+    MeshView(std::string_view mesh_name, std::span<const vec3> points, std::span<const uvec3> vertex_indices)
+        : name(mesh_name), positions(points), triangles(vertex_indices) {}
+    MeshView(const Mesh& mesh) : MeshView(mesh.name, mesh.positions, mesh.triangles) {}
+};
+
+// Box of the finite vertices that triangles use.
+Bounds bounds_of(const MeshView& mesh);
+
+// Throws Error naming the mesh, the triangle, the index and the vertex count if an index is out of range.
+void check_indices(const MeshView& mesh);
+
+// Meshes by formula. The same arguments give the same bits everywhere.
+
+// Two triangles spanning vertex, vertex + u, vertex + u + v, vertex + v; the normal points along cross(u, v).
+Mesh make_quad(vec3 vertex, vec3 u, vec3 v);
+
+// Twelve triangles facing outwards, four vertices a face, so that normals are flat.
+Mesh make_box(vec3 lo, vec3 hi);
+
+// A sphere about the origin of 20 * 4^subdivisions triangles facing outwards, with smooth normals. Closed: vertices
+// are shared. Throws Error above 12 subdivisions.
+Mesh make_icosphere(uint subdivisions, float radius = 1);
+
+// A height field of 2 nx ny triangles over [0, 1]^2 in x and z, facing +y, with uvs. `height` is the amplitude of
+// random heights, 0 = flat. Throws Error when nx or ny is 0 or the vertices do not fit into 32 bits.
+Mesh make_grid(uint nx, uint ny, float height = 0, uint seed = 0);
+
+// Separate random triangles with vertices at most `size` from centres in [0, 1]^3.
+Mesh make_soup(uint triangle_count, uint seed, float size = 0.1f);
+
+}  // namespace twinray

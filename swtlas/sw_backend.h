@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// What is behind SwTlas: trees that compute shaders build and traverse.
+#pragma once
+
+#include <functional>
+
+#include <twinray/tlas.h>
+
+#include "engine/accel/accel_backend.h"
+#include "swtlas/build.h"
+#include "swtlas/plan.h"
+#include "swtlas/tree.h"
+
+namespace twinray {
+
+struct SavedGeometry;
+
+class SwBackend final : public AccelBackend {
+  public:
+    explicit SwBackend(Context& context, const AccelOptions& options = {});
+
+    Capability capability(Feature feature) const override { return SwTlas::capability_on(context().facts(), feature); }
+    bool is_software() const override { return true; }
+
+    // SwTlas and swtlas/tree.h say what these do.
+    void save(const std::filesystem::path& file) const;
+    AccelHandle push_saved(Commands& commands, SavedGeometry&& saved);
+    BuiltTree download_geometry(AccelHandle handle) const;
+    BuiltTree download_scene() const;
+    double end_point_overlap(AccelHandle handle) const;
+
+  private:
+    struct SwBuiltGeometry;
+    struct SwBuiltScene;
+    struct Batch;
+    using Built = std::vector<std::unique_ptr<BuiltGeometry>>;
+    Built build_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
+    Built refit_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
+    BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const override;
+    BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
+    static std::uint64_t source_bytes(const GeometryInput& input);
+    static std::vector<Builder::Measured> measured(const Batch& batch, std::span<const BuildTree> trees);
+    void record_batches(Commands& commands, std::span<const GeometryInput> inputs,
+                        const std::function<void(const Batch&, const Buffer& scratch)>& record);
+    void record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built);
+    static std::vector<DeviceMesh> record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch);
+    std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
+                                            const BuiltScene* current) override;
+    void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
+    float unit_of(std::span<const vec3> positions) const override { return software_unit(positions); }
+    std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
+
+    Builder builder_;
+};
+
+}  // namespace twinray
