@@ -13,7 +13,7 @@ namespace twinray {
 //     -> encode triangles, or -> collapse -> encode records
 //
 // Each stage is one kernel over all trees of the batch; what it computes has a serial twin of the same name in
-// swtlas/reference.h.
+// validation/cpu_reference/reference.h.
 class Builder {
   public:
     // Compiles what accelerators with these options use.

@@ -42,7 +42,6 @@ inline TraversalSteps& traversal_steps() {
 #include "engine/core/bridge_begin.h"
 #include "shaders/shared/build.h"
 #include "shaders/shared/collapse.h"
-#include "shaders/shared/end_point_overlap.h"
 #include "shaders/shared/morton.h"
 #include "shaders/shared/place_instance.h"
 #include "shaders/shared/ploc.h"
@@ -53,6 +52,5 @@ inline TraversalSteps& traversal_steps() {
 
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhHalf) == 32 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 96 &&
               sizeof(CompressedRecord) == 40);
-static_assert(sizeof(OverlapSum) == 8);
 static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 64 && sizeof(SwScene) == 72);
 }  // namespace twinray

@@ -46,12 +46,6 @@ class SwTlas final : public AbstractAccel {
     Tree download_geometry(AccelHandle handle) const;
     Tree download_scene() const;
 
-    // The end-point overlap of the geometry's tree, see end_point_overlap.h: 0 where no box holds a part of a triangle
-    // that is not below it. Measured by the GPU in float32, right to 1e-4 of itself and 1e-5; waits for it. It takes
-    // about as long as tracing a ray for each triangle. Throws Error on a dead or unsynced handle and on a geometry of
-    // boxes.
-    double end_point_overlap(AccelHandle handle) const;
-
   private:
     struct SwBuiltGeometry;
     struct SwBuiltScene;

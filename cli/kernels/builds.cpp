@@ -8,7 +8,7 @@
 #include "engine/core/dry_device.h"
 #include "engine/scene/shapes.h"
 #include "swtlas/sw_tlas.h"
-#include "swtlas/traffic.h"
+#include "cli/kernels/traffic.h"
 
 namespace twinray::cli {
 namespace {

@@ -8,7 +8,7 @@
 
 namespace twinray {
 #include "engine/core/bridge_begin.h"
-#include "shaders/shared/deform.h"
+#include "shaders/scene/deform.h"
 #include "engine/core/bridge_end.h"
 
 // Moves the vertices of a rig's meshes on the device, as deformed() does on the host: one dispatch a mesh. What it

@@ -12,7 +12,7 @@
 
 namespace twinray {
 #include "engine/core/bridge_begin.h"
-#include "shaders/shared/textures.h"
+#include "shaders/scene/textures.h"
 #include "engine/core/bridge_end.h"
 
 static_assert(sizeof(TextureRecord) == 32 && sizeof(TextureTable) == 32);

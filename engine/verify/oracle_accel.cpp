@@ -9,7 +9,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "engine_copy_items.spv.h"
+#include "verify_copy_items.spv.h"
 
 namespace twinray {
 namespace {
@@ -72,7 +72,7 @@ class OracleAccel::OracleProgram final : public TraceProgram {
 
 OracleAccel::OracleAccel(Context& context)
     : AbstractAccel(context, "OracleAccel"),
-      copy_items_(context, {.name = "engine_copy_items", .spirv = engine_copy_items_spirv}) {}
+      copy_items_(context, {.name = "verify_copy_items", .spirv = verify_copy_items_spirv}) {}
 
 Capability OracleAccel::capability(Feature feature) const {
     switch (feature) {

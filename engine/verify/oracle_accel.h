@@ -9,7 +9,7 @@
 
 namespace twinray {
 #include "engine/core/bridge_begin.h"
-#include "shaders/shared/copy_items.h"
+#include "shaders/verify/copy_items.h"
 #include "engine/core/bridge_end.h"
 
 // The float64 referee behind the interface of the accelerators: it shows what each call of AbstractAccel means, and is

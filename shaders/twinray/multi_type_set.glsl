@@ -13,7 +13,7 @@
 #ifndef TWINRAY_MULTI_TYPE_SET_GLSL
 #define TWINRAY_MULTI_TYPE_SET_GLSL
 #include "twinray/faults.glsl"
-#include "shaders/shared/multi_type_set.h"
+#include "shaders/scene/multi_type_set.h"
 
 // The parts of what lists pass on to each type.
 #define SET_OF_(set, key, ACTION) set

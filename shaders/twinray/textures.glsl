@@ -13,7 +13,7 @@
 #extension GL_EXT_nonuniform_qualifier : require
 #endif
 #include "twinray/faults.glsl"
-#include "shaders/shared/textures.h"
+#include "shaders/scene/textures.h"
 
 bool has_texture(TextureTable table, TextureRef ref)
 {

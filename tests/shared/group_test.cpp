@@ -7,7 +7,7 @@
 
 #include "engine/accel/geometry.h"
 #include "engine/scene/shapes.h"
-#include "swtlas/reference.h"
+#include "validation/cpu_reference/reference.h"
 
 namespace twinray {
 namespace {

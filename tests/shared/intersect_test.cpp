@@ -7,7 +7,7 @@
 
 #include "engine/scene/shapes.h"
 #include "engine/accel/geometry.h"
-#include "swtlas/reference_scene.h"
+#include "validation/cpu_reference/reference_scene.h"
 
 namespace twinray {
 namespace {

@@ -26,7 +26,7 @@ void expect_sound(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes, c
         for (const std::string& violation : violations) ADD_FAILURE() << name << ": " << violation;
     };
     if (!has_records(tree)) return report(check_tree(tree.bvh, tree.nodes, boxes).violations);
-    report(check_compressed(tree.bvh, tree.records, boxes).violations);
+    report(check_tree(tree.bvh, tree.records, boxes).violations);
 }
 
 std::vector<LeafBox> leaf_boxes(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed) {
@@ -40,7 +40,7 @@ void expect_sound(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed
 
 double sah_of(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes) {
     if (!has_records(tree)) return check_tree(tree.bvh, tree.nodes, boxes).sah;
-    return check_compressed(tree.bvh, tree.records, boxes).sah;
+    return check_tree(tree.bvh, tree.records, boxes).sah;
 }
 
 void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh, BuildQuality quality) {

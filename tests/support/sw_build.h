@@ -8,8 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "swtlas/check.h"
-#include "swtlas/check_compressed.h"
-#include "swtlas/reference_scene.h"
+#include "validation/cpu_reference/reference_scene.h"
 #include "swtlas/sw_tlas.h"
 #include "tests/support/device.h"
 

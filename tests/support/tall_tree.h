@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "swtlas/reference.h"
+#include "validation/cpu_reference/reference.h"
 
 namespace twinray::test {
 

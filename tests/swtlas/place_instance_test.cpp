@@ -6,7 +6,7 @@
 #include <random>
 
 #include "engine/scene/shapes.h"
-#include "swtlas/reference_scene.h"
+#include "validation/cpu_reference/reference_scene.h"
 
 namespace twinray {
 namespace {

@@ -21,7 +21,7 @@ class SwPloc : public SwBuildTest {
         expect_sound(tree, mesh);
         expect_twin(tree, mesh, quality());
         const std::vector<LeafBox> boxes = leaf_boxes(tree, mesh);
-        return has_records(tree) ? check_compressed(tree.bvh, tree.records, boxes).depth
+        return has_records(tree) ? check_tree(tree.bvh, tree.records, boxes).depth
                                  : check_tree(tree.bvh, tree.nodes, boxes).depth;
     }
     bool is_binary() const { return std::get<Layout>(GetParam()) == Layout::bvh2; }

@@ -10,7 +10,7 @@
 
 #include "engine/scene/bytes.h"
 #include "engine/scene/shapes.h"
-#include "swtlas/reference.h"
+#include "validation/cpu_reference/reference.h"
 #include "tests/scene/temp_dir.h"
 
 namespace twinray {

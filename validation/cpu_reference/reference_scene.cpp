@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "swtlas/reference_scene.h"
+#include "validation/cpu_reference/reference_scene.h"
 
 #include <utility>
 

@@ -11,8 +11,8 @@ using glm::bitfieldReverse;
 using glm::sqrt;
 
 #include "engine/core/bridge_begin.h"
-#include "shaders/shared/random.h"
-#include "shaders/shared/sampling.h"
-#include "shaders/shared/sobol.h"
+#include "shaders/sampling/random.h"
+#include "shaders/sampling/sampling.h"
+#include "shaders/sampling/sobol.h"
 #include "engine/core/bridge_end.h"
 }  // namespace twinray

@@ -2,7 +2,7 @@
 // What the serial twins of the kernels that make hierarchies share.
 #pragma once
 
-#include "swtlas/reference.h"
+#include "validation/cpu_reference/reference.h"
 
 namespace twinray::reference {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the kernel that moves vertices takes. engine/scene/deform.h says what it computes.
-#ifndef TWINRAY_SHARED_DEFORM_H
-#define TWINRAY_SHARED_DEFORM_H
+#ifndef TWINRAY_SCENE_DEFORM_H
+#define TWINRAY_SCENE_DEFORM_H
 
 struct DeformArgs
 {

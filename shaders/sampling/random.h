@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Random numbers as a pure function of (pixel, sample, dimension, seed): integers only, so every device and the host
 // get the same ones.
-#ifndef TWINRAY_SHARED_RANDOM_H
-#define TWINRAY_SHARED_RANDOM_H
+#ifndef TWINRAY_SAMPLING_RANDOM_H
+#define TWINRAY_SAMPLING_RANDOM_H
 
 // pcg4d of Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020. Its low bits are correlated by up to 0.2
 // between neighbouring keys, and Owen's scrambling makes them the first of a number: the last step mixes the high ones

@@ -3,8 +3,8 @@
 //
 // A list of types is a macro that names each of them once, for C++ and GLSL alike; numbers count from 0:
 //     #define MATERIALS(X, P) X(P, 0, Diffuse, diffuse) X(P, 1, Glass, glass)
-#ifndef TWINRAY_SHARED_MULTI_TYPE_SET_H
-#define TWINRAY_SHARED_MULTI_TYPE_SET_H
+#ifndef TWINRAY_SCENE_MULTI_TYPE_SET_H
+#define TWINRAY_SCENE_MULTI_TYPE_SET_H
 #include "shaders/shared/faults.h"
 
 // Names one element of a set, for as long as the set lives. All zero: names none.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "swtlas/traffic.h"
+#include "cli/kernels/traffic.h"
 
 #include "swtlas/structures.h"
 

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/exact.h"
-#include "shaders/shared/float_probe.h"
+#include "shaders/verify/float_probe.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { FloatProbeArgs args; };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Textures as kernels name and reach them: what TextureStore gives.
-#ifndef TWINRAY_SHARED_TEXTURES_H
-#define TWINRAY_SHARED_TEXTURES_H
+#ifndef TWINRAY_SCENE_TEXTURES_H
+#define TWINRAY_SCENE_TEXTURES_H
 #include "shaders/shared/faults.h"
 
 // Names one texture, for as long as its store lives. All zero: none.

@@ -3,7 +3,7 @@
 #include <bit>
 #include <numeric>
 
-#include "swtlas/reference_leaves.h"
+#include "validation/cpu_reference/reference_leaves.h"
 
 namespace twinray::reference {
 namespace {

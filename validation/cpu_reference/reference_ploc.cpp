@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include "swtlas/reference_leaves.h"
+#include "validation/cpu_reference/reference_leaves.h"
 
 namespace twinray::reference {
 namespace {

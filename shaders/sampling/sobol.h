@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Points in four dimensions that fill the unit cube evenly, and independent random ones.
-#ifndef TWINRAY_SHARED_SOBOL_H
-#define TWINRAY_SHARED_SOBOL_H
-#include "shaders/shared/random.h"
+#ifndef TWINRAY_SAMPLING_SOBOL_H
+#define TWINRAY_SAMPLING_SOBOL_H
+#include "shaders/sampling/random.h"
 
 // Dimensions three and four of the Sobol sequence as 32-bit fractions, with the direction numbers of Joe and Kuo,
 // "Constructing Sobol sequences with better two-dimensional projections", 2008: polynomials x^2 + x + 1 from 1, 3, and

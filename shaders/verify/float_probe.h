@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the probe of a device's float arithmetic takes and gives.
-#ifndef TWINRAY_SHARED_FLOAT_PROBE_H
-#define TWINRAY_SHARED_FLOAT_PROBE_H
+#ifndef TWINRAY_VERIFY_FLOAT_PROBE_H
+#define TWINRAY_VERIFY_FLOAT_PROBE_H
 
 struct FloatCase
 {

@@ -5,7 +5,7 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/transform.h"
-#include "shaders/shared/deform.h"
+#include "shaders/scene/deform.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { DeformArgs args; };
 

@@ -5,7 +5,7 @@
 #include "engine/accel/geometry.h"
 #include "engine/accel/refinement.h"
 #include "engine/accel/trace_desc.h"
-#include "swtlas/reference.h"
+#include "validation/cpu_reference/reference.h"
 
 namespace twinray::reference {
 

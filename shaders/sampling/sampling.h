@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Warps from the unit square, and local frames.
-#ifndef TWINRAY_SHARED_SAMPLING_H
-#define TWINRAY_SHARED_SAMPLING_H
+#ifndef TWINRAY_SAMPLING_SAMPLING_H
+#define TWINRAY_SAMPLING_SAMPLING_H
 
 const float PI = 3.14159265358979f;
 

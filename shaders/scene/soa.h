@@ -3,8 +3,8 @@
 //
 // A list of fields has the form of a list of types (multi_type_set.h):
 //     #define RAY_QUEUE(X, P) X(P, 0, vec3, origin) X(P, 1, vec3, direction) X(P, 2, float, t_max)
-#ifndef TWINRAY_SHARED_SOA_H
-#define TWINRAY_SHARED_SOA_H
+#ifndef TWINRAY_SCENE_SOA_H
+#define TWINRAY_SCENE_SOA_H
 #include "shaders/shared/faults.h"
 
 // Arrays of plain words and vectors; those of structs have a BUFFER_OF beside the struct.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#ifndef TWINRAY_SHARED_COPY_ITEMS_H
-#define TWINRAY_SHARED_COPY_ITEMS_H
+#ifndef TWINRAY_VERIFY_COPY_ITEMS_H
+#define TWINRAY_VERIFY_COPY_ITEMS_H
 
 struct CopyItemsArgs
 {
