@@ -199,7 +199,7 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
         commands.write(scene->buffer, header);
     }
     builder_.record_instances(commands, plan_build(std::span(&input.count, 1), options().layout, context().tuning()),
-                              scene->tree(input.count), input.records, scene->instances());
+                              {scene->tree(input.count), input.records, scene->instances()});
     const Builder::Measured measured{{scene->address}, scene->records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), true);
     return made;
@@ -228,7 +228,7 @@ BuildBytes SwTlas::scene_bytes(std::size_t count, std::size_t capacity) const {
 void SwTlas::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
     const auto& scene = static_cast<const SwBuiltScene&>(current);
     builder_.record_refit(commands, plan_build(std::span(&input.count, 1), options().layout, context().tuning()),
-                          scene.tree(input.count), input.records, scene.instances());
+                          {scene.tree(input.count), input.records, scene.instances()});
     const Builder::Measured measured{{scene.address}, scene.records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), false);
 }

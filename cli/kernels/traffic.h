@@ -8,7 +8,7 @@ namespace twinray {
 
 // Bytes a triangle that a build of SwTlas reads and writes: each array as often as a pass goes through it, a vertex for
 // each corner. What caches save, or lines that are fetched in vain cost, is not in it. Records are counted as many as a
-// tree may need, and the second sort by fine codes, which few meshes need, not at all.
+// tree may need, and the second sort, by 60-bit codes, which few meshes need, not at all.
 struct BuildTraffic {
     double read = 0, written = 0;
 };

@@ -17,7 +17,7 @@ const uint INSTANCE_BIT = 0x40000000u; // in records of leaves
 const uint WIDE_BIT = INSTANCE_BIT;    // in other records
 const uint NOTHING = 0xffffffffu;
 
-// Inner nodes on a path split on ever lower bits of (30-bit Morton code, 30-bit fine code, 25-bit position).
+// Inner nodes on a path split on ever lower bits of (60-bit Morton code, 25-bit position).
 const uint DEEPEST_TREE = 85u;
 const uint DEEPEST_RECORDS = (DEEPEST_TREE + 1u) / 2u; // inner nodes on a path of records, see collapse.h
 

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: MIT 30-bit Morton codes: 10 bits an axis, x in the highest bit of each triple. A fine code
-// is that of the next 10 bits an axis.
+// SPDX-License-Identifier: MIT 
+// 30-bit Morton codes: 10 bits an axis, x in the highest bit of each triple; and of 60-bit codes the lower half, that of
+// the next 10 bits an axis.
 #ifndef TWINRAY_SHARED_MORTON_H
 #define TWINRAY_SHARED_MORTON_H
 #include "shaders/shared/whole.h"
@@ -33,7 +34,7 @@ FUNC uint morton_code(vec3 point, vec3 lo, vec3 hi)
            spread_bits(cell_of(point.z, lo.z, hi.z) >> 10u);
 }
 
-FUNC uint fine_code(vec3 point, vec3 lo, vec3 hi)
+FUNC uint morton_code_low(vec3 point, vec3 lo, vec3 hi)
 {
     return (spread_bits(cell_of(point.x, lo.x, hi.x) & 1023u) << 2u) |
         (spread_bits(cell_of(point.y, lo.y, hi.y) & 1023u) << 1u) |

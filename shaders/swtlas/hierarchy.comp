@@ -2,7 +2,7 @@
 // Topology and boxes in one bottom-up pass: after Apetrei, "Fast and Simple Agglomerative LBVH Construction", 2014.
 //
 // Sorted leaves i and i + 1 are separated by their split: the highest bit in which their codes differ, or, where the
-// codes are equal, their fine codes, if they are sorted by those, or their positions. A finished range [first, last] is
+// codes are equal, their low codes, if they are sorted by those, or their positions. A finished range [first, last] is
 // joined with the neighbour across the lower of the splits at its ends, and the inner node is named after that split:
 //
 //     leaf    0    1    2    3            split 1 is the highest: node 1 is the root.
@@ -11,7 +11,7 @@
 //
 // An invocation has a run of leaves. A range that is to be joined with one to its right waits in the left half of their
 // node; within a run the next ranges find it there. Ranges that reach over the ends of their run climb once the run is
-// done: of the two that meet at a node the first leaves its own far end in meeting[] and stops; the second finds it
+// done: of the two that meet at a node the first leaves its own far end in other_bounds[] and stops; the second finds it
 // there and goes on with both. A range writes its half of the node before the exchange.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -19,7 +19,7 @@
 #include "shaders/shared/build.h"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(constant_id = 0) const uint QUALITY = HIERARCHY_FAST;
-layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
+layout(push_constant, scalar) uniform Push { BuildArgs args; };
 
 // The nodes as seen by all groups, not through caches of one.
 REFERENCE(NodeHalves, coherent, BvhHalf items[], 16)
@@ -63,7 +63,7 @@ void climb(BuildTree tree, NodeHalves nodes, float scale, Range range)
         uint node = split - tree.first;
         put_half(nodes, node, joins_right ? 0u : 1u, range.top);
         memoryBarrierBuffer();
-        uint other = atomicExchange(AT(args.meeting, split), joins_right ? range.first : range.last);
+        uint other = atomicExchange(AT(args.other_bounds, split), joins_right ? range.first : range.last);
         if (other == NOTHING) return;
         memoryBarrierBuffer();
         Rotation rotation = join(range.top, get_half(nodes, node, joins_right ? 1u : 0u), node,
@@ -187,14 +187,14 @@ void build_run(BuildTree tree, float scale, uint begin, uint end)
 
 void main()
 {
-    uint runs = BUILD_GROUP / args.run;
+    uint runs = BUILD_GROUP / args.leaves_per_invocation;
     uint index = global_index();
-    if (index / runs >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, index / runs);
-    uint begin = index % runs * args.run;
-    if (begin >= block.count) return;
-    LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
-    is_fine = AT(args.crowding, 0).is_fine != 0u;
-    build_run(AT(args.trees, block.tree), area_scale(bounds.lo, bounds.hi), block.first + begin,
-              block.first + min(begin + args.run, block.count));
+    if (index / runs >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, index / runs);
+    uint begin = index % runs * args.leaves_per_invocation;
+    if (begin >= chunk.count) return;
+    LeafBox bounds = bounds_of(AT(args.centroids, chunk.tree));
+    has_low_codes = AT(args.duplicate_codes, 0).has_low_codes != 0u;
+    build_run(AT(args.trees, chunk.tree), area_scale(bounds.lo, bounds.hi), chunk.first + begin,
+              chunk.first + min(begin + args.leaves_per_invocation, chunk.count));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Topology and boxes in one pass, as in hierarchy.comp, but by clusters (shaders/shared/ploc.h). An invocation begins
-// with a leaf and climbs the radix tree; of the two that meet at a split the first leaves its own far end in meeting[]
+// with a leaf and climbs the radix tree; of the two that meet at a split the first leaves its own far end in other_bounds[]
 // and stops. Where the range that the second has then is to be merged, the whole group merges it.
 //
 // Between merges the clusters of a range stand in lists by place in the order, where the range begins: their tops,
@@ -11,7 +11,7 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
-layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
+layout(push_constant, scalar) uniform Push { BuildArgs args; };
 
 // As seen by all groups, not through caches of one.
 REFERENCE(NodeHalves, coherent, BvhHalf items[], 16)
@@ -50,7 +50,7 @@ bool climb(BuildTree tree, inout Range range)
         bool joins_right = less64(right, left);
         range.split = joins_right ? range.last : range.first - 1u;
         memoryBarrierBuffer();
-        uint other = atomicExchange(AT(args.meeting, range.split), joins_right ? range.first : range.last);
+        uint other = atomicExchange(AT(args.other_bounds, range.split), joins_right ? range.first : range.last);
         if (other == NOTHING) return false;
         memoryBarrierBuffer();
         range.limit = height_limit(joins_right ? right : left, tree.count);
@@ -242,18 +242,18 @@ Range begin_leaf(BuildTree tree, uint position)
 void main()
 {
     uint groups = BUILD_GROUP / gl_WorkGroupSize.x;
-    if (group_index() / groups >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index() / groups);
+    if (group_index() / groups >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index() / groups);
     uint begin = group_index() % groups * gl_WorkGroupSize.x;
-    if (begin >= block.count) return;
-    BuildTree tree = AT(args.trees, block.tree);
-    LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
+    if (begin >= chunk.count) return;
+    BuildTree tree = AT(args.trees, chunk.tree);
+    LeafBox bounds = bounds_of(AT(args.centroids, chunk.tree));
     float scale = area_scale(bounds.lo, bounds.hi);
-    is_fine = AT(args.crowding, 0).is_fine != 0u;
+    has_low_codes = AT(args.duplicate_codes, 0).has_low_codes != 0u;
     uint leaf = begin + gl_LocalInvocationID.x;
-    bool goes_on = leaf < block.count;
+    bool goes_on = leaf < chunk.count;
     Range range = Range(0u, 0u, 0u, 0u);
-    if (goes_on) range = begin_leaf(tree, block.first + leaf);
+    if (goes_on) range = begin_leaf(tree, chunk.first + leaf);
     for (;;)
     {
         goes_on = goes_on && climb(tree, range);

@@ -8,7 +8,7 @@
 #include "shaders/shared/collapse.h"
 #include "shaders/swtlas/slots.glsl"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
-layout(push_constant, scalar) uniform Push { RefitRecordsArgs args; };
+layout(push_constant, scalar) uniform Push { RefitArgs args; };
 
 // The boxes as seen by all groups, not through caches of one.
 REFERENCE(SharedBoxes, coherent, LeafBox items[], 8)
@@ -57,13 +57,13 @@ uint leave(BuildTree tree, uint slot, LeafBox box)
 
 void main()
 {
-    BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
-    BuildTree tree = AT(args.trees, block.tree);
-    if (group_index() >= args.block_count) return;
+    if (group_index() >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index());
+    BuildTree tree = AT(args.trees, chunk.tree);
     SharedBoxes boxes = SharedBoxes(args.slot_boxes.address);
-    uint last = slots_end(tree, block);
-    uint run = (last - slots_begin(tree, block) + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
-    uint next = min(slots_begin(tree, block) + gl_LocalInvocationID.x * run, last);
+    uint last = slots_end(tree, chunk);
+    uint run = (last - slots_begin(tree, chunk) + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
+    uint next = min(slots_begin(tree, chunk) + gl_LocalInvocationID.x * run, last);
     uint end = min(next + run, last);
     uint climbed = NOTHING;
     while (climbed != NOTHING || next < end)

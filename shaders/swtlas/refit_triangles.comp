@@ -5,15 +5,15 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
 layout(local_size_x = BUILD_GROUP) in;
-layout(push_constant, scalar) uniform Push { RefitTrianglesArgs args; };
+layout(push_constant, scalar) uniform Push { RefitArgs args; };
 
 void main()
 {
-    if (group_index() >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index());
-    if (gl_LocalInvocationIndex >= block.count) return;
-    uint leaf = block.first + gl_LocalInvocationIndex;
-    BuildTree tree = AT(args.trees, block.tree);
+    if (group_index() >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index());
+    if (gl_LocalInvocationIndex >= chunk.count) return;
+    uint leaf = chunk.first + gl_LocalInvocationIndex;
+    BuildTree tree = AT(args.trees, chunk.tree);
     uint place = leaf - tree.first;
     BvhTriangle triangle = fetch_primitive(tree, AT(tree.triangles, place).primitive_index);
     store_box(args.boxes, leaf, box_of_triangle(triangle));

@@ -7,13 +7,13 @@
 
 const uvec2 TREE_END = uvec2(~0u); // the split beside the first and the last leaf
 
-bool is_fine; // leaves are sorted by fine codes, too
+bool has_low_codes; // leaves are sorted by low codes, too
 
 uvec2 split_of(BuildTree tree, uint position, uint code, uint next_code)
 {
     uint difference = 0u;
-    if (is_fine && code == next_code)
-        difference = AT(args.fine_codes, AT(args.order, position)) ^ AT(args.fine_codes, AT(args.order, position + 1u));
+    if (has_low_codes && code == next_code)
+        difference = AT(args.low_codes, AT(args.order, position)) ^ AT(args.low_codes, AT(args.order, position + 1u));
     return make_split(code ^ next_code, difference, position - tree.first);
 }
 uvec2 split_after(BuildTree tree, uint position)

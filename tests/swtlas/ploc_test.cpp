@@ -62,7 +62,7 @@ TEST_P(SwPloc, ATreeOfNestedBoxesIsAsHighAsItMayBeAndNoHigher) {
     }
 }
 
-// On ever lower bits of the codes, then of the fine codes, then of places.
+// On ever lower bits of the codes, then of their lower halves, then of positions.
 TEST_P(SwPloc, NestedBoxesAtTheEndOfALongWayDownStayWithinTheDeepestTree) {
     for (const uint places : {20u, 200u}) {
         Mesh mesh = nested(places, 1.05f);

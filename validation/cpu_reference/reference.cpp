@@ -34,12 +34,12 @@ struct TopDown {
     }
 };
 
-bool is_crowded(std::vector<uint> codes) {
+bool has_many_duplicates(std::vector<uint> codes) {
     std::sort(codes.begin(), codes.end());
-    uint crowded = 0;
-    for (std::size_t i = 0; i + CROWD < codes.size(); ++i)
-        crowded += codes[i] != INACTIVE_CODE && codes[i] == codes[i + CROWD] ? 1 : 0;
-    return codes.size() > CROWD && needs_fine_codes(crowded, static_cast<uint>(codes.size()));
+    uint duplicates = 0;
+    for (std::size_t i = 0; i + MANY_DUPLICATES < codes.size(); ++i)
+        duplicates += codes[i] != INACTIVE_CODE && codes[i] == codes[i + MANY_DUPLICATES] ? 1 : 0;
+    return codes.size() > MANY_DUPLICATES && needs_low_codes(duplicates, static_cast<uint>(codes.size()));
 }
 
 std::vector<CompressedRecord> records_of(const Hierarchy& tree, BuildTree input, uint width) {
@@ -100,18 +100,18 @@ Codes morton(std::span<const LeafBox> boxes, const CentroidBounds& bounds) {
     const LeafBox all = bounds_of(bounds);
     Codes codes;
     for (const LeafBox& box : boxes)
-        codes.coarse.push_back(is_active(box) ? morton_code(center_of(box), all.lo, all.hi) : INACTIVE_CODE);
-    if (!is_crowded(codes.coarse)) return codes;
+        codes.high.push_back(is_active(box) ? morton_code(center_of(box), all.lo, all.hi) : INACTIVE_CODE);
+    if (!has_many_duplicates(codes.high)) return codes;
     for (const LeafBox& box : boxes)
-        codes.fine.push_back(is_active(box) ? fine_code(center_of(box), all.lo, all.hi) : INACTIVE_CODE);
+        codes.low.push_back(is_active(box) ? morton_code_low(center_of(box), all.lo, all.hi) : INACTIVE_CODE);
     return codes;
 }
 
 std::vector<uint> sort(const Codes& codes) {
-    std::vector<uint> order(codes.coarse.size());
+    std::vector<uint> order(codes.high.size());
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](uint leaf) {
-        return std::pair(codes.coarse[leaf], codes.fine.empty() ? 0 : codes.fine[leaf]);
+        return std::pair(codes.high[leaf], codes.low.empty() ? 0 : codes.low[leaf]);
     };
     std::stable_sort(order.begin(), order.end(), [&](uint a, uint b) { return key(a) < key(b); });
     return order;
@@ -119,8 +119,8 @@ std::vector<uint> sort(const Codes& codes) {
 
 uvec2 SortedLeaves::split_after(std::size_t position) const {
     const uint left = order[position], right = order[position + 1];
-    const uint fine = codes.fine.empty() ? 0 : codes.fine[left] ^ codes.fine[right];
-    return make_split(codes.coarse[left] ^ codes.coarse[right], fine, static_cast<uint>(position));
+    const uint fine = codes.low.empty() ? 0 : codes.low[left] ^ codes.low[right];
+    return make_split(codes.high[left] ^ codes.high[right], fine, static_cast<uint>(position));
 }
 
 std::size_t SortedLeaves::highest_split(std::size_t first, std::size_t last) const {

@@ -18,9 +18,9 @@ std::vector<LeafBox> leaves_triangles(std::span<const vec3> positions, std::span
 std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, std::vector<SwInstance>& instances);
 
 CentroidBounds centroids(std::span<const LeafBox> boxes);
-// By leaf. Fine codes are there only where a tree is sorted by them, too.
+// By leaf, the halves of 60-bit codes. Low ones are there only where a tree is sorted by them, too.
 struct Codes {
-    std::vector<uint> coarse, fine;
+    std::vector<uint> high, low;
 };
 Codes morton(std::span<const LeafBox> boxes, const CentroidBounds& bounds);
 
