@@ -29,7 +29,10 @@ install(
     PATTERN "*.h"
     PATTERN "gltf_*.h" EXCLUDE
 )
-install(DIRECTORY shaders/shared shaders/hwtlas shaders/engine shaders/scene shaders/sampling DESTINATION ${headers_dir}/shaders)
+install(
+    DIRECTORY shaders/shared shaders/hwtlas shaders/engine shaders/scene shaders/sampling
+    DESTINATION ${headers_dir}/shaders
+)
 install(DIRECTORY shaders/twinray/ DESTINATION ${headers_dir})
 
 # A static library leaves it to the host to link what it uses itself.

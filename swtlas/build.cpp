@@ -197,7 +197,7 @@ RadixSort::Pairs Builder::record_order(Commands& commands, const BuildPlan& plan
     const uint count = plan.leaf_count;
     morton_.dispatch_groups(commands, batch.args, batch.args.chunk_count);
     const RadixSort::Pairs by_code =
-        sort_.record_places(commands, batch.args.codes, batch.pairs, batch.spare, batch.counters, count, morton_bits);
+        sort_.record_iota(commands, batch.args.codes, batch.pairs, batch.spare, batch.counters, count, morton_bits);
     RadixSort::Pairs sorted = by_code;
     if (plan.tree_bits != 0) {
         gather_keys_.dispatch(commands, {batch.args.tree_of, sorted.values, sorted.keys, count, 0}, count);
@@ -228,8 +228,8 @@ void Builder::record_60_bit_order(Commands& commands, const BuildPlan& plan, con
     duplicate_codes_.dispatch_groups(
         commands, {batch.sorted(sorted), std::max(batch.args.chunk_count, chunks), sort_.sort_groups(count)}, chunks);
     low_codes_.dispatch_indirect(commands, batch.args, batch.scratch, of_leaves);
-    RadixSort::Pairs by_low_code = sort_.record_places(commands, batch.args.low_codes, by_code, batch.other(by_code),
-                                                       batch.counters, count, morton_bits, &counts);
+    RadixSort::Pairs by_low_code = sort_.record_iota(commands, batch.args.low_codes, by_code, batch.other(by_code),
+                                                     batch.counters, count, morton_bits, &counts);
     gather(batch.args.codes, by_low_code);
     const RadixSort::Pairs by_both = sort(by_low_code, morton_bits);
     if (plan.tree_bits == 0) return;

@@ -30,7 +30,7 @@ class Builder {
         Ref<SwInstance> instances;
     };
     void record_instances(Commands& commands, const BuildPlan& plan, const InstanceTree& tree) const;
-    // New boxes and corners for trees that record_triangles left behind, whose vertices moved.
+    // New boxes and vertices for trees that record_triangles left behind, whose vertices moved.
     void record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                                const Buffer& scratch) const;
     // New boxes, and new `instances`, for the topology that record_instances left behind.
@@ -58,7 +58,7 @@ class Builder {
     // The leaves in order, with their codes.
     RadixSort::Pairs record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_60_bit_order(Commands& commands, const BuildPlan& plan, const Batch& batch,
-                           const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const;
+                             const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const;
     void record_tree(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
     void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch, const BuildArgs& args) const;
     void record_boxes(Commands& commands, const BuildPlan& plan, const Batch& batch) const;

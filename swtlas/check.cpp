@@ -79,7 +79,7 @@ class BinaryWalk : public TreeWalk<BvhNode> {
         if (reference & LEAF_BIT) return visit_leaf(reference & ~LEAF_BIT);
         if (!enter(reference, "node")) return empty_box();
         const BvhNode& node = items_[reference];
-        if (node.below0 != edge) violated(text("node ", reference, ": its edge is ", edge, ", not ", node.below0));
+        if (node.subtree0 != edge) violated(text("node ", reference, ": its edge is ", edge, ", not ", node.subtree0));
         result_.width = 2;
         const LeafBox a = visit(node.child0, depth + 1, make_edge(reference, 0));
         const LeafBox b = visit(node.child1, depth + 1, make_edge(reference, 1));
@@ -152,24 +152,24 @@ class CompressedWalk : public TreeWalk<CompressedRecord> {
         if (count < 2 || count > width) return violated(text("record ", index, " has ", count, " children"));
         if (width == 8 && !has_second_half(index)) return violated(text("node ", index, " has no sound second half"));
         const CompressedRecord& second_half = items_[width == 8 ? index + 1 : index];
-        const ChildPlaces places = places_in(node, second_half);
+        const ChildSlots slots = child_slots(node, second_half);
         LeafBox all = empty_box();
         std::vector<Span> spans;
         for (uint slot = 0; slot < 8; ++slot)
-            if (has_child(places, slot)) {
-                const LeafBox below = visit_child(places, slot, depth);
+            if (has_child(slots, slot)) {
+                const LeafBox below = visit_child(slots, slot, depth);
                 check_planes(index, planes_of(node, slot < 4 ? node : second_half, slot), below, slot);
                 if (is_active(below)) all = {min(all.lo, below.lo), max(all.hi, below.hi)};
                 if (below_.first <= below_.last) spans.push_back(below_);
             }
-        check_apart(index, places, std::move(spans));
+        check_apart(index, slots, std::move(spans));
         return all;
     }
 
     // Records below different children do not mix: a ray finds its way back to one by where children's own begin.
-    void check_apart(uint index, const ChildPlaces& places, std::vector<Span> spans) {
+    void check_apart(uint index, const ChildSlots& slots, std::vector<Span> spans) {
         std::ranges::sort(spans, {}, &Span::first);
-        below_ = {places.first, places_end(places) - 1};
+        below_ = {slots.first, children_end(slots) - 1};
         for (std::size_t i = 0; i < spans.size(); ++i) {
             if (i > 0 && spans[i].first <= spans[i - 1].last)
                 violated(text("records below the children of record ", index, " mix"));
@@ -187,12 +187,12 @@ class CompressedWalk : public TreeWalk<CompressedRecord> {
                (nodes & ~slots) == 0 && static_cast<uint>(bitCount(slots)) == children_in(items_[index]);
     }
 
-    LeafBox visit_child(const ChildPlaces& places, uint slot, uint depth) {
-        const uint place = place_of(places, slot);
-        const bool is_node = (places.slots >> slot & 0x100) != 0;
-        if (result_.width == 8 && place < items_.size() && is_node == is_leaf(items_[place]))
-            return violated(text("record ", place, is_node ? " is no node" : " is no leaf"));
-        return visit(place, depth + 1);
+    LeafBox visit_child(const ChildSlots& slots, uint slot, uint depth) {
+        const uint index = child_index(slots, slot);
+        const bool is_node = (slots.mask >> slot & 0x100) != 0;
+        if (result_.width == 8 && index < items_.size() && is_node == is_leaf(items_[index]))
+            return violated(text("record ", index, is_node ? " is no node" : " is no leaf"));
+        return visit(index, depth + 1);
     }
 
     void check_planes(uint index, const Planes& planes, const LeafBox& below, uint slot) {

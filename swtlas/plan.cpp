@@ -134,7 +134,7 @@ SceneLayout layout_scene(uint instance_count, Layout layout) {
     parts.node_count = has_records(layout) ? 0 : inner_count(instance_count);
     parts.record_count = has_records(layout) ? record_count(instance_count, width_of(layout)) : 0;
     Arena arena;
-    arena.take<SwScene>(1);
+    arena.take<SwTlasHeader>(1);
     parts.nodes = arena.take<BvhNode>(parts.node_count);
     parts.instances = arena.take<SwInstance>(instance_count);
     parts.records = arena.take<CompressedRecord>(parts.record_count);

@@ -29,12 +29,12 @@ struct BuildScratch {
 };
 
 struct BuildPlan {
-    std::vector<uint> first;         // by tree: its first leaf in the batch
-    std::vector<LeafChunk> chunks;   // of leaves of one tree, a group each
-    uint leaf_count = 0;             // of the batch
-    uint tree_bits = 0;              // bits of the largest tree index; 0 = one tree, no sort by tree
-    uint collapse_levels = 0;        // below the roots that are collapsed one by one; the rest goes by subtrees
-    uint subtree_leaves = 0;         // of a subtree that a group collapses whole, at most, while there are levels left
+    std::vector<uint> first;        // by tree: its first leaf in the batch
+    std::vector<LeafChunk> chunks;  // of leaves of one tree, a group each
+    uint leaf_count = 0;            // of the batch
+    uint tree_bits = 0;             // bits of the largest tree index; 0 = one tree, no sort by tree
+    uint collapse_levels = 0;       // below the roots that are collapsed one by one; the rest goes by subtrees
+    uint subtree_leaves = 0;        // of a subtree that a group collapses whole, at most, while there are levels left
     Layout layout = Layout::compressed4;
     BuildScratch scratch;
 };
@@ -63,7 +63,7 @@ struct GeometryLayout {
 };
 GeometryLayout layout_geometry(uint triangle_count, Layout layout);
 
-// Where the parts of a scene lie in its buffer; its SwScene is at 0.
+// Where the parts of a scene lie in its buffer; its SwTlasHeader is at 0.
 struct SceneLayout {
     uint node_count = 0, record_count = 0;
     std::uint64_t nodes = 0, instances = 0, records = 0, bytes = 0;

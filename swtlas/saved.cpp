@@ -134,7 +134,7 @@ void check_records(Layout layout, const SavedGeometry& geometry) {
         if (primitive >= primitives) fail("primitive ", primitive, " of ", primitives);
         if (const CompressedRecord right = encode_leaf(source, primitive);
             std::memcmp(&record, &right, sizeof right) != 0)
-            fail("the record of primitive ", primitive, " does not have its corners");
+            fail("the record of primitive ", primitive, " does not have its vertices");
     }
     std::vector<LeafBox> boxes;
     boxes.reserve(primitives);

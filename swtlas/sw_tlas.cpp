@@ -113,7 +113,7 @@ std::vector<Builder::Measured> SwTlas::measured(const Batch& batch, std::span<co
 std::vector<DeviceMesh> SwTlas::record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch) {
     std::vector<Commands::Piece> pieces;
     std::uint64_t next = batch.plan.scratch.bytes;
-    const auto place = [&](std::span<const std::byte> data) {
+    const auto stage = [&](std::span<const std::byte> data) {
         pieces.push_back({next, data});
         next += data.size();
         return scratch.address() + pieces.back().offset;
@@ -124,11 +124,11 @@ std::vector<DeviceMesh> SwTlas::record_meshes(Commands& commands, const Batch& b
         if (input.mesh.indices.address) continue;
         const Geometry& geometry = *input.geometry;
         if (geometry.kind == GEOMETRY_BOXES) {
-            meshes.back().positions.address = place(std::as_bytes(std::span(geometry.boxes)));
+            meshes.back().positions.address = stage(std::as_bytes(std::span(geometry.boxes)));
             continue;
         }
-        meshes.back().positions.address = place(std::as_bytes(std::span(geometry.positions)));
-        meshes.back().indices.address = place(std::as_bytes(std::span(geometry.triangles)));
+        meshes.back().positions.address = stage(std::as_bytes(std::span(geometry.positions)));
+        meshes.back().indices.address = stage(std::as_bytes(std::span(geometry.triangles)));
     }
     commands.upload_pieces(scratch, pieces);
     return meshes;
@@ -192,8 +192,8 @@ std::unique_ptr<AbstractAccel::BuiltScene> SwTlas::build_scene(Commands& command
         made->bytes = made->buffer.bytes();
         scene = made.get();
     }
-    const SwScene header{empty_bvh(scene->nodes().address), scene->records(), scene->instances(), input.count,
-                         input.refinement.address};
+    const SwTlasHeader header{empty_bvh(scene->nodes().address), scene->records(), scene->instances(), input.count,
+                              input.refinement.address};
     {
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
@@ -251,7 +251,7 @@ SwTlas::Tree SwTlas::download_geometry(AccelHandle handle) const {
 
 SwTlas::Tree SwTlas::download_scene() const {
     const auto& built = static_cast<const SwBuiltScene&>(built_scene());
-    const Bvh bvh = download<SwScene>(context(), built.buffer, 1).front().bvh;
+    const Bvh bvh = download<SwTlasHeader>(context(), built.buffer, 1).front().bvh;
     const SceneLayout of_them = layout_scene(bvh.leaf_count, options().layout);
     return {bvh,
             download<BvhNode>(context(), built.buffer, of_them.node_count, built.layout.nodes),

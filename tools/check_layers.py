@@ -26,7 +26,7 @@ SEES = {  # besides itself and shaders/shared
     "shaders": ["shaders/engine", "shaders/sampling", "shaders/scene"],  # each other folder of shaders, but shaders/shared, which sees nothing else
 }
 MOST_HEADERS = {  # of this project behind a public one, directly or not; lower them whenever they fall
-    "engine/accel/abstract_accel.h": 57, "hwtlas/hw_tlas.h": 67, "swtlas/sw_tlas.h": 89,
+    "engine/accel/abstract_accel.h": 56, "hwtlas/hw_tlas.h": 66, "swtlas/sw_tlas.h": 88,
 }
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all
 SOURCE = re.compile(r"\.(h|hpp|c|cc|cpp|inl)$|" + GLSL.pattern)

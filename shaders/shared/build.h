@@ -119,7 +119,7 @@ const uint HIERARCHY_HIGH = 1u; // with rotations
 // Of quality ploc, see ploc.h.
 const uint PLOC_GROUP = 32u; // invocations at most, as many as clusters that they merge
 
-// New boxes for an old topology. A tree's slots are its places for records; they begin at 2 * BuildTree::first.
+// New boxes for an old topology. A tree's slots are its indices of records; they begin at 2 * BuildTree::first.
 struct RefitArgs
 {
     REF(BuildTree) trees;
@@ -166,21 +166,21 @@ FUNC BvhTriangle fetch_primitive(BuildTree tree, uint primitive)
         triangle.primitive_index = primitive;
         return triangle;
     }
-    uvec3 corners = load_indices(tree.indices, primitive);
-    triangle.v0 = load_position(tree.positions, corners.x);
-    triangle.v1 = load_position(tree.positions, corners.y);
-    triangle.v2 = load_position(tree.positions, corners.z);
+    uvec3 vertices = load_indices(tree.indices, primitive);
+    triangle.v0 = load_position(tree.positions, vertices.x);
+    triangle.v1 = load_position(tree.positions, vertices.y);
+    triangle.v2 = load_position(tree.positions, vertices.z);
     triangle.primitive_index = primitive;
     return triangle;
 }
 
-// Triangles that cannot be hit keep their place in the tree with an empty box.
+// Triangles that cannot be hit stay in the tree with an empty box.
 FUNC LeafBox box_of_triangle(BvhTriangle t)
 {
     if (!is_active_triangle(t.v0, t.v1, t.v2)) return empty_box();
     LeafBox box;
-    box.lo = lesser_of(t.v0, lesser_of(t.v1, t.v2));
-    box.hi = greater_of(t.v0, greater_of(t.v1, t.v2));
+    box.lo = min_by_comparison(t.v0, min_by_comparison(t.v1, t.v2));
+    box.hi = max_by_comparison(t.v0, max_by_comparison(t.v1, t.v2));
     return box;
 }
 
@@ -195,7 +195,7 @@ FUNC LeafBox box_of_primitive(BuildTree tree, uint primitive)
 }
 
 // A triangle as traversal wants it.
-FUNC BvhTriangle without_inactive_corners(BvhTriangle t)
+FUNC BvhTriangle without_inactive_vertices(BvhTriangle t)
 {
     if (is_active_triangle(t.v0, t.v1, t.v2)) return t;
     t.v0 = vec3(0.0f);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The triangles in sorted order, corners inlined.
+// The triangles in sorted order, vertices inlined.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -15,6 +15,6 @@ void main()
     uint position = chunk.first + gl_LocalInvocationIndex;
     BuildTree tree = AT(args.trees, chunk.tree);
     BvhTriangle fetched = fetch_primitive(tree, AT(args.order, position) - tree.first);
-    if (!has_boxes(tree)) fetched = without_inactive_corners(fetched);
+    if (!has_boxes(tree)) fetched = without_inactive_vertices(fetched);
     AT(tree.triangles, position - tree.first) = fetched;
 }

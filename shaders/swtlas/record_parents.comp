@@ -15,9 +15,9 @@ void visit(BuildTree tree, uint slot)
     if (is_leaf(record)) return;
     AT(args.missing, base + slot) = children_in(record);
     if (children_in(record) == 0u) return;
-    ChildPlaces places = places_in(record, second_half_of(tree.records, slot, record));
+    ChildSlots slots = child_slots(record, second_half_of(tree.records, slot, record));
     DONT_UNROLL for (uint i = 0u; i < NODE_WIDTH; ++i)
-        if (has_child(places, i)) AT(args.parents, base + place_of(places, i)) = slot;
+        if (has_child(slots, i)) AT(args.parents, base + child_index(slots, i)) = slot;
 }
 
 void main()

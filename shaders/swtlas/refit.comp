@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// New boxes for an old topology: each leaf climbs with its box, and of the two children that arrive at a node the
+// New boxes for an old topology: each leaf goes up with its box, and of the two children that arrive at a node the
 // second goes on with both.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -11,7 +11,7 @@ layout(push_constant, scalar) uniform Push { RefitArgs args; };
 // The nodes as seen by all groups, not through caches of one.
 REFERENCE(SharedNodes, coherent, BvhNode items[], 16)
 
-void climb(BuildTree tree, uint leaf)
+void traverse_bottom_up(BuildTree tree, uint leaf)
 {
     SharedNodes nodes = SharedNodes(tree.nodes.address);
     LeafBox box = AT(args.boxes, leaf);
@@ -46,5 +46,5 @@ void main()
     if (group_index() >= args.chunk_count) return;
     LeafChunk chunk = AT(args.chunks, group_index());
     if (gl_LocalInvocationIndex >= chunk.count) return;
-    climb(AT(args.trees, chunk.tree), chunk.first + gl_LocalInvocationIndex);
+    traverse_bottom_up(AT(args.trees, chunk.tree), chunk.first + gl_LocalInvocationIndex);
 }

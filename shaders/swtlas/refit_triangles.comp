@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles whose vertices moved: corners and boxes, in the order that they have in their tree.
+// Triangles whose vertices moved: vertices and boxes, in the order that they have in their tree.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -14,8 +14,8 @@ void main()
     if (gl_LocalInvocationIndex >= chunk.count) return;
     uint leaf = chunk.first + gl_LocalInvocationIndex;
     BuildTree tree = AT(args.trees, chunk.tree);
-    uint place = leaf - tree.first;
-    BvhTriangle triangle = fetch_primitive(tree, AT(tree.triangles, place).primitive_index);
+    uint position = leaf - tree.first;
+    BvhTriangle triangle = fetch_primitive(tree, AT(tree.triangles, position).primitive_index);
     store_box(args.boxes, leaf, box_of_triangle(triangle));
-    AT(tree.triangles, place) = without_inactive_corners(triangle);
+    AT(tree.triangles, position) = without_inactive_vertices(triangle);
 }

@@ -2,7 +2,7 @@
 // The leaves of a tree in order and the splits between them, for kernels whose args have them.
 #ifndef TWINRAY_SWTLAS_SORTED_LEAVES_GLSL
 #define TWINRAY_SWTLAS_SORTED_LEAVES_GLSL
-#include "shaders/shared/node_half.h"
+#include "shaders/shared/node_child.h"
 #include "shaders/shared/splits.h"
 
 const uvec2 TREE_END = uvec2(~0u); // the split beside the first and the last leaf
@@ -26,7 +26,7 @@ uvec2 split_before(BuildTree tree, uint position)
 }
 
 // The tree is whole.
-void finish(BuildTree tree, NodeHalf root)
+void finish(BuildTree tree, NodeChild root)
 {
     AT(tree.bvh, 0).root = root.child;
     AT(tree.bvh, 0).leaf_count = tree.count;

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT Elements of a MultiTypeSet in kernels: what MultiTypeSet::view() gives, declared by
-// TWINRAY_SET_VIEW.
+// SPDX-License-Identifier: MIT
+// Elements of a MultiTypeSet in kernels: what MultiTypeSet::view() gives, declared by TWINRAY_SET_VIEW.
 //
 //     vec3 color_of(Diffuse diffuse, vec2 uv) { ... }
 //     vec3 color_of(Glass glass, vec2 uv) { ... }

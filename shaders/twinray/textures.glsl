@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Textures of a TextureStore in kernels: what TextureStore::view() gives.
+// SPDX-License-Identifier: MIT
+// Textures of a TextureStore in kernels: what TextureStore::view() gives.
 //
 //     vec4 color = sample_texture(push.textures, material.base_color, uv);
 //

@@ -54,7 +54,7 @@ std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed = nullptr);
 
 // By the leaf index that references of the tree use.
 std::vector<LeafBox> leaf_boxes(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
-// The boxes of the scene tree's leaves over these placements of one mesh, by the serial twin.
+// The boxes of the scene tree's leaves over these placements of one mesh, by the CPU reference.
 std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms,
                                     const AccelOptions& options);
 // Every other one is rotated.
@@ -69,7 +69,7 @@ inline uint width_of(const SwTlas::Tree& tree) {
 // Of a tree whose references are the leaves' own indices, or with records.
 void expect_sound(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes, const std::string& name);
 void expect_sound(const SwTlas::Tree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
-void expect_twin(const SwTlas::Tree& tree, const Mesh& mesh, BuildQuality quality);
+void expect_reference(const SwTlas::Tree& tree, const Mesh& mesh, BuildQuality quality);
 double sah_of(const SwTlas::Tree& tree, const std::vector<LeafBox>& boxes);
 
 }  // namespace twinray::test

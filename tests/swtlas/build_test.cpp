@@ -12,14 +12,14 @@ using namespace test;
 
 class SwBuild : public SwBuildTest {
   protected:
-    // The tree of a mesh alone, which is sound and equal to its twin.
+    // The tree of a mesh alone, which is sound and equal to its CPU reference.
     SwTlas::Tree checked_tree(const Mesh& mesh) {
         SwTlas accel(context(), options());
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
         SwTlas::Tree tree = accel.download_geometry(handle);
         expect_sound(tree, mesh);
-        expect_twin(tree, mesh, quality());
+        expect_reference(tree, mesh, quality());
         return tree;
     }
 };
@@ -46,7 +46,7 @@ TEST_P(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsTwin) {
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         const SwTlas::Tree tree = accel.download_geometry(handles[i]);
         expect_sound(tree, meshes[i]);
-        expect_twin(tree, meshes[i], quality());
+        expect_reference(tree, meshes[i], quality());
     }
 }
 
@@ -75,7 +75,7 @@ TEST_P(SwBuild, EqualCodesThatAreNoCrowdKeepTheirOrder) {
     std::vector<AccelHandle> handles;
     for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
     accel.sync();
-    for (std::size_t i = 0; i < 3; ++i) expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
+    for (std::size_t i = 0; i < 3; ++i) expect_reference(accel.download_geometry(handles[i]), meshes[i], quality());
 }
 
 TEST_P(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
@@ -85,7 +85,7 @@ TEST_P(SwBuild, ATreeDoesNotDependOnTheOthersOfItsBatch) {
     for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
     accel.sync();
     for (std::size_t i = 0; i < handles.size(); ++i)
-        expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
+        expect_reference(accel.download_geometry(handles[i]), meshes[i], quality());
 }
 
 TEST_P(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
@@ -98,11 +98,11 @@ TEST_P(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
         for (const Mesh& mesh : meshes) handles.push_back(accel.push(mesh));
         accel.sync();
         for (std::size_t i = 0; i < meshes.size(); ++i)
-            expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
+            expect_reference(accel.download_geometry(handles[i]), meshes[i], quality());
         for (std::size_t i = 0; i < meshes.size(); ++i) accel.update_vertices(handles[i], meshes[i].positions);
         accel.sync();
         for (std::size_t i = 0; i < meshes.size(); ++i)
-            expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
+            expect_reference(accel.download_geometry(handles[i]), meshes[i], quality());
     }
 }
 
@@ -117,7 +117,7 @@ TEST_P(SwBuild, TreesOfABatchWithLevelsAndSubtreesAreEqualToTheirTwins) {
     }
     accel.sync();
     for (std::size_t i = 0; i < meshes.size(); ++i)
-        expect_twin(accel.download_geometry(handles[i]), meshes[i], quality());
+        expect_reference(accel.download_geometry(handles[i]), meshes[i], quality());
 }
 
 // A triangle beside each power of two, along the axes in turn, and behind these `count` that lie close together.
@@ -154,7 +154,7 @@ TEST_P(SwBuild, LargeMeshesAreSound) {
         accel.sync();
         const SwTlas::Tree tree = accel.download_geometry(handle);
         expect_sound(tree, mesh);
-        if (n == 100'000) expect_twin(tree, mesh, quality());
+        if (n == 100'000) expect_reference(tree, mesh, quality());
     }
 }
 
@@ -213,11 +213,12 @@ TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
         const std::vector<LeafBox> boxes = instance_boxes(mesh, transforms, options());
         expect_sound(tree, boxes, "instances");
         const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
-        const reference::Hierarchy twin = reference::hierarchy(boxes, codes, reference::sort(codes), false, quality());
+        const reference::Hierarchy expected =
+            reference::hierarchy(boxes, codes, reference::sort(codes), false, quality());
         if (has_records(tree))
-            EXPECT_TRUE(same_bytes(tree.records, reference::records_of_instances(twin, n, width_of(tree)))) << n;
+            EXPECT_TRUE(same_bytes(tree.records, reference::records_of_instances(expected, n, width_of(tree)))) << n;
         else
-            EXPECT_TRUE(same_bytes(tree.nodes, reference::linked(twin).nodes)) << n;
+            EXPECT_TRUE(same_bytes(tree.nodes, reference::linked(expected).nodes)) << n;
     }
 }
 
@@ -243,7 +244,7 @@ TEST_P(SwBuild, AStrayTriangleDoesNotSpoilTheOrderOfTheOthers) {
     accel.sync();
     const SwTlas::Tree tree = accel.download_geometry(handle);
     expect_sound(tree, mesh);
-    expect_twin(tree, mesh, quality());
+    expect_reference(tree, mesh, quality());
     // In planes of grids its topmost boxes lie far apart.
     const bool is_exact = std::get<Layout>(GetParam()) == Layout::bvh2;
     EXPECT_LT(area_below_root(tree, mesh), is_exact ? 1.2 * area : INFINITY);
@@ -254,8 +255,8 @@ TEST_P(SwBuild, AStrayTriangleDoesNotSpoilTheOrderOfTheOthers) {
     std::vector<AccelHandle> handles;
     for (const Mesh& each : {pairs, mesh, soup}) handles.push_back(of_many.push(each));
     of_many.sync();
-    expect_twin(of_many.download_geometry(handles[0]), pairs, quality());
-    expect_twin(of_many.download_geometry(handles[2]), soup, quality());
+    expect_reference(of_many.download_geometry(handles[0]), pairs, quality());
+    expect_reference(of_many.download_geometry(handles[2]), soup, quality());
     EXPECT_TRUE(same_bytes(of_many.download_geometry(handles[1]).records, tree.records));
     EXPECT_TRUE(same_bytes(of_many.download_geometry(handles[1]).nodes, tree.nodes));
 }

@@ -141,8 +141,8 @@ TEST_P(CompressedPaths, AreNoDeeperThanAStackIsMadeFor) {
     const TreeCheck tree = check_tree(binary, reference::linked(tall.tree).nodes, tall.boxes);
     EXPECT_TRUE(tree.violations.empty()) << tree.violations.front();
     EXPECT_EQ(tree.depth, DEEPEST_TREE);
-    const TreeCheck check = check_tree(
-        tall.bvh_of_records(), reference::records_of_instances(tall.tree, tall.leaves, GetParam()), tall.boxes);
+    const TreeCheck check = check_tree(tall.bvh_of_records(),
+                                       reference::records_of_instances(tall.tree, tall.leaves, GetParam()), tall.boxes);
     EXPECT_TRUE(check.violations.empty()) << check.violations.front();
     EXPECT_LE(check.depth, DEEPEST_RECORDS);
     if (GetParam() == 4) {

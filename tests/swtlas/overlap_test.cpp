@@ -55,10 +55,10 @@ std::set<uint> collect(const SwTlas::Tree& tree, uint reference, std::vector<Box
         const CompressedRecord& record = tree.records[reference];
         if (is_leaf(record)) return {index_in(record)};
         const CompressedRecord& second_half = tree.records[is_wide_node(record) ? reference + 1 : reference];
-        const ChildPlaces places = places_in(record, second_half);
+        const ChildSlots slots = child_slots(record, second_half);
         for (uint slot = 0; slot < 8; ++slot) {
-            if (!has_child(places, slot)) continue;
-            const uint child = place_of(places, slot);
+            if (!has_child(slots, slot)) continue;
+            const uint child = child_index(slots, slot);
             children.emplace_back(box_in_planes(record, second_half, slot), child);
         }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The world boxes of instances, by the serial twin; tests of builds compare those of the device with it.
+// The world boxes of instances, by the CPU reference; tests of builds compare those of the device with it.
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>

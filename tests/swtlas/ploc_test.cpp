@@ -12,14 +12,14 @@ using namespace test;
 
 class SwPloc : public SwBuildTest {
   protected:
-    // Inner nodes on the longest way down the tree of a mesh alone, which is sound and equal to its twin.
+    // Inner nodes on the longest way down the tree of a mesh alone, which is sound and equal to its CPU reference.
     uint checked_depth(const Mesh& mesh) {
         SwTlas accel(context(), options());
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
         const SwTlas::Tree tree = accel.download_geometry(handle);
         expect_sound(tree, mesh);
-        expect_twin(tree, mesh, quality());
+        expect_reference(tree, mesh, quality());
         const std::vector<LeafBox> boxes = leaf_boxes(tree, mesh);
         return has_records(tree) ? check_tree(tree.bvh, tree.records, boxes).depth
                                  : check_tree(tree.bvh, tree.nodes, boxes).depth;

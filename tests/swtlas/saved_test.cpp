@@ -205,7 +205,7 @@ TEST(SavedTrees, BinaryOnesThatCannotBeWalkedSafelyAreRefused) {
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child0 = 1000; }), "node 1000 of 19");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child1 = LEAF_BIT | 20; }), "leaf 20 of 20");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child0 = g.bvh.root; }), "reached twice");
-    expect_contains(edited([](SavedGeometry& g) { g.nodes[3].below0 += 2; }), "its edge is");
+    expect_contains(edited([](SavedGeometry& g) { g.nodes[3].subtree0 += 2; }), "its edge is");
     expect_contains(edited([](SavedGeometry& g) { g.bvh.root = 19; }), "node 19 of 19");
     expect_contains(edited([](SavedGeometry& g) { g.bvh.root = NOTHING; }), "unsound tree");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[g.bvh.root].lo0.x += 1; }), "not the union");

@@ -83,7 +83,7 @@ double overlap_of(const SwGeometry& geometry, const Leaf& leaf) {
         waiting.pop_back();
         const AnyNode node = node_of(geometry, here.node);
         for (uint slot = 0; slot < slots_of(geometry); ++slot) {
-            if (!has_child(node.places, slot)) continue;
+            if (!has_child(node.slots, slot)) continue;
             const LeafBox box = box_in(geometry, node, slot);
             if (is_apart(around, box)) continue;
             overlap += area_within(leaf.triangle, box);

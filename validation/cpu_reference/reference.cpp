@@ -8,8 +8,8 @@
 namespace twinray::reference {
 namespace {
 
-BvhTriangle gather(std::span<const vec3> positions, uvec3 corners, uint primitive) {
-    return {positions[corners.x], positions[corners.y], positions[corners.z], primitive};
+BvhTriangle gather(std::span<const vec3> positions, uvec3 vertices, uint primitive) {
+    return {positions[vertices.x], positions[vertices.y], positions[vertices.z], primitive};
 }
 
 // Builds [first, last] and returns it as a child.
@@ -17,19 +17,19 @@ struct TopDown {
     SortedLeaves leaves;
     BuildQuality quality;
     float scale;
-    NodeHalves nodes;
+    BvhChildren nodes;
 
-    NodeHalf build(std::size_t first, std::size_t last) const {
+    NodeChild build(std::size_t first, std::size_t last) const {
         if (first == last) return leaves.leaf(first);
         const std::size_t split = leaves.highest_split(first, last);
         const auto node = static_cast<uint>(split);
-        const NodeHalf left = build(first, split), right = build(split + 1, last);
-        put_half(nodes, node, 0, left);
-        put_half(nodes, node, 1, right);
-        NodeHalf both = joined_half(left, right, node);
+        const NodeChild left = build(first, split), right = build(split + 1, last);
+        put_child(nodes, node, 0, left);
+        put_child(nodes, node, 1, right);
+        NodeChild both = joined_child(left, right, node);
         if (quality == BuildQuality::high && is_rotated(both))
-            both.below =
-                make_below(leaves_in(both.below), rotate(nodes, node, highest_below(leaves.split_after(split)), scale));
+            both.subtree = subtree_info(leaves_in(both.subtree),
+                                        rotate(nodes, node, highest_below(leaves.split_after(split)), scale));
         return both;
     }
 };
@@ -44,24 +44,25 @@ bool has_many_duplicates(std::vector<uint> codes) {
 
 std::vector<CompressedRecord> records_of(const Hierarchy& tree, BuildTree input, uint width) {
     std::vector<CompressedRecord> made(record_count(input.count, width));
-    std::vector<uint> places(input.count);
+    std::vector<uint> leaf_indices(input.count);
     Bvh bvh{tree.box.lo, tree.box.hi, {}, tree.root, input.count};
     input.bvh = Ref<Bvh>::to(&bvh);
     input.nodes = Ref<BvhNode>::to(tree.nodes.data());
     input.records = Ref<CompressedRecord>::to(made.data());
-    const Uints places_ref = Uints::to(places.data());
+    const Uints leaf_indices_ref = Uints::to(leaf_indices.data());
     std::vector<CollapseItem> waiting;
     const auto push = [&](const CollapseStep& step) {
         for (int i = 0; i < 8; ++i)
             if (step.leaves[i] != 0) waiting.push_back(step.items[i]);
     };
-    push(begin_collapse(input, places_ref, 0, width));
+    push(begin_collapse(input, leaf_indices_ref, 0, width));
     while (!waiting.empty()) {
         const CollapseItem item = waiting.back();
         waiting.pop_back();
-        push(write_node(input, places_ref, item, children_of(input.nodes, item.place, width), width));
+        push(write_node(input, leaf_indices_ref, item, children_of(input.nodes, item.node_and_level, width), width));
     }
-    for (uint leaf = 0; leaf < input.count; ++leaf) store_record(input.records, places[leaf], encode_leaf(input, leaf));
+    for (uint leaf = 0; leaf < input.count; ++leaf)
+        store_record(input.records, leaf_indices[leaf], encode_leaf(input, leaf));
     return made;
 }
 
@@ -110,9 +111,7 @@ Codes morton(std::span<const LeafBox> boxes, const CentroidBounds& bounds) {
 std::vector<uint> sort(const Codes& codes) {
     std::vector<uint> order(codes.high.size());
     std::iota(order.begin(), order.end(), 0u);
-    const auto key = [&](uint leaf) {
-        return std::pair(codes.high[leaf], codes.low.empty() ? 0 : codes.low[leaf]);
-    };
+    const auto key = [&](uint leaf) { return std::pair(codes.high[leaf], codes.low.empty() ? 0 : codes.low[leaf]); };
     std::stable_sort(order.begin(), order.end(), [&](uint a, uint b) { return key(a) < key(b); });
     return order;
 }
@@ -130,9 +129,9 @@ std::size_t SortedLeaves::highest_split(std::size_t first, std::size_t last) con
     return best;
 }
 
-NodeHalf SortedLeaves::leaf(std::size_t position) const {
+NodeChild SortedLeaves::leaf(std::size_t position) const {
     const uint element = order[position];
-    return {boxes[element], LEAF_BIT | (are_sorted ? static_cast<uint>(position) : element), make_below(1, 0)};
+    return {boxes[element], LEAF_BIT | (are_sorted ? static_cast<uint>(position) : element), subtree_info(1, 0)};
 }
 
 float SortedLeaves::scale() const {
@@ -140,11 +139,11 @@ float SortedLeaves::scale() const {
     return area_scale(bounds.lo, bounds.hi);
 }
 
-Hierarchy hierarchy_of(std::span<const BvhHalf> halves, const NodeHalf& root) {
+Hierarchy hierarchy_of(std::span<const BvhChild> halves, const NodeChild& root) {
     Hierarchy tree;
     for (std::size_t node = 0; node < halves.size(); node += 2) {
-        const BvhHalf &a = halves[node], &b = halves[node + 1];
-        tree.nodes.push_back({a.lo, a.child, a.hi, a.below, b.lo, b.child, b.hi, b.below});
+        const BvhChild &a = halves[node], &b = halves[node + 1];
+        tree.nodes.push_back({a.lo, a.child, a.hi, a.subtree, b.lo, b.child, b.hi, b.subtree});
     }
     tree.root = root.child;
     tree.box = root.box;
@@ -155,9 +154,9 @@ Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::spa
                     bool leaves_are_sorted, BuildQuality quality) {
     if (quality == BuildQuality::ploc) return ploc(boxes, codes, order, leaves_are_sorted);
     if (boxes.empty()) return {};
-    std::vector<BvhHalf> halves(2 * (boxes.size() - 1));
+    std::vector<BvhChild> halves(2 * (boxes.size() - 1));
     const SortedLeaves leaves{boxes, codes, order, leaves_are_sorted};
-    const TopDown build{leaves, quality, leaves.scale(), NodeHalves::to(halves.data())};
+    const TopDown build{leaves, quality, leaves.scale(), BvhChildren::to(halves.data())};
     return hierarchy_of(halves, build.build(0, boxes.size() - 1));
 }
 
@@ -172,7 +171,7 @@ std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::
                                           std::span<const uint> order) {
     std::vector<BvhTriangle> encoded;
     for (const uint primitive : order)
-        encoded.push_back(without_inactive_corners(gather(positions, triangles[primitive], primitive)));
+        encoded.push_back(without_inactive_vertices(gather(positions, triangles[primitive], primitive)));
     return encoded;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Serial CPU twins of the build kernels, one function per stage by the same name. They share the kernels' arithmetic
+// CPU references of the build kernels, one function per stage by the same name. They share the kernels' arithmetic
 // (shaders/shared) but not their algorithms, so that a test can compare every stage bit for bit.
 #pragma once
 
@@ -46,7 +46,7 @@ std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::
                                           std::span<const uint> order);
 
 // The records, with nodes of up to `width` children, of a tree whose references are the leaves' own indices. (The
-// kernels' binary trees refer to places in the order; their records are the same.)
+// kernels' binary trees refer to positions in the order; their records are the same.)
 std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions,
                                                    std::span<const uvec3> triangles, uint width);
 std::vector<CompressedRecord> records_of_instances(const Hierarchy& tree, uint leaf_count, uint width);

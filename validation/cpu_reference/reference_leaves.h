@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the serial twins of the kernels that make hierarchies share.
+// What the CPU references of the kernels that make hierarchies share.
 #pragma once
 
 #include "validation/cpu_reference/reference.h"
@@ -15,10 +15,10 @@ struct SortedLeaves {
     uvec2 split_after(std::size_t position) const;
     // Of first .. last, more than one.
     std::size_t highest_split(std::size_t first, std::size_t last) const;
-    NodeHalf leaf(std::size_t position) const;
+    NodeChild leaf(std::size_t position) const;
     float scale() const;  // of areas
 };
 
-Hierarchy hierarchy_of(std::span<const BvhHalf> halves, const NodeHalf& root);
+Hierarchy hierarchy_of(std::span<const BvhChild> halves, const NodeChild& root);
 
 }  // namespace twinray::reference

@@ -8,13 +8,13 @@ namespace {
 
 using Clusters = std::vector<Cluster>;
 
-uint height_of(const Cluster& cluster) { return height_in(cluster.top.below); }
+uint height_of(const Cluster& cluster) { return height_in(cluster.top.subtree); }
 
 // The range [first, last], top-down.
 struct Clustering {
     SortedLeaves leaves;
     float scale;
-    NodeHalves nodes;
+    BvhChildren nodes;
 
     Clusters build(std::size_t first, std::size_t last) const {
         if (first == last) return {{leaves.leaf(first), static_cast<uint>(first)}};
@@ -70,8 +70,8 @@ struct Clustering {
 
     Cluster join(const Cluster& a, const Cluster& b) const {
         const Cluster both = joined_cluster(a, b);
-        put_half(nodes, both.top.child, 0, a.top);
-        put_half(nodes, both.top.child, 1, b.top);
+        put_child(nodes, both.top.child, 0, a.top);
+        put_child(nodes, both.top.child, 1, b.top);
         return both;
     }
 };
@@ -81,9 +81,9 @@ struct Clustering {
 Hierarchy ploc(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order,
                bool leaves_are_sorted) {
     if (boxes.empty()) return {};
-    std::vector<BvhHalf> halves(2 * (boxes.size() - 1));
+    std::vector<BvhChild> halves(2 * (boxes.size() - 1));
     const SortedLeaves leaves{boxes, codes, order, leaves_are_sorted};
-    const Clustering clustering{leaves, leaves.scale(), NodeHalves::to(halves.data())};
+    const Clustering clustering{leaves, leaves.scale(), BvhChildren::to(halves.data())};
     return hierarchy_of(halves, clustering.build(0, boxes.size() - 1).front().top);
 }
 

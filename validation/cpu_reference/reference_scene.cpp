@@ -70,7 +70,7 @@ void Scene::build() {
     build_refinement(records);
 }
 
-// The twins of engine/world_bound.comp and engine/refine_gather.comp.
+// The references of engine/world_bound.comp and engine/refine_gather.comp.
 void Scene::build_refinement(std::span<const InstanceRecord> records) {
     bound_ = {empty_box().lo, empty_box().hi};
     refined_.clear();

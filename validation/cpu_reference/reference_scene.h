@@ -69,7 +69,7 @@ class Scene {
     std::vector<LeafBox> instance_boxes_;
     Hierarchy top_;
     std::vector<CompressedRecord> top_records_;
-    SwScene header_{};
+    SwTlasHeader header_{};
     GeometryBox bound_{};  // of the world
     std::vector<RefineInstance> refined_;
 };

@@ -8,10 +8,10 @@
 namespace twinray {
 using std::uint64_t;
 #include "engine/core/bridge_begin.h"
-#include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_tlas_header.h"
 #include "shaders/shared/hw_build.h"
 #include "engine/core/bridge_end.h"
 
-static_assert(sizeof(HwGeometry) == 48 && sizeof(HwInstance) == 16 && sizeof(HwScene) == 24 &&
+static_assert(sizeof(HwGeometry) == 48 && sizeof(HwInstance) == 16 && sizeof(HwTlasHeader) == 24 &&
               sizeof(HwTrianglesArgs) == 80 && sizeof(HwGatherArgs) == 48);
 }  // namespace twinray

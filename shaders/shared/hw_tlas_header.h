@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the hardware accelerator leaves on the device. Needs ray.h and world_bound.h before it.
-#ifndef TWINRAY_SHARED_HW_SCENE_H
-#define TWINRAY_SHARED_HW_SCENE_H
+#ifndef TWINRAY_SHARED_HW_TLAS_HEADER_H
+#define TWINRAY_SHARED_HW_TLAS_HEADER_H
 
 // What InstanceRecord::geometry points at for the hardware accelerator. Begins with a GeometryBox.
 struct HwGeometry
@@ -24,13 +24,13 @@ struct HwInstance
 };
 BUFFER_OF(HwInstance, 8);
 
-struct HwScene
+struct HwTlasHeader
 {
     Address tlas;              // device address of the top-level acceleration structure
     REF(HwInstance) instances;  // by InstanceId; null without FEATURE_REMAP
     Address refinement;        // address of a RefineScene, or 0
 };
-BUFFER_OF(HwScene, 8);
+BUFFER_OF(HwTlasHeader, 8);
 
 // Morton codes of the instances' centers, for drivers that build in input order.
 struct HwCodesArgs
