@@ -8,10 +8,11 @@
 #include "bench/table.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "swtlas/check_compressed.h"
+#include "swtlas/check.h"
 #include "swtlas/plan.h"
-#include "swtlas/reference_scene.h"
 #include "swtlas/tree.h"
+#include "validation/cpu_reference/end_point_overlap.h"
+#include "validation/cpu_reference/reference_scene.h"
 
 namespace twinray::bench {
 namespace {
@@ -36,7 +37,7 @@ double sah_of(const BuiltTree& tree, const Mesh& mesh) {
     }
     const Geometry built(mesh, software_unit(mesh.positions));
     boxes = reference::leaves_triangles(built.positions, built.triangles);
-    return check_compressed(tree.bvh, tree.records, boxes).sah;
+    return check_tree(tree.bvh, tree.records, boxes).sah;
 }
 
 TreeFigures figures_of_tree(Context& context, const Mesh& mesh, Layout layout, BuildQuality quality) {
@@ -50,7 +51,7 @@ TreeFigures figures_of_tree(Context& context, const Mesh& mesh, Layout layout, B
             static_cast<double>(bytes_kept(tree)) / triangles,
             static_cast<double>(bytes_used(tree)) / triangles,
             sah_of(tree, mesh),
-            end_point_overlap(accel, handle),
+            reference::end_point_overlap(tree),
             {}};
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The driver's acceleration structures: objects, sizes, builds.
 #pragma once
 
 #include <span>

@@ -98,7 +98,7 @@ std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* con
     const auto compacted = std::make_shared<CompactedSizes>(commands, asked);
     for (std::size_t i = 0; i < built.size(); ++i) {
         blases[built[i]].compacted = compacted;
-        blases[built[i]].place = i;
+        blases[built[i]].compacted_index = i;
     }
     return blases;
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Bottom levels of HwTlas over meshes that the host has.
 #pragma once
 
 #include <memory>
@@ -6,7 +7,7 @@
 #include "engine/accel/geometry.h"
 #include <twinray/abstract_accel.h>
 #include "hwtlas/compaction.h"
-#include "hwtlas/hw_scene.h"
+#include "hwtlas/hw_tlas_header.h"
 
 namespace twinray {
 
@@ -19,7 +20,7 @@ struct Blas {
     std::shared_ptr<const Buffer> original;     // see BlasInput, uint each; null when the order was kept
     bool can_update = false;                    // made by MovingBlasBuilder; others may be compacted, once
     std::shared_ptr<CompactedSizes> compacted;  // null: cannot be compacted
-    std::size_t place = 0;                      // in `compacted`
+    std::size_t compacted_index = 0;            // in `compacted`
 
     Uints table() const { return original ? original->ref<uint>() : Uints{}; }
     HwGeometry block() const { return {bounds.lo, bounds.hi, structure.address(), table(), kind, 0}; }

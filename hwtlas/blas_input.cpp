@@ -25,9 +25,9 @@ BlasInput boxes_input(std::span<const Bounds> boxes, bool reorder) {
 
 BlasInput blas_input(const Geometry& geometry, bool reorder) {
     if (geometry.kind == GEOMETRY_BOXES) return boxes_input(geometry.boxes, reorder);
-    const auto is_active = [&](uvec3 corners) {
-        return is_active_triangle(geometry.positions[corners.x], geometry.positions[corners.y],
-                                  geometry.positions[corners.z]);
+    const auto is_active = [&](uvec3 vertices) {
+        return is_active_triangle(geometry.positions[vertices.x], geometry.positions[vertices.y],
+                                  geometry.positions[vertices.z]);
     };
     const auto first_active = std::find_if(geometry.triangles.begin(), geometry.triangles.end(), is_active);
     if (first_active == geometry.triangles.end()) return {};
@@ -40,11 +40,11 @@ BlasInput blas_input(const Geometry& geometry, bool reorder) {
     if (reorder) input.original = morton_order(triangle_centers(geometry.positions, geometry.triangles));
     input.triangles.reserve(geometry.triangles.size());
     for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
-        const uvec3 corners = geometry.triangles[reorder ? input.original[i] : i];
-        const bool active = is_active(corners);
-        input.triangles.push_back(active ? corners : uvec3(anchor));
+        const uvec3 vertices = geometry.triangles[reorder ? input.original[i] : i];
+        const bool active = is_active(vertices);
+        input.triangles.push_back(active ? vertices : uvec3(anchor));
         if (!active) continue;
-        for (int corner = 0; corner < 3; ++corner) input.bounds.include(geometry.positions[corners[corner]]);
+        for (int vertex = 0; vertex < 3; ++vertex) input.bounds.include(geometry.positions[vertices[vertex]]);
     }
     return input;
 }

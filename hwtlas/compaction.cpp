@@ -38,14 +38,14 @@ CompactedSizes::~CompactedSizes() {
     });
 }
 
-std::optional<std::uint64_t> CompactedSizes::of(std::size_t place, SyncPoint built) {
+std::optional<std::uint64_t> CompactedSizes::of(std::size_t index, SyncPoint built) {
     is_told_ = is_told_ || context_.is_reached(built);
-    return is_told_ ? std::optional(bytes_of(place)) : std::nullopt;
+    return is_told_ ? std::optional(bytes_of(index)) : std::nullopt;
 }
 
-std::uint64_t CompactedSizes::bytes_of(std::size_t place) const {
+std::uint64_t CompactedSizes::bytes_of(std::size_t index) const {
     std::uint64_t bytes = 0;
-    std::memcpy(&bytes, bytes_.mapped() + place * sizeof bytes, sizeof bytes);
+    std::memcpy(&bytes, bytes_.mapped() + index * sizeof bytes, sizeof bytes);
     return bytes;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Copies of bottom levels into the memory that they have turned out to need.
 #pragma once
 
 #include <optional>
@@ -18,10 +19,10 @@ class CompactedSizes {
     CompactedSizes(const CompactedSizes&) = delete;
     CompactedSizes& operator=(const CompactedSizes&) = delete;
 
-    // Of the structure at `place`; nothing while the GPU has not reached `built`, at which the commands are done.
-    std::optional<std::uint64_t> of(std::size_t place, SyncPoint built);
+    // Of the structure at `index`; nothing while the GPU has not reached `built`, at which the commands are done.
+    std::optional<std::uint64_t> of(std::size_t index, SyncPoint built);
     // The same once it has been told.
-    std::uint64_t bytes_of(std::size_t place) const;
+    std::uint64_t bytes_of(std::size_t index) const;
 
   private:
     Context& context_;

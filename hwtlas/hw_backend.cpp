@@ -63,18 +63,18 @@ std::unique_ptr<TraceProgram> HwBackend::create_program(const TraceProgramCode* 
 // Those whose vertices the host alone has.
 void HwBackend::build_still(Commands& commands, std::span<const GeometryInput> inputs, Built& built) {
     std::vector<const Geometry*> geometries;
-    std::vector<std::size_t> places;
+    std::vector<std::size_t> indices;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         if (inputs[i].mesh.indices.address) continue;
         geometries.push_back(inputs[i].geometry);
-        places.push_back(i);
+        indices.push_back(i);
     }
-    if (places.empty()) return;
+    if (indices.empty()) return;
     std::vector<Blas> blases = build_blases(commands, geometries, {reorder_, scratch_budget()});
     const auto pass = commands.pass("hwtlas geometry blocks");
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        commands.write(*inputs[places[i]].block, blases[i].block());
-        built[places[i]] = std::make_unique<HwBuiltGeometry>(std::move(blases[i]));
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        commands.write(*inputs[indices[i]].block, blases[i].block());
+        built[indices[i]] = std::make_unique<HwBuiltGeometry>(std::move(blases[i]));
     }
 }
 
@@ -122,7 +122,7 @@ BuildBytes HwBackend::scene_bytes(std::size_t count, std::size_t capacity) const
 
 bool HwBackend::can_compact(const BuiltGeometry& built, SyncPoint done) const {
     const Blas& blas = *HwBuiltGeometry::of(&built);
-    const auto bytes = blas.compacted ? blas.compacted->of(blas.place, done) : std::nullopt;
+    const auto bytes = blas.compacted ? blas.compacted->of(blas.compacted_index, done) : std::nullopt;
     return bytes && *bytes < blas.structure.bytes();
 }
 
@@ -136,7 +136,7 @@ HwBackend::Built HwBackend::compact_geometries(Commands& commands, std::span<con
         blas.kind = large.kind;
         blas.bounds = large.bounds;
         blas.structure = record_compaction(commands, "blas " + input.geometry->name, large.structure,
-                                           large.compacted->bytes_of(large.place));
+                                           large.compacted->bytes_of(large.compacted_index));
         blas.original = large.original;
         commands.write(*input.block, blas.structure.address(), offsetof(HwGeometry, blas));
         built.push_back(std::make_unique<HwBuiltGeometry>(std::move(blas)));

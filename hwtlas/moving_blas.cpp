@@ -18,9 +18,9 @@ KernelDesc kernel(const char* name, std::span<const std::uint32_t> spirv) {
     return {.name = name, .spirv = spirv, .group_size = WORLD_BOUND_GROUP};
 }
 
-// Three corners of its own for each triangle.
-StructureBuild build_of(const std::string& name, std::uint64_t corners, uint triangle_count) {
-    StructureBuild build = triangle_build(name, corners, 3 * triangle_count, triangle_count);
+// Three vertices of its own for each triangle.
+StructureBuild build_of(const std::string& name, std::uint64_t vertices, uint triangle_count) {
+    StructureBuild build = triangle_build(name, vertices, 3 * triangle_count, triangle_count);
     build.geometry.geometry.triangles.indexType = VK_INDEX_TYPE_NONE_KHR;
     build.flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR;
     return build;
@@ -38,14 +38,14 @@ struct SortScratch {
     Uints part(std::uint64_t i) const { return {address + i * part_bytes()}; }
 };
 
-std::uint64_t corner_bytes(uint triangle_count) { return aligned(std::uint64_t{triangle_count} * 3 * sizeof(vec3)); }
+std::uint64_t vertex_bytes(uint triangle_count) { return aligned(std::uint64_t{triangle_count} * 3 * sizeof(vec3)); }
 
 AreaWork area_of(const MovingMesh& mesh, BuildMode mode) {
     return {mesh.triangle_count, {mesh.block->address()}, mesh.cost, mode == BuildMode::build};
 }
 
-StructureWork work_of(const MovingMesh& mesh, BuildMode mode, Floats corners) {
-    return {build_of("", corners.address, mesh.triangle_count), mode, &mesh.blas->structure};
+StructureWork work_of(const MovingMesh& mesh, BuildMode mode, Floats vertices) {
+    return {build_of("", vertices.address, mesh.triangle_count), mode, &mesh.blas->structure};
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ Blas MovingBlasBuilder::make(const std::string& name, uint triangle_count) const
 // In front of it all, with the alignment that the driver wants: its own.
 std::uint64_t MovingBlasBuilder::scratch_bytes(const MovingMesh& mesh, BuildMode mode) const {
     const uint n = mesh.triangle_count;
-    return scratch_bytes_of(context_, work_of(mesh, mode, {})) + corner_bytes(n) + sizeof(WorldBoundBits) +
+    return scratch_bytes_of(context_, work_of(mesh, mode, {})) + vertex_bytes(n) + sizeof(WorldBoundBits) +
            aligned(area_of(mesh, mode).bytes()) +
            (reorder_ && mode == BuildMode::build ? SortScratch{0, n, context_.state().tuning()}.bytes() : 0);
 }
@@ -108,8 +108,8 @@ MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<
             const SortScratch sort{0, n, context_.state().tuning()};
             batch.sorts.push_back({take(sort.bytes()), n, context_.state().tuning()});
         }
-        const Floats corners{take(corner_bytes(n))};
-        batch.work.push_back(work_of(mesh, mode, corners));
+        const Floats vertices{take(vertex_bytes(n))};
+        batch.work.push_back(work_of(mesh, mode, vertices));
         batch.args.push_back({mesh.mesh.positions,
                               mesh.mesh.indices,
                               mesh.block->ref<HwGeometry>(),
@@ -117,7 +117,7 @@ MovingBlasBuilder::Batch MovingBlasBuilder::begin(Commands& commands, std::span<
                               {},
                               {},
                               mesh.blas->table(),
-                              corners,
+                              vertices,
                               batch.areas.back().items,
                               n,
                               (n + WORLD_BOUND_GROUP - 1) / WORLD_BOUND_GROUP});
@@ -136,8 +136,8 @@ void MovingBlasBuilder::record_order(Commands& commands, Batch& batch) const {
         args.keys = sort.part(0);
         codes_.dispatch(commands, args, args.count);
         const RadixSort::Pairs sorted =
-            sort_.record_places(commands, args.keys, {sort.part(0), sort.part(1)}, {sort.part(2), sort.part(3)},
-                                sort.part(4), args.count, morton_bits);
+            sort_.record_iota(commands, args.keys, {sort.part(0), sort.part(1)}, {sort.part(2), sort.part(3)},
+                              sort.part(4), args.count, morton_bits);
         args.order = sorted.values;
     }
 }

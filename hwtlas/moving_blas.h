@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Bottom levels of HwTlas over meshes whose vertices the device has.
 #pragma once
 
 #include "engine/accel/vertices.h"
@@ -17,7 +18,7 @@ struct MovingMesh {
 };
 
 // Builds bottom levels from vertices in device memory, and updates them. Kernels prepare what blas_input() prepares on
-// the host: the box, the order for drivers that build in input order, and triangles without non-finite corners.
+// the host: the box, the order for drivers that build in input order, and triangles without non-finite vertices.
 class MovingBlasBuilder {
   public:
     MovingBlasBuilder(Context& context, bool reorder);

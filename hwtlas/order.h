@@ -13,7 +13,7 @@ namespace twinray {
 // and non-finite centers go last, in order.
 std::vector<uint> morton_order(std::span<const vec3> centers);
 
-// Centers of the triangles' boxes; NaN for a triangle with a non-finite corner.
+// Centers of the triangles' boxes; NaN for a triangle with a non-finite vertex.
 std::vector<vec3> triangle_centers(std::span<const vec3> positions, std::span<const uvec3> triangles);
 
 }  // namespace twinray

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The ray tracing pipeline, for drivers without ray queries.
 #pragma once
 
 #include <span>

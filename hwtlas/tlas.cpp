@@ -61,7 +61,7 @@ BuildBytes TlasBuilder::bytes(std::size_t count, std::size_t capacity) const {
                                                        RadixSort::counter_bytes(count, context_.state().tuning())
                                                  : 0;
     const AreaWork areas{count, {}, {}, false};
-    return {sizes.structure + (reorder_ ? capacity * sizeof(HwInstance) : 0) + sizeof(HwScene),
+    return {sizes.structure + (reorder_ ? capacity * sizeof(HwInstance) : 0) + sizeof(HwTlasHeader),
             sizes.scratch + capacity * sizeof(InstanceRecord) + sort + areas.bytes()};
 }
 
@@ -72,13 +72,14 @@ Tlas TlasBuilder::make(Commands& commands, std::size_t capacity, Ref<RefineScene
         context_, {.name = "tlas records", .bytes = capacity * sizeof(InstanceRecord), .alignment = record_alignment});
     tlas.instances =
         Buffer(context_, {.name = "tlas instances", .bytes = reorder_ ? capacity * sizeof(HwInstance) : 0});
-    tlas.scene = Buffer(context_, {.name = "hw scene", .bytes = sizeof(HwScene)});
+    tlas.scene = Buffer(context_, {.name = "hw scene", .bytes = sizeof(HwTlasHeader)});
     const Sizes sizes = this->sizes(capacity);
     tlas.structure =
         AccelerationStructure(context_, "tlas", VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, sizes.structure);
     tlas.scratch = make_build_scratch(context_, "tlas scratch", sizes.scratch);
     const auto pass = commands.pass("hwtlas scene");
-    commands.write(tlas.scene, HwScene{tlas.structure.address(), tlas.instances.ref<HwInstance>(), refinement.address});
+    commands.write(tlas.scene,
+                   HwTlasHeader{tlas.structure.address(), tlas.instances.ref<HwInstance>(), refinement.address});
     return tlas;
 }
 
@@ -89,8 +90,8 @@ Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) cons
                               .bytes = 4 * bytes + RadixSort::counter_bytes(input.count, context_.state().tuning())});
     const auto part = [&](std::uint64_t i) { return scratch.ref<uint>(i * bytes); };
     codes_.dispatch(commands, {input.records, input.bound, part(0), input.count, 0}, input.count);
-    const RadixSort::Pairs sorted = sort_.record_places(commands, part(0), {part(0), part(1)}, {part(2), part(3)},
-                                                        part(4), input.count, morton_bits);
+    const RadixSort::Pairs sorted =
+        sort_.record_iota(commands, part(0), {part(0), part(1)}, {part(2), part(3)}, part(4), input.count, morton_bits);
     commands.keep(std::move(scratch));
     return sorted.values;
 }

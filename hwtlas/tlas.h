@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The top level of HwTlas.
 #pragma once
 
 #include <twinray/abstract_accel.h>
@@ -6,7 +7,7 @@
 #include "engine/core/radix_sort.h"
 #include "engine/accel/refinement.h"
 #include "hwtlas/acceleration_structure.h"
-#include "hwtlas/hw_scene.h"
+#include "hwtlas/hw_tlas_header.h"
 
 namespace twinray {
 
@@ -16,7 +17,7 @@ struct Tlas {
     AccelerationStructure structure;
     Buffer driver_records;  // what the driver builds from
     Buffer instances;       // HwInstance each; empty when the order is kept
-    Buffer scene;           // one HwScene
+    Buffer scene;           // one HwTlasHeader
     Buffer scratch;
 
     std::uint64_t bytes() const { return structure.bytes() + instances.bytes() + scene.bytes(); }

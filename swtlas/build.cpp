@@ -6,10 +6,10 @@
 
 #include "swtlas_collapse.spv.h"
 #include "swtlas_collapse_subtrees.spv.h"
-#include "swtlas_crowding.spv.h"
+#include "swtlas_duplicate_codes.spv.h"
 #include "swtlas_encode_records.spv.h"
 #include "swtlas_encode_triangles.spv.h"
-#include "swtlas_fine_codes.spv.h"
+#include "swtlas_low_codes.spv.h"
 #include "swtlas_gather_keys.spv.h"
 #include "swtlas_hierarchy.spv.h"
 #include "swtlas_leaf_edges.spv.h"
@@ -102,7 +102,7 @@ Builder::Builder(Context& context, const AccelOptions& options) : Builder(contex
 Builder::Builder(Context& context, const AccelOptions& options, const Needs& needs)
     : layout_(options.layout),
       quality_(options.build_quality),
-      run_(context.state().tuning().leaves_per_invocation),
+      leaves_per_invocation_(context.state().tuning().leaves_per_invocation),
       sort_(context),
       areas_(context),
       leaves_triangles_(context, leaves_stage(context, "swtlas_leaves_triangles", swtlas_leaves_triangles_spirv)),
@@ -110,8 +110,9 @@ Builder::Builder(Context& context, const AccelOptions& options, const Needs& nee
       morton_(context, morton_stage(context)),
       node_areas_(context,
                   grouped(context, stage("swtlas_node_areas", swtlas_node_areas_spirv, needs.moves), AREA_GROUP)),
-      crowding_(context, grouped(context, stage("swtlas_crowding", swtlas_crowding_spirv, true), BUILD_GROUP)),
-      fine_codes_(context, stage("swtlas_fine_codes", swtlas_fine_codes_spirv, true)),
+      duplicate_codes_(
+          context, grouped(context, stage("swtlas_duplicate_codes", swtlas_duplicate_codes_spirv, true), BUILD_GROUP)),
+      low_codes_(context, stage("swtlas_low_codes", swtlas_low_codes_spirv, true)),
       gather_keys_(context, stage("swtlas_gather_keys", swtlas_gather_keys_spirv, true)),
       hierarchy_(context, hierarchy_stage(context, options.build_quality)),
       ploc_(context, ploc_stage(context, options.build_quality)),
@@ -140,7 +141,7 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
     const BuildScratch& at = plan.scratch;
     const uint none = ordered_bits(-INFINITY), all = ordered_bits(INFINITY);
     const std::vector<CentroidBounds> empty(trees.size(), {uvec3(all), uvec3(none)});
-    const Crowding crowding{0, {0, 1, 1}, {0, 1, 1}, {0, 1, 1}};
+    const DuplicateCodes no_duplicates{0, {0, 1, 1}, {0, 1, 1}, {0, 1, 1}};
     const std::vector<CollapseLevel> levels(plan.collapse_levels + 2, {0, 1, 1, 0});
     const std::uint64_t base = scratch.address();
     std::vector<BuildTree> with_nodes(trees.begin(), trees.end());
@@ -149,67 +150,74 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
     {
         const auto pass = commands.pass("swtlas build input");
         const Commands::Piece pieces[] = {{at.trees, std::as_bytes(std::span(with_nodes))},
-                                          {at.blocks, std::as_bytes(std::span(plan.blocks))},
+                                          {at.chunks, std::as_bytes(std::span(plan.chunks))},
                                           {at.centroids, std::as_bytes(std::span(empty))},
-                                          {at.crowding, std::as_bytes(std::span(&crowding, 1))},
+                                          {at.duplicate_codes, std::as_bytes(std::span(&no_duplicates, 1))},
                                           {at.levels, std::as_bytes(std::span(levels))}};
         commands.upload_pieces(scratch, pieces);
-        commands.fill(scratch, at.crowded, trees.size() * sizeof(uint), 0);
-        commands.fill(scratch, at.meeting, std::uint64_t{plan.leaf_count} * sizeof(uint), NOTHING);
+        commands.fill(scratch, at.duplicates, trees.size() * sizeof(uint), 0);
+        commands.fill(scratch, at.other_bounds, std::uint64_t{plan.leaf_count} * sizeof(uint), NOTHING);
     }
+    const BuildArgs args{.trees = {base + at.trees},
+                         .chunks = {base + at.chunks},
+                         .boxes = {base + at.boxes},
+                         .centroids = {base + at.centroids},
+                         .codes = {base + at.codes},
+                         .low_codes = {base + at.low_codes},
+                         .tree_of = {plan.tree_bits ? base + at.tree_of : 0},
+                         .duplicates = {base + at.duplicates},
+                         .duplicate_codes = {base + at.duplicate_codes},
+                         .order = {},
+                         .other_bounds = {base + at.other_bounds},
+                         .tops = {},
+                         .last_leaves = {},
+                         .chunk_count = static_cast<uint>(plan.chunks.size()),
+                         .leaf_count = plan.leaf_count,
+                         .leaves_are_sorted = 1,
+                         .leaves_per_invocation = leaves_per_invocation_};
     return {scratch,
-            {base + at.trees},
-            {base + at.blocks},
-            {base + at.boxes},
-            {base + at.centroids},
-            {base + at.codes},
-            {base + at.fine_codes},
-            {plan.tree_bits ? base + at.tree_of : 0},
-            {base + at.meeting},
+            args,
             {base + at.counters},
-            {base + at.crowded},
-            {base + at.crowding},
             {{base + at.keys[0]}, {base + at.order[0]}},
-            {{base + at.keys[1]}, {base + at.order[1]}},
-            static_cast<uint>(plan.blocks.size())};
+            {{base + at.keys[1]}, {base + at.order[1]}}};
 }
 
-Builder::Batch Builder::begin_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
-                                        Ref<InstanceRecord> records, Ref<SwInstance> instances,
+Builder::Batch Builder::begin_instances(Commands& commands, const BuildPlan& plan, const InstanceTree& tree,
                                         const Buffer& scratch) const {
-    const Batch batch = begin(commands, plan, std::span(&tree, 1), scratch);
+    Batch batch = begin(commands, plan, std::span(&tree.tree, 1), scratch);
+    batch.args.leaves_are_sorted = has_records(plan.layout);
+    const uint chunks = batch.args.chunk_count;
     leaves_instances_.dispatch_groups(
-        commands, {records, instances, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0},
-        batch.block_count);
+        commands, {tree.records, tree.instances, batch.args.chunks, batch.args.boxes, batch.args.centroids, chunks, 0},
+        chunks);
     return batch;
 }
 
 RadixSort::Pairs Builder::record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
-    morton_.dispatch_groups(
-        commands, {batch.blocks, batch.boxes, batch.centroids, batch.codes, batch.tree_of, batch.block_count, 0},
-        batch.block_count);
-    const RadixSort::Pairs by_code = sort_.record_places(commands, batch.codes, batch.pairs, batch.spare,
-                                                         batch.counters, plan.leaf_count, morton_bits);
+    const uint count = plan.leaf_count;
+    morton_.dispatch_groups(commands, batch.args, batch.args.chunk_count);
+    const RadixSort::Pairs by_code =
+        sort_.record_iota(commands, batch.args.codes, batch.pairs, batch.spare, batch.counters, count, morton_bits);
     RadixSort::Pairs sorted = by_code;
     if (plan.tree_bits != 0) {
-        gather_keys_.dispatch(commands, {batch.tree_of, sorted.values, sorted.keys, plan.leaf_count, 0},
-                              plan.leaf_count);
-        sorted = sort_.record(commands, sorted, batch.other(sorted), batch.counters, plan.leaf_count, plan.tree_bits);
-        gather_keys_.dispatch(commands, {batch.codes, sorted.values, sorted.keys, plan.leaf_count, 0}, plan.leaf_count);
+        gather_keys_.dispatch(commands, {batch.args.tree_of, sorted.values, sorted.keys, count, 0}, count);
+        sorted = sort_.record(commands, sorted, batch.other(sorted), batch.counters, count, plan.tree_bits);
+        gather_keys_.dispatch(commands, {batch.args.codes, sorted.values, sorted.keys, count, 0}, count);
     }
-    if (plan.leaf_count > CROWD) record_fine_order(commands, plan, batch, by_code, sorted);
+    if (count > MANY_DUPLICATES) record_60_bit_order(commands, plan, batch, by_code, sorted);
     return sorted;
 }
 
-// Where crowding_ finds that it is needed, and else nothing: sorts by fine code, by code and by tree. Begins in the
-// half of the ping-pong that leaves were sorted by code in, so that, after two sorts by 30 bits, it ends in `sorted`.
-void Builder::record_fine_order(Commands& commands, const BuildPlan& plan, const Batch& batch,
-                                const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const {
-    const uint count = plan.leaf_count;
-    const std::uint64_t at = plan.scratch.crowding;
-    const std::uint64_t of_leaves = at + offsetof(Crowding, leaf_groups);
-    const RadixSort::Counts counts{batch.scratch, at + offsetof(Crowding, sort_groups),
-                                   at + offsetof(Crowding, scan_groups)};
+// Where duplicate_codes_ finds that it is needed, and else nothing: sorts by low code, by code and by tree. Begins in
+// the half of the ping-pong that leaves were sorted by code in, so that, after two sorts by 30 bits, it ends in
+// `sorted`.
+void Builder::record_60_bit_order(Commands& commands, const BuildPlan& plan, const Batch& batch,
+                                  const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const {
+    const uint count = plan.leaf_count, chunks = (count + BUILD_GROUP - 1) / BUILD_GROUP;
+    const std::uint64_t at = plan.scratch.duplicate_codes;
+    const std::uint64_t of_leaves = at + offsetof(DuplicateCodes, leaf_groups);
+    const RadixSort::Counts counts{batch.scratch, at + offsetof(DuplicateCodes, sort_groups),
+                                   at + offsetof(DuplicateCodes, scan_groups)};
     const auto sort = [&](const RadixSort::Pairs& pairs, uint bits) {
         return sort_.record(commands, pairs, batch.other(pairs), batch.counters, count, bits, &counts);
     };
@@ -217,81 +225,47 @@ void Builder::record_fine_order(Commands& commands, const BuildPlan& plan, const
         gather_keys_.dispatch_indirect(commands, {values, pairs.values, pairs.keys, count, 0}, batch.scratch,
                                        of_leaves);
     };
-    crowding_.dispatch_groups(
-        commands,
-        {sorted.keys, sorted.values, batch.tree_of, batch.trees, batch.crowded, batch.crowding, count,
-         std::max(batch.block_count, (count + BUILD_GROUP - 1) / BUILD_GROUP), sort_.sort_groups(count), 0},
-        (count + BUILD_GROUP - 1) / BUILD_GROUP);
-    const RadixSort::Pairs& begin = by_code;
-    fine_codes_.dispatch_indirect(commands,
-                                  {batch.trees, batch.blocks, batch.boxes, batch.centroids, batch.crowded,
-                                   batch.fine_codes, batch.block_count, 0},
-                                  batch.scratch, of_leaves);
-    RadixSort::Pairs fine = sort_.record_places(commands, batch.fine_codes, begin, batch.other(begin), batch.counters,
-                                                count, morton_bits, &counts);
-    gather(batch.codes, fine);
-    fine = sort(fine, morton_bits);
+    duplicate_codes_.dispatch_groups(
+        commands, {batch.sorted(sorted), std::max(batch.args.chunk_count, chunks), sort_.sort_groups(count)}, chunks);
+    low_codes_.dispatch_indirect(commands, batch.args, batch.scratch, of_leaves);
+    RadixSort::Pairs by_low_code = sort_.record_iota(commands, batch.args.low_codes, by_code, batch.other(by_code),
+                                                     batch.counters, count, morton_bits, &counts);
+    gather(batch.args.codes, by_low_code);
+    const RadixSort::Pairs by_both = sort(by_low_code, morton_bits);
     if (plan.tree_bits == 0) return;
-    gather(batch.tree_of, fine);
-    gather(batch.codes, sort(fine, plan.tree_bits));
+    gather(batch.args.tree_of, by_both);
+    gather(batch.args.codes, sort(by_both, plan.tree_bits));
 }
 
-// Lists of clusters lie in the half of the ping-pong that the sort has left.
-void Builder::record_hierarchy(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
-                               bool leaves_are_sorted) const {
-    const RadixSort::Pairs& lists = batch.other(sorted);
-    const HierarchyArgs args{batch.trees,
-                             batch.blocks,
-                             batch.boxes,
-                             sorted.keys,
-                             batch.fine_codes,
-                             batch.crowding,
-                             sorted.values,
-                             batch.meeting,
-                             batch.centroids,
-                             lists.keys,
-                             lists.values,
-                             batch.block_count,
-                             leaves_are_sorted ? 1u : 0u,
-                             run_,
-                             0};
-    const std::uint64_t leaves = std::uint64_t{batch.block_count} * BUILD_GROUP;
+// From leaves in the order of their codes to a tree as its layout has it.
+void Builder::record_tree(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+    const BuildArgs args = batch.sorted(record_order(commands, plan, batch));
+    const std::uint64_t leaves = std::uint64_t{args.chunk_count} * BUILD_GROUP;
     if (quality_ == BuildQuality::ploc)
         ploc_.dispatch(commands, args, leaves);
     else
-        hierarchy_.dispatch(commands, args, leaves / run_);
+        hierarchy_.dispatch(commands, args, leaves / leaves_per_invocation_);
+    if (has_records(plan.layout))
+        record_collapse(commands, plan, batch, args);
+    else
+        link_nodes_.dispatch_groups(commands, args, args.chunk_count);
+    if (!has_records(plan.layout) && args.leaves_are_sorted)
+        encode_triangles_.dispatch_groups(commands, args, args.chunk_count);
 }
 
 void Builder::record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                                const Buffer& scratch) const {
     if (plan.leaf_count == 0) return;
     const Batch batch = begin(commands, plan, trees, scratch);
-    leaves_triangles_.dispatch_groups(
-        commands, {batch.trees, batch.blocks, batch.boxes, batch.centroids, batch.block_count, 0}, batch.block_count);
-    const RadixSort::Pairs sorted = record_order(commands, plan, batch);
-    record_hierarchy(commands, batch, sorted, true);
-    if (has_records(plan.layout)) return record_collapse(commands, plan, batch, sorted);
-    record_links(commands, batch);
-    encode_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, sorted.values, batch.block_count, 0},
-                                      batch.block_count);
+    leaves_triangles_.dispatch_groups(commands, batch.args, batch.args.chunk_count);
+    record_tree(commands, plan, batch);
 }
 
-void Builder::record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
-                               Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
+void Builder::record_instances(Commands& commands, const BuildPlan& plan, const InstanceTree& tree) const {
     if (plan.leaf_count == 0) return;
     Buffer scratch = build_scratch(commands.context(), plan);
-    const Batch batch = begin_instances(commands, plan, tree, records, instances, scratch);
-    const RadixSort::Pairs sorted = record_order(commands, plan, batch);
-    record_hierarchy(commands, batch, sorted, has_records(plan.layout));
-    if (has_records(plan.layout))
-        record_collapse(commands, plan, batch, sorted);
-    else
-        record_links(commands, batch);
+    record_tree(commands, plan, begin_instances(commands, plan, tree, scratch));
     commands.keep(std::move(scratch));
-}
-
-void Builder::record_links(Commands& commands, const Batch& batch) const {
-    link_nodes_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.block_count, 0}, batch.block_count);
 }
 
 }  // namespace twinray

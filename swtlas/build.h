@@ -9,11 +9,11 @@ namespace twinray {
 
 // Records the build of a batch of trees on the GPU, the same stages for triangles and for instances:
 //
-//     leaves -> morton -> sort by code (-> sort by tree) (-> sort again, by fine codes too) -> hierarchy or ploc
+//     leaves -> morton -> sort by code (-> sort by tree) (-> sort again, by 60-bit codes) -> hierarchy or ploc
 //     -> encode triangles, or -> collapse -> encode records
 //
-// Each stage is one kernel over all trees of the batch; what it computes has a serial twin of the same name in
-// swtlas/reference.h.
+// Each stage is one kernel over all trees of the batch; what it computes has a CPU reference of the same name in
+// validation/cpu_reference/reference.h.
 class Builder {
   public:
     // Compiles what accelerators with these options use.
@@ -23,15 +23,18 @@ class Builder {
     // one. `scratch` has plan.scratch.bytes at least.
     void record_triangles(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                           const Buffer& scratch) const;
-    // One tree over the records; fills `instances`.
-    void record_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
-                          Ref<SwInstance> instances) const;
-    // New boxes and corners for trees that record_triangles left behind, whose vertices moved.
+    // A tree over instances, whose `instances` are filled.
+    struct InstanceTree {
+        BuildTree tree;
+        Ref<InstanceRecord> records;
+        Ref<SwInstance> instances;
+    };
+    void record_instances(Commands& commands, const BuildPlan& plan, const InstanceTree& tree) const;
+    // New boxes and vertices for trees that record_triangles left behind, whose vertices moved.
     void record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                                const Buffer& scratch) const;
     // New boxes, and new `instances`, for the topology that record_instances left behind.
-    void record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
-                      Ref<SwInstance> instances) const;
+    void record_refit(Commands& commands, const BuildPlan& plan, const InstanceTree& tree) const;
 
     // What sah() tells of finished trees.
     struct Measured {
@@ -50,44 +53,34 @@ class Builder {
     Batch begin(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                 const Buffer& scratch) const;
     // With the leaves of one tree over the records.
-    Batch begin_instances(Commands& commands, const BuildPlan& plan, const BuildTree& tree, Ref<InstanceRecord> records,
-                          Ref<SwInstance> instances, const Buffer& scratch) const;
+    Batch begin_instances(Commands& commands, const BuildPlan& plan, const InstanceTree& tree,
+                          const Buffer& scratch) const;
     // The leaves in order, with their codes.
     RadixSort::Pairs record_order(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
-    void record_fine_order(Commands& commands, const BuildPlan& plan, const Batch& batch,
-                           const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const;
-    void record_hierarchy(Commands& commands, const Batch& batch, const RadixSort::Pairs& sorted,
-                          bool leaves_are_sorted) const;
-    void record_links(Commands& commands, const Batch& batch) const;
-    void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch,
-                         const RadixSort::Pairs& sorted) const;
-    void record_levels(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
-    void record_climb(Commands& commands, const Batch& batch) const;
-    void record_records_climb(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
+    void record_60_bit_order(Commands& commands, const BuildPlan& plan, const Batch& batch,
+                             const RadixSort::Pairs& by_code, const RadixSort::Pairs& sorted) const;
+    void record_tree(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
+    void record_collapse(Commands& commands, const BuildPlan& plan, const Batch& batch, const BuildArgs& args) const;
+    void record_boxes(Commands& commands, const BuildPlan& plan, const Batch& batch) const;
 
     Layout layout_;
     BuildQuality quality_;
-    uint run_;  // leaves of an invocation of the hierarchy: few where there are many invocations
+    uint leaves_per_invocation_;  // of the hierarchy: few where there are many invocations
     RadixSort sort_;
     SurfaceArea areas_;
-    Kernel<TriangleLeavesArgs> leaves_triangles_;
+    Kernel<BuildArgs> leaves_triangles_;
     Kernel<InstanceLeavesArgs> leaves_instances_;
-    Kernel<MortonArgs> morton_;
+    Kernel<BuildArgs> morton_;
     Kernel<NodeAreasArgs> node_areas_;
-    Kernel<CrowdingArgs> crowding_;
-    Kernel<FineCodesArgs> fine_codes_;
+    Kernel<DuplicateCodesArgs> duplicate_codes_;
+    Kernel<BuildArgs> low_codes_;
     Kernel<GatherKeysArgs> gather_keys_;
-    Kernel<HierarchyArgs> hierarchy_;
-    Kernel<HierarchyArgs> ploc_;
-    Kernel<EncodeTrianglesArgs> encode_triangles_;
+    Kernel<BuildArgs> hierarchy_, ploc_, encode_triangles_;
     Kernel<CollapseArgs> collapse_roots_, collapse_level_, collapse_subtrees_;
-    Kernel<EncodeRecordsArgs> encode_records_;
-    Kernel<RecordParentsArgs> record_parents_;
-    Kernel<RefitRecordsArgs> refit_records_;
-    Kernel<LinkNodesArgs> link_nodes_;
-    Kernel<LeafEdgesArgs> leaf_edges_;
-    Kernel<RefitArgs> refit_;
-    Kernel<RefitTrianglesArgs> refit_triangles_;
+    Kernel<BuildArgs> encode_records_;
+    Kernel<RefitArgs> record_parents_, refit_records_;
+    Kernel<BuildArgs> link_nodes_;
+    Kernel<RefitArgs> leaf_edges_, refit_, refit_triangles_;
 };
 
 }  // namespace twinray

@@ -6,21 +6,24 @@
 
 namespace twinray {
 
-// The addresses of a batch's scratch regions.
+// A batch in its scratch.
 struct Builder::Batch {
     const Buffer& scratch;
-    Ref<BuildTree> trees;
-    Ref<BuildBlock> blocks;
-    Ref<LeafBox> boxes;
-    Ref<CentroidBounds> centroids;
-    Uints codes, fine_codes, tree_of, meeting, counters;
-    Uints crowded;
-    Ref<Crowding> crowding;
+    BuildArgs args;
+    Uints counters;
     RadixSort::Pairs pairs, spare;
-    uint block_count;
 
     const RadixSort::Pairs& other(const RadixSort::Pairs& of) const {
         return of.keys.address == pairs.keys.address ? spare : pairs;
+    }
+    // With the leaves in order, and the lists of clusters in the half of the ping-pong that the sort has left.
+    BuildArgs sorted(const RadixSort::Pairs& order) const {
+        BuildArgs in_order = args;
+        in_order.codes = order.keys;
+        in_order.order = order.values;
+        in_order.tops = other(order).keys;
+        in_order.last_leaves = other(order).values;
+        return in_order;
     }
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What traversal and refits rely on in a built tree, checked on the host.
 #pragma once
 
 #include <span>
@@ -9,18 +10,23 @@
 
 namespace twinray {
 
-inline constexpr std::size_t max_violations = 20;  // that a check tells
-
 struct TreeCheck {
     std::vector<std::string> violations;  // one sentence each, at most 20
     uint depth = 0;                       // inner nodes on the longest path
-    double sah = 0;  // surface area heuristic: sum of inner child areas over the root's (node cost 1, leaf cost 1)
+    uint width = 0;                       // how many children a node may have; 0: there is no node
+    double sah = 0;                       // the surface-area cost, see surface_area.h, of the boxes as rays meet them
 };
 
-// Walks a built tree and checks what traversal relies on: every leaf and every inner node is reached exactly once,
-// every child's box is the union of what lies below it (so it contains that, exactly), its leaves are counted right,
-// the depth is within what the traversal's stack is made for. leaf_boxes[i] is the box of the leaf that reference
-// LEAF_BIT | i names.
+// A tree of layout bvh2: every leaf and every inner node is reached exactly once, every child's box is the union of
+// what lies below it (so it contains that, exactly), nodes know their edges, the depth is within what a traversal's
+// stack is made for. leaf_boxes[i] is the box of the leaf that reference LEAF_BIT | i names.
 TreeCheck check_tree(const Bvh& bvh, std::span<const BvhNode> nodes, std::span<const LeafBox> leaf_boxes);
+
+// A tree of any other layout, from records[0]: `bvh` has the box of all leaves, every leaf is reached exactly once, no
+// record twice, those that are not reached are none, nodes have two children at least and are all of the width of the
+// root, the planes of a child lie outside of what is below it by more than traversal's rounding, and the depth is
+// within what its stack is made for. leaf_boxes[i] is the box of primitive or instance i; one that is empty may lie
+// anywhere.
+TreeCheck check_tree(const Bvh& bvh, std::span<const CompressedRecord> records, std::span<const LeafBox> leaf_boxes);
 
 }  // namespace twinray

@@ -30,15 +30,15 @@ BuildScratch layout_scratch(const BuildPlan& plan, const KernelTuning& tuning) {
     Arena arena;
     BuildScratch scratch;
     scratch.trees = arena.take<BuildTree>(plan.first.size());
-    scratch.blocks = arena.take<BuildBlock>(plan.blocks.size());
+    scratch.chunks = arena.take<LeafChunk>(plan.chunks.size());
     scratch.boxes = arena.take<LeafBox>(n);
     scratch.centroids = arena.take<CentroidBounds>(plan.first.size());
     scratch.codes = arena.take<uint>(n);
-    scratch.fine_codes = arena.take<uint>(n);
-    scratch.crowded = arena.take<uint>(plan.first.size());
-    scratch.crowding = arena.take<Crowding>(1);
+    scratch.low_codes = arena.take<uint>(n);
+    scratch.duplicates = arena.take<uint>(plan.first.size());
+    scratch.duplicate_codes = arena.take<DuplicateCodes>(1);
     scratch.tree_of = arena.take<uint>(plan.tree_bits ? n : 0);
-    scratch.meeting = arena.take<uint>(n);
+    scratch.other_bounds = arena.take<uint>(n);
     for (int i = 0; i < 2; ++i) {
         scratch.keys[i] = arena.take<uint>(n);
         scratch.order[i] = arena.take<uint>(n);
@@ -88,7 +88,7 @@ BuildPlan plan_build(std::span<const uint> leaf_counts, Layout layout, const Ker
     for (std::size_t tree = 0; tree < leaf_counts.size(); ++tree) {
         plan.first.push_back(static_cast<uint>(total));
         for (uint done = 0; done < leaf_counts[tree]; done += BUILD_GROUP)
-            plan.blocks.push_back({static_cast<uint>(tree), static_cast<uint>(total) + done,
+            plan.chunks.push_back({static_cast<uint>(tree), static_cast<uint>(total) + done,
                                    std::min(BUILD_GROUP, leaf_counts[tree] - done)});
         total += leaf_counts[tree];
         if (total >= NOTHING) fail("build: ", total, " primitives in one sync; at most ", NOTHING - 1, " fit");
@@ -134,7 +134,7 @@ SceneLayout layout_scene(uint instance_count, Layout layout) {
     parts.node_count = has_records(layout) ? 0 : inner_count(instance_count);
     parts.record_count = has_records(layout) ? record_count(instance_count, width_of(layout)) : 0;
     Arena arena;
-    arena.take<SwScene>(1);
+    arena.take<SwTlasHeader>(1);
     parts.nodes = arena.take<BvhNode>(parts.node_count);
     parts.instances = arena.take<SwInstance>(instance_count);
     parts.records = arena.take<CompressedRecord>(parts.record_count);

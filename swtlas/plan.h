@@ -18,8 +18,9 @@ float software_unit(std::span<const vec3> positions);
 
 // Byte offsets into one scratch buffer.
 struct BuildScratch {
-    std::uint64_t trees = 0, blocks = 0, boxes = 0, centroids = 0, codes = 0, fine_codes = 0, crowded = 0, crowding = 0;
-    std::uint64_t tree_of = 0, meeting = 0;
+    std::uint64_t trees = 0, chunks = 0, boxes = 0, centroids = 0, codes = 0, low_codes = 0, duplicates = 0,
+                  duplicate_codes = 0;
+    std::uint64_t tree_of = 0, other_bounds = 0;
     std::uint64_t keys[2] = {}, order[2] = {};
     std::uint64_t counters = 0, levels = 0;
     std::uint64_t nodes = 0;                                 // of layouts with records, whose trees do not keep them
@@ -28,12 +29,12 @@ struct BuildScratch {
 };
 
 struct BuildPlan {
-    std::vector<uint> first;         // by tree: its first leaf in the batch
-    std::vector<BuildBlock> blocks;  // runs of leaves that one group handles, never across trees
-    uint leaf_count = 0;             // of the batch
-    uint tree_bits = 0;              // bits of the largest tree index; 0 = one tree, no sort by tree
-    uint collapse_levels = 0;        // below the roots that are collapsed one by one; the rest goes by subtrees
-    uint subtree_leaves = 0;         // of a subtree that a group collapses whole, at most, while there are levels left
+    std::vector<uint> first;        // by tree: its first leaf in the batch
+    std::vector<LeafChunk> chunks;  // of leaves of one tree, a group each
+    uint leaf_count = 0;            // of the batch
+    uint tree_bits = 0;             // bits of the largest tree index; 0 = one tree, no sort by tree
+    uint collapse_levels = 0;       // below the roots that are collapsed one by one; the rest goes by subtrees
+    uint subtree_leaves = 0;        // of a subtree that a group collapses whole, at most, while there are levels left
     Layout layout = Layout::compressed4;
     BuildScratch scratch;
 };
@@ -62,7 +63,7 @@ struct GeometryLayout {
 };
 GeometryLayout layout_geometry(uint triangle_count, Layout layout);
 
-// Where the parts of a scene lie in its buffer; its SwScene is at 0.
+// Where the parts of a scene lie in its buffer; its SwTlasHeader is at 0.
 struct SceneLayout {
     uint node_count = 0, record_count = 0;
     std::uint64_t nodes = 0, instances = 0, records = 0, bytes = 0;

@@ -4,31 +4,25 @@
 
 namespace twinray {
 
-// The boxes of all inner nodes, and the records, from the boxes of the leaves.
-void Builder::record_records_climb(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
+// The boxes of all inner nodes, and the records, from the boxes of the leaves. Nothing is sorted in a refit: in layout
+// bvh2 edges lie where keys would.
+void Builder::record_boxes(Commands& commands, const BuildPlan& plan, const Batch& batch) const {
     const std::uint64_t base = batch.scratch.address();
-    const Uints parents{base + plan.scratch.parents}, missing{base + plan.scratch.missing};
-    record_parents_.dispatch_groups(commands, {batch.trees, batch.blocks, parents, missing, batch.block_count, 0},
-                                    batch.block_count);
-    refit_records_.dispatch_groups(commands,
-                                   {batch.trees,
-                                    batch.blocks,
-                                    batch.boxes,
-                                    {base + plan.scratch.slot_boxes},
-                                    parents,
-                                    missing,
-                                    batch.block_count,
-                                    0},
-                                   batch.block_count);
-}
-
-void Builder::record_climb(Commands& commands, const Batch& batch) const {
-    const Uints leaf_edges = batch.pairs.keys;  // nothing is sorted in a refit
-    leaf_edges_.dispatch_groups(commands, {batch.trees, batch.blocks, leaf_edges, batch.block_count, 0},
-                                batch.block_count);
-    refit_.dispatch_groups(commands,
-                           {batch.trees, batch.blocks, batch.boxes, leaf_edges, batch.meeting, batch.block_count, 0},
-                           batch.block_count);
+    const uint chunks = batch.args.chunk_count;
+    RefitArgs args{batch.args.trees, batch.args.chunks, batch.args.boxes, {}, {}, {}, chunks, 0};
+    if (has_records(plan.layout)) {
+        args.slot_boxes.address = base + plan.scratch.slot_boxes;
+        args.parents.address = base + plan.scratch.parents;
+        args.missing.address = base + plan.scratch.missing;
+        record_parents_.dispatch_groups(commands, args, chunks);
+        refit_records_.dispatch_groups(commands, args, chunks);
+        return;
+    }
+    args.parents = batch.pairs.keys;
+    args.missing = batch.args.other_bounds;
+    if (batch.args.leaves_are_sorted) refit_triangles_.dispatch_groups(commands, args, chunks);
+    leaf_edges_.dispatch_groups(commands, args, chunks);
+    refit_.dispatch_groups(commands, args, chunks);
 }
 
 namespace {
@@ -65,23 +59,13 @@ void Builder::record_costs(Commands& commands, std::span<const Measured> trees, 
 
 void Builder::record_triangle_refit(Commands& commands, const BuildPlan& plan, std::span<const BuildTree> trees,
                                     const Buffer& scratch) const {
-    if (plan.leaf_count == 0) return;
-    const Batch batch = begin(commands, plan, trees, scratch);
-    if (has_records(plan.layout)) return record_records_climb(commands, plan, batch);
-    refit_triangles_.dispatch_groups(commands, {batch.trees, batch.blocks, batch.boxes, batch.block_count, 0},
-                                     batch.block_count);
-    record_climb(commands, batch);
+    if (plan.leaf_count != 0) record_boxes(commands, plan, begin(commands, plan, trees, scratch));
 }
 
-void Builder::record_refit(Commands& commands, const BuildPlan& plan, const BuildTree& tree,
-                           Ref<InstanceRecord> records, Ref<SwInstance> instances) const {
+void Builder::record_refit(Commands& commands, const BuildPlan& plan, const InstanceTree& tree) const {
     if (plan.leaf_count == 0) return;
     Buffer scratch = build_scratch(commands.context(), plan);
-    const Batch batch = begin_instances(commands, plan, tree, records, instances, scratch);
-    if (has_records(plan.layout))
-        record_records_climb(commands, plan, batch);
-    else
-        record_climb(commands, batch);
+    record_boxes(commands, plan, begin_instances(commands, plan, tree, scratch));
     commands.keep(std::move(scratch));
 }
 

@@ -10,7 +10,6 @@
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "swtlas/check.h"
-#include "swtlas/check_compressed.h"
 
 namespace twinray {
 namespace {
@@ -135,12 +134,12 @@ void check_records(Layout layout, const SavedGeometry& geometry) {
         if (primitive >= primitives) fail("primitive ", primitive, " of ", primitives);
         if (const CompressedRecord right = encode_leaf(source, primitive);
             std::memcmp(&record, &right, sizeof right) != 0)
-            fail("the record of primitive ", primitive, " does not have its corners");
+            fail("the record of primitive ", primitive, " does not have its vertices");
     }
     std::vector<LeafBox> boxes;
     boxes.reserve(primitives);
     for (uint i = 0; i < primitives; ++i) boxes.push_back(box_of_primitive(source, i));
-    const CompressedCheck check = check_compressed(geometry.bvh, geometry.records, boxes);
+    const TreeCheck check = check_tree(geometry.bvh, geometry.records, boxes);
     if (!check.violations.empty()) fail("unsound tree: ", check.violations.front());
     if (check.width != 0 && check.width != width_of(layout))
         fail("nodes of ", check.width, " children in layout ", name_of(layout));

@@ -14,8 +14,8 @@ namespace twinray {
 using glm::bitCount;
 using glm::findLSB;
 using glm::findMSB;
-struct BvhHalf;
-using NodeHalves = Ref<BvhHalf>;
+struct BvhChild;
+using BvhChildren = Ref<BvhChild>;
 
 #include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/short_stack_size.h"
@@ -42,7 +42,6 @@ inline TraversalSteps& traversal_steps() {
 #include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/build.h"
 #include "shaders/shared/collapse.h"
-#include "shaders/shared/end_point_overlap.h"
 #include "shaders/shared/morton.h"
 #include "shaders/shared/place_instance.h"
 #include "shaders/shared/ploc.h"
@@ -51,8 +50,7 @@ inline TraversalSteps& traversal_steps() {
 #include "shaders/shared/traverse.h"
 #include "twinray/glsl/cpp_end.h"
 
-static_assert(sizeof(BvhNode) == 64 && sizeof(BvhHalf) == 32 && sizeof(BvhTriangle) == 40 && sizeof(SwInstance) == 96 &&
-              sizeof(CompressedRecord) == 40);
-static_assert(sizeof(OverlapSum) == 8);
-static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 64 && sizeof(SwScene) == 72);
+static_assert(sizeof(BvhNode) == 64 && sizeof(BvhChild) == 32 && sizeof(BvhTriangle) == 40 &&
+              sizeof(SwInstance) == 96 && sizeof(CompressedRecord) == 40);
+static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 64 && sizeof(SwTlasHeader) == 72);
 }  // namespace twinray

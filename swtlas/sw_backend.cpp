@@ -102,7 +102,7 @@ std::vector<Builder::Measured> SwBackend::measured(const Batch& batch, std::span
 std::vector<DeviceMesh> SwBackend::record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch) {
     std::vector<Commands::Piece> pieces;
     std::uint64_t next = batch.plan.scratch.bytes;
-    const auto place = [&](std::span<const std::byte> data) {
+    const auto stage = [&](std::span<const std::byte> data) {
         pieces.push_back({next, data});
         next += data.size();
         return scratch.address() + pieces.back().offset;
@@ -113,11 +113,11 @@ std::vector<DeviceMesh> SwBackend::record_meshes(Commands& commands, const Batch
         if (input.mesh.indices.address) continue;
         const Geometry& geometry = *input.geometry;
         if (geometry.kind == GEOMETRY_BOXES) {
-            meshes.back().positions.address = place(std::as_bytes(std::span(geometry.boxes)));
+            meshes.back().positions.address = stage(std::as_bytes(std::span(geometry.boxes)));
             continue;
         }
-        meshes.back().positions.address = place(std::as_bytes(std::span(geometry.positions)));
-        meshes.back().indices.address = place(std::as_bytes(std::span(geometry.triangles)));
+        meshes.back().positions.address = stage(std::as_bytes(std::span(geometry.positions)));
+        meshes.back().indices.address = stage(std::as_bytes(std::span(geometry.triangles)));
     }
     commands.upload_pieces(scratch, pieces);
     return meshes;
@@ -181,15 +181,14 @@ std::unique_ptr<AccelBackend::BuiltScene> SwBackend::build_scene(Commands& comma
         made->bytes = made->buffer.bytes();
         scene = made.get();
     }
-    const SwScene header{empty_bvh(scene->nodes().address), scene->records(), scene->instances(), input.count,
-                         input.refinement.address};
+    const SwTlasHeader header{empty_bvh(scene->nodes().address), scene->records(), scene->instances(), input.count,
+                              input.refinement.address};
     {
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
     }
-    builder_.record_instances(commands,
-                              plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
-                              scene->tree(input.count), input.records, scene->instances());
+    builder_.record_instances(commands, plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
+                              {scene->tree(input.count), input.records, scene->instances()});
     const Builder::Measured measured{{scene->address}, scene->records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), true);
     return made;
@@ -217,9 +216,8 @@ BuildBytes SwBackend::scene_bytes(std::size_t count, std::size_t capacity) const
 
 void SwBackend::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
     const auto& scene = static_cast<const SwBuiltScene&>(current);
-    builder_.record_refit(commands,
-                          plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
-                          scene.tree(input.count), input.records, scene.instances());
+    builder_.record_refit(commands, plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
+                          {scene.tree(input.count), input.records, scene.instances()});
     const Builder::Measured measured{{scene.address}, scene.records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), false);
 }
@@ -242,7 +240,7 @@ BuiltTree SwBackend::download_geometry(AccelHandle handle) const {
 
 BuiltTree SwBackend::download_scene() const {
     const auto& built = static_cast<const SwBuiltScene&>(built_scene());
-    const Bvh bvh = download<SwScene>(context(), built.buffer, 1).front().bvh;
+    const Bvh bvh = download<SwTlasHeader>(context(), built.buffer, 1).front().bvh;
     const SceneLayout of_them = layout_scene(bvh.leaf_count, options().layout);
     return {bvh,
             download<BvhNode>(context(), built.buffer, of_them.node_count, built.layout.nodes),

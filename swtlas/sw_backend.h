@@ -27,7 +27,6 @@ class SwBackend final : public AccelBackend {
     AccelHandle push_saved(Commands& commands, SavedGeometry&& saved);
     BuiltTree download_geometry(AccelHandle handle) const;
     BuiltTree download_scene() const;
-    double end_point_overlap(AccelHandle handle) const;
 
   private:
     struct SwBuiltGeometry;

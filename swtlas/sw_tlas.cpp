@@ -39,6 +39,5 @@ BuiltTree download_geometry(const SwTlas& accel, AccelHandle handle) {
     return accel.backend().download_geometry(handle);
 }
 BuiltTree download_scene(const SwTlas& accel) { return accel.backend().download_scene(); }
-double end_point_overlap(const SwTlas& accel, AccelHandle handle) { return accel.backend().end_point_overlap(handle); }
 
 }  // namespace twinray

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Copies of what SwTlas has built, and measures of it, for checks and tools.
+// Copies of what SwTlas has built, for checks and tools.
 #pragma once
 
 #include <vector>
@@ -19,11 +19,5 @@ struct BuiltTree {
 // Downloaded. Throws Error on a dead or unsynced handle.
 BuiltTree download_geometry(const SwTlas& accel, AccelHandle handle);
 BuiltTree download_scene(const SwTlas& accel);
-
-// The end-point overlap of the geometry's tree, see end_point_overlap.h: 0 where no box holds a part of a triangle
-// that is not below it. Measured by the GPU in float32, right to 1e-4 of itself and 1e-5; waits for it. It takes
-// about as long as tracing a ray for each triangle. Throws Error on a dead or unsynced handle and on a geometry of
-// boxes.
-double end_point_overlap(const SwTlas& accel, AccelHandle handle);
 
 }  // namespace twinray

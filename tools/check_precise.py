@@ -16,7 +16,7 @@ EXEMPT = {
     "intersect_triangle_fast": "level fast promises nothing at edges",
     "make_ray_space": "once for a ray: all triangles see the same constants",
     "reciprocal": "likewise",
-    "corner_pad": "twice of what it has to cover",
+    "vertex_pad": "twice of what it has to cover",
     "certified_ray": "what it gives is off by less than its bound, contracted or not",
     "certain_side": "a filter, whose bound exceeds what contraction changes",
     "is_finite_corner": "a bound that nothing is near to",

@@ -8,7 +8,7 @@
 #include "engine/core/dry_device.h"
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
-#include "swtlas/traffic.h"
+#include "cli/kernels/traffic.h"
 
 namespace twinray::cli {
 namespace {

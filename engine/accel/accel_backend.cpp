@@ -163,7 +163,7 @@ void AccelBackend::Placement::add_to(SceneFacts& facts) const {
     facts.has_transforms |= geometry.scale != 1;
     facts.instances += instances.records.size();
     for (const InstanceRecord& record : instances.records) {
-        facts.has_filters |= (flags_of(record) & INSTANCE_FILTERED) != 0;
+        facts.has_filters |= (flags_of(record) & INSTANCE_NON_OPAQUE) != 0;
         facts.common_mask &= mask_of(record);
         facts.has_transforms |= transform_of(record) != Transform{};
     }

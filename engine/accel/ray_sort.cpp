@@ -51,8 +51,8 @@ RadixSort::Pairs RaySort::record(Commands& commands, const Buffer& scratch, Ref<
     const RayOrderArgs args{rays, indirect_count, columns.box, columns.pairs.keys, count, groups};
     box_.dispatch_groups(commands, args, groups);
     keys_.dispatch(commands, args, count);
-    return sort_.record_places(commands, columns.pairs.keys, columns.pairs, columns.spare, columns.counters, count,
-                               RAY_KEY_BITS);
+    return sort_.record_iota(commands, columns.pairs.keys, columns.pairs, columns.spare, columns.counters, count,
+                             RAY_KEY_BITS);
 }
 
 }  // namespace twinray

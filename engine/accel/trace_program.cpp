@@ -42,7 +42,7 @@ const Kernel<TraceArgs>& KernelProgram::kernel(Query query, Level level) const {
                                  .spirv = level < Level::refined ? spirv_ : refined_,
                                  .group_size = group_size,
                                  .constants = {{QUERY_CONSTANT, query == Query::any ? QUERY_ANY : QUERY_CLOSEST},
-                                               {HANDS_CONSTANT, tuning.threads},
+                                               {INTERLEAVE_CONSTANT, tuning.threads},
                                                {STACK_CONSTANT, stack},
                                                {RAY_GROUP_CONSTANT, group_size},
                                                {FEATURES_CONSTANT, features()},

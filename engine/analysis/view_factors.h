@@ -10,7 +10,7 @@
 #include "engine/analysis/exchange.h"
 #include "engine/analysis/faces.h"
 #include "engine/core/pace.h"
-#include "engine/core/sampling.h"
+#include "engine/scene/sampling.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"

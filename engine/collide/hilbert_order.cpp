@@ -51,7 +51,7 @@ Uints HilbertOrder::record(Commands& commands, Ref<TreeBox> boxes, uint count) c
     const Uints counters = column(scratch_, count, 4);
     args.keys = pairs.keys;
     codes_.dispatch(commands, args, count);
-    const RadixSort::Pairs fine = sort_.record_places(commands, pairs.keys, pairs, spare, counters, count, code_bits);
+    const RadixSort::Pairs fine = sort_.record_iota(commands, pairs.keys, pairs, spare, counters, count, code_bits);
     if (fine.values.address != pairs.values.address) std::swap(pairs, spare);
     args.is_coarse = 1;
     args.keys = pairs.keys;

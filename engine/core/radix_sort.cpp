@@ -25,7 +25,7 @@ KernelDesc sort_kernel(const char* name, std::span<const std::uint32_t> spirv, u
 
 KernelDesc scatter_kernel(uint threads, bool values_are_places) {
     KernelDesc desc = sort_kernel("sort_scatter", engine_sort_scatter_spirv, threads);
-    desc.constants.push_back({PLACES_CONSTANT, values_are_places});
+    desc.constants.push_back({IOTA_CONSTANT, values_are_places});
     return desc;
 }
 
@@ -84,8 +84,8 @@ RadixSort::Pairs RadixSort::record(Commands& commands, Pairs pairs, Pairs spare,
 }
 
 // One item is sorted, too: its value is to be written.
-RadixSort::Pairs RadixSort::record_places(Commands& commands, Uints keys, Pairs pairs, Pairs spare, Uints counters,
-                                          std::uint32_t count, std::uint32_t bits, const Counts* if_counts) const {
+RadixSort::Pairs RadixSort::record_iota(Commands& commands, Uints keys, Pairs pairs, Pairs spare, Uints counters,
+                                        std::uint32_t count, std::uint32_t bits, const Counts* if_counts) const {
     if (count == 0) return pairs;
     return record_passes(commands, scatter_places_, keys, pairs, spare, counters, count, count == 1 ? 1 : bits,
                          if_counts);

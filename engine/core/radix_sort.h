@@ -37,8 +37,8 @@ class RadixSort {
                  const Counts* if_counts = nullptr) const;
     // The same of pairs whose values are 0, 1, 2, ..., which need not have been written. `keys` are not changed, unless
     // they are those of `pairs`; they must not be those of `spare`. At least one bit.
-    Pairs record_places(Commands& commands, Uints keys, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
-                        std::uint32_t bits, const Counts* if_counts = nullptr) const;
+    Pairs record_iota(Commands& commands, Uints keys, Pairs pairs, Pairs spare, Uints counters, std::uint32_t count,
+                      std::uint32_t bits, const Counts* if_counts = nullptr) const;
     uint sort_groups(std::uint64_t count) const { return groups_of(count, threads_); }
 
     // How many items an invocation sorts: few, so that there are many groups; with `threads` so many that there are as

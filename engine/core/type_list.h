@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lists of types as shaders/shared/multi_type_set.h describes them, as template arguments.
+// Lists of types as shaders/scene/multi_type_set.h describes them, as template arguments.
 #pragma once
 
 #include <algorithm>

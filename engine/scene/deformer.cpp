@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/deformer.h"
 
-#include "engine_deform.spv.h"
+#include "scene_deform.spv.h"
 
 namespace twinray {
 namespace {
@@ -13,9 +13,7 @@ Buffer like(Context& context, const Buffer& other) {
 }  // namespace
 
 Deformer::Deformer(Context& context, std::shared_ptr<const Rig> rig)
-    : context_(context),
-      rig_(std::move(rig)),
-      kernel_(context, {.name = "engine_deform", .spirv = engine_deform_spirv}) {
+    : context_(context), rig_(std::move(rig)), kernel_(context, {.name = "scene_deform", .spirv = scene_deform_spirv}) {
     if (rig_->meshes.empty()) return;
     Commands commands(context, "deformer upload");
     {
@@ -98,7 +96,7 @@ void Deformer::record(Commands& commands, const Pose& pose) {
             commands.upload(meshes_[i].joint_rows, std::span(joints));
         }
     }
-    const auto pass = commands.pass("engine_deform");
+    const auto pass = commands.pass("scene_deform");
     for (const Buffers& mesh : meshes_) kernel_.dispatch(commands, mesh.args, mesh.args.vertex_count);
 }
 

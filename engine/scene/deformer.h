@@ -8,7 +8,7 @@
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/deform.h"
+#include "shaders/scene/deform.h"
 #include "twinray/glsl/cpp_end.h"
 
 // Moves the vertices of a rig's meshes on the device, as deformed() does on the host: one dispatch a mesh. What it

@@ -8,7 +8,7 @@ namespace twinray {
 std::optional<glm::dmat4> unscaled(const glm::dmat4& world) {
     glm::dmat4 frame = world;
     for (int i = 0; i < 3; ++i) {
-        const double scale = glm::length(world[i]);
+        const double scale = length(world[i]);
         if (!(scale > 0)) return std::nullopt;
         frame[i] /= scale;
     }

@@ -12,7 +12,7 @@
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/multi_type_set.h"
+#include "shaders/scene/multi_type_set.h"
 #include "twinray/glsl/cpp_end.h"
 
 // What a set's view holds of each type.

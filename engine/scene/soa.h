@@ -13,7 +13,7 @@
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/soa.h"
+#include "shaders/scene/soa.h"
 #include "twinray/glsl/cpp_end.h"
 
 // Where the arrays of `count` items lie in one piece of memory.

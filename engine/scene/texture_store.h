@@ -12,7 +12,7 @@
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/textures.h"
+#include "shaders/scene/textures.h"
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(TextureRecord) == 32 && sizeof(TextureTable) == 32);

@@ -10,12 +10,12 @@
 
 #include "engine/core/error.h"
 #include "engine/core/kernel.h"
-#include "engine_float_probe.spv.h"
-#include "engine_float_probe64.spv.h"
+#include "verify_float_probe.spv.h"
+#include "verify_float_probe64.spv.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/float_probe.h"
+#include "shaders/verify/float_probe.h"
 #include "twinray/glsl/cpp_end.h"
 
 namespace {
@@ -74,7 +74,7 @@ Buffer make_buffer(Context& context, const char* name, std::uint64_t bytes) {
 }
 
 bool has_exact_float64(Context& context, const Buffer& source, std::span<const FloatCase> cases) {
-    const Kernel<Float64Args> kernel(context, {.name = "engine_float_probe64", .spirv = engine_float_probe64_spirv});
+    const Kernel<Float64Args> kernel(context, {.name = "verify_float_probe64", .spirv = verify_float_probe64_spirv});
     const Buffer products = make_buffer(context, "float64 products", cases.size() * 8),
                  sums = make_buffer(context, "float64 sums", cases.size() * 8);
     Commands commands(context, "float64 probe");
@@ -94,7 +94,7 @@ bool has_exact_float64(Context& context, const Buffer& source, std::span<const F
 
 FloatFacts probe(Context& context) {
     const std::vector<FloatCase> cases = probe_cases();
-    const Kernel<FloatProbeArgs> kernel(context, {.name = "engine_float_probe", .spirv = engine_float_probe_spirv});
+    const Kernel<FloatProbeArgs> kernel(context, {.name = "verify_float_probe", .spirv = verify_float_probe_spirv});
     const Buffer source = make_buffer(context, "float cases", cases.size() * sizeof(FloatCase)),
                  answers = make_buffer(context, "float answers", cases.size() * sizeof(FloatAnswer));
     Commands commands(context, "float probe");

@@ -11,11 +11,11 @@
 #include "engine/accel/accel_backend.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "engine_copy_items.spv.h"
+#include "verify_copy_items.spv.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/copy_items.h"
+#include "shaders/verify/copy_items.h"
 #include "twinray/glsl/cpp_end.h"
 
 namespace {
@@ -116,7 +116,7 @@ OracleAccel::OracleAccel(Context& context) : AbstractAccel(std::make_unique<Orac
 
 OracleBackend::OracleBackend(Context& context)
     : AccelBackend(context, "OracleAccel"),
-      copy_items_(context, {.name = "engine_copy_items", .spirv = engine_copy_items_spirv}) {}
+      copy_items_(context, {.name = "verify_copy_items", .spirv = verify_copy_items_spirv}) {}
 
 Capability OracleBackend::capability(Feature feature) const {
     switch (feature) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/accel/spawn.h"
-#include "engine/core/sampling.h"
+#include "engine/scene/sampling.h"
 #include "engine/scene/multi_type_set.h"
 #include "engine/scene/soa.h"
 #include "engine/scene/texture_store.h"

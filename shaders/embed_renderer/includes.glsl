@@ -4,15 +4,15 @@
 #define TWINRAY_EMBED_RENDERER_INCLUDES_GLSL
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/ray.h"
-#include "shaders/shared/soa.h"
+#include "shaders/scene/soa.h"
 #include "shaders/shared/spawn.h"
 #include "twinray/glsl/textures.glsl"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/extras.glsl"
 #include "shaders/path_tracer/wave.h"
-#include "shaders/shared/random.h"
+#include "shaders/sampling/random.h"
 #include "shaders/path_tracer/weights.h"
-#include "shaders/shared/sampling.h"
+#include "shaders/sampling/sampling.h"
 #include "shaders/path_tracer/camera.h"
 #include "shaders/embed_renderer/frame.h"
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // One box around the boxes of all invocations: a tree in workgroup memory, then atomics; the last group has the result.
+// Included after the size of groups.
 #ifndef TWINRAY_ENGINE_GROUP_BOX_GLSL
 #define TWINRAY_ENGINE_GROUP_BOX_GLSL
 #include "shaders/shared/world_bound.h"
 
-shared vec3 group_lo[WORLD_BOUND_GROUP];
-shared vec3 group_hi[WORLD_BOUND_GROUP];
+shared vec3 group_lo[gl_WorkGroupSize.x];
+shared vec3 group_hi[gl_WorkGroupSize.x];
 
 GeometryBox no_box()
 {
@@ -15,14 +16,14 @@ GeometryBox no_box()
     return box;
 }
 
-// Called by all invocations of all groups of WORLD_BOUND_GROUP. True for one invocation of all, once every box is in.
-bool add_box(REF(WorldBoundBits) bits, uint group_count, GeometryBox box)
+// Called by all invocations of a group: joins their boxes to the first.
+void join_boxes(vec3 lo, vec3 hi)
 {
     uint thread = gl_LocalInvocationIndex;
-    group_lo[thread] = box.lo;
-    group_hi[thread] = box.hi;
+    group_lo[thread] = lo;
+    group_hi[thread] = hi;
     barrier();
-    for (uint stride = WORLD_BOUND_GROUP / 2u; stride > 0u; stride /= 2u)
+    for (uint stride = gl_WorkGroupSize.x / 2u; stride > 0u; stride /= 2u)
     {
         if (thread < stride)
         {
@@ -31,6 +32,13 @@ bool add_box(REF(WorldBoundBits) bits, uint group_count, GeometryBox box)
         }
         barrier();
     }
+}
+
+// Called by all invocations of all groups. True for one invocation of all, once every box is in.
+bool add_box(REF(WorldBoundBits) bits, uint group_count, GeometryBox box)
+{
+    uint thread = gl_LocalInvocationIndex;
+    join_boxes(box.lo, box.hi);
     if (thread < 3u)
     {
         atomicMin(AT(bits, 0).lo[thread], ordered_bits(group_lo[0][thread]));

@@ -1,34 +1,34 @@
 // SPDX-License-Identifier: MIT
-// Moves each pair to its place.
+// Moves each pair to where its digit goes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/engine/sort_columns.glsl"
-layout(constant_id = PLACES_CONSTANT) const bool VALUES_ARE_PLACES = false;
+layout(constant_id = IOTA_CONSTANT) const bool VALUES_ARE_IOTA = false;
 layout(push_constant, scalar) uniform Push { SortArgs args; };
 
 // Where the items of each digit and thread go.
-void place_digits()
+void begin_digits()
 {
     Uints kept = kept_columns(args);
     bool is_kept = keeps_columns(args);
     for (uint digit = gl_LocalInvocationID.x; digit < DIGITS; digit += THREADS)
     {
-        uint place = AT(args.counts, digit * args.block_count + group_index());
+        uint next = AT(args.counts, digit * args.block_count + group_index());
         for (uint slot = digit * THREADS; slot < (digit + 1u) * THREADS; ++slot)
         {
             uint count = is_kept ? 0u : columns[slot];
-            columns[slot] = is_kept ? place + AT(kept, slot) : place;
-            place += count;
+            columns[slot] = is_kept ? next + AT(kept, slot) : next;
+            next += count;
         }
     }
     barrier();
 }
 
-uint value_at(uint place)
+uint value_at(uint index)
 {
-    if (VALUES_ARE_PLACES) return place;
-    return AT(args.values_in, place);
+    if (VALUES_ARE_IOTA) return index;
+    return AT(args.values_in, index);
 }
 
 void main()
@@ -37,7 +37,7 @@ void main()
     uint begin = run_begin(args);
     uint end = min(begin + args.run, args.count);
     if (!keeps_columns(args)) count_digits(args, begin, end);
-    place_digits();
+    begin_digits();
     for (uint i = begin; i < end; ++i)
     {
         uint key = AT(args.keys_in, i);

@@ -12,7 +12,7 @@
 #endif
 layout(local_size_x = 64, local_size_x_id = RAY_GROUP_CONSTANT) in;
 layout(constant_id = QUERY_CONSTANT) const uint TRACE_QUERY = QUERY_CLOSEST;
-layout(constant_id = HANDS_CONSTANT) const uint TRACE_HANDS = 0u;
+layout(constant_id = INTERLEAVE_CONSTANT) const uint TRACE_INTERLEAVE = 0u;
 layout(push_constant, scalar) uniform Push { TraceArgs args; };
 
 void main()
@@ -20,8 +20,8 @@ void main()
     uint count = ray_count(args.count, args.indirect_count);
     uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
     uint size = gl_WorkGroupSize.x;
-    uint run = TRACE_HANDS == 0u ? 1u : run_of_blocks(count, size, groups);
-    uint first = dealt_group(group_index(), groups, TRACE_HANDS) * run * size + gl_LocalInvocationID.x;
+    uint run = TRACE_INTERLEAVE == 0u ? 1u : run_of_blocks(count, size, groups);
+    uint first = interleaved_group(group_index(), groups, TRACE_INTERLEAVE) * run * size + gl_LocalInvocationID.x;
     TraceOptions options = trace_options(args.mask, args.flags, TRACE_QUERY);
     options.user_data = args.user_data;
     for (uint k = 0u; k < run && first + k * size < count; ++k)

@@ -3,8 +3,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/engine/group_box.glsl"
+#include "shaders/shared/world_bound.h"
 layout(local_size_x = WORLD_BOUND_GROUP) in;
+#include "shaders/engine/group_box.glsl"
 layout(push_constant, scalar) uniform Push { WorldBoundArgs args; };
 
 void main()

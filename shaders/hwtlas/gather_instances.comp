@@ -5,18 +5,20 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/world_bound.h"
 #include "shaders/shared/surface_area.h"
-#include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_tlas_header.h"
 #include "shaders/shared/hw_build.h"
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { HwGatherArgs args; };
 
 void main()
 {
-    uint place = global_index();
-    if (place >= args.count) return;
+    uint position = global_index();
+    if (position >= args.count) return;
     bool has_table = !is_null(args.instances);
     bool has_order = !is_null(args.order);
-    uint index = has_order ? AT(args.order, place) : (has_table ? AT(args.instances, place).instance_index : place);
+    uint index = position;
+    if (has_order) index = AT(args.order, position);
+    else if (has_table) index = AT(args.instances, position).instance_index;
     InstanceRecord record = in_built_units(AT(args.records, index));
     Rows to_world = to_world_of(record);
     bool usable = !is_null(record.geometry) && is_usable(to_world, inverse_of(to_world));
@@ -33,15 +35,15 @@ void main()
         area.lo = box.lo;
         area.hi = box.hi;
     }
-    AT(args.areas, place) = area;
+    AT(args.areas, position) = area;
     record.geometry = usable ? geometry.blas : NULL_ADDRESS;
     record.sbt_offset_flags |= geometry.kind; // the hit group of a pipeline
-    AT(args.driver_records, place) = record;
+    AT(args.driver_records, position) = record;
     if (!has_table) return;
     HwInstance instance;
     if (usable) instance.triangles = geometry.triangles;
     else instance.triangles = Uints(NULL_ADDRESS);
     instance.instance_index = index;
     instance.pad = 0u;
-    AT(args.instances, place) = instance;
+    AT(args.instances, position) = instance;
 }

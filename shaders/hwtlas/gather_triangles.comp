@@ -6,27 +6,27 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/world_bound.h"
 #include "shaders/shared/surface_area.h"
-#include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_tlas_header.h"
 #include "shaders/shared/hw_build.h"
 #include "shaders/hwtlas/mesh_triangle.glsl"
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { HwTrianglesArgs args; };
 
-void store(uint corner, vec3 position)
+void store(uint vertex, vec3 position)
 {
-    AT(args.corners, corner * 3u) = position.x;
-    AT(args.corners, corner * 3u + 1u) = position.y;
-    AT(args.corners, corner * 3u + 2u) = position.z;
+    AT(args.vertices, vertex * 3u) = position.x;
+    AT(args.vertices, vertex * 3u + 1u) = position.y;
+    AT(args.vertices, vertex * 3u + 2u) = position.z;
 }
 
 void main()
 {
-    uint place = global_index();
-    if (place >= args.count) return;
+    uint position = global_index();
+    if (position >= args.count) return;
     bool has_table = !is_null(args.table);
     bool has_order = !is_null(args.order);
-    uint index = has_order ? AT(args.order, place) : (has_table ? AT(args.table, place) : place);
-    if (has_order) AT(args.table, place) = index;
+    uint index = has_order ? AT(args.order, position) : (has_table ? AT(args.table, position) : position);
+    if (has_order) AT(args.table, position) = index;
     MeshTriangle triangle = load_triangle(args, index);
     AreaItem area = no_area();
     if (triangle.is_active)
@@ -43,8 +43,8 @@ void main()
         triangle.v1 = anchor;
         triangle.v2 = anchor;
     }
-    AT(args.areas, place) = area;
-    store(3u * place, triangle.v0);
-    store(3u * place + 1u, triangle.v1);
-    store(3u * place + 2u, triangle.v2);
+    AT(args.areas, position) = area;
+    store(3u * position, triangle.v0);
+    store(3u * position + 1u, triangle.v1);
+    store(3u * position + 2u, triangle.v2);
 }

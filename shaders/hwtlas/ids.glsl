@@ -3,11 +3,11 @@
 #ifndef TWINRAY_HWTLAS_IDS_GLSL
 #define TWINRAY_HWTLAS_IDS_GLSL
 #include "shaders/shared/world_bound.h"
-#include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_tlas_header.h"
 #include "shaders/shared/trace.h"
 
 // instance_id, primitive_id: what the driver calls InstanceId and PrimitiveId.
-Candidate candidate_of(HwScene scene, uint instance_id, uint primitive_id, uint custom_index, TraceOptions options)
+Candidate candidate_of(HwTlasHeader scene, uint instance_id, uint primitive_id, uint custom_index, TraceOptions options)
 {
     Candidate candidate;
     candidate.primitive_index = primitive_id;

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/world_bound.h"
-#include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_tlas_header.h"
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { HwCodesArgs args; };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A triangle of a mesh whose vertices move, and its box.
 #ifndef TWINRAY_HWTLAS_MESH_TRIANGLE_GLSL
 #define TWINRAY_HWTLAS_MESH_TRIANGLE_GLSL
 
@@ -13,10 +14,10 @@ struct MeshTriangle
 MeshTriangle load_triangle(HwTrianglesArgs mesh, uint triangle)
 {
     MeshTriangle t;
-    uvec3 corners = load_indices(mesh.indices, triangle);
-    t.v0 = load_position(mesh.positions, corners.x);
-    t.v1 = load_position(mesh.positions, corners.y);
-    t.v2 = load_position(mesh.positions, corners.z);
+    uvec3 vertices = load_indices(mesh.indices, triangle);
+    t.v0 = load_position(mesh.positions, vertices.x);
+    t.v1 = load_position(mesh.positions, vertices.y);
+    t.v2 = load_position(mesh.positions, vertices.z);
     t.is_active = is_active_triangle(t.v0, t.v1, t.v2);
     return t;
 }

@@ -21,7 +21,7 @@ TraceOptions trace_options()
     return options;
 }
 
-HwScene scene() { return AT(REF(HwScene)(args.scene), 0); }
+HwTlasHeader scene() { return AT(REF(HwTlasHeader)(args.scene), 0); }
 
 #ifdef TWINRAY_PROGRAM
 #include "twinray_program.glsl"

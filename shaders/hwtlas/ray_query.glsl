@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// One ray through a HwScene by a ray query.
+// One ray through a HwTlasHeader by a ray query.
 #ifndef TWINRAY_HWTLAS_RAY_QUERY_GLSL
 #define TWINRAY_HWTLAS_RAY_QUERY_GLSL
 #include "shaders/hwtlas/ids.glsl"
 
-Candidate candidate_of(HwScene scene, rayQueryEXT query, TraceOptions options)
+Candidate candidate_of(HwTlasHeader scene, rayQueryEXT query, TraceOptions options)
 {
     return candidate_of(scene, rayQueryGetIntersectionInstanceIdEXT(query, false),
                         rayQueryGetIntersectionPrimitiveIndexEXT(query, false),
@@ -16,7 +16,7 @@ bool has_hit(rayQueryEXT query)
     return rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT;
 }
 
-void consider_triangle(HwScene scene, rayQueryEXT query, TraceOptions options)
+void consider_triangle(HwTlasHeader scene, rayQueryEXT query, TraceOptions options)
 {
     if (accept_hit(candidate_of(scene, query, options), t_of_given(rayQueryGetIntersectionTEXT(query, false), options),
                    rayQueryGetIntersectionBarycentricsEXT(query, false)))
@@ -24,7 +24,7 @@ void consider_triangle(HwScene scene, rayQueryEXT query, TraceOptions options)
 }
 
 // uv: of the box that was hit last, for which the query has no place.
-void consider_box(HwScene scene, rayQueryEXT query, Ray ray, TraceOptions options, inout vec2 uv)
+void consider_box(HwTlasHeader scene, rayQueryEXT query, Ray ray, TraceOptions options, inout vec2 uv)
 {
     Candidate candidate = candidate_of(scene, query, options);
     Ray ray_local;
@@ -36,20 +36,20 @@ void consider_box(HwScene scene, rayQueryEXT query, Ray ray, TraceOptions option
     vec2 at = vec2(0.0f);
     if (!intersect_primitive(candidate, ray_local, t, at)) return;
     if (!(t > ray_local.t_min && t < ray_local.t_max)) return;
-    bool is_filtered = (options.features & FEATURE_FILTERS) != 0u &&
+    bool is_non_opaque = (options.features & FEATURE_FILTERS) != 0u &&
         !rayQueryGetIntersectionCandidateAABBOpaqueEXT(query);
-    if (is_filtered && !accept_hit(candidate, t_of_given(t, options), at)) return;
+    if (is_non_opaque && !accept_hit(candidate, t_of_given(t, options), at)) return;
     rayQueryGenerateIntersectionEXT(query, t);
     uv = at;
 }
 
-Address refinement_of(Address accel) { return AT(REF(HwScene)(accel), 0).refinement; }
+Address refinement_of(Address accel) { return AT(REF(HwTlasHeader)(accel), 0).refinement; }
 
 Hit trace_float32(Address accel, Ray ray, TraceOptions options)
 {
     if (!is_traceable(ray)) return miss();
     ray.t_min = max(ray.t_min, 0.0f);
-    HwScene scene = AT(REF(HwScene)(accel), 0);
+    HwTlasHeader scene = AT(REF(HwTlasHeader)(accel), 0);
     uint flags = ray_flags(options, gl_RayFlagsOpaqueEXT, gl_RayFlagsTerminateOnFirstHitEXT);
     rayQueryEXT query;
     rayQueryInitializeEXT(query, accelerationStructureEXT(scene.tlas), flags, options.mask, ray.origin, ray.t_min,

@@ -5,11 +5,11 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/world_bound.h"
 #include "shaders/shared/surface_area.h"
-#include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_tlas_header.h"
 #include "shaders/shared/hw_build.h"
 #include "shaders/hwtlas/mesh_triangle.glsl"
-#include "shaders/engine/group_box.glsl"
 layout(local_size_x = WORLD_BOUND_GROUP) in;
+#include "shaders/engine/group_box.glsl"
 layout(push_constant, scalar) uniform Push { HwTrianglesArgs args; };
 
 void main()

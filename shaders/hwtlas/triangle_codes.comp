@@ -5,7 +5,7 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/world_bound.h"
 #include "shaders/shared/surface_area.h"
-#include "shaders/shared/hw_scene.h"
+#include "shaders/shared/hw_tlas_header.h"
 #include "shaders/shared/hw_build.h"
 #include "shaders/hwtlas/mesh_triangle.glsl"
 layout(local_size_x = 256) in;

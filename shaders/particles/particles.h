@@ -3,8 +3,8 @@
 #ifndef TWINRAY_PARTICLES_PARTICLES_H
 #define TWINRAY_PARTICLES_PARTICLES_H
 #include "shaders/shared/instance.h"
-#include "shaders/shared/multi_type_set.h"
-#include "shaders/shared/soa.h"
+#include "shaders/scene/multi_type_set.h"
+#include "shaders/scene/soa.h"
 
 // A metal whose colour tells how fast a particle is.
 struct HeatMaterial

@@ -4,12 +4,12 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/ray.h"
-#include "shaders/shared/sampling.h"
-#include "shaders/shared/soa.h"
+#include "shaders/sampling/sampling.h"
+#include "shaders/scene/soa.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/camera.h"
-#include "shaders/shared/random.h"
+#include "shaders/sampling/random.h"
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { GenerateArgs args; };
 layout(constant_id = PT_FILTER) const uint FILTER = FILTER_BOX;

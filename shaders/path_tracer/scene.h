@@ -2,8 +2,8 @@
 // The scene as the path tracer's kernels read it from device memory.
 #ifndef TWINRAY_PATH_TRACER_SCENE_H
 #define TWINRAY_PATH_TRACER_SCENE_H
-#include "shaders/shared/multi_type_set.h"
-#include "shaders/shared/textures.h"
+#include "shaders/scene/multi_type_set.h"
+#include "shaders/scene/textures.h"
 
 // Ids of the specialisation constants: what a scene lacks is compiled out.
 const uint PT_HAS_ALPHA = 0u;        // some material is masked or blended: rays may pass surfaces

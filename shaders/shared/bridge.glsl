@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The GLSL side of the bridge: gives shared headers the words that both languages understand.
-// Its C++ twin is twinray/glsl/cpp.h; no shared header contains a language #ifdef.
+// Its C++ side is engine/core/shader_bridge.h; no shared header contains a language #ifdef.
 #ifndef TWINRAY_BRIDGE_GLSL
 #define TWINRAY_BRIDGE_GLSL
 #extension GL_EXT_scalar_block_layout : require
@@ -15,8 +15,8 @@ spirv_instruction(set = "GLSL.std.450", id = 80) float n_max(float a, float b);
 // The lesser and the greater of two numbers; of NaN and a number b it is b: what min() and max() leave open. Of two
 // zeros either. By one instruction, or by a comparison where that is less (KernelTuning::compares_numbers).
 layout(constant_id = 106) const bool COMPARES_NUMBERS = false;
-float min_number(float a, float b) { return COMPARES_NUMBERS ? (a < b ? a : b) : n_min(a, b); }
-float max_number(float a, float b) { return COMPARES_NUMBERS ? (a > b ? a : b) : n_max(a, b); }
+float min_no_nan(float a, float b) { return COMPARES_NUMBERS ? (a < b ? a : b) : n_min(a, b); }
+float max_no_nan(float a, float b) { return COMPARES_NUMBERS ? (a > b ? a : b) : n_max(a, b); }
 
 // Whether fma() rounds once. Set for every kernel that the library makes (KernelTuning::has_fused_fma).
 layout(constant_id = 105) const bool FUSED_FMA = false;
@@ -76,9 +76,9 @@ REFERENCE(Uvec3s, , uvec3 items[], 4)
 // gl_WorkGroupSize has its value only after the shader's local_size declaration, which follows this include.
 #define group_index() (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x)
 #define global_index() (group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x)
-// The same after dealing groups out to `hands` (shaders/shared/workgroup.h), for kernels whose groups take unequal
+// The same after dealing groups out to `threads` (shaders/shared/workgroup.h), for kernels whose groups take unequal
 // times.
-#define dealt_index(hands) \
-    (dealt_group(group_index(), gl_NumWorkGroups.x * gl_NumWorkGroups.y, hands) * gl_WorkGroupSize.x + \
+#define interleaved_index(threads) \
+    (interleaved_group(group_index(), gl_NumWorkGroups.x * gl_NumWorkGroups.y, threads) * gl_WorkGroupSize.x + \
      gl_LocalInvocationID.x)
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the build kernels of the software accelerator share. A batch builds many trees at once: its leaves stand one
-// tree after the other, and a block is a run of up to BUILD_GROUP leaves of one tree.
+// tree after the other, in chunks of up to BUILD_GROUP leaves of one tree.
 #ifndef TWINRAY_SHARED_BUILD_H
 #define TWINRAY_SHARED_BUILD_H
 #include "shaders/shared/bvh.h"
@@ -10,7 +10,7 @@
 #include "shaders/shared/workgroup.h"
 
 const uint BUILD_GROUP = 256u;
-const uint LEAVES_GROUP = 32u; // invocations that share a block's leaves where they need each other, on a GPU
+const uint LEAVES_GROUP = 32u; // invocations that share a chunk's leaves where they need each other, on a GPU
 const uint INACTIVE_CODE = 0x3fffffffu; // Morton code of leaves without a finite box: last
 
 // Box of a tree's leaf centres, as ordered bits (see ordered_bits).
@@ -35,87 +35,71 @@ struct BuildTree
 };
 BUFFER_OF(BuildTree, 8);
 
-struct BuildBlock
+// Leaves of one tree, of which a group does the chunk.
+struct LeafChunk
 {
     uint tree;
     uint first;
     uint count;
 };
-BUFFER_OF(BuildBlock, 4);
-
-struct TriangleLeavesArgs
-{
-    REF(BuildTree) trees;
-    REF(BuildBlock) blocks;
-    REF(LeafBox) boxes;
-    REF(CentroidBounds) centroids; // one per tree
-    uint block_count;
-    uint reserved;
-};
-
-struct InstanceLeavesArgs
-{
-    REF(InstanceRecord) records;
-    REF(SwInstance) instances;
-    REF(BuildBlock) blocks;
-    REF(LeafBox) boxes;
-    REF(CentroidBounds) centroids;
-    uint block_count;
-    uint reserved;
-};
-
-struct MortonArgs
-{
-    REF(BuildBlock) blocks;
-    REF(LeafBox) boxes;
-    REF(CentroidBounds) centroids;
-    Uints codes;   // by leaf
-    Uints tree_of; // by leaf; 0 = not wanted (a single tree)
-    uint block_count;
-    uint reserved;
-};
+BUFFER_OF(LeafChunk, 4);
 
 // Where Morton codes collide, as in a mesh with parts that are far smaller than the whole, the leaves of that tree are
-// sorted again, by fine codes too: else their order would mean nothing there.
-const uint CROWD = 16u; // leaves that follow one of the same code, in order: a crowd
+// sorted again, by the lower half of 60-bit codes too: else their order would mean nothing there.
+const uint MANY_DUPLICATES = 16u; // leaves that follow one of the same code, in order
 
 // Written on the device, which dispatches the second sort, or nothing.
-struct Crowding
+struct DuplicateCodes
 {
-    uint is_fine; // 1: some trees need fine codes; the others have 0 for them
+    uint has_low_codes;  // 1: some trees are sorted by low codes; the others have 0 for them
     uint leaf_groups[3]; // of a dispatch over all leaves
     uint sort_groups[3]; // of a pass of the sort
     uint scan_groups[3];
 };
-BUFFER_OF(Crowding, 4);
+BUFFER_OF(DuplicateCodes, 4);
 
-// `crowded`: leaves of a tree that begin a crowd.
-FUNC bool needs_fine_codes(uint crowded, uint leaf_count) { return crowded > leaf_count / 8u; }
+// `duplicates`: leaves of a tree that MANY_DUPLICATES follow.
+FUNC bool needs_low_codes(uint duplicates, uint leaf_count) { return duplicates > leaf_count / 8u; }
 
-struct CrowdingArgs
+// What a batch consists of: the argument of all stages of a build that take nothing else.
+struct BuildArgs
 {
-    Uints codes;   // in order
-    Uints order;
-    Uints tree_of; // by leaf; 0: a single tree
     REF(BuildTree) trees;
-    Uints crowded; // by tree: how many leaves begin a crowd, counted until that is enough
-    REF(Crowding) crowding;
-    uint count;
-    uint leaf_groups;
-    uint sort_groups;
+    REF(LeafChunk) chunks;
+    REF(LeafBox) boxes;
+    REF(CentroidBounds) centroids; // one per tree
+    Uints codes;        // Morton codes by leaf; from the sort on in order
+    Uints low_codes;    // by leaf: the lower halves of 60-bit Morton codes
+    Uints tree_of;      // by leaf; null: a single tree
+    Uints duplicates;   // by tree, counted until they are enough: see needs_low_codes
+    REF(DuplicateCodes) duplicate_codes;
+    Uints order;        // the leaves in order
+    Uints other_bounds; // by inner node: the far end of the range that arrived first, NOTHING before
+    Uints tops;         // of quality ploc: of clusters, by the first leaf of their range in order
+    Uints last_leaves;  // and so their last leaves
+    uint chunk_count;
+    uint leaf_count;
+    uint leaves_are_sorted;     // 1: leaf references count sorted leaves; 0: they are the leaf's own index
+    uint leaves_per_invocation; // of the hierarchy but of quality ploc, a divisor of BUILD_GROUP
+};
+
+// The leaves of a top level.
+struct InstanceLeavesArgs
+{
+    REF(InstanceRecord) records;
+    REF(SwInstance) instances;
+    REF(LeafChunk) chunks;
+    REF(LeafBox) boxes;
+    REF(CentroidBounds) centroids;
+    uint chunk_count;
     uint reserved;
 };
 
-struct FineCodesArgs
+struct DuplicateCodesArgs
 {
-    REF(BuildTree) trees;
-    REF(BuildBlock) blocks;
-    REF(LeafBox) boxes;
-    REF(CentroidBounds) centroids;
-    Uints crowded;    // by tree
-    Uints fine_codes; // by leaf
-    uint block_count;
-    uint reserved;
+    BuildArgs build;
+    uint leaf_groups;
+    uint sort_groups;
 };
 
 // keys[i] = values[order[i]]
@@ -132,107 +116,20 @@ struct GatherKeysArgs
 const uint HIERARCHY_FAST = 0u;
 const uint HIERARCHY_HIGH = 1u; // with rotations
 
-// Of both kernels that make hierarchies.
-struct HierarchyArgs
-{
-    REF(BuildTree) trees;
-    REF(BuildBlock) blocks;
-    REF(LeafBox) boxes;
-    Uints codes;            // in order
-    Uints fine_codes;       // by leaf
-    REF(Crowding) crowding;
-    Uints order;
-    Uints meeting;          // by inner node: the far end of the range that arrived first, NOTHING before
-    REF(CentroidBounds) centroids;
-    Uints tops;             // of quality ploc: of clusters, by the place of the first leaf of their range
-    Uints last_leaves;      // and so their last leaves
-    uint block_count;
-    uint leaves_are_sorted; // 1: leaf references count sorted leaves; 0: they are the leaf's own index
-    uint run;               // leaves of an invocation but of quality ploc, a divisor of BUILD_GROUP
-    uint reserved;
-};
-
 // Of quality ploc, see ploc.h.
 const uint PLOC_GROUP = 32u; // invocations at most, as many as clusters that they merge
 
-// Links the nodes of built trees of layout bvh2 to those above them.
-struct LinkNodesArgs
-{
-    REF(BuildTree) trees;
-    REF(BuildBlock) blocks;
-    uint block_count;
-    uint reserved;
-};
-
-struct LeafEdgesArgs
-{
-    REF(BuildTree) trees;
-    REF(BuildBlock) blocks;
-    Uints leaf_edges; // by leaf, of all trees of the batch
-    uint block_count;
-    uint reserved;
-};
-
-// New boxes for an old topology.
+// New boxes for an old topology. A tree's slots are its indices of records; they begin at 2 * BuildTree::first.
 struct RefitArgs
 {
     REF(BuildTree) trees;
-    REF(BuildBlock) blocks;
-    REF(LeafBox) boxes;
-    Uints leaf_edges;
-    Uints arrived; // by inner node: NOTHING before its first child is done
-    uint block_count;
-    uint reserved;
-};
-
-struct RefitTrianglesArgs
-{
-    REF(BuildTree) trees;
-    REF(BuildBlock) blocks;
-    REF(LeafBox) boxes; // by place in the tree's order
-    uint block_count;
-    uint reserved;
-};
-
-// New records for an old topology. A tree's slots are its places for records; they begin at 2 * BuildTree::first.
-struct RecordParentsArgs
-{
-    REF(BuildTree) trees;
-    REF(BuildBlock) blocks;
-    Uints parents; // by slot: that of the node above, NOTHING for the root
-    Uints missing; // by slot of a node: how many of its children have no box yet
-    uint block_count;
-    uint reserved;
-};
-
-struct RefitRecordsArgs
-{
-    REF(BuildTree) trees;
-    REF(BuildBlock) blocks;
-    REF(LeafBox) boxes; // of instances
-    REF(LeafBox) slot_boxes;
-    Uints parents;
-    Uints missing;
-    uint block_count;
-    uint reserved;
-};
-
-struct EncodeRecordsArgs
-{
-    REF(BuildTree) trees;
-    REF(BuildBlock) blocks;
-    Uints order;
-    Uints places; // by place in the order: the leaf's slot
-    uint block_count;
-    uint reserved;
-};
-
-struct EncodeTrianglesArgs
-{
-    REF(BuildTree) trees;
-    REF(BuildBlock) blocks;
-    Uints order;
-    uint block_count;
+    REF(LeafChunk) chunks;
+    REF(LeafBox) boxes;      // of leaves
+    REF(LeafBox) slot_boxes; // of layouts of records
+    Uints parents; // by slot: that of the node above, NOTHING for the root; in layout bvh2 by leaf: the edge to it
+    Uints missing; // by slot of a node: how many of its children have no box yet; in layout bvh2 by inner node, from
+                   // NOTHING on: how many have one
+    uint chunk_count;
     uint reserved;
 };
 
@@ -269,21 +166,21 @@ FUNC BvhTriangle fetch_primitive(BuildTree tree, uint primitive)
         triangle.primitive_index = primitive;
         return triangle;
     }
-    uvec3 corners = load_indices(tree.indices, primitive);
-    triangle.v0 = load_position(tree.positions, corners.x);
-    triangle.v1 = load_position(tree.positions, corners.y);
-    triangle.v2 = load_position(tree.positions, corners.z);
+    uvec3 vertices = load_indices(tree.indices, primitive);
+    triangle.v0 = load_position(tree.positions, vertices.x);
+    triangle.v1 = load_position(tree.positions, vertices.y);
+    triangle.v2 = load_position(tree.positions, vertices.z);
     triangle.primitive_index = primitive;
     return triangle;
 }
 
-// Triangles that cannot be hit keep their place in the tree with an empty box.
+// Triangles that cannot be hit stay in the tree with an empty box.
 FUNC LeafBox box_of_triangle(BvhTriangle t)
 {
     if (!is_active_triangle(t.v0, t.v1, t.v2)) return empty_box();
     LeafBox box;
-    box.lo = lesser_of(t.v0, lesser_of(t.v1, t.v2));
-    box.hi = greater_of(t.v0, greater_of(t.v1, t.v2));
+    box.lo = min_by_comparison(t.v0, min_by_comparison(t.v1, t.v2));
+    box.hi = max_by_comparison(t.v0, max_by_comparison(t.v1, t.v2));
     return box;
 }
 
@@ -298,7 +195,7 @@ FUNC LeafBox box_of_primitive(BuildTree tree, uint primitive)
 }
 
 // A triangle as traversal wants it.
-FUNC BvhTriangle without_inactive_corners(BvhTriangle t)
+FUNC BvhTriangle without_inactive_vertices(BvhTriangle t)
 {
     if (is_active_triangle(t.v0, t.v1, t.v2)) return t;
     t.v0 = vec3(0.0f);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The software accelerator's structures in device memory.
 //
-//   SwScene -> top-level Bvh over instances -> SwInstance -> bottom-level Bvh over triangles
+//   SwTlasHeader -> top-level Bvh over instances -> SwInstance -> bottom-level Bvh over triangles
 //
 // Trees are built binary, of BvhNodes. In layout bvh2 they stay; in the other layouts a tree of CompressedRecords takes
 // their place.
@@ -17,7 +17,7 @@ const uint INSTANCE_BIT = 0x40000000u; // in records of leaves
 const uint WIDE_BIT = INSTANCE_BIT;    // in other records
 const uint NOTHING = 0xffffffffu;
 
-// Inner nodes on a path split on ever lower bits of (30-bit Morton code, 30-bit fine code, 25-bit position).
+// Inner nodes on a path split on ever lower bits of (60-bit Morton code, 25-bit position).
 const uint DEEPEST_TREE = 85u;
 const uint DEEPEST_RECORDS = (DEEPEST_TREE + 1u) / 2u; // inner nodes on a path of records, see collapse.h
 
@@ -28,21 +28,20 @@ struct LeafBox
 };
 BUFFER_OF(LeafBox, 8);
 
-// Without NaN, and by comparisons: for what min and max make of NaN, drivers on CPUs take up to eight operations a
-// number.
-FUNC vec3 lesser_of(vec3 a, vec3 b)
+// By comparisons, which give the same bits everywhere: min() and max() may give either of two zeros.
+FUNC vec3 min_by_comparison(vec3 a, vec3 b)
 {
     return vec3(a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z);
 }
-FUNC vec3 greater_of(vec3 a, vec3 b)
+FUNC vec3 max_by_comparison(vec3 a, vec3 b)
 {
     return vec3(a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z);
 }
 FUNC LeafBox around_both(LeafBox a, LeafBox b)
 {
     LeafBox box;
-    box.lo = lesser_of(a.lo, b.lo);
-    box.hi = greater_of(a.hi, b.hi);
+    box.lo = min_by_comparison(a.lo, b.lo);
+    box.hi = max_by_comparison(a.hi, b.hi);
     return box;
 }
 
@@ -52,24 +51,34 @@ struct BvhNode
     vec3 lo0;
     uint child0;
     vec3 hi0;
-    uint below0; // of child0, see make_below; once a tree of layout bvh2 is built, the node's own edge, see make_edge
+    uint subtree0; // of child0, see subtree_info; in finished trees of layout bvh2 the node's own edge, see make_edge
     vec3 lo1;
     uint child1;
     vec3 hi1;
-    uint below1;
+    uint subtree1;
 };
 BUFFER_OF(BvhNode, 16);
 
 // Each half of a node, as others write it alone.
-struct BvhHalf
+struct BvhChild
 {
     vec3 lo;
     uint child;
     vec3 hi;
-    uint below;
+    uint subtree;
 };
 
-// 40 bytes; all corners 0 for a triangle that is not active (see triangle.h), which is never hit. Of a box, v0 and v1
+FUNC BvhChild child_of(BvhNode node, uint side)
+{
+    BvhChild child;
+    child.lo = side == 0u ? node.lo0 : node.lo1;
+    child.child = side == 0u ? node.child0 : node.child1;
+    child.hi = side == 0u ? node.hi0 : node.hi1;
+    child.subtree = side == 0u ? node.subtree0 : node.subtree1;
+    return child;
+}
+
+// 40 bytes; all vertices 0 for a triangle that is not active (see triangle.h), which is never hit. Of a box, v0 and v1
 // are its lowest and highest corner.
 struct BvhTriangle
 {
@@ -87,7 +96,7 @@ BUFFER_OF(BvhTriangle, 8);
 //               w: the first child, count of children << 26, in layout compressed8 and WIDE_BIT
 //            b: lo.x, hi.x, lo.y, hi.y in cells, 8 bits a child      c: lo.z, hi.z
 // second half of a node of layout compressed8, of its last four slots
-//            a.x: see ChildPlaces, axes << 16 (see octant_order.h); w: WIDE_BIT      b, c: as in a node
+//            a.x: see ChildSlots, axes << 16 (see octant_order.h); w: WIDE_BIT      b, c: as in a node
 // primitive  a: v0; w: LEAF_BIT | primitive_index      b: v1; w, c: v2
 // instance   a.w: LEAF_BIT | INSTANCE_BIT | index
 // none       a.w: 0
@@ -136,7 +145,7 @@ struct SwInstance
 };
 BUFFER_OF(SwInstance, 8);
 
-struct SwScene
+struct SwTlasHeader
 {
     Bvh bvh;
     REF(CompressedRecord) records; // as in SwGeometry
@@ -144,21 +153,21 @@ struct SwScene
     Uint64 instance_count;
     Address refinement; // address of a RefineScene, or 0
 };
-BUFFER_OF(SwScene, 8);
+BUFFER_OF(SwTlasHeader, 8);
 
 // How many leaves are below a child, and of how many nodes, it being the first, no way down from it has more.
-FUNC uint make_below(uint leaves, uint height) { return leaves | height << 25u; }
-FUNC uint leaves_in(uint below) { return below & 0x1ffffffu; }
-FUNC uint height_in(uint below) { return below >> 25u; }
+FUNC uint subtree_info(uint leaves, uint height) { return leaves | height << 25u; }
+FUNC uint leaves_in(uint subtree) { return subtree & 0x1ffffffu; }
+FUNC uint height_in(uint subtree) { return subtree >> 25u; }
 
 // A child of a node of layout bvh2, as the node above it and its side. A built tree knows the edges of its inner nodes,
 // as a way up to the root, whose edge is 0.
 FUNC uint make_edge(uint node, uint side) { return (node + 1u) << 1u | side; }
 FUNC uint parent_of_edge(uint edge) { return (edge >> 1u) - 1u; }
-FUNC uint edge_of(REF(BvhNode) nodes, uint node) { return AT(nodes, node).below0; }
+FUNC uint edge_of(REF(BvhNode) nodes, uint node) { return AT(nodes, node).subtree0; }
 FUNC void set_edge(REF(BvhNode) nodes, uint child, uint edge)
 {
-    if ((child & LEAF_BIT) == 0u) AT(nodes, child).below0 = edge;
+    if ((child & LEAF_BIT) == 0u) AT(nodes, child).subtree0 = edge;
 }
 FUNC void link_children(REF(BvhNode) nodes, uint node)
 {

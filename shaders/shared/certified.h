@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: MIT Level certified: which triangle a ray meets, and in which order, is what float64 says of
-// the ray, the corners and the transform as they were given. float32 only leaves out what it can prove to be no hit,
-// within the bounds of its errors:
+// SPDX-License-Identifier: MIT
+// Level certified: which triangle a ray meets, and in which order, is what float64 says of the ray, the vertices and
+// the transform as they were given. float32 only leaves out what it can prove to be no hit, within the bounds of its
+// errors:
 //  - Boxes are padded by what transforming the ray may move it, so that no box of a hit is passed by.
 //  - A triangle is refused where two edges see the ray on opposite sides by more than their error bounds (a
 //    floating-point
@@ -19,12 +20,12 @@ struct CertifiedRay
 {
     vec3 origin;
     vec3 direction;
-    // How far it may run from the exact one, in any coordinate anywhere in the geometry, and a corner of it be sheared
+    // How far it may run from the exact one, in any coordinate anywhere in the geometry, and a vertex of it be sheared
     // to the wrong place.
     float error;
 };
 
-// Float64 maps the ray, so that what is left is rounding: with T the instance's place, W the inverse and r its
+// Float64 maps the ray, so that what is left is rounding: with T the instance's translation, W the inverse and r its
 // residual, the exact origin o' = W (o - T) and direction d' differ by r o' and r d', by less than 2^-48 |W| (|o| +
 // |T|) (W T has been rounded, and may have cancelled) and 2^-48 |W| |d|, and by a rounding to float32 (2^-24). A point
 // of the geometry is at most (|o'| + extent) / |d'| away. The shear along the longest axis doubles what is off, and
@@ -37,13 +38,14 @@ FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray, bool is_moved)
     const double MOVING = double(HALF_ULP);
     RowsDouble to_object = instance.world_to_object;
     RowsDouble magnitude = absolute(to_object);
-    dvec3 place = abs(dvec3(double(instance.mesh.object_to_world[0].w), double(instance.mesh.object_to_world[1].w),
-                            double(instance.mesh.object_to_world[2].w)));
+    dvec3 translation =
+        abs(dvec3(double(instance.mesh.object_to_world[0].w), double(instance.mesh.object_to_world[1].w),
+                  double(instance.mesh.object_to_world[2].w)));
     dvec3 o = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
     dvec3 d = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
     dvec3 origin = transform_vector_double(to_object, o) + offset_double(to_object);
     dvec3 direction = transform_vector_double(to_object, d);
-    dvec3 origin_error = MAPPING * (transform_vector_double(magnitude, abs(o) + place));
+    dvec3 origin_error = MAPPING * (transform_vector_double(magnitude, abs(o) + translation));
     if (is_moved) origin_error = origin_error + MOVING * transform_vector_double(magnitude, abs(o));
     dvec3 direction_error = MAPPING * transform_vector_double(magnitude, abs(d));
     CertifiedRay mapped;
@@ -51,14 +53,14 @@ FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray, bool is_moved)
     mapped.direction = vec3(float(direction.x), float(direction.y), float(direction.z));
     float reach = largest_entry(mapped.origin) + instance.extent;
     float moved = (instance.residual + HALF_ULP) * largest_entry(mapped.origin) + largest_entry_double(origin_error);
-    float turned = instance.residual + HALF_ULP +
+    float rotated = instance.residual + HALF_ULP +
                    largest_entry_double(direction_error) / largest_entry(mapped.direction);
-    float error = 4.0f * (moved + reach * turned + reach * (6.0f * HALF_ULP));
+    float error = 4.0f * (moved + reach * rotated + reach * (6.0f * HALF_ULP));
     mapped.error = error < UNKNOWN ? error : UNKNOWN;
     return mapped;
 }
 
-// 1 or -1 where the edge function of two sheared corners, each off by at most `error` in x and y, has that sign for
+// 1 or -1 where the edge function of two sheared vertices, each off by at most `error` in x and y, has that sign for
 // certain, else 0.
 FUNC int certain_side(vec3 a, vec3 b, float error)
 {
@@ -91,10 +93,10 @@ FUNC dvec3 dominant_last_double(dvec3 v, uint axis)
     return axis == 0u ? dvec3(v.y, v.z, v.x) : (axis == 1u ? dvec3(v.z, v.x, v.y) : v);
 }
 
-// A corner, relative to the ray's origin, seen along the direction d, whose dominant axis is the last.
-FUNC dvec3 sheared_double(dvec3 corner, dvec3 d, uint axis)
+// A vertex, relative to the ray's origin, seen along the direction d, whose dominant axis is the last.
+FUNC dvec3 sheared_double(dvec3 vertex, dvec3 d, uint axis)
 {
-    dvec3 p = dominant_last_double(corner, axis);
+    dvec3 p = dominant_last_double(vertex, axis);
     PRECISE double x = p.x - d.x / d.z * p.z;
     PRECISE double y = p.y - d.y / d.z * p.z;
     return dvec3(x, y, p.z);
@@ -110,9 +112,9 @@ FUNC bool intersect_in_world(uint instance_index, uint primitive_index, TraceOpt
     dvec3 origin = dvec3(double(o.x), double(o.y), double(o.z));
     uint axis = dominant_axis(w);
     dvec3 d = dominant_last_double(dvec3(double(w.x), double(w.y), double(w.z)), axis);
-    dvec3 a = sheared_double(corner_from(origin, mesh, 3u * primitive_index), d, axis);
-    dvec3 b = sheared_double(corner_from(origin, mesh, 3u * primitive_index + 1u), d, axis);
-    dvec3 c = sheared_double(corner_from(origin, mesh, 3u * primitive_index + 2u), d, axis);
+    dvec3 a = sheared_double(vertex_from(origin, mesh, 3u * primitive_index), d, axis);
+    dvec3 b = sheared_double(vertex_from(origin, mesh, 3u * primitive_index + 1u), d, axis);
+    dvec3 c = sheared_double(vertex_from(origin, mesh, 3u * primitive_index + 2u), d, axis);
     int side_a = 0;
     int side_b = 0;
     int side_c = 0;

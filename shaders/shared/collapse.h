@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: MIT From a binary tree to nodes of four or eight children, `width`. Where the records of a
-// subtree go follows from the number of its leaves and of those before it, so that the result does not depend on the
-// order in which invocations run.
+// SPDX-License-Identifier: MIT
+// From a binary tree to nodes of four or eight children, `width`. Where the records of a subtree go follows from the
+// number of its leaves and of those before it, so that the result does not depend on the order in which invocations
+// run.
 //
 // A node takes the place of two levels of the binary tree wherever that must be for no path to have more than
 // DEEPEST_RECORDS of them, and where it need not be, of those with the largest boxes. With eight children small
@@ -14,9 +15,9 @@
 struct CollapseItem
 {
     uint tree;
-    uint place;  // see make_place
+    uint node_and_level;
     uint record; // where it goes
-    uint below;  // where the records below it begin
+    uint descendants; // where the records below it begin
 };
 BUFFER_OF(CollapseItem, 8);
 
@@ -34,9 +35,9 @@ struct CollapseLevel
 BUFFER_OF(CollapseLevel, 4);
 
 // A node of the binary tree, and how many nodes of records are above the one that it becomes.
-FUNC uint make_place(uint node, uint level) { return node | level << 25u; }
-FUNC uint node_at(uint place) { return place & 0x1ffffffu; }
-FUNC uint level_at(uint place) { return place >> 25u; }
+FUNC uint pack_node(uint node, uint level) { return node | level << 25u; }
+FUNC uint node_in(uint node_and_level) { return node_and_level & 0x1ffffffu; }
+FUNC uint level_in(uint node_and_level) { return node_and_level >> 25u; }
 
 const uint COLLAPSE_GROUP = 64u;
 
@@ -54,7 +55,7 @@ struct CollapseArgs
     REF(CollapseItem) queues;        // of their groups, see queue_begin
     REF(CollapseLevel) level;        // the next one follows
     REF(CollapseLevel) subtree_level;
-    Uints places;                    // by leaf, as nodes refer to it: where its record goes
+    Uints leaf_indices;              // by leaf, as nodes refer to it: where its record goes
     uint tree_count;
     uint subtree_leaves;             // a subtree has at most
 };
@@ -67,24 +68,24 @@ FUNC uint queue_begin(uint tree_first, uint before)
     return tree_first / 6u * 5u + tree_first % 6u * 5u / 6u + before / 2u; // 5/6 of it, which 32 bits hold all the way
 }
 
-FUNC void set_child(INOUT(NodeChildren) children, uint at, uint child, vec3 lo, vec3 hi, uint below, uint width)
+FUNC void set_child(INOUT(NodeChildren) children, uint at, BvhChild set, uint width)
 {
     UNROLL for (uint i = 0u; i < width; i = i + 1u)
     {
         bool is_here = i == at;
-        children.child[i] = is_here ? child : children.child[i];
-        children.box[i].lo = is_here ? lo : children.box[i].lo;
-        children.box[i].hi = is_here ? hi : children.box[i].hi;
-        children.below[i] = is_here ? below : children.below[i];
+        children.child[i] = is_here ? set.child : children.child[i];
+        children.box[i].lo = is_here ? set.lo : children.box[i].lo;
+        children.box[i].hi = is_here ? set.hi : children.box[i].hi;
+        children.subtree[i] = is_here ? set.subtree : children.subtree[i];
     }
 }
 
-// Splits `node`, which has place i among the children, into its own two, the second at the end.
+// Splits `node`, child i, into its own two, the second at the end.
 FUNC void open_child(REF(BvhNode) nodes, uint node, uint i, INOUT(NodeChildren) children, uint width)
 {
     BvhNode opened = load_node(nodes, node);
-    set_child(children, i, opened.child0, opened.lo0, opened.hi0, opened.below0, width);
-    set_child(children, children.count, opened.child1, opened.lo1, opened.hi1, opened.below1, width);
+    set_child(children, i, child_of(opened, 0u), width);
+    set_child(children, children.count, child_of(opened, 1u), width);
     children.count = children.count + 1u;
 }
 
@@ -99,8 +100,8 @@ FUNC float priority_of(NodeChildren children, uint i, float unit, uint tallest, 
     const float SMALL = 3.402823466e+38f;
     const float TALL = 1.701411733e+38f;
     if (i >= children.count || (children.child[i] & LEAF_BIT) != 0u) return -1.0f;
-    if (width == 8u && leaves_in(children.below[i]) < 4u) return SMALL;
-    bool is_too_tall = height_in(children.below[i]) > tallest;
+    if (width == 8u && leaves_in(children.subtree[i]) < 4u) return SMALL;
+    bool is_too_tall = height_in(children.subtree[i]) > tallest;
     float area = half_area(children.box[i].lo, children.box[i].hi, unit);
     return is_too_tall ? TALL : (area > 0.0f ? area : 0.0f);
 }
@@ -129,7 +130,7 @@ FUNC NodeChildren no_children()
     {
         children.child[i] = LEAF_BIT;
         children.box[i] = empty_box();
-        children.below[i] = 0u;
+        children.subtree[i] = 0u;
     }
     children.count = 0u;
     return children;
@@ -137,14 +138,15 @@ FUNC NodeChildren no_children()
 
 // The children of the node that a binary node becomes. It has two levels more than its children may have at most, so
 // that none is too tall once two are opened.
-FUNC NodeChildren children_of(REF(BvhNode) nodes, uint place, uint width)
+FUNC NodeChildren children_of(REF(BvhNode) nodes, uint node_and_level, uint width)
 {
     NodeChildren children = no_children();
     children.count = 1u;
-    open_child(nodes, node_at(place), 0u, children, width);
+    open_child(nodes, node_in(node_and_level), 0u, children, width);
     LeafBox around = box_around(children, width);
     float unit = area_unit(around.lo, around.hi);
-    for (uint i = 2u; i < width; i = i + 1u) open_next(nodes, unit, tallest_below(level_at(place)), children, width);
+    uint tallest = tallest_below(level_in(node_and_level));
+    for (uint i = 2u; i < width; i = i + 1u) open_next(nodes, unit, tallest, children, width);
     return children;
 }
 
@@ -166,7 +168,7 @@ FUNC bool is_inner(uint child) { return (child & LEAF_BIT) == 0u; }
 // Below child i, if that becomes an item, else 0.
 FUNC uint leaves_of_item(NodeChildren children, uint i)
 {
-    return is_inner(children.child[i]) ? leaves_in(children.below[i]) : 0u;
+    return is_inner(children.child[i]) ? leaves_in(children.subtree[i]) : 0u;
 }
 
 FUNC NodeOrder order_of(NodeChildren children, uint width)
@@ -176,41 +178,41 @@ FUNC NodeOrder order_of(NodeChildren children, uint width)
 }
 
 // Writes the node of an item, whose children_of() these are, and where the leaves among them go.
-FUNC CollapseStep write_node(BuildTree tree, Uints places, CollapseItem item, NodeChildren children, uint width)
+FUNC CollapseStep write_node(BuildTree tree, Uints leaf_indices, CollapseItem item, NodeChildren children, uint width)
 {
     NodeOrder order = order_of(children, width);
-    store_node(tree.records, item.record, encode_node(children, order, item.below, width), width);
-    ChildPlaces of_children;
-    of_children.first = item.below;
-    of_children.slots = order.places;
+    store_node(tree.records, item.record, encode_node(children, order, item.descendants, width), width);
+    ChildSlots of_children;
+    of_children.first = item.descendants;
+    of_children.mask = order.mask;
     CollapseStep step = no_step();
-    uint below = places_end(of_children);
+    uint below = children_end(of_children);
     uint leaves = 0u;
     UNROLL for (uint i = 0u; i < width; i = i + 1u)
     {
         if (i >= children.count) continue;
-        uint place = place_of(of_children, slot_of(order, i));
-        leaves = leaves + leaves_in(children.below[i]);
+        uint index = child_index(of_children, slot_of(order, i));
+        leaves = leaves + leaves_in(children.subtree[i]);
         uint child = children.child[i];
         step.leaves[i] = leaves_of_item(children, i);
         if (step.leaves[i] == 0u)
         {
-            AT(places, tree.first + (child & ~LEAF_BIT)) = place;
+            AT(leaf_indices, tree.first + (child & ~LEAF_BIT)) = index;
             continue;
         }
         step.items[i].tree = item.tree;
-        step.items[i].place = make_place(child, level_at(item.place) + 1u);
-        step.items[i].record = place;
-        step.items[i].below = below;
-        below = below + records_below(leaves_in(children.below[i]), width);
+        step.items[i].node_and_level = pack_node(child, level_in(item.node_and_level) + 1u);
+        step.items[i].record = index;
+        step.items[i].descendants = below;
+        below = below + records_below(leaves_in(children.subtree[i]), width);
     }
-    for (uint end = item.below + records_below(leaves, width); below < end; below = below + 1u)
+    for (uint end = item.descendants + records_below(leaves, width); below < end; below = below + 1u)
         store_no_record(tree.records, below);
     return step;
 }
 
 // The item of a tree's root, if that is an inner node.
-FUNC CollapseStep begin_collapse(BuildTree tree, Uints places, uint index, uint width)
+FUNC CollapseStep begin_collapse(BuildTree tree, Uints leaf_indices, uint index, uint width)
 {
     CollapseStep step = no_step();
     uint root = AT(tree.bvh, 0).root;
@@ -218,11 +220,11 @@ FUNC CollapseStep begin_collapse(BuildTree tree, Uints places, uint index, uint 
     AT(tree.bvh, 0).root = 0u;
     step.leaves[0] = is_inner(root) ? tree.count : 0u;
     step.items[0].tree = index;
-    step.items[0].place = make_place(root, 0u);
+    step.items[0].node_and_level = pack_node(root, 0u);
     step.items[0].record = 0u;
-    step.items[0].below = records_of_node(width);
+    step.items[0].descendants = records_of_node(width);
     if (is_inner(root)) return step;
-    AT(places, tree.first) = 0u;
+    AT(leaf_indices, tree.first) = 0u;
     if (width == 8u) store_no_record(tree.records, 1u);
     return step;
 }
@@ -232,6 +234,6 @@ FUNC CompressedRecord encode_leaf(BuildTree tree, uint leaf)
 {
     if (has_instances(tree)) return encode_instance(leaf);
     BvhTriangle fetched = fetch_primitive(tree, leaf);
-    return encode_primitive(has_boxes(tree) ? fetched : without_inactive_corners(fetched));
+    return encode_primitive(has_boxes(tree) ? fetched : without_inactive_vertices(fetched));
 }
 #endif

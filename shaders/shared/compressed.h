@@ -10,7 +10,6 @@
 #define TWINRAY_SHARED_COMPRESSED_H
 #include "shaders/shared/build.h"
 #include "shaders/shared/surface_area.h"
-#include "shaders/shared/whole.h"
 
 const uint MOST_RECORDS = 1u << 26u; // a tree may have: what an entry on the stack can name; 40 million leaves
 
@@ -69,26 +68,26 @@ FUNC void store_no_record(REF(CompressedRecord) records, uint index)
 }
 
 // Where the children of a node lie: one after the other, by slot.
-struct ChildPlaces
+struct ChildSlots
 {
     uint first;
-    uint slots; // bit i: there is a child in slot i; bit 8 + i: it is a node of two records
+    uint mask; // bit i: there is a child in slot i; bit 8 + i: it is a node of two records
 };
 
-FUNC ChildPlaces places_in(CompressedRecord node, CompressedRecord second_half)
+FUNC ChildSlots child_slots(CompressedRecord node, CompressedRecord second_half)
 {
-    ChildPlaces places;
-    places.first = first_child_of(node);
-    places.slots = is_wide_node(node) ? second_half.a.x & 0xffffu : (1u << children_in(node)) - 1u;
-    return places;
+    ChildSlots slots;
+    slots.first = first_child_of(node);
+    slots.mask = is_wide_node(node) ? second_half.a.x & 0xffffu : (1u << children_in(node)) - 1u;
+    return slots;
 }
-FUNC bool has_child(ChildPlaces places, uint slot) { return (places.slots >> slot & 1u) != 0u; }
-FUNC uint place_of(ChildPlaces places, uint slot)
+FUNC bool has_child(ChildSlots slots, uint slot) { return (slots.mask >> slot & 1u) != 0u; }
+FUNC uint child_index(ChildSlots slots, uint slot)
 {
     uint before = (1u << slot) - 1u;
-    return places.first + uint(bitCount(places.slots & (before | before << 8u)));
+    return slots.first + uint(bitCount(slots.mask & (before | before << 8u)));
 }
-FUNC uint places_end(ChildPlaces places) { return places.first + uint(bitCount(places.slots)); }
+FUNC uint children_end(ChildSlots slots) { return slots.first + uint(bitCount(slots.mask)); }
 
 // The second half of a node of layout compressed8; of others any record.
 FUNC CompressedRecord second_half_of(REF(CompressedRecord) records, uint index, CompressedRecord node)
@@ -98,15 +97,15 @@ FUNC CompressedRecord second_half_of(REF(CompressedRecord) records, uint index, 
 
 // In which slot of a node the record `target` is, or what lies above it. Records below different children do not mix,
 // so that it is the child whose own children begin last of those that begin no later.
-FUNC uint slot_towards(REF(CompressedRecord) records, ChildPlaces places, uint target)
+FUNC uint slot_towards(REF(CompressedRecord) records, ChildSlots slots, uint target)
 {
     uint found = 0u;
     uint latest = 0u;
     DONT_UNROLL for (uint slot = 0u; slot < 8u; slot = slot + 1u)
     {
-        uint place = place_of(places, slot);
-        if (has_child(places, slot) && place == target) return slot;
-        uint child = has_child(places, slot) ? AT(records, place).a.w : LEAF_BIT;
+        uint index = child_index(slots, slot);
+        if (has_child(slots, slot) && index == target) return slot;
+        uint child = has_child(slots, slot) ? AT(records, index).a.w : LEAF_BIT;
         uint begin = child & (MOST_RECORDS - 1u);
         bool is_later = (child & LEAF_BIT) == 0u && begin <= target && begin >= latest;
         found = is_later ? slot : found;
@@ -147,11 +146,11 @@ FUNC float areas_in(REF(CompressedRecord) records, uint index, float unit)
     CompressedRecord node = load_record(records, index);
     if (is_leaf(node) || children_in(node) == 0u) return 0.0f;
     CompressedRecord second_half = second_half_of(records, index, node);
-    ChildPlaces places = places_in(node, second_half);
+    ChildSlots slots = child_slots(node, second_half);
     float sum = 0.0f;
     DONT_UNROLL for (uint slot = 0u; slot < 8u; slot = slot + 1u)
     {
-        if (!has_child(places, slot)) continue;
+        if (!has_child(slots, slot)) continue;
         LeafBox box = box_in_planes(node, second_half, slot);
         sum = sum + half_area(box.lo, box.hi, unit);
     }

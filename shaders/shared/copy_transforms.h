@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What shaders/engine/copy_transforms.comp takes.
 #ifndef TWINRAY_SHARED_COPY_TRANSFORMS_H
 #define TWINRAY_SHARED_COPY_TRANSFORMS_H
 #include "shaders/shared/instance.h"

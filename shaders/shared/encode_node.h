@@ -43,12 +43,12 @@ FUNC float cell_within(float cells)
 FUNC uint cell_below(float plane, float origin, float per_unit)
 {
     PRECISE float cells = (plane - origin) * per_unit - 0.00390625f;
-    return whole_number(floor(cell_within(cells)));
+    return uint(cell_within(cells));
 }
 FUNC uint cell_above(float plane, float origin, float per_unit)
 {
     PRECISE float cells = (plane - origin) * per_unit + 0.00390625f;
-    return whole_number(ceil(cell_within(cells)));
+    return uint(ceil(cell_within(cells)));
 }
 
 // Only ever indexed by constants, so that drivers keep it in registers; a node of `width` children has the first.
@@ -56,7 +56,7 @@ struct NodeChildren
 {
     uint child[8]; // as in BvhNode
     LeafBox box[8];
-    uint below[8]; // see make_below
+    uint subtree[8]; // see subtree_info
     uint count;
 };
 
@@ -64,16 +64,16 @@ struct NodeChildren
 struct NodeOrder
 {
     uint slots;  // of child i, from bit 4 i on
-    uint places; // see ChildPlaces
+    uint mask; // see ChildSlots
     uint axes;   // see octant_order.h
 };
 
 // Each child in the slot of its number.
-FUNC NodeOrder given_order(uint places, uint axes)
+FUNC NodeOrder given_order(uint mask, uint axes)
 {
     NodeOrder order;
     order.slots = 0x76543210u;
-    order.places = places;
+    order.mask = mask;
     order.axes = axes;
     return order;
 }
@@ -102,7 +102,7 @@ FUNC uvec4 encode_axis(NodeChildren children, NodeOrder order, uint axis, float 
         uint below = cell_below(children.box[i].lo[axis], origin, per_unit);
         uint above = cell_above(children.box[i].hi[axis], origin, per_unit);
         uint slot = slot_of(order, i);
-        bool is_there = i < children.count && (order.places >> slot & 1u) != 0u;
+        bool is_there = i < children.count && (order.mask >> slot & 1u) != 0u;
         uvec2 both = uvec2(is_solid ? below : 255u, is_solid ? above : 0u) << 8u * (slot & 3u);
         both = is_there ? both : uvec2(0u);
         uvec2 none = uvec2(0u);
@@ -134,13 +134,13 @@ FUNC NodeRecords encode_node(NodeChildren children, NodeOrder order, uint first_
         origin[axis] = origin_below(lower, exponent);
         planes[axis] = encode_axis(children, order, axis, origin[axis], cells_per_unit(exponent), width);
     }
-    uint count = uint(bitCount(order.places & 0xffu));
+    uint count = uint(bitCount(order.mask & 0xffu));
     NodeRecords node;
     node.first.a = uvec4(floatBitsToUint(origin.x), floatBitsToUint(origin.y), floatBitsToUint(origin.z),
                          first_child | count << 26u | (width == 8u ? WIDE_BIT : 0u));
     node.first.b = uvec4(planes[0].x, planes[0].y, planes[1].x, planes[1].y);
     node.first.c = uvec2(planes[2].x, planes[2].y);
-    node.second.a = uvec4(order.places | order.axes << 16u, 0u, 0u, WIDE_BIT);
+    node.second.a = uvec4(order.mask | order.axes << 16u, 0u, 0u, WIDE_BIT);
     node.second.b = uvec4(planes[0].z, planes[0].w, planes[1].z, planes[1].w);
     node.second.c = uvec2(planes[2].z, planes[2].w);
     return node;

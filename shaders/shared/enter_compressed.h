@@ -3,7 +3,7 @@
 #ifndef TWINRAY_SHARED_ENTER_COMPRESSED_H
 #define TWINRAY_SHARED_ENTER_COMPRESSED_H
 #include "shaders/shared/compressed.h"
-#include "shaders/shared/group.h"
+#include "shaders/shared/node_group.h"
 
 // The grid of a node as a ray sees it: along each axis the distance of a plane is plane * scale + base. The scale is
 // that of near planes for all: it leaves far ones 2^-20 of at most 255 cells nearer, and they are a 256th of a cell
@@ -65,7 +65,7 @@ FUNC bool crosses_planes(SeenGrid grid, uint shift, float t_min, float t_max)
 FUNC uint enter_planes(SeenGrid grid, uint shift, float t_min, float t_max, bool is_there, uint query)
 {
     vec2 crossing = cross_planes(grid, shift, t_min, t_max);
-    return place_in_order(crossing.x, crossing.y, is_there, query);
+    return visit_order(crossing.x, crossing.y, is_there, query);
 }
 
 FUNC ChildKeys enter_compressed(CompressedRecord node, BoxRay ray, float t_min, float t_max, uint query)

@@ -6,22 +6,22 @@
 #include "shaders/shared/octant_order.h"
 
 // Children of a node that wait, as the first of two words of an entry (the other is where the children begin): in the
-// lowest 8 bits those to visit, by their place in order; then ChildPlaces::slots, and the ray's octant.
+// lowest 8 bits those to visit, in order; then ChildSlots::mask, and the ray's octant.
 FUNC uint make_visits(uint in_order, uint slots, uint octant) { return in_order | slots << 8u | octant << 24u; }
 FUNC uint octant_in(uint visits) { return visits >> 24u; }
 FUNC uint next_slot(uint visits) { return uint(findLSB(visits)) ^ octant_in(visits); }
-// Without the next one; EMPTY_GROUP: there is no other.
+// Without the next one; EMPTY_NODE_GROUP: there is no other.
 FUNC uint rest_of_visits(uint visits)
 {
     uint rest = visits & (visits - 1u);
-    return (rest & 0xffu) == 0u ? EMPTY_GROUP : rest;
+    return (rest & 0xffu) == 0u ? EMPTY_NODE_GROUP : rest;
 }
-FUNC ChildPlaces places_of_visits(uint visits, uint first)
+FUNC ChildSlots slots_of_visits(uint visits, uint first)
 {
-    ChildPlaces places;
-    places.first = first;
-    places.slots = visits >> 8u & 0xffffu;
-    return places;
+    ChildSlots slots;
+    slots.first = first;
+    slots.mask = visits >> 8u & 0xffffu;
+    return slots;
 }
 
 FUNC uint octant_at(CompressedRecord second_half, BoxRay ray)
@@ -58,7 +58,7 @@ FUNC uint enter_wide(CompressedRecord node, CompressedRecord second_half, BoxRay
 // The child in `slot`, and of the others those that come after it: as a traversal that went on to it left them.
 FUNC uint visits_from(uint visits, uint slot)
 {
-    uint place = 1u << (slot ^ octant_in(visits));
-    return (visits & ~((place << 1u) - 1u)) | place;
+    uint bit = 1u << (slot ^ octant_in(visits));
+    return (visits & ~((bit << 1u) - 1u)) | bit;
 }
 #endif

@@ -2,7 +2,6 @@
 // The children of a node that a ray enters, of any layout: the first one, and the others as an entry of the stack.
 #ifndef TWINRAY_SHARED_ENTERED_CHILDREN_H
 #define TWINRAY_SHARED_ENTERED_CHILDREN_H
-#include "shaders/shared/enter_binary.h"
 #include "shaders/shared/enter_compressed.h"
 #include "shaders/shared/enter_wide.h"
 
@@ -40,7 +39,7 @@ FUNC TreePosition at_root(SwTree tree, bool is_binary)
     return at;
 }
 
-FUNC SwTree top_tree(SwScene scene)
+FUNC SwTree top_tree(SwTlasHeader scene)
 {
     SwTree tree;
     tree.nodes = scene.bvh.nodes;
@@ -59,7 +58,7 @@ FUNC SwTree tree_of(SwInstance instance)
     return tree;
 }
 
-FUNC bool is_binary(SwScene scene, TraceOptions options)
+FUNC bool is_binary(SwTlasHeader scene, TraceOptions options)
 {
     bool may_be = (options.features & FEATURE_BVH2) != 0u;
     bool may_have_records = (options.features & (FEATURE_COMPRESSED | FEATURE_COMPRESSED8)) != 0u;
@@ -76,7 +75,7 @@ struct EnteredChildren
 {
     TreePosition first;
     bool is_entered;
-    uint others;   // or EMPTY_GROUP
+    uint others;   // or EMPTY_NODE_GROUP
     uint siblings; // in layout compressed8 the entry's other word, else 0
 };
 
@@ -85,22 +84,22 @@ FUNC EnteredChildren children_of_record(CompressedRecord record, SwTree tree, Bo
                                          TraceOptions options)
 {
     ChildKeys keys = enter_compressed(record, ray, search.t_min, search.t_best, options.query);
-    if (target != NOTHING) keys = keys_from(keys, slot_towards(tree.records, places_in(record, record), target));
+    if (target != NOTHING) keys = keys_from(keys, slot_towards(tree.records, child_slots(record, record), target));
     sort_keys(keys);
     EnteredChildren children;
     children.first = at_record(first_child_of(record) + (keys.key0 & 3u));
     children.is_entered = keys.key0 < NO_ENTRY;
-    children.others = group_of(keys, first_child_of(record));
+    children.others = node_group_of(keys, first_child_of(record));
     children.siblings = 0u;
     return children;
 }
 
 FUNC TreePosition at_next_of_visits(uint visits, uint first)
 {
-    ChildPlaces places = places_of_visits(visits, first);
+    ChildSlots slots = slots_of_visits(visits, first);
     uint slot = next_slot(visits);
-    TreePosition at = at_record(place_of(places, slot));
-    if ((places.slots >> slot & 0x100u) == 0u) at.item = at.item | LEAF_BIT;
+    TreePosition at = at_record(child_index(slots, slot));
+    if ((slots.mask >> slot & 0x100u) == 0u) at.item = at.item | LEAF_BIT;
     return at;
 }
 
@@ -109,13 +108,37 @@ FUNC EnteredChildren children_of_wide(CompressedRecord record, CompressedRecord 
 {
     uint visits = enter_wide(record, second_half, ray, search.t_min, search.t_best);
     if (target != NOTHING)
-        visits = visits_from(visits, slot_towards(tree.records, places_in(record, second_half), target));
+        visits = visits_from(visits, slot_towards(tree.records, child_slots(record, second_half), target));
     EnteredChildren children;
     children.siblings = first_child_of(record);
     children.first = at_next_of_visits(visits, children.siblings);
     children.is_entered = (visits & 0xffu) != 0u;
     children.others = rest_of_visits(visits);
     return children;
+}
+
+FUNC uint enter_binary_box(vec3 lo, vec3 hi, BoxRay ray, Search search, uint query)
+{
+    vec2 crossing = cross_box(lo, hi, ray, search.t_min, search.t_best);
+    return visit_order(crossing.x, crossing.y, true, query);
+}
+
+FUNC ChildKeys enter_binary(BvhNode node, BoxRay ray, Search search, uint query)
+{
+    ChildKeys keys;
+    keys.key0 = enter_binary_box(node.lo0, node.hi0, ray, search, query);
+    keys.key1 = enter_binary_box(node.lo1, node.hi1, ray, search, query) | 1u;
+    keys.key2 = NO_ENTRY;
+    keys.key3 = NO_ENTRY;
+    return keys;
+}
+
+// Below which child of `node` the edge `target` lies.
+FUNC uint binary_child_towards(REF(BvhNode) nodes, uint node, uint target)
+{
+    uint edge = target;
+    while (parent_of_edge(edge) != node) edge = edge_of(nodes, parent_of_edge(edge));
+    return edge & 1u;
 }
 
 FUNC EnteredChildren children_of_node(uint index, SwTree tree, BoxRay ray, Search search, uint target,
@@ -127,10 +150,10 @@ FUNC EnteredChildren children_of_node(uint index, SwTree tree, BoxRay ray, Searc
     sort_pair(keys.key0, keys.key1);
     uint side = keys.key0 & 1u;
     EnteredChildren children;
-    children.first.item = side == 0u ? node.child0 : node.child1;
+    children.first.item = child_of(node, side).child;
     children.first.edge = make_edge(index, side);
     children.is_entered = keys.key0 < NO_ENTRY;
-    children.others = keys.key1 < NO_ENTRY ? make_edge(index, side ^ 1u) : EMPTY_GROUP;
+    children.others = keys.key1 < NO_ENTRY ? make_edge(index, side ^ 1u) : EMPTY_NODE_GROUP;
     children.siblings = 0u;
     return children;
 }

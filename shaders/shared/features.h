@@ -28,7 +28,7 @@ const uint LEVEL_CERTIFIED = 3u;  // float64 decides what is hit, and first
 const uint QUERY_CONSTANT = 0u;       // QUERY_* of a batch kernel
 const uint FEATURES_CONSTANT = 100u;  // of every kernel that includes twinray/glsl/query.glsl
 const uint LEVEL_CONSTANT = 101u;
-const uint HANDS_CONSTANT = 102u;     // of a batch kernel: see dealt_group
+const uint INTERLEAVE_CONSTANT = 102u;     // of a batch kernel: see interleaved_group
 const uint RAY_GROUP_CONSTANT = 103u; // of a batch kernel: invocations of a group
 const uint STACK_CONSTANT = 104u;     // of every kernel that includes twinray/glsl/query.glsl: STACK_*
 

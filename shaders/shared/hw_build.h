@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the kernels take that prepare the driver's input. Needs hw_scene.h and surface_area.h before it.
+// What the kernels take that prepare the driver's input. Needs hw_tlas_header.h and surface_area.h before it.
 #ifndef TWINRAY_SHARED_HW_BUILD_H
 #define TWINRAY_SHARED_HW_BUILD_H
 #include "shaders/shared/triangle.h"
@@ -16,7 +16,7 @@ struct HwGatherArgs
     uint reserved;
 };
 
-// A mesh whose vertices move: three corners a triangle, in the order in which they are built.
+// A mesh whose vertices move: three vertices a triangle, in the order in which they are built.
 struct HwTrianglesArgs
 {
     Floats positions;
@@ -24,9 +24,9 @@ struct HwTrianglesArgs
     REF(HwGeometry) geometry; // its box: written by triangle_bound, read by the others
     REF(WorldBoundBits) bits;
     Uints keys;               // Morton codes, written by triangle_codes
-    Uints order;              // place -> triangle of the mesh; null: the order that `table` has already
+    Uints order;              // position -> triangle of the mesh; null: the order that `table` has already
     Uints table;              // the same, kept for the trace kernels; null: the mesh's order
-    Floats corners;           // 9 a triangle, by place
+    Floats vertices;           // 9 a triangle, by position
     REF(AreaItem) areas;      // their boxes
     uint count;
     uint group_count;

@@ -38,9 +38,9 @@ const uint GEOMETRY_SOURCE_OFFSET = 64u;
 
 // Flags of an instance, with the values of VkGeometryInstanceFlagBitsKHR. The front of a triangle is the side
 // that (v1 - v0) x (v2 - v0) points to, in object space; TURNED exchanges front and back.
-const uint INSTANCE_NO_CULLING = 1u;
-const uint INSTANCE_TURNED = 2u;
-const uint INSTANCE_FILTERED = 8u; // not opaque: the trace program decides about each hit
+const uint INSTANCE_DISABLE_CULLING = 1u;
+const uint INSTANCE_FLIP_FACING = 2u;
+const uint INSTANCE_NON_OPAQUE = 8u; // not opaque: the trace program decides about each hit
 
 // What a geometry is made of.
 const uint GEOMETRY_TRIANGLES = 0u;

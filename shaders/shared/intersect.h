@@ -5,11 +5,11 @@
 #include "shaders/shared/exact.h"
 #include "shaders/shared/ray_space.h"
 
-// A corner seen along the ray: x, y sheared so that the ray is the point (0, 0), z along the dominant axis. It depends
-// on the corner and the ray alone, so all triangles that share the corner see the same point.
-FUNC vec3 sheared(vec3 corner, RaySpace space)
+// A vertex seen along the ray: x, y sheared so that the ray is the point (0, 0), z along the dominant axis. It depends
+// on the vertex and the ray alone, so all triangles that share the vertex see the same point.
+FUNC vec3 sheared(vec3 vertex, RaySpace space)
 {
-    PRECISE vec3 relative = corner - space.origin;
+    PRECISE vec3 relative = vertex - space.origin;
     vec3 p = dominant_last(relative, space.axis);
     PRECISE float move_x = space.shear_x * p.z;
     PRECISE float move_y = space.shear_y * p.z;
@@ -32,7 +32,7 @@ FUNC float edge_function(vec3 a, vec3 b)
 }
 
 // The same to a rounding or two of itself, where edge_function is right to roundings of its products alone: in slivers
-// they cancel, and the weights of the corners with them.
+// they cancel, and the weights of the vertices with them.
 FUNC float accurate_edge_function(vec3 a, vec3 b)
 {
     float missing = 0.0f;
@@ -42,7 +42,7 @@ FUNC float accurate_edge_function(vec3 a, vec3 b)
     return area;
 }
 
-// By which power of two x and y of two sheared corners may be multiplied, exactly and without overflow of a product:
+// By which power of two x and y of two sheared vertices may be multiplied, exactly and without overflow of a product:
 // where a ray passes a vertex by a denormal distance, the products that decide would underflow, some to 0, and
 // triangles around the vertex would disagree. It depends on the edge alone, so that both of its triangles see the same.
 FUNC float room_above(vec3 a, vec3 b)
@@ -62,13 +62,13 @@ FUNC vec3 scaled_across(vec3 v, float scale)
 }
 
 // The sign of the exact edge function, and where that is 0, the sign after moving the ray by (e, e^2) for a vanishing
-// e > 0 (simulation of simplicity), so that exactly one of the triangles around an edge or a corner is hit, for any
+// e > 0 (simulation of simplicity), so that exactly one of the triangles around an edge or a vertex is hit, for any
 // winding. 0 only for a collapsed edge.
-FUNC int exact_side(vec3 corner_a, vec3 corner_b)
+FUNC int exact_side(vec3 vertex_a, vec3 vertex_b)
 {
-    float scale = room_above(corner_a, corner_b);
-    vec3 a = scaled_across(corner_a, scale);
-    vec3 b = scaled_across(corner_b, scale);
+    float scale = room_above(vertex_a, vertex_b);
+    vec3 a = scaled_across(vertex_a, scale);
+    vec3 b = scaled_across(vertex_b, scale);
     PRECISE float p = a.x * b.y;
     PRECISE float q = a.y * b.x;
     if (p != q) return p > q ? 1 : -1;
@@ -87,7 +87,7 @@ struct TriangleHit
     bool along; // the normal (v1 - v0) x (v2 - v0) points along the ray, not against it
 };
 
-// t, u, v where the ray crosses the plane of the sheared corners.
+// t, u, v where the ray crosses the plane of the sheared vertices.
 FUNC TriangleHit crossing(vec3 a, vec3 b, vec3 c, float shear_z)
 {
     float area_a = accurate_edge_function(b, c);
@@ -121,7 +121,7 @@ FUNC bool is_any_zero(float a, float b, float c)
     return min(min(floatBitsToUint(a) << 1u, floatBitsToUint(b) << 1u), floatBitsToUint(c) << 1u) < 0x1000000u;
 }
 
-// A triangle as a ray sees it: its sheared corners, and twice the signed areas between the ray and its edges.
+// A triangle as a ray sees it: its sheared vertices, and twice the signed areas between the ray and its edges.
 struct SeenTriangle
 {
     vec3 a;
@@ -145,7 +145,7 @@ FUNC SeenTriangle seen_triangle(vec3 v0, vec3 v1, vec3 v2, RaySpace space)
 }
 
 // Whether the ray's line meets it, by exact_side: rarely asked, so that a loop of little code is better than a fast
-// one. Its corners change places until each is where it was, as copies would take registers.
+// one. Its vertices change places until each is where it was, as copies would take registers.
 FUNC bool is_exactly_around(INOUT(SeenTriangle) seen)
 {
     int sides = 0;

@@ -1,8 +1,8 @@
-// SPDX-License-Identifier: MIT 30-bit Morton codes: 10 bits an axis, x in the highest bit of each triple. A fine code
-// is that of the next 10 bits an axis.
+// SPDX-License-Identifier: MIT
+// 30-bit Morton codes: 10 bits an axis, x in the highest bit of each triple; and of 60-bit codes the lower half, that
+// of the next 10 bits an axis.
 #ifndef TWINRAY_SHARED_MORTON_H
 #define TWINRAY_SHARED_MORTON_H
-#include "shaders/shared/whole.h"
 
 // ........ ........ ......98 76543210  ->  ....9..8 ..7..6.. 5..4..3. .2..1..0
 FUNC uint spread_bits(uint x)
@@ -23,7 +23,7 @@ FUNC uint cell_of(float x, float lo, float hi)
     PRECISE float scaled = offset / extent * 1048576.0f;
     scaled = scaled > 0.0f ? scaled : 0.0f;
     scaled = scaled < 1048575.0f ? scaled : 1048575.0f;
-    return whole_number(floor(scaled));
+    return uint(scaled);
 }
 
 FUNC uint morton_code(vec3 point, vec3 lo, vec3 hi)
@@ -33,7 +33,7 @@ FUNC uint morton_code(vec3 point, vec3 lo, vec3 hi)
            spread_bits(cell_of(point.z, lo.z, hi.z) >> 10u);
 }
 
-FUNC uint fine_code(vec3 point, vec3 lo, vec3 hi)
+FUNC uint morton_code_low(vec3 point, vec3 lo, vec3 hi)
 {
     return (spread_bits(cell_of(point.x, lo.x, hi.x) & 1023u) << 2u) |
         (spread_bits(cell_of(point.y, lo.y, hi.y) & 1023u) << 1u) |

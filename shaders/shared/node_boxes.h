@@ -9,7 +9,7 @@ struct AnyNode
     BvhNode binary; // of layout bvh2, else:
     CompressedRecord record;
     CompressedRecord second_half;
-    ChildPlaces places;
+    ChildSlots slots;
 };
 
 FUNC uint slots_of(SwGeometry geometry) { return is_null(geometry.records) ? 2u : 8u; }
@@ -17,8 +17,8 @@ FUNC uint slots_of(SwGeometry geometry) { return is_null(geometry.records) ? 2u 
 FUNC AnyNode node_of(SwGeometry geometry, uint index)
 {
     AnyNode node;
-    node.places.first = 0u;
-    node.places.slots = 3u;
+    node.slots.first = 0u;
+    node.slots.mask = 3u;
     if (is_null(geometry.records))
     {
         node.binary = load_node(geometry.bvh.nodes, index);
@@ -26,23 +26,24 @@ FUNC AnyNode node_of(SwGeometry geometry, uint index)
     }
     node.record = load_record(geometry.records, index);
     node.second_half = second_half_of(geometry.records, index, node.record);
-    node.places = places_in(node.record, node.second_half);
+    node.slots = child_slots(node.record, node.second_half);
     return node;
 }
 
 FUNC uint child_in(SwGeometry geometry, AnyNode node, uint slot)
 {
-    if (is_null(geometry.records)) return slot == 0u ? node.binary.child0 : node.binary.child1;
-    return place_of(node.places, slot);
+    if (is_null(geometry.records)) return child_of(node.binary, slot).child;
+    return child_index(node.slots, slot);
 }
 
 // The box of a child as rays meet it.
 FUNC LeafBox box_in(SwGeometry geometry, AnyNode node, uint slot)
 {
     if (!is_null(geometry.records)) return box_in_planes(node.record, node.second_half, slot);
+    BvhChild child = child_of(node.binary, slot);
     LeafBox box;
-    box.lo = slot == 0u ? node.binary.lo0 : node.binary.lo1;
-    box.hi = slot == 0u ? node.binary.hi0 : node.binary.hi1;
+    box.lo = child.lo;
+    box.hi = child.hi;
     return box;
 }
 

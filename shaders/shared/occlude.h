@@ -5,25 +5,25 @@
 #include "shaders/shared/intersect.h"
 
 // What is known of t, as crossing() rounds it, without a division; where nothing is, only crossing() tells.
-struct PlaceOfHit
+struct HitInterval
 {
     bool is_after; // t > t_min
     bool is_before; // t < t_max
     bool is_behind; // t < t_min
 };
 
-// t is N / D: D the sum of the areas, N that of areas times t of their corners. With m = (|a.x| + |b.x| + |c.x|) (|a.y|
-// + |b.y| + |c.y|), which is no less than the products in the areas together, and u = 2^-24, areas are off by 3 u m in
-// all, N - t_min D is by 9 u m (t_most + t_min), t_most being the sum of the corners' t, and t of crossing() by 30 u m
-// t_most / D, with 2.5 ulp for a division, as Vulkan allows. 64 u cover both where nothing overflows, and no product is
-// among the smallest floats.
-FUNC PlaceOfHit place_of_hit(SeenTriangle seen, float shear_z, float t_min, float t_max)
+// t is N / D: D the sum of the areas, N that of areas times t of their vertices. With m = (|a.x| + |b.x| + |c.x|)
+// (|a.y| + |b.y| + |c.y|), which is no less than the products in the areas together, and u = 2^-24, areas are off by 3
+// u m in all, N - t_min D is by 9 u m (t_most + t_min), t_most being the sum of the vertices' t, and t of crossing() by
+// 30 u m t_most / D, with 2.5 ulp for a division, as Vulkan allows. 64 u cover both where nothing overflows, and no
+// product is among the smallest floats.
+FUNC HitInterval hit_interval(SeenTriangle seen, float shear_z, float t_min, float t_max)
 {
     const float ROUNDINGS = 3.814697265625e-06f;         // 64 u
     // 2^-50: two of them times 64 u is 2^8 times the least normal float
     const float SMALLEST = 8.8817841970012523e-16f;
     const float LARGEST = 1.152921504606846976e+18f;     // 2^60
-    const float LEAST_DEPTH = 7.8886090522101181e-31f;   // 2^-100: crossing() takes shares of corners' z
+    const float LEAST_DEPTH = 7.8886090522101181e-31f;   // 2^-100: crossing() takes shares of vertices' z
     // 2^100, for infinity, which would make the bound infinite, too
     const float FARTHEST = 1.2676506002282294e+30f;
     vec3 t = vec3(seen.a.z, seen.b.z, seen.c.z) * shear_z;
@@ -41,24 +41,26 @@ FUNC PlaceOfHit place_of_hit(SeenTriangle seen, float shear_z, float t_min, floa
     float start_bound = unit * (t_most + t_min);
     bool is_in_range = most > SMALLEST && most < LARGEST && t_most > SMALLEST && t_most < LARGEST &&
         z_most > LEAST_DEPTH;
-    PlaceOfHit place;
-    place.is_after = is_in_range && past_start > start_bound;
-    place.is_before = is_in_range && to_end > unit * (t_most + t_end);
-    place.is_behind = is_in_range && past_start < -start_bound;
-    return place;
+    HitInterval interval;
+    interval.is_after = is_in_range && past_start > start_bound;
+    interval.is_before = is_in_range && to_end > unit * (t_most + t_end);
+    interval.is_behind = is_in_range && past_start < -start_bound;
+    return interval;
 }
 
-// Whether intersect_triangle() finds a hit with t_min < t < t_max, 0 <= t_min, and then TriangleHit::along. That t
-// costs as much as the rest of the test; here it is computed only where the ends of the interval are within its
+// Whether intersect_triangle() finds a hit with t_min < t < t_max, the `ends`, 0 <= t_min, and then TriangleHit::along.
+// That t costs as much as the rest of the test; here it is computed only where the ends of the interval are within its
 // rounding error.
-FUNC bool triangle_occludes(vec3 v0, vec3 v1, vec3 v2, RaySpace space, float t_min, float t_max, INOUT(bool) along)
+FUNC bool triangle_occludes(vec3 v0, vec3 v1, vec3 v2, RaySpace space, vec2 ends, INOUT(bool) along)
 {
+    float t_min = ends.x;
+    float t_max = ends.y;
     SeenTriangle seen = seen_triangle(v0, v1, v2, space);
     bool is_met = is_around_ray(seen);
-    PlaceOfHit place = place_of_hit(seen, space.shear_z, t_min, t_max);
-    bool is_within = place.is_after && place.is_before;
+    HitInterval interval = hit_interval(seen, space.shear_z, t_min, t_max);
+    bool is_within = interval.is_after && interval.is_before;
     along = (seen.area_a + seen.area_b + seen.area_c > 0.0f) == (space.shear_z > 0.0f);
-    if (is_met && !is_within && !place.is_behind)
+    if (is_met && !is_within && !interval.is_behind)
     {
         TriangleHit hit = crossing(seen.a, seen.b, seen.c, space.shear_z);
         along = hit.along;

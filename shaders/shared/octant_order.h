@@ -72,11 +72,11 @@ FUNC NodeOrder octant_order(NodeChildren children)
     order.slots = 0u;
     UNROLL for (uint level = 0u; level < 3u; level = level + 1u)
         order.slots = order.slots | upper_halves(children, order.slots, axis_at(order.axes, level)) << (2u - level);
-    order.places = 0u;
+    order.mask = 0u;
     UNROLL for (uint i = 0u; i < 8u; i = i + 1u)
     {
         uint bits = (children.child[i] & LEAF_BIT) == 0u ? 0x101u : 1u;
-        order.places = order.places | (i < children.count ? bits << slot_of(order, i) : 0u);
+        order.mask = order.mask | (i < children.count ? bits << slot_of(order, i) : 0u);
     }
     return order;
 }

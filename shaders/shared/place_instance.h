@@ -80,7 +80,7 @@ FUNC LeafBox box_of_cut(SwGeometry geometry, Rows to_world)
         AnyNode node = node_of(geometry, stack[height]);
         for (uint slot = 0u; slot < slots_of(geometry); slot = slot + 1u)
         {
-            if (!has_child(node.places, slot) || !is_active(box_in(geometry, node, slot))) continue;
+            if (!has_child(node.slots, slot) || !is_active(box_in(geometry, node, slot))) continue;
             LeafBox box = box_under(to_world, box_in(geometry, node, slot));
             if (is_within(box, around)) continue;
             uint child = child_in(geometry, node, slot);

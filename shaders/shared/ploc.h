@@ -13,7 +13,7 @@
 // fewer nodes than leaves. Clusters need not be runs of leaves.
 #ifndef TWINRAY_SHARED_PLOC_H
 #define TWINRAY_SHARED_PLOC_H
-#include "shaders/shared/node_half.h"
+#include "shaders/shared/node_child.h"
 #include "shaders/shared/splits.h"
 
 const uint KEPT_CLUSTERS = 16u; // of a range, at most, for the one above it
@@ -22,8 +22,8 @@ const uint SEARCH_RADIUS = 8u; // how far apart in order two clusters may be tha
 
 struct Cluster
 {
-    NodeHalf top;
-    uint last_leaf; // place of one of its leaves in the tree's order
+    NodeChild top;
+    uint last_leaf; // position of one of its leaves in the tree's order
 };
 
 // What a cluster has seen of those near it.
@@ -35,8 +35,8 @@ struct Nearest
 };
 
 // Of pairs of equal area that comes first whose clusters are closer in order, then the one that begins at an even
-// place: clusters that are all alike are joined two by two. As no two pairs are equal, the first of all pairs is chosen
-// by both, and each round has one.
+// position: clusters that are all alike are joined two by two. As no two pairs are equal, the first of all pairs is
+// chosen by both, and each round has one.
 FUNC uint pair_rank(uint i, uint j)
 {
     uint first = min(i, j);
@@ -53,7 +53,7 @@ FUNC Nearest nothing_near(uint i)
 }
 
 // Of cluster i, by what it has seen and cluster j. Areas that are too large for a float are all the same.
-FUNC Nearest nearer_of(Nearest nearest, uint i, NodeHalf own, uint j, NodeHalf other, float scale)
+FUNC Nearest nearer_of(Nearest nearest, uint i, NodeChild own, uint j, NodeChild other, float scale)
 {
     const float LARGEST = 3.402823466e+38f;
     float around = area_around(own, other, scale);
@@ -70,7 +70,7 @@ FUNC Nearest nearer_of(Nearest nearest, uint i, NodeHalf own, uint j, NodeHalf o
 FUNC Cluster joined_cluster(Cluster a, Cluster b)
 {
     Cluster both;
-    both.top = joined_half(a.top, b.top, min(a.last_leaf, b.last_leaf));
+    both.top = joined_child(a.top, b.top, min(a.last_leaf, b.last_leaf));
     both.last_leaf = max(a.last_leaf, b.last_leaf);
     return both;
 }
@@ -79,12 +79,12 @@ FUNC Cluster joined_cluster(Cluster a, Cluster b)
 FUNC uint levels_for(uint count) { return count < 2u ? 0u : uint(findMSB(count - 1u)) + 1u; }
 
 // How high the tree of a range with this split may become. As no two splits on a way down have the same, there are
-// enough levels above it. Places have 25 bits, of which those that a smaller tree does not need are left for its
+// enough levels above it. Positions have 25 bits, of which those that a smaller tree does not need are left for its
 // clusters.
 FUNC uint height_limit(uvec2 split, uint leaf_count)
 {
-    bool is_of_places = split.y == 0u && split.x >> 25u == 0u;
-    return highest_below(split) + (is_of_places ? 25u - levels_for(leaf_count) : 0u);
+    bool is_of_positions = split.y == 0u && split.x >> 25u == 0u;
+    return highest_below(split) + (is_of_positions ? 25u - levels_for(leaf_count) : 0u);
 }
 
 // Clusters fit under a limit if the sum of 2^height over them is 2^limit at most: then joining the two lowest leaves

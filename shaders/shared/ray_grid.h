@@ -2,7 +2,7 @@
 // Parallel rays through the cells of a plane: what one sees of a scene that looks at it from far away.
 #ifndef TWINRAY_SHARED_RAY_GRID_H
 #define TWINRAY_SHARED_RAY_GRID_H
-#include "shaders/shared/random.h"
+#include "shaders/sampling/random.h"
 #include "shaders/shared/ray.h"
 
 const uint GRID_AT_CENTERS = 0u;

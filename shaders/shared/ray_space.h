@@ -60,7 +60,7 @@ FUNC vec3 dominant_last(vec3 v, uint axis)
 // x, or the nearest of -limit and limit.
 FUNC float within(float x, float limit)
 {
-    return min_number(max_number(x, -limit), limit);
+    return min_no_nan(max_no_nan(x, -limit), limit);
 }
 
 FUNC BoxRay box_ray(RaySpace space)
@@ -127,25 +127,25 @@ FUNC RaySpace make_ray_space(vec3 origin, vec3 direction, float pad)
     return space;
 }
 
-// How far aside of a ray a corner may be sheared, rounded: 8 of 2^-24 of its distance along an axis. A triangle is hit
-// where its sheared corners say so, and its box must be, too, however near to the ray's origin that is.
+// How far aside of a ray a vertex may be sheared, rounded: 8 of 2^-24 of its distance along an axis. A triangle is hit
+// where its sheared vertices say so, and its box must be, too, however near to the ray's origin that is.
 // 2^-20
-FUNC float corner_pad(vec3 origin, float extent) { return (largest_entry(origin) + extent) * 9.5367431640625e-07f; }
+FUNC float vertex_pad(vec3 origin, float extent) { return (largest_entry(origin) + extent) * 9.5367431640625e-07f; }
 
 // The interval in which a ray is inside of all three slabs, begun with its own, which a NaN (of products out of range)
 // leaves as it was.
 FUNC float latest_of(float enter, float near_x, float near_y, float near_z)
 {
-    return max_number(near_z, max_number(near_y, max_number(near_x, enter)));
+    return max_no_nan(near_z, max_no_nan(near_y, max_no_nan(near_x, enter)));
 }
 FUNC float earliest_of(float leave, float far_x, float far_y, float far_z)
 {
-    return min_number(far_z, min_number(far_y, min_number(far_x, leave)));
+    return min_no_nan(far_z, min_no_nan(far_y, min_no_nan(far_x, leave)));
 }
 
-// Where the ray enters the box and where it leaves it within [t_min, t_max], in t * ray.t_scale: enter > leave where it
-// does not meet it.
-FUNC void cross_box(vec3 lo, vec3 hi, BoxRay ray, float t_min, float t_max, INOUT(float) enter, INOUT(float) leave)
+// Where the ray enters the box and where it leaves it within [t_min, t_max], in t * ray.t_scale: the first is greater
+// where it does not meet it.
+FUNC vec2 cross_box(vec3 lo, vec3 hi, BoxRay ray, float t_min, float t_max)
 {
     bool flip_x = ray.near_inverse.x < 0.0f;
     bool flip_y = ray.near_inverse.y < 0.0f;
@@ -158,14 +158,13 @@ FUNC void cross_box(vec3 lo, vec3 hi, BoxRay ray, float t_min, float t_max, INOU
     PRECISE float far_z = ((flip_z ? lo.z : hi.z) - ray.far_origin.z) * ray.far_inverse.z;
     PRECISE float first = t_min * ray.t_scale;
     PRECISE float last = t_max * ray.t_scale;
-    enter = latest_of(first, near_x, near_y, near_z);
-    leave = earliest_of(last, far_x, far_y, far_z);
+    return vec2(latest_of(first, near_x, near_y, near_z), earliest_of(last, far_x, far_y, far_z));
 }
 
 FUNC bool enter_box(vec3 lo, vec3 hi, RaySpace space, float t_min, float t_max, INOUT(float) enter)
 {
-    float leave = 0.0f;
-    cross_box(lo, hi, box_ray(space), t_min, t_max, enter, leave);
-    return enter <= leave;
+    vec2 crossing = cross_box(lo, hi, box_ray(space), t_min, t_max);
+    enter = crossing.x;
+    return crossing.x <= crossing.y;
 }
 #endif

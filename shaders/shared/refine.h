@@ -3,7 +3,7 @@
 //  - A ray from far away is traced from near the scene: its origin moves along it, computed in float64. Rounding then
 // is
 //    relative to the scene's size, not to the distance.
-//  - The hit that counts is computed again in float64 from what the user gave: the ray, the corners, the transform.
+//  - The hit that counts is computed again in float64 from what the user gave: the ray, the vertices, the transform.
 #ifndef TWINRAY_SHARED_REFINE_H
 #define TWINRAY_SHARED_REFINE_H
 #include "shaders/shared/exact_double.h"
@@ -55,10 +55,10 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, uint level, INOUT(double) advance)
     return near;
 }
 
-// A corner in world space, seen from the origin.
-FUNC dvec3 corner_from(dvec3 origin, GivenMesh mesh, uint corner)
+// A vertex in world space, seen from the origin.
+FUNC dvec3 vertex_from(dvec3 origin, GivenMesh mesh, uint vertex)
 {
-    uint at = 3u * AT(mesh.indices, corner);
+    uint at = 3u * AT(mesh.indices, vertex);
     dvec3 v = dvec3(double(AT(mesh.positions, at)), double(AT(mesh.positions, at + 1u)),
                     double(AT(mesh.positions, at + 2u)));
     vec4 r0 = mesh.object_to_world[0];
@@ -80,7 +80,7 @@ FUNC float rounded_within(double t, Ray ray)
     return rounded;
 }
 
-// The point nearest to 0. Of a triangle's corners, the one from which the distance of its plane cancels least: where
+// The point nearest to 0. Of a triangle's vertices, the one from which the distance of its plane cancels least: where
 // coordinates of 1e-6 and 1e6 meet, another one cost 20 units in the last place of t.
 FUNC dvec3 nearest_of(dvec3 a, dvec3 b, dvec3 c)
 {
@@ -98,9 +98,9 @@ FUNC Hit refined(Hit hit, Ray ray, double advance, GivenMesh mesh)
     if (is_null(mesh.indices)) return hit;
     dvec3 origin = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
     dvec3 direction = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
-    dvec3 a = corner_from(origin, mesh, 3u * hit.primitive_index);
-    dvec3 b = corner_from(origin, mesh, 3u * hit.primitive_index + 1u);
-    dvec3 c = corner_from(origin, mesh, 3u * hit.primitive_index + 2u);
+    dvec3 a = vertex_from(origin, mesh, 3u * hit.primitive_index);
+    dvec3 b = vertex_from(origin, mesh, 3u * hit.primitive_index + 1u);
+    dvec3 c = vertex_from(origin, mesh, 3u * hit.primitive_index + 2u);
     dvec3 e1 = b - a;
     dvec3 e2 = c - a;
     dvec3 normal = cross_product(e1, e2);

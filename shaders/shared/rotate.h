@@ -5,22 +5,22 @@
 // changed below the node is rotated again, some levels down; after that the node itself once more.
 #ifndef TWINRAY_SHARED_ROTATE_H
 #define TWINRAY_SHARED_ROTATE_H
-#include "shaders/shared/node_half.h"
+#include "shaders/shared/node_child.h"
 
 const uint ROTATE_LEVELS = 4u; // that changes are followed down
 
 // A subtree of four leaves becomes one node of four children, whatever its shape.
 const uint FEWEST_ROTATED = 5u;
 
-FUNC bool is_rotated(NodeHalf tree) { return leaves_in(tree.below) >= FEWEST_ROTATED; }
+FUNC bool is_rotated(NodeChild tree) { return leaves_in(tree.subtree) >= FEWEST_ROTATED; }
 
-FUNC NodeHalf either(bool is_first, NodeHalf a, NodeHalf b)
+FUNC NodeChild select_child(bool is_first, NodeChild a, NodeChild b)
 {
-    NodeHalf chosen;
+    NodeChild chosen;
     chosen.box.lo = is_first ? a.box.lo : b.box.lo;
     chosen.box.hi = is_first ? a.box.hi : b.box.hi;
     chosen.child = is_first ? a.child : b.child;
-    chosen.below = is_first ? a.below : b.below;
+    chosen.subtree = is_first ? a.subtree : b.subtree;
     return chosen;
 }
 
@@ -31,7 +31,7 @@ struct Rotated
     uint node1;
 };
 
-FUNC uint height_above(NodeHalf p, NodeHalf q) { return 1u + max(height_in(p.below), height_in(q.below)); }
+FUNC uint height_above(NodeChild p, NodeChild q) { return 1u + max(height_in(p.subtree), height_in(q.subtree)); }
 
 FUNC void keep_better(INOUT(float) best, INOUT(uint) best_move, float gain, uint move, bool is_allowed)
 {
@@ -41,31 +41,31 @@ FUNC void keep_better(INOUT(float) best, INOUT(uint) best_move, float gain, uint
 }
 
 // Rotates a node with children a and b where that gains most, if it gains and leaves the node within `limit` nodes of
-// height.
-FUNC Rotated rotate_node(NodeHalves nodes, uint node, NodeHalf a, NodeHalf b, uint limit, float scale)
+// height. One function of six like cases, which share what they have loaded: split up it would be no clearer.
+FUNC Rotated rotate_node(BvhChildren nodes, uint node, NodeChild a, NodeChild b, uint limit, float scale)
 {
-    NodeHalf a0 = a, a1 = a, b0 = b, b1 = b;
+    NodeChild a0 = a, a1 = a, b0 = b, b1 = b;
     float area_a = area_of(a.box, scale);
     float area_b = area_of(b.box, scale);
     float best = 0.0f;
     uint move = NOTHING;
     if (is_inner(b))
     {
-        b0 = get_half(nodes, b.child, 0u);
-        b1 = get_half(nodes, b.child, 1u);
+        b0 = get_child(nodes, b.child, 0u);
+        b1 = get_child(nodes, b.child, 1u);
         keep_better(best, move, area_b - area_around(a, b1, scale), 0u,
-                    max(height_in(b0.below), height_above(a, b1)) < limit);
+                    max(height_in(b0.subtree), height_above(a, b1)) < limit);
         keep_better(best, move, area_b - area_around(a, b0, scale), 1u,
-                    max(height_in(b1.below), height_above(a, b0)) < limit);
+                    max(height_in(b1.subtree), height_above(a, b0)) < limit);
     }
     if (is_inner(a))
     {
-        a0 = get_half(nodes, a.child, 0u);
-        a1 = get_half(nodes, a.child, 1u);
+        a0 = get_child(nodes, a.child, 0u);
+        a1 = get_child(nodes, a.child, 1u);
         keep_better(best, move, area_a - area_around(b, a1, scale), 2u,
-                    max(height_in(a0.below), height_above(b, a1)) < limit);
+                    max(height_in(a0.subtree), height_above(b, a1)) < limit);
         keep_better(best, move, area_a - area_around(b, a0, scale), 3u,
-                    max(height_in(a1.below), height_above(b, a0)) < limit);
+                    max(height_in(a1.subtree), height_above(b, a0)) < limit);
     }
     if (is_inner(a) && is_inner(b))
     {
@@ -84,21 +84,21 @@ FUNC Rotated rotate_node(NodeHalves nodes, uint node, NodeHalf a, NodeHalf b, ui
     bool is_exchange = move > 3u;
     uint side = move & 1u;
     bool is_second = side == 1u;
-    NodeHalf first = either(is_of_b, b0, a0);
-    NodeHalf second = either(is_of_b, b1, a1);
-    NodeHalf up = either(is_second, second, first);
-    NodeHalf stays = either(is_second, first, second);
-    NodeHalf down = either(is_of_b, a, either(is_exchange, b0, b));
+    NodeChild first = select_child(is_of_b, b0, a0);
+    NodeChild second = select_child(is_of_b, b1, a1);
+    NodeChild up = select_child(is_second, second, first);
+    NodeChild stays = select_child(is_second, first, second);
+    NodeChild down = select_child(is_of_b, a, select_child(is_exchange, b0, b));
     done.node0 = is_of_b ? b.child : a.child;
-    put_half(nodes, done.node0, side, down);
-    put_half(nodes, node, is_of_b ? 1u : 0u, joined_half(down, stays, done.node0));
+    put_child(nodes, done.node0, side, down);
+    put_child(nodes, node, is_of_b ? 1u : 0u, joined_child(down, stays, done.node0));
     if (is_exchange)
     {
         done.node1 = b.child;
-        put_half(nodes, b.child, 0u, up);
-        up = joined_half(up, b1, b.child);
+        put_child(nodes, b.child, 0u, up);
+        up = joined_child(up, b1, b.child);
     }
-    put_half(nodes, node, is_of_b ? 0u : 1u, up);
+    put_child(nodes, node, is_of_b ? 0u : 1u, up);
     return done;
 }
 
@@ -169,10 +169,10 @@ FUNC void choose_next(INOUT(Rotation) rotation)
     else rotation.next = NOTHING;
 }
 
-FUNC void rotate_next(NodeHalves nodes, INOUT(Rotation) rotation, float scale)
+FUNC void rotate_next(BvhChildren nodes, INOUT(Rotation) rotation, float scale)
 {
-    NodeHalf a = get_half(nodes, rotation.next, 0u);
-    NodeHalf b = get_half(nodes, rotation.next, 1u);
+    NodeChild a = get_child(nodes, rotation.next, 0u);
+    NodeChild b = get_child(nodes, rotation.next, 1u);
     bool is_top = rotation.next == rotation.node;
     Rotated done = rotate_node(nodes, rotation.next, a, b, is_top ? rotation.limit : height_above(a, b), scale);
     if (done.node0 != NOTHING)
@@ -188,7 +188,7 @@ FUNC void rotate_next(NodeHalves nodes, INOUT(Rotation) rotation, float scale)
 }
 
 // All at once. Returns the node's height.
-FUNC uint rotate(NodeHalves nodes, uint node, uint limit, float scale)
+FUNC uint rotate(BvhChildren nodes, uint node, uint limit, float scale)
 {
     Rotation rotation = rotation_of(node, limit);
     while (rotation.next != NOTHING) rotate_next(nodes, rotation, scale);

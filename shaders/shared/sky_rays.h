@@ -3,8 +3,8 @@
 #ifndef TWINRAY_SHARED_SKY_RAYS_H
 #define TWINRAY_SHARED_SKY_RAYS_H
 #include "shaders/shared/count_faces.h"
-#include "shaders/shared/random.h"
-#include "shaders/shared/sampling.h"
+#include "shaders/sampling/random.h"
+#include "shaders/sampling/sampling.h"
 
 const uint FACE_STREAM = 0x66616365u;
 

@@ -8,7 +8,7 @@
 // A group has counters for each digit and thread: on a GPU many threads, on a CPU many digits, so that there are fewer
 // passes.
 const uint DIGIT_BITS_CONSTANT = 0u;
-const uint PLACES_CONSTANT = 3u;
+const uint IOTA_CONSTANT = 3u;
 const uint SORT_GPU_GROUP = 64u;
 const uint SORT_GPU_DIGIT_BITS = 6u;
 const uint SORT_GPU_BLOCK = 2048u; // items of a group
@@ -21,7 +21,7 @@ const uint SCAN_GPU_GROUP = 256u;
 struct SortArgs
 {
     Uints keys_in;
-    Uints values_in; // not read where the values are the items' places
+    Uints values_in; // not read where the values are the items' indices
     Uints keys_out;
     Uints values_out;
     Uints counts;

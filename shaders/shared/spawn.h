@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: MIT Points on triangles from which rays start without meeting their own triangle, and
-// without an absolute epsilon: a bound of all rounding errors between the triangle and the ray as an accelerator sees
-// it, in the manner of Bitterli et al., "Self-Intersection Avoidance", NVIDIA 2023.
+// SPDX-License-Identifier: MIT
+// Points on triangles from which rays start without meeting their own triangle, and without an absolute epsilon: a
+// bound of all rounding errors between the triangle and the ray as an accelerator sees it, in the manner of Bitterli et
+// al., "Self-Intersection Avoidance", NVIDIA 2023.
 //
 //     SurfacePoint point = surface_point(placement, corners, vec2(hit.u, hit.v));
 //     ray.origin = spawn_position(point, dot(ray.direction, point.normal) > 0.0);

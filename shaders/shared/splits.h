@@ -15,12 +15,12 @@ FUNC LeafBox bounds_of(CentroidBounds bits)
 }
 
 // What separates neighbours in sorted order, larger = higher up: the highest bit in which their codes differ, between
-// equal codes the highest in which fine codes do, between equal ones of both the highest in which their places do. Only
-// the highest bit counts, and that of two neighbours of a range of leaves is never the same.
-FUNC uvec2 make_split(uint of_code, uint of_fine_code, uint place)
+// equal codes the highest in which low codes do, between equal ones of both the highest in which their positions do.
+// Only the highest bit counts, and that of two neighbours of a range of leaves is never the same.
+FUNC uvec2 make_split(uint of_code, uint of_low_code, uint position)
 {
-    uint of_place = place ^ (place + 1u); // 25 bits
-    uint lower = of_fine_code != 0u ? (uint(findMSB(of_fine_code)) + 1u) << 25u : of_place;
+    uint of_position = position ^ (position + 1u); // 25 bits
+    uint lower = of_low_code != 0u ? (uint(findMSB(of_low_code)) + 1u) << 25u : of_position;
     return uvec2(lower, of_code);
 }
 // A tree below a split has one node at most on any way down for each lower bit.

@@ -12,12 +12,12 @@
 
 // Every instance is treated as filtered, in kernels that have FEATURE_FILTERS. The value is that of SPIR-V's ray flag
 // NoOpaque.
-const uint ALL_FILTERED = 2u;
+const uint ALL_NON_OPAQUE = 2u;
 
 struct TraceOptions
 {
     uint mask;  // sees the instances that share a bit of its low 8
-    uint flags; // CULL_BACK, CULL_FRONT, ALL_FILTERED
+    uint flags; // CULL_BACK, CULL_FRONT, ALL_NON_OPAQUE
     // The rest is constant in a kernel, so that it is compiled for it.
     uint query;    // QUERY_*
     uint level;    // LEVEL_*
@@ -54,5 +54,5 @@ struct TraceArgs
     uint first; // ray that the launch begins with
 };
 
-FUNC uint ray_at(Uints order, uint place) { return is_null(order) ? place : AT(order, place); }
+FUNC uint ray_at(Uints order, uint position) { return is_null(order) ? position : AT(order, position); }
 #endif

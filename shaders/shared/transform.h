@@ -66,9 +66,9 @@ FUNC vec3 doubled_cross(vec3 a, vec3 b, INOUT(vec3) missing)
 }
 
 // b where either is no number, of which max() promises nothing, while drivers on CPUs pay for a promise of their own.
-FUNC float greater_of(float a, float b) { return a > b ? a : b; }
-FUNC float largest_entry(vec3 v) { return greater_of(abs(v.x), greater_of(abs(v.y), abs(v.z))); }
-FUNC float largest_coordinate(vec3 lo, vec3 hi) { return greater_of(largest_entry(lo), largest_entry(hi)); }
+FUNC float max_by_comparison(float a, float b) { return a > b ? a : b; }
+FUNC float largest_entry(vec3 v) { return max_by_comparison(abs(v.x), max_by_comparison(abs(v.y), abs(v.z))); }
+FUNC float largest_coordinate(vec3 lo, vec3 hi) { return max_by_comparison(largest_entry(lo), largest_entry(hi)); }
 
 // The inverse of an invertible map: cofactors over the determinant, both in doubled precision, so that each entry of
 // the linear part is right to a few roundings of itself for condition numbers up to about 10^7. Rows are scaled by

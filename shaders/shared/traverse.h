@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Traversal of a SwScene, of any layout: one loop over nodes, primitives and instances.
+// Traversal of a SwTlasHeader, of any layout: one loop over nodes, primitives and instances.
 //
 // What a node leaves to visit is one entry of the stack, and the way out of an instance is another. The stack is short:
 // once it is empty and has lost entries, the ray goes from the root of its tree to where it is, and puts what it passes
@@ -25,7 +25,7 @@ struct Traversal
     uint target;        // the edge that the ray is on its way back to, or NOTHING
 };
 
-FUNC Traversal begin_traversal(SwScene scene, Ray ray, bool is_binary, TraceOptions options)
+FUNC Traversal begin_traversal(SwTlasHeader scene, Ray ray, bool is_binary, TraceOptions options)
 {
     Traversal here;
     if ((options.features & FEATURE_INSTANCES) != 0u)
@@ -49,7 +49,7 @@ FUNC Traversal begin_traversal(SwScene scene, Ray ray, bool is_binary, TraceOpti
 }
 
 // For the tree of the instance, or for that of the top level: in one place, as it is much code.
-FUNC void prepare_ray(INOUT(Traversal) here, SwScene scene, Ray ray, TraceOptions options)
+FUNC void prepare_ray(INOUT(Traversal) here, SwTlasHeader scene, Ray ray, TraceOptions options)
 {
     LocalRay local;
     if (here.outside == NOTHING) local = ray_in_world(scene, ray);
@@ -75,7 +75,7 @@ FUNC bool visit_children(INOUT(Traversal) here, EnteredChildren children, TraceO
     return descends;
 }
 
-FUNC bool visit_instance(INOUT(Traversal) here, SwScene scene, uint index, bool is_binary, TraceOptions options)
+FUNC bool visit_instance(INOUT(Traversal) here, SwTlasHeader scene, uint index, bool is_binary, TraceOptions options)
 {
     bool enters = is_visible(scene.instances, index, options);
     if (enters)
@@ -90,7 +90,7 @@ FUNC bool visit_instance(INOUT(Traversal) here, SwScene scene, uint index, bool 
     return enters;
 }
 
-FUNC void leave_instance(INOUT(Traversal) here, SwScene scene)
+FUNC void leave_instance(INOUT(Traversal) here, SwTlasHeader scene)
 {
     here.tree = top_tree(scene);
     here.at.edge = here.outside;
@@ -127,7 +127,7 @@ FUNC void restart(INOUT(Traversal) here, bool is_inside, bool is_binary, TraceOp
 }
 
 // Goes on to what waits. False: there is nothing.
-FUNC bool visit_next(INOUT(Traversal) here, SwScene scene, bool is_binary, TraceOptions options)
+FUNC bool visit_next(INOUT(Traversal) here, SwTlasHeader scene, bool is_binary, TraceOptions options)
 {
     bool has_top = (options.features & FEATURE_INSTANCES) != 0u;
     fetch_last(here.stack, may_be_wide(options));
@@ -149,7 +149,7 @@ FUNC bool visit_next(INOUT(Traversal) here, SwScene scene, bool is_binary, Trace
 
 // The closest hit is the first by comes_before, whatever the layout and the order of traversal; with QUERY_ANY it is
 // the first one found.
-FUNC Hit traverse(SwScene scene, Ray ray, TraceOptions options)
+FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options)
 {
     bool has_top = (options.features & FEATURE_INSTANCES) != 0u;
     bool binary = is_binary(scene, options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which triangles can be hit at all: those with finite corners that span an area. Decided exactly: three distinct
-// corners on a line would otherwise be hit now and then, because a sheared image of them is not quite on a line.
+// Which triangles can be hit at all: those with finite vertices that span an area. Decided exactly: three distinct
+// vertices on a line would otherwise be hit now and then, because a sheared image of them is not quite on a line.
 #ifndef TWINRAY_SHARED_TRIANGLE_H
 #define TWINRAY_SHARED_TRIANGLE_H
 #include "shaders/shared/exact.h"
@@ -75,7 +75,7 @@ FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c)
     float largest = max(largest_entry(a), max(largest_entry(b), largest_entry(c)));
     if (largest == 0.0f) return false;
     float scale = power_of_two_below(largest);
-    if (scale == 0.0f) scale = 1.0f; // denormal corners
+    if (scale == 0.0f) scale = 1.0f; // denormal vertices
     a = a / scale;
     b = b / scale;
     c = c / scale;

@@ -3,8 +3,8 @@
 #ifndef TWINRAY_SHARED_VIEW_FACTORS_H
 #define TWINRAY_SHARED_VIEW_FACTORS_H
 #include "shaders/shared/faces.h"
-#include "shaders/shared/sampling.h"
-#include "shaders/shared/sobol.h"
+#include "shaders/sampling/sampling.h"
+#include "shaders/sampling/sobol.h"
 
 // Samples are drawn in as many independent sequences, whose scatter tells the error of the mean.
 const uint REPLICATES = 16u;

@@ -1,192 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What every traversal of a SwScene does at instances and at primitives, whatever its layout.
+// What every traversal of a SwTlasHeader does at primitives, and what it has found so far, whatever its layout.
 #ifndef TWINRAY_SHARED_VISIT_H
 #define TWINRAY_SHARED_VISIT_H
-#include "shaders/shared/bvh.h"
-#include "shaders/shared/intersect.h"
+#include "shaders/shared/local_ray.h"
 #include "shaders/shared/occlude.h"
-#include "shaders/shared/trace.h"
-#include "shaders/shared/transform.h"
-#ifdef TWINRAY_REFINED
-#include "shaders/shared/certified.h"
-#endif
-
-// Rounding of the world-to-object transform moves a ray by a few roundings of its origin's size, and the limit of
-// reciprocals by 2^-40 of the way. `extent`: the largest coordinate of the scene.
-FUNC float world_pad(vec3 origin, float extent)
-{
-    return largest_entry(origin) * 9.5367431640625e-07f + extent * 3.637978807091713e-12f; // 2^-20, 2^-38
-}
-
-// Which side an instance's triangles hide from a ray: CULL_FRONT, CULL_BACK or 0.
-FUNC uint culled_side(uint ray_flags, uint instance_flags)
-{
-    uint side = ray_flags & (CULL_BACK | CULL_FRONT);
-    if (side == 0u || (instance_flags & INSTANCE_NO_CULLING) != 0u) return 0u;
-    return (instance_flags & INSTANCE_TURNED) != 0u ? side ^ (CULL_BACK | CULL_FRONT) : side;
-}
-
-// What traversal must know of the instance it is in. Features are asked for where these are read, not where they are
-// set: only so compilers see across the loop that what depends on them is never run.
-struct InInstance
-{
-    uint index;
-    uint custom_index;
-    uint culled; // side of its triangles that is not hit
-    bool has_boxes;
-    bool is_filtered;
-    float error; // at LEVEL_CERTIFIED: see CertifiedRay; else 0
-};
-
-FUNC InInstance enter_instance(SwInstance instance, uint index, TraceOptions options)
-{
-    InInstance inside;
-    inside.index = index;
-    inside.custom_index = instance.custom_index_mask & 0xffffffu;
-    inside.culled = culled_side(options.flags, instance.flags);
-    inside.has_boxes = instance.kind == GEOMETRY_BOXES;
-    inside.error = 0.0f;
-    inside.is_filtered = (instance.flags & INSTANCE_FILTERED) != 0u || (options.flags & ALL_FILTERED) != 0u;
-    return inside;
-}
-
-FUNC InInstance in_no_instance()
-{
-    InInstance inside;
-    inside.index = NOTHING;
-    inside.custom_index = 0u;
-    inside.culled = 0u;
-    inside.has_boxes = false;
-    inside.is_filtered = false;
-    inside.error = 0.0f;
-    return inside;
-}
-
-// Adding 0 takes a zero's sign, which the sums of a transform may change: with the identity, too, both ways give the
-// same bits.
-FUNC vec3 without_negative_zeros(vec3 v)
-{
-    PRECISE vec3 sum = v + vec3(0.0f);
-    return sum;
-}
-
-// A ray in the space of a tree, and how far off its boxes may be met (see make_ray_space).
-struct LocalRay
-{
-    vec3 origin;
-    vec3 direction;
-    float pad;
-};
-
-FUNC LocalRay ray_in_world(SwScene scene, Ray ray)
-{
-    LocalRay local;
-    local.origin = ray.origin;
-    local.direction = ray.direction;
-    local.pad = world_pad(ray.origin, largest_coordinate(scene.bvh.lo, scene.bvh.hi));
-    return local;
-}
-
-FUNC RaySpace space_of(LocalRay ray) { return make_ray_space(ray.origin, ray.direction, ray.pad); }
-
-// In the space of the instance's geometry.
-FUNC LocalRay ray_in_instance(SwInstance instance, INOUT(InInstance) inside, Ray ray, TraceOptions options)
-{
-    LocalRay local;
-#ifdef TWINRAY_REFINED
-    if (options.level == LEVEL_CERTIFIED)
-    {
-        CertifiedRay mapped = certified_ray(AT(options.instances, inside.index), ray, options.advance != double(0.0f));
-        inside.error = mapped.error;
-        local.origin = mapped.origin;
-        local.direction = mapped.direction;
-        local.pad = mapped.error;
-        return local;
-    }
-#endif
-    vec3 origin = ray.origin;
-    vec3 direction = ray.direction;
-    if ((options.features & FEATURE_TRANSFORMS) != 0u)
-    {
-        Rows to_object;
-        to_object.r0 = instance.world_to_object[0];
-        to_object.r1 = instance.world_to_object[1];
-        to_object.r2 = instance.world_to_object[2];
-        origin = transform_point(to_object, origin);
-        direction = transform_vector(to_object, direction);
-    }
-    local.origin = without_negative_zeros(origin);
-    local.direction = without_negative_zeros(direction);
-    local.pad = corner_pad(local.origin, instance.extent);
-    return local;
-}
-
-FUNC Candidate candidate_of(InInstance inside, uint primitive_index, TraceOptions options)
-{
-    Candidate candidate;
-    candidate.primitive_index = primitive_index;
-    candidate.instance_index = inside.index;
-    candidate.custom_index = inside.custom_index;
-    candidate.user_data = options.user_data;
-    return candidate;
-}
-
-FUNC bool intersect_box(BvhTriangle box, InInstance inside, RaySpace space, float t_min, float t_best,
-                        TraceOptions options, INOUT(TriangleHit) hit)
-{
-    float enter = 0.0f;
-    if (!enter_box(box.v0, box.v1, space, t_min, t_best, enter)) return false;
-    Ray ray_local;
-    ray_local.origin = space.origin;
-    ray_local.direction = space.direction;
-    ray_local.t_min = t_min;
-    ray_local.t_max = t_best;
-    vec2 uv = vec2(0.0f);
-    hit.t = 0.0f;
-    hit.t_low = 0.0f;
-    hit.along = false;
-    bool is_met = intersect_primitive(candidate_of(inside, box.primitive_index, options), ray_local, hit.t, uv);
-    hit.u = uv.x;
-    hit.v = uv.y;
-    return is_met;
-}
-
-// Whether the ray's line meets the primitive on a side that counts, and where.
-FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, float t_min, float t_best,
-                         TraceOptions options, INOUT(TriangleHit) hit)
-{
-    if ((options.features & FEATURE_BOXES) != 0u && inside.has_boxes)
-        return intersect_box(leaf, inside, space, t_min, t_best, options, hit);
-    bool is_met = false;
-#ifdef TWINRAY_REFINED
-    if (options.level == LEVEL_CERTIFIED)
-        is_met = intersect_certified(leaf, space, inside.error, inside.index, options, hit);
-    else
-#endif
-    if (options.level == LEVEL_FAST) is_met = intersect_triangle_fast(leaf.v0, leaf.v1, leaf.v2, space, hit);
-    else is_met = intersect_triangle(leaf.v0, leaf.v1, leaf.v2, space, hit);
-    if ((options.features & FEATURE_CULLING) == 0u) return is_met;
-    return is_met && (inside.culled == 0u || inside.culled != (hit.along ? CULL_BACK : CULL_FRONT));
-}
-
-FUNC bool comes_after(TriangleHit hit, float t_min, TraceOptions options)
-{
-    if (options.level < LEVEL_CERTIFIED) return hit.t > t_min;
-    return hit.t > t_min || (hit.t == t_min && hit.t_low > 0.0f);
-}
-
-const uint NO_ENTRY = 0x7f800000u; // infinity, and what is larger: no hit is reported there
-
-// Where among its siblings a box comes that the ray crosses from `enter` to `leave`, the least first; the last two bits
-// are free. The nearest is first; where any hit will do, that in which the ray is longest, as most may be hit there.
-// (Larger boxes first, for rays unknown: Nah, Manocha, "SATO: Surface Area Traversal Order for Shadow Ray Tracing",
-// 2014.)
-FUNC uint place_in_order(float enter, float leave, bool is_there, uint query)
-{
-    uint longest_first = 0x7f000000u - min(floatBitsToUint(leave - enter), 0x7e000000u);
-    uint place = query == QUERY_ANY ? longest_first : floatBitsToUint(enter);
-    return is_there && enter <= leave ? place & 0x7ffffffcu : NO_ENTRY; // of zeros the sign may be either
-}
 
 // What has been found so far, and where there is more to find. Only what a kernel needs is ever written: the rest stays
 // a constant, which compilers see through the loop.
@@ -214,8 +31,75 @@ FUNC Search begin_search(Ray ray)
     return search;
 }
 
+FUNC Candidate candidate_of(InInstance inside, uint primitive_index, TraceOptions options)
+{
+    Candidate candidate;
+    candidate.primitive_index = primitive_index;
+    candidate.instance_index = inside.index;
+    candidate.custom_index = inside.custom_index;
+    candidate.user_data = options.user_data;
+    return candidate;
+}
+
+FUNC bool intersect_box(BvhTriangle box, InInstance inside, RaySpace space, Search search, TraceOptions options,
+                        INOUT(TriangleHit) hit)
+{
+    float enter = 0.0f;
+    if (!enter_box(box.v0, box.v1, space, search.t_min, search.t_best, enter)) return false;
+    Ray ray_local;
+    ray_local.origin = space.origin;
+    ray_local.direction = space.direction;
+    ray_local.t_min = search.t_min;
+    ray_local.t_max = search.t_best;
+    vec2 uv = vec2(0.0f);
+    hit.t = 0.0f;
+    hit.t_low = 0.0f;
+    hit.along = false;
+    bool is_met = intersect_primitive(candidate_of(inside, box.primitive_index, options), ray_local, hit.t, uv);
+    hit.u = uv.x;
+    hit.v = uv.y;
+    return is_met;
+}
+
+// Whether the ray's line meets the primitive on a side that counts, and where.
+FUNC bool intersect_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, Search search, TraceOptions options,
+                         INOUT(TriangleHit) hit)
+{
+    if ((options.features & FEATURE_BOXES) != 0u && inside.has_boxes)
+        return intersect_box(leaf, inside, space, search, options, hit);
+    bool is_met = false;
+#ifdef TWINRAY_REFINED
+    if (options.level == LEVEL_CERTIFIED)
+        is_met = intersect_certified(leaf, space, inside.error, inside.index, options, hit);
+    else
+#endif
+    if (options.level == LEVEL_FAST) is_met = intersect_triangle_fast(leaf.v0, leaf.v1, leaf.v2, space, hit);
+    else is_met = intersect_triangle(leaf.v0, leaf.v1, leaf.v2, space, hit);
+    if ((options.features & FEATURE_CULLING) == 0u) return is_met;
+    return is_met && (inside.culled == 0u || inside.culled != (hit.along ? CULL_BACK : CULL_FRONT));
+}
+
+FUNC bool comes_after(TriangleHit hit, float t_min, TraceOptions options)
+{
+    if (options.level < LEVEL_CERTIFIED) return hit.t > t_min;
+    return hit.t > t_min || (hit.t == t_min && hit.t_low > 0.0f);
+}
+
+const uint NO_ENTRY = 0x7f800000u; // infinity, and what is larger: no hit is reported there
+
+// Where among its siblings a box comes that the ray crosses from `enter` to `leave`, the least first; the last two bits
+// are free. The nearest is first; where any hit will do, that in which the ray is longest, as most may be hit there.
+// (Larger boxes first, for rays unknown: Nah, Manocha, "SATO: Surface Area Traversal Order for Shadow Ray Tracing",
+// 2014.)
+FUNC uint visit_order(float enter, float leave, bool is_there, uint query)
+{
+    uint longest_first = 0x7f000000u - min(floatBitsToUint(leave - enter), 0x7e000000u);
+    uint key = query == QUERY_ANY ? longest_first : floatBitsToUint(enter);
+    return is_there && enter <= leave ? key & 0x7ffffffcu : NO_ENTRY; // of zeros the sign may be either
+}
+
 // custom_index: of a scene of one instance.
-FUNC Hit hit_of(Search search, SwScene scene, uint custom_index, TraceOptions options)
+FUNC Hit hit_of(Search search, SwTlasHeader scene, uint custom_index, TraceOptions options)
 {
     Hit hit = miss();
     if (search.primitive_index == NOTHING) return hit;
@@ -248,11 +132,11 @@ FUNC bool find_in_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, Trac
 {
     TriangleHit hit;
     bool is_first = false;
-    if (intersect_leaf(leaf, inside, space, search.t_min, search.t_best, options, hit))
+    if (intersect_leaf(leaf, inside, space, search, options, hit))
     {
         is_first = comes_after(hit, search.t_min, options) &&
             comes_before(hit, inside.index, leaf.primitive_index, search, options);
-        if ((options.features & FEATURE_FILTERS) != 0u && is_first && inside.is_filtered)
+        if ((options.features & FEATURE_FILTERS) != 0u && is_first && inside.is_non_opaque)
             is_first = accept_hit(candidate_of(inside, leaf.primitive_index, options), t_of_given(hit.t, options),
                                   vec2(hit.u, hit.v));
         if (is_first)
@@ -271,7 +155,7 @@ FUNC bool find_in_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, Trac
 FUNC bool leaf_occludes(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     bool along = false;
-    bool occludes = triangle_occludes(leaf.v0, leaf.v1, leaf.v2, space, search.t_min, search.t_best, along);
+    bool occludes = triangle_occludes(leaf.v0, leaf.v1, leaf.v2, space, vec2(search.t_min, search.t_best), along);
     if ((options.features & FEATURE_CULLING) != 0u)
         occludes = occludes && (inside.culled == 0u || inside.culled != (along ? CULL_BACK : CULL_FRONT));
     if (occludes) search.primitive_index = leaf.primitive_index;

@@ -15,13 +15,13 @@ const uint NODE_WIDTH_CONSTANT = 2u;
 const uint CPU_GROUP = 8u;
 
 // Whose work group `index` of `count` does. Where each thread gets one stretch of a dispatch (KernelTuning::threads),
-// some stretches of a picture take longer than others; so groups are dealt out to as many hands, one after the other.
-// What is left over stays where it is, and all with fewer than two hands.
-FUNC uint dealt_group(uint index, uint count, uint hands)
+// some stretches of a picture take longer than others; so groups are dealt out to as many threads, one after the other.
+// What is left over stays where it is, and all with fewer than two threads.
+FUNC uint interleaved_group(uint index, uint count, uint threads)
 {
-    if (hands < 2u) return index;
-    uint share = max(count / hands, 1u);
-    return index < share * hands ? index % share * hands + index / share : index;
+    if (threads < 2u) return index;
+    uint share = max(count / threads, 1u);
+    return index < share * threads ? index % share * threads + index / share : index;
 }
 
 // How many of `items` that come in blocks of `size` each of `groups` does, one block after the other.

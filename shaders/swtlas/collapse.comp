@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: MIT Binary trees become trees of NODE_WIDTH children a node, level by level: the items of
-// one level leave those of the next, and those of subtrees that a group can do whole. Begun once per tree.
+// SPDX-License-Identifier: MIT
+// Binary trees become trees of NODE_WIDTH children a node, level by level: the items of one level leave those of the
+// next, and those of subtrees that a group can do whole. Begun once per tree.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
@@ -30,39 +31,39 @@ void count_item(inout ItemLists counts, uint leaves)
 uint reserve(REF(CollapseLevel) list, uint count, uint share)
 {
     if (count == 0u) return 0u;
-    uint place = atomicAdd(AT(list, 0).count, count);
-    uint groups_before = (place + share - 1u) / share;
-    uint groups = (place + count + share - 1u) / share;
-    if (groups == groups_before) return place;
+    uint begin = atomicAdd(AT(list, 0).count, count);
+    uint groups_before = (begin + share - 1u) / share;
+    uint groups = (begin + count + share - 1u) / share;
+    if (groups == groups_before) return begin;
     atomicMax(AT(list, 0).groups_x, min(groups, GROUPS_PER_ROW));
     atomicMax(AT(list, 0).groups_y, (groups + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW);
-    return place;
+    return begin;
 }
 
 ItemLists reserve(ItemLists counts)
 {
     const uint LEVEL_BYTES = 16u;
-    ItemLists places;
-    places.next = reserve(REF(CollapseLevel)(address_after(args.level.address, LEVEL_BYTES)), counts.next,
+    ItemLists ends;
+    ends.next = reserve(REF(CollapseLevel)(address_after(args.level.address, LEVEL_BYTES)), counts.next,
                           COLLAPSE_GROUP);
-    places.subtrees = reserve(args.subtree_level, counts.subtrees, 1u);
-    return places;
+    ends.subtrees = reserve(args.subtree_level, counts.subtrees, 1u);
+    return ends;
 }
 
-void push(CollapseStep found, ItemLists places)
+void push(CollapseStep found, ItemLists ends)
 {
     UNROLL for (uint i = 0u; i < NODE_WIDTH; i = i + 1u)
     {
         if (found.leaves[i] == 0u) continue;
-        if (is_subtree(found.leaves[i])) store_item(args.subtrees, places.subtrees, found.items[i]);
-        else store_item(args.next_items, places.next, found.items[i]);
-        count_item(places, found.leaves[i]);
+        if (is_subtree(found.leaves[i])) store_item(args.subtrees, ends.subtrees, found.items[i]);
+        else store_item(args.next_items, ends.next, found.items[i]);
+        count_item(ends, found.leaves[i]);
     }
 }
 
 void begin(uint index)
 {
-    CollapseStep found = begin_collapse(AT(args.trees, index), args.places, index, NODE_WIDTH);
+    CollapseStep found = begin_collapse(AT(args.trees, index), args.leaf_indices, index, NODE_WIDTH);
     ItemLists counts = ItemLists(0u, 0u);
     count_item(counts, found.leaves[0]);
     push(found, reserve(counts));
@@ -71,11 +72,11 @@ void begin(uint index)
 void do_item(CollapseItem item)
 {
     BuildTree tree = AT(args.trees, item.tree);
-    NodeChildren children = children_of(tree.nodes, item.place, NODE_WIDTH);
+    NodeChildren children = children_of(tree.nodes, item.node_and_level, NODE_WIDTH);
     ItemLists counts = ItemLists(0u, 0u);
     UNROLL for (uint i = 0u; i < NODE_WIDTH; i = i + 1u) count_item(counts, leaves_of_item(children, i));
-    ItemLists places = reserve(counts); // before all writes, which an atomic operation waits for on CPUs
-    push(write_node(tree, args.places, item, children, NODE_WIDTH), places);
+    ItemLists ends = reserve(counts); // before all writes, which an atomic operation waits for on CPUs
+    push(write_node(tree, args.leaf_indices, item, children, NODE_WIDTH), ends);
 }
 
 void main()

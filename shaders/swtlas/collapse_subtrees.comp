@@ -15,17 +15,17 @@ shared uint queued; // how many items ever were
 
 void do_item(BuildTree tree, Queue queue, CollapseItem item)
 {
-    NodeChildren children = children_of(tree.nodes, item.place, NODE_WIDTH);
+    NodeChildren children = children_of(tree.nodes, item.node_and_level, NODE_WIDTH);
     uint count = 0u;
     UNROLL for (uint i = 0u; i < NODE_WIDTH; i = i + 1u) count += leaves_of_item(children, i) != 0u ? 1u : 0u;
-    uint place = 0u;
-    if (count != 0u) place = atomicAdd(queued, count); // before all writes, which it waits for on CPUs
-    CollapseStep found = write_node(tree, args.places, item, children, NODE_WIDTH);
+    uint end = 0u;
+    if (count != 0u) end = atomicAdd(queued, count); // before all writes, which it waits for on CPUs
+    CollapseStep found = write_node(tree, args.leaf_indices, item, children, NODE_WIDTH);
     UNROLL for (uint i = 0u; i < NODE_WIDTH; i = i + 1u)
     {
         if (found.leaves[i] == 0u) continue;
-        AT(queue, place) = found.items[i];
-        place = place + 1u;
+        AT(queue, end) = found.items[i];
+        end = end + 1u;
     }
 }
 
@@ -35,7 +35,7 @@ void main()
     CollapseItem root = load_item(args.subtrees, group_index());
     BuildTree tree = AT(args.trees, root.tree);
     Queue queue = Queue(address_at(args.queues.address,
-                                   queue_begin(tree.first, root.below + 1u - records_of_node(NODE_WIDTH)), 16u));
+                                   queue_begin(tree.first, root.descendants + 1u - records_of_node(NODE_WIDTH)), 16u));
     if (gl_LocalInvocationID.x == 0u)
     {
         AT(queue, 0) = root;

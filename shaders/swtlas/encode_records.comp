@@ -5,16 +5,16 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/collapse.h"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
-layout(push_constant, scalar) uniform Push { EncodeRecordsArgs args; };
+layout(push_constant, scalar) uniform Push { BuildArgs args; };
 
 void main()
 {
-    BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
-    BuildTree tree = AT(args.trees, block.tree);
-    if (group_index() >= args.block_count) return;
-    for (uint i = gl_LocalInvocationID.x; i < block.count; i += gl_WorkGroupSize.x)
+    if (group_index() >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index());
+    BuildTree tree = AT(args.trees, chunk.tree);
+    for (uint i = gl_LocalInvocationID.x; i < chunk.count; i += gl_WorkGroupSize.x)
     {
-        uint position = block.first + i;
-        store_record(tree.records, AT(args.places, position), encode_leaf(tree, AT(args.order, position) - tree.first));
+        uint position = chunk.first + i;
+        store_record(tree.records, AT(args.codes, position), encode_leaf(tree, AT(args.order, position) - tree.first));
     }
 }

@@ -5,20 +5,20 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
 layout(local_size_x = BUILD_GROUP) in;
-layout(push_constant, scalar) uniform Push { LeafEdgesArgs args; };
+layout(push_constant, scalar) uniform Push { RefitArgs args; };
 
 void set_leaf(uint first, uint child, uint edge)
 {
-    if ((child & LEAF_BIT) != 0u) AT(args.leaf_edges, first + (child & ~LEAF_BIT)) = edge;
+    if ((child & LEAF_BIT) != 0u) AT(args.parents, first + (child & ~LEAF_BIT)) = edge;
 }
 
 void main()
 {
-    if (group_index() >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index());
-    if (gl_LocalInvocationIndex >= block.count) return;
-    BuildTree tree = AT(args.trees, block.tree);
-    uint node = block.first - tree.first + gl_LocalInvocationIndex;
+    if (group_index() >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index());
+    if (gl_LocalInvocationIndex >= chunk.count) return;
+    BuildTree tree = AT(args.trees, chunk.tree);
+    uint node = chunk.first - tree.first + gl_LocalInvocationIndex;
     if (node == 0u) set_leaf(tree.first, AT(tree.bvh, 0).root, 0u);
     if (node + 1u >= tree.count) return;
     BvhNode children = AT(tree.nodes, node);

@@ -10,16 +10,16 @@ layout(push_constant, scalar) uniform Push { InstanceLeavesArgs args; };
 
 void main()
 {
-    if (group_index() >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index());
+    if (group_index() >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index());
     LeafBox centers = empty_box();
-    for (uint i = gl_LocalInvocationIndex; i < block.count; i += gl_WorkGroupSize.x)
+    for (uint i = gl_LocalInvocationIndex; i < chunk.count; i += gl_WorkGroupSize.x)
     {
-        uint index = block.first + i;
+        uint index = chunk.first + i;
         LeafBox box = empty_box();
         AT(args.instances, index) = place_instance(in_built_units(AT(args.records, index)), box);
         store_box(args.boxes, index, box);
         add_center(centers, box);
     }
-    add_centroids(args.centroids, block.tree, centers);
+    add_centroids(args.centroids, chunk.tree, centers);
 }

@@ -4,19 +4,19 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/swtlas/centroids.glsl"
-layout(push_constant, scalar) uniform Push { TriangleLeavesArgs args; };
+layout(push_constant, scalar) uniform Push { BuildArgs args; };
 
 void main()
 {
-    BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
-    BuildTree tree = AT(args.trees, block.tree);
-    if (group_index() >= args.block_count) return;
+    if (group_index() >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index());
+    BuildTree tree = AT(args.trees, chunk.tree);
     LeafBox centers = empty_box();
-    for (uint i = gl_LocalInvocationID.x; i < block.count; i += gl_WorkGroupSize.x)
+    for (uint i = gl_LocalInvocationID.x; i < chunk.count; i += gl_WorkGroupSize.x)
     {
-        LeafBox box = box_of_primitive(tree, block.first + i - tree.first);
-        store_box(args.boxes, block.first + i, box);
+        LeafBox box = box_of_primitive(tree, chunk.first + i - tree.first);
+        store_box(args.boxes, chunk.first + i, box);
         add_center(centers, box);
     }
-    add_centroids(args.centroids, block.tree, centers);
+    add_centroids(args.centroids, chunk.tree, centers);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Topology and boxes in one pass, as in hierarchy.comp, but by clusters (shaders/shared/ploc.h). An invocation begins
-// with a leaf and climbs the radix tree; of the two that meet at a split the first leaves its own far end in meeting[]
-// and stops. Where the range that the second has then is to be merged, the whole group merges it.
+// with a leaf and goes up the radix tree; of the two that meet at a split the first leaves its own far end in
+// other_bounds[] and stops. Where the range that the second has then is to be merged, the whole group merges it.
 //
-// Between merges the clusters of a range stand in lists by place in the order, where the range begins: their tops,
+// Between merges the clusters of a range stand in lists by position in the order, where the range begins: their tops,
 // NOTHING after the last one if they are fewer than KEPT_CLUSTERS, and their last leaves. Their boxes are those of
 // their nodes.
 #version 460
@@ -11,10 +11,10 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
-layout(push_constant, scalar) uniform Push { HierarchyArgs args; };
+layout(push_constant, scalar) uniform Push { BuildArgs args; };
 
 // As seen by all groups, not through caches of one.
-REFERENCE(NodeHalves, coherent, BvhHalf items[], 16)
+REFERENCE(BvhChildren, coherent, BvhChild items[], 16)
 REFERENCE(SharedUints, coherent, uint items[], 4)
 #include "shaders/shared/ploc.h"
 #include "shaders/swtlas/sorted_leaves.glsl"
@@ -41,7 +41,7 @@ shared Range chosen;                 // the one that is
 bool is_whole(BuildTree tree, Range range) { return range.last - range.first + 1u == tree.count; }
 
 // Until the range is to be merged. False: another invocation goes on with it.
-bool climb(BuildTree tree, inout Range range)
+bool traverse_bottom_up(BuildTree tree, inout Range range)
 {
     while (!is_whole(tree, range))
     {
@@ -50,7 +50,7 @@ bool climb(BuildTree tree, inout Range range)
         bool joins_right = less64(right, left);
         range.split = joins_right ? range.last : range.first - 1u;
         memoryBarrierBuffer();
-        uint other = atomicExchange(AT(args.meeting, range.split), joins_right ? range.first : range.last);
+        uint other = atomicExchange(AT(args.other_bounds, range.split), joins_right ? range.first : range.last);
         if (other == NOTHING) return false;
         memoryBarrierBuffer();
         range.limit = height_limit(joins_right ? right : left, tree.count);
@@ -73,19 +73,19 @@ uint votes(bool is_for)
     return waiting;
 }
 
-NodeHalf load_top(BuildTree tree, NodeHalves nodes, uint child)
+NodeChild load_top(BuildTree tree, BvhChildren nodes, uint child)
 {
-    if ((child & LEAF_BIT) == 0u) return joined_half(get_half(nodes, child, 0u), get_half(nodes, child, 1u), child);
+    if ((child & LEAF_BIT) == 0u) return joined_child(get_child(nodes, child, 0u), get_child(nodes, child, 1u), child);
     uint leaf = tree.first + (child & ~LEAF_BIT);
-    NodeHalf top;
+    NodeChild top;
     top.box = load_box(args.boxes, args.leaves_are_sorted != 0u ? AT(args.order, leaf) : leaf);
     top.child = child;
-    top.below = make_below(1u, 0u);
+    top.subtree = subtree_info(1u, 0u);
     return top;
 }
 
 // Where the i-th of those before a round goes.
-uint place_after(uint i) { return i - bitCount(gone & ((1u << i) - 1u)); }
+uint index_after(uint i) { return i - bitCount(gone & ((1u << i) - 1u)); }
 bool is_gone(uint i) { return (gone & 1u << i) != 0u; }
 void begin_round()
 {
@@ -93,20 +93,20 @@ void begin_round()
     barrier();
 }
 
-void place_cluster(uint place, Cluster cluster)
+void store_cluster(uint index, Cluster cluster)
 {
-    clusters[place] = cluster;
-    atomicMax(tallest, height_in(cluster.top.below));
+    clusters[index] = cluster;
+    atomicMax(tallest, height_in(cluster.top.subtree));
 }
 
-// The i-th place of the lists of both parts.
-uint list_place(Range range, uint i)
+// The i-th index of the lists of both parts.
+uint list_index(Range range, uint i)
 {
     return i < KEPT_CLUSTERS ? range.first + i : range.split + 1u + i - KEPT_CLUSTERS;
 }
 
 // How many they are.
-uint load_clusters(BuildTree tree, NodeHalves nodes, Range range)
+uint load_clusters(BuildTree tree, BvhChildren nodes, Range range)
 {
     SharedUints tops = SharedUints(args.tops.address);
     memoryBarrierBuffer();
@@ -114,9 +114,9 @@ uint load_clusters(BuildTree tree, NodeHalves nodes, Range range)
     begin_round();
     for EACH(i, MOST_CLUSTERS)
     {
-        uint place = list_place(range, i);
-        bool is_within = place <= (i < KEPT_CLUSTERS ? range.split : range.last);
-        partners[i] = is_within ? AT(tops, place) : NOTHING;
+        uint index = list_index(range, i);
+        bool is_within = index <= (i < KEPT_CLUSTERS ? range.split : range.last);
+        partners[i] = is_within ? AT(tops, index) : NOTHING;
         if (partners[i] == NOTHING) atomicOr(gone, 1u << i);
     }
     barrier();
@@ -126,8 +126,8 @@ uint load_clusters(BuildTree tree, NodeHalves nodes, Range range)
         if (is_gone(i)) continue;
         Cluster cluster;
         cluster.top = load_top(tree, nodes, partners[i]);
-        cluster.last_leaf = AT(SharedUints(args.last_leaves.address), list_place(range, i));
-        place_cluster(place_after(i), cluster);
+        cluster.last_leaf = AT(SharedUints(args.last_leaves.address), list_index(range, i));
+        store_cluster(index_after(i), cluster);
     }
     barrier();
     return count;
@@ -135,7 +135,7 @@ uint load_clusters(BuildTree tree, NodeHalves nodes, Range range)
 
 uint nearest_to(uint i, uint begin, uint count, float scale)
 {
-    NodeHalf own = clusters[begin + i].top;
+    NodeChild own = clusters[begin + i].top;
     Nearest nearest = nothing_near(i);
     uint end = min(i + SEARCH_RADIUS + 1u, count);
     for (uint j = i - min(i, SEARCH_RADIUS); j < end; ++j)
@@ -148,8 +148,8 @@ uint lowest_but(uint other, uint begin, uint count)
     uint lowest = other == 0u ? 1u : 0u;
     for (uint j = lowest + 1u; j < count; ++j)
     {
-        uint height = height_in(clusters[begin + j].top.below);
-        if (j != other && height < height_in(clusters[begin + lowest].top.below)) lowest = j;
+        uint height = height_in(clusters[begin + j].top.subtree);
+        if (j != other && height < height_in(clusters[begin + lowest].top.subtree)) lowest = j;
     }
     return lowest;
 }
@@ -162,16 +162,16 @@ uint partner_by_height(uint i, uint begin, uint count)
     return i == lowest ? next : i == next ? lowest : i;
 }
 
-Cluster joined(NodeHalves nodes, Cluster a, Cluster b)
+Cluster joined(BvhChildren nodes, Cluster a, Cluster b)
 {
     Cluster both = joined_cluster(a, b);
-    put_half(nodes, both.top.child, 0u, a.top);
-    put_half(nodes, both.top.child, 1u, b.top);
+    put_child(nodes, both.top.child, 0u, a.top);
+    put_child(nodes, both.top.child, 1u, b.top);
     return both;
 }
 
 // Of the clusters from `begin` on. How many are left, in the other half.
-uint merge_round(NodeHalves nodes, uint begin, uint count, uint limit, float scale)
+uint merge_round(BvhChildren nodes, uint begin, uint count, uint limit, float scale)
 {
     bool is_free = has_room(tallest, count, limit);
     for EACH(i, count)
@@ -187,7 +187,7 @@ uint merge_round(NodeHalves nodes, uint begin, uint count, uint limit, float sca
         uint partner = partners[i];
         Cluster cluster = clusters[begin + i];
         if (partner > i && partners[partner] == i) cluster = joined(nodes, cluster, clusters[begin + partner]);
-        place_cluster((begin ^ MOST_CLUSTERS) + place_after(i), cluster);
+        store_cluster((begin ^ MOST_CLUSTERS) + index_after(i), cluster);
     }
     barrier();
     return left;
@@ -206,7 +206,7 @@ void keep_clusters(Range range, uint begin, uint count)
 
 void merge(BuildTree tree, float scale, Range range)
 {
-    NodeHalves nodes = NodeHalves(tree.nodes.address);
+    BvhChildren nodes = BvhChildren(tree.nodes.address);
     bool is_last = is_whole(tree, range);
     uint begin = 0u;
     uint count = load_clusters(tree, nodes, range);
@@ -232,31 +232,31 @@ void merge_all(BuildTree tree, float scale, uint invocations, Range own)
 
 Range begin_leaf(BuildTree tree, uint position)
 {
-    uint place = position - tree.first;
-    uint leaf = args.leaves_are_sorted != 0u ? place : AT(args.order, position) - tree.first;
+    uint index = position - tree.first;
+    uint leaf = args.leaves_are_sorted != 0u ? index : AT(args.order, position) - tree.first;
     AT(SharedUints(args.tops.address), position) = LEAF_BIT | leaf;
-    AT(SharedUints(args.last_leaves.address), position) = place;
+    AT(SharedUints(args.last_leaves.address), position) = index;
     return Range(position, position, position, 0u);
 }
 
 void main()
 {
     uint groups = BUILD_GROUP / gl_WorkGroupSize.x;
-    if (group_index() / groups >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index() / groups);
+    if (group_index() / groups >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index() / groups);
     uint begin = group_index() % groups * gl_WorkGroupSize.x;
-    if (begin >= block.count) return;
-    BuildTree tree = AT(args.trees, block.tree);
-    LeafBox bounds = bounds_of(AT(args.centroids, block.tree));
+    if (begin >= chunk.count) return;
+    BuildTree tree = AT(args.trees, chunk.tree);
+    LeafBox bounds = bounds_of(AT(args.centroids, chunk.tree));
     float scale = area_scale(bounds.lo, bounds.hi);
-    is_fine = AT(args.crowding, 0).is_fine != 0u;
+    has_low_codes = AT(args.duplicate_codes, 0).has_low_codes != 0u;
     uint leaf = begin + gl_LocalInvocationID.x;
-    bool goes_on = leaf < block.count;
+    bool goes_on = leaf < chunk.count;
     Range range = Range(0u, 0u, 0u, 0u);
-    if (goes_on) range = begin_leaf(tree, block.first + leaf);
+    if (goes_on) range = begin_leaf(tree, chunk.first + leaf);
     for (;;)
     {
-        goes_on = goes_on && climb(tree, range);
+        goes_on = goes_on && traverse_bottom_up(tree, range);
         uint invocations = votes(goes_on);
         if (invocations == 0u) return;
         merge_all(tree, scale, invocations, range);

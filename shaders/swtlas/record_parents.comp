@@ -5,7 +5,7 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/swtlas/slots.glsl"
 layout(local_size_x = BUILD_GROUP) in;
-layout(push_constant, scalar) uniform Push { RecordParentsArgs args; };
+layout(push_constant, scalar) uniform Push { RefitArgs args; };
 
 void visit(BuildTree tree, uint slot)
 {
@@ -15,17 +15,17 @@ void visit(BuildTree tree, uint slot)
     if (is_leaf(record)) return;
     AT(args.missing, base + slot) = children_in(record);
     if (children_in(record) == 0u) return;
-    ChildPlaces places = places_in(record, second_half_of(tree.records, slot, record));
+    ChildSlots slots = child_slots(record, second_half_of(tree.records, slot, record));
     DONT_UNROLL for (uint i = 0u; i < NODE_WIDTH; ++i)
-        if (has_child(places, i)) AT(args.parents, base + place_of(places, i)) = slot;
+        if (has_child(slots, i)) AT(args.parents, base + child_index(slots, i)) = slot;
 }
 
 void main()
 {
-    if (group_index() >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index());
-    BuildTree tree = AT(args.trees, block.tree);
-    for (uint slot = slots_begin(tree, block) + gl_LocalInvocationIndex; slot < slots_end(tree, block);
+    if (group_index() >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index());
+    BuildTree tree = AT(args.trees, chunk.tree);
+    for (uint slot = slots_begin(tree, chunk) + gl_LocalInvocationIndex; slot < slots_end(tree, chunk);
          slot += BUILD_GROUP)
         visit(tree, slot);
 }

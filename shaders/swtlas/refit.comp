@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// New boxes for an old topology: each leaf climbs with its box, and of the two children that arrive at a node the
+// New boxes for an old topology: each leaf goes up with its box, and of the two children that arrive at a node the
 // second goes on with both.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -11,11 +11,11 @@ layout(push_constant, scalar) uniform Push { RefitArgs args; };
 // The nodes as seen by all groups, not through caches of one.
 REFERENCE(SharedNodes, coherent, BvhNode items[], 16)
 
-void climb(BuildTree tree, uint leaf)
+void traverse_bottom_up(BuildTree tree, uint leaf)
 {
     SharedNodes nodes = SharedNodes(tree.nodes.address);
     LeafBox box = AT(args.boxes, leaf);
-    uint edge = AT(args.leaf_edges, leaf);
+    uint edge = AT(args.parents, leaf);
     while (edge != 0u)
     {
         uint node = parent_of_edge(edge);
@@ -31,7 +31,7 @@ void climb(BuildTree tree, uint leaf)
             AT(nodes, node).hi0 = box.hi;
         }
         memoryBarrierBuffer();
-        if (atomicAdd(AT(args.arrived, tree.first + node), 1u) == NOTHING) return;
+        if (atomicAdd(AT(args.missing, tree.first + node), 1u) == NOTHING) return;
         memoryBarrierBuffer();
         box.lo = min(box.lo, is_second ? AT(nodes, node).lo0 : AT(nodes, node).lo1);
         box.hi = max(box.hi, is_second ? AT(nodes, node).hi0 : AT(nodes, node).hi1);
@@ -43,8 +43,8 @@ void climb(BuildTree tree, uint leaf)
 
 void main()
 {
-    if (group_index() >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index());
-    if (gl_LocalInvocationIndex >= block.count) return;
-    climb(AT(args.trees, block.tree), block.first + gl_LocalInvocationIndex);
+    if (group_index() >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index());
+    if (gl_LocalInvocationIndex >= chunk.count) return;
+    traverse_bottom_up(AT(args.trees, chunk.tree), chunk.first + gl_LocalInvocationIndex);
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // New records for an old topology. Each invocation has a run of slots, whose leaves it refits one after the other; of
-// the children of a node the last one goes on with it. One loop over leaves and nodes: as one climbs, its neighbours on
-// a CPU have leaves to do.
+// the children of a node the last one goes on with it. One loop over leaves and nodes: while
+// one goes up, its neighbours in a vector have leaves to do.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/collapse.h"
 #include "shaders/swtlas/slots.glsl"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
-layout(push_constant, scalar) uniform Push { RefitRecordsArgs args; };
+layout(push_constant, scalar) uniform Push { RefitArgs args; };
 
 // The boxes as seen by all groups, not through caches of one.
 REFERENCE(SharedBoxes, coherent, LeafBox items[], 8)
@@ -23,16 +23,16 @@ LeafBox refit_leaf(BuildTree tree, uint slot, uint leaf)
 LeafBox refit_node(BuildTree tree, uint slot, CompressedRecord node, SharedBoxes boxes)
 {
     CompressedRecord second_half = second_half_of(tree.records, slot, node);
-    ChildPlaces places = places_in(node, second_half);
+    ChildSlots slots = child_slots(node, second_half);
     NodeChildren children;
     children.count = NODE_WIDTH;
     UNROLL for (uint i = 0u; i < NODE_WIDTH; ++i)
     {
         children.box[i] = empty_box();
-        if (has_child(places, i)) children.box[i] = AT(boxes, 2u * tree.first + place_of(places, i));
+        if (has_child(slots, i)) children.box[i] = AT(boxes, 2u * tree.first + child_index(slots, i));
     }
-    NodeOrder order = given_order(places.slots, NODE_WIDTH == 8u ? second_half.a.x >> 16u : 0u);
-    store_node(tree.records, slot, encode_node(children, order, places.first, NODE_WIDTH), NODE_WIDTH);
+    NodeOrder order = given_order(slots.mask, NODE_WIDTH == 8u ? second_half.a.x >> 16u : 0u);
+    store_node(tree.records, slot, encode_node(children, order, slots.first, NODE_WIDTH), NODE_WIDTH);
     return box_around(children, NODE_WIDTH);
 }
 
@@ -57,26 +57,26 @@ uint leave(BuildTree tree, uint slot, LeafBox box)
 
 void main()
 {
-    BuildBlock block = AT(args.blocks, min(group_index(), args.block_count - 1u));
-    BuildTree tree = AT(args.trees, block.tree);
-    if (group_index() >= args.block_count) return;
+    if (group_index() >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index());
+    BuildTree tree = AT(args.trees, chunk.tree);
     SharedBoxes boxes = SharedBoxes(args.slot_boxes.address);
-    uint last = slots_end(tree, block);
-    uint run = (last - slots_begin(tree, block) + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
-    uint next = min(slots_begin(tree, block) + gl_LocalInvocationID.x * run, last);
+    uint last = slots_end(tree, chunk);
+    uint run = (last - slots_begin(tree, chunk) + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
+    uint next = min(slots_begin(tree, chunk) + gl_LocalInvocationID.x * run, last);
     uint end = min(next + run, last);
-    uint climbed = NOTHING;
-    while (climbed != NOTHING || next < end)
+    uint ready = NOTHING;
+    while (ready != NOTHING || next < end)
     {
-        bool climbs = climbed != NOTHING;
-        uint slot = climbs ? climbed : next;
-        next += climbs ? 0u : 1u;
+        bool is_ready = ready != NOTHING;
+        uint slot = is_ready ? ready : next;
+        next += is_ready ? 0u : 1u;
         CompressedRecord record = load_record(tree.records, slot);
-        bool is_refitted = is_leaf(record) || climbs;
+        bool is_refitted = is_leaf(record) || is_ready;
         LeafBox box = empty_box();
         if (is_leaf(record)) box = refit_leaf(tree, slot, index_in(record));
-        else if (climbs) box = refit_node(tree, slot, record, boxes);
-        climbed = NOTHING;
-        if (is_refitted) climbed = leave(tree, slot, box);
+        else if (is_ready) box = refit_node(tree, slot, record, boxes);
+        ready = NOTHING;
+        if (is_refitted) ready = leave(tree, slot, box);
     }
 }

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Triangles whose vertices moved: corners and boxes, in the order that they have in their tree.
+// Triangles whose vertices moved: vertices and boxes, in the order that they have in their tree.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/build.h"
 layout(local_size_x = BUILD_GROUP) in;
-layout(push_constant, scalar) uniform Push { RefitTrianglesArgs args; };
+layout(push_constant, scalar) uniform Push { RefitArgs args; };
 
 void main()
 {
-    if (group_index() >= args.block_count) return;
-    BuildBlock block = AT(args.blocks, group_index());
-    if (gl_LocalInvocationIndex >= block.count) return;
-    uint leaf = block.first + gl_LocalInvocationIndex;
-    BuildTree tree = AT(args.trees, block.tree);
-    uint place = leaf - tree.first;
-    BvhTriangle triangle = fetch_primitive(tree, AT(tree.triangles, place).primitive_index);
+    if (group_index() >= args.chunk_count) return;
+    LeafChunk chunk = AT(args.chunks, group_index());
+    if (gl_LocalInvocationIndex >= chunk.count) return;
+    uint leaf = chunk.first + gl_LocalInvocationIndex;
+    BuildTree tree = AT(args.trees, chunk.tree);
+    uint position = leaf - tree.first;
+    BvhTriangle triangle = fetch_primitive(tree, AT(tree.triangles, position).primitive_index);
     store_box(args.boxes, leaf, box_of_triangle(triangle));
-    AT(tree.triangles, place) = without_inactive_corners(triangle);
+    AT(tree.triangles, position) = without_inactive_vertices(triangle);
 }

@@ -6,9 +6,9 @@
 
 layout(constant_id = NODE_WIDTH_CONSTANT) const uint NODE_WIDTH = 4u;
 
-uint slots_begin(BuildTree tree, BuildBlock block) { return record_count(block.first - tree.first, NODE_WIDTH); }
-uint slots_end(BuildTree tree, BuildBlock block)
+uint slots_begin(BuildTree tree, LeafChunk chunk) { return record_count(chunk.first - tree.first, NODE_WIDTH); }
+uint slots_end(BuildTree tree, LeafChunk chunk)
 {
-    return record_count(block.first - tree.first + block.count, NODE_WIDTH);
+    return record_count(chunk.first - tree.first + chunk.count, NODE_WIDTH);
 }
 #endif

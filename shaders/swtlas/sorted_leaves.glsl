@@ -2,18 +2,18 @@
 // The leaves of a tree in order and the splits between them, for kernels whose args have them.
 #ifndef TWINRAY_SWTLAS_SORTED_LEAVES_GLSL
 #define TWINRAY_SWTLAS_SORTED_LEAVES_GLSL
-#include "shaders/shared/node_half.h"
+#include "shaders/shared/node_child.h"
 #include "shaders/shared/splits.h"
 
 const uvec2 TREE_END = uvec2(~0u); // the split beside the first and the last leaf
 
-bool is_fine; // leaves are sorted by fine codes, too
+bool has_low_codes; // leaves are sorted by low codes, too
 
 uvec2 split_of(BuildTree tree, uint position, uint code, uint next_code)
 {
     uint difference = 0u;
-    if (is_fine && code == next_code)
-        difference = AT(args.fine_codes, AT(args.order, position)) ^ AT(args.fine_codes, AT(args.order, position + 1u));
+    if (has_low_codes && code == next_code)
+        difference = AT(args.low_codes, AT(args.order, position)) ^ AT(args.low_codes, AT(args.order, position + 1u));
     return make_split(code ^ next_code, difference, position - tree.first);
 }
 uvec2 split_after(BuildTree tree, uint position)
@@ -26,7 +26,7 @@ uvec2 split_before(BuildTree tree, uint position)
 }
 
 // The tree is whole.
-void finish(BuildTree tree, NodeHalf root)
+void finish(BuildTree tree, NodeChild root)
 {
     AT(tree.bvh, 0).root = root.child;
     AT(tree.bvh, 0).leaf_count = tree.count;

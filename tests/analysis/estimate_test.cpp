@@ -7,7 +7,7 @@
 #include <random>
 
 #include "engine/analysis/row_sums.h"
-#include "engine/core/sampling.h"
+#include "engine/scene/sampling.h"
 
 namespace twinray {
 namespace {

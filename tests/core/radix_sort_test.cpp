@@ -44,7 +44,7 @@ class RadixSortTest : public test::VulkanTest {
         const RadixSort::Pairs result =
             kind == Values::given
                 ? sort.record(commands, pairs, spare, {counters.address()}, count, bits, if_counts)
-                : sort.record_places(commands, by, pairs, spare, {counters.address()}, count, bits, if_counts);
+                : sort.record_iota(commands, by, pairs, spare, {counters.address()}, count, bits, if_counts);
         commands.submit();
         EXPECT_EQ(download<uint>(context(), buffers[4], keys.size()), keys);
         const bool in_place = result.values.address == buffers[1].address();

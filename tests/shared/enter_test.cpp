@@ -11,7 +11,7 @@ namespace twinray {
 namespace {
 
 std::array<bool, 4> entered(const NodeChildren& children, const Ray& ray, float extent) {
-    const BoxRay prepared = box_ray(make_ray_space(ray.origin, ray.direction, corner_pad(ray.origin, extent)));
+    const BoxRay prepared = box_ray(make_ray_space(ray.origin, ray.direction, vertex_pad(ray.origin, extent)));
     const NodeRecords node = encode_node(children, given_order((1u << children.count) - 1, 0), 1, 4);
     const ChildKeys keys = enter_compressed(node.first, prepared, ray.t_min, ray.t_max, QUERY_CLOSEST);
     return {keys.key0 < NO_ENTRY, keys.key1 < NO_ENTRY, keys.key2 < NO_ENTRY, keys.key3 < NO_ENTRY};

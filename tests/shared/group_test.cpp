@@ -7,7 +7,7 @@
 
 #include "engine/accel/geometry.h"
 #include <twinray/geometry.h>
-#include "swtlas/reference.h"
+#include "validation/cpu_reference/reference.h"
 
 namespace twinray {
 namespace {
@@ -19,29 +19,29 @@ ChildKeys entered(std::vector<uint> children) {
 
 std::vector<uint> visited(uint group) {
     std::vector<uint> records;
-    for (; group != EMPTY_GROUP; group = rest_of(group)) records.push_back(next_of(group));
+    for (; group != EMPTY_NODE_GROUP; group = rest_of(group)) records.push_back(next_of(group));
     return records;
 }
 
 TEST(Groups, HoldAllChildrenButTheFirstInOrder) {
     for (const uint siblings : {1u, 3u, (1u << 25) + 5, MOST_RECORDS - 4}) {
-        EXPECT_EQ(visited(group_of(entered({2, 0}), siblings)), std::vector{siblings});
-        EXPECT_EQ(visited(group_of(entered({1, 3, 0}), siblings)), (std::vector{siblings + 3, siblings}));
-        EXPECT_EQ(visited(group_of(entered({3, 2, 1, 0}), siblings)),
+        EXPECT_EQ(visited(node_group_of(entered({2, 0}), siblings)), std::vector{siblings});
+        EXPECT_EQ(visited(node_group_of(entered({1, 3, 0}), siblings)), (std::vector{siblings + 3, siblings}));
+        EXPECT_EQ(visited(node_group_of(entered({3, 2, 1, 0}), siblings)),
                   (std::vector{siblings + 2, siblings + 1, siblings}));
-        EXPECT_EQ(visited(group_of(entered({0, 3, 1, 2}), siblings)),
+        EXPECT_EQ(visited(node_group_of(entered({0, 3, 1, 2}), siblings)),
                   (std::vector{siblings + 3, siblings + 1, siblings + 2}));
     }
 }
 
 TEST(Groups, AreNoneOfTheOtherEntriesOfAStack) {
-    EXPECT_EQ(group_of(entered({2}), 1), EMPTY_GROUP);
+    EXPECT_EQ(node_group_of(entered({2}), 1), EMPTY_NODE_GROUP);
     for (uint order = 0; order < 64; ++order) {
-        const uint group = make_group(1, order & 3, order >> 2 & 3, order >> 4);
-        for (const uint other : {EMPTY_GROUP, LEAVE_INSTANCE}) EXPECT_NE(group, other);
+        const uint group = make_node_group(1, order & 3, order >> 2 & 3, order >> 4);
+        for (const uint other : {EMPTY_NODE_GROUP, LEAVE_INSTANCE}) EXPECT_NE(group, other);
     }
     for (const uint side : {0u, 1u})
-        for (const uint other : {EMPTY_GROUP, LEAVE_INSTANCE}) EXPECT_NE(make_edge(0, side), other);
+        for (const uint other : {EMPTY_NODE_GROUP, LEAVE_INSTANCE}) EXPECT_NE(make_edge(0, side), other);
 }
 
 // What a traversal that went on to a child has left to visit, whatever it has found since.
@@ -52,7 +52,7 @@ TEST(Groups, AreFoundAgainFromTheChild) {
         sort_keys(found);
         EXPECT_EQ(found.key0 & 3, child);
         EXPECT_LT(found.key0, NO_ENTRY);
-        return visited(group_of(found, 8));
+        return visited(node_group_of(found, 8));
     };
     EXPECT_EQ(again(1), (std::vector<uint>{8 + 3, 8 + 0}));
     EXPECT_EQ(again(3), std::vector<uint>{8 + 0});
@@ -112,8 +112,8 @@ TEST_P(Records, TheSlotTowardsARecordLeadsToIt) {
         for (uint depth = 0; at != target; ++depth) {
             ASSERT_LT(depth, DEEPEST_RECORDS) << target;
             ASSERT_FALSE(is_leaf(records[at])) << target;
-            const ChildPlaces places = places_in(records[at], second_half_of(all, at, records[at]));
-            at = place_of(places, slot_towards(all, places, target));
+            const ChildSlots slots = child_slots(records[at], second_half_of(all, at, records[at]));
+            at = child_index(slots, slot_towards(all, slots, target));
         }
     }
 }
@@ -154,7 +154,7 @@ TEST(Groups, ANodeTellsItsFirstChildAndTheirNumber) {
         EXPECT_EQ(children_in(node), 4u);
         EXPECT_FALSE(is_leaf(node));
     }
-    EXPECT_LT(Geometry::max_primitives, 1u << 25);  // leaves beside heights: see make_below
+    EXPECT_LT(Geometry::max_primitives, 1u << 25);  // leaves beside heights: see subtree_info
 }
 
 }  // namespace

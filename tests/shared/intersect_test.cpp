@@ -8,7 +8,7 @@
 #include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
 #include "engine/accel/geometry.h"
-#include "swtlas/reference_scene.h"
+#include "validation/cpu_reference/reference_scene.h"
 
 namespace twinray {
 namespace {
@@ -145,7 +145,7 @@ TEST(EnterBox, ParallelRaysOnAFaceAreKept) {
     for (const float zero : {0.0f, -0.0f}) {
         float enter = 0;
         const auto seen_from = [&](vec3 origin) {
-            return make_ray_space(origin, vec3(zero, zero, 1), corner_pad(origin, 1));
+            return make_ray_space(origin, vec3(zero, zero, 1), vertex_pad(origin, 1));
         };
         const RaySpace lower = seen_from(vec3(0, 0.5f, -1));
         EXPECT_TRUE(enter_box(vec3(0), vec3(1), lower, 0, INFINITY, enter));

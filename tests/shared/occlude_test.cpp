@@ -52,9 +52,9 @@ void compare(const Case& made, float t_min, float t_max, Counts& counts) {
     const bool is_met = intersect_triangle(a, b, c, space, hit);
     const bool expected = is_met && hit.t > t_min && hit.t < t_max;
     bool along = false;
-    if (triangle_occludes(a, b, c, space, t_min, t_max, along) != expected || (expected && along != hit.along))
+    if (triangle_occludes(a, b, c, space, vec2(t_min, t_max), along) != expected || (expected && along != hit.along))
         ++counts.faults;
-    const PlaceOfHit place = place_of_hit(seen_triangle(a, b, c, space), space.shear_z, t_min, t_max);
+    const HitInterval place = hit_interval(seen_triangle(a, b, c, space), space.shear_z, t_min, t_max);
     counts.met += is_met;
     counts.decided += is_met && (place.is_behind || (place.is_after && place.is_before));
 }
@@ -152,7 +152,7 @@ TEST(Occlude, TellsTheSideOfATriangleWhoseAreasRoundToZero) {
         TriangleHit hit{};
         ASSERT_TRUE(intersect_triangle(a, turned ? c : b, turned ? b : c, space, hit));
         bool along = turned;
-        EXPECT_TRUE(triangle_occludes(a, turned ? c : b, turned ? b : c, space, 0, INFINITY, along));
+        EXPECT_TRUE(triangle_occludes(a, turned ? c : b, turned ? b : c, space, vec2(0, INFINITY), along));
         EXPECT_EQ(along, !turned);
         EXPECT_EQ(hit.along, !turned);
     }

@@ -12,9 +12,9 @@
 namespace twinray {
 namespace {
 
-std::vector<uint> dealt(uint count, uint hands) {
+std::vector<uint> dealt(uint count, uint threads) {
     std::vector<uint> groups(count);
-    for (uint i = 0; i < count; ++i) groups[i] = dealt_group(i, count, hands);
+    for (uint i = 0; i < count; ++i) groups[i] = interleaved_group(i, count, threads);
     return groups;
 }
 
@@ -25,11 +25,11 @@ std::vector<uint> in_order(uint count) {
 }
 
 TEST(DealtGroups, AreAllOfThemOnce) {
-    for (const uint hands : {0u, 1u, 2u, 3u, 16u, 64u})
+    for (const uint threads : {0u, 1u, 2u, 3u, 16u, 64u})
         for (const uint count : {1u, 2u, 3u, 15u, 16u, 17u, 64u, 1000u, 16'384u}) {
-            std::vector<uint> groups = dealt(count, hands);
+            std::vector<uint> groups = dealt(count, threads);
             std::sort(groups.begin(), groups.end());
-            EXPECT_EQ(groups, in_order(count)) << count << " to " << hands;
+            EXPECT_EQ(groups, in_order(count)) << count << " to " << threads;
         }
 }
 
@@ -78,7 +78,7 @@ TEST(GroupsForRays, TraceEachRayOnce) {
             std::vector<uint> traced(count, 0);
             const uint run = run_of_blocks(count, launch.size, groups);
             for (uint i = 0; i < groups * launch.size; ++i) {
-                const uint group = dealt_group(i / launch.size, groups, cpu.threads);
+                const uint group = interleaved_group(i / launch.size, groups, cpu.threads);
                 const uint first = group * run * launch.size + i % launch.size;
                 for (uint k = 0; k < run && first + k * launch.size < count; ++k) ++traced[first + k * launch.size];
             }

@@ -26,7 +26,7 @@ void expect_sound(const BuiltTree& tree, const std::vector<LeafBox>& boxes, cons
         for (const std::string& violation : violations) ADD_FAILURE() << name << ": " << violation;
     };
     if (!has_records(tree)) return report(check_tree(tree.bvh, tree.nodes, boxes).violations);
-    report(check_compressed(tree.bvh, tree.records, boxes).violations);
+    report(check_tree(tree.bvh, tree.records, boxes).violations);
 }
 
 std::vector<LeafBox> leaf_boxes(const BuiltTree& tree, const Mesh& mesh, const Mesh* pushed) {
@@ -40,23 +40,23 @@ void expect_sound(const BuiltTree& tree, const Mesh& mesh, const Mesh* pushed) {
 
 double sah_of(const BuiltTree& tree, const std::vector<LeafBox>& boxes) {
     if (!has_records(tree)) return check_tree(tree.bvh, tree.nodes, boxes).sah;
-    return check_compressed(tree.bvh, tree.records, boxes).sah;
+    return check_tree(tree.bvh, tree.records, boxes).sah;
 }
 
-void expect_twin(const BuiltTree& tree, const Mesh& mesh, BuildQuality quality) {
+void expect_reference(const BuiltTree& tree, const Mesh& mesh, BuildQuality quality) {
     const std::vector<LeafBox> boxes = reference::leaves_triangles(built(mesh), mesh.triangles);
     const reference::Codes codes = reference::morton(boxes, reference::centroids(boxes));
     const std::vector<uint> order = reference::sort(codes);
-    reference::Hierarchy twin = reference::hierarchy(boxes, codes, order, !has_records(tree), quality);
-    if (!has_records(tree)) twin = reference::linked(std::move(twin));
+    reference::Hierarchy expected = reference::hierarchy(boxes, codes, order, !has_records(tree), quality);
+    if (!has_records(tree)) expected = reference::linked(std::move(expected));
     if (has_records(tree)) {
         const std::vector<CompressedRecord> records =
-            reference::records_of_triangles(twin, built(mesh), mesh.triangles, width_of(tree));
+            reference::records_of_triangles(expected, built(mesh), mesh.triangles, width_of(tree));
         EXPECT_TRUE(same_bytes(tree.records, records)) << mesh.name;
         return;
     }
-    EXPECT_EQ(tree.bvh.root, twin.root) << mesh.name;
-    EXPECT_TRUE(same_bytes(tree.nodes, twin.nodes)) << mesh.name;
+    EXPECT_EQ(tree.bvh.root, expected.root) << mesh.name;
+    EXPECT_TRUE(same_bytes(tree.nodes, expected.nodes)) << mesh.name;
     EXPECT_TRUE(same_bytes(tree.triangles, reference::encode_triangles(built(mesh), mesh.triangles, order)))
         << mesh.name;
 }

@@ -8,9 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "swtlas/check.h"
-#include "swtlas/check_compressed.h"
-#include "swtlas/plan.h"
-#include "swtlas/reference_scene.h"
+#include "validation/cpu_reference/reference_scene.h"
 #include "swtlas/tree.h"
 #include "tests/support/device.h"
 
@@ -56,7 +54,7 @@ std::vector<vec3> built(const Mesh& mesh, const Mesh* pushed = nullptr);
 
 // By the leaf index that references of the tree use.
 std::vector<LeafBox> leaf_boxes(const BuiltTree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
-// The boxes of the scene tree's leaves over these placements of one mesh, by the serial twin.
+// The boxes of the scene tree's leaves over these placements of one mesh, by the CPU reference.
 std::vector<LeafBox> instance_boxes(const Mesh& mesh, const std::vector<Transform>& transforms,
                                     const AccelOptions& options);
 // Every other one is rotated.
@@ -71,7 +69,7 @@ inline uint width_of(const BuiltTree& tree) {
 // Of a tree whose references are the leaves' own indices, or with records.
 void expect_sound(const BuiltTree& tree, const std::vector<LeafBox>& boxes, const std::string& name);
 void expect_sound(const BuiltTree& tree, const Mesh& mesh, const Mesh* pushed = nullptr);
-void expect_twin(const BuiltTree& tree, const Mesh& mesh, BuildQuality quality);
+void expect_reference(const BuiltTree& tree, const Mesh& mesh, BuildQuality quality);
 double sah_of(const BuiltTree& tree, const std::vector<LeafBox>& boxes);
 
 }  // namespace twinray::test

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "swtlas/reference.h"
+#include "validation/cpu_reference/reference.h"
 
 namespace twinray::test {
 
@@ -33,16 +33,16 @@ struct TallTree {
     struct Part {
         uint reference;
         LeafBox box;
-        uint below;
+        uint subtree;
     };
 
-    Part leaf(uint i) const { return {LEAF_BIT | i, boxes[i], make_below(1, 0)}; }
+    Part leaf(uint i) const { return {LEAF_BIT | i, boxes[i], subtree_info(1, 0)}; }
     Part join(const Part& a, const Part& b) {
-        tree.nodes.push_back({a.box.lo, a.reference, a.box.hi, a.below, b.box.lo, b.reference, b.box.hi, b.below});
-        return {
-            static_cast<uint>(tree.nodes.size() - 1),
-            {min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)},
-            make_below(leaves_in(a.below) + leaves_in(b.below), 1 + std::max(height_in(a.below), height_in(b.below)))};
+        tree.nodes.push_back({a.box.lo, a.reference, a.box.hi, a.subtree, b.box.lo, b.reference, b.box.hi, b.subtree});
+        return {static_cast<uint>(tree.nodes.size() - 1),
+                {min(a.box.lo, b.box.lo), max(a.box.hi, b.box.hi)},
+                subtree_info(leaves_in(a.subtree) + leaves_in(b.subtree),
+                             1 + std::max(height_in(a.subtree), height_in(b.subtree)))};
     }
 };
 

@@ -7,8 +7,7 @@
 #include "engine/accel/geometry.h"
 #include <twinray/geometry.h>
 #include "swtlas/check.h"
-#include "swtlas/check_compressed.h"
-#include "swtlas/reference.h"
+#include "validation/cpu_reference/reference.h"
 #include "tests/support/tall_tree.h"
 
 #include <gtest/gtest.h>
@@ -29,17 +28,17 @@ SoupTree some_tree() {
     return soup;
 }
 
-TEST(CompressedCheck, NamesWhatIsWrong) {
+TEST(RecordCheck, NamesWhatIsWrong) {
     const auto& [mesh, boxes, tree] = some_tree();
     const std::vector<CompressedRecord> good = reference::records_of_triangles(tree, mesh.positions, mesh.triangles, 4);
     const Bvh bvh{tree.box.lo, tree.box.hi, {}, 0, 20};
-    EXPECT_TRUE(check_compressed(bvh, good, boxes).violations.empty());
-    EXPECT_FALSE(check_compressed({tree.box.lo, tree.box.hi, {}, 1, 20}, good, boxes).violations.empty());
-    EXPECT_FALSE(check_compressed({tree.box.lo, tree.box.lo, {}, 0, 20}, good, boxes).violations.empty());
+    EXPECT_TRUE(check_tree(bvh, good, boxes).violations.empty());
+    EXPECT_FALSE(check_tree({tree.box.lo, tree.box.hi, {}, 1, 20}, good, boxes).violations.empty());
+    EXPECT_FALSE(check_tree({tree.box.lo, tree.box.lo, {}, 0, 20}, good, boxes).violations.empty());
     const auto wrong = [&](const std::function<void(CompressedRecord&)>& spoil) {
         std::vector<CompressedRecord> bad = good;
         spoil(bad.front());
-        const CompressedCheck check = check_compressed(bvh, bad, boxes);
+        const TreeCheck check = check_tree(bvh, bad, boxes);
         return check.violations.empty() ? "" : check.violations.front();
     };
     EXPECT_NE(wrong([](CompressedRecord& root) { root.b.y -= 1; }).find("lies in planes"), std::string::npos);
@@ -72,7 +71,7 @@ TEST(Compressed, PlanesLieOutsideAtAnySizeAndPlace) {
         LeafBox all = empty_box();
         for (const LeafBox& box : boxes) all = {min(all.lo, box.lo), max(all.hi, box.hi)};
         const Bvh bvh{all.lo, all.hi, {}, 0, children.count};
-        const CompressedCheck check = check_compressed(bvh, records, boxes);
+        const TreeCheck check = check_tree(bvh, records, boxes);
         ASSERT_TRUE(check.violations.empty()) << check.violations.front();
     }
     EXPECT_LT(record_count(static_cast<uint>(Geometry::max_primitives), 8), MOST_RECORDS);
@@ -91,7 +90,7 @@ TEST(Compressed, OriginsKeepAnExponentAndLieCloseBelow) {
     }
 }
 
-TEST(CompressedCheck, RecordsBelowDifferentChildrenMayNotMix) {
+TEST(RecordCheck, RecordsBelowDifferentChildrenMayNotMix) {
     const LeafBox box{vec3(0), vec3(1)};
     NodeChildren children{};
     children.count = 2;
@@ -102,7 +101,7 @@ TEST(CompressedCheck, RecordsBelowDifferentChildrenMayNotMix) {
         for (uint leaf = 0, record = 3; record < 9; ++record)
             records.push_back(record == of_first ? node(of_grandchild) : encode_instance(leaf++));
         const std::vector<LeafBox> boxes(5, box);
-        return check_compressed({box.lo, box.hi, {}, 0, 5}, records, boxes).violations;
+        return check_tree({box.lo, box.hi, {}, 0, 5}, records, boxes).violations;
     };
     EXPECT_EQ(violations(3, 7, 5), std::vector<std::string>{});
     EXPECT_EQ(violations(3, 5, 7), std::vector<std::string>{"records below the children of record 0 mix"});
@@ -120,7 +119,7 @@ TEST(Compressed, BoxesWithoutAnEndAreLeavesAsAnyOther) {
             const reference::Hierarchy tree = reference::hierarchy(boxes, codes, reference::sort(codes), false);
             const std::vector<CompressedRecord> records = reference::records_of_instances(tree, n, width);
             ASSERT_EQ(records.size(), record_count(n, width));
-            const CompressedCheck check = check_compressed({tree.box.lo, tree.box.hi, {}, 0, n}, records, boxes);
+            const TreeCheck check = check_tree({tree.box.lo, tree.box.hi, {}, 0, n}, records, boxes);
             for (const std::string& violation : check.violations)
                 EXPECT_NE(violation.find("lies in planes"), std::string::npos)  // which end at 2^120
                     << n << " leaves, nodes of " << width << ": " << violation;
@@ -142,8 +141,8 @@ TEST_P(CompressedPaths, AreNoDeeperThanAStackIsMadeFor) {
     const TreeCheck tree = check_tree(binary, reference::linked(tall.tree).nodes, tall.boxes);
     EXPECT_TRUE(tree.violations.empty()) << tree.violations.front();
     EXPECT_EQ(tree.depth, DEEPEST_TREE);
-    const CompressedCheck check = check_compressed(
-        tall.bvh_of_records(), reference::records_of_instances(tall.tree, tall.leaves, GetParam()), tall.boxes);
+    const TreeCheck check = check_tree(tall.bvh_of_records(),
+                                       reference::records_of_instances(tall.tree, tall.leaves, GetParam()), tall.boxes);
     EXPECT_TRUE(check.violations.empty()) << check.violations.front();
     EXPECT_LE(check.depth, DEEPEST_RECORDS);
     if (GetParam() == 4) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The world boxes of instances, by the serial twin; tests of builds compare those of the device with it.
+// The world boxes of instances, by the CPU reference; tests of builds compare those of the device with it.
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -7,7 +7,7 @@
 
 #include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
-#include "swtlas/reference_scene.h"
+#include "validation/cpu_reference/reference_scene.h"
 
 namespace twinray {
 namespace {

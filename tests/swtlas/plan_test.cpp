@@ -23,15 +23,15 @@ std::vector<Region> regions_of(const BuildPlan& plan, const KernelTuning& tuning
     const BuildScratch& at = plan.scratch;
     const std::uint64_t n = plan.leaf_count, trees = plan.first.size();
     std::vector<Region> regions = {{"trees", at.trees, trees * sizeof(BuildTree)},
-                                   {"blocks", at.blocks, plan.blocks.size() * sizeof(BuildBlock)},
+                                   {"chunks", at.chunks, plan.chunks.size() * sizeof(LeafChunk)},
                                    {"boxes", at.boxes, n * sizeof(LeafBox)},
                                    {"centroids", at.centroids, trees * sizeof(CentroidBounds)},
                                    {"codes", at.codes, n * sizeof(uint)},
-                                   {"fine codes", at.fine_codes, n * sizeof(uint)},
-                                   {"crowded", at.crowded, trees * sizeof(uint)},
-                                   {"crowding", at.crowding, sizeof(Crowding)},
+                                   {"low codes", at.low_codes, n * sizeof(uint)},
+                                   {"duplicates", at.duplicates, trees * sizeof(uint)},
+                                   {"duplicate codes", at.duplicate_codes, sizeof(DuplicateCodes)},
                                    {"tree of", at.tree_of, plan.tree_bits ? n * sizeof(uint) : 0},
-                                   {"meeting", at.meeting, n * sizeof(uint)},
+                                   {"other_bounds", at.other_bounds, n * sizeof(uint)},
                                    {"counters", at.counters, RadixSort::counter_bytes(n, tuning)},
                                    {"levels", at.levels, (plan.collapse_levels + 2) * sizeof(CollapseLevel)}};
     for (int i = 0; i < 2; ++i) {
@@ -110,18 +110,18 @@ TEST(CollapseQueues, OfSubtreesAndTreesLieApart) {
     EXPECT_EQ(queue_begin(4'000'000'000, 0), 3'333'333'333) << "beyond what 32 bits hold on the way";
 }
 
-TEST_P(BuildPlans, BlocksCoverEachTreeOnce) {
+TEST_P(BuildPlans, ChunksCoverEachTreeOnce) {
     const auto& [row, layout] = GetParam();
     const std::vector<uint> counts = {0, 1, BUILD_GROUP, 0, BUILD_GROUP + 1, 3 * BUILD_GROUP - 1, 5};
     const BuildPlan plan = plan_build(counts, layout, tuning_of(row));
     uint next = 0;
     std::vector<uint> covered(counts.size());
-    for (const BuildBlock& block : plan.blocks) {
-        EXPECT_EQ(block.first, next);
-        EXPECT_GE(block.count, 1u) << "kernels count on it";
-        EXPECT_LE(block.count, BUILD_GROUP);
-        covered[block.tree] += block.count;
-        next += block.count;
+    for (const LeafChunk& chunk : plan.chunks) {
+        EXPECT_EQ(chunk.first, next);
+        EXPECT_GE(chunk.count, 1u) << "kernels count on it";
+        EXPECT_LE(chunk.count, BUILD_GROUP);
+        covered[chunk.tree] += chunk.count;
+        next += chunk.count;
     }
     EXPECT_EQ(next, plan.leaf_count);
     EXPECT_EQ(covered, counts);

@@ -12,16 +12,16 @@ using namespace test;
 
 class SwPloc : public SwBuildTest {
   protected:
-    // Inner nodes on the longest way down the tree of a mesh alone, which is sound and equal to its twin.
+    // Inner nodes on the longest way down the tree of a mesh alone, which is sound and equal to its CPU reference.
     uint checked_depth(const Mesh& mesh) {
         SwTlas accel(context(), options());
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
         const BuiltTree tree = download_geometry(accel, handle);
         expect_sound(tree, mesh);
-        expect_twin(tree, mesh, quality());
+        expect_reference(tree, mesh, quality());
         const std::vector<LeafBox> boxes = leaf_boxes(tree, mesh);
-        return has_records(tree) ? check_compressed(tree.bvh, tree.records, boxes).depth
+        return has_records(tree) ? check_tree(tree.bvh, tree.records, boxes).depth
                                  : check_tree(tree.bvh, tree.nodes, boxes).depth;
     }
     bool is_binary() const { return std::get<Layout>(GetParam()) == Layout::bvh2; }
@@ -62,7 +62,7 @@ TEST_P(SwPloc, ATreeOfNestedBoxesIsAsHighAsItMayBeAndNoHigher) {
     }
 }
 
-// On ever lower bits of the codes, then of the fine codes, then of places.
+// On ever lower bits of the codes, then of their lower halves, then of positions.
 TEST_P(SwPloc, NestedBoxesAtTheEndOfALongWayDownStayWithinTheDeepestTree) {
     for (const uint places : {20u, 200u}) {
         Mesh mesh = nested(places, 1.05f);

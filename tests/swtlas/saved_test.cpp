@@ -10,7 +10,7 @@
 
 #include "engine/scene/bytes.h"
 #include <twinray/geometry.h>
-#include "swtlas/reference.h"
+#include "validation/cpu_reference/reference.h"
 #include "tests/scene/temp_dir.h"
 
 namespace twinray {
@@ -205,7 +205,7 @@ TEST(SavedTrees, BinaryOnesThatCannotBeWalkedSafelyAreRefused) {
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child0 = 1000; }), "node 1000 of 19");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child1 = LEAF_BIT | 20; }), "leaf 20 of 20");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[3].child0 = g.bvh.root; }), "reached twice");
-    expect_contains(edited([](SavedGeometry& g) { g.nodes[3].below0 += 2; }), "its edge is");
+    expect_contains(edited([](SavedGeometry& g) { g.nodes[3].subtree0 += 2; }), "its edge is");
     expect_contains(edited([](SavedGeometry& g) { g.bvh.root = 19; }), "node 19 of 19");
     expect_contains(edited([](SavedGeometry& g) { g.bvh.root = NOTHING; }), "unsound tree");
     expect_contains(edited([](SavedGeometry& g) { g.nodes[g.bvh.root].lo0.x += 1; }), "not the union");
@@ -234,7 +234,7 @@ TEST(SavedTrees, RecordsThatCannotBeWalkedSafelyAreRefused) {
     expect_contains(edited([](SavedGeometry& g) { g.bvh.lo.x -= 1; }), "not the union");
     expect_contains(edited([](SavedGeometry& g) { g.records[0].b.y -= 1; }), "lies in planes");
     expect_contains(edited([&](SavedGeometry& g) { leaf_of(g, 5).a.w = LEAF_BIT | 20; }), "primitive 20 of 20");
-    expect_contains(edited([&](SavedGeometry& g) { leaf_of(g, 5).b.y ^= 1; }), "primitive 5 does not have its corners");
+    expect_contains(edited([&](SavedGeometry& g) { leaf_of(g, 5).b.y ^= 1; }), "primitive 5 does not have its vertices");
     expect_contains(edited([](SavedGeometry& g) { g.records.pop_back(); }), "32 records for 20 primitives, not 33");
     expect_contains(edited([](SavedGeometry& g) { g.leaves.resize(1); }), "1 leaves and 33 records in layout");
     expect_contains(edited([](SavedGeometry& g) {

@@ -70,7 +70,7 @@ RaySpace Explainer::object_space(uint instance) const {
     const Rows to_object{rows[0], rows[1], rows[2]};
     const vec3 origin = transform_point(to_object, searched_.origin);
     return make_ray_space(origin, transform_vector(to_object, searched_.direction),
-                          corner_pad(origin, twin_->instance(instance).extent));
+                          vertex_pad(origin, twin_->instance(instance).extent));
 }
 
 void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const {

@@ -12,10 +12,7 @@
 #include <twinray/geometry.h>
 #include "engine/verify/aimed_rays.h"
 #include "swtlas/check.h"
-#include "swtlas/check_compressed.h"
-#include "swtlas/plan.h"
-#include "swtlas/reference.h"
-#include "swtlas/tree.h"
+#include "validation/cpu_reference/reference.h"
 
 namespace twinray::suite {
 namespace {
@@ -26,10 +23,7 @@ uint depth_limit(std::size_t leaves) { return 60 + static_cast<uint>(std::bit_wi
 TreeCheck check(const BuiltTree& tree, const Mesh& mesh) {
     const std::vector<LeafBox> by_primitive =
         reference::leaves_triangles(Geometry(mesh, software_unit(mesh.positions)).positions, mesh.triangles);
-    if (!tree.records.empty()) {
-        CompressedCheck found = check_compressed(tree.bvh, tree.records, by_primitive);
-        return {std::move(found.violations), found.depth, found.sah};
-    }
+    if (!tree.records.empty()) return check_tree(tree.bvh, tree.records, by_primitive);
     std::vector<LeafBox> boxes;
     for (const BvhTriangle& triangle : tree.triangles) boxes.push_back(by_primitive.at(triangle.primitive_index));
     return check_tree(tree.bvh, tree.nodes, boxes);

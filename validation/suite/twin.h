@@ -3,7 +3,7 @@
 #pragma once
 
 #include "validation/suite/tracing.h"
-#include "swtlas/reference_scene.h"
+#include "validation/cpu_reference/reference_scene.h"
 
 namespace twinray::suite {
 

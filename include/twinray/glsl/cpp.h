@@ -15,14 +15,14 @@ namespace twinray {
 constexpr bool FUSED_FMA = false;  // compilers of C++ may, but need not fuse
 
 // Of NaN and a number b it is b.
-inline float min_number(float a, float b) { return a < b ? a : b; }
-inline float max_number(float a, float b) { return a > b ? a : b; }
+inline float min_no_nan(float a, float b) { return a < b ? a : b; }
+inline float max_no_nan(float a, float b) { return a > b ? a : b; }
 
 inline float uintBitsToFloat(uint bits) { return std::bit_cast<float>(bits); }
 inline uint floatBitsToUint(float value) { return std::bit_cast<uint>(value); }
 
-// Eight bytes: a device address when pushed to the GPU, a host address in the CPU references of kernels. GLSL has two
-// words for them, so that structs are to be aligned as there.
+// Eight bytes: a device address when pushed to the GPU, a host address in CPU references. GLSL has two words for
+// them, so that structs are to be aligned as there.
 using Address [[gnu::aligned(4)]] = std::uint64_t;
 using Uint64 [[gnu::aligned(4)]] = std::uint64_t;
 

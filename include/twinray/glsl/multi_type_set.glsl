@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: MIT Elements of a MultiTypeSet in kernels: what MultiTypeSet::view() gives, declared by
-// TWINRAY_SET_VIEW.
+// SPDX-License-Identifier: MIT
+// Elements of a MultiTypeSet in kernels: what MultiTypeSet::view() gives, declared by TWINRAY_SET_VIEW.
 //
 //     vec3 color_of(Diffuse diffuse, vec2 uv) { ... }
 //     vec3 color_of(Glass glass, vec2 uv) { ... }
@@ -13,7 +13,7 @@
 #ifndef TWINRAY_MULTI_TYPE_SET_GLSL
 #define TWINRAY_MULTI_TYPE_SET_GLSL
 #include "twinray/glsl/faults.glsl"
-#include "shaders/shared/multi_type_set.h"
+#include "shaders/scene/multi_type_set.h"
 
 // The parts of what lists pass on to each type.
 #define SET_OF_(set, key, ACTION) set

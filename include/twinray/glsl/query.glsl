@@ -25,9 +25,9 @@ layout(constant_id = LEVEL_CONSTANT) const uint TRACE_LEVEL = LEVEL_WATERTIGHT;
 #include "shaders/shared/traverse.h"
 Hit trace_float32(Address accel, Ray ray, TraceOptions options)
 {
-    return traverse(AT(REF(SwScene)(accel), 0), ray, options);
+    return traverse(AT(REF(SwTlasHeader)(accel), 0), ray, options);
 }
-Address refinement_of(Address accel) { return AT(REF(SwScene)(accel), 0).refinement; }
+Address refinement_of(Address accel) { return AT(REF(SwTlasHeader)(accel), 0).refinement; }
 #elif defined(TWINRAY_HW)
 #extension GL_EXT_ray_query : require
 #include "shaders/hwtlas/ray_query.glsl"

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Textures of a TextureStore in kernels: what TextureStore::view() gives.
+// SPDX-License-Identifier: MIT
+// Textures of a TextureStore in kernels: what TextureStore::view() gives.
 //
 //     vec4 color = sample_texture(push.textures, material.base_color, uv);
 //
@@ -13,7 +14,7 @@
 #extension GL_EXT_nonuniform_qualifier : require
 #endif
 #include "twinray/glsl/faults.glsl"
-#include "shaders/shared/textures.h"
+#include "shaders/scene/textures.h"
 
 bool has_texture(TextureTable table, TextureRef ref)
 {

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// What the hardware accelerator leaves on the device. Needs ray.h and world_bound.h before it.
+#ifndef TWINRAY_SHARED_HW_TLAS_HEADER_H
+#define TWINRAY_SHARED_HW_TLAS_HEADER_H
+
+// What InstanceRecord::geometry points at for the hardware accelerator. Begins with a GeometryBox.
+struct HwGeometry
+{
+    vec3 lo;
+    vec3 hi;
+    Address blas;    // device address of the bottom-level structure; 0: nothing can be hit
+    Uints triangles;  // primitive of the built geometry -> the user's; null: the same
+    uint kind;        // GEOMETRY_*
+    uint reserved;
+};
+BUFFER_OF(HwGeometry, 8);
+
+// Leads from one instance as the driver numbers it back to the user's numbering.
+struct HwInstance
+{
+    Uints triangles;      // primitive of the built geometry -> the user's
+    uint instance_index;  // position in the accelerator's instance array
+    uint pad;
+};
+BUFFER_OF(HwInstance, 8);
+
+struct HwTlasHeader
+{
+    Address tlas;              // device address of the top-level acceleration structure
+    REF(HwInstance) instances;  // by InstanceId; null without FEATURE_REMAP
+    Address refinement;        // address of a RefineScene, or 0
+};
+BUFFER_OF(HwTlasHeader, 8);
+
+// Morton codes of the instances' centers, for drivers that build in input order.
+struct HwCodesArgs
+{
+    REF(InstanceRecord) records;
+    REF(WorldBound) bound;
+    Uints keys;
+    uint count;
+    uint reserved;
+};
+#endif

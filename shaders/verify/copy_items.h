@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// What shaders/verify/copy_items.comp takes.
+#ifndef TWINRAY_VERIFY_COPY_ITEMS_H
+#define TWINRAY_VERIFY_COPY_ITEMS_H
+
+struct CopyItemsArgs
+{
+    Uints from;
+    Uints to;
+    uint count;
+    uint words_per_item;
+};
+#endif

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// The arithmetic that the robust levels rest on, as this device does it.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bridge.glsl"
+#include "shaders/shared/exact.h"
+#include "shaders/verify/float_probe.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { FloatProbeArgs args; };
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.count) return;
+    FloatCase c = AT(args.cases, i);
+    FloatAnswer answer;
+    precise float product = c.a * c.b;
+    precise float sum = c.a + c.b;
+    precise float quotient = c.a / c.b;
+    precise float residual = c.a * c.b - c.product;
+    answer.product = product;
+    answer.sum = sum;
+    answer.quotient = quotient;
+    answer.square_root = sqrt(abs(c.a));
+    answer.inverse_square_root = inversesqrt(abs(c.a));
+    answer.precise_residual = residual;
+    answer.plain_residual = c.a * c.b - c.product;
+    answer.fma_residual = fma(c.a, c.b, -c.product);
+    answer.error_free = product_error(c.a, c.b, c.product);
+    answer.minimum = min(c.a, c.b);
+    answer.maximum = max(c.a, c.b);
+    answer.comparisons = (c.a < c.b ? 1u : 0u) | (c.a > c.b ? 2u : 0u) | (c.a == c.b ? 4u : 0u) |
+        (!(c.a > c.b) ? 8u : 0u);
+    AT(args.answers, i) = answer;
+}

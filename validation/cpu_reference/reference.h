@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// CPU references of the build kernels, one function per stage by the same name. They share the kernels' arithmetic
+// (shaders/shared) but not their algorithms, so that a test can compare every stage bit for bit.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/accel/trace_desc.h"
+#include "engine/scene/mesh.h"
+#include "swtlas/structures.h"
+
+namespace twinray::reference {
+
+std::vector<LeafBox> leaves_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles);
+
+// Writes the instances and returns their world boxes. geometry addresses are host addresses of SwGeometry.
+std::vector<LeafBox> leaves_instances(std::span<const InstanceRecord> records, std::vector<SwInstance>& instances);
+
+CentroidBounds centroids(std::span<const LeafBox> boxes);
+// By leaf, the halves of 60-bit codes. Low ones are there only where a tree is sorted by them, too.
+struct Codes {
+    std::vector<uint> high, low;
+};
+Codes morton(std::span<const LeafBox> boxes, const CentroidBounds& bounds);
+
+// Leaf indices by code, equal codes in order.
+std::vector<uint> sort(const Codes& codes);
+
+struct Hierarchy {
+    std::vector<BvhNode> nodes;
+    uint root = NOTHING;
+    LeafBox box = empty_box();
+};
+// Top-down: a range is cut at its highest split.
+Hierarchy hierarchy(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order,
+                    bool leaves_are_sorted, BuildQuality quality = BuildQuality::fast);
+
+// The one of quality ploc: a range is cut at its highest split, and has the clusters of both parts to join.
+Hierarchy ploc(std::span<const LeafBox> boxes, const Codes& codes, std::span<const uint> order, bool leaves_are_sorted);
+
+// As a tree of layout bvh2: its nodes know their edges.
+Hierarchy linked(Hierarchy tree);
+
+std::vector<BvhTriangle> encode_triangles(std::span<const vec3> positions, std::span<const uvec3> triangles,
+                                          std::span<const uint> order);
+
+// The records, with nodes of up to `width` children, of a tree whose references are the leaves' own indices. (The
+// kernels' binary trees refer to positions in the order; their records are the same.)
+std::vector<CompressedRecord> records_of_triangles(const Hierarchy& tree, std::span<const vec3> positions,
+                                                   std::span<const uvec3> triangles, uint width);
+std::vector<CompressedRecord> records_of_instances(const Hierarchy& tree, uint leaf_count, uint width);
+
+}  // namespace twinray::reference

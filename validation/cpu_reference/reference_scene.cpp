@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "validation/cpu_reference/reference_scene.h"
+
+#include <utility>
+
+#include "engine/accel/features_of.h"
+#include "swtlas/plan.h"
+
+namespace twinray::reference {
+
+std::size_t Scene::add_geometry(const MeshView& mesh) {
+    Geometry geometry(mesh, software_unit(mesh.positions));
+    const std::vector<LeafBox> boxes = leaves_triangles(geometry.positions, geometry.triangles);
+    const Codes codes = morton(boxes, centroids(boxes));
+    const std::vector<uint> order = sort(codes);
+    Hierarchy tree = hierarchy(boxes, codes, order, !has_records(layout_), quality_);
+    std::vector<BvhTriangle> triangles;
+    std::vector<CompressedRecord> records;
+    if (has_records(layout_))
+        records = records_of_triangles(tree, geometry.positions, geometry.triangles, width_of(layout_));
+    else {
+        tree = linked(std::move(tree));
+        triangles = encode_triangles(geometry.positions, geometry.triangles, order);
+    }
+    geometries_.push_back({std::move(geometry), std::move(tree), std::move(triangles), std::move(records)});
+    return geometries_.size() - 1;
+}
+
+void Scene::add_instance(std::size_t geometry, const InstanceRecord& record) { placed_.push_back({geometry, record}); }
+
+uint Scene::root_of(const Hierarchy& tree) const {
+    return has_records(layout_) && tree.root != NOTHING ? 0 : tree.root;
+}
+
+// As the kernels see them, each with the address of its geometry's block.
+std::vector<InstanceRecord> Scene::records_in_built_units() {
+    for (BuiltGeometry& built : geometries_) {
+        built.block.geometry = {{built.tree.box.lo, built.tree.box.hi, Ref<BvhNode>::to(built.tree.nodes.data()),
+                                 root_of(built.tree), static_cast<uint>(built.mesh.triangles.size())},
+                                Ref<BvhTriangle>::to(built.triangles.data()),
+                                Ref<CompressedRecord>::to(built.records.data()),
+                                GEOMETRY_TRIANGLES,
+                                0};
+        built.block.source = {Floats::to(&built.mesh.positions.data()->x), Uints::to(&built.mesh.triangles.data()->x),
+                              built.mesh.scale, 0};
+    }
+    std::vector<InstanceRecord> records;
+    for (auto [geometry, record] : placed_) {
+        record.geometry = Ref<Block>::to(&geometries_[geometry].block).address;
+        records.push_back(in_built_units(record));
+    }
+    return records;
+}
+
+void Scene::build() {
+    const std::vector<InstanceRecord> records = records_in_built_units();
+    instance_boxes_ = leaves_instances(records, instances_);
+    const Codes codes = morton(instance_boxes_, centroids(instance_boxes_));
+    top_ = hierarchy(instance_boxes_, codes, sort(codes), false, quality_);
+    const auto count = static_cast<uint>(instance_boxes_.size());
+    if (has_records(layout_))
+        top_records_ = records_of_instances(top_, count, width_of(layout_));
+    else
+        top_ = linked(std::move(top_));
+    header_ = {{top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), root_of(top_), count},
+               Ref<CompressedRecord>::to(top_records_.data()),
+               Ref<SwInstance>::to(instances_.data()),
+               instances_.size(),
+               0};
+    build_refinement(records);
+}
+
+// The references of engine/world_bound.comp and engine/refine_gather.comp.
+void Scene::build_refinement(std::span<const InstanceRecord> records) {
+    bound_ = {empty_box().lo, empty_box().hi};
+    refined_.clear();
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const BuiltGeometry& built = geometries_[placed_[i].first];
+        refined_.push_back(refine_instance(records[i]));
+        if (instances_[i].root == NOTHING || !is_active(built.tree.box)) continue;
+        const GeometryBox world = box_in_world({built.tree.box.lo, built.tree.box.hi}, to_world_of(records[i]));
+        bound_ = {min(bound_.lo, world.lo), max(bound_.hi, world.hi)};
+    }
+}
+
+Ray Scene::searched_ray(const Ray& ray, uint level, double& advance) const {
+    advance = 0;
+    return level < LEVEL_REFINED ? ray : advanced(ray, bound_.lo, bound_.hi, level, advance);
+}
+
+Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {
+    double advance = 0;
+    const Ray searched = searched_ray(ray, level, advance);
+    const uint features = features_of({.layout = layout_}, {.instances = instances_.size(), .has_transforms = true},
+                                      TraceFacts::of_every_kind());
+    const TraceOptions options{
+        mask, 0, query, level, features, 0, ray, advance, Ref<RefineInstance>::to(refined_.data())};
+    const Hit hit = traverse(header_, searched, options);
+    if (level < LEVEL_REFINED || !hit.hit) return hit;
+    return refined(hit, ray, advance, refined_[hit.instance_index].mesh);
+}
+
+TraversalSteps Scene::take_steps() { return std::exchange(traversal_steps(), {}); }
+
+Scene::Tree Scene::geometry_tree(std::size_t instance) const {
+    const BuiltGeometry& built = geometries_[placed_[instance].first];
+    return {built.block.geometry.bvh, built.triangles, built.mesh.scale};
+}
+
+}  // namespace twinray::reference
