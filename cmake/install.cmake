@@ -7,7 +7,11 @@ set(headers_dir ${CMAKE_INSTALL_INCLUDEDIR}/twinray)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/twinray)
 set(generated_dir ${PROJECT_BINARY_DIR}/package)
 
-install(TARGETS twinray ${TWINRAY_LIBRARIES} EXPORT twinrayTargets INCLUDES DESTINATION ${headers_dir})
+install(
+    TARGETS twinray ${TWINRAY_LIBRARIES}
+    EXPORT twinrayTargets
+    INCLUDES DESTINATION ${headers_dir} ${CMAKE_INSTALL_INCLUDEDIR}
+)
 install(EXPORT twinrayTargets NAMESPACE twinray:: DESTINATION ${package_dir})
 if(TARGET twinray_cli)
     set_target_properties(twinray_cli PROPERTIES INSTALL_RPATH $ORIGIN/../${CMAKE_INSTALL_LIBDIR})
@@ -29,7 +33,11 @@ install(
     PATTERN "*.h"
     PATTERN "gltf_*.h" EXCLUDE
 )
-install(DIRECTORY shaders/shared shaders/hwtlas shaders/engine DESTINATION ${headers_dir}/shaders)
+install(
+    DIRECTORY shaders/analysis shaders/collide shaders/engine shaders/hwtlas shaders/points shaders/shared
+    DESTINATION ${headers_dir}/shaders
+)
+install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY shaders/twinray/ DESTINATION ${headers_dir})
 
 # A static library leaves it to the host to link what it uses itself.

@@ -9,17 +9,20 @@ import sys
 BASE = ["engine/core", "engine/scene", "engine/accel", "engine/report"]
 ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/picture", "engine/points", "engine/verify"]
 PRODUCT = ENGINE + ["swtlas", "hwtlas"]
-SEES = {  # besides itself and shaders/shared
+SEES = {  # besides itself, include and shaders/shared
+    "include": BASE,  # until the types that it takes from there have moved
     "engine": ENGINE,  # headers that gather the others
     "engine/core": [], "engine/scene": BASE[:1], "engine/accel": BASE[:2], "engine/report": BASE[:1],
-    "engine/analysis": BASE, "engine/collide": BASE, "engine/picture": BASE, "engine/verify": BASE,
-    "engine/points": BASE + ["engine/collide"],
+    "engine/analysis": BASE + ["shaders/analysis"], "engine/collide": BASE + ["shaders/collide"],
+    "engine/points": BASE + ["engine/collide", "shaders/collide", "shaders/points"],
+    "engine/picture": BASE, "engine/verify": BASE,
     "swtlas": ENGINE, "hwtlas": ENGINE,
-    "validation": PRODUCT + ["shaders/suite", "shaders/path_tracer", "samples"],
+    "validation": PRODUCT + ["shaders/collide", "shaders/suite", "shaders/path_tracer", "samples"],
     "cli": PRODUCT + ["shaders/path_tracer", "bench", "samples", "validation"],
     "samples": PRODUCT + ["shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"],
     "bench": PRODUCT, "tests": PRODUCT + ["cli", "samples", "bench", "validation"],
     "shaders/embed_renderer": ["shaders/path_tracer"],
+    "shaders/points": ["shaders/collide", "shaders/engine"],
     "shaders/twinray": ["shaders/hwtlas"],  # what users include
     "shaders": ["shaders/engine"],  # each other folder of shaders, but shaders/shared, which sees nothing else
 }
@@ -40,7 +43,8 @@ def layer(path):
 def violation(root, source, bracket, target):
     exists = os.path.isfile(os.path.join(root, target))
     if bracket == "<":
-        return "a file of this project is included with quotes" if exists else None
+        is_missing = target.startswith("twinray/") and not os.path.isfile(os.path.join(root, "include", target))
+        return "no such public header" if is_missing else "a file of this project is included with quotes" if exists else None
     if GENERATED.search(target):
         return None
     if not exists or ".." in target.split("/"):
@@ -61,7 +65,8 @@ def includes_of(root, source):
 def headers_behind(root, header):
     behind, to_read = set(), [header]
     while to_read:
-        targets = {target for _, bracket, target in includes_of(root, to_read.pop()) if bracket == '"'}
+        targets = {"include/" + target if bracket == "<" else target
+                   for _, bracket, target in includes_of(root, to_read.pop())}
         new = {target for target in targets - behind - {header} if os.path.isfile(os.path.join(root, target))}
         behind |= new
         to_read += new

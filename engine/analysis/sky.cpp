@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/sky.h"
-
 #include "engine/analysis/estimate.h"
+#include "engine/analysis/ray_grid.h"
+#include "engine/analysis/sky_rays.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 
@@ -46,7 +46,7 @@ void add_possible(std::vector<HoursOfFace>& sums, const Scene& scene, const Face
 
 // What an unobstructed face receives of the sky.
 double open_sky(dvec3 area_vector, dvec3 zenith, Sides sides) {
-    return sides == Sides::both ? 1 : (1 + dot(glm::normalize(area_vector), zenith)) / 2;
+    return sides == Sides::both ? 1 : (1 + dot(normalize(area_vector), zenith)) / 2;
 }
 
 Received received(std::uint64_t free_rays, double possible, double value, const Interval& interval) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/centroid.h"
+#include <twinray/analysis.h>
 
+#include "engine/analysis/faces.h"
 #include "tests/analysis/scenes.h"
 
 namespace twinray::test {
@@ -80,7 +81,7 @@ TEST_P(CentroidRulesTest, PointsAreKeptWhereAskedAndMeanWhatTheySay) {
     dvec3 sum(0);
     for (const dvec3& point : result.points) {
         EXPECT_GT(point.y, 6.999);
-        EXPECT_LT(glm::length(point - dvec3(0, 7, 0)), 1.000001);
+        EXPECT_LT(length(point - dvec3(0, 7, 0)), 1.000001);
         sum += point;
     }
     expect_near(sum / double(result.points.size()), *result.mean, dvec3(1e-9));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/illumination.h"
+#include <twinray/analysis.h>
 
+#include "engine/analysis/ray_grid.h"
 #include "tests/analysis/scenes.h"
 
 namespace twinray::test {
@@ -66,7 +67,7 @@ TEST_P(IlluminationTest, OfABoxThreeSidesAreSeenWhateverMovesIt) {
             const Illumination result = lit(scene, desc);
             uint seen = 0;
             for (uint face = 0; face < 12; ++face) {
-                const double towards = -dot(area_vector(scene, {0, face}), glm::normalize(direction));
+                const double towards = -dot(area_vector(scene, {0, face}), normalize(direction));
                 const double exact = std::max(towards, 0.0);  // a box is convex
                 seen += exact > 0;
                 EXPECT_NEAR(result.groups[face].area, exact, 0.15) << face;

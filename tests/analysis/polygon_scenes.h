@@ -12,13 +12,13 @@ namespace twinray::test {
 using Surface = std::vector<Polygon64>;
 
 // Two triangles, as make_quad() makes them.
-inline Surface quad(const dvec3& corner, const dvec3& u, const dvec3& v) {
-    return {{corner, corner + u, corner + u + v}, {corner, corner + u + v, corner + v}};
+inline Surface quad(const dvec3& vertex, const dvec3& u, const dvec3& v) {
+    return {{vertex, vertex + u, vertex + u + v}, {vertex, vertex + u + v, vertex + v}};
 }
 
 inline double area_of(const Surface& surface) {
     double area = 0;
-    for (const Polygon64& polygon : surface) area += glm::length(polygon.area_vector());
+    for (const Polygon64& polygon : surface) area += length(polygon.area_vector());
     return area;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/sky.h"
+#include <twinray/analysis.h>
 
 #include "tests/analysis/scenes.h"
 
@@ -42,7 +42,7 @@ TEST_P(SkyRulesTest, UnobstructedFacesSeeWhatTheirTiltLets) {
         EXPECT_EQ(front.ray_count, 3000u);
         const SkyLight both = sky(scene, {.samples = 1500, .sides = Sides::both});
         for (uint face = 0; face < 2; ++face) {
-            const double open = (1 + glm::normalize(area_vector(scene, {0, face})).z) / 2;
+            const double open = (1 + normalize(area_vector(scene, {0, face})).z) / 2;
             expect_covers(front.faces[face], open, 0.05);
             EXPECT_EQ(front.faces[face].interval.high, open) << cosine;
         }
@@ -69,7 +69,7 @@ TEST_P(SkyTest, NothingGetsOutOfABoxAndNothingIsLostOutsideOfIt) {
         const SkyLight front = sky(scene, {.samples = 500, .sides = Sides::front});
         const SkyLight both = sky(scene, {.samples = 500, .sides = Sides::both});
         for (uint face = 0; face < 12; ++face) {
-            const double cosine = glm::normalize(area_vector(scene, {0, face})).z;
+            const double cosine = normalize(area_vector(scene, {0, face})).z;
             expect_covers(front.faces[face], (1 + cosine) / 2, 0.12);
             EXPECT_EQ(both.faces[face].free_rays, front.faces[face].free_rays) << "by the inside";
         }
@@ -150,7 +150,7 @@ TEST_P(SkyRulesTest, BatchesAreOfWholeFaces) {
     for (const uint samples : {1u, 3u, 120'000u}) {
         const SkyLight light = sky(scene, {.samples = samples, .sides = Sides::front, .seed = 0x3'0000'0001});
         for (std::size_t face = 0; face < 20; ++face) {
-            const double cosine = glm::normalize(area_vector(scene, {0, static_cast<uint>(face)})).z;
+            const double cosine = normalize(area_vector(scene, {0, static_cast<uint>(face)})).z;
             const Interval interval = light.faces[face].interval;
             missed += interval.low > (1 + cosine) / 2 + 1e-6 || interval.high < (1 + cosine) / 2 - 1e-6;
             EXPECT_NEAR(light.faces[face].value, (1 + cosine) / 2, 3 / std::sqrt(samples)) << samples;

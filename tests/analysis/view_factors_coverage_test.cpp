@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Whether intervals of hits hold the truth as often as they should, from narrow gaps to round things.
+#include <twinray/analysis.h>
+
 #include <cmath>
 
-#include "engine/analysis/view_factors.h"
 #include "tests/analysis/view_factor_scenes.h"
 
 namespace twinray {
@@ -29,7 +30,7 @@ struct Known {
 
 double area_of(const Scene& scene) {
     double area = 0;
-    for (uint i = 0; i < scene.meshes[0].triangles.size(); ++i) area += glm::length(area_vector(scene, {0, i}));
+    for (uint i = 0; i < scene.meshes[0].triangles.size(); ++i) area += length(area_vector(scene, {0, i}));
     return area;
 }
 

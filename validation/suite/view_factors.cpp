@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // View factors that are known in closed form, by every estimator.
+#include <twinray/analysis.h>
+
 #include <cmath>
 #include <numbers>
 
 #include "validation/suite/estimators.h"
 #include "validation/suite/factor_scenes.h"
 #include "engine/accel/scene_push.h"
-#include "engine/analysis/reciprocity.h"
 #include "engine/scene/shapes.h"
 
 namespace twinray::suite {
