@@ -56,7 +56,7 @@ void upload_instances(Context& context, Commands& commands, const Scene& scene, 
                              buffer.ref<float>(),
                              buffer.ref<uint>(std::span(mesh.positions).size_bytes()),
                              static_cast<uint>(state.faces.size()),
-                             triangles});
+                             0});
         state.mesh_of_instance.push_back(instance.mesh);
         state.triangle_counts.push_back(triangles);
         for (uint primitive = 0; primitive < triangles; ++primitive) state.faces.push_back({i, primitive});

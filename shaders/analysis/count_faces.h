@@ -18,8 +18,7 @@ struct CountFacesArgs
     FaceTable table;
     REF(Hit) hits;
     Uints groups; // of each face; null: a face is its own group
-    // One more than groups. The last one counts the pairs of which one ray meets any group, and as hits those that are
-    // on no face of the table.
+    // One more than groups: the last one counts as odd the pairs of which one ray meets any group.
     REF(GroupCount) counts;
     uint ray_count;
     uint group_count;
@@ -27,11 +26,9 @@ struct CountFacesArgs
 
 FUNC uint group_of(CountFacesArgs args, uint ray)
 {
-    if (AT(args.hits, ray).hit == 0u) return NO_GROUP;
-    uint instance = AT(args.hits, ray).instance_index;
-    uint primitive = AT(args.hits, ray).primitive_index;
-    if (primitive >= AT(args.table.instances, instance).count) return args.group_count;
-    uint face = AT(args.table.instances, instance).first + primitive;
+    Hit hit = AT(args.hits, ray);
+    if (hit.hit == 0u) return NO_GROUP;
+    uint face = face_of(args.table, hit);
     return is_null(args.groups) ? face : AT(args.groups, face);
 }
 #endif

@@ -11,7 +11,7 @@ struct FacesOfInstance
     Floats positions; // 3 tightly packed floats a vertex, in object space
     Uints indices;    // 3 a triangle
     uint first;       // face of triangle 0
-    uint count;
+    uint reserved;
 };
 BUFFER_OF(FacesOfInstance, 8);
 
