@@ -16,12 +16,12 @@ using glm::dvec2;
 
 static_assert(sizeof(WorldTriangle) == 72 && sizeof(InstancedMesh) == 80 && sizeof(TriangleName) == 16);
 
-constexpr uint number_of(PairClass pair_class) { return static_cast<uint>(pair_class); }
-static_assert(number_of(PairClass::separate) == PAIR_SEPARATE && number_of(PairClass::crossing) == PAIR_CROSSING);
-static_assert(number_of(PairClass::vertex_touch) == PAIR_VERTEX_TOUCH);
-static_assert(number_of(PairClass::edge_touch) == PAIR_EDGE_TOUCH);
-static_assert(number_of(PairClass::coplanar_touch) == PAIR_COPLANAR_TOUCH);
-static_assert(number_of(PairClass::coplanar_overlap) == PAIR_COPLANAR_OVERLAP);
+constexpr uint class_number(PairClass pair_class) { return static_cast<uint>(pair_class); }
+static_assert(class_number(PairClass::separate) == PAIR_SEPARATE && class_number(PairClass::crossing) == PAIR_CROSSING);
+static_assert(class_number(PairClass::vertex_touch) == PAIR_VERTEX_TOUCH);
+static_assert(class_number(PairClass::edge_touch) == PAIR_EDGE_TOUCH);
+static_assert(class_number(PairClass::coplanar_touch) == PAIR_COPLANAR_TOUCH);
+static_assert(class_number(PairClass::coplanar_overlap) == PAIR_COPLANAR_OVERLAP);
 static_assert(all_pair_classes.size() == PAIR_CLASSES);
 
 }  // namespace twinray
