@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 // `twinray centroid`: the mean of what is seen along a direction.
+#include <twinray/analysis.h>
+
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
 #include "cli/places.h"
 #include "cli/ray_grid_options.h"
-#include "engine/analysis/centroid.h"
 #include "engine/core/error.h"
+#include "engine/core/progress.h"
 
 namespace twinray::cli {
 namespace {
@@ -74,7 +76,7 @@ void run(const CentroidOptions& options) {
         result = centroid(*analysed.accel, analysed.scene,
                           {.grid = grid,
                            .keeps_points = !options.analysis.output.empty() || !pictures.files.empty(),
-                           .progress = &progress});
+                           .progress = [&](std::uint64_t rays) { progress.advance(rays); }});
     });
     if (!options.analysis.output.empty()) write(options.analysis.output, result, analysed.scene.origin);
     if (!pictures.files.empty())

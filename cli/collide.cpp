@@ -20,7 +20,7 @@ struct CollideOptions {
     std::string accel = "auto";
     bool is_broad = false;
     ContactOptions contacts;
-    std::uint64_t max_pairs = PairSearch::default_max_pairs;
+    std::uint64_t max_pairs = default_max_pairs;
     PictureOptions pictures;
 };
 
@@ -48,10 +48,10 @@ void run_broad(const CollideOptions& options) {
     const std::unique_ptr<Context> context = make_context(options.common);
     const AccelChoice choice = choose_accel(context->facts(), options.accel);
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene);
-    CollisionFinder finder(*context);
-    finder.set_max_pairs(options.max_pairs);
+    BroadPhase broad_phase(*context);
+    broad_phase.set_max_pairs(options.max_pairs);
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<InstancePair> pairs = finder.instance_pairs(*accel);
+    const std::vector<InstancePair> pairs = broad_phase.instance_pairs(*accel);
     const double seconds = seconds_since(start);
     write_table(options.output, "instance_a,instance_b", pairs,
                 [](std::ostream& out, const InstancePair& pair) { out << pair.a << ',' << pair.b << '\n'; });
@@ -93,11 +93,11 @@ void print(const Scene& scene, const Contacts& contacts, const nlohmann::json& c
 void run_exact(const CollideOptions& options) {
     const Scene scene = load_scene(options.scene, options.common);
     const std::unique_ptr<Context> context = make_context(options.common);
-    ContactFinder finder(*context);
-    finder.set_max_pairs(options.max_pairs);
+    NarrowPhase narrow_phase(*context);
+    narrow_phase.set_max_pairs(options.max_pairs);
     ContactOptions wanted = options.contacts;
     wanted.segments = !options.pictures.files.empty();
-    const Contacts contacts = finder.find(scene, wanted);
+    const Contacts contacts = narrow_phase.find(scene, wanted);
     write_table(options.output, "instance_a,instance_b,triangle_a,triangle_b,class", contacts.list,
                 [](std::ostream& out, const TriangleContact& c) {
                     out << c.instance_a << ',' << c.instance_b << ',' << c.triangle_a << ',' << c.triangle_b << ','
@@ -115,7 +115,7 @@ void run_exact(const CollideOptions& options) {
                                       {"origin", list_of(scene.origin)},
                                       {"phase", "exact"},
                                       {"self", options.contacts.self},
-                                      {"weld", options.contacts.shared == Shared::by_position},
+                                      {"weld", options.contacts.shared == SharedVertices::by_position},
                                       {"instances", scene.instances.size()},
                                       {"instances_near", contacts.instances},
                                       {"triangles", contacts.triangles},
@@ -151,11 +151,11 @@ Command collide_command() {
           .help = "also pairs within an instance, but for neighbours that only share vertices",
           .excludes = {"--broad"}},
          {.name = "--weld",
-          .value = flag([options] { options->contacts.shared = Shared::by_position; }),
+          .value = flag([options] { options->contacts.shared = SharedVertices::by_position; }),
           .help = "vertices at one position are one, as where faces have normals of their own",
           .needs = {"--self"}},
          {.name = "--max-pairs",
-          .value = number(options->max_pairs, {1, PairSearch::most_pairs}),
+          .value = number(options->max_pairs, {1, std::uint64_t{UINT32_MAX}}),
           .help = "of boxes that overlap: 17 bytes of device memory each"},
          output_option(file(options->output),
                        "the pairs as CSV: instance_a, instance_b and, without --broad, "

@@ -2,9 +2,9 @@
 // What `twinray collide --picture` shows.
 #pragma once
 
+#include <twinray/queries.h>
+
 #include "cli/picture_options.h"
-#include "engine/collide/collision_finder.h"
-#include "engine/collide/contact_finder.h"
 
 namespace twinray::cli {
 

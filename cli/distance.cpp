@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `twinray distance`: what of a scene is near to points.
+#include <twinray/queries.h>
+
 #include <algorithm>
 #include <chrono>
 #include <fstream>
@@ -15,7 +17,6 @@
 #include "cli/places.h"
 #include "cli/query_points.h"
 #include "engine/core/error.h"
-#include "engine/points/point_finder.h"
 #include "engine/scene/bytes.h"
 
 namespace twinray::cli {
@@ -27,7 +28,7 @@ struct DistanceOptions {
     QueryPointOptions points;
     SliceOptions slice;
     bool is_signed = false;
-    double max_distance = PointFinder::unlimited;
+    double max_distance = PointQuery::unlimited;
     std::optional<double> within;
 };
 
@@ -97,27 +98,27 @@ struct Search {
     Scene scene;
     std::unique_ptr<Context> context;
     std::vector<dvec3> points;
-    PointFinder finder;
+    PointQuery query;
     double build_seconds = 0;
 
     explicit Search(const DistanceOptions& options)
         : scene(load_scene(options.scene, options.common)),
           context(make_context(options.common)),
           points(options.points.make(scene, options.common.seed)),
-          finder(*context) {
+          query(*context) {
         const auto start = std::chrono::steady_clock::now();
-        finder.set(scene);
+        query.set(scene);
         context->wait_for_gpu();
         build_seconds = seconds_since(start);
     }
     nlohmann::json record(const DistanceOptions& options, double seconds) const {
-        return {{"schema", "twinray-distance/1"},       {"device", describe(*context)},
-                {"scene", options.scene.string()},      {"origin", list_of(scene.origin)},
-                {"triangles", finder.triangle_count()}, {"n", points.size()},
-                {"build_seconds", build_seconds},       {"seconds", seconds}};
+        return {{"schema", "twinray-distance/1"},      {"device", describe(*context)},
+                {"scene", options.scene.string()},     {"origin", list_of(scene.origin)},
+                {"triangles", query.triangle_count()}, {"n", points.size()},
+                {"build_seconds", build_seconds},      {"seconds", seconds}};
     }
     void print(double seconds) const {
-        std::cout << points.size() << " points, " << finder.triangle_count() << " triangles: built in " << build_seconds
+        std::cout << points.size() << " points, " << query.triangle_count() << " triangles: built in " << build_seconds
                   << " s, searched in " << seconds << " s with copies, "
                   << static_cast<double>(points.size()) / seconds / 1e6 << " million a second\n";
     }
@@ -125,7 +126,7 @@ struct Search {
 
 void run_within(const DistanceOptions& options, Search& search) {
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<NearTriangle> near = search.finder.within(search.points, *options.within);
+    const std::vector<NearTriangle> near = search.query.within(search.points, *options.within);
     const double seconds = seconds_since(start);
     if (!options.output.empty()) write_csv(options.output, near);
     if (!options.common.quiet) {
@@ -139,10 +140,10 @@ void run_within(const DistanceOptions& options, Search& search) {
 
 void run_closest(const DistanceOptions& options, Search& search) {
     const auto start = std::chrono::steady_clock::now();
-    std::vector<ClosestPoint> found = search.finder.closest(search.points, options.max_distance);
+    std::vector<ClosestPoint> found = search.query.closest(search.points, options.max_distance);
     std::size_t inside = 0;
     if (options.is_signed) {
-        const std::vector<int> windings = search.finder.winding_numbers(search.points);
+        const std::vector<int> windings = search.query.winding_numbers(search.points);
         for (std::size_t i = 0; i < found.size(); ++i) {
             if (windings[i] == 0) continue;
             ++inside;
@@ -160,7 +161,7 @@ void run_closest(const DistanceOptions& options, Search& search) {
         search.print(seconds);
         std::cout << near << " have a nearest triangle";
         if (options.is_signed)
-            std::cout << ", " << inside << " are inside; " << search.finder.host_decided()
+            std::cout << ", " << inside << " are inside; " << search.query.host_decided()
                       << " crossings that float64 could not decide";
         std::cout << '\n';
     }
@@ -179,7 +180,7 @@ void run(const DistanceOptions& options) {
     Search search(options);
     if (options.points.is_asked_for()) options.within ? run_within(options, search) : run_closest(options, search);
     if (!options.slice.file.empty())
-        write_slice(options.slice, search.scene, search.finder, options.is_signed,
+        write_slice(options.slice, search.scene, search.query, options.is_signed,
                     options.scene.filename().string() + ": distances");
 }
 

@@ -8,7 +8,7 @@
 #include "cli/places.h"
 #include "cli/query_points.h"
 #include "engine/core/error.h"
-#include "engine/picture/page.h"
+#include "validation/picture/page.h"
 #include "engine/scene/png.h"
 
 namespace twinray::cli {
@@ -89,14 +89,14 @@ Section slice_options(SliceOptions& options) {
               .needs = {"--slice"}}}};
 }
 
-void write_slice(const SliceOptions& options, const Scene& scene, PointFinder& finder, bool is_signed,
+void write_slice(const SliceOptions& options, const Scene& scene, PointQuery& query, bool is_signed,
                  const std::string& title) {
     const Slice slice = slice_of(options, scene);
     std::vector<double> values;
     if (is_signed)
-        values = finder.signed_distances(slice.points);
+        values = query.signed_distances(slice.points);
     else
-        for (const ClosestPoint& found : finder.closest(slice.points)) values.push_back(found.distance);
+        for (const ClosestPoint& found : query.closest(slice.points)) values.push_back(found.distance);
     const ValueScale scale = ValueScale::linear_for(values);
     Raster picture(slice.columns, slice.rows);
     std::transform(values.begin(), values.end(), picture.pixels.begin(),

@@ -2,8 +2,9 @@
 // `twinray distance --slice`: distances in a plane as a picture.
 #pragma once
 
+#include <twinray/queries.h>
+
 #include "cli/command/command.h"
-#include "engine/points/point_finder.h"
 #include "engine/scene/scene.h"
 
 namespace twinray::cli {
@@ -17,7 +18,7 @@ struct SliceOptions {
 Section slice_options(SliceOptions& options);
 
 // Throws Error for a scene without triangles. `is_signed`: negative inside, as signed_distances() tells.
-void write_slice(const SliceOptions& options, const Scene& scene, PointFinder& finder, bool is_signed,
+void write_slice(const SliceOptions& options, const Scene& scene, PointQuery& query, bool is_signed,
                  const std::string& title);
 
 }  // namespace twinray::cli

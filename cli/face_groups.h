@@ -2,10 +2,11 @@
 // By what commands put faces together: --by, or --groups with a file.
 #pragma once
 
+#include <twinray/analysis.h>
+
 #include <filesystem>
 
 #include "cli/command/command.h"
-#include "engine/analysis/faces.h"
 
 namespace twinray::cli {
 

@@ -10,6 +10,7 @@
 #include "cli/face_groups.h"
 #include "cli/sky_light.h"
 #include "engine/core/error.h"
+#include "engine/core/progress.h"
 
 namespace twinray::cli {
 namespace {
@@ -95,8 +96,11 @@ void run(const IlluminationOptions& options) {
     Illumination result;
     const double seconds = seconds_of([&] {
         Progress progress("illumination", std::uint64_t{grid.side} * grid.side, options.analysis.common.quiet);
-        result = illuminate(*analysed.accel, analysed.scene, faces,
-                            {.grid = grid, .sides = options.sides, .by = options.groups.by, .progress = &progress});
+        result = illuminate(
+            *analysed.accel, analysed.scene, faces,
+            {.grid = grid, .sides = options.sides, .by = options.groups.by, .progress = [&](std::uint64_t rays) {
+                 progress.advance(rays);
+             }});
     });
     if (!options.analysis.output.empty()) write(options, result);
     if (!options.analysis.pictures.files.empty())

@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "cli/common.h"
-#include "engine/picture/marks.h"
-#include "engine/picture/page.h"
+#include "validation/picture/marks.h"
+#include "validation/picture/page.h"
 
 namespace twinray::cli {
 

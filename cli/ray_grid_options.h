@@ -2,13 +2,14 @@
 // What `twinray illumination` and `twinray centroid` share: a scene, an accelerator and a grid of parallel rays.
 #pragma once
 
+#include <twinray/analysis.h>
+
 #include <fstream>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "cli/picture_options.h"
-#include "engine/analysis/ray_grid.h"
 
 namespace twinray::cli {
 

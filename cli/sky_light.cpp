@@ -9,6 +9,7 @@
 #include "cli/command/values.h"
 #include "cli/number_lines.h"
 #include "engine/core/error.h"
+#include "engine/core/progress.h"
 
 namespace twinray::cli {
 namespace {
@@ -79,7 +80,10 @@ void run_sky(const AnalysisOptions& analysis, const SkyOptions& options, Sides s
     SkyLight light;
     const double seconds = seconds_of([&] {
         Progress progress(what, faces.count() * samples * std::max<std::size_t>(sun.size(), 1), analysis.common.quiet);
-        const SkyRaysDesc desc{.samples = samples, .sides = sides, .seed = analysis.common.seed, .progress = &progress};
+        const SkyRaysDesc desc{
+            .samples = samples, .sides = sides, .seed = analysis.common.seed, .progress = [&](std::uint64_t rays) {
+                progress.advance(rays);
+            }};
         light = options.sky ? sky_light(*analysed.accel, analysed.scene, faces,
                                         {options.up[0], options.up[1], options.up[2]}, desc)
                             : sun_hours(*analysed.accel, analysed.scene, faces, sun, desc);

@@ -2,8 +2,9 @@
 // `twinray illumination --sky` and `--sun`.
 #pragma once
 
+#include <twinray/analysis.h>
+
 #include "cli/ray_grid_options.h"
-#include "engine/analysis/sky.h"
 
 namespace twinray::cli {
 

@@ -5,7 +5,7 @@
 
 #include "cli/command/values.h"
 #include "engine/core/error.h"
-#include "engine/picture/matrix_picture.h"
+#include "validation/picture/matrix_picture.h"
 #include "engine/scene/png.h"
 
 namespace twinray::cli {

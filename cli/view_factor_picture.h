@@ -2,8 +2,9 @@
 // What `twinray viewfactors --picture` and `--matrix` show.
 #pragma once
 
+#include <twinray/analysis.h>
+
 #include "cli/picture_options.h"
-#include "engine/analysis/view_factors.h"
 
 namespace twinray::cli {
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `twinray viewfactors`: the view factors of a scene with their errors.
+#include <twinray/analysis.h>
+
 #include <algorithm>
 #include <chrono>
 #include <fstream>
@@ -14,9 +16,6 @@
 #include "cli/npz.h"
 #include "cli/places.h"
 #include "cli/view_factor_picture.h"
-#include "engine/analysis/pair_exchanges.h"
-#include "engine/analysis/reciprocity.h"
-#include "engine/analysis/row_file.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/progress.h"
@@ -62,7 +61,8 @@ PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const 
         return {};
     }
     Progress progress("pairs", faces.group_count(options.factors.grouping), options.common.quiet);
-    return exchanges_of_pairs(accel, scene, faces, options.factors, options.estimator, &progress);
+    return exchanges_of_pairs(accel, scene, faces, options.factors, options.estimator,
+                              [&](std::uint64_t groups) { progress.advance(groups); });
 }
 
 std::filesystem::path rows_file(const std::filesystem::path& output) { return output.string() + ".rows"; }
@@ -94,11 +94,11 @@ Computed compute(const Options& options, ViewFactors& factors, const std::string
     Progress progress("view factors", factors.row_count(), options.common.quiet);
     progress.advance(computed.resumed = rows.size());
     while (rows.size() < factors.row_count()) {
-        const std::size_t last = std::min(rows.size() + factors.block(), factors.row_count());
-        const std::vector<ViewFactorRow> block = factors.rows(rows.size(), last);
-        if (file) file->append(block);
-        rows.insert(rows.end(), block.begin(), block.end());
-        progress.advance(block.size());
+        const std::size_t last = std::min(rows.size() + factors.batch_size(), factors.row_count());
+        const std::vector<ViewFactorRow> batch = factors.rows(rows.size(), last);
+        if (file) file->append(batch);
+        rows.insert(rows.end(), batch.begin(), batch.end());
+        progress.advance(batch.size());
     }
     return computed;
 }

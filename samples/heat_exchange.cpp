@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Heat that two grey spheres exchange by radiation, one inside the other, beside the formula.
+#include <twinray/analysis.h>
+
 #include <cmath>
 #include <iostream>
 
 #include "engine/accel/scene_push.h"
-#include "engine/analysis/radiosity.h"
-#include "engine/analysis/reciprocity.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include <twinray/tlas.h>
 
 namespace {

@@ -13,22 +13,22 @@ SEES = {  # besides itself, include and shaders/shared
     "include": ["shaders/hwtlas", "shaders/scene"],  # the public face; its GLSL has parts there and in shaders/shared
     "engine": ENGINE,  # headers that gather the others
     "engine/core": [], "engine/scene": BASE[:1] + ["shaders/scene", "shaders/sampling"], "engine/accel": BASE[:2], "engine/report": BASE[:1],
-    "engine/analysis": BASE, "engine/collide": BASE, "engine/picture": BASE,
-    "engine/verify": BASE + ["shaders/verify"],
-    "engine/points": BASE + ["engine/collide"],
+    "engine/analysis": BASE + ["shaders/analysis"], "engine/collide": BASE + ["shaders/collide"],
+    "engine/points": BASE + ["engine/collide", "shaders/collide", "shaders/points"],
+    "engine/picture": BASE, "engine/verify": BASE + ["shaders/verify"],
     "swtlas": ENGINE, "hwtlas": ENGINE,
-    "validation": PRODUCT + ["shaders/suite", "shaders/path_tracer", "samples"],
+    "validation": PRODUCT + ["shaders/collide", "shaders/suite", "shaders/path_tracer", "samples"],
     "cli": PRODUCT + ["shaders/path_tracer", "bench", "samples", "validation"],
     "samples": PRODUCT + ["shaders/scene", "shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"],
     "bench": PRODUCT + ["validation"], "tests": PRODUCT + ["shaders/scene", "cli", "samples", "bench", "validation"],
     "shaders/embed_renderer": ["shaders/path_tracer", "shaders/sampling", "shaders/scene"],
-    "shaders/shared": ["shaders/sampling"],  # those of analyses
+    "shaders/points": ["shaders/collide", "shaders/engine"],
     "shaders": ["shaders/engine", "shaders/sampling", "shaders/scene"],  # each other folder of shaders, but shaders/shared, which sees nothing else
 }
 MOST_HEADERS = {  # of this project behind a header, directly or not; lower them whenever they fall
     "include/twinray/tlas.h": 12, "engine/accel/accel_backend.h": 70,
 }
-MOST_PUBLIC = {"headers": 12, "lines": 1800}  # of include/twinray, its GLSL apart
+MOST_PUBLIC = {"headers": 13, "lines": 3100}  # of include/twinray, its GLSL apart
 MOST_LINES = {"include/twinray/abstract_accel.h": 200}
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all
 SOURCE = re.compile(r"\.(h|hpp|c|cc|cpp|inl)$|" + GLSL.pattern)
@@ -57,7 +57,7 @@ def violation(root, source, bracket, target):
         return "no such file; includes are written from the root, those of other projects in <>"
     origin, seen = layer(source), layer(file)
     kernels_of_others = GLSL.search(source) and not origin.startswith("shaders/") and seen.startswith("shaders/")
-    sees = SEES[origin if origin in SEES else "shaders"]
+    sees = [] if origin == "shaders/shared" else SEES[origin if origin in SEES else "shaders"]
     if seen in [origin, "include", "shaders/shared"] + sees or kernels_of_others:
         return None
     return f"{origin} must not see {seen}"

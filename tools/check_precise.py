@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Checks in SPIR-V that the compiler may not contract what watertightness rests on: in every function that comes from
-shaders/shared/{exact,ray_space,intersect,refine,transform,certified,exact_double,orient,world_corner}.h, each sum, difference, product and quotient of floats is NoContraction.
+HEADERS, each sum, difference, product and quotient of floats is NoContraction.
 Usage: check_precise.py ROOT MODULE.spv...; prints each function with an operation that is not, and exits with 1; else how
 many operations it has seen in which functions."""
 import pathlib
@@ -9,8 +9,8 @@ import re
 import struct
 import sys
 
-HEADERS = ["exact.h", "ray_space.h", "intersect.h", "refine.h", "transform.h", "certified.h", "exact_double.h", "orient.h",
-           "world_corner.h"]
+HEADERS = ["shared/exact.h", "shared/ray_space.h", "shared/intersect.h", "shared/refine.h", "shared/transform.h",
+           "shared/certified.h", "shared/exact_double.h", "collide/orient.h", "collide/world_vertex.h"]  # of shaders
 # Not decided by bits that two triangles must share.
 EXEMPT = {
     "intersect_triangle_fast": "level fast promises nothing at edges",
@@ -19,7 +19,7 @@ EXEMPT = {
     "vertex_pad": "twice of what it has to cover",
     "certified_ray": "what it gives is off by less than its bound, contracted or not",
     "certain_side": "a filter, whose bound exceeds what contraction changes",
-    "is_finite_corner": "a bound that nothing is near to",
+    "is_finite_point": "a bound that nothing is near to",
     "intersect_in_world": "divisions that give u and v",
 }
 NAME, FUNCTION, FUNCTION_END, DECORATE = 5, 54, 56, 71
@@ -62,7 +62,7 @@ def operations(module):  # of each function by its name in GLSL: (NoContraction,
 
 
 root, modules = pathlib.Path(sys.argv[1]), [pathlib.Path(name) for name in sys.argv[2:]]
-wanted = {name for header in HEADERS for name in DEFINITION.findall((root / "shaders/shared" / header).read_text())}
+wanted = {name for header in HEADERS for name in DEFINITION.findall((root / "shaders" / header).read_text())}
 found = [f"check_precise: {name} is exempt, but no header has it" for name in EXEMPT if name not in wanted]
 seen, total = set(), 0
 for module in modules:

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 // All that is no trace: builds, sorts, and what the other libraries compute.
+#include <twinray/analysis.h>
+#include <twinray/queries.h>
+
 #include "cli/kernels/kernel_list.h"
 #include "engine/accel/all_hits.h"
 #include "engine/accel/ray_sort.h"
 #include "engine/accel/scene_push.h"
-#include "engine/analysis/illumination.h"
 #include "engine/analysis/pair_sampler.h"
 #include "engine/analysis/sky_rays.h"
-#include "engine/collide/collision_finder.h"
-#include "engine/collide/contact_finder.h"
 #include <twinray/context.h>
-#include "engine/points/point_finder.h"
 #include "engine/scene/animation.h"
 #include "engine/scene/deformer.h"
 #include <twinray/geometry.h>
@@ -70,9 +69,9 @@ void make_library_kernels(Context& context) {
         HwTlas hardware(context);
         make_queries(hardware);
     }
-    const CollisionFinder collisions(context);
-    const ContactFinder contacts(context);
-    const PointFinder points(context);
+    const BroadPhase collisions(context);
+    const NarrowPhase contacts(context);
+    const PointQuery points(context);
     const Deformer deformer(context, std::make_shared<Rig>());
     probe_floats(context);
     make_analysis(context);

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/centroid.h"
-
-#include "engine/core/error.h"
+#include "engine/analysis/ray_grid.h"
 #include "engine/core/parallel.h"
 
 namespace twinray {
@@ -13,13 +11,10 @@ std::optional<dvec3> point_of(const Scene& scene, const Hit& hit) {
     if (hit.hit == 0) return std::nullopt;
     const Instance& instance = scene.instances[hit.instance_index];
     const Mesh& mesh = scene.meshes[instance.mesh];
-    if (hit.primitive_index >= mesh.triangles.size())
-        fail("centroid: a hit is on triangle ", hit.primitive_index, " of instance ", hit.instance_index,
-             ", which has ", mesh.triangles.size(), "; fill the accelerator by push_scene() from the same scene");
-    const uvec3 corners = mesh.triangles[hit.primitive_index];
-    const dvec3 a = in_world(instance.transform, mesh.positions[corners.x]);
-    const dvec3 b = in_world(instance.transform, mesh.positions[corners.y]);
-    const dvec3 c = in_world(instance.transform, mesh.positions[corners.z]);
+    const uvec3 vertices = mesh.triangles[hit.primitive_index];
+    const dvec3 a = in_world(instance.transform, mesh.positions[vertices.x]);
+    const dvec3 b = in_world(instance.transform, mesh.positions[vertices.y]);
+    const dvec3 c = in_world(instance.transform, mesh.positions[vertices.z]);
     return a + (b - a) * static_cast<double>(hit.u) + (c - a) * static_cast<double>(hit.v);
 }
 
@@ -104,7 +99,7 @@ Centroid centroid(AbstractAccel& accel, const Scene& scene, const CentroidDesc& 
         if (desc.keeps_points)
             for (const std::optional<dvec3>& point : points)
                 if (point) result.points.push_back(*point);
-        if (desc.progress) desc.progress->advance(batch.count);
+        if (desc.progress) desc.progress(batch.count);
     }
     finish(result, total, plan);
     return result;

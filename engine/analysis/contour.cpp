@@ -29,13 +29,14 @@ class Contours {
 
     // Lengths are in units of `unit`, which drops out of closed contours.
     static Sum along_both(const Polygon64& a, const Polygon64& b, double unit) {
-        const dvec3 origin = a.corners.front();
-        const auto place = [&](const dvec3& point) { return Vec3(point - origin) / static_cast<Real>(unit); };
+        const dvec3 origin = a.vertices.front();
+        const auto scaled = [&](const dvec3& point) { return Vec3(point - origin) / static_cast<Real>(unit); };
         Sum sum;
         for (std::size_t i = 0; i < a.count; ++i)
             for (std::size_t j = 0; j < b.count; ++j)
-                sum += Contours({place(a.corners[i]), place(a.after(i))}, {place(b.corners[j]), place(b.after(j))})
-                           .integral();
+                sum +=
+                    Contours({scaled(a.vertices[i]), scaled(a.after(i))}, {scaled(b.vertices[j]), scaled(b.after(j))})
+                        .integral();
         return sum;
     }
 
@@ -89,7 +90,7 @@ class Contours {
 
     // Nodes and weights of the rules with 7 and 15 points (Kronrod 1965), those of 7 every other one.
     struct Node {
-        long double place, kronrod, gauss;
+        long double position, kronrod, gauss;
     };
     static constexpr std::array<Node, 8> nodes = {
         {{0.991455371120812639206854697526329L, 0.022935322010529224963732008058970L, 0},
@@ -123,7 +124,7 @@ class Contours {
         const Real middle = (piece.begin + piece.end) / 2, half = (piece.end - piece.begin) / 2;
         Real kronrod = 0, gauss = 0, size = 0;
         for (const Node& node : nodes) {
-            const Real by = half * static_cast<Real>(node.place);
+            const Real by = half * static_cast<Real>(node.position);
             const Term below = inner(middle - by), above = by == 0 ? Term() : inner(middle + by);
             kronrod += static_cast<Real>(node.kronrod) * (below.value + above.value);
             gauss += static_cast<Real>(node.gauss) * (below.value + above.value);
@@ -178,7 +179,7 @@ ContourExchange exchange(const Polygon64& a, const Polygon64& b, double unit) {
 
 ContourExchange contour_exchange(const Polygon64& a, const Polygon64& b) {
     // In units of the distance, so that logarithms of far polygons are small.
-    const double unit = std::max({a.longest_edge(), b.longest_edge(), length(a.corners[0] - b.corners[0])});
+    const double unit = std::max({a.longest_edge(), b.longest_edge(), length(a.vertices[0] - b.vertices[0])});
     const ContourExchange first = exchange<double>(a, b, unit);
     constexpr double enough = 0x1p-32;  // of the flow: less than float32 keeps
     if (first.error <= enough * first.flow) return first;

@@ -2,6 +2,8 @@
 // A fraction of rays with its error: pure functions.
 #pragma once
 
+#include <twinray/analysis.h>
+
 #include <array>
 #include <cstdint>
 #include <map>
@@ -14,13 +16,6 @@ namespace twinray {
 inline constexpr std::size_t replicate_count = 16;
 // Of each independent replicate of a sequence, all of them equally long: a sum, or a mean.
 using Replicates = std::array<double, replicate_count>;
-
-struct Estimate {
-    double value = 0;
-    Interval interval_95;
-
-    double half_width() const { return (interval_95.high - interval_95.low) / 2; }
-};
 
 // What is known of a value that cannot be but within `possible`: neither it nor its interval leaves that, and the
 // interval holds it.

@@ -16,7 +16,8 @@ namespace {
 std::uint64_t count_faces(const Scene& scene) {
     std::uint64_t count = 0;
     for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangles.size();
-    if (count > Faces::most) fail("faces: the scene has ", count, " with its instances; at most ", Faces::most, " fit");
+    constexpr std::uint64_t most = Faces::State::most;
+    if (count > most) fail("faces: the scene has ", count, " with its instances; at most ", most, " fit");
     return count;
 }
 
@@ -30,6 +31,54 @@ double largest_coordinate_of(const Scene& scene, Face face) {
         largest = std::max({largest, p.x, p.y, p.z});
     }
     return largest;
+}
+
+void upload_meshes(Context& context, Commands& commands, const Scene& scene, Faces::State& state) {
+    for (const Mesh& mesh : scene.meshes) {
+        state.materials.push_back(mesh.materials);
+        const std::uint64_t bytes = std::span(mesh.positions).size_bytes();
+        state.meshes.emplace_back(context, BufferDesc{.name = "faces of mesh '" + mesh.name + "'",
+                                                      .bytes = bytes + std::span(mesh.triangles).size_bytes()});
+        commands.upload(state.meshes.back(), std::span<const vec3>(mesh.positions));
+        commands.upload(state.meshes.back(), std::span<const uvec3>(mesh.triangles), bytes);
+    }
+}
+
+void upload_instances(Context& context, Commands& commands, const Scene& scene, Faces::State& state) {
+    std::vector<FacesOfInstance> instances;
+    for (uint i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        const auto& rows = instance.transform.rows;
+        const auto triangles = static_cast<uint>(mesh.triangles.size());
+        const Buffer& buffer = state.meshes[instance.mesh];
+        instances.push_back({{rows[0], rows[1], rows[2]},
+                             buffer.ref<float>(),
+                             buffer.ref<uint>(std::span(mesh.positions).size_bytes()),
+                             static_cast<uint>(state.faces.size()),
+                             0});
+        state.mesh_of_instance.push_back(instance.mesh);
+        state.triangle_counts.push_back(triangles);
+        for (uint primitive = 0; primitive < triangles; ++primitive) state.faces.push_back({i, primitive});
+    }
+    state.instance_buffer = Buffer(context, {.name = "faces of instances", .bytes = std::span(instances).size_bytes()});
+    state.face_buffer = Buffer(context, {.name = "faces", .bytes = std::span(state.faces).size_bytes()});
+    commands.upload(state.instance_buffer, std::span<const FacesOfInstance>(instances));
+    commands.upload(state.face_buffer, std::span<const Face>(state.faces));
+}
+
+std::vector<double> areas_of_faces(const Scene& scene, std::span<const Face> faces) {
+    std::vector<double> areas(faces.size());
+    parallel_for(faces.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t face = begin; face < end; ++face) {
+            areas[face] = length(area_vector(scene, faces[face]));
+            const double largest = areas[face] > 0 ? largest_coordinate_of(scene, faces[face]) : 0;
+            if (!(largest <= Faces::State::largest_coordinate))
+                fail("faces: triangle ", faces[face].primitive, " of instance ", faces[face].instance,
+                     " has a coordinate of ", largest, " in world space; at most 2^124, about 2.1e37");
+        }
+    });
+    return areas;
 }
 
 }  // namespace
@@ -74,55 +123,35 @@ void check_filled(const AbstractAccel& accel, std::span<const std::size_t> trian
                      " primitives and the scene's ", triangle_counts[instance], " triangles", advice);
 }
 
-Faces::Faces(Context& context, const Scene& scene)
-    : mesh_count_(scene.meshes.size()), material_count_(scene.materials.size()) {
+void check_faces(const Scene& scene, const Faces& faces) {
+    if (count_triangles(scene) != faces.count() || faces.group_count(FaceGrouping::instance) != scene.instances.size())
+        fail("the scene has ", count_triangles(scene), " faces in ", scene.instances.size(), " instances, and Faces ",
+             faces.count(), " in ", faces.group_count(FaceGrouping::instance));
+}
+
+Faces::Faces(Context& context, const Scene& scene) : state_(std::make_unique<State>()) {
     const std::uint64_t count = count_faces(scene);
+    state_->mesh_count = scene.meshes.size();
+    state_->material_count = scene.materials.size();
+    state_->faces.reserve(count);
     Commands commands(context, "faces");
-    std::vector<FacesOfInstance> instances;
     {
         const auto pass = commands.pass("faces upload");
-        for (const Mesh& mesh : scene.meshes) {
-            materials_.push_back(mesh.materials);
-            const std::uint64_t bytes = std::span(mesh.positions).size_bytes();
-            meshes_.emplace_back(context, BufferDesc{.name = "faces of mesh '" + mesh.name + "'",
-                                                     .bytes = bytes + std::span(mesh.triangles).size_bytes()});
-            commands.upload(meshes_.back(), std::span<const vec3>(mesh.positions));
-            commands.upload(meshes_.back(), std::span<const uvec3>(mesh.triangles), bytes);
-        }
-        faces_.reserve(count);
-        for (uint i = 0; i < scene.instances.size(); ++i) {
-            const Instance& instance = scene.instances[i];
-            const Mesh& mesh = scene.meshes[instance.mesh];
-            const auto& rows = instance.transform.rows;
-            const auto triangles = static_cast<uint>(mesh.triangles.size());
-            const Buffer& buffer = meshes_[instance.mesh];
-            instances.push_back({{rows[0], rows[1], rows[2]},
-                                 buffer.ref<float>(),
-                                 buffer.ref<uint>(std::span(mesh.positions).size_bytes()),
-                                 static_cast<uint>(faces_.size()),
-                                 triangles});
-            mesh_of_instance_.push_back(instance.mesh);
-            triangle_counts_.push_back(triangles);
-            for (uint primitive = 0; primitive < triangles; ++primitive) faces_.push_back({i, primitive});
-        }
-        instance_buffer_ = Buffer(context, {.name = "faces of instances", .bytes = std::span(instances).size_bytes()});
-        face_buffer_ = Buffer(context, {.name = "faces", .bytes = std::span(faces_).size_bytes()});
-        commands.upload(instance_buffer_, std::span<const FacesOfInstance>(instances));
-        commands.upload(face_buffer_, std::span<const Face>(faces_));
+        upload_meshes(context, commands, scene, *state_);
+        upload_instances(context, commands, scene, *state_);
     }
     commands.submit();
-    table_ = {instance_buffer_.ref<FacesOfInstance>(), face_buffer_.ref<Face>()};
-    areas_.resize(count);
-    parallel_for(count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t face = begin; face < end; ++face) {
-            areas_[face] = length(area_vector(scene, faces_[face]));
-            const double largest = areas_[face] > 0 ? largest_coordinate_of(scene, faces_[face]) : 0;
-            if (!(largest <= largest_coordinate))
-                fail("faces: triangle ", faces_[face].primitive, " of instance ", faces_[face].instance,
-                     " has a coordinate of ", largest, " in world space; at most 2^124, about 2.1e37");
-        }
-    });
+    state_->areas = areas_of_faces(scene, state_->faces);
 }
+
+Faces::Faces(Faces&&) noexcept = default;
+Faces& Faces::operator=(Faces&&) noexcept = default;
+Faces::~Faces() = default;
+
+std::size_t Faces::count() const { return state_->areas.size(); }
+Face Faces::operator[](std::size_t face) const { return state_->faces[face]; }
+const std::vector<double>& Faces::areas() const { return state_->areas; }
+const std::vector<std::size_t>& Faces::triangle_counts() const { return state_->triangle_counts; }
 
 std::uint32_t checksum_of(const Scene& scene) {
     std::uint32_t sum = 0;
@@ -147,36 +176,36 @@ void Faces::set_custom_groups(std::vector<uint> groups) {
         if (groups[face] >= count())
             fail("faces: face ", face, " is of group ", groups[face], ", which must be below the count of faces, ",
                  count());
-    custom_groups_ = std::move(groups);
+    state_->custom_groups = std::move(groups);
 }
 
 std::vector<uint> Faces::groups(FaceGrouping grouping) const {
     if (grouping == FaceGrouping::custom) {
-        if (custom_groups_.size() != count()) fail("faces: no groups of faces have been set");
-        return custom_groups_;
+        if (state_->custom_groups.size() != count()) fail("faces: no groups of faces have been set");
+        return state_->custom_groups;
     }
     std::vector<uint> groups(count());
     const auto group = [&](const Face& face) {
-        const uint mesh = mesh_of_instance_[face.instance];
+        const uint mesh = state_->mesh_of_instance[face.instance];
         switch (grouping) {
             case FaceGrouping::mesh: return mesh;
             case FaceGrouping::instance: return face.instance;
-            default: return materials_[mesh].empty() ? 0 : materials_[mesh][face.primitive];
+            default: return state_->materials[mesh].empty() ? 0 : state_->materials[mesh][face.primitive];
         }
     };
     if (grouping == FaceGrouping::face)
         std::iota(groups.begin(), groups.end(), 0u);
     else
-        std::transform(faces_.begin(), faces_.end(), groups.begin(), group);
+        std::transform(state_->faces.begin(), state_->faces.end(), groups.begin(), group);
     return groups;
 }
 
 std::size_t Faces::group_count(FaceGrouping grouping) const {
     switch (grouping) {
         case FaceGrouping::face: return count();
-        case FaceGrouping::mesh: return mesh_count_;
-        case FaceGrouping::instance: return mesh_of_instance_.size();
-        case FaceGrouping::material: return material_count_;
+        case FaceGrouping::mesh: return state_->mesh_count;
+        case FaceGrouping::instance: return state_->mesh_of_instance.size();
+        case FaceGrouping::material: return state_->material_count;
         default: {
             const std::vector<uint> of = groups(grouping);
             return of.empty() ? 0 : *std::max_element(of.begin(), of.end()) + 1;
@@ -188,7 +217,7 @@ std::vector<std::vector<uint>> Faces::members(FaceGrouping grouping) const {
     std::vector<std::vector<uint>> members(group_count(grouping));
     const std::vector<uint> of = groups(grouping);
     for (uint face = 0; face < of.size(); ++face)
-        if (areas_[face] > 0) members[of[face]].push_back(face);
+        if (state_->areas[face] > 0) members[of[face]].push_back(face);
     return members;
 }
 
@@ -196,15 +225,15 @@ std::vector<double> Faces::areas_of(const std::vector<std::vector<uint>>& groups
     std::vector<double> areas;
     for (const std::vector<uint>& group : groups) {
         double area = 0;
-        for (const uint face : group) area += areas_[face];
+        for (const uint face : group) area += state_->areas[face];
         areas.push_back(area);
     }
     return areas;
 }
 
 std::uint64_t Faces::bytes() const {
-    std::uint64_t sum = instance_buffer_.bytes() + face_buffer_.bytes();
-    for (const Buffer& mesh : meshes_) sum += mesh.bytes();
+    std::uint64_t sum = state_->instance_buffer.bytes() + state_->face_buffer.bytes();
+    for (const Buffer& mesh : state_->meshes) sum += mesh.bytes();
     return sum;
 }
 

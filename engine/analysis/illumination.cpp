@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/illumination.h"
-
 #include "analysis_count_faces.spv.h"
+#include "engine/analysis/count_faces.h"
 #include "engine/analysis/estimate.h"
+#include "engine/analysis/ray_grid.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 
@@ -31,7 +31,7 @@ class GroupCounts {
           kernel_(context, {.name = "analysis_count_faces", .spirv = analysis_count_faces_spirv}),
           groups_(context, {.name = "groups of faces", .bytes = groups.size_bytes()}),
           counts_(context, {.name = "hits of faces", .bytes = (group_count + 1) * sizeof(GroupCount)}),
-          args_{.table = faces.table(),
+          args_{.table = faces.state().table(),
                 .hits = {},
                 .groups = groups_.ref<uint>(),
                 .counts = counts_.ref<GroupCount>(),
@@ -72,14 +72,14 @@ std::vector<uint> groups_that_count(const Faces& faces, FaceGrouping by, std::sp
 }
 
 std::vector<GroupCount> count_hits(AbstractAccel& accel, const RayGridPlan& plan, const GroupCounts& counts,
-                                   Progress* progress) {
+                                   const ProgressCallback& progress) {
     RayGridTrace trace(accel, plan);
     for (const RayBatch batch : ray_batches(plan.ray_count)) {
         Commands commands(accel.context(), "illumination");
         trace.record(commands, batch);
         counts.record(commands, trace.hits(), batch);
         trace.finish(commands);
-        if (progress) progress->advance(batch.count);
+        if (progress) progress(batch.count);
     }
     return counts.read();
 }
@@ -98,12 +98,6 @@ void estimate(LitArea& lit, const GroupCount& count, const RayGridPlan& plan) {
 }
 
 }  // namespace
-
-void check_faces(const Scene& scene, const Faces& faces) {
-    if (count_triangles(scene) != faces.count() || faces.group_count(FaceGrouping::instance) != scene.instances.size())
-        fail("the scene has ", count_triangles(scene), " faces in ", scene.instances.size(), " instances, and Faces ",
-             faces.count(), " in ", faces.group_count(FaceGrouping::instance));
-}
 
 Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& faces, const IlluminationDesc& desc) {
     check_faces(scene, faces);
@@ -126,9 +120,6 @@ Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& f
     const std::vector<uint> counted = groups_that_count(faces, desc.by, unobstructed);
     const GroupCounts counts(accel.context(), faces, counted, result.groups.size());
     const std::vector<GroupCount> hits = count_hits(accel, plan, counts, desc.progress);
-    if (hits.back().hits != 0)
-        fail(accel.name(), ": illumination: ", hits.back().hits,
-             " hits are on triangles that the scene has not; fill it ", "by push_scene() from the same scene");
     for (std::size_t group = 0; group < result.groups.size(); ++group) {
         result.groups[group].hits = hits[group].hits;
         result.total.hits += hits[group].hits;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/pair_exchanges.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "engine/analysis/pair_plan.h"
 #include "engine/analysis/pair_sampler.h"
 
 namespace twinray {
@@ -101,7 +100,8 @@ KnownExchange exchange_of(const PlannedPair& pair, const Estimate& sampled, cons
 }  // namespace
 
 PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Scene& scene, const Faces& faces,
-                                 const ViewFactorOptions& options, PairEstimator estimator, Progress* progress) {
+                                 const ViewFactorOptions& options, PairEstimator estimator,
+                                 const ProgressCallback& progress) {
     check_filled(accel, faces.triangle_counts(), "exchanges of pairs");
     const std::vector<std::vector<uint>> members = faces.members(options.grouping);
     const PairPlan plan = plan_pairs(FacePolygons(scene), members, {estimator, options.sides, options.rays}, progress);

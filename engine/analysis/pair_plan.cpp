@@ -5,8 +5,9 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/analysis/faces.h"
+#include "engine/analysis/ray_chunks.h"
 #include "engine/analysis/shaft.h"
-#include "engine/analysis/view_factors.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include <twinray/geometry.h>
@@ -16,9 +17,9 @@ namespace {
 
 Polygon64 polygon_of(const Scene& scene, uint instance, const Mesh& mesh, uvec3 triangle) {
     const Transform& transform = scene.instances[instance].transform;
-    const auto corner = [&](uint vertex) { return in_world(transform, mesh.positions[vertex]); };
-    const Polygon64 polygon(corner(triangle.x), corner(triangle.y), corner(triangle.z));
-    return determinant(transform) < 0 ? polygon.turned() : polygon;
+    const auto point = [&](uint vertex) { return in_world(transform, mesh.positions[vertex]); };
+    const Polygon64 polygon(point(triangle.x), point(triangle.y), point(triangle.z));
+    return determinant(transform) < 0 ? polygon.flipped() : polygon;
 }
 
 // What is known of two faces.
@@ -85,9 +86,9 @@ class Planner {
         };
         add(of_a, of_b);
         if (options_.sides == Sides::both) {
-            add(of_a.turned(), of_b);
-            add(of_a, of_b.turned());
-            add(of_a.turned(), of_b.turned());
+            add(of_a.flipped(), of_b);
+            add(of_a, of_b.flipped());
+            add(of_a.flipped(), of_b.flipped());
         }
         if (pair.parts.empty()) return std::nullopt;
         for (const FacingPair& parts : pair.parts)
@@ -161,7 +162,7 @@ class Planner {
     }
 
     SampledPair sampled(const FacePair& faces) const {
-        const double distance = length(polygons_.faces[faces.a].middle() - polygons_.faces[faces.b].middle());
+        const double distance = length(polygons_.faces[faces.a].center() - polygons_.faces[faces.b].center());
         return {faces.a, faces.b, distance, contour_of(faces).flow, faces.in_between.has_value()};
     }
 
@@ -187,7 +188,7 @@ FacePolygons::FacePolygons(const Scene& scene) {
 }
 
 PairPlan plan_pairs(const FacePolygons& polygons, std::span<const std::vector<uint>> members,
-                    const PairPlanOptions& options, Progress* progress) {
+                    const PairPlanOptions& options, const ProgressCallback& progress) {
     if (options.estimator == PairEstimator::hits) return {};
     std::size_t faces = 0;
     for (const std::vector<uint>& group : members) faces += group.size();
@@ -196,13 +197,13 @@ PairPlan plan_pairs(const FacePolygons& polygons, std::span<const std::vector<ui
              ", beyond that hits alone can tell");
     const Planner planner(polygons, members, options);
     std::vector<Planner::Row> rows(members.size());
-    constexpr std::size_t block = 64;
-    for (std::size_t first = 0; first < rows.size(); first += block) {
-        const std::size_t count = std::min(block, rows.size() - first);
+    constexpr std::size_t batch = 64;  // groups between two calls of `progress`
+    for (std::size_t first = 0; first < rows.size(); first += batch) {
+        const std::size_t count = std::min(batch, rows.size() - first);
         parallel_for(count, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = first + begin; i < first + end; ++i) rows[i] = planner.row(static_cast<uint>(i));
         });
-        if (progress) progress->advance(count);
+        if (progress) progress(count);
     }
     PairPlan plan;
     for (Planner::Row& row : rows) {

@@ -2,17 +2,16 @@
 // By which estimator each pair of groups of faces is to be told: pure functions.
 #pragma once
 
+#include <twinray/analysis.h>
+
 #include <span>
 #include <vector>
 
 #include "engine/analysis/contour.h"
-#include "engine/analysis/exchange.h"
-#include "engine/analysis/faces.h"
-#include "engine/core/progress.h"
 
 namespace twinray {
 
-// All faces of a scene, in its order; those without an area have no corners.
+// All faces of a scene, in its order; those without an area have no vertices.
 struct FacePolygons {
     std::vector<Polygon64> faces;
     std::vector<PolygonBox> boxes;
@@ -25,7 +24,7 @@ struct FacePolygons {
 // Faces of which areas are sampled.
 struct SampledPair {
     uint a, b;
-    double distance;   // of their middles
+    double distance;   // of their centers
     double unblocked;  // A F if nothing were in between
     bool may_be_blocked;
 };
@@ -53,13 +52,11 @@ struct PairPlanOptions {
 inline constexpr double least_gap_for_area = 0.25;
 // Below this, a few samples in narrow places decide, and intervals of areas do not hold.
 inline constexpr double least_gap_asked_for = 1.0 / 16;
-// Of faces with an area: their pairs are few enough to be looked at one by one.
-inline constexpr std::size_t most_paired_faces = 1024;
 
 // `members`: the faces of each group, those with an area. Throws Error naming faces and limit where the estimator that
 // is asked for does not fit a pair, or where there are more than most_paired_faces.
 // `progress` is told of groups.
 PairPlan plan_pairs(const FacePolygons& polygons, std::span<const std::vector<uint>> members,
-                    const PairPlanOptions& options, Progress* progress = nullptr);
+                    const PairPlanOptions& options, const ProgressCallback& progress = {});
 
 }  // namespace twinray

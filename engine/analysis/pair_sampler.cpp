@@ -66,7 +66,7 @@ void PairSampler::trace(std::span<const PairChunk> chunks) {
     const auto weights = weights_.ref<float>();
     Commands commands(accel_.context(), "area to area");
     make_rays_.dispatch(commands,
-                        {faces_.table(), chunks_.ref<PairChunk>(), rays, weights, seed_,
+                        {faces_.state().table(), chunks_.ref<PairChunk>(), rays, weights, seed_,
                          sequence_ == Sequence::sobol ? SEQUENCE_SOBOL : SEQUENCE_RANDOM, sides_ == Sides::both, 0},
                         count);
     accel_.trace(commands, accel_.view(),

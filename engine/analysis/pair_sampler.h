@@ -2,17 +2,14 @@
 // Area-to-area sampling: the exchange of two faces from points all over both and rays between them.
 #pragma once
 
-#include <glm/integer.hpp>
-
-#include <twinray/abstract_accel.h>
-#include "engine/analysis/faces.h"
 #include "engine/analysis/pair_sums.h"
-#include "engine/analysis/view_factors.h"
+#include "engine/analysis/ray_chunks.h"
+#include "engine/core/kernel.h"
 #include "engine/core/pace.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/pair_rays.h"
+#include "shaders/analysis/pair_rays.h"
 #include "twinray/glsl/cpp_end.h"
 static_assert(sizeof(PairChunk) == 16 && sizeof(PairRaysArgs) == 56 && sizeof(PairWeightsArgs) == 24);
 

@@ -10,8 +10,8 @@ namespace twinray {
 
 class PairSums {
   public:
-    // Of a chunk of rays (see shaders/shared/pair_rays.h): what each would add to the exchange if it were all of them,
-    // before `unit`; negative where it is blocked.
+    // Of a chunk of rays (see shaders/analysis/pair_rays.h): what each would add to the exchange if it were all of
+    // them, before `unit`; negative where it is blocked.
     void add(std::span<const float> weights, double unit);
 
     std::uint64_t rays() const { return rays_; }

@@ -9,25 +9,25 @@ namespace twinray {
 dvec3 Polygon64::area_vector() const {
     dvec3 twice(0);
     for (std::size_t i = 2; i < count; ++i)
-        twice += cross(corners[i - 1] - corners.front(), corners[i] - corners.front());
+        twice += cross(vertices[i - 1] - vertices.front(), vertices[i] - vertices.front());
     return twice * 0.5;
 }
 
 double Polygon64::longest_edge() const {
     double longest = 0;
-    for (std::size_t i = 0; i < count; ++i) longest = std::max(longest, length(after(i) - corners[i]));
+    for (std::size_t i = 0; i < count; ++i) longest = std::max(longest, length(after(i) - vertices[i]));
     return longest;
 }
 
-dvec3 Polygon64::middle() const {
+dvec3 Polygon64::center() const {
     dvec3 sum(0);
     for (const dvec3& point : points()) sum += point;
     return sum / static_cast<double>(count);
 }
 
-Polygon64 Polygon64::turned() const {
+Polygon64 Polygon64::flipped() const {
     Polygon64 other = *this;
-    std::reverse(other.corners.begin(), other.corners.begin() + static_cast<std::ptrdiff_t>(count));
+    std::reverse(other.vertices.begin(), other.vertices.begin() + static_cast<std::ptrdiff_t>(count));
     return other;
 }
 
@@ -41,7 +41,7 @@ Extent extent_of(const Polygon64& polygon, const dvec3& axis) {
 }
 
 PolygonBox box_of(const Polygon64& polygon) {
-    PolygonBox box{polygon.corners.front(), polygon.corners.front()};
+    PolygonBox box{polygon.vertices.front(), polygon.vertices.front()};
     for (const dvec3& point : polygon.points()) box = {min(box.low, point), max(box.high, point)};
     return box;
 }
@@ -53,7 +53,7 @@ Polygon64 before(const Polygon64& polygon, const Polygon64& triangle, double rou
     std::array<double, 4> distances = {};
     double highest = 0;
     for (std::size_t i = 0; i < polygon.count; ++i) {
-        const double distance = dot(normal, polygon.corners[i] - triangle.corners.front());
+        const double distance = dot(normal, polygon.vertices[i] - triangle.vertices.front());
         distances[i] = std::abs(distance) <= rounding ? 0 : distance;
         highest = std::max(highest, distances[i]);
     }
@@ -61,9 +61,11 @@ Polygon64 before(const Polygon64& polygon, const Polygon64& triangle, double rou
     Polygon64 left;
     for (std::size_t i = 0; i < polygon.count; ++i) {
         const double here = distances[i], next = distances[(i + 1) % polygon.count];
-        if (here >= 0) left.add(polygon.corners[i]);
-        if ((here > 0 && next < 0) || (here < 0 && next > 0))
-            left.add(mix(polygon.corners[i], polygon.after(i), here / (here - next)));
+        if (here >= 0) left.add(polygon.vertices[i]);
+        if ((here > 0 && next < 0) || (here < 0 && next > 0)) {
+            const double along = here / (here - next);
+            left.add(polygon.vertices[i] * (1 - along) + polygon.after(i) * along);
+        }
     }
     return left;
 }
@@ -74,7 +76,7 @@ FacingPair facing_parts(const Polygon64& a, const Polygon64& b, double rounding)
 
 double gap_over_size(const Polygon64& a, const Polygon64& b) {
     double gap = 0;
-    for (const dvec3& axis : {a.area_vector(), b.area_vector(), b.middle() - a.middle()}) {
+    for (const dvec3& axis : {a.area_vector(), b.area_vector(), b.center() - a.center()}) {
         const double size = length(axis);
         if (size == 0) continue;
         gap = std::max(gap, extent_of(a, axis / size).gap_to(extent_of(b, axis / size)));

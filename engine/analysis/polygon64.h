@@ -12,22 +12,22 @@
 
 namespace twinray {
 
-// A triangle, or what a plane has left of it. The corners turn counter-clockwise seen from the side that counts.
+// A triangle, or what a plane has left of it. The vertices turn counter-clockwise seen from the side that counts.
 struct Polygon64 {
-    std::array<dvec3, 4> corners = {};
+    std::array<dvec3, 4> vertices = {};
     std::size_t count = 0;
 
     Polygon64() = default;
-    Polygon64(const dvec3& a, const dvec3& b, const dvec3& c) : corners{a, b, c}, count(3) {}
-    void add(const dvec3& corner) { corners[count++] = corner; }
-    std::span<const dvec3> points() const { return {corners.data(), count}; }
-    const dvec3& after(std::size_t i) const { return corners[(i + 1) % count]; }
+    Polygon64(const dvec3& a, const dvec3& b, const dvec3& c) : vertices{a, b, c}, count(3) {}
+    void add(const dvec3& vertex) { vertices[count++] = vertex; }
+    std::span<const dvec3> points() const { return {vertices.data(), count}; }
+    const dvec3& after(std::size_t i) const { return vertices[(i + 1) % count]; }
     // As long as the area.
     dvec3 area_vector() const;
     double longest_edge() const;
-    dvec3 middle() const;  // of the corners
+    dvec3 center() const;  // of the vertices
     // Seen from the other side.
-    Polygon64 turned() const;
+    Polygon64 flipped() const;
 };
 
 // Where the points lie along an axis.
@@ -43,13 +43,13 @@ Extent extent_of(const Polygon64& polygon, const dvec3& axis);
 struct PolygonBox {
     dvec3 low, high;
 };
-PolygonBox box_of(const Polygon64& polygon);  // which has corners
+PolygonBox box_of(const Polygon64& polygon);  // which has vertices
 
 // How far a coordinate may be off that a few operations have made from numbers as large as `size`.
 double rounding_of(double size);
 
 // What of `polygon` lies on the side of the plane of `triangle` from which that turns counter-clockwise; nothing where
-// that is an edge, or less. Corners within `rounding` of the plane lie in it.
+// that is an edge, or less. Vertices within `rounding` of the plane lie in it.
 Polygon64 before(const Polygon64& polygon, const Polygon64& triangle, double rounding);
 
 // What of two triangles sees the other, each on the side from which it turns counter-clockwise; empty where none does.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/radiosity.h"
+#include <twinray/analysis.h>
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>

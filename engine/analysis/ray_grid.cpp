@@ -15,6 +15,8 @@ namespace {
 constexpr std::uint64_t batch_size = 1 << 20;
 constexpr uint largest_side = 65535;
 
+bool is_finite(dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
 std::string text_of(dvec3 v) { return text("(", v.x, ", ", v.y, ", ", v.z, ")"); }
 
 // Axes of the plane, and the way of the rays.
@@ -31,19 +33,19 @@ Axes axes_of(dvec3 direction) {
 
 // What lies between the least and the largest coordinates on the axes.
 struct PlaneExtent {
-    dvec3 lo = dvec3(INFINITY), hi = dvec3(-INFINITY);  // across, up, along
-    double largest = 0;                                 // coordinate in world space
+    dvec3 low = dvec3(INFINITY), high = dvec3(-INFINITY);  // across, up, along
+    double largest = 0;                                    // coordinate in world space
 
     void include(const Axes& axes, dvec3 p) {
-        const dvec3 place(dot(axes.across, p), dot(axes.up, p), dot(axes.along, p));
-        lo = min(lo, place), hi = max(hi, place);
+        const dvec3 position(dot(axes.across, p), dot(axes.up, p), dot(axes.along, p));
+        low = min(low, position), high = max(high, position);
         largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     }
     void include(const PlaneExtent& other) {
-        lo = min(lo, other.lo), hi = max(hi, other.hi);
+        low = min(low, other.low), high = max(high, other.high);
         largest = std::max(largest, other.largest);
     }
-    bool is_empty() const { return !(lo.x <= hi.x); }
+    bool is_empty() const { return !(low.x <= high.x); }
 };
 
 PlaneExtent extent_of(const Scene& scene, const Axes& axes) {
@@ -57,7 +59,7 @@ PlaneExtent extent_of(const Scene& scene, const Axes& axes) {
                 const uvec3 t = mesh.triangles[i];
                 const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
                 if (!is_finite_triangle(a, b, c)) continue;
-                for (const vec3 corner : {a, b, c}) some.include(axes, in_world(instance.transform, corner));
+                for (const vec3 vertex : {a, b, c}) some.include(axes, in_world(instance.transform, vertex));
             }
             const std::lock_guard lock(mutex);
             all.include(some);
@@ -76,7 +78,7 @@ void check_range(dvec3 point) {
 dvec3 unit_direction(dvec3 direction) {
     // Squares of components may leave float64.
     const double largest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
-    if (!(largest > 0) || any(isnan(direction)) || any(isinf(direction)))
+    if (!(largest > 0) || !is_finite(direction))
         fail("the direction ", text_of(direction), " must be finite and not 0");
     return normalize(direction / largest);
 }
@@ -87,21 +89,21 @@ RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc) {
     const Axes axes = axes_of(desc.direction);
     const PlaneExtent extent = extent_of(scene, axes);
     if (extent.is_empty()) return {};
-    const dvec3 size = extent.hi - extent.lo;
+    const dvec3 size = extent.high - extent.low;
     // A twentieth of the scene stays between it and the plane. Origins and what an accelerator makes of them are off by
     // some roundings of coordinates.
     const double gap = 0.05 * std::max({size.x, size.y, size.z});
     const double rounding = 0x1p-21 * (extent.largest + gap);
-    const double depth = extent.lo.z - gap - rounding;
-    const dvec3 corner =
-        axes.across * (extent.lo.x - rounding) + axes.up * (extent.lo.y - rounding) + axes.along * depth;
+    const double depth = extent.low.z - gap - rounding;
+    const dvec3 origin =
+        axes.across * (extent.low.x - rounding) + axes.up * (extent.low.y - rounding) + axes.along * depth;
     const dvec3 across = axes.across * ((size.x + 2 * rounding) / desc.side);
     const dvec3 up = axes.up * ((size.y + 2 * rounding) / desc.side);
     for (const double a : {0.0, 1.0})
-        for (const double b : {0.0, 1.0}) check_range(corner + (across * a + up * b) * static_cast<double>(desc.side));
+        for (const double b : {0.0, 1.0}) check_range(origin + (across * a + up * b) * static_cast<double>(desc.side));
 
     RayGridPlan plan;
-    plan.grid = {.corner = vec3(corner),
+    plan.grid = {.origin = vec3(origin),
                  .across = vec3(across),
                  .up = vec3(up),
                  .direction = vec3(axes.along),
@@ -111,7 +113,7 @@ RayGridPlan plan_ray_grid(const Scene& scene, const RayGridDesc& desc) {
                  .seed_high = static_cast<uint>(desc.seed >> 32)};
     plan.ray_count = std::uint64_t{desc.side} * desc.side;
     plan.cell_area = std::abs(dot(cross(dvec3(plan.grid.across), dvec3(plan.grid.up)), axes.along));
-    plan.center = corner + (across + up) * (desc.side / 2.0);
+    plan.center = origin + (across + up) * (desc.side / 2.0);
     return plan;
 }
 

@@ -2,31 +2,17 @@
 // Parallel rays onto a scene, and their hits in batches on the device.
 #pragma once
 
-#include <glm/integer.hpp>
-
-#include <twinray/abstract_accel.h>
 #include "engine/analysis/faces.h"
+#include "engine/core/kernel.h"
 #include "engine/core/pace.h"
+#include "engine/scene/sampling.h"
 
 namespace twinray {
-using glm::bitfieldReverse;
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/ray_grid.h"
+#include "shaders/analysis/ray_grid.h"
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(RayGrid) == 64);
-
-enum class GridPoints : std::uint8_t {
-    random,   // one in each cell, uniform and independent: means are unbiased and have intervals
-    centers,  // of the cells: the same rays for every seed
-};
-
-struct RayGridDesc {
-    dvec3 direction = dvec3(0, 0, -1);  // of the rays, in world space; of any length but 0
-    uint side = 1000;                   // side * side rays; 1 to 65535
-    GridPoints points = GridPoints::random;
-    std::uint64_t seed = 1;
-};
 
 struct RayGridPlan {
     RayGrid grid;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/reciprocity.h"
-
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 
@@ -8,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/analysis/estimate.h"
 #include "engine/core/error.h"
 
 namespace twinray {

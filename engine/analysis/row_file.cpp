@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/row_file.h"
+#include <twinray/analysis.h>
 
 #include <cstring>
+#include <fstream>
 #include <optional>
 
 #include "engine/core/error.h"
@@ -71,21 +72,36 @@ class Reader {
 
 }  // namespace
 
-RowFile::RowFile(std::filesystem::path file, std::string configuration)
-    : file_(std::move(file)), configuration_(text(magic, configuration, '\n')) {}
+struct RowFile::State {
+    std::filesystem::path file;
+    std::string configuration;
+    std::ofstream out;
+
+    void open_at(std::uint64_t bytes) {
+        out.open(file, std::ios::binary | std::ios::app);
+        std::error_code error;
+        if (!out || std::filesystem::file_size(file, error) != bytes || error)
+            fail("'", file.string(), "' cannot be written");
+    }
+};
+
+RowFile::RowFile(std::filesystem::path file, const std::string& configuration)
+    : state_(new State{std::move(file), text(magic, configuration, '\n'), {}}) {}
+RowFile::~RowFile() = default;
 
 std::vector<ViewFactorRow> RowFile::load() {
-    if (!std::filesystem::exists(file_)) {
+    if (!std::filesystem::exists(state_->file)) {
         create();
         return {};
     }
-    const Bytes bytes = read_file(file_);
+    const Bytes bytes = read_file(state_->file);
     const std::string_view head(reinterpret_cast<const char*>(bytes.data()),
-                                std::min(bytes.size(), configuration_.size()));
-    if (head != configuration_)
-        fail("'", file_.string(), "': unfinished rows of another scene or of other options; they cannot be resumed");
+                                std::min(bytes.size(), state_->configuration.size()));
+    if (head != state_->configuration)
+        fail("'", state_->file.string(),
+             "': unfinished rows of another scene or of other options; they cannot be resumed");
     Reader reader(bytes);
-    reader.skip(configuration_.size());
+    reader.skip(state_->configuration.size());
     std::vector<ViewFactorRow> rows;
     std::size_t whole = reader.at();
     while (std::optional<ViewFactorRow> row = reader.row()) {
@@ -93,34 +109,27 @@ std::vector<ViewFactorRow> RowFile::load() {
         rows.push_back(std::move(*row));
         whole = reader.at();
     }
-    std::filesystem::resize_file(file_, whole);
-    open_at(whole);
+    std::filesystem::resize_file(state_->file, whole);
+    state_->open_at(whole);
     return rows;
 }
 
 void RowFile::create() {
-    std::ofstream(file_, std::ios::binary | std::ios::trunc) << configuration_;
-    open_at(configuration_.size());
-}
-
-void RowFile::open_at(std::uint64_t bytes) {
-    out_.open(file_, std::ios::binary | std::ios::app);
-    std::error_code error;
-    if (!out_ || std::filesystem::file_size(file_, error) != bytes || error)
-        fail("'", file_.string(), "' cannot be written");
+    std::ofstream(state_->file, std::ios::binary | std::ios::trunc) << state_->configuration;
+    state_->open_at(state_->configuration.size());
 }
 
 void RowFile::append(std::span<const ViewFactorRow> rows) {
     for (const ViewFactorRow& row : rows) {
         const std::vector<std::byte> bytes = bytes_of(row);
-        out_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        state_->out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     }
-    if (!out_.flush()) fail("'", file_.string(), "' cannot be written");
+    if (!state_->out.flush()) fail("'", state_->file.string(), "' cannot be written");
 }
 
 void RowFile::remove() {
-    out_.close();
-    std::filesystem::remove(file_);
+    state_->out.close();
+    std::filesystem::remove(state_->file);
 }
 
 }  // namespace twinray

@@ -18,7 +18,7 @@ class RowSums {
         Replicates sums;  // of weights
     };
 
-    // Of a chunk of rays (see shaders/shared/view_factors.h), each of which counts as `weight`. Order does not matter
+    // Of a chunk of rays (see shaders/analysis/view_factors.h), each of which counts as `weight`. Order does not matter
     // but for rounding; weights that are powers of two do not round.
     void add(std::span<const uint> targets, double weight);
     // Joins what was added; the rest is then up to date.

@@ -7,13 +7,13 @@ namespace twinray {
 namespace {
 
 void add_edges(const Polygon64& polygon, std::vector<dvec3>& edges) {
-    for (std::size_t i = 0; i < polygon.count; ++i) edges.push_back(polygon.after(i) - polygon.corners[i]);
+    for (std::size_t i = 0; i < polygon.count; ++i) edges.push_back(polygon.after(i) - polygon.vertices[i]);
 }
 
 // Whether an edge of `one` parts it from `other`, in a plane with this normal; they may touch.
 bool has_edge_between(const Polygon64& one, const Polygon64& other, const dvec3& normal, double rounding) {
     for (std::size_t i = 0; i < one.count; ++i) {
-        const dvec3 across = normalize(cross(one.after(i) - one.corners[i], normal));
+        const dvec3 across = normalize(cross(one.after(i) - one.vertices[i], normal));
         if (extent_of(one, across).gap_to(extent_of(other, across)) >= -rounding) return true;
     }
     return false;
@@ -70,7 +70,7 @@ bool Shaft::may_be_blocked_by(const Polygon64& face, const PolygonBox& box_of_fa
     if (std::any_of(axes_.begin() + 2, axes_.end(), parts)) return false;
     for (std::size_t i = 0; i < face.count; ++i)
         for (const dvec3& edge : edges_)
-            if (parts(axis_along(cross(face.after(i) - face.corners[i], edge)))) return false;
+            if (parts(axis_along(cross(face.after(i) - face.vertices[i], edge)))) return false;
     return true;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/sky.h"
-
 #include "engine/analysis/estimate.h"
+#include "engine/analysis/ray_grid.h"
+#include "engine/analysis/sky_rays.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 

@@ -3,6 +3,7 @@
 
 #include "analysis_count_free.spv.h"
 #include "analysis_sky_rays.spv.h"
+#include "engine/analysis/ray_grid.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -35,7 +36,7 @@ SkyRays::SkyRays(AbstractAccel& accel, const Faces& faces, const SkyRaysDesc& de
 
 std::vector<GroupCount> SkyRays::trace(dvec3 towards, bool to_sun, uint stream) const {
     if (faces_.count() == 0) return {};
-    SkyRaysArgs args{.table = faces_.table(),
+    SkyRaysArgs args{.table = faces_.state().table(),
                      .rays = rays_.ref<Ray>(),
                      .towards = vec3(unit_direction(towards)),
                      .to_sun = to_sun,
@@ -59,7 +60,7 @@ std::vector<GroupCount> SkyRays::trace(dvec3 towards, bool to_sun, uint stream) 
         }
         record(commands, args, pace);
         pace.finish(commands);
-        if (desc_.progress) desc_.progress->advance(args.ray_count);
+        if (desc_.progress) desc_.progress(args.ray_count);
     }
     return download<GroupCount>(accel_.context(), counts_, faces_.count());
 }

@@ -2,23 +2,17 @@
 // How many rays from the faces of a scene get out of it, counted on the device.
 #pragma once
 
-#include <glm/integer.hpp>
-
-#include "engine/analysis/illumination.h"
+#include "engine/analysis/count_faces.h"
+#include "engine/core/kernel.h"
+#include "engine/core/pace.h"
+#include "engine/scene/sampling.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/sky_rays.h"
+#include "shaders/analysis/sky_rays.h"
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(SkyRaysArgs) == 72 && sizeof(CountFreeArgs) == 40);
-
-struct SkyRaysDesc {
-    uint samples = 256;  // rays of each face; 1 to 2^20
-    Sides sides = Sides::both;
-    std::uint64_t seed = 1;
-    Progress* progress = nullptr;  // told of rays
-};
 
 // Traces in batches of at most 2^20 rays.
 class SkyRays {

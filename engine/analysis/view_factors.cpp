@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/view_factors.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -8,8 +6,11 @@
 
 #include "analysis_face_rays.spv.h"
 #include "analysis_face_targets.spv.h"
+#include "engine/analysis/ray_chunks.h"
 #include "engine/analysis/row_sums.h"
 #include "engine/core/error.h"
+#include "engine/core/kernel.h"
+#include "engine/core/pace.h"
 #include "engine/core/parallel.h"
 
 namespace twinray {
@@ -49,10 +50,8 @@ ViewFactor factor_of(const KnownExchange& exchange, uint target, double area) {
             exchange.by};
 }
 
-}  // namespace
-
 // A face of a group gets rays by its area. A round takes chunks of it in proportion to `chunks`, so that weights stay.
-struct ViewFactors::Row {
+struct Row {
     struct Member {
         uint face;
         uint chunks;    // in the first round
@@ -76,162 +75,211 @@ struct ViewFactors::Row {
     }
 };
 
-ViewFactors::ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
-                         std::span<const KnownExchange> known)
-    : accel_(accel),
-      faces_(faces),
-      options_((check(options), options)),
-      make_rays_(accel.context(), {.name = "analysis_face_rays", .spirv = analysis_face_rays_spirv}),
-      find_targets_(accel.context(), {.name = "analysis_face_targets", .spirv = analysis_face_targets_spirv}),
-      members_(faces.members(options.grouping)),
-      areas_(faces.areas_of(members_)),
-      known_(members_.size()),
-      pace_(accel.context()) {
-    check_filled(accel, faces.triangle_counts(), "view factors");
+std::vector<std::vector<ViewFactor>> factors_of(std::span<const KnownExchange> known,
+                                                const std::vector<double>& areas) {
+    std::vector<std::vector<ViewFactor>> factors(areas.size());
     for (const KnownExchange& exchange : known) {
-        known_[exchange.i].push_back(factor_of(exchange, exchange.j, areas_[exchange.i]));
-        if (exchange.i != exchange.j) known_[exchange.j].push_back(factor_of(exchange, exchange.i, areas_[exchange.j]));
+        factors[exchange.i].push_back(factor_of(exchange, exchange.j, areas[exchange.i]));
+        if (exchange.i != exchange.j) factors[exchange.j].push_back(factor_of(exchange, exchange.i, areas[exchange.j]));
     }
-    for (std::vector<ViewFactor>& row : known_) std::sort(row.begin(), row.end(), is_before);
-    Context& context = accel.context();
-    if (options.grouping != FaceGrouping::face) {
-        const std::vector<uint> groups = faces.groups(options.grouping);
-        groups_ = Buffer(context, {.name = "groups of faces", .bytes = groups.size() * sizeof(uint)});
-        Commands commands(context, "groups of faces");
-        {
-            const auto pass = commands.pass("groups of faces");
-            commands.upload(groups_, std::span<const uint>(groups));
-        }
-        commands.submit();
-    }
-    constexpr std::uint64_t rays = batch_chunks * CHUNK;
-    chunks_ =
-        Buffer(context, {.name = "chunks of rays", .bytes = batch_chunks * sizeof(RayChunk), .memory = Memory::upload});
-    rays_ = Buffer(context, {.name = "rays of faces", .bytes = rays * sizeof(Ray)});
-    hits_ = Buffer(context, {.name = "hits of faces", .bytes = rays * sizeof(Hit)});
-    targets_ = Buffer(context, {.name = "targets", .bytes = rays * sizeof(uint), .memory = Memory::readback});
+    for (std::vector<ViewFactor>& row : factors) std::sort(row.begin(), row.end(), is_before);
+    return factors;
 }
 
-std::size_t ViewFactors::block() const {
-    return std::clamp<std::size_t>(batch_chunks / chunks_of(options_.target_error ? first_rays : options_.rays), 1,
-                                   4096);
+// Null where each face is a group of its own.
+Buffer groups_on_device(Context& context, const Faces& faces, FaceGrouping grouping) {
+    if (grouping == FaceGrouping::face) return {};
+    const std::vector<uint> groups = faces.groups(grouping);
+    Buffer buffer(context, {.name = "groups of faces", .bytes = groups.size() * sizeof(uint)});
+    Commands commands(context, "groups of faces");
+    {
+        const auto pass = commands.pass("groups of faces");
+        commands.upload(buffer, std::span<const uint>(groups));
+    }
+    commands.submit();
+    return buffer;
+}
+
+}  // namespace
+
+struct ViewFactors::State {
+    State(AbstractAccel& accel_of_faces, const Faces& all_faces, const ViewFactorOptions& checked_options,
+          std::span<const KnownExchange> known_exchanges);
+
+    Row row_of(std::size_t group) const;
+    std::uint64_t rounds_of(const Row& row);
+    void trace(std::vector<Row*>& rows);
+    void trace_batch(std::span<const RayChunk> batch);
+    ViewFactorRow result_of(const Row& row);
+
+    AbstractAccel& accel;
+    const Faces& faces;
+    ViewFactorOptions options;
+    Kernel<FaceRaysArgs> make_rays;
+    Kernel<FaceTargetsArgs> find_targets;
+    std::vector<std::vector<uint>> members;  // faces with an area, by group
+    std::vector<double> areas;
+    std::vector<std::vector<ViewFactor>> known;  // of each row, ascending by target
+    Estimator estimator;
+    Buffer groups, chunks, rays, hits, targets;
+    Pace pace;
+};
+
+ViewFactors::State::State(AbstractAccel& accel_of_faces, const Faces& all_faces,
+                          const ViewFactorOptions& checked_options, std::span<const KnownExchange> known_exchanges)
+    : accel(accel_of_faces),
+      faces(all_faces),
+      options(checked_options),
+      make_rays(accel.context(), {.name = "analysis_face_rays", .spirv = analysis_face_rays_spirv}),
+      find_targets(accel.context(), {.name = "analysis_face_targets", .spirv = analysis_face_targets_spirv}),
+      members(faces.members(options.grouping)),
+      areas(faces.areas_of(members)),
+      known(factors_of(known_exchanges, areas)),
+      groups(groups_on_device(accel.context(), faces, options.grouping)),
+      pace(accel.context()) {
+    constexpr std::uint64_t most = batch_chunks * CHUNK;
+    Context& context = accel.context();
+    chunks =
+        Buffer(context, {.name = "chunks of rays", .bytes = batch_chunks * sizeof(RayChunk), .memory = Memory::upload});
+    rays = Buffer(context, {.name = "rays of faces", .bytes = most * sizeof(Ray)});
+    hits = Buffer(context, {.name = "hits of faces", .bytes = most * sizeof(Hit)});
+    targets = Buffer(context, {.name = "targets", .bytes = most * sizeof(uint), .memory = Memory::readback});
+}
+
+ViewFactors::ViewFactors(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
+                         std::span<const KnownExchange> known) {
+    check(options);
+    check_filled(accel, faces.triangle_counts(), "view factors");
+    state_ = std::make_unique<State>(accel, faces, options, known);
+}
+ViewFactors::~ViewFactors() = default;
+
+std::size_t ViewFactors::row_count() const { return state_->members.size(); }
+const std::vector<double>& ViewFactors::areas() const { return state_->areas; }
+
+std::size_t ViewFactors::batch_size() const {
+    const ViewFactorOptions& options = state_->options;
+    return std::clamp<std::size_t>(batch_chunks / chunks_of(options.target_error ? first_rays : options.rays), 1, 4096);
 }
 
 // How often the first round's rays are to have been taken after the next one: doubles while errors are above the
 // target; none where the row is done.
-std::uint64_t ViewFactors::rounds_of(const Row& row) {
+std::uint64_t ViewFactors::State::rounds_of(const Row& row) {
     if (row.rounds == 0) return row.members.empty() ? 0 : 1;
-    if (!options_.target_error || row.sums.rays() * 2 > options_.rays) return row.rounds;
-    return row.is_within(*options_.target_error, known_[row.group], estimator_) ? row.rounds : row.rounds * 2;
+    if (!options.target_error || row.sums.rays() * 2 > options.rays) return row.rounds;
+    return row.is_within(*options.target_error, known[row.group], estimator) ? row.rounds : row.rounds * 2;
+}
+
+Row ViewFactors::State::row_of(std::size_t group) const {
+    const bool is_short = options.target_error || is_full(known[group]);
+    const auto wanted = static_cast<double>(chunks_of(is_short ? std::min(first_rays, options.rays) : options.rays));
+    Row row{.group = static_cast<uint>(group), .members = {}};
+    for (const uint face : members[group]) {
+        const double share = faces.areas()[face] / areas[group];
+        const auto own = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(share * wanted));
+        row.members.push_back({face, static_cast<uint>(own), share * wanted / static_cast<double>(own)});
+    }
+    return row;
 }
 
 std::vector<ViewFactorRow> ViewFactors::rows(std::size_t first, std::size_t last) {
-    check_filled(accel_, faces_.triangle_counts(), "view factors");
-    accel_.sync();
-    std::vector<Row> rows(last - first);
-    for (std::size_t i = first; i < last; ++i) {
-        const bool is_short = options_.target_error || is_full(known_[i]);
-        const std::uint64_t chunks = chunks_of(is_short ? std::min(first_rays, options_.rays) : options_.rays);
-        Row& row = rows[i - first];
-        row.group = static_cast<uint>(i);
-        for (const uint face : members_[i]) {
-            const double share = faces_.areas()[face] / areas_[i];
-            const auto own =
-                std::max<std::uint64_t>(1, static_cast<std::uint64_t>(share * static_cast<double>(chunks)));
-            row.members.push_back(
-                {face, static_cast<uint>(own), share * static_cast<double>(chunks) / static_cast<double>(own)});
-        }
-    }
+    check_filled(state_->accel, state_->faces.triangle_counts(), "view factors");
+    state_->accel.sync();
+    std::vector<Row> rows;
+    for (std::size_t i = first; i < last; ++i) rows.push_back(state_->row_of(i));
     std::vector<Row*> open;
     for (Row& row : rows) open.push_back(&row);
     for (;;) {
-        std::erase_if(open, [&](Row* row) { return rounds_of(*row) == row->rounds; });
-        if (open.empty()) return results(rows);
-        trace(open);
+        std::erase_if(open, [&](Row* row) { return state_->rounds_of(*row) == row->rounds; });
+        if (open.empty()) break;
+        state_->trace(open);
     }
+    std::vector<ViewFactorRow> results;
+    for (const Row& row : rows) results.push_back(state_->result_of(row));
+    return results;
 }
 
 // The next round of each.
-void ViewFactors::trace(std::vector<Row*>& rows) {
+void ViewFactors::State::trace(std::vector<Row*>& rows) {
     struct Owner {
         Row* row;
         double weight;
     };
-    std::vector<RayChunk> chunks;
+    std::vector<RayChunk> batch;
     std::vector<Owner> owners;
     const auto flush = [&] {
-        if (chunks.empty()) return;
-        trace_batch(chunks);
-        const auto* targets = reinterpret_cast<const uint*>(targets_.mapped());
-        for (std::size_t i = 0; i < chunks.size(); ++i)
-            owners[i].row->sums.add({targets + i * CHUNK, CHUNK}, owners[i].weight);
+        if (batch.empty()) return;
+        trace_batch(batch);
+        const auto* met = reinterpret_cast<const uint*>(targets.mapped());
+        for (std::size_t i = 0; i < batch.size(); ++i)
+            owners[i].row->sums.add({met + i * CHUNK, CHUNK}, owners[i].weight);
         std::vector<Row*> touched;
         for (const Owner& owner : owners)
             if (touched.empty() || touched.back() != owner.row) touched.push_back(owner.row);
         parallel_for(touched.size(), [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) touched[i]->sums.settle();
         });
-        chunks.clear();
+        batch.clear();
         owners.clear();
     };
     for (Row* row : rows) {
         const std::uint64_t next = std::max<std::uint64_t>(1, row->rounds * 2);
         for (const Row::Member& member : row->members)
             for (std::uint64_t chunk = member.chunks * row->rounds; chunk < member.chunks * next; ++chunk) {
-                chunks.push_back({member.face, static_cast<uint>(chunk * SAMPLES_OF_CHUNK)});
+                batch.push_back({member.face, static_cast<uint>(chunk * SAMPLES_OF_CHUNK)});
                 owners.push_back({row, member.weight});
-                if (chunks.size() == batch_chunks) flush();
+                if (batch.size() == batch_chunks) flush();
             }
         row->rounds = next;
     }
     flush();
 }
 
-void ViewFactors::trace_batch(std::span<const RayChunk> chunks) {
-    std::memcpy(chunks_.mapped(), chunks.data(), chunks.size_bytes());
-    const std::uint64_t count = chunks.size() * CHUNK;
-    const uint is_two_sided = options_.sides == Sides::both ? 1 : 0;
-    const auto rays = rays_.ref<Ray>();
-    const auto hits = hits_.ref<Hit>();
-    Commands commands(accel_.context(), "view factors");
-    make_rays_.dispatch(commands,
-                        {faces_.table(), chunks_.ref<RayChunk>(), rays, options_.seed,
-                         options_.sequence == Sequence::sobol ? SEQUENCE_SOBOL : SEQUENCE_RANDOM, is_two_sided, 0},
-                        count);
-    accel_.trace(commands, accel_.view(), {.rays = rays, .hits = hits, .count = count}, pace_);
-    find_targets_.dispatch(
-        commands,
-        {faces_.table(), rays, hits, {groups_.address()}, targets_.ref<uint>(), static_cast<uint>(count), is_two_sided},
-        count);
-    pace_.finish(commands);
+void ViewFactors::State::trace_batch(std::span<const RayChunk> batch) {
+    std::memcpy(chunks.mapped(), batch.data(), batch.size_bytes());
+    const std::uint64_t count = batch.size() * CHUNK;
+    const uint is_two_sided = options.sides == Sides::both ? 1 : 0;
+    const auto made = rays.ref<Ray>();
+    const auto met = hits.ref<Hit>();
+    Commands commands(accel.context(), "view factors");
+    make_rays.dispatch(commands,
+                       {faces.state().table(), chunks.ref<RayChunk>(), made, options.seed,
+                        options.sequence == Sequence::sobol ? SEQUENCE_SOBOL : SEQUENCE_RANDOM, is_two_sided, 0},
+                       count);
+    accel.trace(commands, accel.view(), {.rays = made, .hits = met, .count = count}, pace);
+    find_targets.dispatch(commands,
+                          {faces.state().table(),
+                           made,
+                           met,
+                           {groups.address()},
+                           targets.ref<uint>(),
+                           static_cast<uint>(count),
+                           is_two_sided},
+                          count);
+    pace.finish(commands);
 }
 
-std::vector<ViewFactorRow> ViewFactors::results(const std::vector<Row>& rows) {
-    std::vector<ViewFactorRow> results;
-    for (const Row& row : rows) {
-        const std::vector<ViewFactor>& known = known_[row.group];
-        ViewFactorRow result;
-        result.group = row.group;
-        result.rays = result.hits = row.sums.rays();
-        const double total = row.total_weight();
-        result.open = result.back = estimator_({}, 0, result.rays);
-        std::vector<ViewFactor> counted;
-        for (const RowSums::Entry& entry : row.sums.entries()) {
-            const Estimate estimate = row.sums.estimate(entry, total, estimator_);
-            if (entry.target == TARGET_OPEN || entry.target == TARGET_BACK) {
-                (entry.target == TARGET_OPEN ? result.open : result.back) = estimate;
-                result.hits -= entry.hits;
-            } else if (!has(known, entry.target)) {
-                counted.push_back({entry.target, static_cast<float>(estimate.value),
-                                   static_cast<float>(estimate.interval_95.low),
-                                   static_cast<float>(estimate.interval_95.high), PairEstimator::hits});
-            }
+ViewFactorRow ViewFactors::State::result_of(const Row& row) {
+    ViewFactorRow result;
+    result.group = row.group;
+    result.rays = result.hits = row.sums.rays();
+    const double total = row.total_weight();
+    result.open = result.back = estimator({}, 0, result.rays);
+    std::vector<ViewFactor> counted;
+    for (const RowSums::Entry& entry : row.sums.entries()) {
+        const Estimate estimate = row.sums.estimate(entry, total, estimator);
+        if (entry.target == TARGET_OPEN || entry.target == TARGET_BACK) {
+            (entry.target == TARGET_OPEN ? result.open : result.back) = estimate;
+            result.hits -= entry.hits;
+        } else if (!has(known[row.group], entry.target)) {
+            counted.push_back({entry.target, static_cast<float>(estimate.value),
+                               static_cast<float>(estimate.interval_95.low),
+                               static_cast<float>(estimate.interval_95.high), PairEstimator::hits});
         }
-        std::merge(counted.begin(), counted.end(), known.begin(), known.end(), std::back_inserter(result.factors),
-                   is_before);
-        results.push_back(std::move(result));
     }
-    return results;
+    std::merge(counted.begin(), counted.end(), known[row.group].begin(), known[row.group].end(),
+               std::back_inserter(result.factors), is_before);
+    return result;
 }
 
 }  // namespace twinray

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A tree of boxes, built on the GPU: see shaders/shared/box_tree.h.
+// A tree of boxes, built on the GPU: see shaders/collide/box_tree.h.
 #pragma once
 
 #include "engine/collide/hilbert_order.h"

@@ -7,11 +7,11 @@ namespace twinray {
 namespace {
 
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/neighbours.h"
+#include "shaders/collide/neighbours.h"
 #include "twinray/glsl/cpp_end.h"
 
-// Where a line through corners meets the plane of another triangle.
-dvec3 point_of(const Cut& cut, const Corners64& plane) {
+// Where a line through vertices meets the plane of another triangle.
+dvec3 point_of(const Cut& cut, const WorldTriangle& plane) {
     const double from = std::abs(volume_of(plane.a, plane.b, plane.c, cut.from).value());
     const double to = std::abs(volume_of(plane.a, plane.b, plane.c, cut.to).value());
     if (from == 0 || to == 0) return from == 0 ? cut.from : cut.to;
@@ -19,7 +19,7 @@ dvec3 point_of(const Cut& cut, const Corners64& plane) {
 }
 
 // The ends of what the triangles' cuts have in common: those that lie within the other's.
-ContactSegment common_part(const Corners64& a, const Corners64& b) {
+ContactSegment common_part(const WorldTriangle& a, const WorldTriangle& b) {
     const Cuts of_a = cuts_of(a, sides_of(b, a)), of_b = cuts_of(b, sides_of(a, b));
     const std::array as = {of_a.first, of_a.last}, bs = {of_b.first, of_b.last};
     int order[2][2];
@@ -36,20 +36,21 @@ ContactSegment common_part(const Corners64& a, const Corners64& b) {
     return {ends[0], ends[1]};
 }
 
-dvec3 piercing_point(const Hull& segment, const Corners64& triangle) {
+dvec3 piercing_point(const Hull& segment, const WorldTriangle& triangle) {
     const Cut cut{segment.at.a, segment.at.b, false};
     return point_of(cut, triangle);
 }
 
 }  // namespace
 
-PairClass exact_class(const Corners64& a, const Corners64& b) { return static_cast<PairClass>(class_of(a, b)); }
+PairClass exact_class(const WorldTriangle& a, const WorldTriangle& b) { return static_cast<PairClass>(class_of(a, b)); }
 
-PairClass exact_class(const Corners64& a, const TriangleName& a_name, const Corners64& b, const TriangleName& b_name) {
+PairClass exact_class(const WorldTriangle& a, const TriangleName& a_name, const WorldTriangle& b,
+                      const TriangleName& b_name) {
     return static_cast<PairClass>(class_of_pair(a, a_name, b, b_name));
 }
 
-ContactSegment crossing_segment(const Corners64& a, const Corners64& b) {
+ContactSegment crossing_segment(const WorldTriangle& a, const WorldTriangle& b) {
     bool doubt = false;
     const Hull of_a = hull_of(a, doubt), of_b = hull_of(b, doubt);
     if (of_a.dimension == 2 && of_b.dimension == 2) return common_part(a, b);

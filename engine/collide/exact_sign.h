@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Signs of volumes and areas without error: those that float64 leaves open are computed by expansions of doubles.
-// Coordinates must be 0 or of a magnitude from 2^-245 to 2^259, as those of world_corner.h are: then no operation over-
+// Coordinates must be 0 or of a magnitude from 2^-245 to 2^259, as those of world_vertex.h are: then no operation over-
 // or underflows.
 #pragma once
 
@@ -10,7 +10,7 @@
 namespace twinray {
 
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/orient.h"
+#include "shaders/collide/orient.h"
 #include "twinray/glsl/cpp_end.h"
 
 // det(a - d, b - d, c - d), and its sign: 1 where d sees a, b, c turn clockwise.

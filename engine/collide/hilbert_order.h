@@ -7,12 +7,12 @@
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/box_tree.h"
+#include "shaders/collide/box_tree.h"
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(TreeBox) == 32);
 
-// Sorts boxes on the GPU by where their centres lie along a Hilbert curve (shaders/shared/hilbert.h); empty ones come
+// Sorts boxes on the GPU by where their centres lie along a Hilbert curve (shaders/collide/hilbert.h); empty ones come
 // first. Its memory grows with the largest count so far and is used again.
 class HilbertOrder {
   public:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
+// The classes of pairs of triangles and what kernels need to tell them, for C++.
 #pragma once
 
-#include <array>
-#include <string_view>
+#include <twinray/queries.h>
 
 #include "engine/accel/instance_record.h"
 #include "engine/accel/world_bound.h"
@@ -10,28 +10,17 @@
 namespace twinray {
 
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/pair_class.h"
+#include "shaders/collide/pair_class.h"
 #include "twinray/glsl/cpp_end.h"
 
-static_assert(sizeof(Corners64) == 72 && sizeof(PlacedMesh) == 80 && sizeof(TriangleName) == 16);
+static_assert(sizeof(WorldTriangle) == 72 && sizeof(InstancedMesh) == 80 && sizeof(TriangleName) == 16);
 
-// How two triangles lie to each other: shaders/shared/pair_class.h defines each.
-enum class PairClass : std::uint8_t {
-    separate = PAIR_SEPARATE,
-    vertex_touch = PAIR_VERTEX_TOUCH,
-    edge_touch = PAIR_EDGE_TOUCH,
-    coplanar_touch = PAIR_COPLANAR_TOUCH,
-    coplanar_overlap = PAIR_COPLANAR_OVERLAP,
-    crossing = PAIR_CROSSING
-};
-inline constexpr std::array all_pair_classes = {PairClass::separate,         PairClass::vertex_touch,
-                                                PairClass::edge_touch,       PairClass::coplanar_touch,
-                                                PairClass::coplanar_overlap, PairClass::crossing};
-
-constexpr std::string_view name_of(PairClass pair_class) {
-    constexpr std::string_view names[] = {"separate",       "vertex_touch",     "edge_touch",
-                                          "coplanar_touch", "coplanar_overlap", "crossing"};
-    return names[static_cast<std::size_t>(pair_class)];
-}
+constexpr uint class_number(PairClass pair_class) { return static_cast<uint>(pair_class); }
+static_assert(class_number(PairClass::separate) == PAIR_SEPARATE && class_number(PairClass::crossing) == PAIR_CROSSING);
+static_assert(class_number(PairClass::vertex_touch) == PAIR_VERTEX_TOUCH);
+static_assert(class_number(PairClass::edge_touch) == PAIR_EDGE_TOUCH);
+static_assert(class_number(PairClass::coplanar_touch) == PAIR_COPLANAR_TOUCH);
+static_assert(class_number(PairClass::coplanar_overlap) == PAIR_COPLANAR_OVERLAP);
+static_assert(all_pair_classes.size() == PAIR_CLASSES);
 
 }  // namespace twinray

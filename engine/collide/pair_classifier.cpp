@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::uint64_t chunk = 1 << 20;  // pairs of which the results are downloaded at once: 16 MiB
 
-void check(const Corners64& t, std::size_t pair) {
-    for (const dvec3& corner : {t.a, t.b, t.c})
-        if (const std::string fault = sign_fault_of(corner); !fault.empty())
+void check(const WorldTriangle& t, std::size_t pair) {
+    for (const dvec3& vertex : {t.a, t.b, t.c})
+        if (const std::string fault = sign_fault_of(vertex); !fault.empty())
             fail("classify: pair ", pair, " has ", fault);
 }
 
@@ -60,10 +60,10 @@ std::uint64_t PairClassifier::run(const DevicePairs& pairs, std::uint64_t begin,
     pace_.record(commands, count, [&](std::uint64_t first, std::uint64_t some) {
         const std::uint64_t offset = (begin + first) * sizeof(uint);
         kernel_.dispatch(commands,
-                         {.corners = items.corners,
+                         {.triangles = items.triangles,
                           .names = items.names,
-                          .first = {pairs.first.address + offset},
-                          .second = {pairs.second.address + offset},
+                          .first = {pairs.first + offset},
+                          .second = {pairs.second + offset},
                           .contacts = contacts_.ref<PairContact>(),
                           .total = total_.ref<ListTotal>(),
                           .count = static_cast<uint>(some),
@@ -80,8 +80,8 @@ void PairClassifier::decide(std::vector<PairContact>& contacts, const Items& ite
         if (contact.class_of_pair != PAIR_UNDECIDED) continue;
         ++host_count_;
         contact.class_of_pair =
-            static_cast<uint>(exact_class(items.host_corners(contact.first), items.host_name(contact.first),
-                                          items.host_corners(contact.second), items.host_name(contact.second)));
+            static_cast<uint>(exact_class(items.host_triangle(contact.first), items.host_name(contact.first),
+                                          items.host_triangle(contact.second), items.host_name(contact.second)));
     }
     host_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -91,15 +91,16 @@ std::vector<PairClass> PairClassifier::classify(std::span<const TrianglePair> pa
     if (pairs.empty()) return classes;
     if (pairs.size() > PairSearch::most_pairs / 2)
         fail("classify: ", pairs.size(), " pairs; at most ", PairSearch::most_pairs / 2, " at once");
-    std::vector<TriangleName> names;
-    std::vector<uint> items;
-    for (uint column = 0; column < 2; ++column)
-        for (uint i = 0; i < pairs.size(); ++i) items.push_back(2 * i + column);
-    for (uint i = 0; i < 2 * pairs.size(); ++i) names.push_back({uvec3(0, 1, 2), i});
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         check(pairs[i].a, i);
         check(pairs[i].b, i);
     }
+    // Triangle 2 i is the first of pair i, 2 i + 1 the second; none share vertices.
+    std::vector<TriangleName> names;
+    std::vector<uint> items;
+    for (uint i = 0; i < 2 * pairs.size(); ++i) names.push_back({uvec3(0, 1, 2), i});
+    for (uint column = 0; column < 2; ++column)
+        for (uint i = 0; i < pairs.size(); ++i) items.push_back(2 * i + column);
     const std::uint64_t names_at = offset_after<TrianglePair>(0, pairs.size());
     const std::uint64_t items_at = offset_after<TriangleName>(names_at, names.size());
     const Buffer data(context_, {.name = "collide given pairs", .bytes = items_at + items.size() * sizeof(uint)});
@@ -111,12 +112,12 @@ std::vector<PairClass> PairClassifier::classify(std::span<const TrianglePair> pa
         commands.upload(data, std::span<const uint>(items), items_at);
     }
     commands.submit();
-    const DevicePairs listed{data.ref<uint>(items_at), data.ref<uint>(items_at + pairs.size() * sizeof(uint)),
-                             pairs.size(), &data};
-    const auto corners_of = [&](uint item) { return item % 2 ? pairs[item / 2].b : pairs[item / 2].a; };
+    const std::uint64_t first = data.address() + items_at;
+    const DevicePairs listed{first, first + pairs.size() * sizeof(uint), pairs.size(), &data};
+    const auto triangle_of = [&](uint item) { return item % 2 ? pairs[item / 2].b : pairs[item / 2].a; };
     const auto name_of_item = [&](uint item) { return names[item]; };
     for (const ClassifiedPair& pair :
-         classify(listed, {data.ref<Corners64>(), data.ref<TriangleName>(names_at), corners_of, name_of_item}))
+         classify(listed, {data.ref<WorldTriangle>(), data.ref<TriangleName>(names_at), triangle_of, name_of_item}))
         classes[pair.first / 2] = pair.pair_class;
     return classes;
 }

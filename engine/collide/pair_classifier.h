@@ -11,10 +11,6 @@
 
 namespace twinray {
 
-struct TrianglePair {
-    Corners64 a, b;
-};
-
 // Two items and their class, which is not separate.
 struct ClassifiedPair {
     uint first = 0;
@@ -30,14 +26,14 @@ class PairClassifier {
 
     // The triangles that items name: on the device, and the same on the host.
     struct Items {
-        Ref<Corners64> corners;
+        Ref<WorldTriangle> triangles;
         Ref<TriangleName> names;
-        std::function<Corners64(uint)> host_corners;
+        std::function<WorldTriangle(uint)> host_triangle;
         std::function<TriangleName(uint)> host_name;
     };
     // Those of the pairs that are not separate, in no order. Submits and waits.
     std::vector<ClassifiedPair> classify(const DevicePairs& pairs, const Items& items);
-    // Of each pair. Throws Error for a corner that is not finite or out of the range of exact_class().
+    // Of each pair. Throws Error for a vertex that is not finite or out of the range of exact_class().
     std::vector<PairClass> classify(std::span<const TrianglePair> pairs);
 
     // Of the last call: how many the host decided, and what it took.

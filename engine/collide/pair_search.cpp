@@ -11,9 +11,9 @@
 
 namespace twinray {
 
-std::vector<uint> download(Context& context, const DevicePairs& pairs, Uints DevicePairs::*column) {
+std::vector<uint> download(Context& context, const DevicePairs& pairs, std::uint64_t DevicePairs::*column) {
     if (pairs.count == 0) return {};
-    return download<uint>(context, *pairs.buffer, pairs.count, (pairs.*column).address - pairs.buffer->address());
+    return download<uint>(context, *pairs.buffer, pairs.count, pairs.*column - pairs.buffer->address());
 }
 
 PairSearch::PairSearch(Context& context)
@@ -90,7 +90,7 @@ DevicePairs PairSearch::find(const Query& query, const std::string& action) {
         run(query, room, 0);
     }
     const RadixSort::Pairs found = columns(pairs_, room);
-    return {found.keys, found.values, total, &pairs_};
+    return {found.keys.address, found.values.address, total, &pairs_};
 }
 
 DevicePairs PairSearch::find_sorted(const Query& query, uint largest_item, const std::string& action) {
@@ -106,7 +106,7 @@ DevicePairs PairSearch::find_sorted(const Query& query, uint largest_item, const
     const auto bits = static_cast<uint>(std::bit_width(largest_item));
     Commands commands(context_, "collide sort");
     // The sort is stable: first by the second items, then by the first ones.
-    RadixSort::Pairs pairs{found.second, found.first}, spare = columns(spare_, found.count);
+    RadixSort::Pairs pairs{{found.second}, {found.first}}, spare = columns(spare_, found.count);
     for (int column = 0; column < 2; ++column) {
         const RadixSort::Pairs sorted =
             sort_.record(commands, pairs, spare, counters_.ref<uint>(), static_cast<uint>(found.count), bits);
@@ -115,7 +115,7 @@ DevicePairs PairSearch::find_sorted(const Query& query, uint largest_item, const
     }
     commands.submit();
     const bool is_in_spare = pairs.keys.address - spare_.address() < spare_.bytes();
-    return {pairs.values, pairs.keys, found.count, is_in_spare ? &spare_ : &pairs_};
+    return {pairs.values.address, pairs.keys.address, found.count, is_in_spare ? &spare_ : &pairs_};
 }
 
 }  // namespace twinray

@@ -2,6 +2,8 @@
 // Pairs of boxes that overlap, found on the device by a tree of boxes.
 #pragma once
 
+#include <twinray/queries.h>
+
 #include <string>
 
 #include "engine/collide/box_tree.h"
@@ -9,21 +11,13 @@
 
 namespace twinray {
 
-// Pairs in device memory: element i of both. Valid until the next search.
-struct DevicePairs {
-    Uints first, second;
-    std::uint64_t count = 0;
-    const Buffer* buffer = nullptr;  // that holds both; null where there are none
-};
-
 // One column of them, `first` or `second`, copied to the host.
-std::vector<uint> download(Context& context, const DevicePairs& pairs, Uints DevicePairs::*column);
+std::vector<uint> download(Context& context, const DevicePairs& pairs, std::uint64_t DevicePairs::*column);
 
 // Finds the boxes of a tree that overlap given ones. Boxes are closed: those that touch overlap. The memory for pairs
 // grows with the most that were found so far and is used again.
 class PairSearch {
   public:
-    static constexpr std::uint64_t default_max_pairs = 1u << 27;
     static constexpr std::uint64_t most_pairs = 0xffffffffu;
 
     explicit PairSearch(Context& context);

@@ -13,7 +13,7 @@
 namespace twinray {
 namespace {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/world_corner.h"
+#include "shaders/collide/world_vertex.h"
 #include "twinray/glsl/cpp_end.h"
 
 // The least coordinate of the box under a row, lower by more than float64 rounds.
@@ -60,29 +60,29 @@ struct Upload {
 };
 
 // Addresses are offsets in what is uploaded.
-PlacedMesh added_to(Upload& upload, const MeshView& mesh, std::span<const uint> ids) {
-    PlacedMesh added{};
+InstancedMesh added_to(Upload& upload, const MeshView& mesh, std::span<const uint> ids) {
+    InstancedMesh added{};
     added.positions.address = upload.add(mesh.positions);
     added.indices.address = upload.add(mesh.triangles);
     added.vertex_ids.address = upload.add(ids);
     return added;
 }
 
-void move_to(std::uint64_t address, PlacedMesh& mesh, Shared shared) {
+void move_to(std::uint64_t address, InstancedMesh& mesh, SharedVertices shared) {
     mesh.positions.address += address;
     mesh.indices.address += address;
-    mesh.vertex_ids.address = shared == Shared::by_index ? 0 : mesh.vertex_ids.address + address;
+    mesh.vertex_ids.address = shared == SharedVertices::by_index ? 0 : mesh.vertex_ids.address + address;
 }
 
-PlacedMesh on_host(const MeshView& mesh, std::span<const uint> ids) {
-    PlacedMesh host{};
+InstancedMesh on_host(const MeshView& mesh, std::span<const uint> ids) {
+    InstancedMesh host{};
     host.positions = {reinterpret_cast<std::uint64_t>(mesh.positions.data())};
     host.indices = {reinterpret_cast<std::uint64_t>(mesh.triangles.data())};
     host.vertex_ids = {reinterpret_cast<std::uint64_t>(ids.data())};
     return host;
 }
 
-PlacedMesh placed(PlacedMesh mesh, const Transform& transform, std::size_t first_triangle) {
+InstancedMesh instanced(InstancedMesh mesh, const Transform& transform, std::size_t first_triangle) {
     std::copy(transform.rows.begin(), transform.rows.end(), mesh.object_to_world);
     mesh.first_triangle = static_cast<uint>(first_triangle);
     mesh.is_mirrored = determinant(transform) < 0 ? 1 : 0;
@@ -91,7 +91,7 @@ PlacedMesh placed(PlacedMesh mesh, const Transform& transform, std::size_t first
 
 }  // namespace
 
-void check_placed(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, const char* action) {
+void check_instances(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, const char* action) {
     for (const MeshView& mesh : meshes) check_indices(mesh);
     for (std::size_t i = 0; i < instances.size(); ++i)
         if (instances[i].mesh >= meshes.size())
@@ -103,8 +103,8 @@ TreeBox box_of_instance(const Bounds& mesh, const Transform& transform, uint ite
     if (mesh.is_empty()) return box;
     for (int axis = 0; axis < 3; ++axis) {
         const vec4 row = transform.rows[static_cast<std::size_t>(axis)];
-        box.lo[axis] = float_below(least_coordinate(row, mesh));
-        box.hi[axis] = -float_below(least_coordinate(-row, mesh));
+        box.min[axis] = float_below(least_coordinate(row, mesh));
+        box.max[axis] = -float_below(least_coordinate(-row, mesh));
     }
     box.item = box.group = item;
     return box;
@@ -115,73 +115,73 @@ TriangleSet::TriangleSet(Context& context)
       kernel_(context, {.name = "collide_world_triangles", .spirv = collide_world_triangles_spirv}) {}
 
 void TriangleSet::set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances,
-                      std::span<const uint> chosen, Shared shared) {
+                      std::span<const uint> chosen, SharedVertices shared) {
     count_ = 0;
     std::uint64_t total = 0;
     for (const uint index : chosen) total += meshes[instances[index].mesh].triangles.size();
     if (total > BoxTree::max_count)
         fail("the instances in question have ", total, " triangles; at most ", BoxTree::max_count, " fit");
-    placed_.clear();
+    instanced_.clear();
     vertex_ids_.assign(meshes.size(), {});
     chosen_.assign(chosen.begin(), chosen.end());
     Upload upload;
-    std::vector<std::optional<PlacedMesh>> uploaded(meshes.size());
-    std::vector<PlacedMesh> table;
+    std::vector<std::optional<InstancedMesh>> uploaded(meshes.size());
+    std::vector<InstancedMesh> table;
     for (const uint index : chosen) {
         const MeshInstance& instance = instances[index];
         const MeshView& mesh = meshes[instance.mesh];
         std::vector<uint>& ids = vertex_ids_[instance.mesh];
-        std::optional<PlacedMesh>& of_mesh = uploaded[instance.mesh];
+        std::optional<InstancedMesh>& of_mesh = uploaded[instance.mesh];
         if (!of_mesh) {
-            if (shared == Shared::by_position) ids = ids_by_position(mesh.positions);
+            if (shared == SharedVertices::by_position) ids = ids_by_position(mesh.positions);
             of_mesh = added_to(upload, mesh, ids);
         }
-        table.push_back(placed(*of_mesh, instance.transform, count_));
-        placed_.push_back(placed(on_host(mesh, ids), instance.transform, count_));
+        table.push_back(instanced(*of_mesh, instance.transform, count_));
+        instanced_.push_back(instanced(on_host(mesh, ids), instance.transform, count_));
         count_ += mesh.triangles.size();
     }
     if (count_ == 0) return;
     allocate(upload.bytes);
-    for (PlacedMesh& mesh : table) move_to(data_.address(), mesh, shared);
+    for (InstancedMesh& mesh : table) move_to(data_.address(), mesh, shared);
     Commands commands(context_, "collide meshes");
     {
         const auto pass = commands.pass("collide meshes");
         commands.upload_pieces(data_, upload.pieces);
-        commands.upload(table_, std::span<const PlacedMesh>(table));
+        commands.upload(table_, std::span<const InstancedMesh>(table));
     }
     commands.submit();
 }
 
 void TriangleSet::allocate(std::uint64_t mesh_bytes) {
     data_ = Buffer(context_, {.name = "collide meshes", .bytes = mesh_bytes});
-    table_ = Buffer(context_, {.name = "collide placed meshes", .bytes = placed_.size() * sizeof(PlacedMesh)});
-    corners_ = Buffer(context_, {.name = "collide corners", .bytes = count_ * sizeof(Corners64)});
+    table_ = Buffer(context_, {.name = "collide instanced meshes", .bytes = instanced_.size() * sizeof(InstancedMesh)});
+    world_triangles_ = Buffer(context_, {.name = "collide triangles", .bytes = count_ * sizeof(WorldTriangle)});
     names_ = Buffer(context_, {.name = "collide names", .bytes = count_ * sizeof(TriangleName)});
 }
 
 void TriangleSet::record(Commands& commands, Ref<TreeBox> boxes) const {
     if (count_ == 0) return;
-    const WorldTrianglesArgs args{table_.ref<PlacedMesh>(),          boxes,
-                                  corners_.ref<Corners64>(),         names_.ref<TriangleName>(),
-                                  static_cast<uint>(placed_.size()), static_cast<uint>(count_)};
+    const WorldTrianglesArgs args{table_.ref<InstancedMesh>(),           boxes,
+                                  world_triangles_.ref<WorldTriangle>(), names_.ref<TriangleName>(),
+                                  static_cast<uint>(instanced_.size()),  static_cast<uint>(count_)};
     kernel_.dispatch(commands, args, count_);
 }
 
 std::size_t TriangleSet::mesh_of(uint item) const {
-    const auto after = std::upper_bound(placed_.begin(), placed_.end(), item,
-                                        [](uint i, const PlacedMesh& placed) { return i < placed.first_triangle; });
-    return static_cast<std::size_t>(after - placed_.begin()) - 1;
+    const auto after = std::upper_bound(instanced_.begin(), instanced_.end(), item,
+                                        [](uint i, const InstancedMesh& mesh) { return i < mesh.first_triangle; });
+    return static_cast<std::size_t>(after - instanced_.begin()) - 1;
 }
 
-Corners64 TriangleSet::corners(uint item) const {
-    return world_corners(placed_[mesh_of(item)], vertices_of(placed_[mesh_of(item)], primitive(item)));
+WorldTriangle TriangleSet::triangle(uint item) const {
+    return world_triangle(instanced_[mesh_of(item)], indices_of(instanced_[mesh_of(item)], primitive(item)));
 }
 
 TriangleName TriangleSet::name(uint item) const {
     const std::size_t index = mesh_of(item);
-    const PlacedMesh& placed = placed_[index];
-    uvec3 ids = vertices_of(placed, primitive(item));
-    if (placed.vertex_ids.address) ids = {placed.vertex_ids[ids.x], placed.vertex_ids[ids.y], placed.vertex_ids[ids.z]};
+    const InstancedMesh& mesh = instanced_[index];
+    uvec3 ids = indices_of(mesh, primitive(item));
+    if (mesh.vertex_ids.address) ids = {mesh.vertex_ids[ids.x], mesh.vertex_ids[ids.y], mesh.vertex_ids[ids.z]};
     return {ids, static_cast<uint>(index)};
 }
 

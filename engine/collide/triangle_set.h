@@ -11,20 +11,11 @@
 
 namespace twinray {
 
-// One placement of a mesh.
-struct MeshInstance {
-    uint mesh = 0;  // index among the meshes
-    Transform transform;
-};
-
 // Throws Error, beginning with `action`, that names the mesh or the instance with an index out of range.
-void check_placed(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, const char* action);
+void check_instances(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, const char* action);
 
-// Which vertices of a mesh are one, so that triangles that have them are neighbours.
-enum class Shared : std::uint8_t { by_index, by_position };
-
-// A box around what an instance covers in world space, corners as in world_corner.h, and a little more. Empty for a
-// mesh without a finite triangle.
+// A box around what an instance covers in world space, with vertices as in world_vertex.h, and a little more. Empty for
+// a mesh without a finite triangle.
 TreeBox box_of_instance(const Bounds& mesh, const Transform& transform, uint item);
 
 // The triangles of instances in world space, on the device: item i counts them instance by instance.
@@ -35,21 +26,21 @@ class TriangleSet {
     // Uploads the meshes. `chosen`: indices of the instances that take part, ascending. The spans, and what they refer
     // to, must outlive the use of this.
     void set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, std::span<const uint> chosen,
-             Shared shared);
+             SharedVertices shared);
     std::size_t count() const { return count_; }
-    // Writes boxes, corners and names of all; items are grouped by instance.
+    // Writes boxes, triangles and names of all; items are grouped by instance.
     void record(Commands& commands, Ref<TreeBox> boxes) const;
-    Ref<Corners64> corners_on_device() const { return corners_.ref<Corners64>(); }
+    Ref<WorldTriangle> triangles_on_device() const { return world_triangles_.ref<WorldTriangle>(); }
     Ref<TriangleName> names_on_device() const { return names_.ref<TriangleName>(); }
-    Ref<PlacedMesh> meshes_on_device() const { return table_.ref<PlacedMesh>(); }  // by group of the boxes
+    Ref<InstancedMesh> meshes_on_device() const { return table_.ref<InstancedMesh>(); }  // by group of the boxes
 
     // Of one item, computed on the host: the same bits.
-    Corners64 corners(uint item) const;
+    WorldTriangle triangle(uint item) const;
     TriangleName name(uint item) const;
     uint instance(uint item) const { return chosen_[mesh_of(item)]; }
-    uint primitive(uint item) const { return item - placed_[mesh_of(item)].first_triangle; }
-    bool is_mirrored(uint item) const { return placed_[mesh_of(item)].is_mirrored != 0; }
-    std::uint64_t bytes() const { return data_.bytes() + table_.bytes() + corners_.bytes() + names_.bytes(); }
+    uint primitive(uint item) const { return item - instanced_[mesh_of(item)].first_triangle; }
+    bool is_mirrored(uint item) const { return instanced_[mesh_of(item)].is_mirrored != 0; }
+    std::uint64_t bytes() const { return data_.bytes() + table_.bytes() + world_triangles_.bytes() + names_.bytes(); }
 
   private:
     void allocate(std::uint64_t mesh_bytes);
@@ -57,11 +48,11 @@ class TriangleSet {
 
     Context& context_;
     Kernel<WorldTrianglesArgs> kernel_;
-    std::vector<PlacedMesh> placed_;             // with addresses of the host
+    std::vector<InstancedMesh> instanced_;       // with addresses of the host
     std::vector<std::vector<uint>> vertex_ids_;  // by mesh, where they are not the indices
     std::vector<uint> chosen_;
     std::size_t count_ = 0;
-    Buffer data_, table_, corners_, names_;
+    Buffer data_, table_, world_triangles_, names_;
 };
 
 }  // namespace twinray

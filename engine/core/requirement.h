@@ -17,7 +17,7 @@ struct KernelLimits {
 // One thing that twinray uses of a device.
 struct Requirement {
     // What does not work without: all; HwTlas, its kernels that query rays, its batches where no kernel can; the levels
-    // from refined on; PointFinder; ContactFinder; kernels of a host with integers of 64 bits; or images in
+    // from refined on; PointQuery; NarrowPhase; kernels of a host with integers of 64 bits; or images in
     // TextureStore.
     enum class Of : std::uint8_t {
         everything,

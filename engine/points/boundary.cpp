@@ -9,10 +9,10 @@
 namespace twinray {
 namespace {
 
-using Corner = std::array<float, 3>;  // ordered by comparing numbers, so that -0 equals 0
+using Vertex = std::array<float, 3>;  // ordered by comparing numbers, so that -0 equals 0
 
 struct Edge {
-    std::array<Corner, 2> ends;  // ascending
+    std::array<Vertex, 2> ends;  // ascending
     int passes;                  // 1: from the first to the second; -1: back
     uint triangle;
 
@@ -25,12 +25,12 @@ std::vector<Edge> sorted_edges(const MeshView& mesh) {
     std::vector<Edge> edges;
     edges.reserve(3 * mesh.triangles.size());
     for (uint i = 0; i < mesh.triangles.size(); ++i) {
-        std::array<vec3, 3> corners;
-        for (int k = 0; k < 3; ++k) corners[static_cast<std::size_t>(k)] = mesh.positions[mesh.triangles[i][k]];
-        if (!std::all_of(corners.begin(), corners.end(), [](vec3 p) { return is_finite(p); })) continue;
+        std::array<vec3, 3> vertices;
+        for (int k = 0; k < 3; ++k) vertices[static_cast<std::size_t>(k)] = mesh.positions[mesh.triangles[i][k]];
+        if (!std::all_of(vertices.begin(), vertices.end(), [](vec3 p) { return is_finite(p); })) continue;
         for (std::size_t k = 0; k < 3; ++k) {
-            const vec3 p = corners[k], q = corners[(k + 1) % 3];
-            const Corner a{p.x, p.y, p.z}, b{q.x, q.y, q.z};
+            const vec3 p = vertices[k], q = vertices[(k + 1) % 3];
+            const Vertex a{p.x, p.y, p.z}, b{q.x, q.y, q.z};
             if (a != b) edges.push_back({{std::min(a, b), std::max(a, b)}, a < b ? 1 : -1, i});
         }
     }
@@ -38,7 +38,7 @@ std::vector<Edge> sorted_edges(const MeshView& mesh) {
     return edges;
 }
 
-vec3 to_vec3(const Corner& corner) { return {corner[0], corner[1], corner[2]}; }
+vec3 to_vec3(const Vertex& at) { return {at[0], at[1], at[2]}; }
 
 }  // namespace
 

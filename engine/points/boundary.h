@@ -17,7 +17,7 @@ struct BoundaryEdge {
 };
 
 // The boundary edge of the lowest triangle; nothing if there is none: then a point that is not on the mesh has a
-// winding number. Corners are one if their positions are. Triangles with a corner that is not finite do not count.
+// winding number. Vertices are one if their positions are. Triangles with a vertex that is not finite do not count.
 std::optional<BoundaryEdge> find_boundary_edge(const MeshView& mesh);
 
 // Why points have no side to a mesh, naming it, by its number where it has no name, and an edge; "" if they have.

@@ -2,19 +2,14 @@
 // What reports say about measurements: pure functions of the samples.
 #pragma once
 
+#include <twinray/analysis.h>
+
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace twinray {
-
-struct Interval {
-    double low = 0;
-    double high = 0;
-
-    bool operator==(const Interval&) const = default;
-};
 
 // NaN for no value; the mean of the middle two for an even number.
 double median(std::vector<double> values);

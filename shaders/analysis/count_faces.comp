@@ -3,7 +3,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/count_faces.h"
+#include "shaders/analysis/face.glsl"
+#include "shaders/analysis/count_faces.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { CountFacesArgs args; };
 

@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/ray_grid.h"
+#include "shaders/analysis/ray_grid.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { GridRaysArgs args; };
 

@@ -3,7 +3,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/pair_rays.h"
+#include "shaders/analysis/face.glsl"
+#include "shaders/analysis/pair_rays.h"
 layout(local_size_x = CHUNK) in;
 layout(push_constant, scalar) uniform Push { PairWeightsArgs args; };
 

@@ -1,10 +1,11 @@
-// SPDX-License-Identifier: MIT Where the boxes' centres lie along a Hilbert curve: the lower 30 bits of the boxes in
-// the order given, then the higher of those in the order that sorting by the former made.
+// SPDX-License-Identifier: MIT
+// Where the boxes' centres lie along a Hilbert curve: the lower 30 bits of the boxes in the order given, then the
+// higher of those in the order that sorting by the former made.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/box_tree.h"
-#include "shaders/shared/hilbert.h"
+#include "shaders/collide/box_tree.h"
+#include "shaders/collide/hilbert.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { HilbertOrderArgs args; };
 
@@ -15,11 +16,12 @@ void main()
     uint index = i;
     if (args.is_coarse != 0u) index = AT(args.order, i);
     WorldBoundBits bits = AT(args.bits, 0);
-    vec3 lo = vec3(from_ordered_bits(bits.lo.x), from_ordered_bits(bits.lo.y), from_ordered_bits(bits.lo.z));
-    vec3 hi = vec3(from_ordered_bits(bits.hi.x), from_ordered_bits(bits.hi.y), from_ordered_bits(bits.hi.z));
+    vec3 low = vec3(from_ordered_bits(bits.lo.x), from_ordered_bits(bits.lo.y), from_ordered_bits(bits.lo.z));
+    vec3 high = vec3(from_ordered_bits(bits.hi.x), from_ordered_bits(bits.hi.y), from_ordered_bits(bits.hi.z));
     TreeBox box = AT(args.boxes, index);
-    vec3 size = hi - lo;
+    vec3 size = high - low;
     uint code = 0u;
-    if (!is_empty(box)) code = hilbert_code(center_of(box), lo, max(size.x, max(size.y, size.z)), args.is_coarse != 0u);
+    float side = max(size.x, max(size.y, size.z));
+    if (!is_empty(box)) code = hilbert_code(center_of(box), low, side, args.is_coarse != 0u);
     AT(args.keys, i) = code;
 }

@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/box_tree.h"
+#include "shaders/collide/box_tree.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { InstanceBoxesArgs args; };
 

@@ -1,9 +1,10 @@
-// SPDX-License-Identifier: MIT The leaves that overlap each query. Within one tree a query begins right of its own
-// leaf, so that each pair is met once.
+// SPDX-License-Identifier: MIT
+// The leaves that overlap each query. Within one tree a query begins right of its own leaf, so that each pair is met
+// once.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/box_tree.h"
+#include "shaders/collide/box_tree.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PairSearchArgs args; };
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Triangles where instances put them: corners in float64, and boxes around them, rounded outward.
+// Triangles where instances put them: vertices in float64, and boxes around them, rounded outward.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/world_corner.h"
+#include "shaders/collide/world_triangle.glsl"
+#include "shaders/collide/world_vertex.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { WorldTrianglesArgs args; };
 
@@ -27,16 +28,16 @@ void main()
     uint i = global_index();
     if (i >= args.count) return;
     uint index = mesh_of(i);
-    PlacedMesh placed = AT(args.meshes, index);
-    uvec3 vertices = vertices_of(placed, i - placed.first_triangle);
-    Corners64 corners = world_corners(placed, vertices);
+    InstancedMesh mesh = AT(args.meshes, index);
+    uvec3 indices = indices_of(mesh, i - mesh.first_triangle);
+    WorldTriangle triangle = world_triangle(mesh, indices);
     TriangleName name;
-    name.corners = vertices;
-    if (!is_null(placed.vertex_ids))
-        name.corners = uvec3(AT(placed.vertex_ids, vertices.x), AT(placed.vertex_ids, vertices.y),
-                             AT(placed.vertex_ids, vertices.z));
-    name.placed = index;
-    AT(args.corners, i) = corners;
+    name.vertices = indices;
+    if (!is_null(mesh.vertex_ids))
+        name.vertices =
+            uvec3(AT(mesh.vertex_ids, indices.x), AT(mesh.vertex_ids, indices.y), AT(mesh.vertex_ids, indices.z));
+    name.mesh = index;
+    AT(args.triangles, i) = triangle;
     AT(args.names, i) = name;
-    AT(args.boxes, i) = box_around(corners, i, index);
+    AT(args.boxes, i) = box_around(triangle, i, index);
 }

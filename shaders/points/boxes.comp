@@ -4,7 +4,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/point_search.h"
+#include "shaders/collide/world_triangle.glsl"
+#include "shaders/points/point_search.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PointSearchArgs args; };
 

@@ -4,7 +4,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/point_search.h"
+#include "shaders/collide/world_triangle.glsl"
+#include "shaders/points/point_search.h"
 #include "shaders/engine/list.glsl"
 #include "shaders/points/found.glsl"
 layout(local_size_x = 64) in;
@@ -12,11 +13,11 @@ layout(push_constant, scalar) uniform Push { PointSearchArgs args; };
 
 void main()
 {
-    uint place = args.first + global_index();
-    if (place >= args.end) return;
-    uint i = AT(args.order, place);
+    uint position = args.first + global_index();
+    if (position >= args.end) return;
+    uint i = AT(args.order, position);
     dvec3 point = AT(args.points, i).at;
-    if (!is_finite_corner(point)) return;
+    if (!is_finite_point(point)) return;
     PointBox point_box = scaled(box_around(point), args.scale);
     double squared_limit = args.limit * args.limit;
     float limit_above = squared_distance_above(squared_limit, args.scale);
@@ -32,7 +33,7 @@ void main()
                 node = 2u * node;
                 continue;
             }
-            double squared = nearest_on_triangle(point, AT(args.corners, box.item)).squared;
+            double squared = closest_on_triangle(point, AT(args.triangles, box.item)).squared;
             if (squared <= squared_limit) append(args, i, box.item, sqrt(squared));
         }
         node = next_subtree(node);

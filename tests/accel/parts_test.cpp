@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Work that is cut into many submissions gives what it gives in one.
+#include <twinray/analysis.h>
+#include <twinray/queries.h>
+
 #include <bit>
 #include <random>
 
 #include "engine/accel/all_hits.h"
 #include "engine/accel/scene_push.h"
-#include "engine/analysis/centroid.h"
-#include "engine/analysis/pair_exchanges.h"
-#include "engine/analysis/sky.h"
-#include "engine/collide/collision_finder.h"
-#include "engine/collide/contact_finder.h"
-#include "engine/points/point_finder.h"
 #include "engine/verify/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 
@@ -158,15 +155,15 @@ TEST(Parts, ViewFactorsAreTheSame) {
 TEST(Parts, PointsFindTheSame) {
     expect_equal_in_parts(
         [](Context& context, Found& found) {
-            PointFinder finder(context);
+            PointQuery query(context);
             const Scene scene = scene_of_balls();
-            finder.set(scene);
+            query.set(scene);
             const std::vector<dvec3> points = some_points();
-            for (const ClosestPoint& at : finder.closest(points))
+            for (const ClosestPoint& at : query.closest(points))
                 found.add(at.position, at.distance, at.instance, at.triangle);
-            for (const NearTriangle& near : finder.within(points, 0.5))
+            for (const NearTriangle& near : query.within(points, 0.5))
                 found.add(near.point, near.instance, near.triangle, near.distance);
-            found.add(finder.winding_numbers(points));
+            found.add(query.winding_numbers(points));
         },
         3 * 23);
 }
@@ -175,14 +172,14 @@ TEST(Parts, CollisionsAreTheSame) {
     expect_equal_in_parts(
         [](Context& context, Found& found) {
             const Scene scene = scene_of_balls();
-            for (const TriangleContact& contact : ContactFinder(context).find(scene).list)
+            for (const TriangleContact& contact : NarrowPhase(context).find(scene).list)
                 found.add(contact.instance_a, contact.instance_b, contact.triangle_a, contact.triangle_b,
                           contact.pair_class);
             SwTlas accel(context);
             push_scene(accel, scene);
-            CollisionFinder finder(context);
-            for (const InstancePair& pair : finder.instance_pairs(accel)) found.add(pair.a, pair.b);
-            found.add(finder.count(accel));
+            BroadPhase broad_phase(context);
+            for (const InstancePair& pair : broad_phase.instance_pairs(accel)) found.add(pair.a, pair.b);
+            found.add(broad_phase.count(accel));
         },
         10);
 }

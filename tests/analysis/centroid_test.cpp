@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/centroid.h"
+#include <twinray/analysis.h>
 
+#include "engine/analysis/faces.h"
 #include "tests/analysis/scenes.h"
 
 namespace twinray::test {

@@ -31,8 +31,8 @@ TEST(Contour, DoesNotDependOnPlaceAndScale) {
     for (const double scale : {1e-12, 1.0, 1e12}) {
         const auto moved = [&](Surface surface) {
             for (Polygon64& polygon : surface)
-                for (dvec3& corner : polygon.corners)
-                    corner = scale * dvec3(corner.y - corner.z, corner.y + corner.z, std::sqrt(2.0) * corner.x);
+                for (dvec3& vertex : polygon.vertices)
+                    vertex = scale * dvec3(vertex.y - vertex.z, vertex.y + vertex.z, std::sqrt(2.0) * vertex.x);
             return surface;
         };
         ContourExchange sum;
@@ -68,7 +68,7 @@ TEST(Contour, OfSliversIsWhatIsLeftOfTheWhole) {
         }
 }
 
-// Clipping leaves edges of 1e-8, of corners that miss the planes of other walls by that.
+// Clipping leaves edges of 1e-8, of vertices that miss the planes of other walls by that.
 TEST(Contour, OfRoomsRoundedToFloat32IsAsExactAsOfOthers) {
     for (const double angle : {0.1, 0.3, 0.7, 1.3}) {
         const Surface room = FacePolygons(test::rounded_room(2, angle)).faces;
@@ -87,16 +87,16 @@ TEST(Contour, OfRoomsRoundedToFloat32IsAsExactAsOfOthers) {
     }
 }
 
-// A regular polygon with n corners on a circle about the z axis, which looks up.
+// A regular polygon with n vertices on a circle about the z axis, which looks up.
 Surface disc(int n, double z, bool looks_up) {
-    const auto corner = [&](int i) {
+    const auto vertex = [&](int i) {
         const double angle = 2 * std::numbers::pi * i / n;
         return dvec3(std::cos(angle), std::sin(angle), z);
     };
     Surface surface;
     for (int i = 0; i < n; ++i) {
-        const Polygon64 piece(dvec3(0, 0, z), corner(i), corner(i + 1));
-        surface.push_back(looks_up ? piece : piece.turned());
+        const Polygon64 piece(dvec3(0, 0, z), vertex(i), vertex(i + 1));
+        surface.push_back(looks_up ? piece : piece.flipped());
     }
     return surface;
 }
@@ -119,8 +119,8 @@ Surface sphere(uint subdivisions, const dvec3& middle, double radius) {
     const Mesh mesh = make_icosphere(subdivisions);
     Surface surface;
     for (const uvec3& t : mesh.triangles) {
-        const auto corner = [&](uint i) { return middle + radius * dvec3(mesh.positions[i]); };
-        surface.push_back({corner(t.x), corner(t.y), corner(t.z)});
+        const auto vertex = [&](uint i) { return middle + radius * dvec3(mesh.positions[i]); };
+        surface.push_back({vertex(t.x), vertex(t.y), vertex(t.z)});
     }
     return surface;
 }
@@ -149,7 +149,7 @@ TEST(FacingParts, AreWhatLiesBeforeTheOther) {
     EXPECT_TRUE(facing_parts(floor, floor, rounding_of(1)).is_empty()) << "in one plane";
     const Polygon64 above(dvec3(-1, -1, 1), dvec3(1, -1, 1), dvec3(0, 1, 1));
     EXPECT_TRUE(facing_parts(floor, above, rounding_of(1)).is_empty()) << "that one looks away";
-    EXPECT_FALSE(facing_parts(floor, above.turned(), rounding_of(1)).is_empty());
+    EXPECT_FALSE(facing_parts(floor, above.flipped(), rounding_of(1)).is_empty());
     EXPECT_EQ(gap_over_size(floor, above), 1 / std::sqrt(5.0));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/illumination.h"
+#include <twinray/analysis.h>
 
+#include "engine/analysis/ray_grid.h"
 #include "tests/analysis/scenes.h"
 
 namespace twinray::test {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/pair_exchanges.h"
+#include <twinray/analysis.h>
 
 #include <cmath>
 
-#include "engine/analysis/reciprocity.h"
 #include "tests/analysis/view_factor_scenes.h"
 
 namespace twinray {
@@ -93,9 +92,9 @@ TEST_P(PairExchangesTest, NoFaceSendsMoreThanItHas) {
 Mesh pierced_plate() {
     Mesh mesh;
     for (const float half : {1.5f, 0x1p-5f})
-        for (const vec3& corner :
+        for (const vec3& vertex :
              {vec3(-half, -half, 0), vec3(half, -half, 0), vec3(half, half, 0), vec3(-half, half, 0)})
-            mesh.positions.push_back(vec3(0.5f) + corner);
+            mesh.positions.push_back(vec3(0.5f) + vertex);
     for (uint i = 0; i < 4; ++i) {
         const uint next = (i + 1) % 4;
         mesh.triangles.push_back({i, next, 4 + next});
@@ -286,7 +285,7 @@ TEST_P(PairExchangesTest, TinyFacesAreAsAccurateAsLargeOnes) {
     constexpr float side = 0x1p-20f;  // areas of 1 and 10^-12
     Scene scene = scene_of({make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)),
                             make_quad(vec3(0.5f, 0.5f, 1), vec3(0, side, 0), vec3(side, 0, 0))});
-    // From the tiny square to the corners of four quarters: Howell B-4.
+    // From the tiny square to the vertices of four quarters: Howell B-4.
     const double x = 0.5, root = std::sqrt(1 + x * x);
     const double known = 4 / (2 * 3.14159265358979) * 2 * x / root * std::atan(x / root);
     for (const PairEstimator estimator : {PairEstimator::automatic, PairEstimator::area}) {

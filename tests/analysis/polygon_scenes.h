@@ -12,8 +12,8 @@ namespace twinray::test {
 using Surface = std::vector<Polygon64>;
 
 // Two triangles, as make_quad() makes them.
-inline Surface quad(const dvec3& corner, const dvec3& u, const dvec3& v) {
-    return {{corner, corner + u, corner + u + v}, {corner, corner + u + v, corner + v}};
+inline Surface quad(const dvec3& vertex, const dvec3& u, const dvec3& v) {
+    return {{vertex, vertex + u, vertex + u + v}, {vertex, vertex + u + v, vertex + v}};
 }
 
 inline double area_of(const Surface& surface) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/reciprocity.h"
+#include <twinray/analysis.h>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/row_file.h"
+#include <twinray/analysis.h>
 
 #include <gtest/gtest.h>
+
+#include <fstream>
 
 #include "engine/core/error.h"
 

@@ -2,8 +2,9 @@
 // Scenes of which tests know what is seen.
 #pragma once
 
+#include <twinray/analysis.h>
+
 #include "engine/accel/scene_push.h"
-#include "engine/analysis/faces.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray::test {

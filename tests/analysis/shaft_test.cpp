@@ -18,7 +18,7 @@ const Polygon64 top(dvec3(0, 0, 1), dvec3(1, 1, 1), dvec3(1, 0, 1));
 bool is_blocked(const Polygon64& face) {
     const double rounding = rounding_of(1);
     const Shaft shaft(facing_parts(bottom, top, rounding), rounding);
-    EXPECT_EQ(shaft.may_be_blocked_by(face, box_of(face)), shaft.may_be_blocked_by(face.turned(), box_of(face)));
+    EXPECT_EQ(shaft.may_be_blocked_by(face, box_of(face)), shaft.may_be_blocked_by(face.flipped(), box_of(face)));
     return shaft.may_be_blocked_by(face, box_of(face));
 }
 
@@ -38,7 +38,7 @@ TEST(Shaft, IsNotBlockedByWhatTouchesItFromOutside) {
 
 // Each is parted by planes of one kind alone.
 TEST(Shaft, TriesAllPlanesThatMayPart) {
-    // Through the edge of the shaft from (0, 0, 0) to (0, 0, 1) and the nearest one of the face.
+    // Through the edge of the shaft from (0, 0, 0) to (0, 0, 1) and the closest one of the face.
     const dvec3 near(-0.01, -0.004, 0.5), along(-0.15, 0.37, 0.2), away(-0.28, -0.11, 0.3);
     EXPECT_FALSE(is_blocked({near - along, near + along, near + away}));
     EXPECT_TRUE(is_blocked({near - along + dvec3(0.1, 0.04, 0), near + along + dvec3(0.1, 0.04, 0), near + away}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/sky.h"
+#include <twinray/analysis.h>
 
 #include "tests/analysis/scenes.h"
 

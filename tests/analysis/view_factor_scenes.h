@@ -29,7 +29,7 @@ inline Mesh turned(Mesh mesh) {
     return mesh;
 }
 
-// A regular polygon of n corners on a circle about the z axis, which looks up.
+// A regular polygon of n vertices on a circle about the z axis, which looks up.
 inline Mesh make_disc(int n, float radius) {
     Mesh mesh;
     mesh.positions.push_back(vec3(0));

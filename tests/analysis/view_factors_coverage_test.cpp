@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Whether intervals of hits hold the truth as often as they should, from narrow gaps to round things.
+#include <twinray/analysis.h>
+
 #include <cmath>
 
-#include "engine/analysis/view_factors.h"
 #include "tests/analysis/view_factor_scenes.h"
 
 namespace twinray {

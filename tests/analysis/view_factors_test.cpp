@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "engine/analysis/view_factors.h"
+#include <twinray/analysis.h>
 
 #include <cmath>
 
 #include "engine/accel/scene_push.h"
-#include "engine/analysis/pair_exchanges.h"
+#include "engine/report/statistics.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/analysis/view_factor_scenes.h"
 

@@ -11,7 +11,7 @@
 
 namespace twinray::test {
 
-inline Corners64 corners(dvec3 a, dvec3 b, dvec3 c) { return {a, b, c}; }
+inline WorldTriangle triangle_of(dvec3 a, dvec3 b, dvec3 c) { return {a, b, c}; }
 
 // TWINRAY_LATTICE_PAIRS, or as many as are decided within seconds.
 inline std::size_t lattice_count() {
@@ -29,20 +29,20 @@ inline std::vector<TrianglePair> lattice_pairs(std::size_t count, unsigned seed)
     };
     const auto triangle = [&] {
         const dvec3 a = point(), b = point();
-        return Corners64{a, b, point()};
+        return WorldTriangle{a, b, point()};
     };
     std::vector<TrianglePair> pairs;
     for (std::size_t i = 0; i < count; ++i) {
-        const Corners64 a = triangle();
+        const WorldTriangle a = triangle();
         pairs.push_back({a, triangle()});
         if (i % 4 == 0)
-            for (Corners64* t : {&pairs.back().a, &pairs.back().b}) t->a.z = t->b.z = t->c.z = 0;
+            for (WorldTriangle* t : {&pairs.back().a, &pairs.back().b}) t->a.z = t->b.z = t->c.z = 0;
     }
     return pairs;
 }
 
-// The six orders of its corners.
-inline std::vector<Corners64> permutations(const Corners64& t) {
+// The six orders of its vertices.
+inline std::vector<WorldTriangle> permutations(const WorldTriangle& t) {
     return {{t.a, t.b, t.c}, {t.a, t.c, t.b}, {t.b, t.a, t.c}, {t.b, t.c, t.a}, {t.c, t.a, t.b}, {t.c, t.b, t.a}};
 }
 

@@ -15,49 +15,49 @@
 namespace twinray::exact {
 namespace {
 
-using test::corners;
+using test::triangle_of;
 using enum PairClass;
 
-const Corners64 floor_triangle = corners({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
+const WorldTriangle floor_triangle = triangle_of({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
 
 // In every order of corners and triangles, and by the referee.
-void expect_class(const Corners64& a, const Corners64& b, PairClass expected, const char* what) {
+void expect_class(const WorldTriangle& a, const WorldTriangle& b, PairClass expected, const char* what) {
     EXPECT_EQ(name_of(referee_class(a, b)), name_of(expected)) << what << ", referee";
     EXPECT_EQ(name_of(referee_class(b, a)), name_of(expected)) << what << ", referee";
-    for (const Corners64& pa : test::permutations(a))
-        for (const Corners64& pb : test::permutations(b)) {
+    for (const WorldTriangle& pa : test::permutations(a))
+        for (const WorldTriangle& pb : test::permutations(b)) {
             EXPECT_EQ(name_of(exact_class(pa, pb)), name_of(expected)) << what;
             EXPECT_EQ(name_of(exact_class(pb, pa)), name_of(expected)) << what;
         }
 }
 
 TEST(PairClassTest, Touches) {
-    const auto expect = [](const char* what, const Corners64& other, PairClass expected) {
+    const auto expect = [](const char* what, const WorldTriangle& other, PairClass expected) {
         expect_class(floor_triangle, other, expected, what);
     };
-    expect("vertex on vertex", corners({0, 0, 0}, {-1, 0, 1}, {0, -1, 1}), vertex_touch);
-    expect("vertex on edge", corners({2, 0, 0}, {2, -1, 1}, {3, -1, 2}), vertex_touch);
-    expect("vertex on face", corners({1, 1, 0}, {1, 1, 2}, {2, 1, 2}), vertex_touch);
-    expect("face on vertex", corners({-1, -1, 1}, {-1, -1, -1}, {2, 2, 0}), crossing);
-    expect("vertex behind an edge that crosses", corners({0, 4, 0}, {1, -1, -1}, {1, -1, 1}), crossing);
-    expect("edge on edge", corners({2, -1, -1}, {2, 1, 1}, {2, -3, 3}), edge_touch);
-    expect("edge in edge", corners({1, 0, 0}, {3, 0, 0}, {2, -1, 1}), edge_touch);
-    expect("edge beyond edge", corners({3, 0, 0}, {9, 0, 0}, {5, -1, 1}), edge_touch);
-    expect("edge after edge", corners({4, 0, 0}, {9, 0, 0}, {5, -1, 1}), vertex_touch);
-    expect("edge in face", corners({1, 1, 0}, {2, 1, 0}, {1, 1, 1}), edge_touch);
-    expect("edge through face and beyond", corners({-1, 1, 0}, {9, 1, 0}, {1, 1, 1}), edge_touch);
-    expect("through the face", corners({1, 1, -1}, {1, 1, 1}, {2, 1, 1}), crossing);
-    expect("through an edge", corners({2, -1, -1}, {2, 1, 1}, {2, 1, -1}), crossing);
-    expect("beside", corners({5, 5, -1}, {5, 5, 1}, {6, 5, 1}), separate);
-    expect("above", corners({0, 0, 1}, {4, 0, 1}, {0, 4, 2}), separate);
+    expect("vertex on vertex", triangle_of({0, 0, 0}, {-1, 0, 1}, {0, -1, 1}), vertex_touch);
+    expect("vertex on edge", triangle_of({2, 0, 0}, {2, -1, 1}, {3, -1, 2}), vertex_touch);
+    expect("vertex on face", triangle_of({1, 1, 0}, {1, 1, 2}, {2, 1, 2}), vertex_touch);
+    expect("face on vertex", triangle_of({-1, -1, 1}, {-1, -1, -1}, {2, 2, 0}), crossing);
+    expect("vertex behind an edge that crosses", triangle_of({0, 4, 0}, {1, -1, -1}, {1, -1, 1}), crossing);
+    expect("edge on edge", triangle_of({2, -1, -1}, {2, 1, 1}, {2, -3, 3}), edge_touch);
+    expect("edge in edge", triangle_of({1, 0, 0}, {3, 0, 0}, {2, -1, 1}), edge_touch);
+    expect("edge beyond edge", triangle_of({3, 0, 0}, {9, 0, 0}, {5, -1, 1}), edge_touch);
+    expect("edge after edge", triangle_of({4, 0, 0}, {9, 0, 0}, {5, -1, 1}), vertex_touch);
+    expect("edge in face", triangle_of({1, 1, 0}, {2, 1, 0}, {1, 1, 1}), edge_touch);
+    expect("edge through face and beyond", triangle_of({-1, 1, 0}, {9, 1, 0}, {1, 1, 1}), edge_touch);
+    expect("through the face", triangle_of({1, 1, -1}, {1, 1, 1}, {2, 1, 1}), crossing);
+    expect("through an edge", triangle_of({2, -1, -1}, {2, 1, 1}, {2, 1, -1}), crossing);
+    expect("beside", triangle_of({5, 5, -1}, {5, 5, 1}, {6, 5, 1}), separate);
+    expect("above", triangle_of({0, 0, 1}, {4, 0, 1}, {0, 4, 2}), separate);
 }
 
 TEST(PairClassTest, OfOnePlane) {
     // x - 2 y + z = 0, so that nothing is along an axis.
     const auto raised = [](double x, double y) { return dvec3(x, y, 2 * y - x); };
-    const Corners64 base = corners(raised(0, 0), raised(4, 0), raised(0, 4));
+    const WorldTriangle base = triangle_of(raised(0, 0), raised(4, 0), raised(0, 4));
     const auto expect = [&](const char* what, dvec2 a, dvec2 b, dvec2 c, PairClass expected) {
-        expect_class(base, corners(raised(a.x, a.y), raised(b.x, b.y), raised(c.x, c.y)), expected, what);
+        expect_class(base, triangle_of(raised(a.x, a.y), raised(b.x, b.y), raised(c.x, c.y)), expected, what);
     };
     expect("itself", {0, 0}, {4, 0}, {0, 4}, coplanar_overlap);
     expect("inside", {1, 1}, {2, 1}, {1, 2}, coplanar_overlap);
@@ -72,9 +72,9 @@ TEST(PairClassTest, OfOnePlane) {
 }
 
 TEST(PairClassTest, TrianglesWithoutAreaAreSegmentsAndPoints) {
-    const auto segment = [](dvec3 a, dvec3 b) { return corners(a, 0.5 * (a + b), b); };
-    const auto point = [](dvec3 a) { return corners(a, a, a); };
-    const auto expect = [](const char* what, const Corners64& a, const Corners64& b, PairClass expected) {
+    const auto segment = [](dvec3 a, dvec3 b) { return triangle_of(a, 0.5 * (a + b), b); };
+    const auto point = [](dvec3 a) { return triangle_of(a, a, a); };
+    const auto expect = [](const char* what, const WorldTriangle& a, const WorldTriangle& b, PairClass expected) {
         expect_class(a, b, expected, what);
     };
     expect("segment through face", floor_triangle, segment({1, 1, -1}, {1, 1, 1}), crossing);
@@ -105,9 +105,9 @@ TEST(PairClassTest, GapsOfFewUlps) {
         float above = height, below = height;
         for (int k = 0; k <= 4; ++k) {
             const dvec3 at(height);
-            const Corners64 face = corners(at, at + dvec3(4, 0, 0), at + dvec3(0, 4, 0));
+            const WorldTriangle face = triangle_of(at, at + dvec3(4, 0, 0), at + dvec3(0, 4, 0));
             const auto tip = [&](float z) {
-                return corners({at.x + 1, at.y + 1, z}, at + dvec3(1, 1, 9), at + dvec3(2, 1, 9));
+                return triangle_of({at.x + 1, at.y + 1, z}, at + dvec3(1, 1, 9), at + dvec3(2, 1, 9));
             };
             expect_class(face, tip(above), k ? separate : vertex_touch, "above");
             expect_class(face, tip(below), k ? crossing : vertex_touch, "below");
@@ -119,15 +119,15 @@ TEST(PairClassTest, GapsOfFewUlps) {
 
 TEST(PairClassTest, TinyGapsAndSlivers) {
     for (const double gap : {1e-7, 1e-15, 1e-30}) {
-        expect_class(floor_triangle, corners({1, 1, gap}, {1, 1, 2}, {2, 1, 2}), separate, "gap");
-        expect_class(floor_triangle, corners({1, 1, -gap}, {1, 1, 2}, {2, 1, 2}), crossing, "no gap");
-        expect_class(floor_triangle, corners({-gap, 0, 0}, {-1, 0, 1}, {-1, 1, 1}), separate, "beside");
+        expect_class(floor_triangle, triangle_of({1, 1, gap}, {1, 1, 2}, {2, 1, 2}), separate, "gap");
+        expect_class(floor_triangle, triangle_of({1, 1, -gap}, {1, 1, 2}, {2, 1, 2}), crossing, "no gap");
+        expect_class(floor_triangle, triangle_of({-gap, 0, 0}, {-1, 0, 1}, {-1, 1, 1}), separate, "beside");
     }
     // Planes at an angle of 1e-8.
-    const Corners64 sliver = corners({-1, -1e-8, -1e-16}, {1, -1e-8, -1e-16}, {0, 1e-8, 1e-16});
-    expect_class(sliver, corners({-2, -1, 0}, {2, -1, 0}, {0, 3, 0}), crossing, "sliver");
-    expect_class(corners({0.1, 0.7, 0.3}, {0.9, 0.2, 0.6}, {0.4, 0.4, 0.8}),
-                 corners({0.1, 0.7, 0.3}, {0.9, 0.2, 0.6}, {0.4, 0.4, 0.8 + 1e-8}), edge_touch, "shared edge");
+    const WorldTriangle sliver = triangle_of({-1, -1e-8, -1e-16}, {1, -1e-8, -1e-16}, {0, 1e-8, 1e-16});
+    expect_class(sliver, triangle_of({-2, -1, 0}, {2, -1, 0}, {0, 3, 0}), crossing, "sliver");
+    expect_class(triangle_of({0.1, 0.7, 0.3}, {0.9, 0.2, 0.6}, {0.4, 0.4, 0.8}),
+                 triangle_of({0.1, 0.7, 0.3}, {0.9, 0.2, 0.6}, {0.4, 0.4, 0.8 + 1e-8}), edge_touch, "shared edge");
 }
 
 TEST(PairClassTest, OnALattice) {
@@ -162,10 +162,10 @@ TEST(PairClassTest, NearlyTouching) {
     for (int i = 0; i < 8'000; ++i) {
         const double scale = std::ldexp(1.0, static_cast<int>(random() % 100) - 50);
         const auto point = [&] { return scale * point_in_cube(random); };
-        const Corners64 a{point(), point(), point()};
+        const WorldTriangle a{point(), point(), point()};
         const double s = 0.5 * coordinate(random) + 0.5, t = (1 - s) * (0.5 * coordinate(random) + 0.5);
         const dvec3 on_a = a.a + s * (a.b - a.a) + (i % 2 ? t * (a.c - a.a) : dvec3(0));
-        const Corners64 b{on_a, point(), i % 3 ? point() : a.c};
+        const WorldTriangle b{on_a, point(), i % 3 ? point() : a.c};
         const PairClass expected = referee_class(a, b);
         ASSERT_EQ(name_of(exact_class(a, b)), name_of(expected)) << i;
         ++counts[static_cast<std::size_t>(expected)];
@@ -184,10 +184,10 @@ TEST(ContactSegmentTest, EndsAreWhereTheCommonPartEnds) {
     double worst = 0;
     int crossings = 0;
     for (int i = 0; i < 3'000; ++i) {
-        const Corners64 a{point_in_cube(random), point_in_cube(random), point_in_cube(random)};
+        const WorldTriangle a{point_in_cube(random), point_in_cube(random), point_in_cube(random)};
         const double tilt = std::ldexp(1.0, -static_cast<int>(random() % 40));  // planes nearly the same
         const auto near = [&](const dvec3& p) { return p + tilt * point_in_cube(random); };
-        Corners64 b{near(a.a), near(a.b), near(a.c)};
+        WorldTriangle b{near(a.a), near(a.b), near(a.c)};
         if (i % 8 == 0) b.c = b.a + 0.25 * (b.b - b.a);
         if (exact_class(a, b) != crossing) continue;
         ++crossings;

@@ -47,7 +47,7 @@ struct Shape {
     std::vector<HalfSpace> equalities;  // each with its opposite
     std::vector<HalfSpace> borders;
 
-    explicit Shape(const Corners64& t) : points{vector_of(t.a), vector_of(t.b), vector_of(t.c)} {
+    explicit Shape(const WorldTriangle& t) : points{vector_of(t.a), vector_of(t.b), vector_of(t.c)} {
         const Span span(points);
         const Vector x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
         if (span.dimension == 0) {
@@ -123,9 +123,11 @@ Vector middle_of(const Points& points) {
 
 }  // namespace
 
-std::vector<Vector> common_part(const Corners64& a, const Corners64& b) { return common_part(Shape(a), Shape(b)); }
+std::vector<Vector> common_part(const WorldTriangle& a, const WorldTriangle& b) {
+    return common_part(Shape(a), Shape(b));
+}
 
-PairClass referee_class(const Corners64& a, const Corners64& b) {
+PairClass referee_class(const WorldTriangle& a, const WorldTriangle& b) {
     const Shape of_a(a), of_b(b);
     const Points part = common_part(of_a, of_b);
     if (part.empty()) return PairClass::separate;

@@ -10,9 +10,9 @@
 
 namespace twinray::exact {
 
-PairClass referee_class(const Corners64& a, const Corners64& b);
+PairClass referee_class(const WorldTriangle& a, const WorldTriangle& b);
 
 // The extreme points of the common part, in no order and maybe more than once.
-std::vector<Vector> common_part(const Corners64& a, const Corners64& b);
+std::vector<Vector> common_part(const WorldTriangle& a, const WorldTriangle& b);
 
 }  // namespace twinray::exact

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Text, legends and matrices: what can be told of them without eyes.
-#include "engine/picture/page.h"
+#include "validation/picture/page.h"
 
 #include <algorithm>
 #include <set>
 
 #include "engine/core/files.h"
-#include "engine/picture/font.h"
-#include "engine/picture/matrix_picture.h"
+#include "validation/picture/font.h"
+#include "validation/picture/matrix_picture.h"
 #include "engine/scene/image.h"
 #include "engine/scene/png.h"
 #include "tests/scene/temp_dir.h"

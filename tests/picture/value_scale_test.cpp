@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/picture/value_scale.h"
+#include "validation/picture/value_scale.h"
 
 #include "tests/scene/temp_dir.h"
 

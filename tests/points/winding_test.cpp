@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Inside and outside, against sums of solid angles and what is known.
+#include <twinray/queries.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "engine/points/boundary.h"
-#include "engine/points/point_finder.h"
 #include "tests/accel/accel_fixture.h"
-#include "tests/points/point_referee.h"
+#include "tests/points/point_reference.h"
 #include "tests/verify/meshes.h"
 
 namespace twinray {
@@ -21,10 +22,10 @@ class WindingTest : public test::VulkanTest {
     }
     std::vector<int> windings(const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& instances,
                               const std::vector<dvec3>& points) {
-        PointFinder finder(context());
-        finder.set(meshes, instances);
-        const std::vector<int> found = finder.winding_numbers(points);
-        host_decided = finder.host_decided();
+        PointQuery query(context());
+        query.set(meshes, instances);
+        const std::vector<int> found = query.winding_numbers(points);
+        host_decided = query.host_decided();
         return found;
     }
     std::uint64_t host_decided = 0;
@@ -66,7 +67,7 @@ TEST_F(WindingTest, EqualsTheSolidAngleOverTheSphere) {
     for (const int count : seen) EXPECT_GT(count, 20);
 }
 
-// The line from a lattice point meets edges, corners and faces exactly; sides are those of exact arithmetic.
+// The line from a lattice point meets edges, vertices and faces exactly; sides are those of exact arithmetic.
 TEST_F(WindingTest, OfLatticePointsInLatticeBoxes) {
     const Mesh box = make_box(vec3(-2), vec3(2));
     const Mesh ball = make_icosphere(1, 2);
@@ -101,12 +102,12 @@ TEST_F(WindingTest, OfLatticePointsInLatticeBoxes) {
 }
 
 TEST_F(WindingTest, DistancesAreNegativeInside) {
-    PointFinder finder(context());
+    PointQuery query(context());
     const Mesh box = make_box(vec3(-1), vec3(1)), hole = make_box(vec3(-0.5f), vec3(0.5f));
     const std::vector points = {dvec3(0), dvec3(0.75, 0, 0), dvec3(3, 0, 0), dvec3(1, 0.5, 0.25)};
     const auto distances = [&](const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& instances) {
-        finder.set(meshes, instances);
-        return finder.signed_distances(points);
+        query.set(meshes, instances);
+        return query.signed_distances(points);
     };
     EXPECT_EQ(distances({box}, {{0, {}}}), (std::vector<double>{-1, -0.25, 2, 0}));
     Mesh inward = hole;
@@ -115,25 +116,25 @@ TEST_F(WindingTest, DistancesAreNegativeInside) {
 }
 
 TEST_F(WindingTest, OpenMeshesAndPointsOutOfRangeAreRefused) {
-    PointFinder finder(context());
+    PointQuery query(context());
     Mesh open = make_box(vec3(-1), vec3(1));
     open.name = "open box";
     open.triangles.pop_back();
     const std::vector points = {dvec3(0)};
     const std::vector<MeshView> meshes = {open};
     const std::vector<MeshInstance> instances = {{0, {}}};
-    finder.set(meshes, instances);
-    EXPECT_FALSE(finder.closest(points).empty());  // needs no inside
+    query.set(meshes, instances);
+    EXPECT_FALSE(query.closest(points).empty());  // needs no inside
     try {
-        finder.signed_distances(points);
+        query.signed_distances(points);
         FAIL();
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find("'open box' is not closed"), std::string::npos) << error.what();
     }
     const Mesh box = make_box(vec3(-1), vec3(1));
-    finder.set(std::vector<MeshView>{box}, instances);
+    query.set(std::vector<MeshView>{box}, instances);
     for (const double bad : {double(NAN), double(INFINITY), 1e300, 1e-200})
-        EXPECT_THROW(finder.winding_numbers(std::vector{dvec3(bad, 0, 0)}), Error);
+        EXPECT_THROW(query.winding_numbers(std::vector{dvec3(bad, 0, 0)}), Error);
 }
 
 TEST(Boundary, EdgesMustBePassedBothWays) {

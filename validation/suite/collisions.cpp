@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Triangles and instances that touch: classes that are known, or that arithmetic without error gives.
+#include <twinray/queries.h>
+
 #include <cmath>
 
 #include "validation/suite/contacts.h"
-#include "engine/collide/collision_finder.h"
-#include "engine/collide/contact_finder.h"
+#include "engine/collide/exact_class.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
 
@@ -13,9 +14,9 @@ namespace {
 
 using enum PairClass;
 
-const Corners64 base = {dvec3(0, 0, 0), dvec3(4, 0, 0), dvec3(0, 4, 0)};
+const WorldTriangle base = {dvec3(0, 0, 0), dvec3(4, 0, 0), dvec3(0, 4, 0)};
 
-Corners64 moved(const Corners64& t, const dvec3& by) { return {t.a + by, t.b + by, t.c + by}; }
+WorldTriangle moved(const WorldTriangle& t, const dvec3& by) { return {t.a + by, t.b + by, t.c + by}; }
 
 void touches(CaseRun& run) {
     const dvec3 up(0, 0, 1), above(1, 2, 1);
@@ -41,7 +42,7 @@ void coplanar(CaseRun& run) {
 
 // A corner above, on or below a face by so much.
 void add_gap(std::vector<KnownPair>& pairs, double level, double gap) {
-    const Corners64 pointed = {dvec3(1, 1, level + gap), dvec3(1, 1.5, level + 1), dvec3(2, 1, level + 1)};
+    const WorldTriangle pointed = {dvec3(1, 1, level + gap), dvec3(1, 1.5, level + 1), dvec3(2, 1, level + 1)};
     pairs.push_back({moved(base, dvec3(0, 0, level)), pointed, gap > 0 ? separate : gap < 0 ? crossing : vertex_touch});
 }
 
@@ -66,8 +67,8 @@ void slivers(CaseRun& run) {
     std::vector<KnownPair> pairs;
     for (const double width : {1.0, 1e-4, 1e-8}) {
         const auto tilted = [&](double tilt, double lift) {
-            return Corners64{dvec3(-width, -0.5, lift - 0.5 * tilt), dvec3(width, -0.5, lift - 0.5 * tilt),
-                             dvec3(0, 0.5, lift + 0.5 * tilt)};
+            return WorldTriangle{dvec3(-width, -0.5, lift - 0.5 * tilt), dvec3(width, -0.5, lift - 0.5 * tilt),
+                                 dvec3(0, 0.5, lift + 0.5 * tilt)};
         };
         pairs.push_back({tilted(0, 0), tilted(1e-8, 0), crossing});
         pairs.push_back({tilted(0, 0), tilted(1e-8, 1e-8), separate});
@@ -81,7 +82,7 @@ void lattice(CaseRun& run) {
     measure_lattice(run, "as it is", pairs);
     const glm::dmat3 turn(dvec3(2, 2, -1) / 3.0, dvec3(-1, 2, 2) / 3.0, dvec3(2, -1, 2) / 3.0);
     for (TrianglePair& pair : pairs)
-        for (Corners64* t : {&pair.a, &pair.b}) *t = {turn * t->a, turn * t->b, turn * t->c};
+        for (WorldTriangle* t : {&pair.a, &pair.b}) *t = {turn * t->a, turn * t->b, turn * t->c};
     measure_lattice(run, "turned", pairs);
 }
 
@@ -89,8 +90,8 @@ void orders(CaseRun& run) {
     std::vector<KnownPair> pairs;
     for (const TrianglePair& pair : lattice_pairs(run.amount(200, 10'000), run.seed())) {
         const PairClass known = exact_class(pair.a, pair.b);
-        for (const Corners64& a : permutations(pair.a))
-            for (const Corners64& b : permutations(pair.b)) {
+        for (const WorldTriangle& a : permutations(pair.a))
+            for (const WorldTriangle& b : permutations(pair.b)) {
                 pairs.push_back({a, b, known});
                 pairs.push_back({b, a, known});
             }
@@ -179,14 +180,14 @@ void identical_boxes(CaseRun& run) {
     for (const Subject& subject : run.one_subject_each()) {
         AbstractAccel& accel = run.devices().empty_accel(subject);
         accel.push(box, std::vector<Transform>(n));
-        CollisionFinder finder(accel.context());
+        BroadPhase broad_phase(accel.context());
         const std::uint64_t expected = n * (n - 1) / 2;
         std::vector<double> times;
         std::uint64_t wrong = 0;
         for (int rep = 0; rep < 5; ++rep)
-            times.push_back(seconds_of([&] { wrong += finder.instance_pairs(accel).size() != expected; }) * 1e9 /
+            times.push_back(seconds_of([&] { wrong += broad_phase.instance_pairs(accel).size() != expected; }) * 1e9 /
                             static_cast<double>(expected));
-        wrong += finder.count(accel) != expected;
+        wrong += broad_phase.count(accel) != expected;
         run.expect(subject, {.params = {{"boxes", n}},
                              .results = {{"pairs", expected}},
                              .n = expected,

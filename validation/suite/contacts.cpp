@@ -51,25 +51,25 @@ std::vector<TrianglePair> lattice_pairs(std::size_t count, std::uint64_t seed) {
         std::array<double, 9> c;
         for (double& each : c) each = coordinate();
         if (is_flat) c[2] = c[5] = c[8] = 0;
-        return Corners64{dvec3(c[0], c[1], c[2]), dvec3(c[3], c[4], c[5]), dvec3(c[6], c[7], c[8])};
+        return WorldTriangle{dvec3(c[0], c[1], c[2]), dvec3(c[3], c[4], c[5]), dvec3(c[6], c[7], c[8])};
     };
     std::vector<TrianglePair> pairs;
     for (std::size_t i = 0; i < count; ++i) {
-        const Corners64 a = triangle(i % 4 == 0);
+        const WorldTriangle a = triangle(i % 4 == 0);
         pairs.push_back({a, triangle(i % 4 == 0)});
     }
     return pairs;
 }
 
-std::vector<Corners64> permutations(const Corners64& t) {
+std::vector<WorldTriangle> permutations(const WorldTriangle& t) {
     return {{t.a, t.b, t.c}, {t.a, t.c, t.b}, {t.b, t.a, t.c}, {t.b, t.c, t.a}, {t.c, t.a, t.b}, {t.c, t.b, t.a}};
 }
 
 void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::string& reference) {
     std::vector<TrianglePair> asked;
     for (const KnownPair& pair : pairs) asked.push_back({pair.a, pair.b});
-    ContactFinder finder(run.devices().context(query_backend));
-    const std::vector<PairClass> found = finder.classify(asked);
+    NarrowPhase narrow_phase(run.devices().context(query_backend));
+    const std::vector<PairClass> found = narrow_phase.classify(asked);
     std::uint64_t wrong = 0;
     std::string first;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -84,11 +84,12 @@ void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::s
 void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector<TrianglePair>& pairs) {
     std::vector<PairClass> known;
     for (const TrianglePair& pair : pairs) known.push_back(exact_class(pair.a, pair.b));
-    ContactFinder finder(run.devices().context(query_backend));
+    NarrowPhase narrow_phase(run.devices().context(query_backend));
     std::vector<double> times;
     std::vector<PairClass> found;
     for (int rep = 0; rep < 5; ++rep)
-        times.push_back(seconds_of([&] { found = finder.classify(pairs); }) * 1e9 / static_cast<double>(pairs.size()));
+        times.push_back(seconds_of([&] { found = narrow_phase.classify(pairs); }) * 1e9 /
+                        static_cast<double>(pairs.size()));
     std::uint64_t wrong = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) wrong += found[i] != known[i];
     Record record = query_record(run, "exact");
@@ -97,7 +98,7 @@ void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector
     record.time = time_figures("ns_per_pair", times);
     add_judged(run, record, wrong, "classes differ from those of exact arithmetic");
     measure_host(run, lattice, pairs, known, "exact, on the host alone",
-                 [](const Corners64& a, const Corners64& b) { return exact_class(a, b); });
+                 [](const WorldTriangle& a, const WorldTriangle& b) { return exact_class(a, b); });
     measure_host(run, lattice, pairs, known, "control: float64 without a bound", class_by_float64);
     measure_host(run, lattice, pairs, known, "control: float32 without a bound", class_by_float32);
 }
@@ -105,8 +106,8 @@ void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector
 void ask_contacts(CaseRun& run, const std::string& what, const std::vector<MeshView>& meshes,
                   const std::vector<MeshInstance>& instances, const ContactCounts& known, const std::string& reference,
                   bool self) {
-    ContactFinder finder(run.devices().context(query_backend));
-    const Contacts contacts = finder.find(meshes, instances, {.self = self});
+    NarrowPhase narrow_phase(run.devices().context(query_backend));
+    const Contacts contacts = narrow_phase.find(meshes, instances, {.self = self});
     ContactCounts found;
     for (const TriangleContact& contact : contacts.list) ++found[contact.pair_class];
     Record record = query_record(run, reference);
@@ -121,7 +122,7 @@ ContactCounts wall_to_wall() {
     const Mesh box = make_box(vec3(-1), vec3(1));
     const auto placed = [&](const uvec3& t, double x) {
         const auto corner = [&](uint i) { return dvec3(box.positions[i]) + dvec3(x, 0, 0); };
-        return Corners64{corner(t.x), corner(t.y), corner(t.z)};
+        return WorldTriangle{corner(t.x), corner(t.y), corner(t.z)};
     };
     ContactCounts counts;
     for (const uvec3& a : box.triangles)
@@ -133,8 +134,9 @@ ContactCounts wall_to_wall() {
 
 void ask_same_contacts(CaseRun& run, const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& some,
                        const std::vector<MeshInstance>& others) {
-    ContactFinder finder(run.devices().context(query_backend));
-    const std::vector<TriangleContact> a = finder.find(meshes, some).list, b = finder.find(meshes, others).list;
+    NarrowPhase narrow_phase(run.devices().context(query_backend));
+    const std::vector<TriangleContact> a = narrow_phase.find(meshes, some).list,
+                                       b = narrow_phase.find(meshes, others).list;
     std::vector<TriangleContact> only;
     std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(only));
     Record record = query_record(run, "invariance");

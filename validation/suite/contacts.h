@@ -3,22 +3,23 @@
 // accelerator takes part but for the boxes of instances.
 #pragma once
 
+#include <twinray/queries.h>
+
 #include <map>
 
 #include "validation/suite/queries.h"
-#include "engine/collide/contact_finder.h"
 
 namespace twinray::suite {
 
 struct KnownPair {
-    Corners64 a, b;
+    WorldTriangle a, b;
     PairClass known;
 };
 
 // Corners among {-2..2}^3, of every fourth pair in one plane.
 std::vector<TrianglePair> lattice_pairs(std::size_t count, std::uint64_t seed);
 // The six orders of its corners.
-std::vector<Corners64> permutations(const Corners64& triangle);
+std::vector<WorldTriangle> permutations(const WorldTriangle& triangle);
 
 void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::string& reference = "analytic");
 // Time and wrong classes of the GPU, of exact arithmetic on the host, and, as controls, of the same decisions by signs

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is near to points, against every triangle in float64. The GPU answers; no accelerator takes part.
+#include <twinray/queries.h>
+
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -8,7 +10,6 @@
 #include "validation/suite/queries.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "engine/points/point_finder.h"
 #include <twinray/geometry.h>
 #include "engine/verify/point_distance.h"
 
@@ -38,12 +39,12 @@ double nearest_of_all(const Mesh& mesh, const dvec3& point) {
 
 // Relative errors may be as large as what some roundings of the coordinates do to a distance.
 void measure_nearest(CaseRun& run, const Mesh& mesh, const std::vector<dvec3>& points, const Values& params) {
-    PointFinder finder(run.devices().context(query_backend));
-    finder.set(std::vector<MeshView>{mesh}, std::vector<MeshInstance>{{0, {}}});
+    PointQuery query(run.devices().context(query_backend));
+    query.set(std::vector<MeshView>{mesh}, std::vector<MeshInstance>{{0, {}}});
     std::vector<ClosestPoint> found;
     std::vector<double> times;
     for (int rep = 0; rep < 5; ++rep)
-        times.push_back(seconds_of([&] { found = finder.closest(points); }) * 1e9 / static_cast<double>(points.size()));
+        times.push_back(seconds_of([&] { found = query.closest(points); }) * 1e9 / static_cast<double>(points.size()));
     const std::size_t step =
         std::max<std::size_t>(1, points.size() * mesh.triangles.size() / run.amount(20'000'000, 2'000'000'000));
     std::vector<double> errors((points.size() + step - 1) / step), slack(errors.size());
@@ -88,9 +89,9 @@ void on_the_surface(CaseRun& run) {
     std::vector<dvec3> points(ball.positions.begin(), ball.positions.end());
     const std::size_t corners = points.size();
     for (const uvec3& t : ball.triangles) points.push_back((points[t.x] + points[t.y]) * 0.5);
-    PointFinder finder(run.devices().context(query_backend));
-    finder.set(std::vector<MeshView>{ball}, std::vector<MeshInstance>{{0, {}}});
-    const std::vector<ClosestPoint> found = finder.closest(points);
+    PointQuery query(run.devices().context(query_backend));
+    query.set(std::vector<MeshView>{ball}, std::vector<MeshInstance>{{0, {}}});
+    const std::vector<ClosestPoint> found = query.closest(points);
     std::uint64_t wrong = 0;
     for (std::size_t i = 0; i < points.size(); ++i) wrong += !(found[i].distance <= (i < corners ? 0 : 0x1p-52));
     Record record = query_record(run, "analytic");
@@ -102,18 +103,18 @@ void on_the_surface(CaseRun& run) {
 void scaled(CaseRun& run) {
     const Mesh soup = make_soup(500, static_cast<uint>(run.seed()), 0.2f);
     const std::vector<dvec3> points = random_points(run.amount(1'000, 100'000), 2, run.seed());
-    PointFinder finder(run.devices().context(query_backend));
+    PointQuery query(run.devices().context(query_backend));
     const std::vector<MeshInstance> instance = {{0, {}}};
-    finder.set(std::vector<MeshView>{soup}, instance);
-    const std::vector<ClosestPoint> of_one = finder.closest(points);
+    query.set(std::vector<MeshView>{soup}, instance);
+    const std::vector<ClosestPoint> of_one = query.closest(points);
     for (const int exponent : {-120, -60, 60, 120}) {
         Mesh other = soup;
         for (vec3& p : other.positions)
             for (int axis = 0; axis < 3; ++axis) p[axis] = std::ldexp(p[axis], exponent);
         std::vector<dvec3> others = points;
         for (dvec3& p : others) p *= std::ldexp(1.0, exponent);
-        finder.set(std::vector<MeshView>{other}, instance);
-        const std::vector<ClosestPoint> found = finder.closest(others);
+        query.set(std::vector<MeshView>{other}, instance);
+        const std::vector<ClosestPoint> found = query.closest(others);
         std::uint64_t wrong = 0;
         for (std::size_t i = 0; i < points.size(); ++i)
             wrong += found[i].triangle != of_one[i].triangle ||
@@ -128,9 +129,9 @@ void scaled(CaseRun& run) {
 void radius(CaseRun& run) {
     const Mesh ball = make_icosphere(3);
     const std::vector<dvec3> points = random_points(run.amount(300, 10'000), 1.5, run.seed());
-    PointFinder finder(run.devices().context(query_backend));
-    finder.set(std::vector<MeshView>{ball}, std::vector<MeshInstance>{{0, {}}});
-    const std::vector<NearTriangle> near = finder.within(points, 0.4);
+    PointQuery query(run.devices().context(query_backend));
+    query.set(std::vector<MeshView>{ball}, std::vector<MeshInstance>{{0, {}}});
+    const std::vector<NearTriangle> near = query.within(points, 0.4);
     std::size_t next = 0;
     std::uint64_t wrong = 0, count = 0;
     for (uint i = 0; i < points.size(); ++i)
@@ -159,10 +160,10 @@ void sides(CaseRun& run) {
         points.push_back(
             (dvec3(i % (2 * n + 1), i / (2 * n + 1) % (2 * n + 1), i / ((2 * n + 1) * (2 * n + 1))) - double(n)) *
             (3.0 / n));
-    PointFinder finder(run.devices().context(query_backend));
+    PointQuery query(run.devices().context(query_backend));
     const std::vector<MeshInstance> twice = {{0, {}}, {0, Transform::translation(vec3(1, 0, 0))}};
-    finder.set(std::vector<MeshView>{box}, twice);
-    const std::vector<int> found = finder.winding_numbers(points);
+    query.set(std::vector<MeshView>{box}, twice);
+    const std::vector<int> found = query.winding_numbers(points);
     std::uint64_t wrong = 0, judged = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto size = [](const dvec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); };
@@ -173,7 +174,7 @@ void sides(CaseRun& run) {
     }
     Record record = query_record(run, "analytic");
     record.n = judged;
-    record.results = {{"host_decided", finder.host_decided()}};
+    record.results = {{"host_decided", query.host_decided()}};
     add_judged(run, record, wrong, "another winding number than the number of boxes around the point");
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/accel/scene_push.h"
+#include "engine/analysis/pair_plan.h"
 #include "engine/analysis/pair_sampler.h"
 #include "engine/core/error.h"
 

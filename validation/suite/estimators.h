@@ -2,8 +2,9 @@
 // View factors by each estimator, timed one by one, for cases that know the truth.
 #pragma once
 
+#include <twinray/analysis.h>
+
 #include "validation/suite/case_run.h"
-#include "engine/analysis/pair_exchanges.h"
 
 namespace twinray::suite {
 

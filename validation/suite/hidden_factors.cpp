@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // View factors of what is hidden, hollow, cut into many faces, of unlike areas or round.
+#include <twinray/analysis.h>
+
 #include <cmath>
 
 #include "validation/suite/estimators.h"
 #include "validation/suite/factor_scenes.h"
 #include "engine/accel/scene_push.h"
-#include "engine/analysis/reciprocity.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 
 namespace twinray::suite {
 namespace {

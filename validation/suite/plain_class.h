@@ -6,8 +6,8 @@
 
 namespace twinray::suite {
 
-PairClass class_by_float32(const Corners64& a, const Corners64& b);
-PairClass class_by_float64(const Corners64& a, const Corners64& b);
+PairClass class_by_float32(const WorldTriangle& a, const WorldTriangle& b);
+PairClass class_by_float64(const WorldTriangle& a, const WorldTriangle& b);
 
 // Of det(a - d, b - d, c - d).
 template <class Real>

@@ -12,11 +12,13 @@ int area_sign(const dvec3& a, const dvec3& b, const dvec3& c, uint axis) {
 }
 
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/triangle_pair.h"
+#include "shaders/collide/triangle_pair.h"
 #include "twinray/glsl/cpp_end.h"
 
 }  // namespace
 
-PairClass class_by_float64(const Corners64& a, const Corners64& b) { return static_cast<PairClass>(class_of(a, b)); }
+PairClass class_by_float64(const WorldTriangle& a, const WorldTriangle& b) {
+    return static_cast<PairClass>(class_of(a, b));
+}
 
 }  // namespace twinray::suite

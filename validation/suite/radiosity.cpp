@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Light between the walls of a cube, of which one shines: known in closed form.
+#include <twinray/analysis.h>
+
 #include <algorithm>
 #include <chrono>
 
 #include "validation/suite/estimators.h"
 #include "engine/accel/scene_push.h"
-#include "engine/analysis/radiosity.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 
 namespace twinray::suite {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // View factors that are known in closed form, by every estimator.
+#include <twinray/analysis.h>
+
 #include <cmath>
 #include <numbers>
 
 #include "validation/suite/estimators.h"
 #include "validation/suite/factor_scenes.h"
 #include "engine/accel/scene_push.h"
-#include "engine/analysis/reciprocity.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 
 namespace twinray::suite {
 namespace {

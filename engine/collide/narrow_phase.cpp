@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include <twinray/queries.h>
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "engine/collide/pair_classifier.h"
+#include "engine/collide/triangle_set.h"
+
+namespace twinray {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+}  // namespace
+
+std::size_t Contacts::count(PairClass pair_class) const {
+    return static_cast<std::size_t>(std::count_if(
+        list.begin(), list.end(), [&](const TriangleContact& contact) { return contact.pair_class == pair_class; }));
+}
+
+struct NarrowPhase::State {
+    explicit State(Context& device)
+        : context(device), triangles(device), tree(device), search(device), classifier(device) {}
+
+    std::vector<uint> taking_part(std::span<const MeshView> meshes, std::span<const MeshInstance> instances, bool self);
+    DevicePairs candidates(bool self);
+    void list(Contacts& contacts, std::span<const ClassifiedPair> pairs, bool with_segments) const;
+
+    Context& context;
+    TriangleSet triangles;
+    BoxTree tree;
+    PairSearch search;
+    PairClassifier classifier;
+};
+
+NarrowPhase::NarrowPhase(Context& context) : state_(std::make_unique<State>(context)) {}
+NarrowPhase::~NarrowPhase() = default;
+
+std::vector<PairClass> NarrowPhase::classify(std::span<const TrianglePair> pairs) {
+    return state_->classifier.classify(pairs);
+}
+
+std::uint64_t NarrowPhase::max_pairs() const { return state_->search.max_pairs(); }
+void NarrowPhase::set_max_pairs(std::uint64_t count) { state_->search.set_max_pairs(count); }
+
+Contacts NarrowPhase::find(const Scene& scene, const ContactOptions& options) {
+    const std::vector<MeshView> meshes(scene.meshes.begin(), scene.meshes.end());
+    std::vector<MeshInstance> instances;
+    for (const Instance& instance : scene.instances) instances.push_back({instance.mesh, instance.transform});
+    return find(meshes, instances, options);
+}
+
+Contacts NarrowPhase::find(std::span<const MeshView> meshes, std::span<const MeshInstance> instances,
+                           const ContactOptions& options) {
+    check_instances(meshes, instances, "collide");
+    TriangleSet& triangles = state_->triangles;
+    Contacts contacts;
+    const Clock::time_point search_start = Clock::now();
+    const std::vector<uint> chosen = state_->taking_part(meshes, instances, options.self);
+    triangles.set(meshes, instances, chosen, options.shared);
+    const DevicePairs pairs = state_->candidates(options.self);
+    contacts.instances = chosen.size();
+    contacts.triangles = triangles.count();
+    contacts.candidates = pairs.count;
+    contacts.search_seconds = seconds_since(search_start);
+
+    const Clock::time_point classify_start = Clock::now();
+    const std::vector<ClassifiedPair> classified = state_->classifier.classify(
+        pairs, {triangles.triangles_on_device(), triangles.names_on_device(),
+                [&](uint item) { return triangles.triangle(item); }, [&](uint item) { return triangles.name(item); }});
+    state_->list(contacts, classified, options.segments);
+    contacts.host_decided = state_->classifier.host_count();
+    contacts.host_seconds = state_->classifier.host_seconds();
+    contacts.classify_seconds = seconds_since(classify_start);
+    return contacts;
+}
+
+// Those whose boxes overlap that of another: the triangles of others have nothing to touch.
+std::vector<uint> NarrowPhase::State::taking_part(std::span<const MeshView> meshes,
+                                                  std::span<const MeshInstance> instances, bool self) {
+    std::vector<uint> chosen(instances.size());
+    std::iota(chosen.begin(), chosen.end(), 0u);
+    if (self || instances.empty()) return chosen;
+    std::vector<Bounds> bounds;
+    for (const MeshView& mesh : meshes) bounds.push_back(bounds_of(mesh));
+    std::vector<TreeBox> boxes;
+    for (const uint i : chosen) boxes.push_back(box_of_instance(bounds[instances[i].mesh], instances[i].transform, i));
+    tree.prepare(boxes.size());
+    Commands commands(context, "collide instances");
+    {
+        const auto pass = commands.pass("collide instance boxes");
+        commands.upload(tree.boxes(), std::span<const TreeBox>(boxes));
+    }
+    tree.record(commands);
+    commands.submit();
+    const DevicePairs pairs = search.find({.tree = tree.view()}, "contacts");
+    std::vector<bool> takes_part(instances.size(), false);
+    for (const auto column : {&DevicePairs::first, &DevicePairs::second})
+        for (const uint i : download(context, pairs, column)) takes_part[i] = true;
+    std::erase_if(chosen, [&](uint i) { return !takes_part[i]; });
+    return chosen;
+}
+
+DevicePairs NarrowPhase::State::candidates(bool self) {
+    if (triangles.count() == 0) return {};
+    Commands commands(context, "collide triangles");
+    triangles.record(commands, tree.prepare(triangles.count()));
+    tree.record(commands);
+    commands.submit();
+    return search.find({.tree = tree.view(), .other_groups = !self}, "contacts");
+}
+
+void NarrowPhase::State::list(Contacts& contacts, std::span<const ClassifiedPair> pairs, bool with_segments) const {
+    std::vector<std::pair<TriangleContact, std::size_t>> sorted;
+    for (const ClassifiedPair& pair : pairs)
+        sorted.push_back({{triangles.instance(pair.first), triangles.instance(pair.second),
+                           triangles.primitive(pair.first), triangles.primitive(pair.second), pair.pair_class},
+                          sorted.size()});
+    std::sort(sorted.begin(), sorted.end());
+    for (const auto& [contact, index] : sorted) {
+        contacts.list.push_back(contact);
+        if (!with_segments) continue;
+        const ClassifiedPair& pair = pairs[index];
+        contacts.segments.push_back(
+            pair.pair_class == PairClass::crossing
+                ? crossing_segment(triangles.triangle(pair.first), triangles.triangle(pair.second))
+                : ContactSegment{dvec3(0), dvec3(0)});
+    }
+}
+
+}  // namespace twinray

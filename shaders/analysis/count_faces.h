@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Hits counted by the groups of faces that they are on.
+#ifndef TWINRAY_ANALYSIS_COUNT_FACES_H
+#define TWINRAY_ANALYSIS_COUNT_FACES_H
+#include "shaders/analysis/faces.h"
+
+const uint NO_GROUP = 0xffffffffu; // of a face whose hits do not count, and of a miss
+
+struct GroupCount
+{
+    uint hits;
+    uint odd; // pairs of rays (2 i, 2 i + 1) of which one is a hit of the group
+};
+BUFFER_OF(GroupCount, 4);
+
+struct CountFacesArgs
+{
+    FaceTable table;
+    REF(Hit) hits;
+    Uints groups; // of each face; null: a face is its own group
+    // One more than groups: the last one counts as odd the pairs of which one ray meets any group.
+    REF(GroupCount) counts;
+    uint ray_count;
+    uint group_count;
+};
+
+FUNC uint group_of(CountFacesArgs args, uint ray)
+{
+    Hit hit = AT(args.hits, ray);
+    if (hit.hit == 0u) return NO_GROUP;
+    uint face = face_of(args.table, hit);
+    return is_null(args.groups) ? face : AT(args.groups, face);
+}
+#endif

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: MIT
+struct Face
+{
+    uint instance;
+    uint primitive;
+};

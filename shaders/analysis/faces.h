@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// What analysis counts by: a face is a triangle of an instance. Faces are numbered by instance, then by triangle.
+// Whoever includes this has declared Face: face.glsl, in C++ <twinray/analysis.h>.
+#ifndef TWINRAY_ANALYSIS_FACES_H
+#define TWINRAY_ANALYSIS_FACES_H
+#include "shaders/shared/spawn.h"
+
+struct FacesOfInstance
+{
+    vec4 object_to_world[3];
+    Floats positions; // 3 tightly packed floats a vertex, in object space
+    Uints indices;    // 3 a triangle
+    uint first;       // face of triangle 0
+    uint reserved;
+};
+BUFFER_OF(FacesOfInstance, 8);
+
+BUFFER_OF(Face, 8);
+
+struct FaceTable
+{
+    REF(FacesOfInstance) instances; // in the order of the accelerator's instances
+    REF(Face) faces;
+};
+
+FUNC uint face_of(FaceTable table, Hit hit)
+{
+    return AT(table.instances, hit.instance_index).first + hit.primitive_index;
+}
+
+FUNC Rows to_world_of(FacesOfInstance instance)
+{
+    Rows rows;
+    rows.r0 = instance.object_to_world[0];
+    rows.r1 = instance.object_to_world[1];
+    rows.r2 = instance.object_to_world[2];
+    return rows;
+}
+
+// The point (1-u-v) v0 + u v1 + v v2 of a face, in world space, with what it takes to leave it.
+FUNC SurfacePoint point_on_face(FaceTable table, uint face, vec2 uv)
+{
+    Face which = AT(table.faces, face);
+    FacesOfInstance instance = AT(table.instances, which.instance);
+    return surface_point(placement_of(to_world_of(instance)),
+                         corners_of(instance.positions, instance.indices, which.primitive), uv);
+}
+
+// Whether a direction comes from the side on which the vertices turn counter-clockwise in object space.
+FUNC bool meets_front(FaceTable table, uint face, vec3 direction)
+{
+    Face which = AT(table.faces, face);
+    FacesOfInstance instance = AT(table.instances, which.instance);
+    Corners vertices = corners_of(instance.positions, instance.indices, which.primitive);
+    vec3 edge1 = vertices.b - vertices.a;
+    vec3 edge2 = vertices.c - vertices.a;
+    float scale = power_of_two_below(max(largest_entry(edge1), largest_entry(edge2)));
+    vec3 normal = cross_precise(edge1 / scale, edge2 / scale);
+    return dot(transform_vector(inverse_of(to_world_of(instance)), direction), normal) < 0.0f;
+}
+#endif

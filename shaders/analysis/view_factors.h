@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// Rays that leave a face as diffuse radiation does, and what they meet.
+#ifndef TWINRAY_ANALYSIS_VIEW_FACTORS_H
+#define TWINRAY_ANALYSIS_VIEW_FACTORS_H
+#include "shaders/analysis/faces.h"
+#include "shaders/sampling/sampling.h"
+#include "shaders/sampling/sobol.h"
+
+// Samples are drawn in as many independent sequences, whose scatter tells the error of the mean.
+const uint REPLICATES = 16u;
+const uint SAMPLES_OF_CHUNK = 4u; // of each replicate
+const uint CHUNK = 64u;           // rays, one invocation each: REPLICATES * SAMPLES_OF_CHUNK
+
+// How far from its edges a face radiates, in offsets of its spawn points: enough for walls that meet it at 8 degrees.
+const float EDGE_OFFSETS = 8.0f;
+
+// Rays from one face: samples `first` to `first + SAMPLES_OF_CHUNK - 1` of each replicate. Ray i of it is of replicate
+// i / SAMPLES_OF_CHUNK.
+struct RayChunk
+{
+    uint face;
+    uint first;
+};
+BUFFER_OF(RayChunk, 8);
+
+// What a ray can meet but faces.
+const uint TARGET_OPEN = 0xffffffffu; // nothing
+const uint TARGET_BACK = 0xfffffffeu; // a back side, where only fronts count
+
+const uint SEQUENCE_SOBOL = 0u;
+const uint SEQUENCE_RANDOM = 1u;
+
+struct FaceRaysArgs
+{
+    FaceTable table;
+    REF(RayChunk) chunks;
+    REF(Ray) rays; // written
+    uint seed;
+    uint sequence; // SEQUENCE_*
+    uint is_two_sided;
+    uint reserved;
+};
+
+struct FaceTargetsArgs
+{
+    FaceTable table;
+    REF(Ray) rays;
+    REF(Hit) hits;
+    Uints groups;  // by face; null: each face is its own
+    Uints targets; // written: the group of what each ray meets, or TARGET_*
+    uint count;
+    uint is_two_sided;
+};
+
+FUNC vec4 sample_of(FaceRaysArgs args, uint face, uint replicate, uint index)
+{
+    uvec4 words;
+    if (args.sequence == SEQUENCE_SOBOL)
+        words = sobol_point(uvec4(face, replicate, args.seed, 1u), index);
+    else
+        words = random_words(uvec4(face, replicate << 28u | index, args.seed, 2u));
+    return vec4(unit_floats(uvec2(words.x, words.y)), unit_floats(uvec2(words.z, words.w)));
+}
+
+// A point of the face, with barycentric coordinates u, v. One that lies nearer to an edge than some offsets is moved
+// away from it: there it may round to beyond a wall that meets the face at the edge, or start beyond it.
+FUNC SurfacePoint inner_point(FaceTable table, uint face, vec2 uv)
+{
+    SurfacePoint point = point_on_face(table, face, uv);
+    float margin = min(EDGE_OFFSETS * point.offset / point.feature, 1.0f / 3.0f);
+    vec3 inside = max(vec3(1.0f - uv.x - uv.y, uv.x, uv.y), vec3(margin));
+    if (inside.x > margin && inside.y > margin && inside.z > margin) return point;
+    inside = inside / (inside.x + inside.y + inside.z);
+    return point_on_face(table, face, vec2(inside.y, inside.z));
+}
+
+// A ray from a face, uniform by area and by the cosine of its angle with the normal. Of two sides, half the rays leave
+// each.
+FUNC Ray diffuse_ray(FaceTable table, uint face, vec4 u, bool is_two_sided)
+{
+    bool is_front = !is_two_sided || u.z < 0.5f;
+    if (is_two_sided) u.z = is_front ? u.z * 2.0f : u.z * 2.0f - 1.0f;
+    SurfacePoint point = inner_point(table, face, sample_triangle(vec2(u.x, u.y)));
+    vec3 axis = is_front ? point.normal : -point.normal;
+    Ray ray;
+    ray.origin = spawn_position(point, is_front);
+    ray.t_min = 0.0f;
+    ray.direction = to_world(frame_about(axis), sample_cosine_hemisphere(vec2(u.z, u.w)));
+    ray.t_max = uintBitsToFloat(0x7f800000u);
+    return ray;
+}
+
+FUNC uint target_of(FaceTargetsArgs args, Ray ray, Hit hit)
+{
+    if (hit.hit == 0u) return TARGET_OPEN;
+    uint face = face_of(args.table, hit);
+    if (args.is_two_sided == 0u && !meets_front(args.table, face, ray.direction)) return TARGET_BACK;
+    return is_null(args.groups) ? face : AT(args.groups, face);
+}
+#endif

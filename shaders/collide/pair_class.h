@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// How two triangles lie to each other, as sets of points: closed, and a triangle without area is the segment or the
+// point that it covers. The class does not depend on the order of the triangles or of their vertices. Whoever includes
+// this has declared WorldTriangle: world_triangle.glsl, in C++ <twinray/queries.h>.
+#ifndef TWINRAY_COLLIDE_PAIR_CLASS_H
+#define TWINRAY_COLLIDE_PAIR_CLASS_H
+#include "shaders/collide/box_tree.h"
+
+const uint PAIR_SEPARATE = 0u;         // no common point
+// Not all six vertices in one plane:
+const uint PAIR_VERTEX_TOUCH = 1u;     // one common point, an end or vertex of at least one, and not inside of both
+const uint PAIR_EDGE_TOUCH = 2u;       // more than that, but the insides have no common point
+const uint PAIR_CROSSING = 5u;         // the insides (without vertices and edges; of a segment, without its ends) meet
+// All six in one plane:
+const uint PAIR_COPLANAR_TOUCH = 3u;   // common points, but no common area
+const uint PAIR_COPLANAR_OVERLAP = 4u; // a common area
+const uint PAIR_CLASSES = 6u;
+const uint PAIR_UNDECIDED = 6u;        // float64 cannot tell
+
+BUFFER_OF(WorldTriangle, 8);
+
+// A mesh where an instance puts it, and which of all triangles are its.
+struct InstancedMesh
+{
+    vec4 object_to_world[3];
+    Floats positions;
+    Uints indices;
+    Uints vertex_ids;    // of each vertex: those with one id are one; null: each is its own
+    uint first_triangle; // ascending from one instanced mesh to the next
+    uint is_mirrored;    // 1 where the map turns triangles round
+};
+BUFFER_OF(InstancedMesh, 8);
+
+struct TriangleName
+{
+    uvec3 vertices; // their ids
+    uint mesh;      // index of its instanced mesh
+};
+BUFFER_OF(TriangleName, 16);
+
+struct WorldTrianglesArgs
+{
+    REF(InstancedMesh) meshes;
+    REF(TreeBox) boxes;      // written, as the next two
+    REF(WorldTriangle) triangles;
+    REF(TriangleName) names;
+    uint mesh_count;
+    uint count;
+};
+
+struct PairContact
+{
+    uint first;
+    uint second;
+    uint class_of_pair;
+    uint reserved;
+};
+BUFFER_OF(PairContact, 16);
+
+struct ClassifyArgs
+{
+    REF(WorldTriangle) triangles;
+    REF(TriangleName) names;
+    Uints first;
+    Uints second;
+    REF(PairContact) contacts; // written: all pairs that are not separate, with room for `count`
+    REF(ListTotal) total;
+    uint count;
+    uint reserved;
+};
+#endif

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: MIT
+struct WorldTriangle
+{
+    dvec3 a;
+    dvec3 b;
+    dvec3 c;
+};
