@@ -6,6 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include <twinray/scene.h>
+
 #include "bench/displaced_sphere.h"
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"

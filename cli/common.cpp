@@ -8,11 +8,11 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include <twinray/scene.h>
+
 #include "cli/command/values.h"
 #include "validation/suite/suite.h"
-#include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
-#include "engine/scene/local_origin.h"
 #include "hwtlas/hw_tlas.h"
 #include "swtlas/sw_tlas.h"
 

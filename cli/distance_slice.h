@@ -2,9 +2,10 @@
 // `twinray distance --slice`: distances in a plane as a picture.
 #pragma once
 
+#include <twinray/scene.h>
+
 #include "cli/command/command.h"
 #include "engine/points/point_finder.h"
-#include "engine/scene/scene.h"
 
 namespace twinray::cli {
 

@@ -47,7 +47,10 @@ function(twinray_add_library name)
             SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
     )
     target_compile_features(twinray_${name} PUBLIC cxx_std_20)
-    target_include_directories(twinray_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+    target_include_directories(
+        twinray_${name}
+        PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR};${PROJECT_SOURCE_DIR}/include>
+    )
     target_link_libraries(
         twinray_${name}
         PUBLIC ${arg_SEES} Vulkan::Headers glm::glm Threads::Threads

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
+
 #include "engine/analysis/radiosity.h"
 #include "engine/analysis/reciprocity.h"
 #include "engine/scene/shapes.h"

@@ -9,7 +9,8 @@ import sys
 BASE = ["engine/core", "engine/scene", "engine/accel", "engine/report"]
 ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/picture", "engine/points", "engine/verify"]
 PRODUCT = ENGINE + ["swtlas", "hwtlas"]
-SEES = {  # besides itself and shaders/shared
+SEES = {  # besides itself, include/twinray and shaders/shared
+    "include": ["engine/core", "engine/scene"],  # until nothing behind it is internal
     "engine": ENGINE,  # headers that gather the others
     "engine/core": [], "engine/scene": BASE[:1], "engine/accel": BASE[:2], "engine/report": BASE[:1],
     "engine/analysis": BASE, "engine/collide": BASE, "engine/picture": BASE, "engine/verify": BASE,
@@ -39,6 +40,8 @@ def layer(path):
 
 def violation(root, source, bracket, target):
     exists = os.path.isfile(os.path.join(root, target))
+    if bracket == "<" and target.startswith("twinray/"):
+        return None if os.path.isfile(os.path.join(root, "include", target)) else "no such public header"
     if bracket == "<":
         return "a file of this project is included with quotes" if exists else None
     if GENERATED.search(target):
@@ -61,7 +64,8 @@ def includes_of(root, source):
 def headers_behind(root, header):
     behind, to_read = set(), [header]
     while to_read:
-        targets = {target for _, bracket, target in includes_of(root, to_read.pop()) if bracket == '"'}
+        targets = {target if bracket == '"' else f"include/{target}"
+                   for _, bracket, target in includes_of(root, to_read.pop())}
         new = {target for target in targets - behind - {header} if os.path.isfile(os.path.join(root, target))}
         behind |= new
         to_read += new

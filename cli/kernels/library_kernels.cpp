@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // All that is no trace: builds, sorts, and what the other libraries compute.
+#include <twinray/scene.h>
+
+#include "engine/scene/rig.h"
 #include "cli/kernels/kernel_list.h"
 #include "engine/accel/all_hits.h"
 #include "engine/accel/ray_sort.h"
-#include "engine/accel/scene_push.h"
 #include "engine/analysis/illumination.h"
 #include "engine/analysis/pair_sampler.h"
 #include "engine/analysis/sky_rays.h"
@@ -11,8 +13,6 @@
 #include "engine/collide/contact_finder.h"
 #include "engine/core/device_choice.h"
 #include "engine/points/point_finder.h"
-#include "engine/scene/animation.h"
-#include "engine/scene/deformer.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/float_probe.h"
 #include "engine/verify/oracle_accel.h"

@@ -7,10 +7,11 @@
 #include <string_view>
 #include <vector>
 
+#include <twinray/scene.h>
+
 #include "engine/accel/abstract_accel.h"
 #include "engine/accel/spawn.h"
 #include "engine/core/buffer.h"
-#include "engine/scene/scene.h"
 
 namespace twinray {
 #include "engine/core/bridge_begin.h"

@@ -3,9 +3,10 @@
 
 #include <compare>
 
+#include <twinray/scene.h>
+
 #include "engine/collide/pair_classifier.h"
 #include "engine/collide/triangle_set.h"
-#include "engine/scene/scene.h"
 
 namespace twinray {
 

@@ -5,9 +5,10 @@
 #include <span>
 #include <vector>
 
+#include <twinray/scene.h>
+
 #include "engine/accel/abstract_accel.h"
 #include "engine/picture/raster.h"
-#include "engine/picture/view.h"
 
 namespace twinray {
 

@@ -8,10 +8,11 @@
 #include <string>
 #include <vector>
 
+#include <twinray/scene.h>
+
 #include "engine/collide/box_tree.h"
 #include "engine/collide/triangle_set.h"
 #include "engine/core/pace.h"
-#include "engine/scene/scene.h"
 
 namespace twinray {
 #include "engine/core/bridge_begin.h"

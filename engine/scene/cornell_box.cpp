@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/shapes.h"
 
+#include <twinray/scene.h>
+
 namespace twinray {
 namespace {
 

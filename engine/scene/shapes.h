@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Meshes and scenes made by formula, for tests, samples and benchmarks. The same arguments give the same bits
+// Meshes made by formula, for tests, samples and benchmarks. The same arguments give the same bits
 // everywhere.
 #pragma once
 
-#include "engine/scene/scene.h"
+#include "engine/scene/mesh.h"
 
 namespace twinray {
 
@@ -23,13 +23,5 @@ Mesh make_grid(uint nx, uint ny, float height = 0, uint seed = 0);
 
 // Separate random triangles with corners at most `size` from centres in [0, 1]^3.
 Mesh make_soup(uint triangle_count, uint seed, float size = 0.1f);
-
-// A box of [-1, 1]^3, open towards +z, with white walls, a red one left (-x), a green one right, a light under the
-// ceiling, a metal box and a glass sphere; with a camera that sees all of it.
-Scene cornell_box_scene();
-
-// 1200 glazed and golden beads in the spiral of a sunflower on a table, seen from above at an aspect of 16 : 9; without
-// lights, for a sky.
-Scene sunflower_scene();
 
 }  // namespace twinray

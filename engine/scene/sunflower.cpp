@@ -2,6 +2,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <twinray/scene.h>
+
 #include "engine/scene/shapes.h"
 
 namespace twinray {

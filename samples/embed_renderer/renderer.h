@@ -4,6 +4,8 @@
 
 #include <memory>
 
+#include <twinray/scene.h>
+
 #include "engine/accel/accel_choice.h"
 #include "engine/accel/abstract_accel.h"
 #include "samples/embed_renderer/frame_commands.h"
@@ -12,12 +14,11 @@
 #include "samples/embed_renderer/scene_upload.h"
 #include "samples/embed_renderer/stage.h"
 #include "samples/embed_renderer/timer.h"
-#include "samples/path_tracer/image_io.h"
 
 namespace twinray::embed_renderer {
 
 struct FrameResult {
-    path_tracer::Picture picture;
+    HdrImage picture;
     std::vector<PassTimer::Lap> laps;
     RayCounts rays{};
 };

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <twinray/scene.h>
+
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 

@@ -2,7 +2,6 @@
 // What a run is told as: text, and a line of JSON.
 #pragma once
 
-#include "engine/accel/accel_choice.h"
 #include "samples/particles/options.h"
 
 namespace twinray::particles {

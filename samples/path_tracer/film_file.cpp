@@ -37,7 +37,7 @@ Configuration configuration_of(const std::string& lines) {
 
 uint crc32_of_text(const std::string& lines) { return crc32_of(std::as_bytes(std::span(lines))); }
 
-// Takes pieces off the front of the file.
+// Takes values off the front of the file.
 class Reader {
   public:
     explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -84,13 +84,13 @@ void save_film(const std::filesystem::path& file, const Film& film) {
                       static_cast<uint>(film.blocks.words().size()),
                       crc32_of_text(lines)};
     std::memcpy(header.magic, magic, sizeof magic);
-    std::vector<std::span<const std::byte>> pieces = {
+    std::vector<std::span<const std::byte>> parts = {
         std::as_bytes(std::span(&header, 1)), std::as_bytes(std::span(lines)),
         std::as_bytes(std::span(film.blocks.words())), std::as_bytes(std::span(film.pixels))};
     uint sum = 0;
-    for (const auto& piece : pieces) sum = crc32_of(piece, sum);
-    pieces.push_back(std::as_bytes(std::span(&sum, 1)));
-    write_file(file, pieces);
+    for (const auto& part : parts) sum = crc32_of(part, sum);
+    parts.push_back(std::as_bytes(std::span(&sum, 1)));
+    write_file(file, parts);
 }
 
 Film load_film(const std::filesystem::path& file) {

@@ -5,7 +5,7 @@
 
 namespace twinray::path_tracer {
 
-PictureError error_against(const Picture& picture, const HdrImage& reference) {
+PictureError error_against(const HdrImage& picture, const HdrImage& reference) {
     PictureError error;
     for (std::size_t i = 0; i < picture.rgb.size(); ++i)
         for (int c = 0; c < 3; ++c) {

@@ -170,14 +170,15 @@ class FilmRenderer {
         display_due_.restart();
     }
 
-    std::vector<Channel> layers() const {
+    std::vector<ImageChannel> layers() const {
         if (!options_.aovs) return {};
-        std::vector<Channel> layers = layers_of(session_.renderer->first_surfaces(accel_), samples_of_first_surfaces);
-        for (Channel& channel : layers_of(result_.film)) layers.push_back(std::move(channel));
+        std::vector<ImageChannel> layers =
+            layers_of(session_.renderer->first_surfaces(accel_), samples_of_first_surfaces);
+        for (ImageChannel& channel : layers_of(result_.film)) layers.push_back(std::move(channel));
         return layers;
     }
 
-    void write_output(std::span<const Channel> layers = {}) const {
+    void write_output(std::span<const ImageChannel> layers = {}) const {
         if (!is_film_file(options_.output)) write_picture_of(options_.output, result_.film, options_.exposure, layers);
     }
 

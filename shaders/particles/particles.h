@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT Particles in a box: how they move, and the colour that their speed gives them. Read by
-// kernels and by their serial twins.
+// kernels and by their serial references.
 #ifndef TWINRAY_PARTICLES_PARTICLES_H
 #define TWINRAY_PARTICLES_PARTICLES_H
 #include "shaders/shared/instance.h"

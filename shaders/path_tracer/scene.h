@@ -154,11 +154,11 @@ struct LayeredMaterial
 };
 BUFFER_OF(LayeredMaterial, 4);
 
-// One column of an alias table: keep it if a random 32-bit fraction is below `keep`, else take `other`.
+// One column of an alias table: it counts if a random 32-bit fraction is below `probability`, else `alias` does.
 struct AliasEntry
 {
-    uint keep;
-    uint other;
+    uint probability;
+    uint alias;
 };
 BUFFER_OF(AliasEntry, 8);
 

@@ -3,8 +3,9 @@
 #include <bit>
 #include <random>
 
+#include <twinray/scene.h>
+
 #include "engine/accel/all_hits.h"
-#include "engine/accel/scene_push.h"
 #include "engine/analysis/centroid.h"
 #include "engine/analysis/pair_exchanges.h"
 #include "engine/analysis/sky.h"

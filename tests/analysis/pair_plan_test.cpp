@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <twinray/scene.h>
+
 #include "engine/scene/shapes.h"
 #include "tests/analysis/plain_scenes.h"
 

@@ -2,7 +2,8 @@
 // Scenes of which tests know what is seen.
 #pragma once
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
+
 #include "engine/analysis/faces.h"
 #include "tests/accel/accel_fixture.h"
 

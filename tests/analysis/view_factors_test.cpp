@@ -3,7 +3,8 @@
 
 #include <cmath>
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
+
 #include "engine/analysis/pair_exchanges.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/analysis/view_factor_scenes.h"

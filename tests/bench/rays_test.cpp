@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <map>
 
+#include <twinray/scene.h>
+
 #include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/oracle.h"

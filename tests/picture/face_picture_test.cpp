@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/picture/face_picture.h"
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
+
 #include "engine/picture/marks.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/scene/temp_dir.h"

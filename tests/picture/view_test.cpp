@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/picture/view.h"
+#include <twinray/scene.h>
 
 #include "engine/scene/shapes.h"
 #include "tests/scene/temp_dir.h"

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <fstream>
 
+#include <twinray/scene.h>
+
 #include "validation/replay/scene_file.h"
 #include "engine/core/error.h"
 #include "engine/scene/shapes.h"

@@ -2,6 +2,8 @@
 // Counting crossings, on a device.
 #include <gtest/gtest.h>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/case_run.h"
 #include "engine/scene/shapes.h"
 #include "engine/verify/inside_rays.h"

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <twinray/scene.h>
+
 #include "engine/scene/shapes.h"
 #include "tests/support/device.h"
 

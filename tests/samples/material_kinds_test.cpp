@@ -3,6 +3,8 @@
 
 #include <bit>
 
+#include <twinray/scene.h>
+
 #include "engine/scene/shapes.h"
 #include "samples/path_tracer/material_kinds.h"
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <twinray/scene.h>
+
 #include "engine/scene/shapes.h"
 #include "tests/scene/gltf_builder.h"
 

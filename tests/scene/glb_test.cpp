@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <twinray/scene.h>
+
 #include "engine/core/files.h"
 #include "engine/scene/shapes.h"
 #include "tests/scene/temp_dir.h"

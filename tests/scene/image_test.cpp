@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/image.h"
+#include <twinray/scene.h>
 
 #include <cmath>
 

@@ -3,6 +3,8 @@
 
 #include <map>
 
+#include <twinray/scene.h>
+
 #include "tests/scene/temp_dir.h"
 
 namespace twinray::test {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include <twinray/scene.h>
+
 #include "engine/scene/shapes.h"
 #include "engine/accel/geometry.h"
 #include "swtlas/reference_scene.h"

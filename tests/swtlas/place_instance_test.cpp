@@ -5,6 +5,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
+#include <twinray/scene.h>
+
 #include "engine/scene/shapes.h"
 #include "swtlas/reference_scene.h"
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <twinray/scene.h>
+
 #include "engine/scene/shapes.h"
 
 namespace twinray::suite {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/flush.h"
 #include "validation/suite/twin.h"
 #include "engine/core/error.h"

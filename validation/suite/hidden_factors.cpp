@@ -2,9 +2,10 @@
 // View factors of what is hidden, hollow, cut into many faces, of unlike areas or round.
 #include <cmath>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/estimators.h"
 #include "validation/suite/factor_scenes.h"
-#include "engine/accel/scene_push.h"
 #include "engine/analysis/reciprocity.h"
 #include "engine/scene/shapes.h"
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <set>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/inputs.h"
 #include "validation/suite/scenes.h"
 #include "engine/scene/shapes.h"

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstring>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/case_run.h"
 #include "validation/suite/scenes.h"
 #include "validation/suite/spawning.h"

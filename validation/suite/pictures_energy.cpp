@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/estimators.h"
 #include "validation/suite/pictures.h"
 #include "engine/scene/shapes.h"

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/estimators.h"
-#include "engine/accel/scene_push.h"
 #include "engine/analysis/radiosity.h"
 #include "engine/scene/shapes.h"
 

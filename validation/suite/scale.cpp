@@ -6,6 +6,8 @@
 #include <cstring>
 #include <numbers>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/demands.h"
 #include "validation/suite/scenes.h"
 #include "engine/core/error.h"

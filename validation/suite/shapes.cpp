@@ -8,6 +8,8 @@
 #include <numbers>
 #include <numeric>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/builds.h"
 #include "validation/suite/demands.h"
 #include "validation/suite/scenes.h"

@@ -3,9 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/estimators.h"
 #include "validation/suite/factor_scenes.h"
-#include "engine/accel/scene_push.h"
 #include "engine/analysis/reciprocity.h"
 #include "engine/scene/shapes.h"
 
