@@ -135,8 +135,9 @@ struct Light {
 struct Rig;  // what moves in a scene: see "Animation" below
 
 // A point of the file is `origin` plus a point of the scene. The origin is 0 but for files whose coordinates float32
-// cannot hold, see choose_local_origin(). Rays of such a file are made in float64 and moved before they are rounded:
-// ray.origin = vec3(point - scene.origin), and a hit is at scene.origin + dvec3(point).
+// cannot hold, as of what stands far away in metres of UTM: see load_scene(). Rays of such a file are made in float64
+// and moved before they are rounded: ray.origin = vec3(point - scene.origin), and a hit is at
+// scene.origin + dvec3(point).
 struct Scene {
     dvec3 origin = dvec3(0);
     std::vector<Mesh> meshes;
@@ -152,7 +153,8 @@ struct Scene {
 
 // Loads .gltf, .glb (by tinygltf), .obj, .ply or .stl, the last three also with .gz, chosen by the suffix.
 // Throws Error naming the file, the object and the limit on anything that cannot be rendered faithfully. `origin`: of
-// the scene, in place of choose_local_origin(); dvec3(0) retains the file's coordinates, rounded.
+// the scene; none: 0, unless float32 would round coordinates by more than a millionth of their extent, then a point
+// near their middle with as round numbers as the extent allows; dvec3(0): the file's coordinates, rounded.
 Scene load_scene(const std::filesystem::path& file, const std::optional<dvec3>& origin = {});
 
 // A box of [-1, 1]^3, open towards +z, with white walls, a red one left (-x), a green one right, a light under the
@@ -162,6 +164,9 @@ Scene cornell_box_scene();
 // 1200 glazed and golden beads in the spiral of a sunflower on a table, seen from above at an aspect of 16 : 9; without
 // lights, for a sky.
 Scene sunflower_scene();
+
+// "500000 5400000 0", in as few digits as give the same float64.
+std::string origin_text(const dvec3& origin);
 
 // Union of all instances' boxes under their transforms, in world space.
 Bounds bounds_of(const Scene& scene);
@@ -180,32 +185,6 @@ void apply_variant(Scene& scene, const std::string& name);
 // Hit::custom_index 1 + Instance::material, or 0 where it has none. Returns one handle per mesh that has instances.
 // Throws Error unless scene.instances is grouped by mesh, as load_scene leaves it.
 std::vector<AccelHandle> push_scene(AbstractAccel& accel, const Scene& scene);
-
-// ---- Coordinates that float32 cannot hold: what stands far away, as in metres of UTM, is moved to a local origin in
-// float64 before it is rounded ----------------------------------------------------------------------------------------
-
-// Axis-aligned box in float64; the default is empty.
-struct Bounds64 {
-    dvec3 lo = dvec3(INFINITY);
-    dvec3 hi = dvec3(-INFINITY);
-
-    bool is_empty() const { return !(lo.x <= hi.x); }
-    void include(const dvec3& point);  // what is not finite is passed over
-    double extent() const;             // its largest side; 0 when empty
-    double reach() const;              // its largest coordinate by magnitude; 0 when empty
-};
-
-// 0 unless the box lies so far from 0 that float32 rounds its coordinates by more than a millionth of its extent; then
-// a point near its middle whose coordinates are multiples of a power of ten, the largest that its extent holds, so that
-// people can read it, or where the extent is below 1 of a power of two: float64 has them all. No coordinate of the box
-// is then larger than its extent.
-dvec3 choose_local_origin(const Bounds64& bounds);
-
-// Each minus the origin, in float64, rounded once.
-std::vector<vec3> local_positions(std::span<const dvec3> positions, const dvec3& origin);
-
-// "500000 5400000 0", in as few digits as give the same float64.
-std::string origin_text(const dvec3& origin);
 
 // ---- Views of a scene -----------------------------------------------------------------------------------------------
 

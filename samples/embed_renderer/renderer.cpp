@@ -12,11 +12,12 @@
 #include "embed_renderer_gbuffer_vert.spv.h"
 #include "embed_renderer_move.spv.h"
 #include "embed_renderer_rays.spv.h"
-#include "engine/core/error.h"
 #include "engine/scene/shapes.h"
 #include "samples/path_tracer/camera.h"
+#include "samples/support/text.h"
 
 namespace twinray::embed_renderer {
+using samples::fail;
 namespace {
 
 const vec3 to_sun = glm::normalize(vec3(-0.8f, 1, 0.25f));

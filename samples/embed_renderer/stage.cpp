@@ -5,10 +5,11 @@
 
 #include <twinray/scene.h>
 
-#include "engine/core/error.h"
 #include "engine/scene/shapes.h"
+#include "samples/support/text.h"
 
 namespace twinray::embed_renderer {
+using samples::fail;
 namespace {
 
 void add(Scene& scene, Mesh mesh, vec3 color, uint instance_count) {

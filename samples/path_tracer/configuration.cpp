@@ -4,11 +4,14 @@
 #include <cstdio>
 #include <iomanip>
 
-#include "engine/core/error.h"
-#include "engine/scene/bytes.h"
 #include "samples/path_tracer/layered_records.h"
+#include "samples/support/files.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::crc32_of;
+using samples::fail;
+using samples::text;
 namespace {
 
 constexpr const char* environment_entry = "environment";

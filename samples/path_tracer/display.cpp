@@ -10,9 +10,10 @@
 #include <cstring>
 #include <memory>
 
-#include "engine/core/error.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
 namespace {
 
 constexpr char default_port[] = "14158";

@@ -7,9 +7,11 @@
 #include <limits>
 #include <numeric>
 
-#include "engine/core/error.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
+using samples::text;
 namespace {
 
 double number_of(uvec2 words) {

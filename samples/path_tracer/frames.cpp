@@ -5,12 +5,14 @@
 
 #include <twinray/scene.h>
 
-#include "engine/core/error.h"
 #include "samples/path_tracer/camera.h"
 #include "samples/path_tracer/moving_scene.h"
 #include "samples/path_tracer/report.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
+using samples::text;
 namespace {
 
 void check(const Options& options, const Ranks& ranks) {

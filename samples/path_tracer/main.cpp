@@ -4,12 +4,13 @@
 #include <cstdio>
 
 #include "engine/core/cpu_vectors.h"
-#include "engine/core/error.h"
 #include "samples/path_tracer/frames.h"
 #include "samples/path_tracer/merge.h"
 #include "samples/path_tracer/report.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
 namespace {
 
 // 128 + the signal, as shells have it, where one came.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/reference.h"
 
-#include "engine/core/error.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
 
 PictureError error_against(const HdrImage& picture, const HdrImage& reference) {
     PictureError error;

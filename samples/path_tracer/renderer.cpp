@@ -11,6 +11,7 @@
 #include "path_tracer_shade.spv.h"
 #include "path_tracer_shadow.spv.h"
 #include "path_tracer_sort.spv.h"
+#include "samples/support/progress.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -273,7 +274,7 @@ HdrImage render_picture(Renderer& renderer, const RenderSettings& settings, Abst
     Film film = renderer.make_film();
     renderer.start(film);
     const uint blocks = settings.samples / settings.block_size;
-    Progress progress("path_tracer " + accel.name(), blocks, quiet);
+    samples::Progress progress("path_tracer " + accel.name(), blocks, quiet);
     for (uint block = 0; block < blocks; ++block, progress.advance()) renderer.add_block(accel, block, observer);
     renderer.read(film);
     return film.mean();

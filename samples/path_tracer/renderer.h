@@ -7,7 +7,6 @@
 
 #include "engine/accel/abstract_accel.h"
 #include "engine/core/pace.h"
-#include "engine/core/progress.h"
 #include "samples/path_tracer/film.h"
 #include "samples/path_tracer/wave_buffers.h"
 

@@ -6,14 +6,16 @@
 #include <cstdio>
 #include <limits>
 
-#include "engine/core/error.h"
 #include "samples/path_tracer/display.h"
 #include "samples/path_tracer/film_file.h"
 #include "samples/path_tracer/interrupts.h"
 #include "samples/path_tracer/layers.h"
 #include "samples/path_tracer/rounds.h"
+#include "samples/support/progress.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::text;
 namespace {
 
 // Of the error that is shown; more where estimates take long.
@@ -52,7 +54,7 @@ class RoundProgress {
     std::string name_;
     double start_;
     std::uint64_t shown_ = 0;
-    Progress bar_;
+    samples::Progress bar_;
 };
 
 std::filesystem::path film_file(const std::filesystem::path& output) {

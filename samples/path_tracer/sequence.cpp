@@ -11,9 +11,11 @@
 
 #include <twinray/scene.h>
 
-#include "engine/core/error.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
+using samples::text;
 namespace {
 
 TimeRange parse_range(const std::string& text) {

@@ -7,14 +7,16 @@
 
 #include <twinray/scene.h>
 
-#include "engine/core/error.h"
-#include "engine/scene/bytes.h"
 #include "hwtlas/hw_tlas.h"
 #include "samples/path_tracer/camera.h"
 #include "samples/path_tracer/film_file.h"
 #include "samples/path_tracer/stopped_lights.h"
+#include "samples/support/files.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
+using samples::lower_suffix;
 namespace {
 
 constexpr float default_aspect = 4.0f / 3.0f;

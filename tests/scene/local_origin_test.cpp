@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Files whose coordinates float32 cannot hold.
-#include <twinray/scene.h>
+#include "engine/scene/local_origin.h"
 
 #include "tests/scene/far_houses.h"
 

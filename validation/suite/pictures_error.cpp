@@ -52,7 +52,7 @@ void by_both_accelerators(CaseRun& run) {
     const HdrImage by_hardware = render_picture(hardware.renderer(), shot.settings, hardware.accel(), true, &checker);
     const Exposure by_software = software.expose(run.seed(), shot.settings.samples);
     const path_tracer::PictureDifference difference =
-        compare_pictures(by_hardware, by_software.picture, checker.marks());
+        path_tracer::compare_pictures(by_hardware, by_software.picture, checker.marks());
     Record record = run.record(subjects[0]);
     record.reference = "invariance";
     record.params = {{"spp", shot.settings.samples}};

@@ -10,6 +10,7 @@
 #include "engine/scene/importers/polygon.h"
 #include "engine/scene/importers/weld.h"
 #include "engine/scene/importers/words.h"
+#include "engine/scene/local_origin.h"
 
 namespace twinray {
 namespace {
