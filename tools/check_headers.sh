@@ -17,7 +17,7 @@ trap 'rm -rf "$work"' EXIT
 # own Vulkan Memory Allocator.
 mapfile -t headers < <(cd "$folder" && find engine swtlas hwtlas -name '*.h' ! -name 'bridge_*.h' ! -name vma_adapter.h | sort)
 printf '#include "%s"\n' "${headers[@]}" >"$work/all.cpp"
-"$cxx" -std=c++20 -I"$folder" -fsyntax-only -Wall -Wextra -Werror -MD -MF "$work/all.d" "$work/all.cpp"
+"$cxx" -std=c++20 -I"$folder" -I"$folder/.." -fsyntax-only -Wall -Wextra -Werror -MD -MF "$work/all.d" "$work/all.cpp"
 
 private='/(vk_mem_alloc|stb_[a-z_]*|tiny_gltf[a-z_0-9]*|zlib|gmp(xx)?)\.h|/(OpenEXR|Imath|nlohmann)/'
 if leaks=$(grep -oE "[^ ]*($private)[^ ]*" "$work/all.d"); then
