@@ -8,6 +8,7 @@
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 
+#include "engine/scene/importers/placeholder.h"
 #include "tests/scene/packed_bytes.h"
 #include "tests/scene/temp_dir.h"
 
