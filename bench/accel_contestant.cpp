@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/accel_contestant.h"
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
 
 namespace twinray::bench {
 

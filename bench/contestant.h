@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
+#include <twinray/scene.h>
+
 #include "bench/ray_batch.h"
-#include "engine/scene/scene.h"
 
 namespace twinray::bench {
 

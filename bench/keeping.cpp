@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "bench/keeping.h"
 
+#include <twinray/scene.h>
+
 #include "bench/accel_contestant.h"
 #include "bench/figures.h"
 #include "bench/report.h"
 #include "bench/table.h"
-#include "engine/accel/scene_push.h"
 #include <twinray/tlas.h>
 
 namespace twinray::bench {

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 
+#include <twinray/scene.h>
+
 #include "bench/accel_contestant.h"
 #include "bench/figures.h"
 #include "bench/hits_hash.h"
 #include "bench/report.h"
 #include "bench/table.h"
-#include "engine/accel/scene_push.h"
 #include "ladder_program.trace_program.h"
 #include <twinray/tlas.h>
 

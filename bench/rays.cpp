@@ -3,7 +3,8 @@
 
 #include <cmath>
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
+
 #include "engine/accel/spawn.h"
 #include "engine/core/error.h"
 #include "engine/verify/aimed_rays.h"

@@ -6,10 +6,11 @@
 #include <optional>
 #include <string_view>
 
+#include <twinray/scene.h>
+
 #include "bench/displaced_sphere.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "engine/verify/draws.h"
 
 namespace twinray::bench {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
 
 namespace twinray::bench {
 

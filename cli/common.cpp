@@ -8,9 +8,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include <twinray/scene.h>
+
 #include "cli/command/values.h"
 #include "validation/suite/suite.h"
-#include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 #include "engine/scene/local_origin.h"
 #include <twinray/tlas.h>

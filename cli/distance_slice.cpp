@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include <twinray/scene.h>
+
 #include "cli/command/values.h"
 #include "cli/places.h"
 #include "cli/query_points.h"
 #include "engine/core/error.h"
 #include "validation/picture/page.h"
-#include "engine/scene/png.h"
 
 namespace twinray::cli {
 namespace {

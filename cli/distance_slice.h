@@ -5,7 +5,8 @@
 #include <twinray/queries.h>
 
 #include "cli/command/command.h"
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
+
 
 namespace twinray::cli {
 

@@ -7,6 +7,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include <twinray/scene.h>
+
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
@@ -17,7 +19,6 @@
 #include "engine/core/progress.h"
 #include "engine/report/statistics.h"
 #include "engine/verify/inside_rays.h"
-#include "engine/scene/scene.h"
 #include <twinray/abstract_accel.h>
 
 namespace twinray::cli {

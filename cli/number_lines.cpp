@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
-#include "engine/scene/words.h"
+#include "engine/scene/importers/words.h"
 
 namespace twinray::cli {
 namespace {

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 
+#include <twinray/scene.h>
+
 #include "cli/command/values.h"
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/glb.h"
-#include "engine/scene/png.h"
 
 namespace twinray::cli {
 namespace {

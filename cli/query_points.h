@@ -5,8 +5,9 @@
 #include <filesystem>
 #include <vector>
 
+#include <twinray/scene.h>
+
 #include "cli/command/command.h"
-#include "engine/scene/scene.h"
 
 namespace twinray::cli {
 

@@ -7,6 +7,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include <twinray/scene.h>
+
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
@@ -14,7 +16,6 @@
 #include "validation/report/page.h"
 #include "validation/suite/devices.h"
 #include "engine/core/error.h"
-#include "engine/scene/scene.h"
 #include "engine/verify/float_probe.h"
 #include "twinray_version.h"
 

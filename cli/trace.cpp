@@ -5,6 +5,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include <twinray/scene.h>
+
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
@@ -14,7 +16,6 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/progress.h"
-#include "engine/scene/scene.h"
 
 namespace twinray::cli {
 namespace {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iostream>
 
+#include <twinray/scene.h>
+
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "validation/exact/referee.h"
@@ -11,7 +13,6 @@
 #include "validation/replay/scene_file.h"
 #include "validation/replay/show.h"
 #include "cli/verify/output.h"
-#include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
 #include "engine/verify/aimed_rays.h"

@@ -3,10 +3,11 @@
 
 #include <cmath>
 
+#include <twinray/scene.h>
+
 #include "cli/command/values.h"
 #include "engine/core/error.h"
 #include "validation/picture/matrix_picture.h"
-#include "engine/scene/png.h"
 
 namespace twinray::cli {
 namespace {

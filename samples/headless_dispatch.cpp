@@ -4,7 +4,8 @@
 #include <fstream>
 #include <iostream>
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
+
 #include "engine/core/cpu_vectors.h"
 #include "engine/core/error.h"
 #include "engine/core/kernel.h"

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <iostream>
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
+
 
 namespace {
 

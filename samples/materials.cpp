@@ -2,12 +2,12 @@
 // Materials of several types and textures in one set, that a kernel reads by key.
 #include <iostream>
 
+#include <twinray/scene.h>
+#include <twinray/sets.h>
+
 #include "engine/core/error.h"
 #include "engine/core/kernel.h"
-#include "engine/scene/multi_type_set.h"
-#include "engine/scene/png.h"
-#include "engine/scene/shapes.h"
-#include "engine/scene/texture_store.h"
+#include <twinray/geometry.h>
 #include "materials_buffers.spv.h"
 #include "materials_images.spv.h"
 
@@ -28,13 +28,41 @@ Image ramp(uint side) {
     return image;
 }
 
+using Materials = TWINRAY_MULTI_TYPE_SET(MaterialSet, MATERIALS);
+
+// A square for each key, one beside the other: 8-bit RGBA, row 0 on top.
+std::vector<uint> draw_swatches(Context& context, const Materials& materials, const TextureStore& textures,
+                                std::span<const SetKey> keys, uint side) {
+    const uint count = static_cast<uint>(keys.size()), pixels = count * side * side;
+    const Buffer on_device(context, {.name = "keys", .bytes = keys.size_bytes()});
+    const Buffer picture(context, {.name = "picture", .bytes = sizeof(uint) * pixels});
+    const std::span<const uint> modules[] = {materials_buffers_spirv, materials_images_spirv};
+    const Kernel<SwatchArgs> kernel(
+        context, {.name = "swatches", .spirv = modules[textures.has_images()], .has_images = textures.has_images()});
+    Commands commands(context, "swatches");
+    {
+        const auto pass = commands.pass("keys");
+        commands.upload(on_device, keys);
+    }
+    kernel.dispatch(commands,
+                    {materials.view(), textures.view(), on_device.ref<SetKey>(), picture.ref<uint>(), count, side},
+                    pixels, textures.images());
+    commands.submit();
+    return download<uint>(context, picture, pixels);
+}
+
+Rgb color_of(uint texel) {
+    return {static_cast<std::uint8_t>(texel), static_cast<std::uint8_t>(texel >> 8),
+            static_cast<std::uint8_t>(texel >> 16)};
+}
+
 int main(int argc, char** argv) try {
     Context context;
     TextureStore textures(context, "textures");
     const TextureRef painting = textures.push(ramp(64));
     textures.sync();
 
-    TWINRAY_MULTI_TYPE_SET(MaterialSet, MATERIALS) materials(context, "materials");
+    Materials materials(context, "materials");
     const SetKey keys[] = {materials.push(Checker{vec3(1), vec3(0), 4}), materials.push(Painted{painting, 1}),
                            materials.push(Painted{painting, 1}), SetKey{}};
     materials.sync();
@@ -42,32 +70,14 @@ int main(int argc, char** argv) try {
     materials.sync();
 
     constexpr uint side = 128, swatches = std::size(keys);
-    const Buffer on_device(context, {.name = "keys", .bytes = sizeof keys});
-    const Buffer picture(context, {.name = "picture", .bytes = sizeof(uint) * swatches * side * side});
-    const std::span<const uint> modules[] = {materials_buffers_spirv, materials_images_spirv};
-    const Kernel<SwatchArgs> kernel(
-        context, {.name = "swatches", .spirv = modules[textures.has_images()], .has_images = textures.has_images()});
-    Commands commands(context, "swatches");
-    {
-        const auto pass = commands.pass("keys");
-        commands.upload(on_device, std::span<const SetKey>(keys));
-    }
-    kernel.dispatch(commands,
-                    {materials.view(), textures.view(), on_device.ref<SetKey>(), picture.ref<uint>(), swatches, side},
-                    swatches * side * side, textures.images());
-    commands.submit();
-
     std::vector<Rgb> pixels;
-    for (const uint texel : download<uint>(context, picture, swatches * side * side))
-        pixels.push_back({static_cast<std::uint8_t>(texel), static_cast<std::uint8_t>(texel >> 8),
-                          static_cast<std::uint8_t>(texel >> 16)});
-    const auto middle = [&](uint swatch) {
-        return pixels[(side / 2 + 1) * swatches * side + swatch * side + side / 2 + 1];
-    };
+    for (const uint texel : draw_swatches(context, materials, textures, keys, side)) pixels.push_back(color_of(texel));
     std::cout << "textures are " << (textures.has_images() ? "images" : "in buffers")
               << "; in the middle of the swatches:";
-    for (uint i = 0; i < swatches; ++i)
-        std::cout << " (" << +middle(i).r << ", " << +middle(i).g << ", " << +middle(i).b << ')';
+    for (uint i = 0; i < swatches; ++i) {
+        const Rgb middle = pixels[(side / 2 + 1) * swatches * side + i * side + side / 2 + 1];
+        std::cout << " (" << +middle.r << ", " << +middle.g << ", " << +middle.b << ')';
+    }
     std::cout << '\n';
     if (argc > 1) write_png(argv[1], swatches * side, side, pixels);
 } catch (const std::exception& error) {

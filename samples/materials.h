@@ -2,8 +2,8 @@
 // The materials of the sample, for C++ and GLSL alike.
 #ifndef TWINRAY_SAMPLES_MATERIALS_H
 #define TWINRAY_SAMPLES_MATERIALS_H
-#include "shaders/scene/multi_type_set.h"
-#include "shaders/scene/textures.h"
+#include "twinray/glsl/multi_type_set.h"
+#include "twinray/glsl/textures.h"
 
 struct Checker {
     vec3 even;

@@ -6,14 +6,13 @@
 #include "cli/kernels/kernel_list.h"
 #include "engine/accel/all_hits.h"
 #include "engine/accel/ray_sort.h"
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
 #include "engine/analysis/pair_sampler.h"
 #include "engine/analysis/sky_rays.h"
 #include <twinray/context.h>
-#include "engine/scene/animation.h"
-#include "engine/scene/deformer.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
+
+#include "engine/scene/rig.h"
 #include "engine/verify/float_probe.h"
 #include "engine/verify/oracle_accel.h"
 #include <twinray/tlas.h>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The kernels of the path tracer: those of a plain scene, and those with all features.
+#include <twinray/scene.h>
+
+#include "engine/scene/rig.h"
 #include "cli/kernels/kernel_list.h"
-#include "engine/accel/scene_push.h"
-#include "engine/scene/animation.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "samples/path_tracer/cross_check.h"
 #include "samples/path_tracer/moving_scene.h"
 #include "samples/path_tracer/renderer.h"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/scene_push.h"
-
 #include <algorithm>
 
+#include <twinray/scene.h>
+
+#include <twinray/abstract_accel.h>
 #include "engine/core/error.h"
 
 namespace twinray {

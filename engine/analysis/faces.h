@@ -4,6 +4,9 @@
 
 #include <twinray/analysis.h>
 
+#include <twinray/scene.h>
+
+#include <twinray/abstract_accel.h>
 #include "engine/accel/spawn.h"
 #include "engine/core/buffer.h"
 

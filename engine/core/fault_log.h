@@ -8,7 +8,7 @@
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/faults.h"
+#include "twinray/glsl/faults.h"
 #include "twinray/glsl/cpp_end.h"
 
 class FaultLog {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
+
+#include <twinray/scene.h>
 
 namespace twinray {
 namespace {

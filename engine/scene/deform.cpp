@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/deform.h"
+#include "engine/scene/rig.h"
 
 namespace twinray {
 namespace {
@@ -63,7 +63,17 @@ MeshVertices deformed(const MeshVertices& base, const VertexMotion& motion, std:
 MeshVertices deformed(const Rig& rig, const DeformedMesh& mesh, const Pose& pose) {
     std::vector<Transform> joints;
     if (mesh.skin >= 0) joints = joint_transforms(rig.skins[static_cast<std::size_t>(mesh.skin)], pose);
-    return deformed(mesh.base, mesh.motion, pose.weights[mesh.node], joints);
+    return deformed(mesh.base, mesh.motion, pose->weights[mesh.node], joints);
+}
+
+MeshVertices deformed(const Rig& rig, std::size_t index, const Pose& pose) {
+    return deformed(rig, rig.meshes[index], pose);
+}
+
+std::vector<uint> deformed_meshes(const Rig& rig) {
+    std::vector<uint> meshes;
+    for (const DeformedMesh& mesh : rig.meshes) meshes.push_back(mesh.mesh);
+    return meshes;
 }
 
 }  // namespace twinray

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/deformer.h"
-
+#include "engine/core/kernel.h"
+#include "engine/scene/rig.h"
 #include "scene_deform.spv.h"
 
 namespace twinray {
+#include "twinray/glsl/cpp_begin.h"
+#include "shaders/scene/deform.h"
+#include "twinray/glsl/cpp_end.h"
+
 namespace {
 
 Buffer like(Context& context, const Buffer& other) {
@@ -12,8 +16,34 @@ Buffer like(Context& context, const Buffer& other) {
 
 }  // namespace
 
-Deformer::Deformer(Context& context, std::shared_ptr<const Rig> rig)
-    : context_(context), rig_(std::move(rig)), kernel_(context, {.name = "scene_deform", .spirv = scene_deform_spirv}) {
+struct Deformer::State {
+    State(Context& context, std::shared_ptr<const Rig> rig);
+    void record(Commands& commands, const Pose& pose);
+
+    struct Buffers {
+        Buffer positions, normals, tangents;
+        Buffer moved_positions, moved_normals, moved_tangents;
+        Buffer target_positions, target_normals, target_tangents, target_weights;
+        Buffer joints, joint_weights, joint_rows;
+        DeformArgs args;
+    };
+    Buffers make_buffers(Commands& commands, const DeformedMesh& mesh) const;
+    template <class T>
+    Buffer upload(Commands& commands, const char* name, const std::vector<T>& values) const;
+    template <class T>
+    Buffer upload_targets(Commands& commands, const char* name, const DeformedMesh& mesh,
+                          std::vector<T> MorphTarget::*part) const;
+
+    Context& context_;
+    std::shared_ptr<const Rig> rig_;
+    Kernel<DeformArgs> kernel_;
+    std::vector<Buffers> meshes_;
+};
+
+Deformer::State::State(Context& context, std::shared_ptr<const Rig> rig)
+    : context_(context),
+      rig_(std::move(rig)),
+      kernel_(context, {.name = "scene_deform", .spirv = scene_deform_spirv}) {
     if (rig_->meshes.empty()) return;
     Commands commands(context, "deformer upload");
     {
@@ -24,22 +54,22 @@ Deformer::Deformer(Context& context, std::shared_ptr<const Rig> rig)
 }
 
 template <class T>
-Buffer Deformer::upload(Commands& commands, const char* name, const std::vector<T>& values) const {
+Buffer Deformer::State::upload(Commands& commands, const char* name, const std::vector<T>& values) const {
     Buffer buffer(context_, {.name = name, .bytes = std::span(values).size_bytes()});
     if (!values.empty()) commands.upload(buffer, std::span(values));
     return buffer;
 }
 
 template <class T>
-Buffer Deformer::upload_targets(Commands& commands, const char* name, const DeformedMesh& mesh,
-                                std::vector<T> MorphTarget::*part) const {
+Buffer Deformer::State::upload_targets(Commands& commands, const char* name, const DeformedMesh& mesh,
+                                       std::vector<T> MorphTarget::*part) const {
     std::vector<T> all;
     for (const MorphTarget& target : mesh.motion.targets)
         all.insert(all.end(), (target.*part).begin(), (target.*part).end());
     return upload(commands, name, all);
 }
 
-Deformer::Buffers Deformer::make_buffers(Commands& commands, const DeformedMesh& mesh) const {
+Deformer::State::Buffers Deformer::State::make_buffers(Commands& commands, const DeformedMesh& mesh) const {
     const VertexMotion& motion = mesh.motion;
     const std::size_t joint_count = mesh.skin < 0 ? 0 : rig_->skins[static_cast<std::size_t>(mesh.skin)].joints.size();
     Buffers b;
@@ -75,18 +105,24 @@ Deformer::Buffers Deformer::make_buffers(Commands& commands, const DeformedMesh&
     return b;
 }
 
-Deformer::Output Deformer::output(std::size_t mesh) const {
-    const Buffers& buffers = meshes_[mesh];
+Deformer::Deformer(Context& context, std::shared_ptr<const Rig> rig)
+    : state_(std::make_unique<State>(context, std::move(rig))) {}
+Deformer::~Deformer() = default;
+
+void Deformer::record(Commands& commands, const Pose& pose) { state_->record(commands, pose); }
+
+Deformer::Output Deformer::output(std::size_t index) const {
+    const State::Buffers& buffers = state_->meshes_[index];
     return {buffers.moved_positions, buffers.moved_normals, buffers.moved_tangents, buffers.args.vertex_count};
 }
 
-void Deformer::record(Commands& commands, const Pose& pose) {
+void Deformer::State::record(Commands& commands, const Pose& pose) {
     if (meshes_.empty()) return;
     {
         const auto pass = commands.pass("deformer pose");
         for (std::size_t i = 0; i < meshes_.size(); ++i) {
             const DeformedMesh& mesh = rig_->meshes[i];
-            const std::vector<double>& weights = pose.weights[mesh.node];
+            const std::vector<double>& weights = pose->weights[mesh.node];
             const std::vector<float> rounded(weights.begin(), weights.end());
             if (!mesh.motion.targets.empty())
                 commands.upload(meshes_[i].target_weights, std::span(rounded).first(mesh.motion.targets.size()));

@@ -91,22 +91,22 @@ class GlbModel {
 
     // -1: nothing of it can be written.
     int mesh_of(const Instance& instance, std::span<const Rgb> colors, bool is_node) {
-        const Transform placed = is_node ? Transform{} : instance.transform;
-        if (!is_node) return make_mesh(scene_.meshes[instance.mesh], placed, colors);
+        const Transform to_world = is_node ? Transform{} : instance.transform;
+        if (!is_node) return make_mesh(scene_.meshes[instance.mesh], to_world, colors);
         const auto [found, is_new] = meshes_.try_emplace({instance.mesh, {colors.begin(), colors.end()}}, -1);
-        if (is_new) found->second = make_mesh(scene_.meshes[instance.mesh], placed, colors);
+        if (is_new) found->second = make_mesh(scene_.meshes[instance.mesh], to_world, colors);
         return found->second;
     }
 
-    int make_mesh(const Mesh& mesh, const Transform& placed, std::span<const Rgb> colors) {
+    int make_mesh(const Mesh& mesh, const Transform& to_world, std::span<const Rgb> colors) {
         std::vector<vec3> positions;
         std::vector<std::array<std::uint16_t, 4>> channels;
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-            std::array<vec3, 3> corners;
+            std::array<vec3, 3> vertices;
             for (int k = 0; k < 3; ++k)
-                corners[static_cast<std::size_t>(k)] = transform_point(placed, mesh.positions[mesh.triangles[i][k]]);
-            if (!std::all_of(corners.begin(), corners.end(), is_finite)) continue;
-            positions.insert(positions.end(), corners.begin(), corners.end());
+                vertices[static_cast<std::size_t>(k)] = transform_point(to_world, mesh.positions[mesh.triangles[i][k]]);
+            if (!std::all_of(vertices.begin(), vertices.end(), is_finite)) continue;
+            positions.insert(positions.end(), vertices.begin(), vertices.end());
             channels.insert(channels.end(), 3, {table_[colors[i].r], table_[colors[i].g], table_[colors[i].b], 65535});
         }
         if (positions.empty()) return -1;
@@ -181,8 +181,8 @@ void write_glb(const std::filesystem::path& file, const Scene& scene, std::span<
     if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, out, false, true))
         fail("'", file.string(), "': the scene cannot be written as glTF");
     const std::string bytes = out.str();
-    const std::span<const std::byte> piece = std::as_bytes(std::span(bytes));
-    write_file(file, std::span(&piece, 1));
+    const std::span<const std::byte> whole = std::as_bytes(std::span(bytes));
+    write_file(file, std::span(&whole, 1));
 }
 
 }  // namespace twinray

@@ -4,14 +4,13 @@
 #include <filesystem>
 #include <span>
 
-#include "engine/scene/rgb.h"
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
 
 namespace twinray {
 
 // The scene as glTF 2.0 in one file, each face in its colour (COLOR_0, linear light): `colors` by instance, then by
 // triangle. Instances are nodes, below one that moves them where the scene's origin is not 0; those of one mesh that
-// have the same colours share it. Faces keep their order; each has corners of its own, and those with a corner that is
+// have the same colours share it. Faces keep their order; each has vertices of its own, and those with a vertex that is
 // not finite, which glTF does not allow, are left out. Of materials, textures, cameras and lights nothing is written.
 // Throws Error naming the file, and for a wrong number of colours.
 void write_glb(const std::filesystem::path& file, const Scene& scene, std::span<const Rgb> colors);

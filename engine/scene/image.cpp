@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/image.h"
+#include <twinray/scene.h>
 
 #include <algorithm>
 #include <array>
@@ -98,17 +98,6 @@ Image decode_image(std::span<const std::uint8_t> bytes, const std::string& objec
             .width = static_cast<uint>(width),
             .height = static_cast<uint>(height),
             .rgba = {pixels.get(), pixels.get() + byte_count}};
-}
-
-Image checkerboard_image(const std::string& name) {
-    constexpr uint size = 32, square = 4;
-    Image image{.name = name, .width = size, .height = size, .rgba = {}, .is_placeholder = true};
-    for (uint y = 0; y < size; ++y)
-        for (uint x = 0; x < size; ++x) {
-            const std::uint8_t value = (x / square + y / square) % 2 == 0 ? 255 : 0;
-            image.rgba.insert(image.rgba.end(), {value, 0, value, 255});
-        }
-    return image;
 }
 
 HdrImage load_hdr_image(const std::filesystem::path& file) {

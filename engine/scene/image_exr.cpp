@@ -5,6 +5,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <ImfOutputFile.h>
 
 #include "engine/core/error.h"
 
@@ -38,6 +39,18 @@ HdrImage read_pixels(Imf::InputFile& in, const std::string& object) {
     return image;
 }
 
+// Of the pixels that a image has, and of the whole that they are of; both with their last pixel.
+Imath::Box2i data_window(const HdrImage& image) {
+    const HdrImage::Part part = image.part.value_or(HdrImage::Part{});
+    const Imath::V2i first(static_cast<int>(part.x), static_cast<int>(part.y));
+    return {first, first + Imath::V2i(static_cast<int>(image.width) - 1, static_cast<int>(image.height) - 1)};
+}
+Imath::Box2i display_window(const HdrImage& image) {
+    if (!image.part) return data_window(image);
+    const Imath::V2i size(static_cast<int>(image.part->whole_width), static_cast<int>(image.part->whole_height));
+    return {Imath::V2i(0, 0), size - Imath::V2i(1, 1)};
+}
+
 }  // namespace
 
 HdrImage load_exr_image(const std::filesystem::path& file) {
@@ -48,6 +61,33 @@ HdrImage load_exr_image(const std::filesystem::path& file) {
         throw;
     } catch (const std::exception& e) {  // OpenEXR's own, and running out of memory on a false size
         fail("'", file.string(), "': not a readable OpenEXR image (", e.what(), ")");
+    }
+}
+
+void write_exr_image(const std::filesystem::path& file, const HdrImage& image, std::span<const ImageChannel> channels) {
+    try {
+        const Imath::Box2i window = data_window(image);
+        Imf::Header header(display_window(image), window);
+        Imf::FrameBuffer frame;
+        const auto insert = [&](const std::string& name, Imf::PixelType type, const void* first, std::size_t stride) {
+            header.channels().insert(name, Imf::Channel(type));
+            frame.insert(name, Imf::Slice::Make(type, first, window, stride, stride * image.width));
+        };
+        const char* names[] = {"R", "G", "B"};
+        for (int i = 0; i < 3; ++i) insert(names[i], Imf::FLOAT, &image.rgb[0][i], sizeof(vec3));
+        for (const ImageChannel& channel : channels)
+            std::visit(
+                [&](const auto& values) {
+                    using Value = typename std::decay_t<decltype(values)>::value_type;
+                    insert(channel.name, std::is_same_v<Value, float> ? Imf::FLOAT : Imf::UINT, values.data(),
+                           sizeof(Value));
+                },
+                channel.values);
+        Imf::OutputFile out(file.string().c_str(), header);
+        out.setFrameBuffer(frame);
+        out.writePixels(static_cast<int>(image.height));
+    } catch (const std::exception& e) {
+        fail("'", file.string(), "': cannot write the picture (", e.what(), ")");
     }
 }
 

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "engine/scene/image.h"
+#include <twinray/scene.h>
 
 namespace twinray {
 
 // The pixels of an OpenEXR file as stored. Throws Error naming the file.
 HdrImage load_exr_image(const std::filesystem::path& file);
+
+// Writes linear 32-bit float, and channels beside them; a part of an image as the data window of the whole's display
+// window. Throws Error naming the file.
+void write_exr_image(const std::filesystem::path& file, const HdrImage& image, std::span<const ImageChannel> channels);
 
 // Throws Error naming `object` when an image of this size is empty or over 2^28 pixels, beyond which a file is
 // more likely damaged than meant.

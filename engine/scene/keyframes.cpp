@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/scene/animation.h"
+#include "engine/scene/rig.h"
 
 namespace twinray {
 namespace {

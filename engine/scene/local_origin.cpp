@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/local_origin.h"
 
+#include <twinray/scene.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>

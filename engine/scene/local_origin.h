@@ -35,7 +35,4 @@ dvec3 choose_local_origin(const Bounds64& bounds);
 // Each minus the origin, in float64, rounded once.
 std::vector<vec3> local_positions(std::span<const dvec3> positions, const dvec3& origin);
 
-// "500000 5400000 0", in as few digits as give the same float64.
-std::string origin_text(const dvec3& origin);
-
 }  // namespace twinray

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/png.h"
+#include <twinray/scene.h>
 
 #include <vector>
 
@@ -14,16 +14,16 @@
 namespace twinray {
 
 void write_png(const std::filesystem::path& file, uint width, uint height, std::span<const Rgb> pixels) {
-    const auto keep = [](void* bytes, void* data, int size) {  // must not throw: stb would leak what it has encoded
+    const auto take = [](void* bytes, void* data, int size) {  // must not throw: stb would leak what it has encoded
         const auto* begin = static_cast<const std::byte*>(data);
         static_cast<std::vector<std::byte>*>(bytes)->assign(begin, begin + size);
     };
     const int w = static_cast<int>(width), h = static_cast<int>(height);
     std::vector<std::byte> encoded;
-    if (stbi_write_png_to_func(keep, &encoded, w, h, 3, pixels.data(), 3 * w) == 0)
+    if (stbi_write_png_to_func(take, &encoded, w, h, 3, pixels.data(), 3 * w) == 0)
         fail("'", file.string(), "': a picture of ", width, " x ", height, " pixels cannot be encoded");
-    const std::span<const std::byte> piece = encoded;
-    write_file(file, std::span(&piece, 1));
+    const std::span<const std::byte> whole = encoded;
+    write_file(file, std::span(&whole, 1));
 }
 
 }  // namespace twinray

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/pose_scene.h"
-
 #include <algorithm>
+
+#include "engine/scene/rig.h"
 
 namespace twinray {
 
@@ -26,9 +26,16 @@ void place_camera(Camera& camera, const glm::dmat4& frame) { camera.camera_to_wo
 
 void pose_scene(Scene& scene, const Pose& pose) { pose_scene(scene, *scene.rig, pose); }
 
+std::vector<Transform> instance_transforms(const Rig& rig, const Pose& pose) {
+    std::vector<Transform> transforms;
+    for (const Rig::Attachment& attachment : rig.instances)
+        transforms.push_back(transform_of(matrix_of(pose, attachment)));
+    return transforms;
+}
+
 void pose_scene(Scene& scene, const Rig& rig, const Pose& pose) {
-    for (std::size_t i = 0; i < scene.instances.size(); ++i)
-        scene.instances[i].transform = transform_of(matrix_of(pose, rig.instances[i]));
+    const std::vector<Transform> transforms = instance_transforms(rig, pose);
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) scene.instances[i].transform = transforms[i];
     for (std::size_t i = 0; i < scene.cameras.size(); ++i)
         if (const auto frame = unscaled(frame_of(pose, rig.cameras[i]))) place_camera(scene.cameras[i], *frame);
     for (std::size_t i = 0; i < scene.lights.size(); ++i)
@@ -40,7 +47,7 @@ void show_hidden(Scene& scene) {
     auto rig = std::make_shared<Rig>(*scene.rig);
     for (Rig::Hidden& hidden : rig->hidden) {
         const auto next = std::ranges::upper_bound(scene.instances, hidden.instance.mesh, {}, &Instance::mesh);
-        rig->instances.insert(rig->instances.begin() + (next - scene.instances.begin()), hidden.place);
+        rig->instances.insert(rig->instances.begin() + (next - scene.instances.begin()), hidden.attachment);
         scene.instances.insert(next, std::move(hidden.instance));
     }
     rig->hidden.clear();

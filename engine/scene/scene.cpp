@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/scene.h"
-
 #include <algorithm>
 
+#include <twinray/scene.h>
+
+#include "engine/scene/rig.h"
 #include "engine/core/error.h"
-#include "engine/scene/animation.h"
 #include "engine/scene/bytes.h"
-#include "engine/scene/importers.h"
+#include "engine/scene/importers/importers.h"
 
 namespace twinray {
 namespace {

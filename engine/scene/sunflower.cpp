@@ -3,7 +3,8 @@
 #include <numbers>
 
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
+#include <twinray/scene.h>
+
 
 namespace twinray {
 namespace {

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/texture_store.h"
+#include <twinray/scene.h>
 
+#include <map>
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/fault_log.h"
+#include "engine/core/image_array.h"
+#include "engine/scene/set_uploads.h"
 
 namespace twinray {
+
+static_assert(sizeof(TextureRecord) == 32 && sizeof(TextureTable) == 32);
+
 namespace {
 
 uint longest_image_side(const Context& context) {
@@ -35,12 +42,71 @@ uint wrap_word(Wrap wrap) {
 
 }  // namespace
 
+// The store behind its pointer: each method as TextureStore declares it.
+struct TextureStore::State {
+    State(Context& context, std::string name, TextureStorage storage);
+    TextureRef push(const Image& image, const TextureOptions& options);
+    void update(TextureRef ref, const Image& image);
+    bool contains(TextureRef ref) const { return ref.number - 1u < textures_.size(); }
+    std::size_t size() const { return textures_.size(); }
+    SyncPoint sync();
+    void sync(Commands& commands);
+    TextureTable view() const;
+    VkDescriptorSet images() const;
+    std::uint64_t buffer_bytes() const;
+    bool has_images() const { return storage_ == TextureStorage::images; }
+    void check_faults() const;
+
+    struct Texture {
+        std::string name;  // of the image that it was pushed as
+        TextureOptions options;
+        uint width = 0, height = 0;  // on the device; 0: not there yet
+        SampledImage image;          // one of the two
+        Buffer texels;
+    };
+    // What the next sync has recorded of a texture that it makes or replaces.
+    struct Made {
+        std::size_t index;
+        uint width, height;
+        SampledImage image;
+        Buffer texels;
+    };
+    struct Staged {
+        std::vector<Made> made;
+        ImageArray array;
+        std::optional<SetUploads::Staged> records;
+    };
+    const Texture& checked(TextureRef ref, const char* action) const;
+    void check_image(const Image& image, const char* action) const;
+    Staged stage(Commands& commands);
+    void record_upload(Commands& commands, std::size_t index, const Image& image, std::vector<Made>& made);
+    VkSampler sampler_of(const TextureOptions& options);
+    Made make(std::size_t index, const Image& image);
+    ImageArray array_with(const std::vector<Made>& made) const;
+    SetUploads::Staged stage_records(Commands& commands, const std::vector<Made>& made);
+    void commit(Staged&& staged, SyncPoint done);
+
+    Context& context_;
+    std::string name_;
+    TextureStorage storage_;
+    uint longest_side_;  // that an image may have
+    std::vector<Texture> textures_;
+    Samplers samplers_;
+    std::map<std::size_t, Image> pending_;  // by index of the texture: what the next sync uploads
+    ImageArray array_;
+    std::vector<TextureRecord> record_values_;  // of textures in buffers; those of pending ones do not count
+    SetUploads records_;
+    FaultLog faults_;
+    std::uint64_t revision_ = 0;
+    SyncPoint synced_;
+};
+
 TextureStorage TextureStore::best_storage(const Context& context) {
     const bool has_images = context.facts().has_image_arrays() && context.state().allocator().has_images();
     return has_images ? TextureStorage::images : TextureStorage::buffers;
 }
 
-TextureStore::TextureStore(Context& context, std::string name, TextureStorage storage)
+TextureStore::State::State(Context& context, std::string name, TextureStorage storage)
     : context_(context),
       name_(std::move(name)),
       storage_(storage),
@@ -53,7 +119,7 @@ TextureStore::TextureStore(Context& context, std::string name, TextureStorage st
              context.facts().name, "' does not have enabled; use buffers");
 }
 
-void TextureStore::check_image(const Image& image, const char* action) const {
+void TextureStore::State::check_image(const Image& image, const char* action) const {
     const std::uint64_t bytes = std::uint64_t{4} * image.width * image.height;
     if (bytes == 0 || image.rgba.size() != bytes)
         fail(name_, ": ", action, ": image '", image.name, "' of ", image.width, " x ", image.height, " has ",
@@ -63,7 +129,7 @@ void TextureStore::check_image(const Image& image, const char* action) const {
              "; the device's images have at most ", longest_side_, " a side");
 }
 
-TextureRef TextureStore::push(const Image& image, const TextureOptions& options) {
+TextureRef TextureStore::State::push(const Image& image, const TextureOptions& options) {
     check_image(image, "push");
     if (has_images() && size() == ImageArray::max_images)
         fail(name_, ": push: image '", image.name, "'; ", size(), " images fit, and are there");
@@ -72,19 +138,19 @@ TextureRef TextureStore::push(const Image& image, const TextureOptions& options)
     return {static_cast<uint>(size())};
 }
 
-const TextureStore::Texture& TextureStore::checked(TextureRef ref, const char* action) const {
+const TextureStore::State::Texture& TextureStore::State::checked(TextureRef ref, const char* action) const {
     if (!contains(ref))
         fail(name_, ": ", action, ": the texture has number ", ref.number, "; they go from 1 to ", size());
     return textures_[ref.number - 1];
 }
 
-void TextureStore::update(TextureRef ref, const Image& image) {
+void TextureStore::State::update(TextureRef ref, const Image& image) {
     checked(ref, "update");
     check_image(image, "update");
     pending_[ref.number - 1] = image;
 }
 
-SyncPoint TextureStore::sync() {
+SyncPoint TextureStore::State::sync() {
     if (pending_.empty()) return synced_;
     Commands commands(context_, name_ + " sync");
     Staged staged = stage(commands);
@@ -92,16 +158,16 @@ SyncPoint TextureStore::sync() {
     return synced_;
 }
 
-void TextureStore::sync(Commands& commands) {
+void TextureStore::State::sync(Commands& commands) {
     if (!commands.is_of_caller()) fail(name_, ": sync: own commands are not for recording into; call sync()");
     if (!pending_.empty()) commit(stage(commands), commands.done());
 }
 
-TextureStore::Staged TextureStore::stage(Commands& commands) {
+TextureStore::State::Staged TextureStore::State::stage(Commands& commands) {
     Staged staged;
     {
         const auto pass = commands.pass(name_ + " upload");
-        for (const auto& [place, image] : pending_) record_upload(commands, place, image, staged.made);
+        for (const auto& [index, image] : pending_) record_upload(commands, index, image, staged.made);
     }
     if (staged.made.empty()) return staged;
     if (has_images())
@@ -111,24 +177,25 @@ TextureStore::Staged TextureStore::stage(Commands& commands) {
     return staged;
 }
 
-void TextureStore::record_upload(Commands& commands, std::size_t place, const Image& image, std::vector<Made>& made) {
-    Texture& texture = textures_[place];
+void TextureStore::State::record_upload(Commands& commands, std::size_t index, const Image& image,
+                                        std::vector<Made>& made) {
+    Texture& texture = textures_[index];
     const bool is_reused = texture.width == image.width && texture.height == image.height;
-    if (!is_reused) made.push_back(make(place, image));
+    if (!is_reused) made.push_back(make(index, image));
     if (has_images())
         (is_reused ? texture.image : made.back().image).upload(commands, std::as_bytes(std::span(image.rgba)));
     else
         commands.upload(is_reused ? texture.texels : made.back().texels, std::span(image.rgba));
 }
 
-VkSampler TextureStore::sampler_of(const TextureOptions& options) {
+VkSampler TextureStore::State::sampler_of(const TextureOptions& options) {
     return samplers_.get(address_mode(options.wrap_u), address_mode(options.wrap_v),
                          options.filter == Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
 }
 
-TextureStore::Made TextureStore::make(std::size_t place, const Image& image) {
-    Made made{place, image.width, image.height, {}, {}};
-    const Texture& texture = textures_[place];
+TextureStore::State::Made TextureStore::State::make(std::size_t index, const Image& image) {
+    Made made{index, image.width, image.height, {}, {}};
+    const Texture& texture = textures_[index];
     const std::string name = name_ + ": " + texture.name;
     if (has_images())
         made.image = SampledImage(
@@ -143,33 +210,33 @@ TextureStore::Made TextureStore::make(std::size_t place, const Image& image) {
 }
 
 // Another array, with the textures that stay as they are.
-ImageArray TextureStore::array_with(const std::vector<Made>& made) const {
+ImageArray TextureStore::State::array_with(const std::vector<Made>& made) const {
     std::vector<VkDescriptorImageInfo> images;
     for (const Texture& texture : textures_) images.push_back(texture.image.descriptor());
-    for (const Made& one : made) images[one.place] = one.image.descriptor();
+    for (const Made& one : made) images[one.index] = one.image.descriptor();
     return {context_, images};
 }
 
-SetStorage::Staged TextureStore::stage_records(Commands& commands, const std::vector<Made>& made) {
+SetUploads::Staged TextureStore::State::stage_records(Commands& commands, const std::vector<Made>& made) {
     record_values_.resize(size());
     for (const Made& one : made) {
-        const TextureOptions& options = textures_[one.place].options;
-        record_values_[one.place] = {one.texels.ref<uint>(),
+        const TextureOptions& options = textures_[one.index].options;
+        record_values_[one.index] = {one.texels.ref<uint>(),
                                      one.width,
                                      one.height,
                                      wrap_word(options.wrap_u),
                                      wrap_word(options.wrap_v),
                                      options.is_srgb,
                                      options.filter == Filter::nearest};
-        records_.note_update(0, static_cast<uint>(one.place));
+        records_.note_update(0, static_cast<uint>(one.index));
     }
     const std::span<const std::byte> bytes[] = {std::as_bytes(std::span(record_values_))};
     return records_.stage(commands, bytes);
 }
 
-void TextureStore::commit(Staged&& staged, SyncPoint done) {
+void TextureStore::State::commit(Staged&& staged, SyncPoint done) {
     for (Made& one : staged.made) {
-        Texture& texture = textures_[one.place];
+        Texture& texture = textures_[one.index];
         texture.width = one.width;
         texture.height = one.height;
         texture.image = std::move(one.image);
@@ -182,28 +249,49 @@ void TextureStore::commit(Staged&& staged, SyncPoint done) {
     synced_ = done;
 }
 
-TextureTable TextureStore::view() const {
+TextureTable TextureStore::State::view() const {
     if (!pending_.empty()) fail(name_, ": view: edits are pending; call sync() first");
     return {{records_.slots()[0].address}, static_cast<uint>(size()), 0, faults_.on_device(), revision_};
 }
 
-VkDescriptorSet TextureStore::images() const {
+VkDescriptorSet TextureStore::State::images() const {
     if (!pending_.empty()) fail(name_, ": images: edits are pending; call sync() first");
     return array_.set();
 }
 
-std::uint64_t TextureStore::buffer_bytes() const {
+std::uint64_t TextureStore::State::buffer_bytes() const {
     std::uint64_t bytes = records_.buffer_bytes();
     for (const Texture& texture : textures_) bytes += texture.texels.bytes();
     return bytes;
 }
 
-void TextureStore::check_faults() const {
+void TextureStore::State::check_faults() const {
     context_.wait_for_gpu();
     const Faults faults = faults_.read();
     if (faults.count)
         fail(name_, ": kernels met ", faults.count, " references that name nothing, the first is number ",
              std::uint64_t{faults.index} + 1, "; they go from 1 to ", size());
 }
+
+TextureStore::TextureStore(Context& context, std::string name, TextureStorage storage)
+    : state_(std::make_unique<State>(context, std::move(name), storage)) {}
+TextureStore::TextureStore(Context& context, std::string name)
+    : TextureStore(context, std::move(name), best_storage(context)) {}
+TextureStore::~TextureStore() = default;
+
+TextureRef TextureStore::push(const Image& image, const TextureOptions& options) {
+    return state_->push(image, options);
+}
+void TextureStore::update(TextureRef ref, const Image& image) { state_->update(ref, image); }
+bool TextureStore::contains(TextureRef ref) const { return state_->contains(ref); }
+std::size_t TextureStore::size() const { return state_->size(); }
+SyncPoint TextureStore::sync() { return state_->sync(); }
+void TextureStore::sync(Commands& commands) { state_->sync(commands); }
+TextureTable TextureStore::view() const { return state_->view(); }
+VkDescriptorSet TextureStore::images() const { return state_->images(); }
+std::uint64_t TextureStore::revision() const { return state_->revision_; }
+std::uint64_t TextureStore::buffer_bytes() const { return state_->buffer_bytes(); }
+bool TextureStore::has_images() const { return state_->has_images(); }
+void TextureStore::check_faults() const { state_->check_faults(); }
 
 }  // namespace twinray

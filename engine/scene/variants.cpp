@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/variants.h"
+#include <twinray/scene.h>
 
 #include <algorithm>
 

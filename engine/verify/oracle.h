@@ -6,10 +6,11 @@
 #include <span>
 #include <vector>
 
+#include <twinray/scene.h>
+
 #include "engine/accel/geometry.h"
 #include "engine/core/ray.h"
 #include <twinray/geometry.h>
-#include "engine/scene/scene.h"
 #include "engine/verify/geometry64.h"
 
 namespace twinray {

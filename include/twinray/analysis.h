@@ -24,7 +24,7 @@
 #include <vector>
 
 #include <twinray/abstract_accel.h>
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
 
 namespace twinray {
 

@@ -203,15 +203,17 @@ struct Bounds {
     vec3 center() const;
 };
 
-// A device address of items of type T, as kernels take it in their arguments; 0: none.
+// Eight bytes: a device address when pushed to the GPU, a host address in code that both run. GLSL has two words for
+// them, so that structs are to be aligned as there.
+using Address [[gnu::aligned(4)]] = std::uint64_t;
+using Uint64 [[gnu::aligned(4)]] = std::uint64_t;
+
+// The address of items of type T, as kernels take it in their arguments; 0: none.
 template <class T>
 struct Ref {
-    // GLSL has two words for it, so that structs are to be aligned as there.
-    using Address [[gnu::aligned(4)]] = std::uint64_t;
     Address address = 0;
 
-    // Of memory of the host, for code that both run.
-    T& operator[](std::size_t i) const { return reinterpret_cast<T*>(address)[i]; }
+    T& operator[](std::size_t i) const { return reinterpret_cast<T*>(address)[i]; }  // of memory of the host
     static Ref to(const T* host) { return {reinterpret_cast<std::uint64_t>(host)}; }
 };
 using Floats = Ref<float>;

@@ -5,8 +5,11 @@
 
 #include "engine/core/error.h"
 #include <twinray/vma_adapter.h>
+#include "samples/support/devices.h"
+#include "samples/support/text.h"
 
 namespace twinray::embed_renderer {
+using samples::fail;
 namespace {
 
 constexpr std::uint32_t api_version = VK_API_VERSION_1_2;
@@ -99,7 +102,7 @@ void Device::create_instance(bool validation) {
     require(create(instance_, &listen, nullptr, &messenger_), "create a debug messenger");
 }
 
-// By twinray's choice among the devices that can also rasterise.
+// The best of those that can also rasterise.
 void Device::choose(const std::string& request) {
     std::uint32_t count = 0;
     require(vkEnumeratePhysicalDevices(instance_, &count, nullptr), "list the devices");
@@ -110,9 +113,9 @@ void Device::choose(const std::string& request) {
         facts.push_back(query_device_facts(vkGetInstanceProcAddr, instance_, device));
         facts.back().has_compute_queue = universal_family(device) >= 0;
     }
-    const DeviceChoice choice = choose_device(facts, request);
-    if (choice.index < 0) fail("no usable device: ", joined(choice.rejections));
-    physical_ = devices[static_cast<std::size_t>(choice.index)];
+    const std::optional<std::size_t> best = samples::best_device(facts, request);
+    if (!best) fail("of ", facts.size(), " devices none that matches '", request, "' rasterises and runs twinray");
+    physical_ = devices[*best];
     queue_family_ = static_cast<std::uint32_t>(universal_family(physical_));
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(physical_, &properties);

@@ -37,14 +37,8 @@ void add_picture(CLI::App& app, Options& options) {
 }
 
 void add_machine(CLI::App& app, Options& options) {
-    app.add_option("--accel", options.accel,
-                   "hw (ray tracing extensions), sw (compute), or auto: hw where the device has it and is no CPU")
-        ->check(CLI::IsMember({"auto", "sw", "hw"}))
-        ->option_text("auto|sw|hw [auto]");
-    app.add_option("--device", options.device, "index, or a part of the name");
-    app.add_flag("--validation", options.validation, "Khronos validation layer; exit 1 on any message");
+    samples::add_device_options(app, options, "Khronos validation layer; exit 1 on any message");
     app.add_flag("--strict", options.strict, "what is not understood of the scene's file is an error, not a warning");
-    app.add_flag("--quiet", options.quiet, "errors only");
 }
 
 }  // namespace
@@ -55,14 +49,7 @@ ParsedOptions parse_options(int argc, char** argv) {
     add_files(app, result.options);
     add_picture(app, result.options);
     add_machine(app, result.options);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& help) {
-        result.exit_status = app.exit(help);
-    } catch (const CLI::ParseError& error) {
-        std::fprintf(stderr, "embed_renderer: %s (see embed_renderer --help)\n", error.what());
-        result.exit_status = 2;
-    }
+    result.exit_status = samples::parse(app, argc, argv, "embed_renderer");
     return result;
 }
 

@@ -6,13 +6,12 @@
 #include <string>
 
 #include "twinray/glsl/cpp.h"
+#include "samples/support/program.h"
 
 namespace twinray::embed_renderer {
 
-struct Options {
+struct Options : samples::DeviceOptions {
     std::filesystem::path scene, output, json;  // output: a folder, or empty
-    std::string accel = "auto";                 // for choose_accel()
-    std::string device;
     uint frames = 8;
     uint width = 960, height = 540;
     uint shadow_rays = 4;  // per pixel; 0: no shadows
@@ -21,9 +20,7 @@ struct Options {
     uint balls = 12;
     int camera = -1;  // -1: frame the scene
     bool no_ground = false;
-    bool validation = false;
     bool strict = false;
-    bool quiet = false;
 };
 
 // The options, or the exit status of a run that is over: help was shown (0) or the usage is wrong (2).

@@ -5,30 +5,27 @@
 
 #include <glm/trigonometric.hpp>
 
+#include <twinray/scene.h>
+
 #include "embed_renderer_composite.spv.h"
 #include "embed_renderer_gbuffer_frag.spv.h"
 #include "embed_renderer_gbuffer_vert.spv.h"
 #include "embed_renderer_move.spv.h"
 #include "embed_renderer_rays.spv.h"
-#include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include <twinray/tlas.h>
 #include "samples/path_tracer/camera.h"
+#include "samples/support/text.h"
 
 namespace twinray::embed_renderer {
+using samples::fail;
 namespace {
 
 const vec3 to_sun = normalize(vec3(-0.8f, 1, 0.25f));
 const vec3 sun_color(1.25f, 1.15f, 1.0f), sky_color(0.3f, 0.36f, 0.45f);
 constexpr float ao_reach = 0.15f;     // of the scene's diagonal
 constexpr float near_plane = 0.001f;  // likewise
-
-std::unique_ptr<AbstractAccel> new_accel(Context& context, const AccelChoice& choice) {
-    if (choice.is_software) return std::make_unique<SwTlas>(context);
-    return std::make_unique<HwTlas>(context);
-}
 
 Camera chosen_camera(const Stage& stage, const Options& options) {
     const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
@@ -67,7 +64,7 @@ Renderer::Renderer(const Device& device, const Stage& stage, const Options& opti
       stage_(stage),
       context_(device.adopted()),
       choice_(choose_accel(context_.facts(), options.accel)),
-      accel_(new_accel(context_, choice_)),
+      accel_(samples::make_accel(context_, choice_)),
       targets_(device, {options.width, options.height}),
       scene_(device, context_, stage.scene),
       timer_(device),

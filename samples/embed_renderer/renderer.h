@@ -6,18 +6,19 @@
 
 #include <twinray/tlas.h>
 #include <twinray/abstract_accel.h>
+#include <twinray/scene.h>
+
 #include "samples/embed_renderer/frame_commands.h"
 #include "samples/embed_renderer/options.h"
 #include "samples/embed_renderer/pipelines.h"
 #include "samples/embed_renderer/scene_upload.h"
 #include "samples/embed_renderer/stage.h"
 #include "samples/embed_renderer/timer.h"
-#include "samples/path_tracer/image_io.h"
 
 namespace twinray::embed_renderer {
 
 struct FrameResult {
-    path_tracer::Picture picture;
+    HdrImage picture;
     std::vector<PassTimer::Lap> laps;
     RayCounts rays{};
 };

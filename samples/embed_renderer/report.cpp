@@ -3,11 +3,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 
 #include <nlohmann/json.hpp>
-
-#include "engine/core/error.h"
 
 namespace twinray::embed_renderer {
 namespace {
@@ -46,7 +43,6 @@ void report(const Options& options, const AccelChoice& accel, const Costs& costs
         std::printf("  %-13s %8.3f ms, of which twinray adds %.3f ms (%.0f %%)\n", "frame", costs.frame_ms,
                     costs.twinray_ms, costs.twinray_percent());
     }
-    if (options.json.empty()) return;
     nlohmann::json passes;
     for (const Costs::Pass& pass : costs.passes) passes[pass.name] = pass.ms;
     const nlohmann::json line = {{"scene", options.scene.string()},
@@ -61,8 +57,7 @@ void report(const Options& options, const AccelChoice& accel, const Costs& costs
                                  {"frame_ms", costs.frame_ms},
                                  {"twinray_ms", costs.twinray_ms},
                                  {"twinray_percent", costs.twinray_percent()}};
-    std::ofstream out(options.json, std::ios::app);
-    if (!(out << line.dump() << '\n').flush()) fail("'", options.json.string(), "': cannot be written");
+    samples::append_line(options.json, line.dump());
 }
 
 }  // namespace twinray::embed_renderer

@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
+
 #include "samples/embed_renderer/resources.h"
 #include "samples/embed_renderer/shared.h"
 

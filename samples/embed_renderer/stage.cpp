@@ -5,9 +5,12 @@
 
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
+#include <twinray/scene.h>
+
+#include "samples/support/text.h"
 
 namespace twinray::embed_renderer {
+using samples::fail;
 namespace {
 
 void add(Scene& scene, Mesh mesh, vec3 color, uint instance_count) {

@@ -2,7 +2,7 @@
 // What is shown: a scene on a ground, with balls that circle around it.
 #pragma once
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
 
 namespace twinray::embed_renderer {
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "samples/embed_renderer/timer.h"
 
-#include "engine/core/error.h"
+#include "samples/support/text.h"
 
 namespace twinray::embed_renderer {
+using samples::fail;
 
 PassTimer::PassTimer(const Device& device) : device_(device) {
     VkQueryPoolCreateInfo info{};

@@ -2,31 +2,17 @@
 // Balls that move, refit and change colour on the GPU: the host submits all frames and reads the last picture alone.
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 
 #include "engine/core/cpu_vectors.h"
 #include "engine/core/error.h"
 #include <twinray/tlas.h>
 #include "samples/particles/report.h"
+#include "samples/support/text.h"
 
 namespace twinray::particles {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// With what TWINRAY_DISABLE, a comma-separated list of ray_query and ray_tracing_pipeline, leaves unused.
-ContextDesc context_desc(const Options& options) {
-    ContextDesc desc;
-    desc.device = options.device;
-    desc.validation = options.validation;
-    if (const char* disabled = std::getenv("TWINRAY_DISABLE")) disable_features(desc, disabled);
-    return desc;
-}
-
-std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice) {
-    if (choice.is_software) return std::make_unique<SwTlas>(context);
-    return std::make_unique<HwTlas>(context);
-}
 
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -51,15 +37,15 @@ RunTimes run_frames(Simulation& simulation, Renderer& renderer, uint frames) {
 }
 
 int run(const Options& options) {
-    if (!options.output.empty() && !path_tracer::is_picture_file(options.output))
-        fail("'", options.output.string(), "': pictures are .png or .exr");
-    Context context(context_desc(options));
+    if (!options.output.empty() && !is_image_file(options.output))
+        samples::fail("'", options.output.string(), "': pictures are .png or .exr");
+    Context context(samples::context_desc(options, "particles"));
     const AccelChoice choice = choose_accel(context.facts(), options.accel);
-    const std::unique_ptr<AbstractAccel> accel = make_accel(context, choice);
+    const std::unique_ptr<AbstractAccel> accel = samples::make_accel(context, choice);
     Simulation simulation(*accel, make_particles(options.count, options.seed));
     Renderer renderer(simulation, options.size);
     const RunTimes times = run_frames(simulation, renderer, options.frames);
-    if (!options.output.empty()) path_tracer::write_picture(options.output, renderer.picture(), 0);
+    if (!options.output.empty()) write_image(options.output, renderer.picture(), 0);
     report(options, choice, times);
     return context.validation_messages().empty() ? 0 : 1;
 }
@@ -70,12 +56,8 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
     using namespace twinray::particles;
     twinray::widen_cpu_vectors();
-    try {
+    return twinray::samples::run_program("particles", [&] {
         const ParsedOptions parsed = parse_options(argc, argv);
-        if (parsed.exit_status) return *parsed.exit_status;
-        return run(parsed.options);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "particles: %s\n", error.what());
-        return 1;
-    }
+        return parsed.exit_status ? *parsed.exit_status : run(parsed.options);
+    });
 }

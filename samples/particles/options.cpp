@@ -19,13 +19,7 @@ void add_options(CLI::App& app, Options& options) {
         ->check(CLI::IsMember({1u, 4u, 9u, 16u}))
         ->option_text("1|4|9|16 [" + std::to_string(options.size.samples) + "]");
     app.add_option("--seed", options.seed, "of where the particles start")->capture_default_str();
-    app.add_option("--accel", options.accel,
-                   "hw (ray tracing extensions), sw (compute), or auto: hw where the device has it and is no CPU")
-        ->check(CLI::IsMember({"auto", "sw", "hw"}))
-        ->option_text("auto|sw|hw [auto]");
-    app.add_option("--device", options.device, "index, or a part of the name");
-    app.add_flag("--validation", options.validation, "Khronos validation layer; exit 1 on any message");
-    app.add_flag("--quiet", options.quiet, "errors only");
+    samples::add_device_options(app, options, "Khronos validation layer; exit 1 on any message");
 }
 
 }  // namespace
@@ -34,14 +28,7 @@ ParsedOptions parse_options(int argc, char** argv) {
     CLI::App app("particles: moving balls, coloured by their speed, without the host in the loop");
     ParsedOptions result;
     add_options(app, result.options);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& help) {
-        result.exit_status = app.exit(help);
-    } catch (const CLI::ParseError& error) {
-        std::fprintf(stderr, "particles: %s (see particles --help)\n", error.what());
-        result.exit_status = 2;
-    }
+    result.exit_status = samples::parse(app, argc, argv, "particles");
     return result;
 }
 

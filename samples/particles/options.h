@@ -6,19 +6,16 @@
 #include <string>
 
 #include "samples/particles/renderer.h"
+#include "samples/support/program.h"
 
 namespace twinray::particles {
 
-struct Options {
+struct Options : samples::DeviceOptions {
     std::filesystem::path output, json;
-    std::string accel = "auto";  // for choose_accel()
-    std::string device;
     uint frames = 100;
     uint count = 1000;
     uint seed = 1;
     PictureSize size;
-    bool validation = false;
-    bool quiet = false;
 };
 
 // The options, or the exit status of a run that is over: help was shown (0) or the usage is wrong (2).

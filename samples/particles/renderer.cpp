@@ -3,7 +3,8 @@
 
 #include <cmath>
 
-#include "engine/picture/view.h"
+#include <twinray/scene.h>
+
 #include "particles_add_light.spv.h"
 #include "particles_shade.spv.h"
 
@@ -105,7 +106,7 @@ void Renderer::draw() {
     last_->submit();
 }
 
-path_tracer::Picture Renderer::picture() const {
+HdrImage Renderer::picture() const {
     return {size_.width, size_.height, download<vec3>(context_, picture_, std::uint64_t{size_.width} * size_.height)};
 }
 

@@ -2,8 +2,9 @@
 // Pictures of the particles, lit by one lamp.
 #pragma once
 
+#include <twinray/scene.h>
+
 #include "samples/particles/simulation.h"
-#include "samples/path_tracer/image_io.h"
 
 namespace twinray::particles {
 
@@ -19,7 +20,7 @@ class Renderer {
     // Records and submits the picture of what the simulation has become. Waits for nothing.
     void draw();
     // The last one drawn; waits for it.
-    path_tracer::Picture picture() const;
+    HdrImage picture() const;
     // GPU times of the last draw(), for which it waits.
     std::vector<PassTiming> timings() const { return last_->timings(); }
 

@@ -2,11 +2,8 @@
 #include "samples/particles/report.h"
 
 #include <cstdio>
-#include <fstream>
 
 #include <nlohmann/json.hpp>
-
-#include "engine/core/error.h"
 
 namespace twinray::particles {
 
@@ -18,7 +15,6 @@ void report(const Options& options, const AccelChoice& accel, const RunTimes& ti
                     accel.why.c_str(), frame_ms, times.submit_ms);
         for (const PassTiming& pass : times.last_frame) std::printf("  %-22s %9.3f ms\n", pass.name.c_str(), pass.ms);
     }
-    if (options.json.empty()) return;
     nlohmann::json passes;
     for (const PassTiming& pass : times.last_frame) passes[pass.name] = pass.ms;
     const nlohmann::json line = {{"sample", "particles"},
@@ -34,8 +30,7 @@ void report(const Options& options, const AccelChoice& accel, const RunTimes& ti
                                  {"total_ms", times.total_ms},
                                  {"was_ahead", times.was_ahead},
                                  {"pass_ms", passes}};
-    std::ofstream out(options.json, std::ios::app);
-    if (!(out << line.dump() << '\n').flush()) fail("'", options.json.string(), "': cannot be written");
+    samples::append_line(options.json, line.dump());
 }
 
 }  // namespace twinray::particles

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include <twinray/sets.h>
+
 #include "engine/accel/spawn.h"
-#include "engine/scene/multi_type_set.h"
-#include "engine/scene/soa.h"
 
 namespace twinray::particles {
 using std::sin;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Balls in a box with an open front: the host places them, a kernel does the rest.
+// Balls in a box with an open front: the host makes them, a kernel does the rest.
 #pragma once
 
 #include <twinray/abstract_accel.h>
@@ -19,7 +19,7 @@ constexpr float seconds_per_frame = 1.0f / 60, gravity = 3, bounce = 0.9f, max_s
 
 class Simulation {
   public:
-    // Places walls and balls in the accelerator, which is empty, and syncs it.
+    // Pushes walls and balls into the accelerator, which is empty, and syncs it.
     Simulation(AbstractAccel& accel, const Motions& start);
 
     // Records and submits one frame: moves the balls, colours them, refits the accelerator. Waits for nothing.

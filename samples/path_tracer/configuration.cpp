@@ -4,18 +4,21 @@
 #include <cstdio>
 #include <iomanip>
 
-#include "engine/core/error.h"
-#include "engine/scene/bytes.h"
 #include "samples/path_tracer/layered_records.h"
+#include "samples/support/files.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::crc32_of;
+using samples::fail;
+using samples::text;
 namespace {
 
 constexpr const char* environment_entry = "environment";
 constexpr const char *picture_entry = "picture", *part_entry = "part";
 constexpr const char* default_sky_value = "default sky";
 
-// Of many pieces, one after the other.
+// Of many values, one after the other.
 class Sum {
   public:
     template <class T>
@@ -96,26 +99,26 @@ Configuration configuration_of(const RenderSettings& settings, const Scene& scen
             {environment_entry, environment_text(environment, is_default_sky)}};
 }
 
-float exposure_of(const std::optional<float>& wanted, const Configuration& configuration, const Picture& picture) {
+float exposure_of(const std::optional<float>& wanted, const Configuration& configuration, const HdrImage& picture) {
     if (wanted) return *wanted;
     return value_of(configuration, environment_entry) == default_sky_value ? 0 : automatic_exposure(picture);
 }
 
-PicturePart part_of(const Configuration& configuration) {
-    PicturePart part;
+HdrImage::Part part_of(const Configuration& configuration) {
+    HdrImage::Part part;
     uint width = 0, height = 0;
-    const std::string whole = value_of(configuration, picture_entry), piece = value_of(configuration, part_entry);
+    const std::string whole = value_of(configuration, picture_entry), part_text = value_of(configuration, part_entry);
     if (std::sscanf(whole.c_str(), "%u x %u", &part.whole_width, &part.whole_height) != 2 ||
-        std::sscanf(piece.c_str(), "%u x %u at %u, %u", &width, &height, &part.x, &part.y) != 4)
-        fail("a film's configuration says '", whole, "' and '", piece, "': not where its pixels lie");
+        std::sscanf(part_text.c_str(), "%u x %u at %u, %u", &width, &height, &part.x, &part.y) != 4)
+        fail("a film's configuration says '", whole, "' and '", part_text, "': not where its pixels lie");
     return part;
 }
 
 void write_picture_of(const std::filesystem::path& file, const Film& film, const std::optional<float>& exposure,
-                      std::span<const Channel> layers) {
-    Picture picture = film.mean();
+                      std::span<const ImageChannel> layers) {
+    HdrImage picture = film.mean();
     picture.part = part_of(film.configuration);
-    write_picture(file, picture, exposure_of(exposure, film.configuration, picture), layers);
+    write_image(file, picture, exposure_of(exposure, film.configuration, picture), layers);
 }
 
 std::string hash_of(const Configuration& configuration) {

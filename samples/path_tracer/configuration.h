@@ -13,14 +13,14 @@ Configuration configuration_of(const RenderSettings& settings, const Scene& scen
                                const EnvironmentMap* environment, bool is_default_sky);
 
 // Stops for a .png: as asked for, else 0 under the default sky, else automatic.
-float exposure_of(const std::optional<float>& wanted, const Configuration& configuration, const Picture& picture);
+float exposure_of(const std::optional<float>& wanted, const Configuration& configuration, const HdrImage& picture);
 
 // Where the film's pixels lie in the picture. Throws Error for a configuration that does not say it.
-PicturePart part_of(const Configuration& configuration);
+HdrImage::Part part_of(const Configuration& configuration);
 
 // The mean, exposed so.
 void write_picture_of(const std::filesystem::path& file, const Film& film, const std::optional<float>& exposure,
-                      std::span<const Channel> layers = {});
+                      std::span<const ImageChannel> layers = {});
 
 // CRC-32 of the text, to tell configurations apart at a glance.
 std::string hash_of(const Configuration& configuration);

@@ -11,13 +11,13 @@
 namespace twinray::path_tracer {
 namespace {
 
-constexpr uint batch_capacity = 1 << 16;  // disagreements kept of one trace
+constexpr uint batch_capacity = 1 << 16;  // disagreements recorded of one trace
 
 bool same_bits(vec3 a, vec3 b) {
     return std::bit_cast<std::array<uint, 3>>(a) == std::bit_cast<std::array<uint, 3>>(b);
 }
 
-void draw_dot(Picture& picture, std::size_t pixel, vec3 color) {
+void draw_dot(HdrImage& picture, std::size_t pixel, vec3 color) {
     const std::size_t x = pixel % picture.width, y = pixel / picture.width;
     for (std::size_t row = y - (y > 0); row <= std::min<std::size_t>(y + 1, picture.height - 1); ++row)
         for (std::size_t column = x - (x > 0); column <= std::min<std::size_t>(x + 1, picture.width - 1); ++column)
@@ -64,14 +64,14 @@ void CrossChecker::collect() {
     uint count = 0;
     std::memcpy(&count, batch_count_readback_.mapped(), sizeof count);
     found_ += count;
-    const std::size_t room = std::min<std::size_t>({count, batch_capacity, max_kept - kept_.size()});
+    const std::size_t room = std::min<std::size_t>({count, batch_capacity, max_kept - recorded_.size()});
     const auto found = download<Disagreement>(context_, batch_, room);
-    kept_.insert(kept_.end(), found.begin(), found.end());
+    recorded_.insert(recorded_.end(), found.begin(), found.end());
 }
 
 std::vector<uint> CrossChecker::marks() { return download<uint>(context_, marks_, marks_.bytes() / sizeof(uint)); }
 
-PictureDifference compare_pictures(const Picture& first, const Picture& second, const std::vector<uint>& marks) {
+PictureDifference compare_pictures(const HdrImage& first, const HdrImage& second, const std::vector<uint>& marks) {
     PictureDifference difference;
     for (std::size_t i = 0; i < first.rgb.size(); ++i) {
         if (same_bits(first.rgb[i], second.rgb[i])) continue;
@@ -81,10 +81,11 @@ PictureDifference compare_pictures(const Picture& first, const Picture& second, 
     return difference;
 }
 
-Picture difference_picture(const Picture& first, const Picture& second, const std::vector<uint>& marks, float white) {
+HdrImage difference_picture(const HdrImage& first, const HdrImage& second, const std::vector<uint>& marks,
+                            float white) {
     constexpr float dimming = 0.25f;
     const vec3 explained = vec3(1, 0.8f, 0) * white, unexplained = vec3(1, 0, 0) * white;
-    Picture picture = first;
+    HdrImage picture = first;
     for (vec3& pixel : picture.rgb) pixel = vec3(dimming * luminance(pixel));
     for (std::size_t i = 0; i < first.rgb.size(); ++i)
         if (!same_bits(first.rgb[i], second.rgb[i])) draw_dot(picture, i, marks[i] ? explained : unexplained);

@@ -7,7 +7,7 @@
 
 namespace twinray::path_tracer {
 
-// Traces every ray of a render again with a second accelerator and keeps those on which the two name different hits.
+// Traces every ray of a render again with a second accelerator and records those on which the two name different hits.
 class CrossChecker final : public WaveObserver {
   public:
     // `second` must hold the scene, built.
@@ -17,9 +17,9 @@ class CrossChecker final : public WaveObserver {
     void collect() override;
 
     // The first max_kept of them.
-    const std::vector<Disagreement>& kept() const { return kept_; }
+    const std::vector<Disagreement>& recorded() const { return recorded_; }
     std::uint64_t found() const { return found_; }
-    // One per pixel: whether any of its rays disagreed, kept or not.
+    // One per pixel: whether any of its rays disagreed, recorded or not.
     std::vector<uint> marks();
 
     static constexpr std::size_t max_kept = 1 << 20;
@@ -29,7 +29,7 @@ class CrossChecker final : public WaveObserver {
     AbstractAccel& second_;
     Kernel<CompareArgs> compare_;
     Buffer hits_, batch_, batch_count_, batch_count_readback_, marks_;
-    std::vector<Disagreement> kept_;
+    std::vector<Disagreement> recorded_;
     std::uint64_t found_ = 0;
 };
 
@@ -38,10 +38,10 @@ struct PictureDifference {
     std::uint64_t differing = 0;
     std::uint64_t unexplained = 0;
 };
-PictureDifference compare_pictures(const Picture& first, const Picture& second, const std::vector<uint>& marks);
+PictureDifference compare_pictures(const HdrImage& first, const HdrImage& second, const std::vector<uint>& marks);
 
 // To look at: `first`, dimmed and grey, with a dot of 3 x 3 pixels on every pixel that differs: yellow where a ray
 // disagreed, red where none did. White of the dots: `white`.
-Picture difference_picture(const Picture& first, const Picture& second, const std::vector<uint>& marks, float white);
+HdrImage difference_picture(const HdrImage& first, const HdrImage& second, const std::vector<uint>& marks, float white);
 
 }  // namespace twinray::path_tracer

@@ -10,9 +10,10 @@
 #include <cstring>
 #include <memory>
 
-#include "engine/core/error.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
 namespace {
 
 constexpr char default_port[] = "14158";
@@ -79,7 +80,7 @@ Display::~Display() {
     if (socket_ >= 0) close(socket_);
 }
 
-bool Display::show(const Picture& picture) {
+bool Display::show(const HdrImage& picture) {
     for (std::size_t channel = 0; channel < channels.size(); ++channel) {
         std::string payload = header(update_image, name_);
         put_text(payload, channels[channel]);

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "samples/path_tracer/image_io.h"
+#include <twinray/scene.h>
 
 namespace twinray::path_tracer {
 
@@ -18,7 +18,7 @@ class Display {
     Display& operator=(const Display&) = delete;
 
     // False from when the viewer has gone on.
-    bool show(const Picture& picture);
+    bool show(const HdrImage& picture);
 
   private:
     bool send_packet(const std::string& payload);

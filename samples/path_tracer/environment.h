@@ -4,7 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "engine/scene/image.h"
+#include <twinray/scene.h>
+
 #include "samples/path_tracer/shared.h"
 
 namespace twinray::path_tracer {

@@ -7,9 +7,11 @@
 #include <limits>
 #include <numeric>
 
-#include "engine/core/error.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
+using samples::text;
 namespace {
 
 double number_of(uvec2 words) {
@@ -32,8 +34,8 @@ double luminance_of(const FilmPixel& pixel, uint block_size) {
 }
 
 void merge_pixel(FilmPixel& pixel, FilmPixel other) {
-    film_raise_all(pixel, other.places & 0xffffu, other.places >> 16);
-    film_raise_all(other, pixel.places & 0xffffu, pixel.places >> 16);
+    film_raise_all(pixel, other.positions & 0xffffu, other.positions >> 16);
+    film_raise_all(other, pixel.positions & 0xffffu, pixel.positions >> 16);
     for (uint i = 0; i <= FILM_SQUARES; ++i) {
         pixel.high[i] = add64(pixel.high[i], other.high[i]);
         pixel.low[i] = add64(pixel.low[i], other.low[i]);
@@ -114,8 +116,8 @@ void Film::merge(const Film& other, const std::string& name, const std::string& 
     blocks.unite(other.blocks);
 }
 
-Picture Film::mean() const {
-    Picture picture{width, height, {}};
+HdrImage Film::mean() const {
+    HdrImage picture{width, height, {}};
     picture.rgb.reserve(pixels.size());
     for (const FilmPixel& pixel : pixels) {
         const double n = 1.0 * block_size * std::max(1u, pixel.count);
@@ -145,11 +147,11 @@ double Film::mean_samples() const {
 
 double sum_of(const FilmPixel& pixel, uint sum) {
     const bool is_square = sum == FILM_SQUARES;
-    const int place = static_cast<int>(is_square ? pixel.places >> 16 : pixel.places & 0xffffu);
-    const int unit = static_cast<int>(FILM_PIECE_BITS) * place - (is_square ? 298 : 149);
+    const int position = static_cast<int>(is_square ? pixel.positions >> 16 : pixel.positions & 0xffffu);
+    const int unit = static_cast<int>(FILM_DIGIT_BITS) * position - (is_square ? 298 : 149);
     const auto high = number_of(pixel.high[sum]);
     const auto low = number_of(pixel.low[sum]);
-    return std::ldexp(high, unit + static_cast<int>(FILM_PIECE_BITS)) + std::ldexp(low, unit);
+    return std::ldexp(high, unit + static_cast<int>(FILM_DIGIT_BITS)) + std::ldexp(low, unit);
 }
 
 double mean_luminance(const Film& film) {

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "samples/path_tracer/image_io.h"
+#include <twinray/scene.h>
+
+#include "samples/path_tracer/shared.h"
 
 namespace twinray::path_tracer {
 
@@ -53,12 +55,12 @@ struct Film {
     // Without samples.
     static Film empty(uint width, uint height, uint block_size, Configuration configuration);
 
-    // A block's sum of one pixel: the CPU twin of accumulate.comp. The caller notes the block's number.
+    // A block's sum of one pixel: the CPU reference of accumulate.comp. The caller notes the block's number.
     void add(std::size_t pixel, vec3 sum);
     // Throws Error, naming both, where the other's samples are of another configuration or partly the same ones.
     void merge(const Film& other, const std::string& name, const std::string& other_name);
 
-    Picture mean() const;
+    HdrImage mean() const;
     // Of each pixel's mean luminance: the square of its standard error, from how its blocks differ. Infinite where
     // there are less than two.
     std::vector<double> variances() const;

@@ -4,10 +4,16 @@
 #include <bit>
 #include <cstring>
 
-#include "engine/core/error.h"
-#include "engine/scene/bytes.h"
+#include "samples/support/files.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::crc32_of;
+using samples::fail;
+using samples::lower_suffix;
+using samples::read_file;
+using samples::text;
+using samples::write_file;
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
@@ -37,17 +43,17 @@ Configuration configuration_of(const std::string& lines) {
 
 uint crc32_of_text(const std::string& lines) { return crc32_of(std::as_bytes(std::span(lines))); }
 
-// Takes pieces off the front of the file.
+// Takes values off the front of the file.
 class Reader {
   public:
-    explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+    explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
     void take(void* to, std::size_t size) {
         if (size) std::memcpy(to, bytes_.data(), size);
         bytes_ = bytes_.subspan(size);
     }
 
   private:
-    std::span<const std::uint8_t> bytes_;
+    std::span<const std::byte> bytes_;
 };
 
 std::uint64_t size_of(const FilmHeader& header) {
@@ -55,7 +61,7 @@ std::uint64_t size_of(const FilmHeader& header) {
            std::uint64_t{header.width} * header.height * sizeof(FilmPixel) + sizeof(uint);
 }
 
-void check(const std::filesystem::path& file, const Bytes& bytes) {
+void check(const std::filesystem::path& file, std::span<const std::byte> bytes) {
     constexpr std::string_view kind = "twinray film ";
     if (bytes.size() < sizeof(FilmHeader) || std::memcmp(bytes.data(), kind.data(), kind.size()) != 0)
         fail("'", file.string(), "': not a film of path_tracer");
@@ -68,7 +74,7 @@ void check(const std::filesystem::path& file, const Bytes& bytes) {
              " pixels has ", size_of(header), "; it was cut short or damaged");
     uint sum = 0;
     std::memcpy(&sum, bytes.data() + bytes.size() - sizeof sum, sizeof sum);
-    if (sum != crc32_of(std::as_bytes(std::span(bytes)).first(bytes.size() - sizeof sum)))
+    if (sum != crc32_of(bytes.first(bytes.size() - sizeof sum)))
         fail("'", file.string(), "': damaged (its checksum does not fit)");
 }
 
@@ -84,17 +90,17 @@ void save_film(const std::filesystem::path& file, const Film& film) {
                       static_cast<uint>(film.blocks.words().size()),
                       crc32_of_text(lines)};
     std::memcpy(header.magic, magic, sizeof magic);
-    std::vector<std::span<const std::byte>> pieces = {
+    std::vector<std::span<const std::byte>> parts = {
         std::as_bytes(std::span(&header, 1)), std::as_bytes(std::span(lines)),
         std::as_bytes(std::span(film.blocks.words())), std::as_bytes(std::span(film.pixels))};
     uint sum = 0;
-    for (const auto& piece : pieces) sum = crc32_of(piece, sum);
-    pieces.push_back(std::as_bytes(std::span(&sum, 1)));
-    write_file(file, pieces);
+    for (const auto& part : parts) sum = crc32_of(part, sum);
+    parts.push_back(std::as_bytes(std::span(&sum, 1)));
+    write_file(file, parts);
 }
 
 Film load_film(const std::filesystem::path& file) {
-    const Bytes bytes = read_file(file);
+    const std::vector<std::byte> bytes = read_file(file);
     check(file, bytes);
     Reader reader(bytes);
     FilmHeader header;

@@ -3,18 +3,21 @@
 
 #include <cstdio>
 
-#include "engine/core/error.h"
+#include <twinray/scene.h>
+
 #include "samples/path_tracer/camera.h"
-#include "samples/path_tracer/image_io.h"
 #include "samples/path_tracer/moving_scene.h"
 #include "samples/path_tracer/report.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
+using samples::text;
 namespace {
 
 void check(const Options& options, const Ranks& ranks) {
     if (ranks.count() > 1) fail("under mpirun there is no --frames: start one run for each part of the frames");
-    if (!is_picture_file(options.output))
+    if (!is_image_file(options.output))
         fail("--frames: '", options.output.string(), "' must be a picture, .png or .exr");
 }
 

@@ -7,7 +7,7 @@ namespace twinray::path_tracer {
 namespace {
 
 template <class Value, class Item, class Of>
-Channel channel(const char* name, const std::vector<Item>& items, const Of& of) {
+ImageChannel channel(const char* name, const std::vector<Item>& items, const Of& of) {
     std::vector<Value> values;
     values.reserve(items.size());
     for (const Item& item : items) values.push_back(static_cast<Value>(of(item)));
@@ -16,12 +16,12 @@ Channel channel(const char* name, const std::vector<Item>& items, const Of& of) 
 
 }  // namespace
 
-std::vector<Channel> layers_of(const Film& film) {
+std::vector<ImageChannel> layers_of(const Film& film) {
     return {channel<uint>("samples.N", film.pixels, [&](const FilmPixel& p) { return p.count * film.block_size; }),
             channel<float>("variance.Y", film.variances(), [](double variance) { return variance; })};
 }
 
-std::vector<Channel> layers_of(const std::vector<FirstSurface>& first, uint rays) {
+std::vector<ImageChannel> layers_of(const std::vector<FirstSurface>& first, uint rays) {
     const auto number = static_cast<float>(rays);
     const auto albedo = [&](int i) { return [=](const FirstSurface& f) { return f.albedo[i] / number; }; };
     const auto normal = [&](int i) { return [=](const FirstSurface& f) { return f.normal[i] / number; }; };

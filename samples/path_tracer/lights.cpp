@@ -5,7 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "engine/scene/rgb.h"
+#include <twinray/scene.h>
+
 #include "samples/path_tracer/alias_table.h"
 #include "samples/path_tracer/material_kinds.h"
 

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
+
 #include "samples/path_tracer/shared.h"
 
 namespace twinray::path_tracer {
@@ -26,7 +27,7 @@ class LightSet {
   public:
     explicit LightSet(Context& context) : set_(context, "local lights") {}
 
-    // Takes the place of what was put before. Returns the keys in the order of the table.
+    // Replaces what was put before. Returns the keys in the order of the table.
     std::vector<SetKey> put(const LocalLights& lights);
     LocalLightsView view() const { return set_.view(); }
     std::uint64_t buffer_bytes() const { return set_.buffer_bytes(); }

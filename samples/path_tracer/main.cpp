@@ -4,12 +4,13 @@
 #include <cstdio>
 
 #include "engine/core/cpu_vectors.h"
-#include "engine/core/error.h"
 #include "samples/path_tracer/frames.h"
 #include "samples/path_tracer/merge.h"
 #include "samples/path_tracer/report.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
 namespace {
 
 // 128 + the signal, as shells have it, where one came.
@@ -28,7 +29,7 @@ std::filesystem::path with_suffix(const std::filesystem::path& file, const char*
 
 // Hardware leads, software traces the same rays; then software renders alone.
 int cross_check(const Options& options, const Ranks& ranks) {
-    if (!is_picture_file(options.output)) fail("--cross-check: '", options.output.string(), "' must be a picture");
+    if (!is_image_file(options.output)) fail("--cross-check: '", options.output.string(), "' must be a picture");
     const Session session = make_session(options, ranks);
     Renderer& renderer = *session.renderer;
     const DeviceFacts& facts = session.context->facts();
@@ -39,20 +40,20 @@ int cross_check(const Options& options, const Ranks& ranks) {
     result.pixel_count = renderer.film_size();
 
     CrossChecker checker(*session.context, *software, renderer, result.pixel_count);
-    const Picture by_hardware = render_picture(renderer, session.settings, *hardware, options.quiet, &checker);
+    const HdrImage by_hardware = render_picture(renderer, session.settings, *hardware, options.quiet, &checker);
     result.path_rays = renderer.stats().path_rays;
     result.shadow_rays = renderer.stats().shadow_rays;
     result.disagreeing = checker.found();
-    const Picture by_software = render_picture(renderer, session.settings, *software, options.quiet);
+    const HdrImage by_software = render_picture(renderer, session.settings, *software, options.quiet);
     const std::vector<uint> marks = checker.marks();
     result.pictures = compare_pictures(by_hardware, by_software, marks);
-    classify_disagreements(session.scene, checker.kept(), result);
+    classify_disagreements(session.scene, checker.recorded(), result);
 
     const float exposure = exposure_of(options.exposure, session.configuration, by_hardware);
-    write_picture(with_suffix(options.output, "_hw"), by_hardware, exposure);
-    write_picture(with_suffix(options.output, "_sw"), by_software, exposure);
-    write_picture(with_suffix(options.output, "_difference"),
-                  difference_picture(by_hardware, by_software, marks, std::exp2(-exposure)), exposure);
+    write_image(with_suffix(options.output, "_hw"), by_hardware, exposure);
+    write_image(with_suffix(options.output, "_sw"), by_software, exposure);
+    write_image(with_suffix(options.output, "_difference"),
+                difference_picture(by_hardware, by_software, marks, std::exp2(-exposure)), exposure);
     report_cross_check(options, session, result);
     return result.passed() ? 0 : 1;
 }
@@ -63,7 +64,7 @@ int cross_check(const Options& options, const Ranks& ranks) {
 int main(int argc, char** argv) {
     using namespace twinray::path_tracer;
     twinray::widen_cpu_vectors();
-    try {
+    return twinray::samples::run_program("path_tracer", [&]() -> int {
         Ranks ranks(argc, argv);
         ParsedOptions parsed = parse_options(argc, argv);
         if (parsed.exit_status) return *parsed.exit_status;
@@ -71,8 +72,5 @@ int main(int argc, char** argv) {
         parsed.options.quiet |= ranks.index() > 0;
         if (parsed.options.sequence.is_wanted()) return render_frames(parsed.options, ranks);
         return parsed.options.cross_check.empty() ? render(parsed.options, ranks) : cross_check(parsed.options, ranks);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "path_tracer: %s\n", error.what());
-        return 1;
-    }
+    });
 }

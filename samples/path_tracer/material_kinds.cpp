@@ -55,8 +55,8 @@ bool is_glass(const Material& material) {
 bool is_smooth(const Material& material) { return material.roughness * material.roughness < SMOOTH_ALPHA; }
 
 uint index_of(std::vector<uint>& kinds, uint needs) {
-    const auto place = std::find(kinds.begin(), kinds.end(), needs);
-    if (place == kinds.end()) kinds.push_back(needs);
+    const auto found = std::find(kinds.begin(), kinds.end(), needs);
+    if (found == kinds.end()) kinds.push_back(needs);
     return static_cast<uint>(std::find(kinds.begin(), kinds.end(), needs) - kinds.begin());
 }
 
@@ -70,11 +70,11 @@ std::pair<std::size_t, std::size_t> closest(const std::vector<uint>& kinds) {
     return best;
 }
 
-void merge(MaterialKinds& kinds, std::size_t kept, std::size_t removed) {
-    kinds.needs[kept] |= kinds.needs[removed];
+void merge(MaterialKinds& kinds, std::size_t remaining, std::size_t removed) {
+    kinds.needs[remaining] |= kinds.needs[removed];
     kinds.needs.erase(kinds.needs.begin() + static_cast<std::ptrdiff_t>(removed));
     for (uint& kind : kinds.of) {
-        if (kind == removed) kind = static_cast<uint>(kept);
+        if (kind == removed) kind = static_cast<uint>(remaining);
         if (kind > removed) --kind;
     }
 }
@@ -121,8 +121,8 @@ MaterialKinds kinds_of(const Scene& scene) {
         kinds.of.push_back(used[i] ? index_of(kinds.needs, needs) : 0);
     }
     while (kinds.needs.size() > most_material_kinds) {
-        const auto [kept, removed] = closest(kinds.needs);
-        merge(kinds, kept, removed);
+        const auto [remaining, removed] = closest(kinds.needs);
+        merge(kinds, remaining, removed);
     }
     if (kinds.needs.empty()) kinds.needs.push_back(0);
     return kinds;

@@ -3,7 +3,8 @@
 // its own.
 #pragma once
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
+
 #include "samples/path_tracer/shared.h"
 
 namespace twinray::path_tracer {

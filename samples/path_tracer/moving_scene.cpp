@@ -5,9 +5,8 @@
 #include <chrono>
 #include <utility>
 
-#include "engine/scene/deform.h"
-#include "engine/scene/pose_scene.h"
-#include "engine/scene/rgb.h"
+#include <twinray/scene.h>
+
 #include "path_tracer_move_vertices.spv.h"
 
 namespace twinray::path_tracer {
@@ -51,11 +50,12 @@ MovingScene::MovingScene(Context& context, Scene& scene, DeviceScene& device_sce
       device_scene_(device_scene),
       accel_(accel),
       handles_(handles_by_mesh(scene, accel)),
+      deformed_(deformed_meshes(*scene.rig)),
       deformer_(context, scene.rig),
       move_vertices_(context, {.name = "path_tracer_move_vertices", .spirv = path_tracer_move_vertices_spirv}),
       transforms_(context, {.name = "transforms", .bytes = scene.instances.size() * sizeof(Transform)}) {
-    for (std::size_t i = 0; i < scene.rig->meshes.size(); ++i)
-        if (emits(scene, scene.rig->meshes[i].mesh)) emitting_.push_back(i);
+    for (std::size_t i = 0; i < deformed_.size(); ++i)
+        if (emits(scene, deformed_[i])) emitting_.push_back(i);
 }
 
 MotionTimes MovingScene::move_to(const Pose& pose) {
@@ -80,24 +80,21 @@ MotionTimes MovingScene::move_to(const Pose& pose) {
 }
 
 void MovingScene::move_emitters(const Pose& pose) {
-    for (const std::size_t i : emitting_) {
-        const DeformedMesh& mesh = scene_.rig->meshes[i];
-        scene_.meshes[mesh.mesh].positions = deformed(*scene_.rig, mesh, pose).positions;
-    }
+    for (const std::size_t i : emitting_)
+        scene_.meshes[deformed_[i]].positions = deformed(*scene_.rig, i, pose).positions;
 }
 
 void MovingScene::move_vertices(const Pose& pose) {
-    const std::vector<DeformedMesh>& meshes = scene_.rig->meshes;
-    if (meshes.empty()) return;
+    if (deformed_.empty()) return;
     Commands commands(context_, "path tracer move");
     deformer_.record(commands, pose);
     {
         const auto pass = commands.pass(move_vertices_.name());
-        for (std::size_t i = 0; i < meshes.size(); ++i) {
+        for (std::size_t i = 0; i < deformed_.size(); ++i) {
             const Deformer::Output moved = deformer_.output(i);
             move_vertices_.dispatch(
                 commands,
-                {device_scene_.vertices(meshes[i].mesh), moved.positions.ref<float>(), moved.normals.ref<float>(),
+                {device_scene_.vertices(deformed_[i]), moved.positions.ref<float>(), moved.normals.ref<float>(),
                  moved.tangents.ref<float>(), static_cast<uint>(moved.vertex_count)},
                 moved.vertex_count);
         }
@@ -106,9 +103,9 @@ void MovingScene::move_vertices(const Pose& pose) {
 }
 
 bool MovingScene::edit_accel(const std::vector<Instance>& before) {
-    for (std::size_t i = 0; i < scene_.rig->meshes.size(); ++i) {
+    for (std::size_t i = 0; i < deformed_.size(); ++i) {
         const Deformer::Output moved = deformer_.output(i);
-        accel_.update_vertices(handles_[scene_.rig->meshes[i].mesh], moved.positions.ref<float>(), moved.vertex_count);
+        accel_.update_vertices(handles_[deformed_[i]], moved.positions.ref<float>(), moved.vertex_count);
     }
     // From device memory, where a transform may be singular: its instance is then not seen.
     std::vector<Transform> transforms;
@@ -119,7 +116,7 @@ bool MovingScene::edit_accel(const std::vector<Instance>& before) {
         commands.upload(transforms_, std::span<const Transform>(transforms));
     }
     commands.submit();
-    bool has_edits = !scene_.rig->meshes.empty();
+    bool has_edits = !deformed_.empty();
     for (std::size_t first = 0; first < transforms.size();) {
         const AccelHandle handle = handles_[scene_.instances[first].mesh];
         const std::size_t count = accel_.n_instances(handle);

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <twinray/abstract_accel.h>
-#include "engine/scene/deformer.h"
+#include <twinray/scene.h>
+
 #include "samples/path_tracer/scene_upload.h"
 
 namespace twinray::path_tracer {
@@ -19,7 +20,7 @@ struct MotionTimes {
 // by a refit, and lights with densities that fit where they are. All the while views stay valid.
 class MovingScene {
   public:
-    // The scene has a rig, and the accelerator holds it as push_scene places it. All three must outlive this.
+    // The scene has a rig, and the accelerator holds it as push_scene pushes it. All three must outlive this.
     MovingScene(Context& context, Scene& scene, DeviceScene& device_scene, AbstractAccel& accel);
 
     // Waits for it to be done. The scene's instances, cameras and lights move, too, and of its meshes those that emit.
@@ -36,7 +37,8 @@ class MovingScene {
     DeviceScene& device_scene_;
     AbstractAccel& accel_;
     std::vector<AccelHandle> handles_;   // by mesh
-    std::vector<std::size_t> emitting_;  // indices into Rig::meshes
+    std::vector<uint> deformed_;         // deformed_meshes() of the rig
+    std::vector<std::size_t> emitting_;  // indices into those
     Deformer deformer_;
     Kernel<MoveVerticesArgs> move_vertices_;
     Buffer transforms_;  // by instance

@@ -3,11 +3,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include <cstdlib>
 #include <string_view>
 
 #include "samples/path_tracer/film_file.h"
-#include "samples/path_tracer/sequence_options.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -15,7 +13,7 @@ namespace {
 constexpr std::uint32_t max_side = 32768, max_samples = 1 << 20, max_max_depth = 10'000;
 
 std::string check_output(const std::string& file) {
-    return is_picture_file(file) || is_film_file(file) ? "" : "'" + file + "' must end in .png, .exr or .film";
+    return is_image_file(file) || is_film_file(file) ? "" : "'" + file + "' must end in .png, .exr or .film";
 }
 
 void add_output(CLI::App& app, std::filesystem::path& output) {
@@ -117,14 +115,8 @@ void add_picture(CLI::App& app, Options& options) {
 }
 
 void add_machine(CLI::App& app, Options& options) {
-    app.add_option("--accel", options.accel,
-                   "hw (ray tracing extensions), sw (compute), or auto: hw where the device has it and is no CPU")
-        ->check(CLI::IsMember({"auto", "sw", "hw"}))
-        ->option_text("auto|sw|hw [auto]");
-    app.add_option("--device", options.device, "index, or a part of the name");
-    app.add_flag("--validation", options.validation, "Khronos validation layer");
+    samples::add_device_options(app, options, "Khronos validation layer");
     app.add_flag("--strict", options.strict, "what is not understood of the scene's file is an error, not a warning");
-    app.add_flag("--quiet", options.quiet, "errors only");
     app.add_flag("--stats", options.stats, "print what was traced, the device's time by pass, and memory");
     app.add_flag("--all-features", options.all_features,
                  "leave out nothing that other scenes would need, to measure what leaving out saves");
@@ -137,16 +129,27 @@ void add_merge(CLI::App& app, MergeOptions& options) {
     app.add_flag("--quiet", options.quiet, "errors only");
 }
 
-std::optional<int> parse(CLI::App& app, int argc, char** argv) {
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& help) {
-        return app.exit(help);
-    } catch (const CLI::ParseError& error) {
-        std::fprintf(stderr, "path_tracer: %s (see path_tracer --help)\n", error.what());
-        return 2;
-    }
-    return {};
+// After the options that they exclude.
+void add_sequence(CLI::App& app, SequenceOptions& options) {
+    constexpr uint most_frames = 1'000'000;
+    CLI::Option* frames = app.add_option("--frames", options.frames,
+                                         "so many pictures of a scene that moves: OUTPUT_0001.png and so on, or the "
+                                         "number where OUTPUT has ####")
+                              ->check(CLI::Range(1u, most_frames));
+    app.add_option("--animation", options.animation,
+                   "name or index of the animation; default: the first, or none with --turntable")
+        ->needs(frames);
+    app.add_option("--fps", options.fps,
+                   "pictures in a second of the animation; default: they share the time range evenly")
+        ->check(CLI::PositiveNumber)
+        ->needs(frames);
+    app.add_option("--time-range", options.time_range, "A:B, seconds of the animation; default: all of it")
+        ->needs(frames);
+    app.add_flag("--turntable", options.turntable, "the camera goes once round the scene, about the vertical axis")
+        ->needs(frames);
+    for (const char* other : {"--cross-check", "--resume", "--keep-film", "--shard", "--checkpoint",
+                              "--write-partial-images", "--mse-reference-image"})
+        frames->excludes(app.get_option(other));
 }
 
 }  // namespace
@@ -156,7 +159,7 @@ ParsedOptions parse_options(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "merge") {
         CLI::App app("path_tracer merge: films of one picture become one");
         add_merge(app, result.merge.emplace());
-        result.exit_status = parse(app, argc - 1, argv + 1);
+        result.exit_status = samples::parse(app, argc - 1, argv + 1, "path_tracer");
         return result;
     }
     CLI::App app("path_tracer: a physically based picture of a glTF scene, by either accelerator");
@@ -172,20 +175,13 @@ ParsedOptions parse_options(int argc, char** argv) {
         app.get_option("--cross-check")->excludes(other);
     app.get_option("--target-error")->excludes("--shard");
     add_sequence(app, result.options.sequence);
-    result.exit_status = parse(app, argc, argv);
+    result.exit_status = samples::parse(app, argc, argv, "path_tracer");
     return result;
 }
 
 ContextDesc context_desc(const Options& options) {
-    ContextDesc desc;
-    desc.name = "path_tracer";
-    desc.device = options.device;
-    desc.validation = options.validation;
+    ContextDesc desc = samples::context_desc(options, "path_tracer");
     desc.pipeline_folder = user_pipeline_folder();
-    desc.log = [is_silent = options.quiet && !options.validation](std::string_view message) {
-        if (!is_silent) std::fprintf(stderr, "path_tracer: %.*s\n", static_cast<int>(message.size()), message.data());
-    };
-    if (const char* disabled = std::getenv("TWINRAY_DISABLE")) disable_features(desc, disabled);
     return desc;
 }
 

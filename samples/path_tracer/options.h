@@ -6,15 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/context.h"
 #include "samples/path_tracer/sequence.h"
+#include "samples/support/program.h"
 
 namespace twinray::path_tracer {
 
-struct Options {
+struct Options : samples::DeviceOptions {
     std::filesystem::path scene, output, environment, json, cross_check, reference;
-    std::string accel = "auto";  // for choose_accel()
-    std::string device;
     std::optional<std::uint32_t> samples;
     std::optional<double> seconds, target_error;
     std::string shard;           // "i/N"
@@ -39,9 +37,7 @@ struct Options {
     SequenceOptions sequence;
     int camera = 0;                 // -1: frame the scene
     std::optional<float> exposure;  // stops; none: 0 under the default sky, else automatic
-    bool validation = false;
     bool strict = false;
-    bool quiet = false;
     bool stats = false;
     bool all_features = false;
 };
@@ -62,7 +58,7 @@ struct ParsedOptions {
 };
 ParsedOptions parse_options(int argc, char** argv);
 
-// With what TWINRAY_DISABLE, a comma-separated list of ray_query and ray_tracing_pipeline, leaves unused.
+// Keeps compiled pipelines in the user's folder.
 ContextDesc context_desc(const Options& options);
 
 }  // namespace twinray::path_tracer

@@ -2,10 +2,11 @@
 // Without MPI.
 #include <cstdlib>
 
-#include "engine/core/error.h"
 #include "samples/path_tracer/ranks.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
 
 Ranks::Ranks(int&, char**&) {
     if (const char* size = std::getenv("OMPI_COMM_WORLD_SIZE"); size && std::string(size) != "1")

@@ -9,7 +9,7 @@
 namespace twinray::path_tracer {
 namespace {
 
-// Bytes of any number, in pieces that fit into the int of a count.
+// Bytes of any number, in blocks that fit into the int of a count.
 template <class Move>
 void in_pieces(std::span<std::byte> bytes, const Move& move) {
     constexpr std::size_t most = 1 << 30;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/reference.h"
 
-#include "engine/core/error.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
 
-PictureError error_against(const Picture& picture, const HdrImage& reference) {
+PictureError error_against(const HdrImage& picture, const HdrImage& reference) {
     PictureError error;
     for (std::size_t i = 0; i < picture.rgb.size(); ++i)
         for (int c = 0; c < 3; ++c) {

@@ -3,8 +3,7 @@
 
 #include <filesystem>
 
-#include "engine/scene/image.h"
-#include "samples/path_tracer/image_io.h"
+#include <twinray/scene.h>
 
 namespace twinray::path_tracer {
 
@@ -13,7 +12,7 @@ struct PictureError {
     double mse = 0;           // of the squared difference
     double relative_mse = 0;  // of the squared difference over the squared reference + 0.01, which keeps black out
 };
-PictureError error_against(const Picture& picture, const HdrImage& reference);
+PictureError error_against(const HdrImage& picture, const HdrImage& reference);
 
 // Throws Error unless the file is a picture of that size.
 HdrImage load_reference(const std::filesystem::path& file, uint width, uint height);

@@ -11,6 +11,7 @@
 #include "path_tracer_shade.spv.h"
 #include "path_tracer_shadow.spv.h"
 #include "path_tracer_sort.spv.h"
+#include "samples/support/progress.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -139,7 +140,7 @@ void Renderer::accumulate() {
 }
 
 std::vector<FirstSurface> Renderer::first_surfaces(AbstractAccel& accel) {
-    const RenderStats kept = stats_;
+    const RenderStats before = stats_;
     const std::deque<Kernel<ShadeArgs>> shade = shade_kernels(true);
     const Buffer found = array_of<FirstSurface>(context_, "first surfaces", film_size_);
     const auto prepare = [&](const Buffer& cleared, Ref<FirstSurface> first_surfaces) {
@@ -158,7 +159,7 @@ std::vector<FirstSurface> Renderer::first_surfaces(AbstractAccel& accel) {
     for (uint block = 0; block < samples_of_first_surfaces / settings_.block_size; ++block)
         trace_block({accel, accel.view(), nullptr, shade, 0}, block);
     prepare(sums_, {});  // they are of what emits
-    stats_ = kept;
+    stats_ = before;
     return download<FirstSurface>(context_, found, film_size_);
 }
 
@@ -268,12 +269,12 @@ std::vector<uint> pixel_order(uint width, uint height) {
     return order;
 }
 
-Picture render_picture(Renderer& renderer, const RenderSettings& settings, AbstractAccel& accel, bool quiet,
-                       WaveObserver* observer) {
+HdrImage render_picture(Renderer& renderer, const RenderSettings& settings, AbstractAccel& accel, bool quiet,
+                        WaveObserver* observer) {
     Film film = renderer.make_film();
     renderer.start(film);
     const uint blocks = settings.samples / settings.block_size;
-    Progress progress("path_tracer " + accel.name(), blocks, quiet);
+    samples::Progress progress("path_tracer " + accel.name(), blocks, quiet);
     for (uint block = 0; block < blocks; ++block, progress.advance()) renderer.add_block(accel, block, observer);
     renderer.read(film);
     return film.mean();

@@ -7,7 +7,6 @@
 
 #include <twinray/abstract_accel.h>
 #include "engine/core/pace.h"
-#include "engine/core/progress.h"
 #include "samples/path_tracer/film.h"
 #include "samples/path_tracer/wave_buffers.h"
 
@@ -73,7 +72,7 @@ class Renderer {
     void start(const Film& film);
     // The pixels of the film that the next blocks are of, by index, in the order in which they are traced.
     void set_pixels(std::span<const uint> pixels);
-    // Samples number * block_size and those after it. The accelerator must hold the scene as push_scene places it.
+    // Samples number * block_size and those after it. The accelerator must hold the scene as push_scene pushes it.
     void add_block(AbstractAccel& accel, uint number, WaveObserver* observer = nullptr);
     // What the film has by now.
     void read(Film& film);
@@ -138,7 +137,7 @@ class Renderer {
 std::vector<uint> pixel_order(uint width, uint height);
 
 // All samples of the settings, from the first one on. One step of progress per block.
-Picture render_picture(Renderer& renderer, const RenderSettings& settings, AbstractAccel& accel, bool quiet,
-                       WaveObserver* observer = nullptr);
+HdrImage render_picture(Renderer& renderer, const RenderSettings& settings, AbstractAccel& accel, bool quiet,
+                        WaveObserver* observer = nullptr);
 
 }  // namespace twinray::path_tracer

@@ -6,14 +6,16 @@
 #include <cstdio>
 #include <limits>
 
-#include "engine/core/error.h"
 #include "samples/path_tracer/display.h"
 #include "samples/path_tracer/film_file.h"
 #include "samples/path_tracer/interrupts.h"
 #include "samples/path_tracer/layers.h"
 #include "samples/path_tracer/rounds.h"
+#include "samples/support/progress.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::text;
 namespace {
 
 // Of the error that is shown; more where estimates take long.
@@ -52,7 +54,7 @@ class RoundProgress {
     std::string name_;
     double start_;
     std::uint64_t shown_ = 0;
-    Progress bar_;
+    samples::Progress bar_;
 };
 
 std::filesystem::path film_file(const std::filesystem::path& output) {
@@ -170,14 +172,15 @@ class FilmRenderer {
         display_due_.restart();
     }
 
-    std::vector<Channel> layers() const {
+    std::vector<ImageChannel> layers() const {
         if (!options_.aovs) return {};
-        std::vector<Channel> layers = layers_of(session_.renderer->first_surfaces(accel_), samples_of_first_surfaces);
-        for (Channel& channel : layers_of(result_.film)) layers.push_back(std::move(channel));
+        std::vector<ImageChannel> layers =
+            layers_of(session_.renderer->first_surfaces(accel_), samples_of_first_surfaces);
+        for (ImageChannel& channel : layers_of(result_.film)) layers.push_back(std::move(channel));
         return layers;
     }
 
-    void write_output(std::span<const Channel> layers = {}) const {
+    void write_output(std::span<const ImageChannel> layers = {}) const {
         if (!is_film_file(options_.output)) write_picture_of(options_.output, result_.film, options_.exposure, layers);
     }
 

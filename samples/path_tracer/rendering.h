@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Renders a film round by round until the options are content, and keeps what is there on disk meanwhile.
+// Renders a film round by round until the options are content, and saves what is there to disk meanwhile.
 #pragma once
 
 #include "samples/path_tracer/ranks.h"
@@ -14,8 +14,8 @@ struct Rendering {
     int signal = 0;              // that ended it early; 0: none
 };
 
-// Where unfinished work is kept: beside a picture, PICTURE.film; films are their own. Of many ranks each has one of its
-// own: OUTPUT.rank0of2.film.
+// Where unfinished work is saved: beside a picture, PICTURE.film; films are their own. Of many ranks each has one of
+// its own: OUTPUT.rank0of2.film.
 std::filesystem::path checkpoint_file(const std::filesystem::path& output, const Ranks& ranks);
 
 // Reads and writes what the options say: the checkpoint to resume from, checkpoints, pictures on the way, and at the

@@ -8,10 +8,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/core/error.h"
 #include "samples/path_tracer/reference.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
+using samples::text;
 namespace {
 
 double mega_rays_per_second(const RenderStats& stats) {

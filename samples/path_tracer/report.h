@@ -47,7 +47,7 @@ struct CrossCheck {
     bool passed() const { return faults_of_ours == 0 && pictures.unexplained == 0; }
 };
 
-// Judges each disagreeing ray by the float64 referee. `first` of each is hardware, `second` software.
+// Compares each disagreeing ray with the float64 reference. `first` of each is hardware, `second` software.
 void classify_disagreements(const Scene& scene, const std::vector<Disagreement>& disagreements, CrossCheck& result);
 
 // Prints to stdout and writes the file: one JSON object if it ends in .json, else the text.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/scene_upload.h"
 
-#include "engine/core/error.h"
 #include "samples/path_tracer/layered_records.h"
 #include "samples/path_tracer/surface_records.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
+
 SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment) {
     SceneFeatures features;
     features.kinds = kinds_of(scene);

@@ -9,11 +9,13 @@
 #include <numeric>
 #include <sstream>
 
-#include "engine/core/error.h"
-#include "engine/scene/deform.h"
-#include "engine/scene/pose_scene.h"
+#include <twinray/scene.h>
+
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::fail;
+using samples::text;
 namespace {
 
 TimeRange parse_range(const std::string& text) {
@@ -26,35 +28,35 @@ TimeRange parse_range(const std::string& text) {
     return range;
 }
 
-std::string names_of(const std::vector<Animation>& animations) {
+std::string names_of(const std::vector<AnimationInfo>& animations) {
     std::string names;
     for (std::size_t i = 0; i < animations.size(); ++i)
         names += text(i ? ", " : "", i, animations[i].name.empty() ? "" : " '" + animations[i].name + "'");
     return names;
 }
 
-const Animation& find_animation(const std::vector<Animation>& animations, const std::string& wanted) {
-    const auto named = std::ranges::find(animations, wanted, &Animation::name);
-    if (named != animations.end() && !wanted.empty()) return *named;
+std::size_t find_animation(const std::vector<AnimationInfo>& animations, const std::string& wanted) {
+    const auto named = std::ranges::find(animations, wanted, &AnimationInfo::name);
+    if (named != animations.end() && !wanted.empty()) return static_cast<std::size_t>(named - animations.begin());
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
     const bool is_index = error == std::errc() && end == wanted.data() + wanted.size();
     if (!is_index || index >= animations.size())
         fail("--animation '", wanted, "': does not exist; the scene has ", names_of(animations));
-    return animations[index];
+    return index;
 }
 
-const Animation* chosen_animation(const SequenceOptions& options, const Scene& scene) {
-    if (!options.plays_animation()) return nullptr;
+std::optional<std::size_t> chosen_animation(const SequenceOptions& options, const Scene& scene) {
+    if (!options.plays_animation()) return {};
     if (!scene.rig)
         fail("--frames ", *options.frames, ": the scene has no animations; --turntable takes the camera round it");
-    return &find_animation(scene.rig->animations, options.animation.empty() ? "0" : options.animation);
+    return find_animation(animations_of(*scene.rig), options.animation.empty() ? "0" : options.animation);
 }
 
 std::vector<Instance> instances_at(const Scene& scene, const Pose& pose) {
     std::vector<Instance> instances = scene.instances;
-    for (std::size_t i = 0; i < instances.size(); ++i)
-        instances[i].transform = transform_of(matrix_of(pose, scene.rig->instances[i]));
+    const std::vector<Transform> transforms = instance_transforms(*scene.rig, pose);
+    for (std::size_t i = 0; i < instances.size(); ++i) instances[i].transform = transforms[i];
     return instances;
 }
 
@@ -73,9 +75,9 @@ Sequence make_sequence(const SequenceOptions& options, const Scene& scene) {
                 "names it");
         return sequence;
     }
-    if (!sequence.animation->fault.empty())
-        fail("animation '", sequence.animation->name, "' cannot be played: ", sequence.animation->fault);
-    sequence.range = options.time_range.empty() ? range_of(*sequence.animation) : parse_range(options.time_range);
+    const AnimationInfo animation = animations_of(*scene.rig)[*sequence.animation];
+    if (!animation.fault.empty()) fail("animation '", animation.name, "' cannot be played: ", animation.fault);
+    sequence.range = options.time_range.empty() ? animation.range : parse_range(options.time_range);
     return sequence;
 }
 
@@ -95,6 +97,7 @@ Scene swept(const Scene& scene, const Sequence& sequence) {
     all.materials = scene.materials;
     if (!sequence.animation) return all;
     const std::vector<Instance> at_rest = instances_at(scene, rest_pose(*scene.rig));
+    const std::vector<uint> deformed_by_pose = deformed_meshes(*scene.rig);
     all.instances = at_rest;
     const uint moments = std::min(sequence.frames, most_moments);
     for (uint i = 0; i < moments; ++i) {
@@ -102,10 +105,11 @@ Scene swept(const Scene& scene, const Sequence& sequence) {
         const Pose pose = pose_at(*scene.rig, *sequence.animation, sequence.time_of(frame));
         std::vector<uint> shapes(scene.meshes.size());
         std::iota(shapes.begin(), shapes.end(), 0u);
-        for (const DeformedMesh& mesh : scene.rig->meshes) {
-            shapes[mesh.mesh] = static_cast<uint>(all.meshes.size());
-            all.meshes.push_back(scene.meshes[mesh.mesh]);
-            all.meshes.back().positions = deformed(*scene.rig, mesh, pose).positions;
+        for (std::size_t k = 0; k < deformed_by_pose.size(); ++k) {
+            const uint mesh = deformed_by_pose[k];
+            shapes[mesh] = static_cast<uint>(all.meshes.size());
+            all.meshes.push_back(scene.meshes[mesh]);
+            all.meshes.back().positions = deformed(*scene.rig, k, pose).positions;
         }
         std::vector<Instance> moved = instances_at(scene, pose);
         for (std::size_t k = 0; k < moved.size(); ++k) {

@@ -6,8 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/scene/animation.h"
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
 
 namespace twinray::path_tracer {
 
@@ -25,7 +24,7 @@ struct SequenceOptions {
 
 // What moves, and when.
 struct Sequence {
-    const Animation* animation = nullptr;  // of the scene's rig; null: nothing moves
+    std::optional<std::size_t> animation = {};  // of the scene's rig; none: nothing moves
     TimeRange range = {};
     std::optional<double> fps = {};  // none: the frames share the range evenly, and would begin anew after the last
     uint frames = 1;

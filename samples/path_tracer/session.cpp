@@ -5,19 +5,22 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/local_origin.h"
-#include "engine/scene/pose_scene.h"
-#include "engine/scene/shapes.h"
-#include "engine/scene/variants.h"
+#include <twinray/geometry.h>
 #include <twinray/tlas.h>
 #include "samples/path_tracer/camera.h"
 #include "samples/path_tracer/film_file.h"
 #include "samples/path_tracer/stopped_lights.h"
 
+#include "samples/support/files.h"
+#include "samples/support/text.h"
+
 namespace twinray::path_tracer {
+using samples::fail;
+using samples::lower_suffix;
 namespace {
 
 constexpr float default_aspect = 4.0f / 3.0f;
@@ -35,10 +38,7 @@ Scene load_any(const Options& options) {
 void print_notes(const Scene& scene, const Options& options) {
     if (!options.quiet && scene.origin != dvec3(0))
         std::fprintf(stderr, "path_tracer: scene moved to local origin %s\n", origin_text(scene.origin).c_str());
-    if (!options.quiet || options.strict)
-        for (const std::string& warning : scene.warnings) std::fprintf(stderr, "path_tracer: %s\n", warning.c_str());
-    if (options.strict && !scene.warnings.empty())
-        fail("'", options.scene.string(), "': ", scene.warnings.size(), " warning(s), of which --strict allows none");
+    samples::report_warnings(scene.warnings, options.scene, "path_tracer", options.strict, options.quiet);
 }
 
 Scene load(const Options& options) {
@@ -204,11 +204,7 @@ Session make_session(const Options& options, const Ranks& ranks) {
 }
 
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const Scene& scene, const AccelChoice& choice) {
-    std::unique_ptr<AbstractAccel> accel;
-    if (choice.is_software)
-        accel = std::make_unique<SwTlas>(context);
-    else
-        accel = std::make_unique<HwTlas>(context);
+    std::unique_ptr<AbstractAccel> accel = samples::make_accel(context, choice);
     push_scene(*accel, scene);
     accel->sync();
     return accel;

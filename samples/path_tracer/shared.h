@@ -2,11 +2,11 @@
 // The structs and the mathematics that the path tracer shares with its kernels, for C++.
 #pragma once
 
+#include <twinray/scene.h>
+#include <twinray/sets.h>
+
 #include "engine/accel/spawn.h"
 #include "engine/scene/sampling.h"
-#include "engine/scene/multi_type_set.h"
-#include "engine/scene/soa.h"
-#include "engine/scene/texture_store.h"
 
 namespace twinray::path_tracer {
 

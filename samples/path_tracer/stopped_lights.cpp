@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/stopped_lights.h"
 
-#include "engine/core/error.h"
 #include "samples/path_tracer/material_kinds.h"
+#include "samples/support/text.h"
 
 namespace twinray::path_tracer {
+using samples::text;
 namespace {
 
 // "'sun'", "'sun' and 2 others".

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
 
 namespace twinray::path_tracer {
 

@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
+
 #include "samples/path_tracer/texture_list.h"
 
 namespace twinray::path_tracer {

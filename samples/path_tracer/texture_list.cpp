@@ -9,9 +9,9 @@ TextureSlot TextureList::slot_of(const Texture& texture, bool is_srgb) {
     if (texture.image < 0) return {};
     const SampledTexture sampled{static_cast<uint>(texture.image),
                                  {texture.wrap_u, texture.wrap_v, is_srgb, texture.filter}};
-    auto place = std::find(textures.begin(), textures.end(), sampled);
-    if (place == textures.end()) place = textures.insert(place, sampled);
-    return {{static_cast<uint>(place - textures.begin()) + 1}, texture.uv_set, texture.uv_row0, texture.uv_row1};
+    auto found = std::find(textures.begin(), textures.end(), sampled);
+    if (found == textures.end()) found = textures.insert(found, sampled);
+    return {{static_cast<uint>(found - textures.begin()) + 1}, texture.uv_set, texture.uv_row0, texture.uv_row1};
 }
 
 void push_textures(TextureStore& store, const Scene& scene, const TextureList& list) {

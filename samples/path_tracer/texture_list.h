@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
+
 #include "samples/path_tracer/shared.h"
 
 namespace twinray::path_tracer {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "engine/scene/soa.h"
+#include <twinray/sets.h>
+
 #include "samples/path_tracer/scene_upload.h"
 
 namespace twinray::path_tracer {

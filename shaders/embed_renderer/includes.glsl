@@ -4,7 +4,7 @@
 #define TWINRAY_EMBED_RENDERER_INCLUDES_GLSL
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/ray.h"
-#include "shaders/scene/soa.h"
+#include "twinray/glsl/soa.h"
 #include "shaders/shared/spawn.h"
 #include "twinray/glsl/textures.glsl"
 #include "shaders/path_tracer/scene.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT Particles in a box: how they move, and the colour that their speed gives them. Read by
-// kernels and by their serial twins.
+// kernels and by their serial references.
 #ifndef TWINRAY_PARTICLES_PARTICLES_H
 #define TWINRAY_PARTICLES_PARTICLES_H
 #include "shaders/shared/instance.h"
-#include "shaders/scene/multi_type_set.h"
-#include "shaders/scene/soa.h"
+#include "twinray/glsl/multi_type_set.h"
+#include "twinray/glsl/soa.h"
 
 // A metal whose colour tells how fast a particle is.
 struct HeatMaterial

@@ -5,7 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/ray.h"
-#include "shaders/scene/soa.h"
+#include "twinray/glsl/soa.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
 layout(local_size_x = PATH_GROUP) in;

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT
-// What each pixel has gathered. Sums are kept so that neither the order nor the grouping of what is added changes a bit
-// of them: each number is cut at fixed places of the binary system, every 40 bits, and the pieces of two places are
-// added as integers, those of the place that the largest number reaches and of the next below. What is smaller than
-// both, less than 2^-40 of the largest number, is left out, whenever it comes. (Demmel and Nguyen, "Parallel
+// What each pixel has gathered. Sums are such that neither the order nor the grouping of what is added changes a bit
+// of them: each number is cut into digits of 40 bits at fixed positions, and the digits of two positions are added as
+// integers, those of the position that the largest number reaches and of the next below. What is smaller than both,
+// less than 2^-40 of the largest number, is left out, whenever it comes. (Demmel and Nguyen, "Parallel
 // Reproducible Summation", 2015; integers, because devices need not round float64 correctly or have it at all.) Needs
 // wave.h.
 #ifndef TWINRAY_PATH_TRACER_FILM_H
 #define TWINRAY_PATH_TRACER_FILM_H
 #include "shaders/shared/word64.h"
 
-const uint FILM_PIECE_BITS = 40u; // 2^23 numbers fit into a sum of 64 bits with a sign
+const uint FILM_DIGIT_BITS = 40u; // 2^23 numbers fit into a sum of 64 bits with a sign
 const uint FILM_SQUARES = 3u;     // index of their sum
 
-// 72 bytes. A sum is (high * 2^40 + low) * 2^(40 place), in two's complement, in units of 2^-149 for colors and of
+// 72 bytes. A sum is (high * 2^40 + low) * 2^(40 position), in two's complement, in units of 2^-149 for colors and of
 // 2^-298 for squares.
 struct FilmPixel
 {
     uint count;       // of the blocks that were added
-    uint places;      // low half: of the color sums; high half: of the sum of squares
+    uint positions;      // low half: of the color sums; high half: of the sum of squares
     uvec2 high[4]; // of a block's red, green and blue, and of its luminance squared
     uvec2 low[4];
 };
@@ -31,19 +31,19 @@ FUNC uint film_mantissa(float x)
 }
 FUNC uint film_shift(float x) { return max((floatBitsToUint(x) >> 23u) & 0xffu, 1u) - 1u; }
 
-// The lower of the two places for a number of so many bits, which need not all be used.
-FUNC uint film_place(uint shift, uint bits) { return max((shift + bits - 1u) / FILM_PIECE_BITS, 1u) - 1u; }
+// The lower of the two positions for a number of so many bits, which need not all be used.
+FUNC uint film_position(uint shift, uint bits) { return max((shift + bits - 1u) / FILM_DIGIT_BITS, 1u) - 1u; }
 
-// Bits [40 place, 40 place + 40) of mantissa << shift, for mantissas of at most 48 bits.
-FUNC uvec2 film_piece(uvec2 mantissa, uint shift, uint place)
+// Bits [40 position, 40 position + 40) of mantissa << shift, for mantissas of at most 48 bits.
+FUNC uvec2 film_digit(uvec2 mantissa, uint shift, uint position)
 {
-    int up = int(shift) - int(FILM_PIECE_BITS * place);
-    if (up >= int(FILM_PIECE_BITS) || up <= -48) return uvec2(0u);
+    int up = int(shift) - int(FILM_DIGIT_BITS * position);
+    if (up >= int(FILM_DIGIT_BITS) || up <= -48) return uvec2(0u);
     uvec2 bits = up >= 0 ? shift_up64(mantissa, uint(up)) : shift_down64(mantissa, uint(-up));
-    return uvec2(bits.x, bits.y & ((1u << (FILM_PIECE_BITS - 32u)) - 1u));
+    return uvec2(bits.x, bits.y & ((1u << (FILM_DIGIT_BITS - 32u)) - 1u));
 }
 
-// What lies below the places is left out; a sum whose place is not lower already stays.
+// What lies below the positions is left out; a sum whose position is not lower already stays.
 FUNC void film_raise(INOUT(FilmPixel) pixel, uint sum, uint from, uint to)
 {
     if (to <= from) return;
@@ -51,12 +51,12 @@ FUNC void film_raise(INOUT(FilmPixel) pixel, uint sum, uint from, uint to)
     pixel.high[sum] = uvec2(0u);
 }
 
-FUNC void film_raise_all(INOUT(FilmPixel) pixel, uint color_place, uint square_place)
+FUNC void film_raise_all(INOUT(FilmPixel) pixel, uint color_position, uint square_position)
 {
-    uint old_color = pixel.places & 0xffffu, old_square = pixel.places >> 16u;
-    for (uint i = 0u; i < FILM_SQUARES; ++i) film_raise(pixel, i, old_color, color_place);
-    film_raise(pixel, FILM_SQUARES, old_square, square_place);
-    pixel.places = max(old_color, color_place) | (max(old_square, square_place) << 16u);
+    uint old_color = pixel.positions & 0xffffu, old_square = pixel.positions >> 16u;
+    for (uint i = 0u; i < FILM_SQUARES; ++i) film_raise(pixel, i, old_color, color_position);
+    film_raise(pixel, FILM_SQUARES, old_square, square_position);
+    pixel.positions = max(old_color, color_position) | (max(old_square, square_position) << 16u);
 }
 
 // A block's sum of finite radiance.
@@ -68,19 +68,20 @@ FUNC void film_add(INOUT(FilmPixel) pixel, vec3 radiance, float luminance_of_it)
     values[2] = radiance.z;
     uint shift = max(film_shift(radiance.x), max(film_shift(radiance.y), film_shift(radiance.z)));
     uint square_shift = 2u * film_shift(luminance_of_it);
-    film_raise_all(pixel, film_place(shift, 24u), film_place(square_shift, 48u));
-    uint place = pixel.places & 0xffffu, square_place = pixel.places >> 16u;
+    film_raise_all(pixel, film_position(shift, 24u), film_position(square_shift, 48u));
+    uint position = pixel.positions & 0xffffu, square_position = pixel.positions >> 16u;
     for (uint i = 0u; i < FILM_SQUARES; ++i)
     {
-        uvec2 mantissa = uvec2(film_mantissa(values[i]), 0u), low = film_piece(mantissa, film_shift(values[i]), place);
-        uvec2 high = film_piece(mantissa, film_shift(values[i]), place + 1u);
+        uint digit_shift = film_shift(values[i]);
+        uvec2 mantissa = uvec2(film_mantissa(values[i]), 0u), low = film_digit(mantissa, digit_shift, position);
+        uvec2 high = film_digit(mantissa, digit_shift, position + 1u);
         bool is_negative = values[i] < 0.0f;
         pixel.low[i] = add64(pixel.low[i], is_negative ? negate64(low) : low);
         pixel.high[i] = add64(pixel.high[i], is_negative ? negate64(high) : high);
     }
     uvec2 square = multiply64(film_mantissa(luminance_of_it), film_mantissa(luminance_of_it));
-    pixel.low[FILM_SQUARES] = add64(pixel.low[FILM_SQUARES], film_piece(square, square_shift, square_place));
-    pixel.high[FILM_SQUARES] = add64(pixel.high[FILM_SQUARES], film_piece(square, square_shift, square_place + 1u));
+    pixel.low[FILM_SQUARES] = add64(pixel.low[FILM_SQUARES], film_digit(square, square_shift, square_position));
+    pixel.high[FILM_SQUARES] = add64(pixel.high[FILM_SQUARES], film_digit(square, square_shift, square_position + 1u));
     pixel.count += 1u;
 }
 

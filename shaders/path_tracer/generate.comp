@@ -5,7 +5,7 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/ray.h"
 #include "shaders/sampling/sampling.h"
-#include "shaders/scene/soa.h"
+#include "twinray/glsl/soa.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/camera.h"

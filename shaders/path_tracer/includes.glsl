@@ -5,7 +5,7 @@
 #include "shaders/shared/bridge.glsl"
 #include "shaders/shared/intersect.h"
 #include "shaders/shared/spawn.h"
-#include "shaders/scene/soa.h"
+#include "twinray/glsl/soa.h"
 #include "twinray/glsl/multi_type_set.glsl"
 #include "twinray/glsl/textures.glsl"
 #include "shaders/path_tracer/scene.h"

@@ -19,7 +19,7 @@ uint sample_alias(REF(AliasEntry) table, uint count, uint word)
     uint column, fraction;
     umulExtended(word, count, column, fraction);
     AliasEntry entry = AT(table, column);
-    return fraction < entry.keep ? column : entry.other;
+    return fraction < entry.probability ? column : entry.alias;
 }
 
 // The cell of a table of cumulated probabilities that u in [0, 1) falls into, plus how far into it.

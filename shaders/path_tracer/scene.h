@@ -2,8 +2,8 @@
 // The scene as the path tracer's kernels read it from device memory.
 #ifndef TWINRAY_PATH_TRACER_SCENE_H
 #define TWINRAY_PATH_TRACER_SCENE_H
-#include "shaders/scene/multi_type_set.h"
-#include "shaders/scene/textures.h"
+#include "twinray/glsl/multi_type_set.h"
+#include "twinray/glsl/textures.h"
 
 // Ids of the specialisation constants: what a scene lacks is compiled out.
 const uint PT_HAS_ALPHA = 0u;        // some material is masked or blended: rays may pass surfaces
@@ -154,11 +154,11 @@ struct LayeredMaterial
 };
 BUFFER_OF(LayeredMaterial, 4);
 
-// One column of an alias table: keep it if a random 32-bit fraction is below `keep`, else take `other`.
+// One column of an alias table: it counts if a random 32-bit fraction is below `probability`, else `alias` does.
 struct AliasEntry
 {
-    uint keep;
-    uint other;
+    uint probability;
+    uint alias;
 };
 BUFFER_OF(AliasEntry, 8);
 

@@ -14,7 +14,7 @@ layout(push_constant, scalar) uniform Push { ShadeArgs args; };
 const float SHADOW_END = 1.0 - 9.5367431640625e-07;
 const uint ROULETTE_DEPTH = 3u; // scatterings that no path is spared
 
-// The pairs of random dimensions of a vertex; pair 0 of a path is its place in the pixel.
+// The pairs of random dimensions of a vertex; pair 0 of a path is its position in the pixel.
 const uint PAIR_PART = 0u;    // whether a transparent surface is met, and which part of its material
 const uint PAIR_CHOICE = 1u;  // of a light
 const uint PAIR_LIGHT = 2u;   // on the light

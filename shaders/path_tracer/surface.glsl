@@ -25,7 +25,7 @@ struct Surface
 
 struct TriangleData
 {
-    SurfaceVertex corner[3];
+    SurfaceVertex vertex[3];
     vec2 second_uv[3];
     vec4 color[3];
     uint material;
@@ -37,7 +37,7 @@ void load_extras(inout TriangleData data, SceneData scene, uint instance, uvec3 
     VertexExtras extras = AT(scene.extras, instance);
     UNROLL for (uint i = 0u; i < 3u; i++)
     {
-        if (HAS_SECOND_UVS) data.second_uv[i] = second_uv_of(extras, vertices[i], data.corner[i].uv);
+        if (HAS_SECOND_UVS) data.second_uv[i] = second_uv_of(extras, vertices[i], data.vertex[i].uv);
         if (HAS_COLORS) data.color[i] = color_of(extras, vertices[i]);
     }
 }
@@ -47,9 +47,9 @@ TriangleData load_triangle_data(SceneData scene, uint instance_index, uint primi
     SurfaceInstance instance = AT(scene.instances, instance_index);
     SurfaceTriangle triangle = AT(instance.triangles, primitive);
     TriangleData data;
-    data.corner[0] = AT(instance.vertices, triangle.vertices.x);
-    data.corner[1] = AT(instance.vertices, triangle.vertices.y);
-    data.corner[2] = AT(instance.vertices, triangle.vertices.z);
+    data.vertex[0] = AT(instance.vertices, triangle.vertices.x);
+    data.vertex[1] = AT(instance.vertices, triangle.vertices.y);
+    data.vertex[2] = AT(instance.vertices, triangle.vertices.z);
     data.material = triangle.material;
     load_extras(data, scene, instance_index, triangle.vertices);
     return data;
@@ -84,9 +84,9 @@ vec3 crossing_of(Ray ray, Placement placement, Corners corners)
 Corners corners_of(TriangleData data)
 {
     Corners corners;
-    corners.a = data.corner[0].position;
-    corners.b = data.corner[1].position;
-    corners.c = data.corner[2].position;
+    corners.a = data.vertex[0].position;
+    corners.b = data.vertex[1].position;
+    corners.c = data.vertex[2].position;
     return corners;
 }
 
@@ -94,21 +94,21 @@ vec3 weights_of(vec2 at) { return vec3(1.0 - at.x - at.y, at); }
 
 bool has_normal(SurfaceVertex vertex) { return vertex.normal != vec3(0.0); }
 
-vec3 corner_normal(SurfaceVertex vertex, vec3 of_triangle) { return has_normal(vertex) ? vertex.normal : of_triangle; }
+vec3 vertex_normal(SurfaceVertex vertex, vec3 of_triangle) { return has_normal(vertex) ? vertex.normal : of_triangle; }
 
 vec3 vertex_normal(TriangleData data, SurfacePoint point, vec2 at)
 {
     vec3 weights = weights_of(at);
-    return corner_normal(data.corner[0], point.normal_object) * weights.x +
-           corner_normal(data.corner[1], point.normal_object) * weights.y +
-           corner_normal(data.corner[2], point.normal_object) * weights.z;
+    return vertex_normal(data.vertex[0], point.normal_object) * weights.x +
+           vertex_normal(data.vertex[1], point.normal_object) * weights.y +
+           vertex_normal(data.vertex[2], point.normal_object) * weights.z;
 }
 
 TextureCoordinates interpolated_uv(TriangleData data, vec2 at)
 {
     vec3 weights = weights_of(at);
     TextureCoordinates uv;
-    uv.first = data.corner[0].uv * weights.x + data.corner[1].uv * weights.y + data.corner[2].uv * weights.z;
+    uv.first = data.vertex[0].uv * weights.x + data.vertex[1].uv * weights.y + data.vertex[2].uv * weights.z;
     uv.second = uv.first;
     if (HAS_SECOND_UVS)
         uv.second = data.second_uv[0] * weights.x + data.second_uv[1] * weights.y + data.second_uv[2] * weights.z;
@@ -124,7 +124,7 @@ vec4 interpolated_color(TriangleData data, vec2 at)
 
 vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placement, vec2 at)
 {
-    if (!has_normal(data.corner[0]) && !has_normal(data.corner[1]) && !has_normal(data.corner[2])) return point.normal;
+    if (!has_normal(data.vertex[0]) && !has_normal(data.vertex[1]) && !has_normal(data.vertex[2])) return point.normal;
     vec3 normal = vertex_normal(data, point, at);
     if (dot(normal, normal) == 0.0) return point.normal;
     normal = normalize(transposed_times(placement.to_object, normal));
@@ -137,8 +137,8 @@ vec3 interpolated_normal(TriangleData data, SurfacePoint point, Placement placem
 void set_tangents(inout Surface surface, TriangleData data, uint flags, vec2 at)
 {
     vec3 weights = weights_of(at);
-    vec4 along = data.corner[0].tangent * weights.x + data.corner[1].tangent * weights.y +
-                 data.corner[2].tangent * weights.z;
+    vec4 along = data.vertex[0].tangent * weights.x + data.vertex[1].tangent * weights.y +
+                 data.vertex[2].tangent * weights.z;
     vec3 tangent = along.xyz;
     vec3 bitangent = cross(vertex_normal(data, surface.point, at), tangent) * (along.w < 0.0 ? -1.0 : 1.0);
     if (dot(bitangent, bitangent) > 0.0)
@@ -147,13 +147,13 @@ void set_tangents(inout Surface surface, TriangleData data, uint flags, vec2 at)
         surface.bitangent = transform_vector(surface.placement.to_world, bitangent);
         return;
     }
-    vec2 uv0 = data.corner[0].uv, uv1 = data.corner[1].uv, uv2 = data.corner[2].uv;
+    vec2 uv0 = data.vertex[0].uv, uv1 = data.vertex[1].uv, uv2 = data.vertex[2].uv;
     if (HAS_SECOND_UVS && (flags & MATERIAL_SECOND_TANGENTS) != 0u)
         uv0 = data.second_uv[0], uv1 = data.second_uv[1], uv2 = data.second_uv[2];
     vec2 du = uv1 - uv0;
     vec2 dv = uv2 - uv0;
-    vec3 edge1 = data.corner[1].position - data.corner[0].position;
-    vec3 edge2 = data.corner[2].position - data.corner[0].position;
+    vec3 edge1 = data.vertex[1].position - data.vertex[0].position;
+    vec3 edge2 = data.vertex[2].position - data.vertex[0].position;
     float handedness = du.x * dv.y - du.y * dv.x < 0.0 ? -1.0 : 1.0;
     surface.tangent = transform_vector(surface.placement.to_world, (edge1 * dv.y - edge2 * du.y) * handedness);
     surface.bitangent = transform_vector(surface.placement.to_world, (edge1 * dv.x - edge2 * du.x) * handedness);

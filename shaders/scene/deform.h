@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the kernel that moves vertices takes. engine/scene/deform.h says what it computes.
+// What the kernel that moves vertices takes. deformed() in twinray/scene.h says what it computes.
 #ifndef TWINRAY_SCENE_DEFORM_H
 #define TWINRAY_SCENE_DEFORM_H
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <random>
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
+
 #include "tests/accel/accel_fixture.h"
 #include "tests/scene/far_houses.h"
 

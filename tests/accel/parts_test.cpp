@@ -6,8 +6,9 @@
 #include <bit>
 #include <random>
 
+#include <twinray/scene.h>
+
 #include "engine/accel/all_hits.h"
-#include "engine/accel/scene_push.h"
 #include "engine/verify/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 

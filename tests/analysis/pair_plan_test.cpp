@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
+#include <twinray/scene.h>
+
 #include "tests/analysis/plain_scenes.h"
 
 namespace twinray {

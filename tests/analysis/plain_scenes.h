@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
 
 namespace twinray::test {
 

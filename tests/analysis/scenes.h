@@ -4,7 +4,9 @@
 
 #include <twinray/analysis.h>
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
+
+#include "engine/analysis/faces.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray::test {

@@ -3,8 +3,9 @@
 
 #include <cmath>
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
 #include "engine/report/statistics.h"
+
 #include "tests/accel/accel_fixture.h"
 #include "tests/analysis/view_factor_scenes.h"
 

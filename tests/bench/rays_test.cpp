@@ -7,7 +7,8 @@
 #include <map>
 
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
+#include <twinray/scene.h>
+
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/oracle.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/unrolled.h"
+#include <twinray/sets.h>
 
 #include <gtest/gtest.h>
 

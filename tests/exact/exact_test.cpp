@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "validation/exact/referee.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/certainty.h"
 #include "engine/verify/classify.h"

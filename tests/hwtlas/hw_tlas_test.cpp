@@ -4,7 +4,7 @@
 #include "engine/core/ray.h"
 #include "engine/core/error.h"
 #include "tests/hwtlas/hw_test.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 
 namespace twinray::test {
 namespace {

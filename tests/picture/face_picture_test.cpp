@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "validation/picture/face_picture.h"
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
 #include "validation/picture/marks.h"
+
 #include "tests/accel/accel_fixture.h"
 #include "tests/scene/temp_dir.h"
 

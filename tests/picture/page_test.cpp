@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <set>
 
+#include <twinray/scene.h>
+
 #include "engine/core/files.h"
 #include "validation/picture/font.h"
 #include "validation/picture/matrix_picture.h"
-#include "engine/scene/image.h"
-#include "engine/scene/png.h"
 #include "tests/scene/temp_dir.h"
 
 namespace twinray::test {

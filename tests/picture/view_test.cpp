@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "engine/picture/view.h"
+#include <twinray/scene.h>
 
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "tests/scene/temp_dir.h"
 
 namespace twinray::test {

@@ -6,10 +6,11 @@
 #include <cstring>
 #include <fstream>
 
+#include <twinray/scene.h>
+
 #include "validation/replay/scene_file.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "tests/scene/temp_dir.h"
 
 namespace twinray::replay {

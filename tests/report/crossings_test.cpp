@@ -2,9 +2,10 @@
 // Counting crossings, on a device.
 #include <gtest/gtest.h>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/case_run.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "engine/verify/inside_rays.h"
 #include "tests/support/device.h"
 

@@ -6,12 +6,10 @@
 namespace twinray::suite {
 namespace {
 
-using path_tracer::Picture;
-
-Picture plain(vec3 color) { return {16, 16, std::vector<vec3>(256, color)}; }
+HdrImage plain(vec3 color) { return {16, 16, std::vector<vec3>(256, color)}; }
 
 TEST(Flip, OfAPictureToItselfIsNothing) {
-    Picture picture = plain(vec3(0.5f));
+    HdrImage picture = plain(vec3(0.5f));
     for (std::size_t i = 0; i < picture.rgb.size(); i += 3) picture.rgb[i] = vec3(1, 0.2f, 0);
     for (const double difference : flip(picture, picture)) EXPECT_EQ(difference, 0);
 }
@@ -32,16 +30,16 @@ TEST(Flip, IsSymmetricAndGrowsWithTheDifference) {
 
 // The eye does not resolve a checkerboard of pixels 67 to a degree, but one seen from nearby.
 TEST(Flip, FineGrainIsSeenFromNearbyAlone) {
-    Picture board = plain(vec3(0.5f));
+    HdrImage board = plain(vec3(0.5f));
     for (uint y = 0; y < 16; ++y)
         for (uint x = 0; x < 16; ++x) board.rgb[y * 16 + x] = vec3((x + y) % 2 ? 0.6f : 0.4f);
-    const Picture grey = plain(vec3(0.5f));
+    const HdrImage grey = plain(vec3(0.5f));
     EXPECT_LT(flip(board, grey, 67)[8 * 16 + 8], 0.1);
     EXPECT_GT(flip(board, grey, 5)[8 * 16 + 8], 0.15);
 }
 
 TEST(Flip, AnEdgeWeighsMoreThanItsColorAlone) {
-    Picture edge = plain(vec3(0.3f));
+    HdrImage edge = plain(vec3(0.3f));
     for (uint y = 0; y < 16; ++y)
         for (uint x = 8; x < 16; ++x) edge.rgb[y * 16 + x] = vec3(0.4f);
     const std::vector<double> all = flip(edge, plain(vec3(0.3f)));

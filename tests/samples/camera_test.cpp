@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <twinray/scene.h>
+
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "samples/path_tracer/camera.h"
-#include "samples/path_tracer/image_io.h"
 #include "samples/path_tracer/lights.h"
 #include "samples/path_tracer/reference.h"
 
@@ -84,7 +84,7 @@ TEST(CameraRays, PicturesOfAnotherAspectShowAllOfTheFrame) {
 }
 
 TEST(AutomaticExposure, BringsTheMeanToMiddleGrey) {
-    Picture picture{2, 2, {vec3(0), vec3(2), vec3(8), vec3(4)}};
+    HdrImage picture{2, 2, {vec3(0), vec3(2), vec3(8), vec3(4)}};
     EXPECT_NEAR(std::exp2(automatic_exposure(picture)) * 4, 0.18f, 1e-5f);
     EXPECT_EQ(automatic_exposure({1, 1, {vec3(0)}}), 0);
 }
@@ -124,7 +124,7 @@ TEST(LookCamera, StandsWhereItIsToldAndLooksThere) {
 }
 
 TEST(Reference, ErrorsAreMeansOverPixelsAndChannels) {
-    const Picture picture{2, 1, {vec3(1, 2, 3), vec3(0)}};
+    const HdrImage picture{2, 1, {vec3(1, 2, 3), vec3(0)}};
     const PictureError error = error_against(picture, {2, 1, {vec3(1, 2, 1), vec3(0, 0, 0.1f)}});
     EXPECT_NEAR(error.mse, (4 + 0.01) / 6, 1e-6);
     EXPECT_NEAR(error.relative_mse, (4 / 1.01 + 0.01 / 0.02) / 6, 1e-6);

@@ -5,7 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
+#include <twinray/scene.h>
+
 #include "tests/support/device.h"
 
 namespace twinray::embed_renderer {

@@ -21,11 +21,11 @@ TEST_F(Energy, AWhiteConvexObjectVanishesInAWhiteFurnace) {
     Scene scene;
     add(scene, flat_sphere(2), lambert(1));
     for (const uint strategy : strategies) {
-        Shot shot;
-        shot.environment = sky(1);
-        shot.settings.strategy = strategy;
-        shot.settings.camera = camera_rays(look({0, 0, 4}, vec3(0), 0.2f), 1);
-        expect_mean(render(context(), scene, shot), 1, name_of_strategy(strategy));
+        RenderSetup setup;
+        setup.environment = sky(1);
+        setup.settings.strategy = strategy;
+        setup.settings.camera = camera_rays(look({0, 0, 4}, vec3(0), 0.2f), 1);
+        expect_mean(render(context(), scene, setup), 1, name_of_strategy(strategy));
     }
 }
 
@@ -36,12 +36,12 @@ TEST_F(Energy, InsideAClosedFurnaceRadianceIsTheSumOfAllBounces) {
         wall.emission = vec3(1);
         wall.double_sided = true;
         add(scene, flat_sphere(2), wall);
-        Shot shot;
-        shot.settings.max_depth = 12;
-        shot.settings.camera = camera_rays(look({0.1f, 0, 0}, {1, 0.2f, 0.3f}, 0.5f), 1);
+        RenderSetup setup;
+        setup.settings.max_depth = 12;
+        setup.settings.camera = camera_rays(look({0.1f, 0, 0}, {1, 0.2f, 0.3f}, 0.5f), 1);
         double expected = 0;
         for (int bounce = 12; bounce >= 0; --bounce) expected = 1 + static_cast<double>(albedo) * expected;
-        expect_mean(render(context(), scene, shot), expected, "closed furnace");
+        expect_mean(render(context(), scene, setup), expected, "closed furnace");
     }
 }
 
@@ -52,12 +52,12 @@ TEST_F(Energy, DeepPathsArriveWithTheirShare) {
     wall.emission = vec3(1);
     wall.double_sided = true;
     add(scene, flat_sphere(2), wall);
-    Shot shot;
-    shot.settings.samples = 2;
-    shot.settings.max_depth = 2000;
-    shot.settings.strategy = STRATEGY_BSDF;
-    shot.settings.camera = camera_rays(look({0.1f, 0, 0}, {1, 0.2f, 0.3f}, 0.5f), 1);
-    const Picture picture = render(context(), scene, shot);
+    RenderSetup setup;
+    setup.settings.samples = 2;
+    setup.settings.max_depth = 2000;
+    setup.settings.strategy = STRATEGY_BSDF;
+    setup.settings.camera = camera_rays(look({0.1f, 0, 0}, {1, 0.2f, 0.3f}, 0.5f), 1);
+    const HdrImage picture = render(context(), scene, setup);
     expect_mean(picture, 100, "albedo 0.99");
     EXPECT_LT(statistics(picture).error, 100.0 * 1.2 / std::sqrt(2.0 * 32 * 32))
         << "lengths vary as a geometric distribution";
@@ -70,11 +70,11 @@ TEST_F(Energy, ALightSmallForItsDistanceDoesNotHideItself) {
         Scene scene;
         add(scene, make_quad({-5, -1, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
         add(scene, make_quad({-5e-5f, 0, -5e-5f}, {1e-4f, 0, 0}, {0, 0, 1e-4f}), lamp(1e8f * PI));
-        Shot shot;
-        shot.hardware = hardware;
-        shot.settings.max_depth = 1;
-        shot.settings.camera = camera_rays(look({0, -0.5f, 0}, {0, -1, 0}, 1e-4f), 1);
-        EXPECT_NEAR(statistics(render(context(), scene, shot)).mean, 1, 1e-6);
+        RenderSetup setup;
+        setup.hardware = hardware;
+        setup.settings.max_depth = 1;
+        setup.settings.camera = camera_rays(look({0, -0.5f, 0}, {0, -1, 0}, 1e-4f), 1);
+        EXPECT_NEAR(statistics(render(context(), scene, setup)).mean, 1, 1e-6);
     }
 }
 
@@ -84,11 +84,11 @@ TEST_F(Energy, ARectangularLightGivesItsAnalyticIrradianceByEveryStrategy) {
     add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
     add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
     for (const uint strategy : strategies) {
-        Shot shot;
-        shot.settings.max_depth = 1;
-        shot.settings.strategy = strategy;
-        shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
-        expect_mean(render(context(), scene, shot), 0.554126423979571987, name_of_strategy(strategy));
+        RenderSetup setup;
+        setup.settings.max_depth = 1;
+        setup.settings.strategy = strategy;
+        setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+        expect_mean(render(context(), scene, setup), 0.554126423979571987, name_of_strategy(strategy));
     }
 }
 
@@ -99,10 +99,10 @@ TEST_F(Energy, ALightShinesFromItsFrontOnlyUnlessItIsTwoSided) {
         light.double_sided = is_two_sided;
         add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
         add(scene, make_quad({-1, 1, -1}, {0, 0, 2}, {2, 0, 0}), light);  // faces up
-        Shot shot;
-        shot.settings.max_depth = 1;
-        shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
-        expect_mean(render(context(), scene, shot), is_two_sided ? 0.554126423979571987 : 0, "two-sided");
+        RenderSetup setup;
+        setup.settings.max_depth = 1;
+        setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+        expect_mean(render(context(), scene, setup), is_two_sided ? 0.554126423979571987 : 0, "two-sided");
     }
 }
 
@@ -114,12 +114,12 @@ TEST_F(Energy, AnUnevenEnvironmentGivesTheSameByEveryStrategy) {
     image.rgb[1 * 16 + 12] = vec3(7);
     Statistics found[3];
     for (const uint strategy : strategies) {
-        Shot shot;
-        shot.settings.max_depth = 1;
-        shot.settings.strategy = strategy;
-        shot.environment = std::make_unique<EnvironmentMap>(image);
-        shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
-        found[strategy] = statistics(render(context(), scene, shot));
+        RenderSetup setup;
+        setup.settings.max_depth = 1;
+        setup.settings.strategy = strategy;
+        setup.environment = std::make_unique<EnvironmentMap>(image);
+        setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+        found[strategy] = statistics(render(context(), scene, setup));
     }
     for (const uint strategy : {STRATEGY_LIGHTS, STRATEGY_BSDF})
         EXPECT_NEAR(found[strategy].mean, found[STRATEGY_MIS].mean,
@@ -145,10 +145,10 @@ TEST_F(Energy, PunctualLightsGiveTheirAnalyticIrradiance) {
         Scene scene;
         add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
         scene.lights = {c.light};
-        Shot shot;
-        shot.settings.max_depth = 1;
-        shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
-        expect_mean(render(context(), scene, shot), c.irradiance / pi, "punctual");
+        RenderSetup setup;
+        setup.settings.max_depth = 1;
+        setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+        expect_mean(render(context(), scene, setup), c.irradiance / pi, "punctual");
     }
 }
 
@@ -158,11 +158,11 @@ TEST_F(Energy, AGlassSphereVanishesInAWhiteFurnace) {
         Material glass{
             .name = "glass", .metallic = 0, .roughness = roughness, .transmission = 1, .ior = 1.5f, .thickness = 1};
         add(scene, make_icosphere(4), glass);
-        Shot shot;
-        shot.environment = sky(1);
-        shot.settings.max_depth = 200;
-        shot.settings.camera = camera_rays(look({0, 0, 4}, vec3(0), 0.15f), 1);
-        const Picture picture = render(context(), scene, shot);
+        RenderSetup setup;
+        setup.environment = sky(1);
+        setup.settings.max_depth = 200;
+        setup.settings.camera = camera_rays(look({0, 0, 4}, vec3(0), 0.15f), 1);
+        const HdrImage picture = render(context(), scene, setup);
         if (roughness == 0) expect_mean(picture, 1, "smooth glass");
         // A rough interface scatters once and loses what would scatter again.
         else
@@ -174,33 +174,33 @@ TEST_F(Energy, AWhiteRoughMirrorReflectsItsSingleScatteringAlbedo) {
     Scene scene;
     add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}),
         {.name = "metal", .metallic = 1, .roughness = std::sqrt(0.5f)});
-    Shot shot;
-    shot.environment = sky(1);
-    shot.settings.camera = camera_rays(look({0, 1, 0}, vec3(0), 1e-3f), 1);
-    expect_mean(render(context(), scene, shot), 0.68785, "alpha 0.5, seen from above");
+    RenderSetup setup;
+    setup.environment = sky(1);
+    setup.settings.camera = camera_rays(look({0, 1, 0}, vec3(0), 1e-3f), 1);
+    expect_mean(render(context(), scene, setup), 0.68785, "alpha 0.5, seen from above");
 }
 
 TEST_F(Energy, DepthZeroShowsOnlyWhatEmits) {
     Scene scene;
     add(scene, make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}), lambert(1));
     add(scene, make_quad({-1, 5, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
-    Shot shot;
-    shot.settings.max_depth = 0;
-    shot.settings.camera = camera_rays(look({0, 3, 0}, vec3(0), 0.1f), 1);
-    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 0);
-    shot.settings.camera = camera_rays(look({0, 3, 0}, {0, 5, 0}, 0.1f), 1);
-    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 1);
+    RenderSetup setup;
+    setup.settings.max_depth = 0;
+    setup.settings.camera = camera_rays(look({0, 3, 0}, vec3(0), 0.1f), 1);
+    EXPECT_EQ(statistics(render(context(), scene, setup)).mean, 0);
+    setup.settings.camera = camera_rays(look({0, 3, 0}, {0, 5, 0}, 0.1f), 1);
+    EXPECT_EQ(statistics(render(context(), scene, setup)).mean, 1);
 }
 
 TEST_F(Energy, PicturesScaleExactlyWithPowersOfTwoOfTheLight) {
-    Picture pictures[2];
+    HdrImage pictures[2];
     for (const int power : {0, 1}) {
         Scene scene = cornell_box_scene();
         for (Material& material : scene.materials) material.emission *= power ? 0x1p20f : 1.0f;
-        Shot shot;
-        shot.settings.samples = 2;
-        shot.settings.camera = camera_rays(scene.cameras[0], 1);
-        pictures[power] = render(context(), scene, shot);
+        RenderSetup setup;
+        setup.settings.samples = 2;
+        setup.settings.camera = camera_rays(scene.cameras[0], 1);
+        pictures[power] = render(context(), scene, setup);
     }
     for (std::size_t i = 0; i < pictures[0].rgb.size(); ++i)
         EXPECT_EQ(pictures[0].rgb[i] * 0x1p20f, pictures[1].rgb[i]);

@@ -68,6 +68,39 @@ TEST(Furnace, NoGrainReturnsMoreThanItGets) {
                 }
 }
 
+// Least and most of what a white surface returns, as docs/path-tracer.md has it in a table, by roughness.
+TEST(Furnace, IsAsDocumented) {
+    struct Range {
+        double least = 2, most = 0;
+    };
+    const auto range_of = [](std::initializer_list<Bsdf> bsdfs) {
+        Range range;
+        for (const Bsdf& bsdf : bsdfs)
+            for (const float cosine : {1.0f, 0.4f, 0.25f, 0.1f, 0.03f}) {
+                const double albedo = albedo_of(bsdf, direction(cosine, 0.2f));
+                range = {std::min(range.least, albedo), std::max(range.most, albedo)};
+            }
+        return range;
+    };
+    const auto expect = [](const Range& found, const Range& documented, const std::string& what) {
+        EXPECT_NEAR(found.least, documented.least, 0.0006) << what;
+        EXPECT_NEAR(found.most, documented.most, 0.0006) << what;
+    };
+    struct Row {
+        float roughness;
+        Range metal, coat, glass;
+    };
+    for (const Row& row : {Row{0, {1, 1}, {0.954, 1}, {1, 1}}, Row{0.2f, {0.898, 0.998}, {0.705, 0.973}, {0.888, 1}},
+                           Row{0.5f, {0.840, 0.955}, {0.342, 0.951}, {0.795, 0.992}},
+                           Row{1, {0.307, 0.894}, {0.207, 0.924}, {0.418, 0.893}}}) {
+        const float alpha = row.roughness * row.roughness;
+        const std::string name = " of roughness " + std::to_string(row.roughness);
+        expect(range_of({mirror(alpha), thin_glass(alpha, 1.5f)}), row.metal, "metal, thin wall" + name);
+        expect(range_of({with_coat(white(), 1, alpha)}), row.coat, "coat" + name);
+        expect(range_of({glass(alpha, 1.5f), glass(alpha, 1 / 1.5f)}), row.glass, "glass" + name);
+    }
+}
+
 TEST(Furnace, AWhiteDielectricReturnsNearlyAll) {
     for (const float roughness : roughnesses)
         for (const float cosine : cosines)

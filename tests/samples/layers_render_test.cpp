@@ -44,14 +44,14 @@ void expect_values(Context& context, Floors& floors) {
     const vec3 middle(2 * static_cast<float>(count), 0, 0);
     Camera camera = look(middle + 9.0f * to_camera, middle, 1);
     camera.orthographic_half_height = 2;
-    Shot shot;
-    shot.settings.width = count;
-    shot.settings.height = 1;
-    shot.settings.samples = 1;
-    shot.settings.max_depth = 1;
-    shot.settings.filter = FILTER_BOX;  // no pixel sees its neighbours' floors
-    shot.settings.camera = camera_rays(camera, static_cast<float>(count));
-    const Picture picture = render(context, floors.scene, shot);
+    RenderSetup setup;
+    setup.settings.width = count;
+    setup.settings.height = 1;
+    setup.settings.samples = 1;
+    setup.settings.max_depth = 1;
+    setup.settings.filter = FILTER_BOX;  // no pixel sees its neighbours' floors
+    setup.settings.camera = camera_rays(camera, static_cast<float>(count));
+    const HdrImage picture = render(context, floors.scene, setup);
     for (uint i = 0; i < count; ++i)
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(picture.rgb[i][c], floors.values[i][c], 2e-3f * floors.values[i][c])
@@ -172,22 +172,22 @@ Material amber(vec3 color, float distance) {
             .attenuation_distance = distance};
 }
 
-Shot through(float to_z) {
-    Shot shot;
-    shot.settings.samples = 1;
-    shot.settings.width = shot.settings.height = 1;
-    shot.settings.camera = camera_rays(look({0.1f, 0.2f, 5}, {0.1f, 0.2f, to_z}, 1e-4f), 1);
-    return shot;
+RenderSetup through(float to_z) {
+    RenderSetup setup;
+    setup.settings.samples = 1;
+    setup.settings.width = setup.settings.height = 1;
+    setup.settings.camera = camera_rays(look({0.1f, 0.2f, 5}, {0.1f, 0.2f, to_z}, 1e-4f), 1);
+    return setup;
 }
 
 TEST_F(LayersRender, AVolumeDimsByTheLengthOfTheWay) {
-    Shot shot = through(0);
-    shot.environment = sky(1);
-    const vec3 seen = render(context(), box_of(amber({0.5f, 0.25f, 1}, 4)), shot).rgb[0];
+    RenderSetup setup = through(0);
+    setup.environment = sky(1);
+    const vec3 seen = render(context(), box_of(amber({0.5f, 0.25f, 1}, 4)), setup).rgb[0];
     EXPECT_NEAR(seen.x, std::sqrt(0.5f), 1e-4f);
     EXPECT_NEAR(seen.y, 0.5f, 1e-4f);
     EXPECT_NEAR(seen.z, 1, 1e-6f);
-    EXPECT_EQ(render(context(), box_of(amber(vec3(0), 1)), shot).rgb[0], vec3(0));
+    EXPECT_EQ(render(context(), box_of(amber(vec3(0), 1)), setup).rgb[0], vec3(0));
 }
 
 TEST_F(LayersRender, WhatLiesInsideAVolumeIsDimmedByTheWayToIt) {
@@ -208,16 +208,16 @@ TEST_F(LayersRender, WithoutAThicknessGlassIsAPane) {
     Material pane{.name = "pane", .base_color = {0.5f, 1, 0.25f, 1}, .metallic = 0, .roughness = 0, .transmission = 1};
     add(scene, make_quad({-5, 1, -5}, {0, 0, 10}, {10, 0, 0}), pane);
     add(scene, make_quad({-0.01f, 0, -0.01f}, {0, 0, 0.02f}, {0.02f, 0, 0}), lamp(1));
-    Shot shot;
-    shot.settings.width = shot.settings.height = 8;
-    shot.settings.samples = 256;
-    shot.settings.camera = camera_rays(look({2, 2, 0}, vec3(0), 1e-4f), 1);
+    RenderSetup setup;
+    setup.settings.width = setup.settings.height = 8;
+    setup.settings.samples = 256;
+    setup.settings.camera = camera_rays(look({2, 2, 0}, vec3(0), 1e-4f), 1);
     const double kept = 1 - static_cast<double>(fresnel_dielectric(std::sqrt(0.5f), 1.5f));
-    const Picture seen = render(context(), scene, shot);
+    const HdrImage seen = render(context(), scene, setup);
     expect_mean(seen, kept, "pane");
     EXPECT_NEAR(seen.rgb[0].x, 0.5f * seen.rgb[0].y, 1e-5f);
     scene.materials[0].thickness = 1;
-    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 0) << "bent aside";
+    EXPECT_EQ(statistics(render(context(), scene, setup)).mean, 0) << "bent aside";
 }
 
 }  // namespace

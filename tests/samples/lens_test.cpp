@@ -6,7 +6,8 @@
 #include <functional>
 #include <limits>
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
+
 #include "samples/path_tracer/camera.h"
 
 namespace twinray::path_tracer {

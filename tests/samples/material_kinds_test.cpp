@@ -4,7 +4,8 @@
 #include <bit>
 
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
+#include <twinray/scene.h>
+
 #include "samples/path_tracer/material_kinds.h"
 
 namespace twinray::path_tracer {

@@ -5,9 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "engine/scene/rig.h"
 #include "engine/core/error.h"
-#include "engine/scene/deform.h"
-#include "engine/scene/pose_scene.h"
 #include "tests/samples/render.h"
 
 namespace twinray::path_tracer {
@@ -48,17 +47,17 @@ class MovingSceneTest : public test::VulkanTest {
   protected:
     // Before and after the move; then of a scene that was made as it is after it.
     struct Pictures {
-        Picture before, after, expected;
+        HdrImage before, after, expected;
     };
     Pictures pictures(Scene scene, const Pose& pose, bool hardware) {
-        Shot shot;
-        shot.settings.camera = camera_rays(look({0, 6, 9}, {0, 1, 0}, 0.4f), 1);
-        shot.settings.samples = 2;
-        shot.hardware = hardware;
+        RenderSetup setup;
+        setup.settings.camera = camera_rays(look({0, 6, 9}, {0, 1, 0}, 0.4f), 1);
+        setup.settings.samples = 2;
+        setup.hardware = hardware;
         Scene made = scene;
         const LocalLights lights = collect_lights(scene);
         DeviceScene device_scene(context(), scene, lights, nullptr);
-        Renderer renderer(context(), device_scene, shot.settings);
+        Renderer renderer(context(), device_scene, setup.settings);
         std::unique_ptr<AbstractAccel> accel;
         if (hardware)
             accel = std::make_unique<HwTlas>(context());
@@ -67,17 +66,17 @@ class MovingSceneTest : public test::VulkanTest {
         push_scene(*accel, scene);
         accel->sync();
         Pictures result;
-        result.before = render_picture(renderer, shot.settings, *accel, true);
+        result.before = render_picture(renderer, setup.settings, *accel, true);
         MovingScene moving(context(), scene, device_scene, *accel);
         const std::uint64_t revision = accel->revision();
         moving.move_to(pose);
         EXPECT_EQ(accel->revision(), revision);
-        result.after = render_picture(renderer, shot.settings, *accel, true);
+        result.after = render_picture(renderer, setup.settings, *accel, true);
         pose_scene(made, pose);
         for (const DeformedMesh& mesh : made.rig->meshes)
             made.meshes[mesh.mesh].positions = deformed(*made.rig, mesh, pose).positions;
         std::erase_if(made.instances, [](const Instance& i) { return !fault_of(i.transform).empty(); });
-        result.expected = render(context(), made, shot);
+        result.expected = render(context(), made, setup);
         return result;
     }
 };
@@ -168,17 +167,17 @@ TEST_F(MovingSceneTest, InstancesMayHaveMaterialsOfTheirOwn) {
     shared.instances.insert(shared.instances.begin() + 2, {"dark lamp", 1, Transform::translation({0, -1, 0}), 3});
     shared.instances[3].material = 0;
     own.meshes[2].materials.assign(own.meshes[2].triangles.size(), 0);
-    Shot shot;
-    shot.settings.samples = 16;
-    shot.settings.camera = camera_rays(look({0, 6, 9}, {0, 1, 0}, 0.4f), 1);
-    const Statistics expected = statistics(render(context(), own, shot));
-    expect_mean(render(context(), shared, shot), expected.mean, "a lamp that is none");
+    RenderSetup setup;
+    setup.settings.samples = 16;
+    setup.settings.camera = camera_rays(look({0, 6, 9}, {0, 1, 0}, 0.4f), 1);
+    const Statistics expected = statistics(render(context(), own, setup));
+    expect_mean(render(context(), shared, setup), expected.mean, "a lamp that is none");
     // And the other way: a dark mesh that shines.
     own.instances[0].material = 1;
     own.meshes[1].materials.assign(2, 0);
     shared.meshes[0].materials.assign(2, 1);
     shared.instances[1].material = 0;
-    const Picture by_override = render(context(), own, shot), by_mesh = render(context(), shared, shot);
+    const HdrImage by_override = render(context(), own, setup), by_mesh = render(context(), shared, setup);
     EXPECT_GT(statistics(by_mesh).mean, expected.mean);
     expect_mean(by_override, statistics(by_mesh).mean, "a floor that shines");
 }
@@ -190,12 +189,12 @@ TEST_F(MovingSceneTest, MaterialsOfTheirOwnAreOfTheirOwnKind) {
     add(scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), white);
     add(scene, make_quad({-5, 1, -5}, {0, 0, 10}, {10, 0, 0}), {.name = "black", .base_color = vec4(0), .unlit = true});
     scene.materials.push_back({.name = "clear", .base_color = vec4(0), .alpha_mode = AlphaMode::blend});
-    Shot shot;
-    shot.settings.samples = 1;
-    shot.settings.camera = camera_rays(look({0, 3, 0}, vec3(0), 0.1f), 1);
-    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 0);
+    RenderSetup setup;
+    setup.settings.samples = 1;
+    setup.settings.camera = camera_rays(look({0, 3, 0}, vec3(0), 0.1f), 1);
+    EXPECT_EQ(statistics(render(context(), scene, setup)).mean, 0);
     scene.instances[1].material = 2;
-    EXPECT_EQ(statistics(render(context(), scene, shot)).mean, 1);
+    EXPECT_EQ(statistics(render(context(), scene, setup)).mean, 1);
 }
 
 }  // namespace

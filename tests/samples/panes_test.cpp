@@ -23,11 +23,11 @@ Scene floor_below(const std::vector<Material>& panes) {
 }
 
 // Of the floor, below what lies above it.
-Shot below(uint max_depth = 1) {
-    Shot shot;
-    shot.settings.max_depth = max_depth;
-    shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
-    return shot;
+RenderSetup below(uint max_depth = 1) {
+    RenderSetup setup;
+    setup.settings.max_depth = max_depth;
+    setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+    return setup;
 }
 
 double passed(double cosine) { return 1 - static_cast<double>(fresnel_dielectric(static_cast<float>(cosine), 1.5f)); }
@@ -51,10 +51,10 @@ std::vector<Light> lights_at(double cosine) {
 vec3 lit_through(Context& context, const std::vector<Material>& panes, const Light& light) {
     Scene scene = floor_below(panes);
     scene.lights = {light};
-    Shot shot = below();
-    shot.settings.width = shot.settings.height = 1;
-    shot.settings.samples = 1;
-    return render(context, scene, shot).rgb[0];
+    RenderSetup setup = below();
+    setup.settings.width = setup.settings.height = 1;
+    setup.settings.samples = 1;
+    return render(context, scene, setup).rgb[0];
 }
 
 TEST_F(Panes, LightsWithoutSizeShineThroughDimmedAsTheCameraSeesThem) {
@@ -101,10 +101,10 @@ TEST_F(Panes, LightsWithSizeAreFoundOnceByEveryStrategy) {
         if (!has_sky) add(scene, make_quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
         Statistics found[3];
         for (const uint strategy : strategies) {
-            Shot shot = below();
-            if (has_sky) shot.environment = sky(1);
-            shot.settings.strategy = strategy;
-            found[strategy] = statistics(render(context(), scene, shot));
+            RenderSetup setup = below();
+            if (has_sky) setup.environment = sky(1);
+            setup.settings.strategy = strategy;
+            found[strategy] = statistics(render(context(), scene, setup));
         }
         for (const uint strategy : {STRATEGY_LIGHTS, STRATEGY_BSDF})
             EXPECT_NEAR(found[strategy].mean, found[STRATEGY_MIS].mean,
@@ -122,13 +122,13 @@ TEST_F(Panes, AWhiteFurnaceWithPanesStaysWhite) {
     for (const float radius : {0.75f, 1.0f}) add(scene, make_icosphere(2), pane(), Transform::scaling(vec3(radius)));
     for (Mesh& mesh : scene.meshes) mesh.normals.clear();
     for (const uint strategy : strategies) {
-        Shot shot;
-        shot.environment = sky(1);
-        shot.settings.samples = 16;
-        shot.settings.max_depth = 100;
-        shot.settings.strategy = strategy;
-        shot.settings.camera = camera_rays(look({0, 0, 4}, vec3(0), 0.3f), 1);
-        expect_mean(render(context(), scene, shot), 1, "white furnace");
+        RenderSetup setup;
+        setup.environment = sky(1);
+        setup.settings.samples = 16;
+        setup.settings.max_depth = 100;
+        setup.settings.strategy = strategy;
+        setup.settings.camera = camera_rays(look({0, 0, 4}, vec3(0), 0.3f), 1);
+        expect_mean(render(context(), scene, setup), 1, "white furnace");
     }
 }
 
@@ -136,11 +136,11 @@ TEST_F(Panes, AWhiteFurnaceWithPanesStaysWhite) {
 TEST_F(Panes, PathsSeeThroughPanesAtAnyDepth) {
     Scene scene = floor_below(std::vector<Material>(40, pane()));
     scene.materials[0] = lamp(1);
-    Shot shot;
-    shot.settings.samples = 256;
-    shot.settings.max_depth = 0;
-    shot.settings.camera = camera_rays(look({0, 20, 0}, vec3(0), 1e-4f), 1);
-    expect_mean(render(context(), scene, shot), std::pow(passed(1), 40), "40 panes");
+    RenderSetup setup;
+    setup.settings.samples = 256;
+    setup.settings.max_depth = 0;
+    setup.settings.camera = camera_rays(look({0, 20, 0}, vec3(0), 1e-4f), 1);
+    expect_mean(render(context(), scene, setup), std::pow(passed(1), 40), "40 panes");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Particles: the kernel moves and colours them as its serial twin does, and the host never waits for a frame.
+// Particles: the kernel moves and colours them as its serial reference does, and the host never waits for a frame.
 #include <algorithm>
 #include <cmath>
 
@@ -47,7 +47,7 @@ TEST(ParticleMotion, WallsThrowBack) {
 }
 
 // What the kernel does in one frame.
-void step_twin(Motions& particles, std::vector<HeatMaterial>& materials) {
+void step_reference(Motions& particles, std::vector<HeatMaterial>& materials) {
     for (std::size_t i = 0; i < particles.radii.size(); ++i) {
         for (int axis = 0; axis < 3; ++axis) {
             Motion motion{particles.positions[i][axis], particles.velocities[i][axis]};
@@ -72,7 +72,7 @@ class ParticlesBy : public test::VulkanTest, public ::testing::WithParamInterfac
     }
     bool has_hardware() { return missing_for_hardware(context().facts()).empty(); }
     // After some frames.
-    path_tracer::Picture picture_of(const std::string& kind, const Motions& start, uint frames) {
+    HdrImage picture_of(const std::string& kind, const Motions& start, uint frames) {
         const std::unique_ptr<AbstractAccel> accel = make_accel(kind);
         Simulation simulation(*accel, start);
         Renderer renderer(simulation, {.width = 80, .height = 60});
@@ -89,13 +89,13 @@ INSTANTIATE_TEST_SUITE_P(EveryAccel, ParticlesBy, ::testing::Values("sw", "hw"),
 
 TEST_P(ParticlesBy, TheKernelMovesAndColoursAsItsTwin) {
     if (std::string(GetParam()) == "hw" && !has_hardware()) TWINRAY_LACKS("ray_tracing", "no ray tracing extensions");
-    Motions twin = make_particles(200, 3);
-    std::vector<HeatMaterial> materials(twin.radii.size());
+    Motions reference = make_particles(200, 3);
+    std::vector<HeatMaterial> materials(reference.radii.size());
     const std::unique_ptr<AbstractAccel> accel = make_accel(GetParam());
-    Simulation simulation(*accel, twin);
+    Simulation simulation(*accel, reference);
     for (int frame = 0; frame < 60; ++frame) {
         simulation.step();
-        step_twin(twin, materials);
+        step_reference(reference, materials);
     }
     const std::vector<vec3> positions = simulation.particles().download(&Particles::position);
     const std::vector<vec3> velocities = simulation.particles().download(&Particles::velocity);
@@ -105,13 +105,13 @@ TEST_P(ParticlesBy, TheKernelMovesAndColoursAsItsTwin) {
     int bounced = 0;
     const Motions start = make_particles(200, 3);
     for (std::size_t i = 0; i < positions.size(); ++i) {
-        EXPECT_EQ(positions[i], twin.positions[i]) << i;
-        EXPECT_EQ(velocities[i], twin.velocities[i]) << i;
+        EXPECT_EQ(positions[i], reference.positions[i]) << i;
+        EXPECT_EQ(velocities[i], reference.velocities[i]) << i;
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(colored[i].color[k], materials[i].color[k], 1e-5f) << i;
         EXPECT_NEAR(colored[i].metallic, materials[i].metallic, 1e-5f) << i;
         EXPECT_NEAR(colored[i].roughness, materials[i].roughness, 1e-5f) << i;
         EXPECT_EQ(transform_point(instances[i].transform, vec3(0)), positions[i]) << i;
-        EXPECT_EQ(transform_vector(instances[i].transform, vec3(1)), vec3(twin.radii[i])) << i;
+        EXPECT_EQ(transform_vector(instances[i].transform, vec3(1)), vec3(reference.radii[i])) << i;
         bounced += velocities[i].x * start.velocities[i].x < 0;
     }
     EXPECT_GT(bounced, 10) << "too few met a wall to show anything";
@@ -160,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(Once, ParticlesByBoth, ::testing::Values("both"));
 TEST_P(ParticlesByBoth, ThePicturesAreTheSame) {
     if (!has_hardware()) TWINRAY_LACKS("ray_tracing", "no ray tracing extensions");
     const Motions start = make_particles(300, 5);
-    const path_tracer::Picture software = picture_of("sw", start, 10), hardware = picture_of("hw", start, 10);
+    const HdrImage software = picture_of("sw", start, 10), hardware = picture_of("hw", start, 10);
     int differing = 0, lit = 0;
     for (std::size_t i = 0; i < software.rgb.size(); ++i) {
         lit += software.rgb[i].y > 0.1f;

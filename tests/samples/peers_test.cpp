@@ -36,7 +36,7 @@ Reference load_reference(const std::string& name) {
     return reference;
 }
 
-std::vector<double> block_means(const Picture& picture, uint block) {
+std::vector<double> block_means(const HdrImage& picture, uint block) {
     const uint count = picture.width / block;
     std::vector<double> means(std::size_t{count} * count * 3);
     for (uint y = 0; y < picture.height; ++y)
@@ -50,16 +50,16 @@ std::vector<double> block_means(const Picture& picture, uint block) {
 // Of renders with seeds of their own.
 Blocks rendered_blocks(Context& context, const Scene& scene, Reference& reference, uint runs) {
     std::vector<double> sums(reference.blocks.mean.size()), squares(sums.size());
-    Shot shot;
-    shot.settings = {.width = reference.side,
-                     .height = reference.side,
-                     .samples = 16,
-                     .max_depth = reference.depth,
-                     .camera = camera_rays(scene.cameras[0], 1),
-                     .filter = FILTER_BOX};
-    shot.environment = std::move(reference.sky);
-    for (shot.settings.seed = 1; shot.settings.seed <= runs; ++shot.settings.seed) {
-        const std::vector<double> means = block_means(render(context, scene, shot), reference.block);
+    RenderSetup setup;
+    setup.settings = {.width = reference.side,
+                      .height = reference.side,
+                      .samples = 16,
+                      .max_depth = reference.depth,
+                      .camera = camera_rays(scene.cameras[0], 1),
+                      .filter = FILTER_BOX};
+    setup.environment = std::move(reference.sky);
+    for (setup.settings.seed = 1; setup.settings.seed <= runs; ++setup.settings.seed) {
+        const std::vector<double> means = block_means(render(context, scene, setup), reference.block);
         for (std::size_t i = 0; i < sums.size(); ++i) {
             sums[i] += means[i];
             squares[i] += means[i] * means[i];

@@ -6,8 +6,9 @@
 #include <cstring>
 #include <memory>
 
-#include "engine/accel/scene_push.h"
-#include "engine/scene/shapes.h"
+#include <twinray/scene.h>
+
+#include <twinray/geometry.h>
 #include <twinray/tlas.h>
 #include "samples/path_tracer/camera.h"
 #include "samples/path_tracer/cross_check.h"
@@ -17,7 +18,7 @@ namespace twinray::path_tracer {
 
 inline constexpr uint strategies[] = {STRATEGY_MIS, STRATEGY_LIGHTS, STRATEGY_BSDF};
 
-inline bool same_bits(const Picture& a, const Picture& b) {
+inline bool same_bits(const HdrImage& a, const HdrImage& b) {
     return a.rgb.size() == b.rgb.size() && std::memcmp(a.rgb.data(), b.rgb.data(), a.rgb.size() * sizeof(vec3)) == 0;
 }
 
@@ -26,7 +27,7 @@ class RenderTest : public test::VulkanTest {
     bool shares_context() const override { return true; }
 };
 
-struct Shot {
+struct RenderSetup {
     RenderSettings settings = {.width = 32, .height = 32, .samples = 64};
     std::unique_ptr<EnvironmentMap> environment = nullptr;  // null: black
     bool hardware = false;
@@ -47,17 +48,17 @@ inline std::unique_ptr<EnvironmentMap> sky(float radiance) {
     return std::make_unique<EnvironmentMap>(constant_sky(vec3(radiance)));
 }
 
-inline Picture render(Context& context, const Scene& scene, const Shot& shot) {
+inline HdrImage render(Context& context, const Scene& scene, const RenderSetup& setup) {
     const LocalLights lights = collect_lights(scene);
-    const DeviceScene device_scene(context, scene, lights, shot.environment.get());
-    Renderer renderer(context, device_scene, shot.settings);
+    const DeviceScene device_scene(context, scene, lights, setup.environment.get());
+    Renderer renderer(context, device_scene, setup.settings);
     std::unique_ptr<AbstractAccel> accel;
-    if (shot.hardware)
+    if (setup.hardware)
         accel = std::make_unique<HwTlas>(context);
     else
         accel = std::make_unique<SwTlas>(context);
     push_scene(*accel, scene);
-    Picture picture = render_picture(renderer, shot.settings, *accel, true);
+    HdrImage picture = render_picture(renderer, setup.settings, *accel, true);
     EXPECT_EQ(renderer.stats().non_finite, 0u);
     return picture;
 }
@@ -83,7 +84,7 @@ struct Statistics {
     double mean = 0;
     double error = 0;  // standard deviation of the mean
 };
-inline Statistics statistics(const Picture& picture) {
+inline Statistics statistics(const HdrImage& picture) {
     double sum = 0, squares = 0;
     for (const vec3& pixel : picture.rgb) sum += static_cast<double>(pixel.y);
     const auto n = static_cast<double>(picture.rgb.size());
@@ -92,7 +93,7 @@ inline Statistics statistics(const Picture& picture) {
 }
 
 // Within four standard deviations, plus float rounding.
-inline void expect_mean(const Picture& picture, double expected, const char* what) {
+inline void expect_mean(const HdrImage& picture, double expected, const char* what) {
     const Statistics found = statistics(picture);
     EXPECT_NEAR(found.mean, expected, 4 * found.error + 2e-6 * expected) << what << ", error " << found.error;
 }

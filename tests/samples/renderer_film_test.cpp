@@ -42,19 +42,19 @@ TEST_F(RendererFilm, SumsAreThoseOfTheCpuTwinInAnyOrder) {
         merged.merge(film_of(renderer, accel, std::vector<uint>{0, 2}), "odd", "even");
         EXPECT_TRUE(same_pixels(all, merged));
 
-        Film twin = renderer.make_film();
-        std::vector<Picture> means;
+        Film reference = renderer.make_film();
+        std::vector<HdrImage> means;
         for (uint block = 0; block < 4; ++block) {
             means.push_back(film_of(renderer, accel, std::vector{block}).mean());
-            for (std::size_t i = 0; i < twin.pixels.size(); ++i)
-                twin.add(i, means[block].rgb[i] * static_cast<float>(block_size));
+            for (std::size_t i = 0; i < reference.pixels.size(); ++i)
+                reference.add(i, means[block].rgb[i] * static_cast<float>(block_size));
         }
-        for (std::size_t i = 0; i < twin.pixels.size(); ++i)
+        for (std::size_t i = 0; i < reference.pixels.size(); ++i)
             for (uint sum = 0; sum < FILM_SQUARES; ++sum)
-                ASSERT_EQ(sum_of(all.pixels[i], sum), sum_of(twin.pixels[i], sum)) << i;
+                ASSERT_EQ(sum_of(all.pixels[i], sum), sum_of(reference.pixels[i], sum)) << i;
         // Luminance is a dot product, which compilers round in their own way.
-        for (std::size_t i = 0; i < twin.pixels.size(); ++i) {
-            const double squares = sum_of(twin.pixels[i], FILM_SQUARES);
+        for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
+            const double squares = sum_of(reference.pixels[i], FILM_SQUARES);
             ASSERT_NEAR(sum_of(all.pixels[i], FILM_SQUARES), squares, 1e-6 * squares) << i;
         }
         EXPECT_NE(0, std::memcmp(means[0].rgb.data(), means[1].rgb.data(), 256 * sizeof(vec3))) << "blocks differ";

@@ -76,9 +76,9 @@ TEST(MisWeight, SumsToOneAndDoesNotOverflow) {
 std::vector<double> probabilities(const std::vector<AliasEntry>& table) {
     std::vector<double> result(table.size());
     for (std::size_t i = 0; i < table.size(); ++i) {
-        const double keep = table[i].keep * 0x1p-32;
-        result[i] += keep / static_cast<double>(table.size());
-        result[table[i].other] += (1 - keep) / static_cast<double>(table.size());
+        const double probability = table[i].probability * 0x1p-32;
+        result[i] += probability / static_cast<double>(table.size());
+        result[table[i].alias] += (1 - probability) / static_cast<double>(table.size());
     }
     return result;
 }

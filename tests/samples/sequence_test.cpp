@@ -6,9 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include <twinray/scene.h>
+
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
+#include "engine/scene/rig.h"
 
 namespace twinray::path_tracer {
 namespace {
@@ -54,11 +56,11 @@ TEST(Sequence, FramesShareTheRangeOrKeepToTheirRate) {
 
 TEST(Sequence, AnimationsAreChosenByNameOrIndex) {
     const Scene scene = carried_box();
-    EXPECT_EQ(make_sequence({.frames = 1}, scene).animation->name, "ride");
-    EXPECT_EQ(make_sequence({.frames = 1, .animation = "ride"}, scene).animation->name, "ride");
-    EXPECT_EQ(make_sequence({.frames = 1, .animation = "0", .turntable = true}, scene).animation->name, "ride");
-    EXPECT_EQ(make_sequence({.frames = 1, .turntable = true}, scene).animation, nullptr);
-    EXPECT_EQ(make_sequence({.frames = 1, .turntable = true}, Scene()).animation, nullptr);
+    EXPECT_EQ(make_sequence({.frames = 1}, scene).animation, 0u);
+    EXPECT_EQ(make_sequence({.frames = 1, .animation = "ride"}, scene).animation, 0u);
+    EXPECT_EQ(make_sequence({.frames = 1, .animation = "0", .turntable = true}, scene).animation, 0u);
+    EXPECT_EQ(make_sequence({.frames = 1, .turntable = true}, scene).animation, std::nullopt);
+    EXPECT_EQ(make_sequence({.frames = 1, .turntable = true}, Scene()).animation, std::nullopt);
 }
 
 TEST(Sequence, WhatCannotBePlayedIsNamed) {

@@ -19,16 +19,16 @@ Scene scene_of(const Mesh& mesh, const Material& material) {
 }
 
 // From above, seeing the square from -half to half around `at`; -x is right.
-Shot from_above(vec2 at, float half, uint width = 1, uint samples = 1) {
+RenderSetup from_above(vec2 at, float half, uint width = 1, uint samples = 1) {
     Camera camera = look({at.x, 2, at.y}, {at.x, 0, at.y}, 1);
     camera.orthographic_half_height = half;
-    Shot shot;
-    shot.settings.width = width;
-    shot.settings.height = 1;
-    shot.settings.samples = samples;
-    shot.settings.filter = FILTER_BOX;
-    shot.settings.camera = camera_rays(camera, 1);
-    return shot;
+    RenderSetup setup;
+    setup.settings.width = width;
+    setup.settings.height = 1;
+    setup.settings.samples = samples;
+    setup.settings.filter = FILTER_BOX;
+    setup.settings.camera = camera_rays(camera, 1);
+    return setup;
 }
 
 class VertexAttributes : public test::VulkanTest {
@@ -38,9 +38,9 @@ class VertexAttributes : public test::VulkanTest {
 
     // The shading normal at a point.
     vec3 normal_at(const Scene& scene, vec2 at) {
-        const Shot shot = from_above(at, 1e-5f);
+        const RenderSetup setup = from_above(at, 1e-5f);
         const DeviceScene device_scene(context(), scene, collect_lights(scene), nullptr);
-        Renderer renderer(context(), device_scene, shot.settings);
+        Renderer renderer(context(), device_scene, setup.settings);
         SwTlas accel(context());
         push_scene(accel, scene);
         const FirstSurface first = renderer.first_surfaces(accel)[0];
@@ -58,7 +58,8 @@ Material unlit(vec4 color = vec4(1)) { return {.name = "unlit", .base_color = co
 TEST_F(VertexAttributes, ColoursMultiplyTheBaseColourAndAreLinearBetweenCorners) {
     Mesh mesh = floor_quad();
     mesh.colors = {{0, 0.5f, 1, 1}, {0, 0.5f, 1, 1}, {1, 0.5f, 0, 1}, {1, 0.5f, 0, 1}};
-    const Picture picture = render(context(), scene_of(mesh, unlit({1, 0.5f, 0.25f, 1})), from_above({0, 0}, 1, 8, 64));
+    const HdrImage picture =
+        render(context(), scene_of(mesh, unlit({1, 0.5f, 0.25f, 1})), from_above({0, 0}, 1, 8, 64));
     for (uint i = 0; i < 8; ++i) {
         const float x = 1 - (static_cast<float>(i) + 0.5f) / 8;
         expect_near(picture.rgb[i], vec3(x, 0.5f, 1 - x) * vec3(1, 0.5f, 0.25f), 0.01f);
@@ -99,19 +100,19 @@ TEST_F(VertexAttributes, AlphaOfColoursDimsLampsAndShadows) {
     lamp_of_glass.alpha_mode = glass.alpha_mode = AlphaMode::blend;
     Scene scene = scene_of(floor_quad(), lambert(1));
     add(scene, veil, lamp_of_glass);
-    Shot shot;
-    shot.settings.max_depth = 1;
-    shot.settings.samples = 256;
-    shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+    RenderSetup setup;
+    setup.settings.max_depth = 1;
+    setup.settings.samples = 256;
+    setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
     for (const uint strategy : {STRATEGY_LIGHTS, STRATEGY_BSDF}) {
-        shot.settings.strategy = strategy;
-        expect_mean(render(context(), scene, shot), 0.25 * expected, "a lamp");
+        setup.settings.strategy = strategy;
+        expect_mean(render(context(), scene, setup), 0.25 * expected, "a lamp");
     }
     scene = scene_of(floor_quad(), lambert(1));
     add(scene, veil, glass, Transform::translation({0, -0.25f, 0}));
     add(scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
-    shot.settings.strategy = STRATEGY_LIGHTS;
-    expect_mean(render(context(), scene, shot), 0.75 * expected, "a shadow");
+    setup.settings.strategy = STRATEGY_LIGHTS;
+    expect_mean(render(context(), scene, setup), 0.75 * expected, "a shadow");
 }
 
 // A red and a green texel.
@@ -155,10 +156,10 @@ TEST_F(VertexAttributes, LampsShineByTheSecondCoordinates) {
     EXPECT_LT(collect_lights(scene).densities[1][0], 0.01f);
     scene.materials[1].emission_texture.uv_set = 1;
     scene.instances.pop_back();
-    Shot shot;
-    shot.settings.max_depth = 1;
-    shot.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
-    expect_mean(render(context(), scene, shot), 0.554126423979571987, "lamp");
+    RenderSetup setup;
+    setup.settings.max_depth = 1;
+    setup.settings.camera = camera_rays(look({0, 0.5f, 0}, vec3(0), 1e-4f), 1);
+    expect_mean(render(context(), scene, setup), 0.554126423979571987, "lamp");
 }
 
 TEST_F(VertexAttributes, TheNearestTexelIsShownUnfiltered) {
@@ -177,17 +178,17 @@ TEST_F(VertexAttributes, TheNearestTexelIsShownUnfiltered) {
 TEST_F(VertexAttributes, NormalsWithoutADirectionAreThoseOfTheTriangle) {
     Mesh mesh = floor_quad();
     Scene scene = scene_of(mesh, lambert(0.5f));
-    Shot shot = from_above({0, 0}, 1, 16, 16);
-    shot.environment = sky(1);
-    shot.settings.strategy = STRATEGY_BSDF;  // without noise
+    RenderSetup setup = from_above({0, 0}, 1, 16, 16);
+    setup.environment = sky(1);
+    setup.settings.strategy = STRATEGY_BSDF;  // without noise
     for (const vec3 none : {vec3(0), vec3(nan), vec3(infinity, 0, 0), vec3(0, nan, 1)}) {
         scene.meshes[0].normals.assign(4, none);
         expect_near(normal_at(scene, {0.3f, 0.2f}), {0, 1, 0}, 1e-6f);
-        for (const vec3& pixel : render(context(), scene, shot).rgb) expect_near(pixel, vec3(0.5f), 1e-5f);
+        for (const vec3& pixel : render(context(), scene, setup).rgb) expect_near(pixel, vec3(0.5f), 1e-5f);
     }
 }
 
-// Of the triangle of corners 0, 1 and 2, in its middle.
+// Of the triangle of vertices 0, 1 and 2, in its middle.
 TEST_F(VertexAttributes, ACornerWithoutADirectionTakesTheTriangles) {
     const vec3 tilted(0.6f, 0.8f, 0);
     Scene scene = scene_of(floor_quad(), lambert(0.5f));
@@ -208,14 +209,14 @@ TEST_F(VertexAttributes, NormalsOfAnyLengthAreDirections) {
     }
 }
 
-// Against the winding, with a corner that has none: never black.
+// Against the winding, with a vertex that has none: never black.
 TEST_F(VertexAttributes, NormalsAgainstTheWindingAreTurned) {
     Scene scene = scene_of(floor_quad(), lambert(0.5f));
     scene.meshes[0].normals = {vec3(nan), vec3(0, -1, 0), vec3(0, -1, 0), vec3(0, -1, 0)};
-    Shot shot = from_above({0, 0}, 1, 16, 16);
-    shot.environment = sky(1);
-    shot.settings.strategy = STRATEGY_BSDF;  // without noise
-    for (const vec3& pixel : render(context(), scene, shot).rgb) expect_near(pixel, vec3(0.5f), 1e-5f);
+    RenderSetup setup = from_above({0, 0}, 1, 16, 16);
+    setup.environment = sky(1);
+    setup.settings.strategy = STRATEGY_BSDF;  // without noise
+    for (const vec3& pixel : render(context(), scene, setup).rgb) expect_near(pixel, vec3(0.5f), 1e-5f);
 }
 
 // A normal map of (0.6, 0, 0.8) along the texture's u.
@@ -247,7 +248,7 @@ TEST_F(VertexAttributes, TangentsWithoutADirectionAreDerived) {
         scene.meshes[0].tangents.assign(4, none);
         expect_near(normal_at(scene, {0.3f, 0.2f}), {0.6f, 0.8f, 0}, 0.01f);
         scene.meshes[0].tangents = {none, along_z, along_z, along_z};
-        if (none.y != 3) expect_near(normal_at(scene, {0.3f, 0.2f}), {0, 0.8f, 0.6f}, 0.01f, "one corner without");
+        if (none.y != 3) expect_near(normal_at(scene, {0.3f, 0.2f}), {0, 0.8f, 0.6f}, 0.01f, "one vertex without");
     }
 }
 

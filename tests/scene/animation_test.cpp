@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/scene/deform.h"
+#include "engine/scene/rig.h"
 
 namespace twinray::test {
 namespace {
@@ -89,12 +89,12 @@ Rig arm() {
 
 TEST(Pose, NodesMoveWithTheirParents) {
     const Rig rig = arm();
-    EXPECT_EQ(rest_pose(rig).nodes[1][3], dvec4(2, 0, 0, 1));
-    EXPECT_EQ(rest_pose(rig).weights[1], (std::vector<double>{0.25, 0}));
+    EXPECT_EQ(rest_pose(rig)->nodes[1][3], dvec4(2, 0, 0, 1));
+    EXPECT_EQ(rest_pose(rig)->weights[1], (std::vector<double>{0.25, 0}));
     const Pose pose = pose_at(rig, rig.animations[0], 0.5);
-    EXPECT_NEAR(pose.nodes[1][3].x, std::sqrt(2), 1e-7);
-    EXPECT_NEAR(pose.nodes[1][3].y, std::sqrt(2), 1e-7);
-    EXPECT_EQ(pose_at(rig, rig.animations[0], 1.25).weights[1], (std::vector<double>{0.5, 1.5}));
+    EXPECT_NEAR(pose->nodes[1][3].x, std::sqrt(2), 1e-7);
+    EXPECT_NEAR(pose->nodes[1][3].y, std::sqrt(2), 1e-7);
+    EXPECT_EQ(pose_at(rig, rig.animations[0], 1.25)->weights[1], (std::vector<double>{0.5, 1.5}));
     EXPECT_EQ(range_of(rig.animations[0]).end, 2);
     EXPECT_EQ(matrix_of(pose, {.local = matrix_of(Trs{.translation = {1, 2, 3}})})[3], dvec4(1, 2, 3, 1));
 }
@@ -123,9 +123,9 @@ TEST(Pose, FramesOutliveScalesOfZero) {
     rig.nodes[1].parent = 0;
     rig.nodes[1].rest = {.translation = {5, 5, 5}, .rotation = {0, 0, 1, 1}, .scale = {3, 1, 1}};
     const Pose pose = rest_pose(rig);
-    const Rig::Place place{.node = 1};
-    EXPECT_EQ(matrix_of(pose, place)[3], dvec4(1, 12, 3, 1));
-    const glm::dmat4 frame = frame_of(pose, place);
+    const Rig::Attachment attachment{.node = 1};
+    EXPECT_EQ(matrix_of(pose, attachment)[3], dvec4(1, 12, 3, 1));
+    const glm::dmat4 frame = frame_of(pose, attachment);
     EXPECT_EQ(frame[3], dvec4(1, 12, 3, 1));
     EXPECT_NEAR(length(dvec4(frame[0]) - dvec4(0, 6, 0, 0)), 0, 1e-12);
     EXPECT_NEAR(length(dvec4(frame[1]) - dvec4(-1, 0, 0, 0)), 0, 1e-12);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every scene file that this machine has: each loads or gives one Error that names it.
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
 #include "tests/scene/temp_dir.h"
 
 namespace twinray::test {

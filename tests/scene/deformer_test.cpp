@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Vertices moved on the device against those moved on the host, and accelerators that take them over.
-#include "engine/scene/deformer.h"
+#include "engine/scene/rig.h"
 
 #include <cmath>
 #include <random>
 
-#include "engine/scene/deform.h"
 #include "engine/verify/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 
@@ -64,7 +63,7 @@ MeshVertices sizes_of(const Rig& rig, const Pose& pose) {
     for (vec3& position : mesh.base.positions) position = positive(position);
     for (MorphTarget& target : mesh.motion.targets)
         for (vec3& displacement : target.positions) displacement = positive(displacement);
-    std::vector<double> weights = pose.weights[0];
+    std::vector<double> weights = pose->weights[0];
     for (double& weight : weights) weight = std::abs(weight);
     std::vector<Transform> joints = joint_transforms(rig.skins[0], pose);
     for (Transform& joint : joints)

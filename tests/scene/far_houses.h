@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/shapes.h"
+#include <twinray/scene.h>
+
+#include <twinray/geometry.h>
 #include "tests/scene/gltf_builder.h"
 
 namespace twinray::test {

@@ -5,9 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <twinray/scene.h>
+
 #include "engine/core/files.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "tests/scene/temp_dir.h"
 
 namespace twinray::test {

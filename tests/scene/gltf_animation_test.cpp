@@ -2,14 +2,13 @@
 // Animations, skins, morph targets and material variants of glTF files, and their faults.
 #include <functional>
 
-#include "engine/scene/deform.h"
-#include "engine/scene/pose_scene.h"
+#include "engine/scene/rig.h"
 #include "tests/scene/gltf_builder.h"
 
 namespace twinray::test {
 namespace {
 
-// The triangle of one_triangle() on two joints, of which the second, at (0, 1, 0), carries the corner (0, 1, 0) and is
+// The triangle of one_triangle() on two joints, of which the second, at (0, 1, 0), carries the vertex (0, 1, 0) and is
 // turned by 90 degrees about x within a second. Nodes: 0 the mesh, moved aside in vain, 1 and 2 the joints.
 GltfBuilder skinned_triangle() {
     GltfBuilder gltf = one_triangle();
@@ -53,7 +52,7 @@ TEST(GltfSkin, TheRestPoseIsShownWhereTheJointsAreNotWhereTheNodeIs) {
 
 TEST(GltfSkin, VerticesFollowTheirJoints) {
     GltfBuilder gltf = skinned_triangle();
-    // A second set: half of corner 1 follows the knee.
+    // A second set: half of vertex 1 follows the knee.
     gltf.primitive()["attributes"]["JOINTS_1"] =
         gltf.add<std::uint16_t>("VEC4", 5123, {0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0});
     gltf.primitive()["attributes"]["WEIGHTS_1"] = gltf.add_floats("VEC4", {0, 0, 0, 0, 0, 0.2f, 0, 0, 0, 0, 0, 0});

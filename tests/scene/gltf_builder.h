@@ -8,7 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
+
 #include "tests/scene/temp_dir.h"
 
 namespace twinray::test {

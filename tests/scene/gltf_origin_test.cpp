@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // glTF files whose places float32 cannot hold.
-#include "engine/scene/gltf_origin.h"
+#include "engine/scene/importers/gltf_origin.h"
 
-#include "engine/scene/deform.h"
+#include "engine/scene/rig.h"
 #include "engine/scene/glb.h"
-#include "engine/scene/pose_scene.h"
 #include "tests/scene/far_houses.h"
 
 namespace twinray::test {

@@ -77,7 +77,7 @@ TEST(Gltf, CornersAfterTheLastWholeTriangleAreIgnoredWithAWarning) {
     gltf.primitive()["indices"] = gltf.add_indices({0, 1, 2, 0, 1});
     const Scene scene = gltf.load();
     EXPECT_EQ(count_triangles(scene), 1u);
-    EXPECT_TRUE(has_warning(scene, "ignored 2 corners"));
+    EXPECT_TRUE(has_warning(scene, "ignored 2 vertices"));
 }
 
 TEST(Gltf, DegenerateTrianglesStayAndKeepTheirIndex) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/image.h"
+#include <twinray/scene.h>
 
 #include <cmath>
 
@@ -8,6 +8,7 @@
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 
+#include "engine/scene/importers/placeholder.h"
 #include "tests/scene/packed_bytes.h"
 #include "tests/scene/temp_dir.h"
 

@@ -3,8 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/scene/scene.h"
-#include "engine/scene/weld.h"
+#include <twinray/scene.h>
+
+#include "engine/scene/importers/weld.h"
 #include "tests/scene/temp_dir.h"
 
 namespace twinray::test {

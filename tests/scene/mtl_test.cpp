@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Materials of .obj files.
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
 #include "tests/scene/packed_bytes.h"
 #include "tests/scene/temp_dir.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A set of three types: what kernels read of it is what the host wrote, and both find the same elements by the same
 // keys.
-#include "engine/scene/multi_type_set.h"
+#include <twinray/sets.h>
 
 #include <algorithm>
 #include <random>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
+
 #include "tests/scene/packed_bytes.h"
 #include "tests/scene/temp_dir.h"
 
@@ -84,7 +85,7 @@ TEST(Obj, CornersAreWrittenInManyWays) {
 TEST(Obj, FacesOfOtherThanThreeCorners) {
     const Scene scene = load(CORNERS + "f 1 2\nf 3\nf 1 2 3 4\nf\nl 1 2 3\np 1\n");
     EXPECT_EQ(count_triangles(scene), 2u);
-    expect_warnings(scene, {"skipped 2 points and lines", "skipped 3 faces of fewer than 3 corners"});
+    expect_warnings(scene, {"skipped 2 points and lines", "skipped 3 faces of fewer than 3 vertices"});
     expect_warnings(load(CORNERS + "\nf 1 3 2 4\n"),
                     {"1 faces cross themselves, so that their triangles overlap (the first: line 6)"});
 }
@@ -180,10 +181,10 @@ TEST(Obj, FaultsAreNamedWithTheirLines) {
     expect_error(CORNERS + "f 1 2 5\n", "line 5: vertex index 5 is out of range; there are 4 vertices");
     expect_error(CORNERS + "f 1 2 -5\n", "line 5: '-5' has index -5, but there are 4 so far");
     expect_error(CORNERS + "f 1 2 0\n", "line 5: '0' has index 0");
-    expect_error(CORNERS + "f 1 2 3.5\n", "line 5: '3.5' is not a corner");
-    expect_error(CORNERS + "f 1 2 /3\n", "line 5: '/3' is not a corner");
-    expect_error(CORNERS + "f 1 2 3/1/1/1\n", "line 5: '3/1/1/1' is not a corner");
-    expect_error(CORNERS + "f 1 2 99999999999999999999\n", "is not a corner");
+    expect_error(CORNERS + "f 1 2 3.5\n", "line 5: '3.5' is not a vertex");
+    expect_error(CORNERS + "f 1 2 /3\n", "line 5: '/3' is not a vertex");
+    expect_error(CORNERS + "f 1 2 3/1/1/1\n", "line 5: '3/1/1/1' is not a vertex");
+    expect_error(CORNERS + "f 1 2 99999999999999999999\n", "is not a vertex");
     expect_error(CORNERS + "f 1 2 4294967296\n", "has index 4294967296");
     expect_error("\n# x\nv 0 \\\n0\n", "line 3: 'v' has 2 numbers; it needs 3");
     expect_error("v 0 zero 0\n", "line 1: 'zero' is not a number");

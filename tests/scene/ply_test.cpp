@@ -3,7 +3,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
+
 #include "tests/scene/packed_bytes.h"
 #include "tests/scene/temp_dir.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/polygon.h"
+#include "engine/scene/importers/polygon.h"
 
 #include <algorithm>
 #include <cmath>

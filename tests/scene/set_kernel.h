@@ -2,8 +2,8 @@
 // Types of the test's sets, and what is asked of them, on host and GPU alike.
 #ifndef TWINRAY_TESTS_SET_KERNEL_H
 #define TWINRAY_TESTS_SET_KERNEL_H
-#include "shaders/scene/multi_type_set.h"
-#include "shaders/scene/soa.h"
+#include "twinray/glsl/multi_type_set.h"
+#include "twinray/glsl/soa.h"
 
 struct Diffuse {
     vec3 color;

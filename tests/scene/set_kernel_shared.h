@@ -2,11 +2,11 @@
 // set_kernel.h for C++, with the classes of its lists.
 #pragma once
 
-#include "engine/scene/multi_type_set.h"
-#include "engine/scene/soa.h"
-
 namespace twinray::test {
 #include "twinray/glsl/cpp_begin.h"
+#include "twinray/glsl/cpp_begin.h"
+#include <twinray/sets.h>
+
 #include "tests/scene/set_kernel.h"
 #include "twinray/glsl/cpp_end.h"
 

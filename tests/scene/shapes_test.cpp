@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 
 #include <map>
+
+#include <twinray/scene.h>
 
 #include "tests/scene/temp_dir.h"
 

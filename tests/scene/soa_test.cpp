@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Structures of arrays: host and kernels read and write the same items, and what is out of range stays as it was.
-#include "engine/scene/soa.h"
+#include <twinray/sets.h>
 
 #include "engine/core/kernel.h"
 #include "test_soa.spv.h"
@@ -14,13 +14,16 @@ namespace {
 
 using namespace test;
 
-TEST(SoaLayout, ArraysFollowEachOtherAligned) {
-    const std::uint64_t bytes[] = {12, 4, 16};
-    const SoaLayout layout = soa_layout(bytes, 5);
-    EXPECT_EQ(layout.offsets, (std::vector<std::uint64_t>{0, 64, 96}));
-    EXPECT_EQ(layout.bytes, 176u);
-    EXPECT_EQ(soa_layout(bytes, 0).bytes, 0u);
-    EXPECT_EQ(soa_layout(bytes, 1u << 31).offsets[1], std::uint64_t{12} << 31) << "64 bits";
+#include "twinray/glsl/cpp_begin.h"
+#define PLAIN_FIELDS(X, P) X(P, 0, vec3, a) X(P, 1, uint, b) X(P, 2, vec4, c)
+TWINRAY_SOA_VIEW(PlainView, PLAIN_FIELDS)
+#include "twinray/glsl/cpp_end.h"
+using PlainFields = SoaFields<PlainView PLAIN_FIELDS(TWINRAY_LIST_ENTRY, 0)>;
+
+TEST(SoaFields, ArraysFollowEachOtherAligned) {
+    EXPECT_EQ(PlainFields::offsets(5), (std::array<std::uint64_t, 4>{0, 64, 96, 176}));
+    EXPECT_EQ(PlainFields::offsets(0).back(), 0u);
+    EXPECT_EQ(PlainFields::offsets(1u << 31)[1], std::uint64_t{12} << 31) << "64 bits";
 }
 
 TEST(HostSoa, GetsWhatWasSetAndRefusesOtherIndices) {

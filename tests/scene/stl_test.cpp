@@ -2,7 +2,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
+
 #include "tests/scene/packed_bytes.h"
 #include "tests/scene/temp_dir.h"
 
@@ -107,7 +108,7 @@ TEST(Stl, OtherFacetsThanTrianglesAndOtherWords) {
         "facet\ncolor 1 0 0\nvertex 0 0 0\nvertex 2 0 0\n");
     EXPECT_EQ(scene.meshes[0].triangles, (std::vector<uvec3>{{0, 1, 2}, {0, 2, 3}}));
     ASSERT_EQ(scene.warnings.size(), 2u) << joined(scene.warnings);
-    expect_contains(scene.warnings[0], "skipped 1 faces of fewer than 3 corners");
+    expect_contains(scene.warnings[0], "skipped 1 faces of fewer than 3 vertices");
     expect_contains(scene.warnings[1], "passed over lines that begin with 'color' (line 11)");
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #ifndef TWINRAY_TESTS_TEXTURE_KERNEL_H
 #define TWINRAY_TESTS_TEXTURE_KERNEL_H
-#include "shaders/scene/textures.h"
+#include "twinray/glsl/textures.h"
 
 // Asks for the size and one texel, and samples at a point.
 struct TextureQuestion {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Textures as images and in buffers: kernels read the same of both, and no update leaks.
-#include "engine/scene/texture_store.h"
+#include <twinray/scene.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/scene/words.h"
+#include "engine/scene/importers/words.h"
 
 #include <cmath>
 

@@ -6,7 +6,8 @@
 #include <random>
 
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
+#include <twinray/scene.h>
+
 #include "engine/accel/geometry.h"
 #include "validation/cpu_reference/reference_scene.h"
 

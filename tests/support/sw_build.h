@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "engine/core/error.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "swtlas/check.h"
 #include "validation/cpu_reference/reference_scene.h"
 #include "swtlas/tree.h"

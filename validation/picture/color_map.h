@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "engine/scene/rgb.h"
+#include <twinray/scene.h>
 
 namespace twinray {
 

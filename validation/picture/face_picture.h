@@ -7,7 +7,8 @@
 
 #include <twinray/abstract_accel.h>
 #include "validation/picture/raster.h"
-#include "engine/picture/view.h"
+#include <twinray/scene.h>
+
 
 namespace twinray {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/scene/rgb.h"
+#include <twinray/scene.h>
 
 namespace twinray {
 

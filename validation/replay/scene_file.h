@@ -5,7 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
+
 #include "engine/verify/oracle.h"
 
 namespace twinray::replay {

@@ -6,13 +6,13 @@
 #include <ostream>
 #include <set>
 
+#include <twinray/scene.h>
+
 #include "validation/replay/explain.h"
 #include "validation/replay/replay.h"
 #include "validation/replay/scene_file.h"
 #include "validation/suite/judging.h"
-#include "engine/accel/scene_push.h"
 #include "engine/core/error.h"
-#include "engine/scene/local_origin.h"
 #include "engine/verify/certainty.h"
 
 namespace twinray::replay {

@@ -5,8 +5,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
 #include "engine/analysis/pair_plan.h"
+
 #include "engine/analysis/pair_sampler.h"
 #include "engine/core/error.h"
 

@@ -5,7 +5,8 @@
 #include <numbers>
 
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
+#include <twinray/scene.h>
+
 
 namespace twinray::suite {
 

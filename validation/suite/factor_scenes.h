@@ -2,7 +2,7 @@
 // Meshes between which view factors are known.
 #pragma once
 
-#include "engine/scene/scene.h"
+#include <twinray/scene.h>
 
 namespace twinray::suite {
 

@@ -140,7 +140,7 @@ Plane features(const Planes& opponent, double pixels_per_degree, bool is_points)
     return lengths;
 }
 
-Planes opponent_planes(const path_tracer::Picture& picture) {
+Planes opponent_planes(const HdrImage& picture) {
     Planes planes{static_cast<int>(picture.width), static_cast<int>(picture.height), {}};
     for (const vec3& pixel : picture.rgb) {
         const dvec3 color = opponent_of(clamp(dvec3(pixel), dvec3(0), dvec3(1)));
@@ -165,8 +165,7 @@ double color_difference(const dvec3& a, const dvec3& b) {
 
 }  // namespace
 
-std::vector<double> flip(const path_tracer::Picture& test, const path_tracer::Picture& reference,
-                         double pixels_per_degree) {
+std::vector<double> flip(const HdrImage& test, const HdrImage& reference, double pixels_per_degree) {
     const Planes a = opponent_planes(test), b = opponent_planes(reference);
     const Planes seen_a = seen(a, pixels_per_degree), seen_b = seen(b, pixels_per_degree);
     const Plane edges_a = features(a, pixels_per_degree, false), edges_b = features(b, pixels_per_degree, false);
@@ -180,7 +179,7 @@ std::vector<double> flip(const path_tracer::Picture& test, const path_tracer::Pi
     return result;
 }
 
-double mean_flip(const path_tracer::Picture& test, const path_tracer::Picture& reference) {
+double mean_flip(const HdrImage& test, const HdrImage& reference) {
     const std::vector<double> all = flip(test, reference);
     return std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
 }

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "samples/path_tracer/image_io.h"
+#include <twinray/scene.h>
 
 namespace twinray::suite {
 
 // How far two pictures differ to the eye when one takes turns with the other, from 0 to 1 for each pixel: LDR-FLIP
 // (Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", 2020), of linear radiance cut to [0, 1].
 // Both are equally large. pixels_per_degree: 67 is a screen of 0.7 m and 3840 pixels, seen from 0.7 m.
-std::vector<double> flip(const path_tracer::Picture& test, const path_tracer::Picture& reference,
-                         double pixels_per_degree = 67);
-double mean_flip(const path_tracer::Picture& test, const path_tracer::Picture& reference);
+std::vector<double> flip(const HdrImage& test, const HdrImage& reference, double pixels_per_degree = 67);
+double mean_flip(const HdrImage& test, const HdrImage& reference);
 
 }  // namespace twinray::suite

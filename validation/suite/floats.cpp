@@ -5,11 +5,12 @@
 #include <cmath>
 #include <random>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/flush.h"
 #include "validation/suite/twin.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 #include "engine/verify/float_probe.h"
 

@@ -3,10 +3,11 @@
 #include <cmath>
 #include <set>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/inputs.h"
 #include "validation/suite/scenes.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 
 namespace twinray::suite {

@@ -3,12 +3,13 @@
 #include <cmath>
 #include <cstring>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/case_run.h"
 #include "validation/suite/scenes.h"
 #include "validation/suite/spawning.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 
 namespace twinray::suite {

@@ -3,8 +3,9 @@
 
 #include <cmath>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/estimators.h"
-#include "engine/accel/scene_push.h"
 #include "engine/report/bootstrap.h"
 #include "samples/path_tracer/camera.h"
 
@@ -19,7 +20,7 @@ struct FlatPicture {
     double rms = 0;                 // of their relative errors
 };
 
-FlatPicture judged(const Picture& picture, double truth) {
+FlatPicture judged(const HdrImage& picture, double truth) {
     const auto n = static_cast<double>(picture.rgb.size());
     FlatPicture result;
     for (const vec3& pixel : picture.rgb) result.mean += static_cast<double>(pixel.y) / n;
@@ -51,7 +52,7 @@ void judge(Record& record, const FlatQuestion& question, std::span<const FlatPic
 
 path_tracer::CameraRays look(vec3 from, vec3 at, float half_height) {
     const vec3 way = normalize(at - from);
-    Camera camera = path_tracer::look_camera(from, at, std::abs(way.y) > 0.9f ? vec3(0, 0, 1) : vec3(0, 1, 0), 45);
+    Camera camera = look_camera(from, at, std::abs(way.y) > 0.9f ? vec3(0, 0, 1) : vec3(0, 1, 0), 45);
     camera.vertical_fov = 2 * std::atan(half_height);
     return path_tracer::camera_rays(camera, 1);
 }
@@ -77,7 +78,7 @@ std::string name_of_strategy(uint strategy) {
                                                       : "surfaces";
 }
 
-void Census::add(const Picture& picture) {
+void Census::add(const HdrImage& picture) {
     pixels += picture.rgb.size();
     for (const vec3& pixel : picture.rgb) {
         not_finite += !is_finite(pixel);

@@ -9,7 +9,6 @@
 
 namespace twinray::suite {
 
-using path_tracer::Picture;
 using path_tracer::RenderSettings;
 
 // What is rendered, but for its samples and seed.
@@ -39,12 +38,12 @@ struct Census {
     std::uint64_t negative = 0;
     std::uint64_t dropped = 0;  // contributions that were not finite, and are missing
 
-    void add(const Picture& picture);
+    void add(const HdrImage& picture);
     void add_to(Record& record) const;
 };
 
 struct Exposure {
-    Picture picture;
+    HdrImage picture;
     double ms = 0;  // of rendering, from its first sample on
 };
 

@@ -3,10 +3,11 @@
 #include <cmath>
 #include <numbers>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/estimators.h"
 #include "validation/suite/pictures.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "samples/path_tracer/camera.h"
 
 namespace twinray::suite {

@@ -6,10 +6,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/estimators.h"
 #include "validation/suite/flip.h"
 #include "validation/suite/pictures.h"
-#include "engine/scene/shapes.h"
+#include <twinray/geometry.h>
 #include "samples/path_tracer/camera.h"
 #include "samples/path_tracer/cross_check.h"
 #include "samples/path_tracer/reference.h"
@@ -47,16 +49,16 @@ void by_both_accelerators(CaseRun& run) {
     Studio software(run, subjects[0], shot), hardware(run, subjects[1], shot);
     const std::uint64_t pixels = std::uint64_t{shot.settings.width} * shot.settings.height;
     path_tracer::CrossChecker checker(hardware.context(), software.accel(), hardware.renderer(), pixels);
-    const Picture by_hardware = render_picture(hardware.renderer(), shot.settings, hardware.accel(), true, &checker);
+    const HdrImage by_hardware = render_picture(hardware.renderer(), shot.settings, hardware.accel(), true, &checker);
     const Exposure by_software = software.expose(run.seed(), shot.settings.samples);
     const path_tracer::PictureDifference difference =
-        compare_pictures(by_hardware, by_software.picture, checker.marks());
+        path_tracer::compare_pictures(by_hardware, by_software.picture, checker.marks());
     Record record = run.record(subjects[0]);
     record.reference = "invariance";
     record.params = {{"spp", shot.settings.samples}};
     record.n = pixels;
     record.counts = {{"DIFFERING", difference.differing}, {"RAYS_DISAGREEING", checker.found()}};
-    const std::uint64_t ours = faults_of_ours_in(shot.scene, checker.kept());
+    const std::uint64_t ours = faults_of_ours_in(shot.scene, checker.recorded());
     record.faults = difference.unexplained + ours;
     record.bound95 = upper_bound_95(record.faults, record.n);
     software.census().add_to(record);
@@ -70,7 +72,7 @@ void by_both_accelerators(CaseRun& run) {
 }
 
 // Means over blocks of pixels, by channel.
-std::vector<double> block_means(const Picture& picture, uint block) {
+std::vector<double> block_means(const HdrImage& picture, uint block) {
     const uint count = picture.width / block;
     std::vector<double> means(std::size_t{count} * count * 3);
     for (uint y = 0; y < picture.height; ++y)
@@ -177,7 +179,7 @@ struct Reference {
 // The mean of the pictures with the most samples by both light and surface sampling, of all other seeds and methods of
 // the first subject: none shares a random number with what is compared.
 Reference reference_without(std::span<const Series> of_subject, std::size_t method, std::size_t seed) {
-    std::vector<const Picture*> pictures;
+    std::vector<const HdrImage*> pictures;
     for (std::size_t m = 0; m < of_subject.size(); ++m)
         for (std::size_t s = 0; s < of_subject[m].exposures.size(); ++s)
             if (of_subject[m].method.strategy == path_tracer::STRATEGY_MIS && (m != method || s != seed))
@@ -187,8 +189,8 @@ Reference reference_without(std::span<const Series> of_subject, std::size_t meth
     const auto values = static_cast<double>(3 * pictures[0]->rgb.size());
     for (std::size_t i = 0; i < pictures[0]->rgb.size(); ++i) {
         dvec3 mean(0), squares(0);
-        for (const Picture* picture : pictures) mean += dvec3(picture->rgb[i]) / count;
-        for (const Picture* picture : pictures)
+        for (const HdrImage* picture : pictures) mean += dvec3(picture->rgb[i]) / count;
+        for (const HdrImage* picture : pictures)
             squares += (dvec3(picture->rgb[i]) - mean) * (dvec3(picture->rgb[i]) - mean);
         reference.image.rgb.emplace_back(mean);
         for (int channel = 0; channel < 3; ++channel)

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/estimators.h"
 #include "validation/suite/pictures.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "samples/path_tracer/camera.h"
 
 namespace twinray::suite {
@@ -88,7 +89,7 @@ void tilted_normals(CaseRun& run) {
             }
             dark.census().add_to(record);
             Studio bright(run, subject, furnace);
-            const Picture picture = bright.expose(run.seed(), 64).picture;
+            const HdrImage picture = bright.expose(run.seed(), 64).picture;
             double mean = 0;
             for (const vec3& pixel : picture.rgb)
                 mean += static_cast<double>(pixel.y) / static_cast<double>(picture.rgb.size());

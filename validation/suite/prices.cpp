@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What each level costs on scenes of an ordinary size, and what it is worth there.
 #include "validation/suite/case_run.h"
+#include <twinray/scene.h>
+
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 
 namespace twinray::suite {

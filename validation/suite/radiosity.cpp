@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/estimators.h"
-#include "engine/accel/scene_push.h"
 #include <twinray/geometry.h>
 
 namespace twinray::suite {

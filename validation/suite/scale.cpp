@@ -6,11 +6,12 @@
 #include <cstring>
 #include <numbers>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/demands.h"
 #include "validation/suite/scenes.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 
 namespace twinray::suite {

@@ -8,12 +8,13 @@
 #include <numbers>
 #include <numeric>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/builds.h"
 #include "validation/suite/demands.h"
 #include "validation/suite/scenes.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/scene/shapes.h"
 #include "engine/verify/aimed_rays.h"
 
 namespace twinray::suite {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "engine/accel/scene_push.h"
+#include <twinray/scene.h>
 
 namespace twinray::suite {
 namespace {

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <twinray/scene.h>
+
 #include "validation/suite/estimators.h"
 #include "validation/suite/factor_scenes.h"
-#include "engine/accel/scene_push.h"
 #include <twinray/geometry.h>
 
 namespace twinray::suite {

@@ -21,11 +21,6 @@ inline float max_no_nan(float a, float b) { return a > b ? a : b; }
 inline float uintBitsToFloat(uint bits) { return std::bit_cast<float>(bits); }
 inline uint floatBitsToUint(float value) { return std::bit_cast<uint>(value); }
 
-// Eight bytes: a device address when pushed to the GPU, a host address in CPU references. GLSL has two words for
-// them, so that structs are to be aligned as there.
-using Address [[gnu::aligned(4)]] = std::uint64_t;
-using Uint64 [[gnu::aligned(4)]] = std::uint64_t;
-
 constexpr std::uint64_t NULL_ADDRESS = 0;
 inline bool is_null(std::uint64_t address) { return address == NULL_ADDRESS; }
 inline std::uint64_t address_after(std::uint64_t base, uint bytes) { return base + bytes; }

@@ -3,7 +3,7 @@
 #ifndef TWINRAY_FAULTS_GLSL
 #define TWINRAY_FAULTS_GLSL
 #include "shaders/shared/bridge.glsl"
-#include "shaders/shared/faults.h"
+#include "twinray/glsl/faults.h"
 
 #ifdef TWINRAY_DEBUG
 void note_fault(REF(Faults) faults, uint type, uint index)

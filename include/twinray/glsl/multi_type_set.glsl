@@ -13,7 +13,7 @@
 #ifndef TWINRAY_MULTI_TYPE_SET_GLSL
 #define TWINRAY_MULTI_TYPE_SET_GLSL
 #include "twinray/glsl/faults.glsl"
-#include "shaders/scene/multi_type_set.h"
+#include "twinray/glsl/multi_type_set.h"
 
 // The parts of what lists pass on to each type.
 #define SET_OF_(set, key, ACTION) set

@@ -10,7 +10,7 @@
 #ifndef TWINRAY_SOA_GLSL
 #define TWINRAY_SOA_GLSL
 #include "twinray/glsl/faults.glsl"
-#include "shaders/scene/soa.h"
+#include "twinray/glsl/soa.h"
 
 // Statements; `queue` is a variable or a member, not a call.
 #define SOA_GET(queue, i, field, variable)                                                      \

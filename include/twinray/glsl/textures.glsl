@@ -14,7 +14,7 @@
 #extension GL_EXT_nonuniform_qualifier : require
 #endif
 #include "twinray/glsl/faults.glsl"
-#include "shaders/scene/textures.h"
+#include "twinray/glsl/textures.h"
 
 bool has_texture(TextureTable table, TextureRef ref)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Loops over structs whose members differ in type, unrolled by the preprocessor: engine/core/unrolled.h for kernels.
+// Loops over structs whose members differ in type, unrolled by the preprocessor: twinray/sets.h for kernels.
 // FUNCTION is a set of overloads, ACTION a macro of the caller's that may use what is around it:
 //
 //     #define LIGHTS(X, P) X(P, 0, Lamp, lamp) X(P, 1, Sun, sun)

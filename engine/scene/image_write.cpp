@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include <twinray/scene.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "engine/core/error.h"
+#include "engine/scene/bytes.h"
+#include "engine/scene/image_exr.h"
+
+namespace twinray {
+namespace {
+
+float luminance(vec3 color) { return dot(color, vec3(0.2126f, 0.7152f, 0.0722f)); }
+
+// Khronos PBR Neutral (2024): leaves what is below 0.8 alone, apart from undoing the glare of a dielectric's Fresnel
+// reflection, and compresses highlights towards white.
+vec3 tone_mapped(vec3 color) {
+    constexpr float fresnel = 0.04f, start = 0.8f - fresnel, desaturation = 0.15f;
+    const float low = std::min({color.x, color.y, color.z});
+    color -= low < 2 * fresnel ? low - low * low / (4 * fresnel) : fresnel;
+    const float peak = std::max({color.x, color.y, color.z});
+    if (peak < start) return color;
+    const float room = 1 - start, compressed = 1 - room * room / (peak + room - start);
+    const float white = 1 - 1 / (desaturation * (peak - compressed) + 1);
+    return color * (compressed / peak) * (1 - white) + vec3(compressed) * white;
+}
+
+void write_exposed(const std::filesystem::path& file, const HdrImage& image, float exposure) {
+    const float scale = std::exp2(exposure);
+    std::vector<Rgb> pixels;
+    pixels.reserve(image.rgb.size());
+    for (const vec3& pixel : image.rgb) pixels.push_back(rgb_of_linear(tone_mapped(pixel * scale)));
+    write_png(file, image.width, image.height, pixels);
+}
+
+}  // namespace
+
+float automatic_exposure(const HdrImage& image) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const vec3& pixel : image.rgb)
+        if (const float l = luminance(pixel); l > 0) {
+            sum += std::log2(double{l});
+            ++count;
+        }
+    return count ? static_cast<float>(std::log2(0.18) - sum / static_cast<double>(count)) : 0;
+}
+
+bool is_image_file(const std::filesystem::path& file) {
+    return lower_suffix(file) == ".png" || lower_suffix(file) == ".exr";
+}
+
+void write_image(const std::filesystem::path& file, const HdrImage& image, float exposure,
+                 std::span<const ImageChannel> channels) {
+    std::filesystem::path partial = file;
+    partial += text(".partial-", std::hex, std::random_device{}());
+    if (lower_suffix(file) == ".exr")
+        write_exr_image(partial, image, channels);
+    else
+        write_exposed(partial, image, exposure);
+    std::error_code error;
+    std::filesystem::rename(partial, file, error);
+    if (error) fail("'", file.string(), "': cannot be written: ", error.message());
+}
+
+}  // namespace twinray

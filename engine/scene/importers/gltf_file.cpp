@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "engine/scene/importers/gltf_file.h"
+
+#include "engine/scene/importers/gltf_json.h"
+
+namespace twinray {
+namespace {
+
+using nlohmann::json;
+
+Bytes read_data_uri(std::string_view uri) {
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64"))
+        fail("data URI '", uri.substr(0, 40), "...' is not base64");
+    std::optional<Bytes> bytes = decode_base64(uri.substr(comma + 1));
+    if (!bytes) fail("data URI '", uri.substr(0, 40), "...' has characters foreign to base64");
+    return std::move(*bytes);
+}
+
+Bytes read_buffer(const GltfFile& file, const json& buffer, std::size_t index, Bytes& binary) {
+    const std::string name = gltf_name("buffer", index, json_string(buffer, "name"));
+    const auto length = json_count(buffer, "byteLength");
+    if (!length) file.fail(name, ": byteLength is missing or not a positive integer");
+    const std::string uri = json_string(buffer, "uri");
+    if (uri.empty() && index > 0) file.fail(name, ": has no uri, and only buffer 0 may be the binary chunk of a .glb");
+    Bytes bytes;
+    try {
+        bytes = uri.empty() ? std::move(binary) : read_uri(file, uri);
+    } catch (const Error& e) {
+        file.fail(name, ": ", e.what());
+    }
+    if (bytes.size() < *length)
+        file.fail(name, ": byteLength is ", *length, ", but ",
+                  uri.empty()                ? "the file's binary chunk"
+                  : uri.starts_with("data:") ? "its data URI"
+                                             : "'" + uri + "'",
+                  " has only ", bytes.size(), " bytes");
+    bytes.resize(*length);  // a file may be longer, a chunk is padded
+    return bytes;
+}
+
+std::string one_line(std::string text) {
+    constexpr std::size_t max_length = 300;  // tinygltf quotes whole data URIs
+    std::ranges::replace(text, '\n', ' ');
+    while (text.ends_with(' ')) text.pop_back();
+    return text.size() > max_length ? text.substr(0, max_length) + "..." : text;
+}
+
+std::shared_ptr<const json> take_motion(json& root) {
+    json motion = json::object();
+    for (const char* key : {"animations", "skins"}) {
+        motion[key] = root.value(key, json());
+        root.erase(key);
+    }
+    return std::make_shared<const json>(std::move(motion));
+}
+
+void parse_model(GltfFile& file, const json& root) {
+    const std::string source = root.dump();
+    if (source.size() > UINT32_MAX) file.fail("the JSON is over 4 GiB");
+    tinygltf::TinyGLTF parser;
+    std::string error, warning;
+    bool is_parsed = false;
+    try {
+        is_parsed = parser.LoadASCIIFromString(&file.model, &error, &warning, source.data(),
+                                               static_cast<unsigned>(source.size()), "", tinygltf::REQUIRE_VERSION);
+    } catch (const std::exception& e) {
+        error += e.what();
+    }
+    // tinygltf reports members of a wrong type in `error` and goes on without them; the scene would silently be wrong.
+    if (!is_parsed || !error.empty()) file.fail("not valid glTF: ", error.empty() ? "unknown reason" : one_line(error));
+    if (!warning.empty()) file.warn(one_line(warning));
+}
+
+std::vector<tinygltf::Buffer> take_buffers(const GltfFile& file, GltfJson& source) {
+    std::vector<tinygltf::Buffer> buffers;
+    for (const json& entry : source.root.value("buffers", json::array())) {
+        tinygltf::Buffer buffer;
+        buffer.name = json_string(entry, "name");
+        buffer.data = read_buffer(file, entry, buffers.size(), source.binary);
+        buffers.push_back(std::move(buffer));
+    }
+    source.root.erase("buffers");
+    return buffers;
+}
+
+std::vector<tinygltf::Image> take_images(json& root) {
+    std::vector<tinygltf::Image> images;
+    for (const json& entry : root.value("images", json::array())) {
+        tinygltf::Image image;
+        image.name = json_string(entry, "name");
+        image.uri = json_string(entry, "uri");
+        image.mimeType = json_string(entry, "mimeType");
+        const auto view = json_count(entry, "bufferView");
+        image.bufferView = view && *view <= INT32_MAX ? static_cast<int>(*view) : -1;
+        images.push_back(std::move(image));
+    }
+    root.erase("images");
+    return images;
+}
+
+}  // namespace
+
+Bytes read_uri(const GltfFile& file, const std::string& uri) {
+    if (uri.starts_with("data:")) return read_data_uri(uri);
+    return read_file(file.path.parent_path() / decode_percent(uri));
+}
+
+std::span<const std::uint8_t> view_bytes(const GltfFile& file, int view, const std::string& object) {
+    const auto& views = file.model.bufferViews;
+    if (view < 0 || std::size_t(view) >= views.size())
+        file.fail(object, ": bufferView ", view, " does not exist; the file has ", views.size());
+    const tinygltf::BufferView& v = views[std::size_t(view)];
+    if (v.buffer < 0 || std::size_t(v.buffer) >= file.model.buffers.size())
+        file.fail(object, ": bufferView ", view, " names buffer ", v.buffer, "; the file has ",
+                  file.model.buffers.size());
+    const auto& data = file.model.buffers[std::size_t(v.buffer)].data;
+    if (v.byteOffset > data.size() || v.byteLength > data.size() - v.byteOffset)
+        file.fail(object, ": bufferView ", view, " takes ", v.byteLength, " bytes from byte ", v.byteOffset,
+                  ", but buffer ", v.buffer, " has only ", data.size(), " bytes");
+    return {data.data() + v.byteOffset, v.byteLength};
+}
+
+GltfFile open_gltf(const std::filesystem::path& path) {
+    GltfFile file{.path = path, .model = {}, .motion = {}, .warnings = {}};
+    GltfJson source = read_gltf_json(file);
+    check_extensions(file, source.root);
+    std::vector<tinygltf::Buffer> buffers = take_buffers(file, source);
+    std::vector<tinygltf::Image> images = take_images(source.root);
+    file.motion = take_motion(source.root);
+    check_types(file, source.root);
+    parse_model(file, source.root);
+    file.model.buffers = std::move(buffers);
+    file.model.images = std::move(images);
+    return file;
+}
+
+}  // namespace twinray

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include "engine/scene/importers/gltf_accessor.h"
+#include "engine/scene/importers/gltf_nodes.h"
+
+namespace twinray {
+namespace {
+
+// The matrices of EXT_mesh_gpu_instancing, or one identity.
+class Placements {
+  public:
+    Placements(const GltfFile& file, const GltfNode& node) : file_(file), name_(node.name) {
+        const auto& extensions = file.model.nodes[node.index].extensions;
+        const tinygltf::Value* extension = find_extension(extensions, "EXT_mesh_gpu_instancing");
+        const tinygltf::Value* attributes = extension ? find_member(*extension, "attributes") : nullptr;
+        if (!attributes) return;
+        translations_ = read<3>(*attributes, "TRANSLATION");
+        rotations_ = read<4>(*attributes, "ROTATION");
+        scales_ = read<3>(*attributes, "SCALE");
+    }
+
+    std::size_t count() const { return count_.value_or(1); }
+    bool is_instanced() const { return count_.has_value(); }
+
+    glm::dmat4 matrix(std::size_t i) const {
+        return matrix_of(read_trs(file_, entry(translations_, i), entry(rotations_, i), entry(scales_, i),
+                                  text(name_, " instance ", i)));
+    }
+
+  private:
+    template <int N>
+    std::vector<Vec<N, float>> read(const tinygltf::Value& attributes, const char* name) {
+        const int accessor = index_of(attributes, name);
+        if (accessor < 0) return {};
+        auto values = read_vectors<N>(file_, accessor, text(name_, " EXT_mesh_gpu_instancing ", name));
+        if (count_ && *count_ != values.size())
+            file_.fail(name_, ": EXT_mesh_gpu_instancing ", name, " has ", values.size(), " elements, others have ",
+                       *count_);
+        count_ = values.size();
+        return values;
+    }
+
+    template <int N>
+    static std::vector<double> entry(const std::vector<Vec<N, float>>& values, std::size_t i) {
+        std::vector<double> numbers;
+        if (!values.empty())
+            for (std::size_t k = 0; k < N; ++k) numbers.push_back(values[i][k]);
+        return numbers;
+    }
+
+    const GltfFile& file_;
+    std::string name_;
+    std::optional<std::size_t> count_;
+    std::vector<vec3> translations_, scales_;
+    std::vector<vec4> rotations_;
+};
+
+// By node: whether an animation scales it or one above it.
+std::vector<bool> scaled_nodes(const Rig& rig) {
+    std::vector<bool> scaled(rig.nodes.size());
+    for (const Animation& animation : rig.animations)
+        for (const Animation::Channel& channel : animation.channels)
+            if (channel.path == Animation::Channel::Path::scale) scaled[channel.node] = true;
+    for (std::size_t i = 0; i < scaled.size(); ++i)
+        if (const std::int32_t parent = rig.nodes[i].parent; parent >= 0 && scaled[std::size_t(parent)])
+            scaled[i] = true;
+    return scaled;
+}
+
+bool is_flat(const Transform& transform) { return !fault_of(transform).empty(); }
+
+void add_instances(GltfFile& file, const std::vector<GltfNode>& nodes, std::size_t index, bool is_scaled,
+                   std::vector<GltfInstance>& instances) {
+    const GltfNode& node = nodes[index];
+    const tinygltf::Node& source = file.model.nodes[node.index];
+    if (source.mesh < 0 || std::size_t(source.mesh) >= file.model.meshes.size())
+        file.fail(node.name, ": mesh ", source.mesh, " does not exist; the file has ", file.model.meshes.size());
+    const Placements placements(file, node);
+    std::size_t singular = 0;
+    for (std::size_t i = 0; i < placements.count(); ++i) {
+        const std::string object = placements.is_instanced() ? text(node.name, " instance ", i) : node.name;
+        const bool is_skinned = source.skin >= 0;
+        GltfInstance found;
+        found.node = index;
+        found.skin = source.skin;
+        found.attachment = {is_skinned ? -1 : static_cast<std::int32_t>(index), placements.matrix(i)};
+        found.instance.name = source.name.empty() ? object : source.name;
+        found.instance.mesh = static_cast<uint>(source.mesh);
+        const Transform local = rounded_transform(file, found.attachment.local, object);
+        found.instance.transform =
+            is_skinned ? local : rounded_transform(file, node.world * found.attachment.local, object);
+        if (is_flat(found.instance.transform)) {
+            if (!is_scaled || is_flat(local)) {
+                ++singular;
+                continue;
+            }
+            found.is_hidden = true;
+            found.instance.transform = {};
+        }
+        instances.push_back(std::move(found));
+    }
+    if (singular)
+        file.warn(text(node.name, ": skipped ", singular, " of ", placements.count(),
+                       " placements, whose transform flattens the mesh"));
+}
+
+}  // namespace
+
+std::vector<GltfInstance> read_gltf_instances(GltfFile& file, const std::vector<GltfNode>& nodes, const Rig& rig) {
+    const std::vector<bool> scaled = scaled_nodes(rig);
+    std::vector<GltfInstance> instances;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (file.model.nodes[nodes[i].index].mesh != -1 && nodes[i].is_visible)
+            add_instances(file, nodes, i, scaled[i], instances);
+    return instances;
+}
+
+}  // namespace twinray

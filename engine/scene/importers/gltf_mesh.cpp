@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+#include "engine/scene/importers/gltf_mesh.h"
+
+#include <algorithm>
+#include <map>
+
+#include "engine/scene/importers/gltf_accessor.h"
+#include "engine/scene/importers/gltf_variants.h"
+#include "engine/scene/importers/gltf_vertices.h"
+
+namespace twinray {
+namespace {
+
+using tinygltf::Primitive;
+
+bool makes_triangles(const Primitive& primitive) {
+    return attribute_of(primitive, "POSITION") >= 0 &&
+           (primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
+            primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN);
+}
+
+// Strips and fans as glTF 2.0 (3.7.2.1) defines their winding.
+std::vector<uvec3> assemble(const std::vector<uint>& indices, int mode) {
+    std::vector<uvec3> triangles;
+    const std::size_t step = mode == TINYGLTF_MODE_TRIANGLES ? 3 : 1;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += step) {
+        const uint a = indices[i], b = indices[i + 1], c = indices[i + 2];
+        if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
+            triangles.emplace_back(b, c, indices[0]);
+        else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP && i % 2 == 1)
+            triangles.emplace_back(a, c, b);
+        else
+            triangles.emplace_back(a, b, c);
+    }
+    return triangles;
+}
+
+// Puts the primitives of one mesh together.
+class MeshReader {
+  public:
+    MeshReader(GltfFile& file, std::size_t index, const std::vector<Material>& materials, bool is_skinned)
+        : file_(file),
+          source_(file.model.meshes[index]),
+          name_(gltf_name("mesh", index, source_.name)),
+          materials_(materials) {
+        mesh_.name = source_.name.empty() ? text("mesh ", index) : source_.name;
+        std::vector<const Primitive*> shown;
+        for (const Primitive& primitive : source_.primitives)
+            if (makes_triangles(primitive)) shown.push_back(&primitive);
+        layout_ = vertex_layout(file, shown, name_, is_skinned);
+    }
+
+    GltfMesh read() {
+        std::size_t skipped = 0;
+        for (std::size_t i = 0; i < source_.primitives.size(); ++i)
+            if (makes_triangles(source_.primitives[i]))
+                add(source_.primitives[i], text(name_, " primitive ", i));
+            else
+                ++skipped;
+        if (skipped)
+            file_.warn(text(name_, ": skipped ", skipped, " primitives of points, lines or without positions"));
+        return {std::move(mesh_), std::move(motion_), std::move(variants_)};
+    }
+
+  private:
+    // Where a primitive's vertices lie in mesh_.
+    struct Part {
+        uint base = 0;
+        std::size_t count = 0;
+    };
+
+    uint append_vertices(const GltfVertices& vertices) {
+        const std::size_t base = mesh_.positions.size();
+        if (base + vertices.positions.size() > UINT32_MAX) file_.fail(name_, ": has over 2^32 vertices");
+        append(mesh_, motion_, vertices);
+        return static_cast<uint>(base);
+    }
+
+    std::vector<uvec3> read_triangles(const Primitive& primitive, std::size_t vertex_count, const std::string& object) {
+        std::vector<uint> indices;
+        if (primitive.indices >= 0)
+            indices = read_indices(file_, primitive.indices, object + " indices");
+        else
+            for (uint i = 0; i < vertex_count; ++i) indices.push_back(i);
+        for (std::size_t i = 0; i < indices.size(); ++i)
+            if (indices[i] >= vertex_count)
+                file_.fail(object, ": index ", indices[i], " at position ", i, " is out of range; POSITION has ",
+                           vertex_count, " elements");
+        if (primitive.mode == TINYGLTF_MODE_TRIANGLES && indices.size() % 3 != 0)
+            file_.warn(text(object, ": ignored ", indices.size() % 3, " vertices after the last whole triangle"));
+        return assemble(indices, primitive.mode);
+    }
+
+    void add(const Primitive& primitive, const std::string& object) {
+        note_what_is_ignored(primitive);
+        note_missing_uvs(primitive, object);
+        if (layout_.normals && attribute_of(primitive, "NORMAL") < 0) return add_flat(primitive, object);
+        const Part part = shared_part(primitive, object);
+        add_triangles(read_triangles(primitive, part.count, object), part.base, primitive, object);
+    }
+
+    Part shared_part(const Primitive& primitive, const std::string& object) {
+        const std::vector<int> key = accessors_of(primitive);
+        if (const auto found = parts_.find(key); found != parts_.end()) return found->second;
+        const GltfVertices vertices = read_gltf_vertices(file_, primitive, layout_, object);
+        return parts_[key] = {append_vertices(vertices), vertices.positions.size()};
+    }
+
+    // A flat face needs vertices of its own.
+    void add_flat(const Primitive& primitive, const std::string& object) {
+        const GltfVertices shared = read_gltf_vertices(file_, primitive, layout_, object);
+        std::vector<uint> indices;
+        for (const uvec3& t : read_triangles(primitive, shared.positions.size(), object))
+            indices.insert(indices.end(), {t.x, t.y, t.z});
+        GltfVertices own = picked(shared, indices);
+        std::vector<uvec3> own_triangles;
+        for (uint i = 0; i + 2 < own.positions.size(); i += 3) {
+            const dvec3 a(own.positions[i]), b(own.positions[i + 1]), c(own.positions[i + 2]);
+            const dvec3 normal = unit_or_zero(cross(b - a, c - a));
+            std::fill_n(&own.normals[i], 3, normal == dvec3(0) ? vec3(0, 0, 1) : vec3(normal));
+            own_triangles.emplace_back(i, i + 1, i + 2);
+        }
+        add_triangles(own_triangles, append_vertices(own), primitive, object);
+    }
+
+    void add_triangles(const std::vector<uvec3>& triangles, uint base, const Primitive& primitive,
+                       const std::string& object) {
+        if (primitive.material >= 0 && std::size_t(primitive.material) >= materials_.size())
+            file_.fail(name_, ": material ", primitive.material, " does not exist; the file has ", materials_.size());
+        for (const uvec3& triangle : triangles) mesh_.triangles.push_back(triangle + base);
+        const std::size_t before = mesh_.materials.size();
+        const uint material = static_cast<uint>(primitive.material < 0 ? materials_.size() : primitive.material);
+        mesh_.materials.resize(mesh_.triangles.size(), material);
+        add_variants(read_variant_materials(file_, primitive, object), before);
+    }
+
+    // Of the triangles from the first on, which have their own material by now.
+    void add_variants(const std::vector<int>& materials, std::size_t first) {
+        if (variants_.empty() && !materials.empty())
+            variants_.resize(materials.size(),
+                             {mesh_.materials.begin(), mesh_.materials.begin() + std::ptrdiff_t(first)});
+        for (std::size_t i = 0; i < variants_.size(); ++i) {
+            const bool is_other = i < materials.size() && materials[i] >= 0;
+            variants_[i].resize(mesh_.triangles.size(),
+                                is_other ? static_cast<uint>(materials[i]) : mesh_.materials.back());
+        }
+    }
+
+    void note_what_is_ignored(const Primitive& primitive) {
+        if (attribute_of(primitive, "COLOR_1") >= 0) file_.warn("vertex colours other than COLOR_0 are ignored");
+        for (const auto& target : primitive.targets)
+            for (const auto& [name, accessor] : target)
+                if (name.starts_with("COLOR_") || name.starts_with("TEXCOORD_"))
+                    file_.warn("colours and texture coordinates of morph targets are ignored");
+    }
+
+    void note_missing_uvs(const Primitive& primitive, const std::string& object) {
+        if (primitive.material < 0 || std::size_t(primitive.material) >= materials_.size()) return;
+        const Material& material = materials_[std::size_t(primitive.material)];
+        for (const Texture* texture : textures_of(material)) {
+            const std::string wanted = text("TEXCOORD_", texture->uv_set);
+            if (texture->image < 0 || attribute_of(primitive, wanted) >= 0) continue;
+            const bool has_first = attribute_of(primitive, "TEXCOORD_0") >= 0;
+            file_.warn(text(object, ": lacks the ", wanted, " of material '", material.name, "', whose textures show ",
+                            has_first ? "by TEXCOORD_0" : "one texel"));
+        }
+    }
+
+    GltfFile& file_;
+    const tinygltf::Mesh& source_;
+    std::string name_;
+    const std::vector<Material>& materials_;
+    // Primitives often share one vertex buffer and differ in their indices; it is appended once.
+    std::map<std::vector<int>, Part> parts_;
+    VertexLayout layout_;
+    Mesh mesh_;
+    VertexMotion motion_;
+    std::vector<std::vector<uint>> variants_;
+};
+
+}  // namespace
+
+GltfMesh read_gltf_mesh(GltfFile& file, std::size_t index, const std::vector<Material>& materials, bool is_skinned) {
+    return MeshReader(file, index, materials, is_skinned).read();
+}
+
+}  // namespace twinray

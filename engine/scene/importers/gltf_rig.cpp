@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "engine/scene/importers/gltf_rig.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace twinray {
+namespace {
+
+std::vector<std::int32_t> flat_indices(const GltfFile& file, const std::vector<GltfNode>& nodes) {
+    std::vector<std::int32_t> flat(file.model.nodes.size(), -1);
+    for (std::size_t i = 0; i < nodes.size(); ++i) flat[nodes[i].index] = static_cast<std::int32_t>(i);
+    return flat;
+}
+
+std::size_t target_count(const tinygltf::Mesh& mesh) {
+    std::size_t count = 0;
+    for (const tinygltf::Primitive& primitive : mesh.primitives) count = std::max(count, primitive.targets.size());
+    return count;
+}
+
+// The node's, else the mesh's, else none of any target.
+std::vector<double> rest_weights(const GltfFile& file, const GltfNode& node) {
+    const tinygltf::Node& source = file.model.nodes[node.index];
+    if (source.mesh < 0 || std::size_t(source.mesh) >= file.model.meshes.size()) return {};
+    const tinygltf::Mesh& mesh = file.model.meshes[std::size_t(source.mesh)];
+    const std::size_t count = target_count(mesh);
+    const std::vector<double>& given = source.weights.empty() ? mesh.weights : source.weights;
+    if (given.empty()) return std::vector<double>(count, 0.0);
+    if (given.size() != count)
+        file.fail(node.name, ": there are ", given.size(), " morph weights, but its mesh has ", count, " targets");
+    for (const double weight : given)
+        if (!std::isfinite(static_cast<float>(weight)))
+            file.fail(node.name, ": has the morph weight ", weight, ", which is not a finite float");
+    return given;
+}
+
+std::vector<Skin> read_used_skins(const GltfFile& file, const std::vector<GltfNode>& nodes,
+                                  const std::vector<std::int32_t>& flat) {
+    const nlohmann::json& sources = file.motion->at("skins");
+    std::vector<Skin> skins(sources.is_array() ? sources.size() : 0);
+    for (const GltfNode& node : nodes) {
+        const tinygltf::Node& source = file.model.nodes[node.index];
+        if (source.skin < 0 || source.mesh < 0) continue;
+        const std::size_t index = std::size_t(source.skin);
+        if (index >= skins.size())
+            file.fail(node.name, ": skin ", index, " does not exist; the file has ", skins.size());
+        if (skins[index].joints.empty()) skins[index] = read_gltf_skin(file, index, flat);
+    }
+    return skins;
+}
+
+}  // namespace
+
+Rig read_gltf_rig(GltfFile& file, const std::vector<GltfNode>& nodes) {
+    const std::vector<std::int32_t> flat = flat_indices(file, nodes);
+    Rig rig;
+    for (const GltfNode& node : nodes) {
+        rig.nodes.push_back(node.local);
+        rig.nodes.back().weights = rest_weights(file, node);
+    }
+    rig.skins = read_used_skins(file, nodes, flat);
+    rig.animations = read_gltf_animations(file, rig, flat);
+    return rig;
+}
+
+}  // namespace twinray

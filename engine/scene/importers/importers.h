@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// The readers behind load_scene. What they return is not yet checked and completed; load_scene does that:
+// triangles without a material have the index after the last one. `origin`: as load_scene takes it.
+#pragma once
+
+#include <filesystem>
+
+#include <twinray/scene.h>
+
+namespace twinray {
+
+// .gltf and .glb, by tinygltf; told apart by their content.
+Scene import_gltf(const std::filesystem::path& file, const std::optional<dvec3>& origin);
+
+// .ply.
+Scene import_ply(const std::filesystem::path& file, const std::optional<dvec3>& origin);
+
+// .obj, with the .mtl files and images that it names.
+Scene import_obj(const std::filesystem::path& file, const std::optional<dvec3>& origin);
+
+// .stl, text and binary; told apart by their content.
+Scene import_stl(const std::filesystem::path& file, const std::optional<dvec3>& origin);
+
+}  // namespace twinray

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+// .ply files, text and binary, with faces or strips of triangles.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include <twinray/scene.h>
+
+#include "engine/core/error.h"
+#include "engine/scene/importers/importers.h"
+#include "engine/scene/importers/passed_over.h"
+#include "engine/scene/importers/ply_header.h"
+#include "engine/scene/importers/polygon.h"
+#include "engine/scene/importers/words.h"
+#include "engine/scene/local_origin.h"
+
+namespace twinray {
+namespace {
+
+// The values of the body, one after the other.
+class PlyValues {
+  public:
+    PlyValues(const Bytes& bytes, const PlyHeader& header, const std::string& object)
+        : bytes_(bytes), format_(header.format), position_(header.size), object_(object) {}
+
+    double next(PlyType type) { return format_ == PlyHeader::Format::ascii ? next_word() : next_binary(type); }
+
+    // The length of a list that the rest of the file may hold.
+    std::size_t next_count(PlyType type) {
+        const double count = next(type);
+        if (!(count >= 0) || count > static_cast<double>(bytes_.size() - position_) || count != std::floor(count))
+            fail("'", object_, "': a PLY list claims ", count, " entries at byte ", position_);
+        return static_cast<std::size_t>(count);
+    }
+
+  private:
+    double next_binary(PlyType type) {
+        const std::size_t size = size_of(type);
+        if (size > bytes_.size() - position_) fail_truncated();
+        std::array<std::uint8_t, 8> raw{};
+        std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(position_), size, raw.begin());
+        if (format_ == PlyHeader::Format::big_endian) std::reverse(raw.begin(), raw.begin() + static_cast<int>(size));
+        position_ += size;
+        switch (type) {
+            case PlyType::i8: return from<std::int8_t>(raw);
+            case PlyType::u8: return from<std::uint8_t>(raw);
+            case PlyType::i16: return from<std::int16_t>(raw);
+            case PlyType::u16: return from<std::uint16_t>(raw);
+            case PlyType::i32: return from<std::int32_t>(raw);
+            case PlyType::u32: return from<std::uint32_t>(raw);
+            case PlyType::f32: return from<float>(raw);
+            case PlyType::f64: return from<double>(raw);
+        }
+        return 0;
+    }
+
+    template <class T>
+    static double from(const std::array<std::uint8_t, 8>& raw) {
+        T value;
+        std::memcpy(&value, raw.data(), sizeof value);
+        return static_cast<double>(value);
+    }
+
+    // As its digits say, though its type may have fewer.
+    double next_word() {
+        const std::string_view text(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
+        std::string_view rest = text.substr(position_);
+        const std::string_view word = cut_word(rest);
+        if (word.empty()) fail_truncated();
+        const std::optional<double> number = parse_number(word);
+        if (!number)
+            fail("'", object_, "': '", word.substr(0, 20), "' at byte ", word.data() - text.data(), " is not a number");
+        position_ = text.size() - rest.size();
+        return *number;
+    }
+
+    [[noreturn]] void fail_truncated() const { fail("'", object_, "': the PLY body is truncated"); }
+
+    const Bytes& bytes_;
+    PlyHeader::Format format_;
+    std::size_t position_;
+    std::string object_;
+};
+
+bool is_any_of(const std::string& name, std::initializer_list<const char*> names) {
+    return std::ranges::find(names, name) != names.end();
+}
+
+// Where a vertex property goes: 0-2 position, 3-5 normal, 6-7 texture coordinates, 8 nowhere.
+constexpr std::size_t nowhere = 8;
+
+std::size_t slot_of(const PlyProperty& property) {
+    if (property.count_type) return nowhere;
+    const std::array<std::initializer_list<const char*>, nowhere> names = {
+        {{"x"}, {"y"}, {"z"}, {"nx"}, {"ny"}, {"nz"}, {"u", "s", "texture_u"}, {"v", "t", "texture_v"}}};
+    for (std::size_t i = 0; i < nowhere; ++i)
+        if (is_any_of(property.name, names[i])) return i;
+    return nowhere;
+}
+
+bool holds_faces(const PlyElement& element) { return is_any_of(element.name, {"face", "tristrips"}); }
+
+bool holds_corners(const PlyElement& element, const PlyProperty& property) {
+    return holds_faces(element) && property.count_type && is_any_of(property.name, {"vertex_indices", "vertex_index"});
+}
+
+class PlyReader {
+  public:
+    PlyReader(const Bytes& bytes, std::string object)
+        : object_(std::move(object)), header_(parse_ply_header(bytes, object_)), values_(bytes, header_, object_) {}
+
+    Mesh read(const std::optional<dvec3>& wanted_origin) {
+        for (const PlyElement& element : header_.elements)
+            if (element.name == "vertex")
+                read_vertices(element);
+            else
+                read_faces(element);
+        check_corners();
+        origin_ = wanted_origin.value_or(choose_local_origin(bounds()));
+        mesh_.positions = local_positions(positions_, origin_);
+        triangulate();
+        return std::move(mesh_);
+    }
+
+    const dvec3& origin() const { return origin_; }
+    std::vector<std::string> warnings() const {
+        std::vector<std::string> sentences = cutter_.warnings("face");
+        if (!passed_over_.empty())
+            sentences.push_back("passed over elements and properties of the header: " + passed_over_.list());
+        return sentences;
+    }
+
+  private:
+    void read_vertices(const PlyElement& element) {
+        std::array<bool, 9> has{};
+        std::vector<std::size_t> slots;
+        for (const PlyProperty& property : element.properties) {
+            has[slots.emplace_back(slot_of(property))] = true;
+            if (slots.back() == nowhere) passed_over_.add(property.name, property.line);
+        }
+        if (!has[0] || !has[1] || !has[2]) fail("'", object_, "': its vertices have no x, y and z");
+        for (std::size_t i = 0; i < element.count; ++i) {
+            std::array<double, 9> v{};
+            for (std::size_t p = 0; p < slots.size(); ++p) v[slots[p]] = read_property(element.properties[p]);
+            positions_.emplace_back(v[0], v[1], v[2]);
+            if (has[3] && has[4] && has[5]) mesh_.normals.push_back(normal_or_none({v[3], v[4], v[5]}));
+            if (has[6] && has[7]) mesh_.uvs.emplace_back(v[6], 1 - v[7]);  // v points up here and down in glTF
+        }
+    }
+
+    double read_property(const PlyProperty& property) {
+        if (!property.count_type) return values_.next(property.type);
+        for (std::size_t left = values_.next_count(*property.count_type); left > 0; --left) values_.next(property.type);
+        return 0;
+    }
+
+    // Any other element too, of which nothing is kept.
+    void read_faces(const PlyElement& element) {
+        const bool has_strips = element.name == "tristrips";
+        if (!holds_faces(element)) passed_over_.add(element.name, element.line);
+        for (const PlyProperty& property : element.properties)
+            if (holds_faces(element) && !holds_corners(element, property))
+                passed_over_.add(property.name, property.line);
+        for (std::size_t i = 0; i < element.count; ++i)
+            for (const PlyProperty& property : element.properties)
+                if (!holds_corners(element, property))
+                    read_property(property);
+                else
+                    has_strips ? read_strips(property) : read_polygon(property);
+    }
+
+    void read_polygon(const PlyProperty& property) {
+        const std::size_t count = values_.next_count(*property.count_type);
+        for (std::size_t i = 0; i < count; ++i) indices_.push_back(values_.next(property.type));
+        vertex_counts_.push_back(count);
+    }
+
+    // -1 begins a new one. Every second triangle of a strip is turned, so that all face one way.
+    void read_strips(const PlyProperty& property) {
+        std::vector<double> strip;
+        for (std::size_t left = values_.next_count(*property.count_type); left > 0; --left) {
+            const double index = values_.next(property.type);
+            if (index == -1) {
+                strip.clear();
+                continue;
+            }
+            strip.push_back(index);
+            const std::size_t n = strip.size();
+            if (n < 3) continue;
+            const bool is_turned = n % 2 == 0;
+            indices_.insert(indices_.end(),
+                            {strip[n - 3], strip[is_turned ? n - 1 : n - 2], strip[is_turned ? n - 2 : n - 1]});
+            vertex_counts_.push_back(3);
+        }
+    }
+
+    // After all elements, since nothing says that the vertices come first.
+    void check_corners() const {
+        std::size_t at = 0;
+        for (std::size_t face = 0; face < vertex_counts_.size(); at += vertex_counts_[face++])
+            for (std::size_t i = 0; i < vertex_counts_[face]; ++i)
+                if (const double c = indices_[at + i];
+                    !(c >= 0) || c >= static_cast<double>(positions_.size()) || c != std::floor(c))
+                    fail("'", object_, "': face ", face, " has vertex index ", c, ", but there are only ",
+                         positions_.size(), " vertices");
+    }
+
+    // Of the vertices that faces use.
+    Bounds64 bounds() const {
+        Bounds64 bounds;
+        for (const double index : indices_) bounds.include(positions_[static_cast<std::size_t>(index)]);
+        return bounds;
+    }
+
+    void triangulate() {
+        std::size_t first = 0;
+        std::vector<dvec3> outline;
+        for (std::size_t face = 0; face < vertex_counts_.size(); first += vertex_counts_[face++]) {
+            const auto index = [&](std::size_t i) { return static_cast<uint>(indices_[first + i]); };
+            outline.clear();
+            for (std::size_t i = 0; i < vertex_counts_[face]; ++i) outline.push_back(positions_[index(i)]);
+            for (const uvec3& t : cutter_.cut(outline, face))
+                mesh_.triangles.emplace_back(index(t.x), index(t.y), index(t.z));
+        }
+    }
+
+    std::string object_;
+    PlyHeader header_;
+    PlyValues values_;
+    Mesh mesh_;
+    dvec3 origin_ = dvec3(0);
+    std::vector<dvec3> positions_;  // as the file has them
+    std::vector<double> indices_;   // of all faces, unchecked
+    std::vector<std::size_t> vertex_counts_;
+    FaceCutter cutter_;
+    PassedOver passed_over_;
+};
+
+}  // namespace
+
+Scene import_ply(const std::filesystem::path& file, const std::optional<dvec3>& origin) {
+    const Bytes bytes = read_packed_file(file);
+    PlyReader reader(bytes, file.string());
+    Scene scene;
+    Mesh mesh = reader.read(origin);
+    scene.origin = reader.origin();
+    mesh.name = file.stem().string();
+    mesh.materials.assign(mesh.triangles.size(), 0);
+    scene.warnings = reader.warnings();
+    if (mesh.triangles.empty()) fail("'", file.string(), "': has ", mesh.positions.size(), " vertices but no faces");
+    scene.instances.push_back({mesh.name, 0, {}});
+    scene.meshes.push_back(std::move(mesh));
+    return scene;
+}
+
+}  // namespace twinray

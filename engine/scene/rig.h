@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// What moves in a scene: the node hierarchy of its file with animations, skins and morph targets, and the pose that
+// they give at a time. As glTF 2.0 has them (3.7.2.2, 3.7.3 and 3.11). Pure data, pure functions, in float64.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+
+#include <twinray/geometry.h>
+#include <twinray/scene.h>
+
+namespace twinray {
+
+// The transform of a node to its parent: scaled, then rotated, then moved.
+struct Trs {
+    dvec3 translation = dvec3(0);
+    dvec4 rotation = dvec4(0, 0, 0, 1);  // quaternion x y z w, of any length but 0
+    dvec3 scale = dvec3(1);
+};
+glm::dmat4 matrix_of(const Trs& trs);
+// With 1 in place of scales of 0: the axes that are left when it has shrunk to nothing.
+glm::dmat4 frame_of(const Trs& trs);
+
+enum class Interpolation : std::uint8_t { linear, step, cubic_spline };
+
+// Values at times, and what lies between them.
+struct Keyframes {
+    Interpolation interpolation = Interpolation::linear;
+    bool is_rotation = false;   // values are quaternions: interpolated on the sphere, of length 1
+    uint width = 3;             // numbers of a value
+    std::vector<float> times;   // seconds, not descending; at least one
+    std::vector<float> values;  // one a time; of cubic_spline three: in-tangent, value, out-tangent
+};
+
+// At `seconds`; before the first time and after the last their values.
+std::vector<double> value_at(const Keyframes& keyframes, double seconds);
+
+struct Animation {
+    // What keyframes drive.
+    struct Channel {
+        enum class Path : std::uint8_t { translation, rotation, scale, weights };
+        uint node = 0;  // index into Rig::nodes
+        Path path = Path::translation;
+        uint keyframes = 0;  // index into Animation::keyframes
+    };
+    std::string name;
+    std::vector<Keyframes> keyframes;
+    std::vector<Channel> channels;
+    std::string fault;  // why it cannot be played; empty: it can
+};
+
+TimeRange range_of(const Animation& animation);
+
+// Joints that carry vertices.
+struct Skin {
+    std::string name;
+    std::vector<uint> joints;               // indices into Rig::nodes
+    std::vector<glm::dmat4> inverse_binds;  // by joint: from the mesh to the joint's frame as the mesh was bound to it
+};
+
+// Displacements of vertices; empty: none, else one a vertex. Tangents keep their sign.
+struct MorphTarget {
+    std::vector<vec3> positions, normals, tangents;
+};
+
+// How the vertices of a mesh move.
+struct VertexMotion {
+    std::vector<MorphTarget> targets;
+    uint influences = 0;         // joints a vertex; 0: no skin
+    std::vector<uint> joints;    // `influences` a vertex, indices into Skin::joints
+    std::vector<float> weights;  // likewise; not negative, of sum 1 up to rounding
+};
+
+// A mesh of the scene whose vertices follow a pose.
+struct DeformedMesh {
+    uint mesh = 0;           // index into Scene::meshes, which holds it in the rest pose
+    uint node = 0;           // whose morph weights count
+    std::int32_t skin = -1;  // index into Rig::skins; then the vertices are in world space; -1: none
+    MeshVertices base;       // before targets and skin
+    VertexMotion motion;
+};
+
+// What poses a scene.
+struct Rig {
+    struct Node {
+        std::string name;
+        std::int32_t parent = -1;  // index into nodes, less than its own; -1: none
+        Trs rest;
+        glm::dmat4 matrix = glm::dmat4(1);  // instead of `rest`, where is_fixed
+        bool is_fixed = false;              // the file gives a matrix, which no animation may drive
+        std::vector<double> weights;        // of the morph targets of its mesh, at rest
+    };
+    // What a node carries: it stands at the node's transform to the world * local.
+    struct Attachment {
+        std::int32_t node = -1;  // -1: the world itself
+        glm::dmat4 local = glm::dmat4(1);
+    };
+    std::vector<Node> nodes;
+    std::vector<Animation> animations;
+    std::vector<Skin> skins;
+    std::vector<DeformedMesh> meshes;
+    std::vector<Attachment> instances, cameras, lights;  // by index in Scene
+    // An instance that is flat at rest, without an inverse, until an animation scales its node: see show_hidden().
+    struct Hidden {
+        Instance instance;
+        Attachment attachment;
+    };
+    std::vector<Hidden> hidden;
+    dvec3 origin = dvec3(0);  // of the scene, which poses are relative to
+};
+
+// Of each node of a rig.
+struct Pose::Nodes {
+    std::vector<glm::dmat4> nodes;             // to world space, relative to the rig's origin
+    std::vector<glm::dmat4> frames;            // the same with axes that scales of 0 leave: of cameras and lights
+    std::vector<std::vector<double>> weights;  // of morph targets
+};
+// What the animation does not drive is at rest.
+Pose pose_at(const Rig& rig, const Animation& animation, double seconds);
+
+glm::dmat4 matrix_of(const Pose& pose, const Rig::Attachment& attachment);
+// Of a camera or light: what a node scales to 0 keeps its axes, since glTF keeps scales from both.
+glm::dmat4 frame_of(const Pose& pose, const Rig::Attachment& attachment);
+// By joint: from the mesh as it was bound to world space. Rounded once; not finite where the pose is not.
+std::vector<Transform> joint_transforms(const Skin& skin, const Pose& pose);
+
+// weights: of the morph targets, as many as `motion` has. joints: joint_transforms(); empty without skin.
+MeshVertices deformed(const MeshVertices& base, const VertexMotion& motion, std::span<const double> weights,
+                      std::span<const Transform> joints);
+MeshVertices deformed(const Rig& rig, const DeformedMesh& mesh, const Pose& pose);
+
+// The frame without its scale, which glTF keeps from cameras and lights; nothing when an axis has no length.
+std::optional<glm::dmat4> unscaled(const glm::dmat4& world);
+
+// Rounded to float, whatever comes of it.
+Transform transform_of(const glm::dmat4& matrix);
+
+// A light's or a camera's position and direction; `frame` as unscaled() leaves it.
+void place_light(Light& light, const glm::dmat4& frame);
+void place_camera(Camera& camera, const glm::dmat4& frame);
+
+// As pose_scene(scene, pose), by a rig that the scene need not have.
+void pose_scene(Scene& scene, const Rig& rig, const Pose& pose);
+
+}  // namespace twinray

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "engine/scene/set_uploads.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+
+std::vector<ElementRun> runs_of(std::vector<uint> elements) {
+    std::sort(elements.begin(), elements.end());
+    std::vector<ElementRun> runs;
+    for (const uint element : elements) {
+        if (runs.empty() || runs.back().last != element) runs.push_back({element, element});
+        ++runs.back().last;
+    }
+    return runs;
+}
+
+std::uint64_t grown_capacity(std::uint64_t count, std::uint64_t capacity) {
+    constexpr std::uint64_t least = 16;
+    return count <= capacity ? capacity : std::max({count, 2 * capacity, least});
+}
+
+SetUploads::SetUploads(Context& context, std::string name, std::vector<Type> types)
+    : context_(context), name_(std::move(name)), slots_(types.size()) {
+    for (Type& type : types) arrays_.push_back({.type = std::move(type), .buffer = {}, .edited = {}, .is_edited = {}});
+}
+
+void SetUploads::note_update(std::size_t type, uint index) {
+    is_clean_ = false;
+    Array& array = arrays_[type];
+    if (index >= array.count || array.is_edited[index]) return;  // those not on the device yet are uploaded anyway
+    array.is_edited[index] = true;
+    array.edited.push_back(index);
+}
+
+SyncPoint SetUploads::sync(Elements elements) {
+    if (is_clean_) return synced_;
+    Commands commands(context_, name_ + " sync");
+    Staged staged = stage(commands, elements);
+    commit(std::move(staged), commands.submit());
+    return synced_;
+}
+
+void SetUploads::sync(Commands& commands, Elements elements) {
+    if (!commands.is_of_caller()) fail(name_, ": sync: own commands are not for recording into; call sync()");
+    if (!is_clean_) commit(stage(commands, elements), commands.done());
+}
+
+SetUploads::Staged SetUploads::stage(Commands& commands, Elements elements) const {
+    Staged staged;
+    for (std::size_t i = 0; i < arrays_.size(); ++i) {
+        const Array& array = arrays_[i];
+        const std::uint64_t count = elements[i].size() / array.type.bytes;
+        const std::uint64_t room = grown_capacity(count, array.capacity());
+        std::optional<Buffer>& replacement = staged.replacements.emplace_back();
+        if (room != array.capacity())
+            replacement.emplace(context_,
+                                BufferDesc{.name = name_ + ": " + array.type.name, .bytes = room * array.type.bytes});
+        staged.slots.push_back({(replacement ? *replacement : array.buffer).address(), static_cast<uint>(count)});
+    }
+    record_growth(commands, staged);
+    record_uploads(commands, staged, elements);
+    return staged;
+}
+
+// On the device, so that what kernels wrote moves along.
+void SetUploads::record_growth(Commands& commands, const Staged& staged) const {
+    const auto is_there = [](const std::optional<Buffer>& replacement) { return replacement.has_value(); };
+    if (std::none_of(staged.replacements.begin(), staged.replacements.end(), is_there)) return;
+    const auto pass = commands.pass(name_ + " growth");
+    for (std::size_t i = 0; i < arrays_.size(); ++i)
+        if (staged.replacements[i])
+            commands.copy(arrays_[i].buffer, 0, *staged.replacements[i], 0, arrays_[i].count * arrays_[i].type.bytes);
+}
+
+void SetUploads::record_uploads(Commands& commands, const Staged& staged, Elements elements) const {
+    const auto pass = commands.pass(name_ + " upload");
+    for (std::size_t i = 0; i < arrays_.size(); ++i) {
+        const Array& array = arrays_[i];
+        std::vector<ElementRun> runs = runs_of(array.edited);
+        runs.push_back({array.count, staged.slots[i].count});
+        std::vector<Commands::Piece> pieces;
+        for (const ElementRun& run : runs)
+            pieces.push_back(
+                {run.first * array.type.bytes,
+                 elements[i].subspan(run.first * array.type.bytes, (run.last - run.first) * array.type.bytes)});
+        commands.upload_pieces(staged.replacements[i] ? *staged.replacements[i] : array.buffer, pieces);
+    }
+}
+
+void SetUploads::commit(Staged&& staged, SyncPoint done) {
+    bool is_structural = false;
+    for (std::size_t i = 0; i < arrays_.size(); ++i) {
+        Array& array = arrays_[i];
+        is_structural |= staged.slots[i].count != array.count;
+        if (staged.replacements[i]) array.buffer = std::move(*staged.replacements[i]);
+        array.count = staged.slots[i].count;
+        for (const uint index : array.edited) array.is_edited[index] = false;
+        array.edited.clear();
+        array.is_edited.resize(array.count);
+    }
+    slots_ = std::move(staged.slots);
+    revision_ += is_structural;
+    is_clean_ = true;
+    synced_ = done;
+}
+
+std::uint64_t SetUploads::buffer_bytes() const {
+    std::uint64_t bytes = 0;
+    for (const Array& array : arrays_) bytes += array.buffer.bytes();
+    return bytes;
+}
+
+const std::vector<SetSlot>& SetUploads::slots() const {
+    if (!is_clean_) fail(name_, ": view: edits are pending; call sync() first");
+    return slots_;
+}
+
+}  // namespace twinray

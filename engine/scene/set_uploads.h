@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Arrays of elements on the device, which are uploaded as far as the host changed them.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <twinray/sets.h>
+
+namespace twinray {
+#include "twinray/glsl/cpp_begin.h"
+#include "twinray/glsl/multi_type_set.h"
+#include "twinray/glsl/cpp_end.h"
+
+// Neighbours that are uploaded as one region: elements first to last - 1.
+struct ElementRun {
+    uint first = 0, last = 0;
+    bool operator==(const ElementRun&) const = default;
+};
+// The runs of these elements, which may come in any order, each once.
+std::vector<ElementRun> runs_of(std::vector<uint> elements);
+
+// How many elements to make room for: `capacity` where it suffices, else twice of it at least.
+std::uint64_t grown_capacity(std::uint64_t count, std::uint64_t capacity);
+
+// One device array for each type. What kernels wrote into elements that the host did not change since stays.
+class SetUploads {
+  public:
+    using Type = SetStorage::Type;
+    SetUploads(Context& context, std::string name, std::vector<Type> types);
+
+    // The host changed, or appended, this element of a type.
+    void note_push() { is_clean_ = false; }
+    void note_update(std::size_t type, uint index);
+
+    // The elements of each type as the host has them. A clean storage returns the last sync point and does nothing.
+    using Elements = std::span<const std::span<const std::byte>>;
+    SyncPoint sync(Elements elements);
+    // Into the caller's commands.
+    void sync(Commands& commands, Elements elements);
+
+    // For those who record more than this into the same commands: records what is new, then, once that is certain to
+    // run, takes it over.
+    struct Staged {
+        std::vector<std::optional<Buffer>> replacements;  // by type, where it grew
+        std::vector<SetSlot> slots;
+    };
+    Staged stage(Commands& commands, Elements elements) const;
+    void commit(Staged&& staged, SyncPoint done);
+
+    // Throws Error if edits are pending.
+    const std::vector<SetSlot>& slots() const;
+    std::uint64_t revision() const { return revision_; }
+    std::uint64_t buffer_bytes() const;
+    const Buffer& buffer(std::size_t type) const { return arrays_[type].buffer; }
+    const std::string& type_name(std::size_t type) const { return arrays_[type].type.name; }
+
+    const std::string& name() const { return name_; }
+    Context& context() const { return context_; }
+
+  private:
+    struct Array {
+        Type type;
+        Buffer buffer;
+        uint count = 0;               // on the device
+        std::vector<uint> edited;     // of those, since the last sync, each once
+        std::vector<bool> is_edited;  // by element
+        std::uint64_t capacity() const { return buffer.bytes() / type.bytes; }
+    };
+    void record_growth(Commands& commands, const Staged& staged) const;
+    void record_uploads(Commands& commands, const Staged& staged, Elements elements) const;
+
+    Context& context_;
+    std::string name_;
+    std::vector<Array> arrays_;
+    std::vector<SetSlot> slots_;
+    std::uint64_t revision_ = 0;
+    bool is_clean_ = true;
+    SyncPoint synced_;
+};
+
+}  // namespace twinray

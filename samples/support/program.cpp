@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "samples/support/program.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include <twinray/tlas.h>
+#include "samples/support/text.h"
+
+namespace twinray::samples {
+
+void add_device_options(CLI::App& app, DeviceOptions& options, const std::string& validation_help) {
+    app.add_option("--accel", options.accel,
+                   "hw (ray tracing extensions), sw (compute), or auto: hw where the device has it and is no CPU")
+        ->check(CLI::IsMember({"auto", "sw", "hw"}))
+        ->option_text("auto|sw|hw [auto]");
+    app.add_option("--device", options.device, "index, or a part of the name");
+    app.add_flag("--validation", options.validation, validation_help);
+    app.add_flag("--quiet", options.quiet, "errors only");
+}
+
+std::optional<int> parse(CLI::App& app, int argc, char** argv, const std::string& program) {
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        return app.exit(help);
+    } catch (const CLI::ParseError& error) {
+        std::fprintf(stderr, "%s: %s (see %s --help)\n", program.c_str(), error.what(), program.c_str());
+        return 2;
+    }
+    return {};
+}
+
+ContextDesc context_desc(const DeviceOptions& options, const std::string& program) {
+    ContextDesc desc;
+    desc.name = program;
+    desc.device = options.device;
+    desc.validation = options.validation;
+    desc.log = [program, is_silent = options.quiet && !options.validation](std::string_view message) {
+        if (!is_silent)
+            std::fprintf(stderr, "%s: %.*s\n", program.c_str(), static_cast<int>(message.size()), message.data());
+    };
+    if (const char* disabled = std::getenv("TWINRAY_DISABLE")) disable_features(desc, disabled);
+    return desc;
+}
+
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice) {
+    if (choice.is_software) return std::make_unique<SwTlas>(context);
+    return std::make_unique<HwTlas>(context);
+}
+
+void append_line(const std::filesystem::path& file, const std::string& line) {
+    if (file.empty()) return;
+    std::ofstream out(file, std::ios::app);
+    if (!(out << line << '\n').flush()) fail("'", file.string(), "': cannot be written");
+}
+
+void report_warnings(const std::vector<std::string>& warnings, const std::filesystem::path& scene,
+                     const std::string& program, bool is_strict, bool is_quiet) {
+    if (!is_quiet || is_strict)
+        for (const std::string& warning : warnings) std::fprintf(stderr, "%s: %s\n", program.c_str(), warning.c_str());
+    if (is_strict && !warnings.empty())
+        fail("'", scene.string(), "': ", warnings.size(), " warning(s), of which --strict allows none");
+}
+
+}  // namespace twinray::samples

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// What the samples with a command line have in common: options of the device, a context by them, an accelerator.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <twinray/tlas.h>
+#include <twinray/abstract_accel.h>
+
+namespace CLI {
+class App;
+}
+
+namespace twinray::samples {
+
+struct DeviceOptions {
+    std::string accel = "auto";  // for choose_accel()
+    std::string device;          // index, or a part of the name; "": the best
+    bool validation = false;
+    bool quiet = false;
+};
+
+// --accel, --device, --validation, --quiet.
+void add_device_options(CLI::App& app, DeviceOptions& options, const std::string& validation_help);
+
+// The exit status of a run that is over: help was shown (0) or the usage is wrong (2). `program`: its name, for the
+// message.
+std::optional<int> parse(CLI::App& app, int argc, char** argv, const std::string& program);
+
+// Messages go to stderr after the program's name; with --quiet only those of the validation layer. Ray tracing
+// extensions that TWINRAY_DISABLE names, a comma-separated list of ray_query and ray_tracing_pipeline, stay unused.
+ContextDesc context_desc(const DeviceOptions& options, const std::string& program);
+
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice);
+
+// Appends a line to a file, as --json does; nothing for an empty name. Throws Error naming the file.
+void append_line(const std::filesystem::path& file, const std::string& line);
+
+// "warning(s)" of a scene: prints them after the program's name unless quiet. Throws Error if there are any and
+// is_strict, naming the file.
+void report_warnings(const std::vector<std::string>& warnings, const std::filesystem::path& scene,
+                     const std::string& program, bool is_strict, bool is_quiet);
+
+// main() of a program: what it throws goes to stderr after the program's name, and the exit status is then 1.
+template <class Run>
+int run_program(const char* program, const Run& run) {
+    try {
+        return run();
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s: %s\n", program, error.what());
+        return 1;
+    }
+}
+
+}  // namespace twinray::samples
