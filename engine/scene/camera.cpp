@@ -7,6 +7,8 @@
 #include <glm/trigonometric.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/ray.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray {
 namespace {

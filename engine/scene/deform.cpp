@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/scene/rig.h"
+#include "twinray/glsl/vector_math.h"
+#include "engine/scene/mesh.h"
 
 namespace twinray {
 namespace {

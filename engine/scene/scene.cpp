@@ -7,6 +7,8 @@
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/importers/importers.h"
+#include "twinray/glsl/vector_math.h"
+#include "engine/scene/mesh.h"
 
 namespace twinray {
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/surface_records.h"
+#include "engine/scene/mesh.h"
 
 namespace twinray::path_tracer {
 namespace {

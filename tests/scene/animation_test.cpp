@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/scene/rig.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray::test {
 namespace {

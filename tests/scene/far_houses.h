@@ -11,6 +11,7 @@
 
 #include <twinray/geometry.h>
 #include "tests/scene/gltf_builder.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray::test {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/scene/gltf_builder.h"
 #include "tests/scene/packed_bytes.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray::test {
 namespace {

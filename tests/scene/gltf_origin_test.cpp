@@ -5,6 +5,7 @@
 #include "engine/scene/rig.h"
 #include "engine/scene/glb.h"
 #include "tests/scene/far_houses.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray::test {
 namespace {

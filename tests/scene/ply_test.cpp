@@ -7,6 +7,7 @@
 
 #include "tests/scene/packed_bytes.h"
 #include "tests/scene/temp_dir.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray::test {
 namespace {

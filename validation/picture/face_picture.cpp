@@ -5,6 +5,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray {
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "validation/picture/marks.h"
+#include "twinray/glsl/vector_math.h"
 
 #include <algorithm>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "validation/picture/raster.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray {
 

@@ -4,6 +4,7 @@
 #include "engine/scene/importers/gltf_factors.h"
 #include "engine/scene/importers/gltf_layers.h"
 #include "engine/scene/importers/gltf_texture.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray {
 namespace {
