@@ -234,7 +234,8 @@ TEST(SavedTrees, RecordsThatCannotBeWalkedSafelyAreRefused) {
     expect_contains(edited([](SavedGeometry& g) { g.bvh.lo.x -= 1; }), "not the union");
     expect_contains(edited([](SavedGeometry& g) { g.records[0].b.y -= 1; }), "lies in planes");
     expect_contains(edited([&](SavedGeometry& g) { leaf_of(g, 5).a.w = LEAF_BIT | 20; }), "primitive 20 of 20");
-    expect_contains(edited([&](SavedGeometry& g) { leaf_of(g, 5).b.y ^= 1; }), "primitive 5 does not have its vertices");
+    expect_contains(edited([&](SavedGeometry& g) { leaf_of(g, 5).b.y ^= 1; }),
+                    "primitive 5 does not have its vertices");
     expect_contains(edited([](SavedGeometry& g) { g.records.pop_back(); }), "32 records for 20 primitives, not 33");
     expect_contains(edited([](SavedGeometry& g) { g.leaves.resize(1); }), "1 leaves and 33 records in layout");
     expect_contains(edited([](SavedGeometry& g) {
