@@ -10,7 +10,7 @@
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
-#include "engine/verify/draws.h"
+#include "validation/reference/draws.h"
 
 namespace twinray::bench {
 namespace {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cli/command/command.h"
+#include "engine/picture/slice_picture.h"
 #include "engine/points/point_finder.h"
 #include "engine/scene/scene.h"
 
@@ -10,9 +11,7 @@ namespace twinray::cli {
 
 struct SliceOptions {
     std::filesystem::path file;  // .png; empty: none
-    char axis = 'z';             // that the plane is perpendicular to
-    std::optional<double> at;    // the plane's place along it; none: the middle of the scene
-    uint width = 480;            // pixels of the larger side, a point each
+    SliceDesc desc = {};         // in the file's coordinates
 };
 Section slice_options(SliceOptions& options);
 

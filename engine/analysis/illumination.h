@@ -4,7 +4,7 @@
 
 #include "engine/analysis/ray_grid.h"
 #include "engine/core/progress.h"
-#include "engine/report/statistics.h"
+#include "engine/core/statistics.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"

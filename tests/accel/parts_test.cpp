@@ -11,7 +11,7 @@
 #include "engine/collide/collision_finder.h"
 #include "engine/collide/contact_finder.h"
 #include "engine/points/point_finder.h"
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {

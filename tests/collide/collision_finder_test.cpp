@@ -72,7 +72,7 @@ class CollisionFinderTest : public test::AccelTest {
   private:
     std::unique_ptr<CollisionFinder> finder_;
 };
-TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFEREE(CollisionFinderTest);
+TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFERENCE(CollisionFinderTest);
 
 TEST_P(CollisionFinderTest, FindsWhatBruteForceFindsAmongTenThousand) {
     const std::vector<Cube> cubes = random_cubes(10'000, 1, 12);

@@ -8,8 +8,8 @@
 
 #include "engine/core/parallel.h"
 #include "tests/accel/accel_fixture.h"
-#include "tests/points/point_referee.h"
-#include "tests/verify/meshes.h"
+#include "tests/points/point_reference.h"
+#include "tests/validation/reference/meshes.h"
 
 namespace twinray {
 namespace {

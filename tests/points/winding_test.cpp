@@ -6,8 +6,8 @@
 #include "engine/points/boundary.h"
 #include "engine/points/point_finder.h"
 #include "tests/accel/accel_fixture.h"
-#include "tests/points/point_referee.h"
-#include "tests/verify/meshes.h"
+#include "tests/points/point_reference.h"
+#include "tests/validation/reference/meshes.h"
 
 namespace twinray {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "engine/scene/deform.h"
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {

@@ -4,7 +4,7 @@
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include "engine/scene/shapes.h"
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "tests/points/point_reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace twinray::test {
+namespace {
+
+using Real = __float128;  // 113 bits of mantissa
+
+struct Vector {
+    Real x, y, z;
+
+    explicit Vector(const dvec3& v) : x(v.x), y(v.y), z(v.z) {}
+    Vector(Real a, Real b, Real c) : x(a), y(b), z(c) {}
+};
+Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Real dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vector cross(const Vector& a, const Vector& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+Real squared_distance_to_segment(const Vector& p, const Vector& a, const Vector& b) {
+    const Vector ab = b - a, ap = p - a;
+    const Real squared = dot(ab, ab);
+    const Real along = squared > 0 ? std::clamp<Real>(dot(ap, ab) / squared, 0, 1) : 0;
+    const Vector left(ap.x - along * ab.x, ap.y - along * ab.y, ap.z - along * ab.z);
+    return dot(left, left);
+}
+
+dvec3 placed(const Transform& m, vec3 p) {
+    const auto row = [&](std::size_t i) {
+        const dvec4 r(m.rows[i]);
+        return ((r.x * p.x + r.y * p.y) + r.z * p.z) + r.w;
+    };
+    return {row(0), row(1), row(2)};
+}
+
+}  // namespace
+
+std::vector<PlacedTriangle> placed_triangles(std::span<const MeshView> meshes,
+                                             std::span<const MeshInstance> instances) {
+    std::vector<PlacedTriangle> all;
+    for (uint i = 0; i < instances.size(); ++i) {
+        const MeshView& mesh = meshes[instances[i].mesh];
+        const Transform& m = instances[i].transform;
+        for (uint t = 0; t < mesh.triangles.size(); ++t) {
+            const uvec3 of = mesh.triangles[t];
+            const auto corner = [&](uint vertex) { return placed(m, mesh.positions[vertex]); };
+            all.push_back({{corner(of.x), corner(of.y), corner(of.z)}, i, t, determinant(m) < 0});
+        }
+    }
+    return all;
+}
+
+long double distance(const dvec3& point, const Corners64& triangle) {
+    const Vector p(point), a(triangle.a), b(triangle.b), c(triangle.c);
+    const Vector ab = b - a, ac = c - a, normal = cross(ab, ac);
+    const Real d1 = dot(ab, p - a), d2 = dot(ac, p - a), d3 = dot(ab, p - b), d4 = dot(ac, p - b);
+    const Real d5 = dot(ab, p - c), d6 = dot(ac, p - c);
+    const Real va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+    const Real height = dot(normal, p - a), area = dot(normal, normal);
+    if (area > 0 && va > 0 && vb > 0 && vc > 0) return std::sqrt(static_cast<long double>(height * height / area));
+    return std::sqrt(
+        static_cast<long double>(std::min({squared_distance_to_segment(p, a, b), squared_distance_to_segment(p, b, c),
+                                           squared_distance_to_segment(p, c, a)})));
+}
+
+double solid_winding(const dvec3& point, std::span<const PlacedTriangle> triangles) {
+    double sum = 0;
+    for (const PlacedTriangle& each : triangles) {
+        const dvec3 a = each.corners.a - point, b = each.corners.b - point, c = each.corners.c - point;
+        const double la = length(a), lb = length(b), lc = length(c);
+        const double angle =
+            2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+        sum += each.is_mirrored ? -angle : angle;
+    }
+    return sum / (4 * std::numbers::pi);
+}
+
+}  // namespace twinray::test
