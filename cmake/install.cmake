@@ -7,11 +7,7 @@ set(headers_dir ${CMAKE_INSTALL_INCLUDEDIR})
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/twinray)
 set(generated_dir ${PROJECT_BINARY_DIR}/package)
 
-install(
-    TARGETS twinray ${TWINRAY_LIBRARIES}
-    EXPORT twinrayTargets
-    INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${headers_dir}
-)
+install(TARGETS twinray ${TWINRAY_LIBRARIES} EXPORT twinrayTargets INCLUDES DESTINATION ${headers_dir})
 install(EXPORT twinrayTargets NAMESPACE twinray:: DESTINATION ${package_dir})
 if(TARGET twinray_cli)
     set_target_properties(twinray_cli PROPERTIES INSTALL_RPATH $ORIGIN/../${CMAKE_INSTALL_LIBDIR})
