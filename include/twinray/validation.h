@@ -20,6 +20,8 @@
 #include <string_view>
 #include <vector>
 
+#include <twinray/trace.h>
+
 namespace twinray {
 
 class AbstractAccel;

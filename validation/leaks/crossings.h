@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/accel/trace_desc.h"
 #include <twinray/abstract_accel.h>
 #include "engine/core/kernel.h"
 

@@ -80,7 +80,7 @@ class ReferenceBackend final : public AccelBackend {
     void record_copy(Commands& commands, Ref<T> from, Ref<T> to, std::size_t count) const;
     template <class T>
     Buffer read(Ref<T> from, std::size_t count) const;
-    ReferenceScene reference() const;
+    ReferenceScene synced_scene() const;
     void record_trace(Commands& commands, const TraceArgs& args) const;
 
     Kernel<CopyItemsArgs> copy_items_;
