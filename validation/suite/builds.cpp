@@ -8,6 +8,7 @@
 
 #include "validation/suite/builds.h"
 #include "validation/suite/scenes.h"
+#include "engine/accel/geometry.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include "validation/reference/aimed_rays.h"
