@@ -6,7 +6,7 @@
 #include <map>
 
 #include <twinray/geometry.h>
-#include "engine/verify/draws.h"
+#include "validation/reference/draws.h"
 
 namespace twinray::bench {
 namespace {

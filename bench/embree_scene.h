@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "bench/contestant.h"
+#include "bench/backend.h"
 
 namespace twinray::bench {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "engine/report/statistics.h"
+#include "engine/core/statistics.h"
 
 namespace twinray::bench {
 
@@ -26,11 +26,11 @@ double speed_up(const TraceRounds& rounds, const TraceRounds& baseline) {
     return median(std::move(ratios));
 }
 
-std::optional<double> speed_up(const LineUp& line_up, std::span<const TraceRounds> all, std::size_t place,
+std::optional<double> speed_up(const LineUp& line_up, std::span<const TraceRounds> all, std::size_t index,
                                Baseline baseline) {
     const std::optional<std::size_t> other = find(baseline, line_up);
     if (!other) return std::nullopt;
-    return speed_up(all[place], all[*other]);
+    return speed_up(all[index], all[*other]);
 }
 
 Line fit_line(std::span<const double> x, std::span<const double> y) {

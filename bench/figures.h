@@ -22,7 +22,7 @@ Spread mrays_per_s(const TraceRounds& rounds);
 // Median over the rounds of how many times as fast it was as the baseline in the same round.
 double speed_up(const TraceRounds& rounds, const TraceRounds& baseline);
 // Nothing where the baseline does not run.
-std::optional<double> speed_up(const LineUp& line_up, std::span<const TraceRounds> all, std::size_t place,
+std::optional<double> speed_up(const LineUp& line_up, std::span<const TraceRounds> all, std::size_t index,
                                Baseline baseline);
 
 // y = offset + slope * x, by least squares.

@@ -6,7 +6,7 @@
 
 #include "bench/report.h"
 #include "bench/table.h"
-#include "engine/report/statistics.h"
+#include "engine/core/statistics.h"
 
 namespace twinray::bench {
 namespace {
@@ -19,9 +19,9 @@ struct RayColumn {
 constexpr RayColumn ray_columns[] = {{"primary_ns_per_ray", "primary ns/ray", &GrowthPoint::primary},
                                      {"incoherent_ns_per_ray", "incoherent ns/ray", &GrowthPoint::incoherent}};
 
-double median_ns(const Measured& measured, RayKind kind, std::size_t contestant) {
+double median_ns(const Measured& measured, RayKind kind, std::size_t backend) {
     const auto traces = measured.traces.find(kind);
-    return traces == measured.traces.end() ? NAN : spread_of(traces->second[contestant].ns_per_ray).median;
+    return traces == measured.traces.end() ? NAN : spread_of(traces->second[backend].ns_per_ray).median;
 }
 
 std::vector<double> values_of(std::span<const GrowthPoint> points, double GrowthPoint::*value) {
@@ -52,19 +52,19 @@ std::optional<PowerLaw> build_power_of(std::span<const GrowthPoint> points) {
 
 }  // namespace
 
-GrowthPoint growth_point(const BenchScene& scene, const Measured& measured, std::size_t contestant) {
+GrowthPoint growth_point(const BenchScene& scene, const Measured& measured, std::size_t backend) {
     GrowthPoint point{.triangles = count_mesh_triangles(scene.scene)};
-    if (const std::vector<double>& ms = measured.builds[contestant].ms; !ms.empty()) {
+    if (const std::vector<double>& ms = measured.builds[backend].ms; !ms.empty()) {
         point.build_ms = spread_of(ms).median;
         point.build = point.build_ms * 1e6 / static_cast<double>(point.triangles);
     }
-    point.primary = median_ns(measured, RayKind::primary, contestant);
-    point.incoherent = median_ns(measured, RayKind::incoherent, contestant);
+    point.primary = median_ns(measured, RayKind::primary, backend);
+    point.incoherent = median_ns(measured, RayKind::incoherent, backend);
     return point;
 }
 
-void print_growth(std::ostream& out, const std::string& contestant, std::span<const GrowthPoint> points) {
-    std::vector<std::vector<std::string>> rows = {{contestant, "build ms", "ns/triangle"}};
+void print_growth(std::ostream& out, const std::string& backend, std::span<const GrowthPoint> points) {
+    std::vector<std::vector<std::string>> rows = {{backend, "build ms", "ns/triangle"}};
     for (const RayColumn& column : ray_columns) rows.back().emplace_back(column.heading);
     for (const GrowthPoint& point : points) {
         rows.push_back({std::to_string(point.triangles) + " triangles", number_text(point.build_ms, 3),

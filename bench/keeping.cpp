@@ -3,7 +3,7 @@
 
 #include <twinray/scene.h>
 
-#include "bench/accel_contestant.h"
+#include "bench/accel_backend.h"
 #include "bench/figures.h"
 #include "bench/report.h"
 #include "bench/table.h"
@@ -12,14 +12,14 @@
 namespace twinray::bench {
 namespace {
 
-struct Wish {
+struct Configuration {
     std::string name;
     AccelOptions options;
     bool moves_vertices = false;
 };
 
-std::vector<Wish> wishes_on(const DeviceFacts& device) {
-    std::vector<Wish> wishes = {
+std::vector<Configuration> configurations_on(const DeviceFacts& device) {
+    std::vector<Configuration> configurations = {
         {"needed", {.can_move = false}},
         {"may move", {}},
         {"vertices moved", {.can_move = false}, true},
@@ -28,10 +28,10 @@ std::vector<Wish> wishes_on(const DeviceFacts& device) {
         {"layout bvh2", {.layout = Layout::bvh2, .can_move = false}},
     };
     if (SwTlas::capability_on(device, Feature::level_refined).support != Support::unsupported)
-        wishes.push_back({"level refined", {.level = Level::refined, .can_move = false}});
+        configurations.push_back({"level refined", {.level = Level::refined, .can_move = false}});
     if (SwTlas::capability_on(device, Feature::level_certified).support != Support::unsupported)
-        wishes.push_back({"level certified", {.level = Level::certified, .can_move = false}});
-    return wishes;
+        configurations.push_back({"level certified", {.level = Level::certified, .can_move = false}});
+    return configurations;
 }
 
 double sync_ms(SwTlas& accel) {
@@ -48,12 +48,12 @@ void move_vertices(SwTlas& accel, const Scene& scene, std::span<const AccelHandl
             accel.update_vertices(handles[pushed++], scene.meshes[scene.instances[i].mesh].positions);
 }
 
-void measure_round(Context& context, const Scene& scene, const Wish& wish, Keeping& keeping) {
-    SwTlas accel(context, wish.options);
+void measure_round(Context& context, const Scene& scene, const Configuration& configuration, Keeping& keeping) {
+    SwTlas accel(context, configuration.options);
     const std::vector<AccelHandle> handles = push_scene(accel, scene);
     double ms = sync_ms(accel);
     // The first move pays for later ones: it copies the mesh and measures the tree as it was built.
-    for (int moves = 0; wish.moves_vertices && moves < 2; ++moves) {
+    for (int moves = 0; configuration.moves_vertices && moves < 2; ++moves) {
         move_vertices(accel, scene, handles);
         ms = sync_ms(accel);
     }
@@ -74,11 +74,13 @@ std::vector<std::pair<const char*, double>> shares_of(const MemoryUsage& usage, 
 }  // namespace
 
 std::vector<Keeping> measure_keepings(Context& context, const BenchScene& scene, std::size_t rounds) {
-    const std::vector<Wish> wishes = wishes_on(context.facts());
+    const std::vector<Configuration> configurations = configurations_on(context.facts());
     std::vector<Keeping> keepings;
-    for (const Wish& wish : wishes) keepings.push_back({.name = wish.name, .usage = {}, .build_ms = {}});
+    for (const Configuration& configuration : configurations)
+        keepings.push_back({.name = configuration.name, .usage = {}, .build_ms = {}});
     for (std::size_t round = 0; round < rounds + 1; ++round)
-        for (std::size_t i = 0; i < wishes.size(); ++i) measure_round(context, scene.scene, wishes[i], keepings[i]);
+        for (std::size_t i = 0; i < configurations.size(); ++i)
+            measure_round(context, scene.scene, configurations[i], keepings[i]);
     // Drivers compile kernels in the first round.
     for (Keeping& keeping : keepings) keeping.build_ms.erase(keeping.build_ms.begin());
     return keepings;

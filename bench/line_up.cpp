@@ -3,35 +3,33 @@
 
 #include <algorithm>
 
-#include "bench/accel_contestant.h"
-#include "bench/embree_contestant.h"
+#include "bench/accel_backend.h"
+#include "bench/embree_backend.h"
 #include "engine/core/error.h"
 #include <twinray/tlas.h>
 
 namespace twinray::bench {
 namespace {
 
-constexpr const char* level_names[] = {"fast", "watertight", "refined", "certified"};
-
 bool is_named(const std::string& name, const std::vector<std::string>& only) {
     return only.empty() || std::any_of(only.begin(), only.end(),
                                        [&](const std::string& part) { return name.find(part) != std::string::npos; });
 }
 
-class Maker {
+class LineUpFactory {
   public:
-    explicit Maker(const LineUpOptions& options) : options_(options) {}
+    explicit LineUpFactory(const LineUpOptions& options) : options_(options) {}
 
     void add_software(Context& context, const AccelOptions& accel) {
         const std::string layout(twinray::name_of(accel.layout)), quality(twinray::name_of(accel.build_quality));
         const std::string built = accel.build_quality == BuildQuality::fast ? layout : text(layout, ' ', quality);
-        add({.name = text("sw ", built, ' ', level_name(accel.level)),
+        add({.name = text("sw ", built, ' ', name_of(accel.level)),
              .backend = "sw",
              .path = "compute",
              .order = "",
              .layout = layout,
              .builder = quality,
-             .level = level_name(accel.level)},
+             .level = std::string(name_of(accel.level))},
             accel.level, [&context, accel] { return std::make_unique<SwTlas>(context, accel); });
     }
 
@@ -47,26 +45,26 @@ class Maker {
         if (HwTlas::capability_on(context.facts(), feature_of(level)).support == Support::unsupported) return;
         const HwTlas probe(context, order);
         const char* path = context.facts().ray_query ? "query" : "pipeline";
-        add({.name = order == BuildOrder::input ? "hw query input order" : text("hw ", path, ' ', level_name(level)),
+        add({.name = order == BuildOrder::input ? "hw query input order" : text("hw ", path, ' ', name_of(level)),
              .backend = "hw",
              .path = probe.trace_path(),
              .order = probe.reorders() ? "sorted" : "input",
              .layout = "driver",
              .builder = "driver",
-             .level = level_name(level)},
+             .level = std::string(name_of(level))},
             level, [&context, order, level] { return std::make_unique<HwTlas>(context, order, AccelOptions{level}); });
     }
 
     LineUp line_up;
 
   private:
-    void add(const Labels& labels, Level level, const AccelContestant::Make& make) {
+    void add(const Labels& labels, Level level, const AccelBackend::Make& make) {
         for (const RayOrder order : options_.ray_orders) {
             Labels ordered = labels;
             ordered.ray_order = twinray::name_of(order);
             if (order == RayOrder::sorted) ordered.name += " sorted";
             if (is_named(ordered.name, options_.only))
-                line_up.push_back(std::make_unique<AccelContestant>(std::move(ordered), level, order, make));
+                line_up.push_back(std::make_unique<AccelBackend>(std::move(ordered), level, order, make));
         }
     }
 
@@ -86,22 +84,20 @@ bool is(Baseline baseline, const Labels& labels) {
 
 }  // namespace
 
-const char* level_name(Level level) { return level_names[static_cast<std::size_t>(level)]; }
-
 LineUp make_line_up(Context& context, Context* pipeline, const LineUpOptions& options) {
-    Maker maker(options);
+    LineUpFactory factory(options);
     for (const Layout layout : options.layouts)
         for (const BuildQuality quality : options.build_qualities)
             for (const Level level : options.levels)
-                maker.add_software(context,
-                                   {.level = level, .layout = layout, .build_quality = quality, .can_move = false});
-    maker.add_hardware(context);
-    if (pipeline) maker.add_hardware(*pipeline, BuildOrder::automatic, options.levels.front());
-    LineUp line_up = std::move(maker.line_up);
+                factory.add_software(context,
+                                     {.level = level, .layout = layout, .build_quality = quality, .can_move = false});
+    factory.add_hardware(context);
+    if (pipeline) factory.add_hardware(*pipeline, BuildOrder::automatic, options.levels.front());
+    LineUp line_up = std::move(factory.line_up);
     if (options.has_embree)
-        for (auto& contestant : embree_line_up([&](const std::string& name) { return is_named(name, options.only); }))
-            line_up.push_back(std::move(contestant));
-    if (line_up.empty()) fail("bench: no contestant's name has a part '", joined(options.only), "'");
+        for (auto& backend : embree_line_up([&](const std::string& name) { return is_named(name, options.only); }))
+            line_up.push_back(std::move(backend));
+    if (line_up.empty()) fail("bench: no backend's name has a part '", joined(options.only), "'");
     return line_up;
 }
 

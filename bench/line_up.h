@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/contestant.h"
+#include "bench/backend.h"
 #include "engine/accel/trace_desc.h"
 #include "engine/core/context.h"
 
@@ -17,12 +17,9 @@ struct LineUpOptions {
     std::vector<Layout> layouts = {all_layouts.begin(), all_layouts.end()};
     std::vector<BuildQuality> build_qualities = {BuildQuality::fast};
     std::vector<RayOrder> ray_orders = {RayOrder::given};
-    std::vector<std::string> only = {};  // parts of names: a contestant runs that has one of them; none: all run
+    std::vector<std::string> only = {};  // parts of names: a backend runs that has one of them; none: all run
     bool has_embree = true;
 };
-
-// "fast", "watertight", ...
-const char* level_name(Level level);
 
 // SwTlas in each layout and build quality at each level, its instances standing still; HwTlas at each level it has, and
 // with input in the given order where the driver builds in that order; HwTlas by ray tracing pipeline in `pipeline`, a
@@ -30,10 +27,10 @@ const char* level_name(Level level);
 // Contexts must outlive it. Throws Error if none is left of `only`.
 LineUp make_line_up(Context& context, Context* pipeline, const LineUpOptions& options);
 
-// Whose times others are given in: the first contestant at the first level by ray query with sorted input, ...
+// Whose times others are given in: the first backend at the first level by ray query with sorted input, ...
 enum class Baseline : std::uint8_t { sorted_query, input_query, pipeline, embree8, software };
 inline constexpr std::size_t baseline_count = 5;
-// Its place in the line-up; nothing if it does not run.
+// Its index in the line-up; nothing if it does not run.
 std::optional<std::size_t> find(Baseline baseline, const LineUp& line_up);
 
 }  // namespace twinray::bench

@@ -13,31 +13,31 @@ RayBatch part_of(const RayBatch& rays, std::size_t tiles) {
     return {even_tiles(rays.rays(), tiles), rays.query(), rays.is_coherent()};
 }
 
-// What one contestant traces.
+// What one backend traces.
 class Turn {
   public:
-    Turn(Contestant& contestant, const RayBatch& rays, double max_ms) : contestant_(contestant), all_(rays) {
-        const std::size_t tiles = affordable_tiles(contestant, rays, max_ms);
+    Turn(Backend& backend, const RayBatch& rays, double max_ms) : backend_(backend), all_(rays) {
+        const std::size_t tiles = affordable_tiles(backend, rays, max_ms);
         if (tiles < count_tiles(rays.rays().size())) part_ = part_of(rays, tiles);
     }
 
     // The first trace: its time does not count, its hits do.
-    TraceRounds warm_up(const Judge* judge) {
-        contestant_.trace(batch());
-        const std::vector<Hit> hits = contestant_.hits(batch());
+    TraceRounds warm_up(const HitCheck* hit_check) {
+        backend_.trace(batch());
+        const std::vector<Hit> hits = backend_.hits(batch());
         TraceRounds rounds{.n = hits.size(), .ns_per_ray = {}, .hash = {}, .soundness = {}};
         if (!part_) rounds.hash = hash_of(hits, all_.query());
-        const bool is_ours = contestant_.labels().backend == "sw";
-        if (judge) rounds.soundness = judge->judge(batch().rays(), hits, all_.query(), is_ours);
+        const bool is_ours = backend_.labels().backend == "sw";
+        if (hit_check) rounds.soundness = hit_check->check(batch().rays(), hits, all_.query(), is_ours);
         return rounds;
     }
 
-    double ns_per_ray() { return contestant_.trace(batch()) * 1e6 / static_cast<double>(batch().rays().size()); }
+    double ns_per_ray() { return backend_.trace(batch()) * 1e6 / static_cast<double>(batch().rays().size()); }
 
   private:
     const RayBatch& batch() const { return part_ ? *part_ : all_; }
 
-    Contestant& contestant_;
+    Backend& backend_;
     const RayBatch& all_;
     std::optional<RayBatch> part_;
 };
@@ -61,9 +61,9 @@ std::vector<TraceRounds> measure_traces(LineUp& line_up, const RayBatch& rays, c
                                         const Step& step) {
     std::vector<Turn> turns;
     std::vector<TraceRounds> results;
-    for (const auto& contestant : line_up) {
-        turns.emplace_back(*contestant, rays, settings.max_ms);
-        results.push_back(turns.back().warm_up(settings.judge));
+    for (const auto& backend : line_up) {
+        turns.emplace_back(*backend, rays, settings.max_ms);
+        results.push_back(turns.back().warm_up(settings.hit_check));
         step();
     }
     for (std::size_t round = 0; round < settings.rounds; ++round)
@@ -74,12 +74,12 @@ std::vector<TraceRounds> measure_traces(LineUp& line_up, const RayBatch& rays, c
     return results;
 }
 
-std::size_t affordable_tiles(Contestant& contestant, const RayBatch& rays, double max_ms) {
+std::size_t affordable_tiles(Backend& backend, const RayBatch& rays, double max_ms) {
     constexpr std::size_t least = 4, growth = 16;
     const std::size_t all = count_tiles(rays.rays().size());
-    contestant.trace(part_of(rays, least));
+    backend.trace(part_of(rays, least));
     for (std::size_t tiles = std::min(least, all);; tiles *= growth) {
-        const double ms = contestant.trace(part_of(rays, tiles));
+        const double ms = backend.trace(part_of(rays, tiles));
         const double affordable = static_cast<double>(tiles) * max_ms / std::max(ms, 1e-3);
         const std::size_t next = std::min({all, tiles * growth, static_cast<std::size_t>(affordable)});
         if (next < tiles * growth || next == all) return std::max(next, std::min(least, all));

@@ -1,46 +1,46 @@
 // SPDX-License-Identifier: MIT
-// Rounds in which each contestant has its turn, so that what slows the machine down slows all of them.
+// Rounds in which each backend has its turn, so that what slows the machine down slows all of them.
 #pragma once
 
 #include <functional>
 #include <optional>
 
-#include "bench/contestant.h"
-#include "bench/judge.h"
+#include "bench/backend.h"
+#include "bench/hit_check.h"
 
 namespace twinray::bench {
 
 // Called after each step of work.
 using Step = std::function<void()>;
 
-// One contestant's builds.
+// One backend's builds.
 struct BuildRounds {
     std::vector<double> ms, wall_ms;  // by round
     BuildFigures last;
 };
 
-// Builds everybody once to warm up, then `rounds` times; what was built last stays. By contestant.
+// Builds everybody once to warm up, then `rounds` times; what was built last stays. By backend.
 std::vector<BuildRounds> measure_builds(LineUp& line_up, const Scene& scene, std::size_t rounds, const Step& step);
 
-// One contestant's traces of a set of rays.
+// One backend's traces of a set of rays.
 struct TraceRounds {
     std::size_t n = 0;                   // rays of the set that were traced
     std::vector<double> ns_per_ray;      // by round
     std::optional<std::uint64_t> hash;   // of the hits, if all rays were traced
-    std::optional<Soundness> soundness;  // if there was a judge
+    std::optional<Soundness> soundness;  // if there was a hit_check
 };
 
 struct TraceSettings {
     std::size_t rounds = 5;
-    double max_ms = 1000;  // a contestant that needs longer for a trace of all rays traces even_tiles of them
-    const Judge* judge = nullptr;
+    double max_ms = 1000;  // a backend that needs longer for a trace of all rays traces even_tiles of them
+    const HitCheck* hit_check = nullptr;
 };
 
 std::vector<TraceRounds> measure_traces(LineUp& line_up, const RayBatch& rays, const TraceSettings& settings,
                                         const Step& step);
 
-// How many of all tiles a contestant traces within max_ms, at least 4: from traces of growing numbers of tiles, the
+// How many of all tiles a backend traces within max_ms, at least 4: from traces of growing numbers of tiles, the
 // first of which compiles kernels and does not count.
-std::size_t affordable_tiles(Contestant& contestant, const RayBatch& rays, double max_ms);
+std::size_t affordable_tiles(Backend& backend, const RayBatch& rays, double max_ms);
 
 }  // namespace twinray::bench

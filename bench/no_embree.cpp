@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench/embree_contestant.h"
+#include "bench/embree_backend.h"
 
 namespace twinray::bench {
 

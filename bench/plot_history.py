@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Draws how rates and their ratios have changed: plot_history.py HISTORY.jsonl -o PICTURE.svg|.png. A row for each scene and
-figure, a column for each set of rays, a line for each contestant, a step to the right for each run."""
+figure, a column for each set of rays, a line for each backend, a step to the right for each run."""
 import argparse
 import json
 import sys
@@ -23,16 +23,16 @@ with open(options.history, encoding="utf-8") as lines:
     records = [record for record in map(json.loads, lines) if "mrays_per_s" in record]
 if not records:
     sys.exit(f"plot_history: {options.history} has no record of a trace")
-scenes, kinds, contestants = (sorted({r[key] for r in records}) for key in ("scene", "rays", "contestant"))
+scenes, kinds, backends = (sorted({r[key] for r in records}) for key in ("scene", "rays", "contestant"))
 rows = [(scene, figure) for scene in scenes for figure in FIGURES]
-color = {name: matplotlib.colormaps["tab20"](i % 20) for i, name in enumerate(contestants)}
+color = {name: matplotlib.colormaps["tab20"](i % 20) for i, name in enumerate(backends)}
 
 drawing, grid = pyplot.subplots(len(rows), len(kinds), figsize=(5 * len(kinds), 2.6 * len(rows)), squeeze=False)
 for axes_of_row, (scene, figure) in zip(grid, rows):
     of_scene = [r for r in records if r["scene"] == scene]
     runs = sorted({(r["started"], r["git"]) for r in of_scene})
     for axes, kind in zip(axes_of_row, kinds):
-        for name in contestants:
+        for name in backends:
             points = sorted((runs.index((r["started"], r["git"])), r[figure]) for r in of_scene
                             if (r["rays"], r["contestant"]) == (kind, name) and r[figure] is not None)
             if points:

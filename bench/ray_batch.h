@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays that contestants trace, on the host and on the devices of those that want them there.
+// Rays that backends trace, on the host and on the devices of those that want them there.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@ namespace twinray::bench {
 
 class RayBatch {
   public:
-    // `is_coherent`: neighbours go the same way, which some contestants want to be told.
+    // `is_coherent`: neighbours go the same way, which some backends want to be told.
     RayBatch(std::vector<Ray> rays, Query query, bool is_coherent)
         : rays_(std::move(rays)), query_(query), is_coherent_(is_coherent) {}
 

@@ -7,8 +7,8 @@
 
 #include "engine/accel/spawn.h"
 #include "engine/core/error.h"
-#include "engine/verify/aimed_rays.h"
-#include "engine/verify/draws.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/reference/draws.h"
 #include <twinray/tlas.h>
 
 namespace twinray::bench {

@@ -37,14 +37,14 @@ nlohmann::json or_null(const std::optional<T>& value) {
     return value ? nlohmann::json(*value) : nlohmann::json();
 }
 
-Row trace_row(const Results& results, std::span<const TraceRounds> traces, std::size_t place) {
-    const TraceRounds& rounds = traces[place];
+Row trace_row(const Results& results, std::span<const TraceRounds> traces, std::size_t index) {
+    const TraceRounds& rounds = traces[index];
     const Spread rate = mrays_per_s(rounds);
-    Row row = {results.line_up[place]->labels().name, number_text(rate.median, 3), range(rate),
+    Row row = {results.line_up[index]->labels().name, number_text(rate.median, 3), range(rate),
                std::to_string(rounds.n)};
     for (const BaselineNames& names : baselines) {
         if (!names.heading || !find(names.baseline, results.line_up)) continue;
-        row.push_back(number_text(*speed_up(results.line_up, traces, place, names.baseline), 3));
+        row.push_back(number_text(*speed_up(results.line_up, traces, index, names.baseline), 3));
     }
     const std::optional<Soundness>& soundness = rounds.soundness;
     row.push_back(soundness ? fixed_text(100 * soundness->sound, 4) : "-");

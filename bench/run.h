@@ -21,12 +21,12 @@ struct RunOptions {
     bool quiet = false;  // no progress bar
 };
 
-// Scenes with more triangles in their meshes are not judged: the referee would take longer than all measurements.
-inline constexpr std::size_t most_judged_triangles = 3'000'000;
+// Scenes with more triangles in their meshes are not checked: the reference would take longer than all measurements.
+inline constexpr std::size_t most_checked_triangles = 3'000'000;
 
 struct Measured {
-    std::vector<BuildRounds> builds;                     // by contestant
-    std::map<RayKind, std::vector<TraceRounds>> traces;  // by contestant
+    std::vector<BuildRounds> builds;                     // by backend
+    std::map<RayKind, std::vector<TraceRounds>> traces;  // by backend
 };
 
 Measured measure(Context& context, LineUp& line_up, const BenchScene& scene, const RunOptions& options);

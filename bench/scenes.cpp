@@ -11,7 +11,7 @@
 #include "bench/displaced_sphere.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/verify/draws.h"
+#include "validation/reference/draws.h"
 
 namespace twinray::bench {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What slow contestants trace of a set of rays.
+// What slow backends trace of a set of rays.
 #pragma once
 
 #include <span>

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/places.h"
+#include "cli/coordinates.h"
 #include "cli/ray_grid_options.h"
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
@@ -23,8 +23,8 @@ struct CentroidOptions {
 void write(const std::filesystem::path& file, const Centroid& result, const dvec3& origin) {
     CsvFile csv(file, "x,y,z");
     for (const dvec3& point : result.points) {
-        const dvec3 place = origin + point;
-        csv.row({}, {place.x, place.y, place.z});
+        const dvec3 point_in_file = origin + point;
+        csv.row({}, {point_in_file.x, point_in_file.y, point_in_file.z});
     }
     csv.close();
 }
@@ -32,7 +32,8 @@ void write(const std::filesystem::path& file, const Centroid& result, const dvec
 void print(const CentroidOptions& options, const Analysed& analysed, const Centroid& result, double seconds) {
     std::cout << analysed.head("centroid", options.analysis) << "  " << speed_text(result.ray_count, seconds) << "\n  ";
     if (result.mean) {
-        std::cout << "mean of " << result.point_count << " points: " << place_text(*result.mean, analysed.scene.origin);
+        std::cout << "mean of " << result.point_count
+                  << " points: " << coordinate_text(*result.mean, analysed.scene.origin);
         if (result.standard_error) std::cout << ", standard error " << text_of(*result.standard_error);
         std::cout << '\n';
     } else {
@@ -49,7 +50,7 @@ ScenePicture picture_of(const CentroidOptions& options, const Analysed& analysed
     picture.page.subtitle = "no ray hits anything";
     if (result.mean)
         picture.page.subtitle =
-            text("mean of ", result.point_count, " points: ", place_text(*result.mean, analysed.scene.origin));
+            text("mean of ", result.point_count, " points: ", coordinate_text(*result.mean, analysed.scene.origin));
     picture.page.legend.entries = {{categorical::vermilion, "mean"}, {categorical::blue, "points"}};
     picture.colors.assign(count_triangles(analysed.scene), plain_color);
     const std::size_t count = std::min(result.points.size(), most_points);
@@ -84,14 +85,13 @@ void run(const CentroidOptions& options) {
     if (!options.analysis.common.quiet) print(options, analysed, result, seconds);
     std::optional<dvec3> mean = result.mean;
     if (mean) *mean += analysed.scene.origin;
-    nlohmann::json record = {{"schema", "twinray-centroid/1"},
-                             {"n", result.ray_count},
+    nlohmann::json record = {{"n", result.ray_count},
                              {"points_hit", result.point_count},
                              {"mean", list_or_null(mean)},
                              {"standard_error", list_or_null(result.standard_error)},
                              {"seconds", seconds}};
     record.update(options.grid.record());
-    record.update(analysed.record(options.analysis));
+    record.update(analysed.record("twinray-centroid/1", options.analysis));
     append_json(options.analysis.common.json, record);
 }
 

@@ -8,7 +8,6 @@
 #include "cli/collide_picture.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
-#include "cli/places.h"
 #include "engine/core/error.h"
 
 namespace twinray::cli {
@@ -61,15 +60,10 @@ void run_broad(const CollideOptions& options) {
     if (!options.common.quiet)
         std::cout << scene.instances.size() << " instances, " << pairs.size() << " pairs of boxes overlap, " << seconds
                   << " s with copies, " << text_of(choice) << '\n';
-    nlohmann::json record = {{"schema", "twinray-collide/1"},
-                             {"device", describe(*context)},
-                             {"scene", options.scene.string()},
-                             {"origin", list_of(scene.origin)},
-                             {"phase", "broad"},
-                             {"instances", scene.instances.size()},
-                             {"pairs", pairs.size()},
-                             {"seconds", seconds}};
+    nlohmann::json record = base_record("twinray-collide/1", *context, options.scene, scene);
     record.update(describe(choice));
+    record.update(
+        {{"phase", "broad"}, {"instances", scene.instances.size()}, {"pairs", pairs.size()}, {"seconds", seconds}});
     append_json(options.common.json, record);
 }
 
@@ -109,23 +103,21 @@ void run_exact(const CollideOptions& options) {
              text(contacts.list.size(), " pairs of triangles touch or intersect"));
     const nlohmann::json counts = counts_of(contacts);
     if (!options.common.quiet) print(scene, contacts, counts);
-    append_json(options.common.json, {{"schema", "twinray-collide/1"},
-                                      {"device", describe(*context)},
-                                      {"scene", options.scene.string()},
-                                      {"origin", list_of(scene.origin)},
-                                      {"phase", "exact"},
-                                      {"self", options.contacts.self},
-                                      {"weld", options.contacts.shared == SharedVertices::by_position},
-                                      {"instances", scene.instances.size()},
-                                      {"instances_near", contacts.instances},
-                                      {"triangles", contacts.triangles},
-                                      {"candidates", contacts.candidates},
-                                      {"contacts", contacts.list.size()},
-                                      {"classes", counts},
-                                      {"host_decided", contacts.host_decided},
-                                      {"search_seconds", contacts.search_seconds},
-                                      {"classify_seconds", contacts.classify_seconds},
-                                      {"host_seconds", contacts.host_seconds}});
+    nlohmann::json record = base_record("twinray-collide/1", *context, options.scene, scene);
+    record.update({{"phase", "exact"},
+                   {"self", options.contacts.self},
+                   {"weld", options.contacts.shared == SharedVertices::by_position},
+                   {"instances", scene.instances.size()},
+                   {"instances_near", contacts.instances},
+                   {"triangles", contacts.triangles},
+                   {"candidates", contacts.candidates},
+                   {"contacts", contacts.list.size()},
+                   {"classes", counts},
+                   {"host_decided", contacts.host_decided},
+                   {"search_seconds", contacts.search_seconds},
+                   {"classify_seconds", contacts.classify_seconds},
+                   {"host_seconds", contacts.host_seconds}});
+    append_json(options.common.json, record);
 }
 
 void run(const CollideOptions& options) {

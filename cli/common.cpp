@@ -12,6 +12,7 @@
 
 #include "cli/command/values.h"
 #include "validation/suite/suite.h"
+#include "cli/coordinates.h"
 #include "engine/core/error.h"
 #include "engine/scene/local_origin.h"
 #include <twinray/tlas.h>
@@ -65,20 +66,12 @@ Option accel_option(std::string& request, const std::string& what) {
 
 Option level_option(Level& level, const std::string& help) {
     return {.name = "--level",
-            .value = choice(level, levels_by_name()),
+            .value = choice(level, names_of(all_levels)),
             .help = help +
                     ": fast may lose rays at edges, at 0.9 to 1 of the time of watertight, which loses none; refined "
                     "computes t, u, v in float64, at 1.02 to 1.11 of the time; certified decides hits and their order "
                     "in float64, at 1.1 to 1.4, by software alone"};
 }
-
-std::vector<std::pair<std::string, Level>> levels_by_name() {
-    Names<Level> levels;
-    for (const Level level : suite::all_levels) levels.emplace_back(name_of(level), level);
-    return levels;
-}
-
-std::string name_of(Level level) { return std::string(suite::name(level)); }
 
 std::vector<Option> tree_options(AccelOptions& options) {
     return {{.name = "--layout",
@@ -148,13 +141,10 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::string api_version(const Context& context) {
-    const std::uint32_t api = context.facts().api_version;
-    return text(VK_API_VERSION_MAJOR(api), ".", VK_API_VERSION_MINOR(api), ".", VK_API_VERSION_PATCH(api));
-}
-
-nlohmann::json describe(const Context& context) {
-    return {{"name", context.facts().name}, {"driver", context.facts().driver}, {"api", api_version(context)}};
+nlohmann::json base_record(const char* schema, const Context& context, const std::filesystem::path& file,
+                           const Scene& scene) {
+    return {
+        {"schema", schema}, {"device", describe(context)}, {"scene", file.string()}, {"origin", list_of(scene.origin)}};
 }
 
 nlohmann::json describe(const AccelChoice& choice) { return {{"backend", choice.name()}, {"backend_why", choice.why}}; }

@@ -12,6 +12,7 @@
 
 #include "cli/command/command.h"
 #include <twinray/tlas.h>
+#include "validation/records/recorded_device.h"
 
 namespace twinray {
 class AbstractAccel;
@@ -43,10 +44,8 @@ Option scene_argument(std::filesystem::path& file);
 Option output_option(Value value, const std::string& help);
 // --accel auto|sw|hw, for choose_accel(). `what`: "what traces".
 Option accel_option(std::string& request, const std::string& what = "what traces");
-// --level, which says what each costs; and the levels by their names.
+// --level, which says what each costs.
 Option level_option(Level& level, const std::string& help = "of the triangle test");
-std::vector<std::pair<std::string, Level>> levels_by_name();
-std::string name_of(Level level);
 // --layout and --build-quality
 std::vector<Option> tree_options(AccelOptions& options);
 
@@ -68,12 +67,11 @@ void check_writable(const std::filesystem::path& file);  // its folder exists: b
 
 double seconds_since(std::chrono::steady_clock::time_point start);
 
-// "1.4.305".
-std::string api_version(const Context& context);
-
 // Appends one line; does nothing for an empty path.
 void append_json(const std::filesystem::path& file, const nlohmann::json& record);
-nlohmann::json describe(const Context& context);
+// What records of a scene begin with: "schema", "device", "scene" and "origin".
+nlohmann::json base_record(const char* schema, const Context& context, const std::filesystem::path& file,
+                           const Scene& scene);
 nlohmann::json describe(const AccelChoice& choice);  // "backend" and "backend_why"
 // "by SwTlas (device 'llvmpipe' is a CPU, without hardware for rays)".
 std::string text_of(const AccelChoice& choice);

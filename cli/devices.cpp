@@ -13,7 +13,7 @@
 namespace twinray::cli {
 namespace {
 
-std::string verdict(const std::vector<std::string>& missing, const std::string& able) {
+std::string answer(const std::vector<std::string>& missing, const std::string& able) {
     return missing.empty() ? able : "no: lacks " + joined(missing);
 }
 
@@ -91,9 +91,9 @@ void print_devices(const std::filesystem::path& json) {
                   << name_of(device.kind) << ")\n"
                   << "     driver  " << device.driver << ", Vulkan " << VK_API_VERSION_MAJOR(api) << '.'
                   << VK_API_VERSION_MINOR(api) << '.' << VK_API_VERSION_PATCH(api) << '\n'
-                  << "     SwTlas  " << verdict(missing_for_software(device), "yes") << '\n';
+                  << "     SwTlas  " << answer(missing_for_software(device), "yes") << '\n';
         if (missing_for_software(device).empty()) print_capabilities(device, SwTlas::capability_on);
-        std::cout << "     HwTlas  " << verdict(missing_for_hardware(device), hardware_able(device)) << '\n';
+        std::cout << "     HwTlas  " << answer(missing_for_hardware(device), hardware_able(device)) << '\n';
         if (missing_for_hardware(device).empty()) print_capabilities(device, HwTlas::capability_on);
         if (missing_for_software(device).empty())
             std::cout << "     --accel auto traces " << text_of(choose_accel(device, "auto")) << '\n';

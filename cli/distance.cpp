@@ -12,9 +12,7 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/distance_slice.h"
-#include "cli/npz.h"
-#include "cli/picture_options.h"
-#include "cli/places.h"
+#include "engine/core/npz.h"
 #include "cli/query_points.h"
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
@@ -49,11 +47,11 @@ void write_csv(const std::filesystem::path& file, const std::vector<ClosestPoint
     std::ofstream out = open_table(file, "point,distance,x,y,z,instance,triangle");
     for (std::size_t i = 0; i < found.size(); ++i) {
         const ClosestPoint& of = found[i];
-        const dvec3 place = origin + of.position;
+        const dvec3 point_in_file = origin + of.position;
         out << i << ',';
         if (of.is_found)
-            out << of.distance << ',' << place.x << ',' << place.y << ',' << place.z << ',' << of.instance << ','
-                << of.triangle << '\n';
+            out << of.distance << ',' << point_in_file.x << ',' << point_in_file.y << ',' << point_in_file.z << ','
+                << of.instance << ',' << of.triangle << '\n';
         else
             out << "inf,,,,,\n";
     }
@@ -112,10 +110,12 @@ struct Search {
         build_seconds = seconds_since(start);
     }
     nlohmann::json record(const DistanceOptions& options, double seconds) const {
-        return {{"schema", "twinray-distance/1"},      {"device", describe(*context)},
-                {"scene", options.scene.string()},     {"origin", list_of(scene.origin)},
-                {"triangles", query.triangle_count()}, {"n", points.size()},
-                {"build_seconds", build_seconds},      {"seconds", seconds}};
+        nlohmann::json record = base_record("twinray-distance/1", *context, options.scene, scene);
+        record.update({{"triangles", query.triangle_count()},
+                       {"n", points.size()},
+                       {"build_seconds", build_seconds},
+                       {"seconds", seconds}});
+        return record;
     }
     void print(double seconds) const {
         std::cout << points.size() << " points, " << query.triangle_count() << " triangles: built in " << build_seconds

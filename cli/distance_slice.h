@@ -7,14 +7,13 @@
 #include "cli/command/command.h"
 #include <twinray/scene.h>
 
+#include "validation/picture/slice_picture.h"
 
 namespace twinray::cli {
 
 struct SliceOptions {
     std::filesystem::path file;  // .png; empty: none
-    char axis = 'z';             // that the plane is perpendicular to
-    std::optional<double> at;    // the plane's place along it; none: the middle of the scene
-    uint width = 480;            // pixels of the larger side, a point each
+    SliceDesc desc = {};         // in the file's coordinates
 };
 Section slice_options(SliceOptions& options);
 

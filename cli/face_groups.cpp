@@ -5,7 +5,7 @@
 #include <iomanip>
 
 #include "cli/command/values.h"
-#include "cli/number_lines.h"
+#include "engine/scene/number_lines.h"
 #include "engine/core/error.h"
 
 namespace twinray::cli {

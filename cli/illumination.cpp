@@ -106,13 +106,17 @@ void run(const IlluminationOptions& options) {
     if (!options.analysis.pictures.files.empty())
         write_pictures(options.analysis.pictures, *analysed.accel, analysed.scene, picture_of(options, faces, result));
     if (!options.analysis.common.quiet) print(options, analysed, result, seconds);
-    nlohmann::json record = {{"schema", "twinray-illumination/1"}, {"sides", name_in(sides_by_name, options.sides)},
-                             {"by", name_of(options.groups.by)},   {"n", result.ray_count},
-                             {"hits", result.total.hits},          {"cell_area", result.cell_area},
-                             {"area", result.total.area},          {"unobstructed", result.total.unobstructed},
-                             {"surface", result.total.surface},    {"seconds", seconds}};
+    nlohmann::json record = {{"sides", name_in(sides_by_name, options.sides)},
+                             {"by", name_of(options.groups.by)},
+                             {"n", result.ray_count},
+                             {"hits", result.total.hits},
+                             {"cell_area", result.cell_area},
+                             {"area", result.total.area},
+                             {"unobstructed", result.total.unobstructed},
+                             {"surface", result.total.surface},
+                             {"seconds", seconds}};
     record.update(options.grid.record());
-    record.update(analysed.record(options.analysis));
+    record.update(analysed.record("twinray-illumination/1", options.analysis));
     if (options.grid.points == GridPoints::random)
         record.update({{"ci_low", result.total.interval.low}, {"ci_high", result.total.interval.high}});
     append_json(options.analysis.common.json, record);

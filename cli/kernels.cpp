@@ -6,12 +6,8 @@
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
-#include "cli/kernels/builds.h"
-#include "cli/kernels/family.h"
-#include "cli/kernels/kernel_list.h"
-#include "cli/kernels/limits.h"
 #include "engine/core/error.h"
-#include "engine/core/parallel.h"
+#include "validation/kernels/compile.h"
 
 namespace twinray::cli {
 namespace {
@@ -22,64 +18,35 @@ struct KernelsOptions {
     std::filesystem::path against, json;
 };
 
-bool fits(const ListedKernel& kernel, const std::string& filter) {
-    return (kernel.name + ' ' + kernel.variant).find(filter) != std::string::npos;
+void report(const KernelsOptions& options, const kernels::CompiledKernels& of) {
+    std::cout << of.device << ": " << of.name << ", " << of.driver << "\n\n"
+              << table_of(std::span(of.rows)) << std::endl;
+    append_json(options.json, {{"device", of.device}, {"name", of.name}, {"driver", of.driver}});
+    for (const kernels::KernelRow& row : of.rows) append_json(options.json, to_json(row));
+    if (of.builds.empty()) return;
+    std::cout << "SwTlas, one mesh of " << kernels::build_triangles << " triangles and one instance:\n\n"
+              << table_of(std::span(of.builds)) << std::endl;
+    for (const kernels::BuildRow& row : of.builds) append_json(options.json, to_json(row, of.device));
 }
 
-// In the order of the list. Each pipeline goes before its thread compiles the next one.
-std::vector<KernelRow> compile_all(const KernelList& list, const std::string& device, const std::string& filter) {
-    std::vector<KernelRow> rows(list.kernels.size());
-    parallel_for(rows.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const ListedKernel& kernel = list.kernels[i];
-            if (!fits(kernel, filter)) continue;
-            const KernelStatistics statistics = compile_for_statistics(*list.context, kernel.desc, kernel.args_bytes);
-            rows[i] = {device, kernel.name, kernel.variant, figures_of(statistics.told), statistics.subgroup_size};
-        }
-    });
-    std::erase_if(rows, [](const KernelRow& row) { return row.kernel.empty(); });
-    return rows;
-}
-
-void report_builds(const KernelsOptions& options, const std::string& device, Context& context) {
-    const std::vector<BuildRow> builds = list_builds(context);
-    std::cout << "SwTlas, one mesh of " << build_triangles << " triangles and one instance:\n\n"
-              << table_of(builds) << std::endl;
-    for (const BuildRow& row : builds) append_json(options.json, to_json(row, device));
-}
-
-// Of the device, or of the family where it is not empty.
-std::vector<KernelRow> report(const KernelsOptions& options, const std::string& family) {
-    if (!family.empty()) pretend_family(family);
-    CommonOptions common;
-    common.device = options.device;
-    common.pipelines = "";
-    const ContextDesc desc = context_desc(common);
-    const KernelList list = list_kernels(desc);
-    const DeviceFacts& facts = list.context->facts();
-    const std::string device = family.empty() ? facts.name : family;
-    std::vector<KernelRow> rows = compile_all(list, device, options.filter);
-    std::cout << device << ": " << facts.name << ", " << facts.driver << "\n\n" << table_of(rows) << std::endl;
-    append_json(options.json, {{"device", device}, {"name", facts.name}, {"driver", facts.driver}});
-    for (const KernelRow& row : rows) append_json(options.json, to_json(row));
-    if (options.filter.empty()) report_builds(options, device, *list.context);
-    return rows;
-}
-
-int check(const std::vector<KernelRow>& rows, const std::filesystem::path& against) {
+int check(const std::vector<kernels::KernelRow>& rows, const std::filesystem::path& against) {
     if (against.empty()) return 0;
-    const std::vector<std::string> faults = grown(rows, read_rows(against));
+    const std::vector<std::string> faults = grown(rows, kernels::read_rows(against));
     for (const std::string& fault : faults) std::cout << fault << '\n';
     std::cout << rows.size() << " kernels, " << faults.size() << " past the limits of " << against.string() << '\n';
     return faults.empty() ? 0 : 1;
 }
 
 int run(const KernelsOptions& options) {
-    std::vector<KernelRow> rows;
-    if (options.families.empty()) rows = report(options, "");
-    for (const std::string& family : options.families) {
-        const std::vector<KernelRow> of_family = report(options, family);
-        rows.insert(rows.end(), of_family.begin(), of_family.end());
+    CommonOptions common;
+    common.device = options.device;
+    common.pipelines = "";
+    std::vector<kernels::KernelRow> rows;
+    for (const std::string& family : options.families.empty() ? std::vector<std::string>{""} : options.families) {
+        const kernels::CompiledKernels compiled =
+            kernels::compile_kernels(context_desc(common), family, options.filter);
+        report(options, compiled);
+        rows.insert(rows.end(), compiled.rows.begin(), compiled.rows.end());
     }
     if (rows.empty()) fail("no kernel has '", options.filter, "' in its name or specialisation");
     return check(rows, options.against);

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "cli/command/values.h"
-#include "cli/places.h"
+#include "cli/coordinates.h"
 #include "engine/core/error.h"
 
 namespace twinray::cli {
@@ -59,13 +59,10 @@ Analysed::Analysed(const AnalysisOptions& options) {
     accel = make_accel(*context, choice, scene);
 }
 
-nlohmann::json Analysed::record(const AnalysisOptions& options) const {
-    nlohmann::json record = {{"device", describe(*context)},
-                             {"scene", options.scene.string()},
-                             {"origin", list_of(scene.origin)},
-                             {"faces", count_triangles(scene)},
-                             {"seed", options.common.seed}};
+nlohmann::json Analysed::record(const char* schema, const AnalysisOptions& options) const {
+    nlohmann::json record = base_record(schema, *context, options.scene, scene);
     record.update(describe(choice));
+    record.update({{"faces", count_triangles(scene)}, {"seed", options.common.seed}});
     return record;
 }
 
@@ -77,7 +74,7 @@ std::string Analysed::head(const char* command, const AnalysisOptions& options) 
 double seconds_of(const std::function<void()>& work) {
     const auto start = std::chrono::steady_clock::now();
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return seconds_since(start);
 }
 
 std::string speed_text(std::uint64_t rays, double seconds) {

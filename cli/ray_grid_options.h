@@ -41,7 +41,7 @@ struct Analysed {
     std::unique_ptr<AbstractAccel> accel;
 
     explicit Analysed(const AnalysisOptions& options);
-    nlohmann::json record(const AnalysisOptions& options) const;
+    nlohmann::json record(const char* schema, const AnalysisOptions& options) const;
     // "illumination house.glb: 12 faces, by SwTlas (...), on llvmpipe".
     std::string head(const char* command, const AnalysisOptions& options) const;
 };

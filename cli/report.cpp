@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `twinray report`: error against run time over the suite of stiff and extreme cases.
 #include <algorithm>
-#include <fstream>
-#include <iomanip>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include <twinray/scene.h>
@@ -14,9 +11,10 @@
 #include "cli/common.h"
 #include "validation/report/figures.h"
 #include "validation/report/page.h"
+#include "validation/report/summary.h"
 #include "validation/suite/devices.h"
 #include "engine/core/error.h"
-#include "engine/verify/float_probe.h"
+#include "validation/reference/float_probe.h"
 #include "twinray_version.h"
 
 namespace twinray::cli {
@@ -26,7 +24,9 @@ struct ReportOptions {
     CommonOptions common;
     std::filesystem::path folder = "twinray_report";
     std::string suite = "quick";
-    std::vector<std::string> only, accels, levels;
+    std::vector<std::string> only;
+    std::vector<suite::Backend> accels;
+    std::vector<Level> levels;
     std::vector<std::filesystem::path> scenes;
     std::filesystem::path baseline;
     AccelOptions trees = {};
@@ -34,94 +34,15 @@ struct ReportOptions {
 
 constexpr double quick_seconds = 140;  // no case is begun after; the rest is recorded as not run
 
-// Those of `all` that are named; all if none is.
-template <class T, std::size_t N>
-std::vector<T> chosen(const std::array<T, N>& all, const std::vector<std::string>& names) {
-    std::vector<T> result;
-    for (const T one : all)
-        if (names.empty() || std::find(names.begin(), names.end(), suite::name(one)) != names.end())
-            result.push_back(one);
-    return result;
-}
-
 suite::Settings settings_of(const ReportOptions& options) {
-    return {.is_full = options.suite == "full",
-            .backends = chosen(suite::all_backends, options.accels),
-            .levels = chosen(suite::all_levels, options.levels),
-            .only = options.only,
-            .seed = options.common.seed,
-            .seconds = options.suite == "full" ? 0 : quick_seconds,
-            .replays_in = options.folder};
-}
-
-Values probe_of(Context& context) {
-    const FloatFacts& facts = probe_floats(context);
-    const std::vector<std::string> faults = robust_faults(facts);
-    return {{"product_ulp", facts.product_ulp},
-            {"sum_ulp", facts.sum_ulp},
-            {"quotient_ulp", facts.quotient_ulp},
-            {"square_root_ulp", facts.square_root_ulp},
-            {"inverse_square_root_ulp", facts.inverse_square_root_ulp},
-            {"contracts_precise", facts.contracts_precise},
-            {"contracts_plain", facts.contracts_plain},
-            {"fuses_fma", facts.fuses_fma},
-            {"error_free_products", facts.error_free_products},
-            {"keeps_denormals", facts.keeps_denormals},
-            {"compares_nan", facts.compares_nan},
-            {"min_max_drop_nan", facts.min_max_drop_nan},
-            {"has_float64", facts.has_float64},
-            {"has_exact_float64", facts.has_exact_float64},
-            {"watertightness", faults.empty() ? "can be claimed" : "cannot be claimed: " + joined(faults)}};
-}
-
-Recorder::Run run_of(Context& context) {
-    return {utc_now(),
-            twinray_version,
-            {context.facts().name, context.facts().driver, api_version(context), probe_of(context)}};
-}
-
-// What did not pass, then the sums.
-void print_summary(std::span<const Record> records) {
-    std::map<std::string, std::size_t> sums;
-    for (const Record& record : records) {
-        ++sums[report::verdict(record)];
-        if (!record.pass.value_or(true))
-            std::cout << "  " << std::left << std::setw(5) << record.case_id << std::setw(12) << record.backend
-                      << std::setw(11) << record.level << report::verdict(record) << ": " << record.faults << " of "
-                      << record.n << (record.reason.empty() ? "" : "; ") << record.reason
-                      << (record.example.empty() ? "" : "; ") << record.example << '\n';
-    }
-    std::cout << "  ";
-    const char* separator = "";
-    for (const auto& [kind, count] : sums) {
-        std::cout << separator << kind << ' ' << count;
-        separator = ", ";
-    }
-    std::cout << '\n';
-}
-
-void write_page(const ReportOptions& options, std::span<const suite::SuiteCase> cases, std::span<const Record> records,
-                std::span<const report::Change> changes) {
-    const std::filesystem::path file = options.folder / "report.html";
-    std::ofstream out(file);
-    out << report::page({options.suite, cases, records, options.baseline.string(), changes});
-    if (!out.flush()) fail("page '", file.string(), "' cannot be written");
-}
-
-// What there was to compare with.
-void print_baseline(const JsonLines& baseline, std::span<const Record> records) {
-    std::cout << "  baseline: " << report::count_comparable(baseline.records, records) << " of " << records.size()
-              << " records have one there to be compared with";
-    const char* separator = "; not compared: ";
-    for (const auto& [kind, count] : baseline.others) {
-        std::cout << separator << count << " of " << kind;
-        separator = ", ";
-    }
-    std::cout << '\n';
-}
-
-void print_changes(std::span<const report::Change> changes) {
-    for (const report::Change& change : changes) std::cout << "  worse: " << change.what << ": " << change.how << '\n';
+    suite::Settings settings{.is_full = options.suite == "full",
+                             .only = options.only,
+                             .seed = options.common.seed,
+                             .seconds = options.suite == "full" ? 0 : quick_seconds,
+                             .replays_in = options.folder};
+    if (!options.accels.empty()) settings.backends = options.accels;
+    if (!options.levels.empty()) settings.levels = options.levels;
+    return settings;
 }
 
 void check_only(const std::vector<std::string>& patterns, std::span<const suite::SuiteCase> cases) {
@@ -141,7 +62,7 @@ int run(const ReportOptions& options) {
     std::filesystem::create_directories(options.folder);
     suite::Devices devices(context_desc(options.common), options.trees);
     Context& context = devices.context(suite::Backend::software);
-    Recorder recorder(run_of(context), options.folder / "report.jsonl");
+    Recorder recorder({utc_now(), twinray_version, probed_device(context)}, options.folder / "report.jsonl");
     std::cout << "report, suite " << options.suite << ", on " << context.facts().name << '\n';
     suite::run(cases, settings_of(options), devices, recorder, options.common.quiet);
 
@@ -149,21 +70,14 @@ int run(const ReportOptions& options) {
     for (const Record& record : recorder.records())
         append_json(options.common.json, nlohmann::json::parse(to_json(record)));
     const std::vector<report::Change> changes = report::worse_than(baseline.records, recorder.records());
-    write_page(options, cases, recorder.records(), changes);
-    print_summary(recorder.records());
-    if (!options.baseline.empty()) print_baseline(baseline, recorder.records());
-    print_changes(changes);
+    report::write_page(options.folder / "report.html",
+                       {options.suite, cases, recorder.records(), options.baseline.string(), changes});
+    report::print_summary(std::cout, recorder.records());
+    if (!options.baseline.empty()) report::print_baseline(std::cout, baseline, recorder.records());
+    report::print_changes(std::cout, changes);
     std::cout << "  " << (options.folder / "report.html").string() << "; "
               << report::draw_figures(options.folder, report::plots_of(recorder.records())) << '\n';
     return report::faults_of_ours(recorder.records()) > 0 ? 1 : 0;
-}
-
-// Of backends or levels.
-template <class T, std::size_t N>
-std::vector<std::string> suite_names(const std::array<T, N>& all) {
-    std::vector<std::string> names;
-    for (const T one : all) names.emplace_back(suite::name(one));
-    return names;
 }
 
 }  // namespace
@@ -180,11 +94,11 @@ Command report_command() {
           .value = file_list(options->scenes),
           .help = "scenes of yours, on which each level is measured as case L11, ..."},
          {.name = "--accels",
-          .value = choices(options->accels, suite_names(suite::all_backends)),
+          .value = choices(options->accels, names_of(suite::all_backends)),
           .help = "which accelerators; all if not given",
           .former_name = "--accel"},
          {.name = "--levels",
-          .value = choices(options->levels, suite_names(suite::all_levels)),
+          .value = choices(options->levels, names_of(all_levels)),
           .help = "which levels; all if not given"}}};
     Section output = {
         "Output and trees",

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command/values.h"
-#include "cli/number_lines.h"
+#include "engine/scene/number_lines.h"
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
 
@@ -96,15 +96,11 @@ void run_sky(const AnalysisOptions& analysis, const SkyOptions& options, Sides s
     if (!analysis.common.quiet)
         std::cout << analysed.head("illumination", analysis) << "  " << speed_text(light.ray_count, seconds) << "\n  "
                   << (options.sky ? "light of the sky" : "hours of sun") << ", mean over the surface: " << mean << '\n';
-    nlohmann::json record = {{"schema", "twinray-sky/1"},
-                             {"what", what},
-                             {"sides", sides == Sides::front ? "front" : "both"},
-                             {"samples", samples},
-                             {"positions", sun.size()},
-                             {"n", light.ray_count},
-                             {"mean", mean},
+    nlohmann::json record = {{"what", what},         {"sides", sides == Sides::front ? "front" : "both"},
+                             {"samples", samples},   {"positions", sun.size()},
+                             {"n", light.ray_count}, {"mean", mean},
                              {"seconds", seconds}};
-    record.update(analysed.record(analysis));
+    record.update(analysed.record("twinray-sky/1", analysis));
     append_json(analysis.common.json, record);
 }
 

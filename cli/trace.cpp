@@ -10,8 +10,7 @@
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
-#include "cli/places.h"
-#include "cli/ray_file.h"
+#include "engine/scene/ray_file.h"
 #include "engine/accel/all_hits.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -72,22 +71,19 @@ void run(const TraceOptions& options) {
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene, options.level);
     const auto start = std::chrono::steady_clock::now();
     const std::vector<Hit> hits = is_all ? trace_all(*accel, rays, options) : trace_in_batches(*accel, rays, options);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = seconds_since(start);
     write_hits(options.hits, hits);
     const auto found = std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.hit != 0; });
     if (!options.common.quiet)
         std::cout << rays.size() << " rays, " << found << " hits, " << seconds << " s with copies, " << text_of(choice)
                   << '\n';
-    nlohmann::json record = {{"schema", "twinray-trace/1"},
-                             {"device", describe(*context)},
-                             {"scene", options.scene.string()},
-                             {"origin", list_of(scene.origin)},
-                             {"level", name_of(options.level)},
-                             {"query", options.query},
-                             {"n", rays.size()},
-                             {"hits", found},
-                             {"seconds", seconds}};
+    nlohmann::json record = base_record("twinray-trace/1", *context, options.scene, scene);
     record.update(describe(choice));
+    record.update({{"level", name_of(options.level)},
+                   {"query", options.query},
+                   {"n", rays.size()},
+                   {"hits", found},
+                   {"seconds", seconds}});
     append_json(options.common.json, record);
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -13,11 +12,10 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/face_groups.h"
-#include "cli/npz.h"
-#include "cli/places.h"
 #include "cli/view_factor_picture.h"
+#include "engine/analysis/matrix_file.h"
+#include "engine/analysis/row_run.h"
 #include "engine/core/error.h"
-#include "engine/core/files.h"
 #include "engine/core/progress.h"
 #include "engine/scene/bytes.h"
 
@@ -37,19 +35,6 @@ struct Options {
     ViewFactorPictureOptions shown;
 };
 
-// Of what the rows depend on.
-std::string configuration_of(const Options& options, const AccelChoice& choice, const Scene& scene,
-                             const Faces& faces) {
-    const ViewFactorOptions& of = options.factors;
-    const std::vector<uint> groups = faces.groups(of.grouping);
-    std::ostringstream out;
-    out << std::hexfloat << count_triangles(scene) << " faces " << checksum_of(scene) << ", by " << name_of(of.grouping)
-        << ' ' << crc32_of(std::as_bytes(std::span(groups))) << ", " << name_of(of.sides) << ", "
-        << name_of(of.sequence) << ", " << of.rays << " rays, error " << of.target_error.value_or(0) << ", seed "
-        << of.seed << ", " << choice.name() << ", estimator " << name_of(options.estimator);
-    return out.str();
-}
-
 // Empty where hits are to tell all, as they are in scenes of too many faces unless another estimator is asked for.
 PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const Scene& scene, const Faces& faces) {
     const auto count = static_cast<std::size_t>(
@@ -67,113 +52,15 @@ PairExchanges compute_pairs(const Options& options, AbstractAccel& accel, const 
 
 std::filesystem::path rows_file(const std::filesystem::path& output) { return output.string() + ".rows"; }
 
-struct Computed {
-    std::vector<ViewFactorRow> rows;
-    std::size_t resumed = 0;  // rows of an earlier run
-
-    std::uint64_t rays() const {
-        std::uint64_t rays = 0;
-        for (std::size_t i = resumed; i < rows.size(); ++i) rays += rows[i].rays;
-        return rays;
-    }
-};
-
-Computed compute(const Options& options, ViewFactors& factors, const std::string& configuration) {
-    Computed computed;
-    std::vector<ViewFactorRow>& rows = computed.rows;
+ComputedRows compute(const Options& options, ViewFactors& factors, const std::string& configuration) {
     std::optional<RowFile> file;
-    if (!options.output.empty()) {
-        file.emplace(rows_file(options.output), configuration);
-        if (options.resumes)
-            rows = file->load();
-        else
-            file->create();
-        if (!rows.empty() && !options.common.quiet)
-            std::cout << "resumed after " << rows.size() << " of " << factors.row_count() << " rows\n";
-    }
+    if (!options.output.empty()) file.emplace(rows_file(options.output), configuration);
+    ComputedRows computed = begin_rows(file ? &*file : nullptr, options.resumes);
+    if (computed.resumed > 0 && !options.common.quiet)
+        std::cout << "resumed after " << computed.resumed << " of " << factors.row_count() << " rows\n";
     Progress progress("view factors", factors.row_count(), options.common.quiet);
-    progress.advance(computed.resumed = rows.size());
-    while (rows.size() < factors.row_count()) {
-        const std::size_t last = std::min(rows.size() + factors.batch_size(), factors.row_count());
-        const std::vector<ViewFactorRow> batch = factors.rows(rows.size(), last);
-        if (file) file->append(batch);
-        rows.insert(rows.end(), batch.begin(), batch.end());
-        progress.advance(batch.size());
-    }
+    complete_rows(computed, factors, file ? &*file : nullptr, progress);
     return computed;
-}
-
-void write_csv(const std::filesystem::path& file, const std::vector<ViewFactorRow>& rows) {
-    std::ostringstream out;
-    out << "i,j,F,ci_low,ci_high\n" << std::setprecision(9);
-    for (const ViewFactorRow& row : rows)
-        for (const ViewFactor& factor : row.factors)
-            out << row.group << ',' << factor.target << ',' << factor.value << ',' << factor.low << ',' << factor.high
-                << '\n';
-    const std::string text = out.str();
-    const std::span<const std::byte> piece = std::as_bytes(std::span(text));
-    write_file(file, std::span(&piece, 1));
-}
-
-// As scipy.sparse.save_npz writes a csr_matrix, and beside it what else is known.
-void write_npz(const std::filesystem::path& file, const std::vector<ViewFactorRow>& rows,
-               const std::vector<double>& areas) {
-    std::vector<std::int64_t> starts = {0};
-    std::vector<std::uint32_t> columns;
-    std::vector<float> values, low, high;
-    std::vector<std::uint32_t> by;
-    std::vector<double> open, back;
-    std::vector<std::uint64_t> rays;
-    for (const ViewFactorRow& row : rows) {
-        for (const ViewFactor& factor : row.factors) {
-            columns.push_back(factor.target);
-            values.push_back(factor.value);
-            low.push_back(factor.low);
-            high.push_back(factor.high);
-            by.push_back(static_cast<std::uint32_t>(factor.by));
-        }
-        starts.push_back(static_cast<std::int64_t>(columns.size()));
-        open.push_back(row.open.value);
-        back.push_back(row.back.value);
-        rays.push_back(row.rays);
-    }
-    const auto n = static_cast<std::int64_t>(rows.size());
-    const std::vector<std::int64_t> shape = {n, n};
-    Npz npz;
-    npz.add("indices", std::span<const std::uint32_t>(columns));
-    npz.add("indptr", std::span<const std::int64_t>(starts));
-    npz.add_text("format", "csr");
-    npz.add("shape", std::span<const std::int64_t>(shape));
-    npz.add("data", std::span<const float>(values));
-    npz.add("ci_low", std::span<const float>(low));
-    npz.add("ci_high", std::span<const float>(high));
-    npz.add("estimator", std::span<const std::uint32_t>(by));
-    npz.add("area", std::span<const double>(areas));
-    npz.add("open", std::span<const double>(open));
-    npz.add("back", std::span<const double>(back));
-    npz.add("rays", std::span<const std::uint64_t>(rays));
-    npz.write(file);
-}
-
-struct Totals {
-    std::uint64_t rays = 0, hits = 0, entries = 0;
-    std::map<std::string_view, std::uint64_t> entries_by;  // estimator
-    double widest = 0;                                     // half interval
-};
-Totals totals_of(const std::vector<ViewFactorRow>& rows) {
-    Totals totals;
-    for (const PairEstimator by : {PairEstimator::hits, PairEstimator::area, PairEstimator::contour})
-        totals.entries_by[name_of(by)] = 0;
-    for (const ViewFactorRow& row : rows) {
-        totals.rays += row.rays;
-        totals.hits += row.hits;
-        totals.entries += row.factors.size();
-        for (const ViewFactor& factor : row.factors) {
-            ++totals.entries_by[name_of(factor.by)];
-            totals.widest = std::max(totals.widest, static_cast<double>(factor.high - factor.low) / 2);
-        }
-    }
-    return totals;
 }
 
 void print_residuals(const char* when, const ViewFactorResiduals& residuals) {
@@ -205,18 +92,19 @@ void run(const Options& options) {
     const PairExchanges pairs = compute_pairs(options, *accel, scene, faces);
     const double seconds_of_pairs = seconds_since(start);
     ViewFactors factors(*accel, faces, options.factors, pairs.known);
-    Computed computed = compute(options, factors, configuration_of(options, choice, scene, faces));
+    ComputedRows computed =
+        compute(options, factors, configuration_of(options.factors, options.estimator, choice.name(), scene, faces));
     const double seconds = seconds_since(start), rate = static_cast<double>(computed.rays()) / seconds;
     std::vector<ViewFactorRow>& rows = computed.rows;
-    const Totals totals = totals_of(rows);
+    const MatrixTotals totals = totals_of(rows);
     const ViewFactorResiduals before = residuals_of(rows, factors.areas());
     std::optional<ViewFactorResiduals> after;
     if (options.projects) {
         project(rows, factors.areas());
         after = residuals_of(rows, factors.areas());
     }
-    if (suffix == ".csv") write_csv(options.output, rows);
-    if (suffix == ".npz") write_npz(options.output, rows, factors.areas());
+    if (suffix == ".csv") write_matrix_csv(options.output, rows);
+    if (suffix == ".npz") write_matrix_npz(options.output, rows, factors.areas());
     const std::string name = options.scene.filename().string();
     if (!options.shown.matrix.empty()) write_matrix(options.shown.matrix, name, options.factors.grouping, rows);
     if (!options.pictures.files.empty())
@@ -235,28 +123,25 @@ void run(const Options& options) {
         print_residuals("as counted", before);
         if (after) print_residuals("projected", *after);
     }
-    append_json(options.common.json, {{"schema", "twinray-viewfactors/1"},
-                                      {"device", describe(*context)},
-                                      {"scene", options.scene.string()},
-                                      {"origin", list_of(scene.origin)},
-                                      {"backend", choice.name()},
-                                      {"backend_why", choice.why},
-                                      {"by", name_of(options.factors.grouping)},
-                                      {"sequence", name_of(options.factors.sequence)},
-                                      {"sides", name_of(options.factors.sides)},
-                                      {"estimator", name_of(options.estimator)},
-                                      {"entries_by_estimator", totals.entries_by},
-                                      {"rays_between_faces", pairs.rays},
-                                      {"seconds_of_pairs", seconds_of_pairs},
-                                      {"seed", options.factors.seed},
-                                      {"rows", rows.size()},
-                                      {"entries", totals.entries},
-                                      {"rays", totals.rays},
-                                      {"hits", totals.hits},
-                                      {"seconds", seconds},
-                                      {"widest_half_interval", totals.widest},
-                                      {"as_counted", json_of(before)},
-                                      {"projected", after ? json_of(*after) : nlohmann::json()}});
+    nlohmann::json record = base_record("twinray-viewfactors/1", *context, options.scene, scene);
+    record.update(describe(choice));
+    record.update({{"by", name_of(options.factors.grouping)},
+                   {"sequence", name_of(options.factors.sequence)},
+                   {"sides", name_of(options.factors.sides)},
+                   {"estimator", name_of(options.estimator)},
+                   {"entries_by_estimator", totals.entries_by},
+                   {"rays_between_faces", pairs.rays},
+                   {"seconds_of_pairs", seconds_of_pairs},
+                   {"seed", options.factors.seed},
+                   {"rows", rows.size()},
+                   {"entries", totals.entries},
+                   {"rays", totals.rays},
+                   {"hits", totals.hits},
+                   {"seconds", seconds},
+                   {"widest_half_interval", totals.widest},
+                   {"as_counted", json_of(before)},
+                   {"projected", after ? json_of(*after) : nlohmann::json()}});
+    append_json(options.common.json, record);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-# twinray::core, ::scene, ::reference, ::analysis and ::report, and twinray::twinray, all that is built. Each is its parts
+# twinray::core, ::scene, ::analysis and ::validation, and twinray::twinray, all that is built. Each is its parts
 # as one object file, in which only namespace twinray is global. A host may then bring its own Vulkan Memory Allocator, stb
 # or tinygltf, of whatever version; and an inline function of our headers that the host compiles with its own options
 # (-ffast-math) never replaces the one that the library was tested with.
@@ -64,14 +64,11 @@ twinray_add_library(core PARTS core swtlas hwtlas USES ZLIB::ZLIB ${CMAKE_DL_LIB
 if(TWINRAY_SCENE)
     twinray_add_library(scene PARTS scene SEES core USES OpenEXR::OpenEXR ZLIB::ZLIB)
 endif()
-if(TWINRAY_REFERENCE)
-    twinray_add_library(reference PARTS reference SEES core)
-endif()
 if(TWINRAY_ANALYSIS)
     twinray_add_library(analysis PARTS analysis SEES scene)
 endif()
-if(TWINRAY_REPORT)
-    twinray_add_library(report PARTS report SEES analysis)
+if(TWINRAY_VALIDATION)
+    twinray_add_library(validation PARTS validation SEES core)
 endif()
 
 add_library(twinray INTERFACE)

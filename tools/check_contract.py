@@ -30,6 +30,6 @@ found += [f"{body}: {test} is in no row of {page.name}" for test in contract if 
 if not rows or not contract:
     found.append(f"{page} has {len(rows)} rows, {body} {len(contract)} tests")
 others = len(named - set(contract))
-print("\n".join(found) or f"contract: {len(rows)} rows, held by {len(contract)} tests over four subjects "
+print("\n".join(found) or f"contract: {len(rows)} rows, held by {len(contract)} tests over four accelerators "
       f"({4 * len(contract)} runs) and {others} tests of other suites")
 sys.exit(1 if found else 0)

@@ -6,21 +6,28 @@ import os
 import re
 import sys
 
-BASE = ["engine/core", "engine/scene", "engine/accel", "engine/report"]
-ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/picture", "engine/points", "engine/verify"]
+BASE = ["engine/core", "engine/scene", "engine/accel"]
+ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/picture", "engine/points"]
 PRODUCT = ENGINE + ["swtlas", "hwtlas"]
+# twinray::validation, then what the command and the tests link beside it.
+VALIDATION = ["validation/" + room for room in ("reference", "leaks", "records", "verify", "cpu_reference")]
+CHECKS = VALIDATION + ["validation/" + room for room in ("exact", "kernels", "picture", "replay", "report", "suite")]
 SEES = {  # besides itself, include and shaders/shared
     "include": ["shaders/hwtlas", "shaders/scene"],  # the public face; its GLSL has parts there and in shaders/shared
     "engine": ENGINE,  # headers that gather the others
-    "engine/core": [], "engine/scene": BASE[:1] + ["shaders/scene", "shaders/sampling"], "engine/accel": BASE[:2], "engine/report": BASE[:1],
+    "engine/core": [], "engine/scene": BASE[:1] + ["shaders/scene", "shaders/sampling"], "engine/accel": BASE[:2],
     "engine/analysis": BASE + ["shaders/analysis"], "engine/collide": BASE + ["shaders/collide"],
     "engine/points": BASE + ["engine/collide", "shaders/collide", "shaders/points"],
-    "engine/picture": BASE, "engine/verify": BASE + ["shaders/verify"],
     "swtlas": ENGINE, "hwtlas": ENGINE,
-    "validation": PRODUCT + ["shaders/collide", "shaders/suite", "shaders/path_tracer", "samples"],
-    "cli": PRODUCT + ["shaders/path_tracer", "bench", "samples", "validation"],
+    "validation/reference": BASE + ["shaders/verify"], "validation/leaks": BASE + VALIDATION[:1],
+    "validation/records": BASE + VALIDATION[:1], "validation/verify": PRODUCT + VALIDATION,
+    "validation/cpu_reference": ENGINE + ["swtlas"], "validation/exact": BASE + VALIDATION[:1] + ["shaders/collide"],
+    "validation/suite": PRODUCT + CHECKS + ["shaders/suite", "shaders/path_tracer", "shaders/collide", "samples"],
+    "validation/replay": PRODUCT + CHECKS, "validation/report": BASE + CHECKS, "validation/picture": BASE,
+    "validation/kernels": PRODUCT + CHECKS + ["shaders/path_tracer", "samples"],
+    "cli": PRODUCT + CHECKS + ["bench"],
     "samples": PRODUCT + ["shaders/scene", "shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"],
-    "bench": PRODUCT + ["validation"], "tests": PRODUCT + ["shaders/scene", "cli", "samples", "bench", "validation"],
+    "bench": PRODUCT + VALIDATION, "tests": PRODUCT + CHECKS + ["shaders/scene", "cli", "samples", "bench"],
     "shaders/embed_renderer": ["shaders/path_tracer", "shaders/sampling", "shaders/scene"],
     "shaders/points": ["shaders/collide", "shaders/engine"],
     "shaders": ["shaders/engine", "shaders/sampling", "shaders/scene"],  # each other folder of shaders, but shaders/shared, which sees nothing else
@@ -43,7 +50,7 @@ def file_of(root, target):
 
 def layer(path):
     parts = path.split("/")
-    return "/".join(parts[:2]) if parts[0] in ("engine", "shaders") and len(parts) > 2 else parts[0]
+    return "/".join(parts[:2]) if parts[0] in ("engine", "shaders", "validation") and len(parts) > 2 else parts[0]
 
 
 def violation(root, source, bracket, target):

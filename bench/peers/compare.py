@@ -42,15 +42,15 @@ class Bench:
         names = ("numpy", "trimesh", "python-fcl", "rtree", "embreex", "pyvista", "pyviewfactor")
         return {name: version(name) for name in names}
 
-    def measure(self, case, contestants):
+    def measure(self, case, backends):
         """Runs each in turns: functions that return (seconds, {name: error}). Prints and keeps the medians."""
-        times, errors = {name: [] for name in contestants}, {}
+        times, errors = {name: [] for name in backends}, {}
         for _ in range(self.rounds):
-            for name, contestant in contestants.items():
-                seconds, errors[name] = contestant()
+            for name, backend in backends.items():
+                seconds, errors[name] = backend()
                 times[name].append(seconds)
-        first = np.median(times[next(iter(contestants))])
-        for name in contestants:
+        first = np.median(times[next(iter(backends))])
+        for name in backends:
             seconds = float(np.median(times[name]))
             self.rows.append({"case": case, "who": name, "seconds": seconds, "least": min(times[name]), "most": max(times[name]), "times_ours": seconds / first, **errors[name]})
             said = ", ".join(f"{what} {value:.3g}" for what, value in errors[name].items())
@@ -103,7 +103,7 @@ def collisions(bench):
         found_by = {}
 
         def told(name, found):
-            """Pairs on which the two disagree are put to a referee in rational numbers."""
+            """Pairs on which the two disagree are put to a reference in rational numbers."""
             found_by[name] = found
             if len(found_by) < 2:
                 return {"pairs": len(found)}
@@ -262,7 +262,7 @@ def main():
     parser.add_argument("--only", choices=domains)
     options = parser.parse_args()
     if options.rounds < 2:
-        parser.error(f"--rounds {options.rounds}: at least 2, for pairs are judged once both have found theirs")
+        parser.error(f"--rounds {options.rounds}: at least 2, for pairs are checked once both have found theirs")
     bench = Bench(options)
     for name, domain in domains.items():
         if options.only in (None, name):

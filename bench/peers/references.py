@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is true, by other ways than the contestants'."""
+"""What is true, by other ways than the backends'."""
 from fractions import Fraction
 
 import numpy as np

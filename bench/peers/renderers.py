@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Mitsuba 3 as judge of the path tracer, and as a peer in speed. In a Python that has mitsuba; its llvm variants need LLVM
+"""Mitsuba 3 as reference of the path tracer, and as a peer in speed. In a Python that has mitsuba; its llvm variants need LLVM
 (Debian: libllvm19).
     renderers.py references FOLDER                          pictures by Mitsuba of the scenes of peer_scenes.py, for the tests
-    renderers.py judge PATH_TRACER                          the path tracer against them: z-scores of blocks of pixels
+    renderers.py check PATH_TRACER                          the path tracer against them: z-scores of blocks of pixels
     renderers.py times PATH_TRACER [--scene FILE EYE TARGET FOV SKY]...   variance x seconds of both
 """
 import argparse
@@ -87,7 +87,7 @@ def write_references(folder, runs=24, spp=512):
         print(scene["name"], mean.mean(), (error / mean).mean())
 
 
-def judge(program, runs=24, spp=256):
+def check(program, runs=24, spp=256):
     from scipy import stats
     references = pathlib.Path(__file__).resolve().parents[2] / "tests/samples/peers"
     mi.set_variant("scalar_rgb")
@@ -115,19 +115,19 @@ def asset_scene(path, eye, target, fov, sky):
 
 
 def measure(program, scene, side, spp, rounds):
-    """By contestant: median seconds of a round, variance of a pixel's luminance."""
+    """By backend: median seconds of a round, variance of a pixel's luminance."""
     with tempfile.TemporaryDirectory() as folder:
-        contestants = {f"mitsuba {variant} {sampler}": Mitsuba(variant, sampler, scene, side, spp) for variant, sampler in MITSUBAS}
+        backends = {f"mitsuba {variant} {sampler}": Mitsuba(variant, sampler, scene, side, spp) for variant, sampler in MITSUBAS}
         for accel in ("sw", "hw"):
             (pathlib.Path(folder) / accel).mkdir()
-            contestants[f"twinray {accel}"] = PathTracer(program, accel, scene, pathlib.Path(folder) / accel)
-        seconds, pictures = {name: [] for name in contestants}, {name: [] for name in contestants}
+            backends[f"twinray {accel}"] = PathTracer(program, accel, scene, pathlib.Path(folder) / accel)
+        seconds, pictures = {name: [] for name in backends}, {name: [] for name in backends}
         for seed in range(1, rounds + 1):
-            for name, contestant in contestants.items():
-                picture, taken = contestant.render(side, spp, seed)
+            for name, backend in backends.items():
+                picture, taken = backend.render(side, spp, seed)
                 seconds[name].append(taken)
                 pictures[name].append(picture @ [0.2126, 0.7152, 0.0722])
-    return {name: (np.median(seconds[name]), np.var(pictures[name], axis=0, ddof=1).mean(), np.mean(pictures[name])) for name in contestants}
+    return {name: (np.median(seconds[name]), np.var(pictures[name], axis=0, ddof=1).mean(), np.mean(pictures[name])) for name in backends}
 
 
 def times(program, scenes, side, spp, rounds):
@@ -145,7 +145,7 @@ def times(program, scenes, side, spp, rounds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("mode", choices=["references", "judge", "times"])
+    parser.add_argument("mode", choices=["references", "check", "times"])
     parser.add_argument("target", type=pathlib.Path, help="folder, or path_tracer")
     parser.add_argument("--scene", nargs=5, action="append", default=[], metavar=("FILE", "EYE", "TARGET", "FOV", "SKY"))
     parser.add_argument("--side", type=int, default=256)
@@ -155,8 +155,8 @@ def main():
     if options.mode == "references":
         return write_references(options.target)
     program = str(options.target.resolve())
-    if options.mode == "judge":
-        return judge(program)
+    if options.mode == "check":
+        return check(program)
     mi.set_variant("scalar_rgb")
     vector = lambda text: [float(x) for x in text.split(",")]
     scenes = [peer_scenes.cornell_box()]

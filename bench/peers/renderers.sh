@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs Mitsuba 3 and what renderers.py needs beside it into a folder of their own, and runs it.
-#   bench/peers/renderers.sh FOLDER references|judge|times TARGET [option of renderers.py...]
+#   bench/peers/renderers.sh FOLDER references|check|times TARGET [option of renderers.py...]
 set -euo pipefail
 if (($# < 3)); then
     sed -n '3,4s/^# *//p' "${BASH_SOURCE[0]}" >&2

@@ -42,7 +42,7 @@ struct Option {
     std::string help = {};  // begins in lower case; ends without a full stop
     bool is_required = false;
     std::vector<std::string> needs = {}, excludes = {};  // other options, by name
-    std::string former_name = {};                        // is still taken, and shown nowhere
+    std::string former_name = {};  // of the version before: still taken, with a warning, and shown nowhere
 };
 
 // Options under one heading.

@@ -3,6 +3,7 @@
 #include "cli/command/parse.h"
 
 #include <algorithm>
+#include <iostream>
 
 #include <CLI/CLI.hpp>
 
@@ -59,6 +60,14 @@ void check_values_follow(const Command& command, const std::vector<std::string>&
         if (i + 1 == arguments.size()) refuse(wanted, ", and nothing follows");
         if (find(arguments[i + 1]) != options.end()) refuse(wanted, ", but ", arguments[i + 1], " follows");
     }
+}
+
+// Whoever calls an option as it was called in the version before learns its name.
+void tell_new_names(const Command& command, const std::vector<std::string>& arguments) {
+    for (const std::string& word : arguments)
+        for (const Option* option : options_of(command))
+            if (!option->former_name.empty() && word.substr(0, word.find('=')) == option->former_name)
+                std::cerr << "twinray: " << option->former_name << " is now called " << option->name << '\n';
 }
 
 void check_known(const Command& command, const std::vector<std::string>& left) {
@@ -137,6 +146,7 @@ bool parse(const Command& command, const std::vector<std::string>& arguments) {
     for (const std::string& word : arguments)
         if (is_named(help_option(), word)) return false;
     check_values_follow(command, arguments);
+    tell_new_names(command, arguments);
     CLI::App app;
     app.set_help_flag();
     app.allow_extras();

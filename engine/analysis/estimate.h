@@ -9,7 +9,7 @@
 #include <map>
 #include <utility>
 
-#include "engine/report/statistics.h"
+#include "engine/core/statistics.h"
 
 namespace twinray {
 

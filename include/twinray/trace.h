@@ -40,6 +40,11 @@ enum class Level : std::uint8_t {
     refined,     // and float64 for t, u, v of the hit that counts
     certified,   // float64 decides what is hit and in which order; software only
 };
+inline constexpr std::array all_levels = {Level::fast, Level::watertight, Level::refined, Level::certified};
+constexpr std::string_view name_of(Level level) {
+    constexpr std::string_view names[] = {"fast", "watertight", "refined", "certified"};
+    return names[static_cast<std::size_t>(level)];
+}
 
 // How the software accelerator lays out its trees. The hits are the same, bit for bit.
 enum class Layout : std::uint8_t {

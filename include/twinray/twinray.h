@@ -8,3 +8,4 @@
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
 #include <twinray/trace.h>
+#include <twinray/validation.h>

@@ -65,7 +65,7 @@ void write_line(const std::filesystem::path& file, const std::string& line, std:
 nlohmann::json cross_check_json(const Options& options, const Session& session, const CrossCheck& result) {
     nlohmann::json record = settings_json(options, session), classes = nlohmann::json::array();
     for (const auto& [kinds, count] : result.classes)
-        classes.push_back({{"sw", name(kinds.first)}, {"hw", name(kinds.second)}, {"rays", count}});
+        classes.push_back({{"sw", name_of(kinds.first)}, {"hw", name_of(kinds.second)}, {"rays", count}});
     record.update({{"case", "path_tracer.cross_check"},
                    {"spp", session.settings.samples},
                    {"path", result.hardware_path},
@@ -154,7 +154,7 @@ std::string cross_check_text(const Options& options, const Session& session, con
         << result.path_rays << " path, " << result.shadow_rays << " shadow)\n"
         << "  rays with different hits             " << result.disagreeing << '\n';
     for (const auto& [kinds, count] : result.classes)
-        out << "    SW " << name(kinds.first) << ", HW " << name(kinds.second) << ": " << count << '\n';
+        out << "    SW " << name_of(kinds.first) << ", HW " << name_of(kinds.second) << ": " << count << '\n';
     if (result.classified < result.disagreeing)
         out << "    not classified: " << result.disagreeing - result.classified << '\n';
     out << "  faults of ours (SW_LEAK, SW_FALSE, T_ERR)  " << result.faults_of_ours << '\n'
@@ -209,12 +209,14 @@ void report_merge(const MergeOptions& options, const Film& film) {
 
 void classify_disagreements(const Scene& scene, const std::vector<Disagreement>& disagreements, CrossCheck& result) {
     if (disagreements.empty()) return;
-    const Oracle oracle = Oracle::of(scene);
+    const Reference reference(scene);
+    const auto class_of = [&](const Disagreement& d, const Hit& hit, TracedBy by) {
+        return d.is_any ? reference.classify_any(d.ray, hit.hit != 0, by) : reference.classify(d.ray, hit, by);
+    };
     for (const Disagreement& d : disagreements) {
-        const Verdict verdict = d.is_any ? classify_any(oracle, d.ray, d.second.hit != 0, d.first.hit != 0)
-                                         : classify(oracle, d.ray, d.second, d.first);
-        ++result.classes[{*verdict.software, *verdict.hardware}];
-        result.faults_of_ours += is_fault_of_ours(*verdict.software);
+        const HitClass software = class_of(d, d.second, TracedBy::software);
+        ++result.classes[{software, class_of(d, d.first, TracedBy::hardware)}];
+        result.faults_of_ours += is_fault_of_ours(software);
     }
     result.classified = disagreements.size();
 }

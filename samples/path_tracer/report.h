@@ -5,7 +5,8 @@
 #include <map>
 #include <string>
 
-#include "engine/verify/classify.h"
+#include <twinray/validation.h>
+
 #include "samples/path_tracer/cross_check.h"
 #include "samples/path_tracer/moving_scene.h"
 #include "samples/path_tracer/rendering.h"
@@ -39,7 +40,7 @@ struct CrossCheck {
     std::uint64_t path_rays = 0, shadow_rays = 0;
     std::uint64_t disagreeing = 0;
     std::uint64_t classified = 0;
-    std::map<std::pair<Class, Class>, std::uint64_t> classes;  // (software, hardware) of the classified rays
+    std::map<std::pair<HitClass, HitClass>, std::uint64_t> classes;  // (software, hardware) of the classified rays
     std::uint64_t faults_of_ours = 0;
     PictureDifference pictures;
     std::uint64_t pixel_count = 0;
@@ -47,7 +48,7 @@ struct CrossCheck {
     bool passed() const { return faults_of_ours == 0 && pictures.unexplained == 0; }
 };
 
-// Compares each disagreeing ray with the float64 reference. `first` of each is hardware, `second` software.
+// Classifies each disagreeing ray by the float64 reference. `first` of each is hardware, `second` software.
 void classify_disagreements(const Scene& scene, const std::vector<Disagreement>& disagreements, CrossCheck& result);
 
 // Prints to stdout and writes the file: one JSON object if it ends in .json, else the text.

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// One body for every accelerator: the software one, the hardware one through each way of tracing, and the referee. Long
-// because it is the contract, row by row: one fact a test, in one place. docs/contract.md lists them.
+// One body for every accelerator: the software one, the hardware one through each way of tracing, and the reference.
+// Long because it is the contract, row by row: one fact a test, in one place. docs/contract.md lists them.
 #include <cmath>
 #include <cstddef>
 #include <random>
 
 #include "engine/accel/world_bound.h"
-#include "engine/verify/aimed_rays.h"
-#include "engine/verify/classify.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/reference/classify.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {
@@ -18,7 +18,7 @@ using test::error_of;
 using test::square;
 
 class Accel : public test::AccelTest {};
-TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFEREE(Accel);
+TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFERENCE(Accel);
 
 TEST_P(Accel, FindsTheClosestHitAndFillsEveryField) {
     accel().push(square(1));
@@ -733,8 +733,8 @@ TEST_P(Accel, TinyAndHugeScenesAreHitLikeOrdinaryOnes) {
     }
 }
 
-// Everything at once, judged by the referee: no leak, no false hit of ours; whatever the driver does has a name.
-TEST_P(Accel, AgreesWithTheRefereeOnRandomScenes) {
+// Everything at once, checked by the reference: no leak, no false hit of ours; whatever the driver does has a name.
+TEST_P(Accel, AgreesWithTheReferenceOnRandomScenes) {
     std::mt19937 random(2026);
     std::uniform_real_distribution<float> unit(-1, 1);
     Scene scene;
@@ -753,19 +753,20 @@ TEST_P(Accel, AgreesWithTheRefereeOnRandomScenes) {
             if (instance.mesh == mesh) transforms.push_back(instance.transform);
         accel().push(scene.meshes[mesh], transforms);
     }
-    const Oracle oracle = Oracle::of(scene);
+    const ReferenceScene reference = ReferenceScene::of(scene);
     std::vector<Ray> rays = random_rays(bounds_of(scene), 20'000, 1);
-    for (const Ray& ray : vertex_aimed_rays(oracle, 5'000, 2)) rays.push_back(ray);
-    for (const Ray& ray : edge_aimed_rays(oracle, 5'000, 3)) rays.push_back(ray);
+    for (const Ray& ray : vertex_aimed_rays(reference, 5'000, 2)) rays.push_back(ray);
+    for (const Ray& ray : edge_aimed_rays(reference, 5'000, 3)) rays.push_back(ray);
 
     const bool ours = is_ours();
     const std::vector<Hit> hits = accel().closest_hits(rays);
-    Classes classes;
-    for (const Verdict& verdict : ours ? classify_all(oracle, rays, hits, {}) : classify_all(oracle, rays, {}, hits))
-        classes.add(ours ? *verdict.software : *verdict.hardware);
+    HitClassCounts classes;
+    for (const RayResult& ray_result :
+         ours ? classify_all(reference, rays, hits, {}) : classify_all(reference, rays, {}, hits))
+        classes.add(ours ? *ray_result.software : *ray_result.hardware);
     EXPECT_EQ(classes.faults_of_ours(), 0u);
-    EXPECT_EQ(classes[Class::hw_false] + classes[Class::hw_t_err] + classes[Class::hw_range], 0u);
-    EXPECT_GT(classes[Class::agree], 25'000u);
+    EXPECT_EQ(classes[HitClass::hw_false] + classes[HitClass::hw_t_err] + classes[HitClass::hw_range], 0u);
+    EXPECT_GT(classes[HitClass::agree], 25'000u);
 
     const std::vector<Hit> any = accel().any_hits(rays);
     for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(any[i].hit, hits[i].hit) << "ray " << i;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 // A fixture that runs a test over every accelerator: the software one, the hardware one through each way of tracing,
-// and the referee.
+// and the reference.
 #pragma once
 
 #include <functional>
 
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/verify/oracle_accel.h"
+#include "validation/reference/reference_accel.h"
 #include <twinray/tlas.h>
 #include "tests/support/device.h"
 
 namespace twinray::test {
 
-enum class Kind { software, ray_query, pipeline, oracle };
+enum class Kind { software, ray_query, pipeline, reference };
 
 class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> {
   protected:
@@ -39,10 +39,10 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
     }
 
     // Not the driver: held to every rule to the letter.
-    bool is_ours() const { return GetParam() == Kind::software || GetParam() == Kind::oracle; }
-    // On this device; the referee has all on any.
+    bool is_ours() const { return GetParam() == Kind::software || GetParam() == Kind::reference; }
+    // On this device; the reference has all on any.
     bool has_level(Level level) const {
-        if (GetParam() == Kind::oracle) return true;
+        if (GetParam() == Kind::reference) return true;
         const auto capability_on = is_ours() ? SwTlas::capability_on : HwTlas::capability_on;
         return capability_on(context().facts(), feature_of(level)).support != Support::unsupported;
     }
@@ -50,7 +50,7 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
     virtual AccelOptions accel_options() const { return {.compiles_in_background = false}; }
     std::unique_ptr<AbstractAccel> make_accel() { return make_accel(accel_options()); }
     std::unique_ptr<AbstractAccel> make_accel(const AccelOptions& options) {
-        if (GetParam() == Kind::oracle) return std::make_unique<OracleAccel>(context());
+        if (GetParam() == Kind::reference) return std::make_unique<ReferenceAccel>(context());
         if (is_ours()) return std::make_unique<SwTlas>(context(), options);
         return std::make_unique<HwTlas>(context(), BuildOrder::automatic, options);
     }
@@ -89,7 +89,7 @@ inline std::string name_of_kind(const ::testing::TestParamInfo<Kind>& info) {
         case Kind::software: return "Software";
         case Kind::ray_query: return "RayQuery";
         case Kind::pipeline: return "Pipeline";
-        case Kind::oracle: return "Oracle";
+        case Kind::reference: return "ReferenceScene";
     }
     return "";
 }
@@ -115,9 +115,9 @@ inline std::string error_of(const std::function<void()>& action) {
                                                ::twinray::test::Kind::pipeline),                                  \
                              ::twinray::test::name_of_kind)
 
-// Of the contract, which the referee answers too.
-#define TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFEREE(Fixture)                                                         \
-    INSTANTIATE_TEST_SUITE_P(Every, Fixture,                                                                      \
-                             ::testing::Values(::twinray::test::Kind::software, ::twinray::test::Kind::ray_query, \
-                                               ::twinray::test::Kind::pipeline, ::twinray::test::Kind::oracle),   \
+// Of the contract, which the reference answers too.
+#define TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFERENCE(Fixture)                                                        \
+    INSTANTIATE_TEST_SUITE_P(Every, Fixture,                                                                       \
+                             ::testing::Values(::twinray::test::Kind::software, ::twinray::test::Kind::ray_query,  \
+                                               ::twinray::test::Kind::pipeline, ::twinray::test::Kind::reference), \
                              ::twinray::test::name_of_kind)

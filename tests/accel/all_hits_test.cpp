@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "tests/accel/accel_fixture.h"
-#include "tests/verify/meshes.h"
+#include "tests/validation/reference/meshes.h"
 
 namespace twinray {
 namespace {

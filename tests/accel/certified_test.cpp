@@ -3,8 +3,8 @@
 #include <random>
 
 #include "engine/accel/trace_desc.h"
-#include "engine/verify/aimed_rays.h"
-#include "engine/verify/oracle.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/reference/reference_scene.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {
@@ -21,17 +21,17 @@ class Certified : public test::VulkanTest {
         if (SwTlas::capability_on(context().facts(), Feature::level_certified).support == Support::unsupported)
             TWINRAY_LACKS("float64", context().facts().name + " has no float64");
     }
-    // Rays for which SwTlas names another hit than the referee.
+    // Rays for which SwTlas names another hit than the reference.
     std::size_t wrong(const Scene& scene, std::span<const Ray> rays, Level level, const TraceDesc& desc = {}) {
         SwTlas accel(context(), {.level = level, .compiles_in_background = false});
         for (const Instance& instance : scene.instances) accel.push(scene.meshes[instance.mesh], instance.transform);
-        const Oracle oracle = Oracle::of(scene);
+        const ReferenceScene reference = ReferenceScene::of(scene);
         TraceDesc at_level = desc;
         at_level.level = level;
         const std::vector<Hit> hits = accel.closest_hits(rays, at_level), any = accel.any_hits(rays, at_level);
         std::size_t count = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
-            const OracleHit exact = oracle.closest_hit(rays[i], {.flags = flags_of(desc.cull)});
+            const ReferenceHit exact = reference.closest_hit(rays[i], {.flags = flags_of(desc.cull)});
             const bool is_right = exact.hit == (hits[i].hit == 1) && exact.primitive == hits[i].primitive_index &&
                                   exact.instance == hits[i].instance_index && any[i].hit == hits[i].hit;
             if (!is_right) ++count;
@@ -78,7 +78,7 @@ TEST_F(Certified, NearlySingularTransformsAreHitAsTheyWereGiven) {
     const Transform turn{{vec4(0.8f, 0.6f, 0, 3), vec4(-0.36f, 0.48f, 0.8f, 1), vec4(0.48f, -0.64f, 0.6f, 0)}};
     for (const float flat : {1e-3f, 1e-6f, 1e-9f}) {
         const Scene scene = scene_of({make_icosphere(3)}, turn * Transform::scaling({1, flat, 1}) * turn);
-        const std::vector<Ray> rays = edge_aimed_rays(Oracle::of(scene), 2'000, 1);
+        const std::vector<Ray> rays = edge_aimed_rays(ReferenceScene::of(scene), 2'000, 1);
         Scene flipped = scene;
         flipped.instances.front().transform = flipped.instances.front().transform * Transform::scaling({1, 1, -1});
         EXPECT_EQ(wrong(scene, random_rays(bounds_of(scene), 2'000, 1), Level::certified), 0u) << flat;
@@ -111,7 +111,7 @@ TEST_F(Certified, NothingLeaksAtEdgesAndVertices) {
          {Transform{}, Transform::translation({1e4f, 0, 0}) * Transform::scaling({3, 0.1f, 1})}) {
         accel.update_transform(handle, transform);
         Scene scene = scene_of({sphere}, transform);
-        const Oracle placed = Oracle::of(scene);
+        const ReferenceScene placed = ReferenceScene::of(scene);
         for (std::vector<Ray> rays : {vertex_aimed_rays(placed, 20'000, 3), edge_aimed_rays(placed, 20'000, 4)}) {
             const vec3 center(transform.rows[0].w, transform.rows[1].w, transform.rows[2].w);
             for (Ray& ray : rays) ray = {center, 0, ray.origin + ray.direction - center, INFINITY};

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Long histories of edits, judged by the float64 referee after every sync.
+// Long histories of edits, checked by the float64 reference after every sync.
 #include <random>
 
 #include "engine/core/vma.h"
-#include "engine/verify/aimed_rays.h"
-#include "engine/verify/classify.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/reference/classify.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {
@@ -174,16 +174,16 @@ void Churn::expect_agreement(std::size_t count) {
     std::vector<Ray> rays = random_rays(bounds, count, random_());
     aim_at_triangles(scene, rays);
     const std::vector<Hit> hits = accel().closest_hits(rays);
-    const Oracle oracle = Oracle::of(scene);
-    Classes classes;
-    for (const Verdict& verdict :
-         is_ours() ? classify_all(oracle, rays, hits, {}) : classify_all(oracle, rays, {}, hits))
-        classes.add(is_ours() ? *verdict.software : *verdict.hardware);
+    const ReferenceScene reference = ReferenceScene::of(scene);
+    HitClassCounts classes;
+    for (const RayResult& ray_result :
+         is_ours() ? classify_all(reference, rays, hits, {}) : classify_all(reference, rays, {}, hits))
+        classes.add(is_ours() ? *ray_result.software : *ray_result.hardware);
     ASSERT_EQ(classes.faults_of_ours() + classes.faults_of_hardware(), 0u);
 }
 
 // Ten edits a round. The pipeline differs from ray queries in how it traces, not in what edits do.
-TEST_P(Churn, LongHistoriesOfEditsAgreeWithTheReferee) {
+TEST_P(Churn, LongHistoriesOfEditsAgreeWithTheReference) {
     const int rounds = GetParam() == test::Kind::pipeline ? 200 : 1000;
     closest(test::down(0, 0));  // makes what the first trace makes
     const std::uint64_t before = memory();

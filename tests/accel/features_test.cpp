@@ -5,7 +5,7 @@
 #include <random>
 
 #include "engine/accel/features_of.h"
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 #include "test_program.trace_program.h"
 

@@ -9,7 +9,7 @@
 #include <twinray/scene.h>
 
 #include "engine/accel/all_hits.h"
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 #include "test_program.trace_program.h"
 #include "tests/accel/accel_fixture.h"
 
@@ -70,13 +70,13 @@ class SortedRays : public test::AccelTest {
         accel().wait_for_programs();
     }
 };
-TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFEREE(SortedRays);
+TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFERENCE(SortedRays);
 
 TEST_P(SortedRays, FindWhatTheyFindInTheGivenOrder) {
     push_scene();
     for (const std::size_t count : counts)
         for (const Query query : {Query::closest, Query::any}) {
-            if (GetParam() == test::Kind::oracle && count > 1000) continue;
+            if (GetParam() == test::Kind::reference && count > 1000) continue;
             const std::vector<Hit> hits = expect_equal(mixed_rays(count), {.query = query});
             const auto n = std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.hit == 1; });
             EXPECT_GE(static_cast<std::size_t>(n), count / 3);

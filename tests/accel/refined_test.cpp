@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "engine/verify/oracle.h"
+#include "validation/reference/reference_scene.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {
@@ -50,11 +50,11 @@ struct Outcome {
     double worst_ulp = 0, worst_uv = 0;
 };
 
-Outcome compare(const Oracle& oracle, std::span<const Ray> rays, std::span<const Hit> hits,
+Outcome compare(const ReferenceScene& reference, std::span<const Ray> rays, std::span<const Hit> hits,
                 const std::function<double(float, double)>& ulps) {
     Outcome outcome;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        const OracleHit exact = oracle.closest_hit(rays[i]);
+        const ReferenceHit exact = reference.closest_hit(rays[i]);
         if (!exact.hit && !hits[i].hit) continue;
         if (exact.hit != (hits[i].hit == 1) || exact.primitive != hits[i].primitive_index ||
             exact.instance != hits[i].instance_index) {
@@ -77,9 +77,9 @@ TEST_P(Refined, DistancesAreThoseOfFloat64RoundedOnce) {
         {"", 1, Transform::translation({7, 3, 2.5f}) * Transform::scaling({2, 0.3f, 1})}};
     for (const Instance& instance : scene.instances) accel().push(scene.meshes[instance.mesh], instance.transform);
     const std::vector<Ray> rays = rays_from(3, 20'000, 16, 1);
-    const Oracle oracle = Oracle::of(scene);
-    const Outcome refined = compare(oracle, rays, accel().closest_hits(rays, {.level = Level::refined}), ulps);
-    const Outcome plain = compare(oracle, rays, accel().closest_hits(rays), ulps);
+    const ReferenceScene reference = ReferenceScene::of(scene);
+    const Outcome refined = compare(reference, rays, accel().closest_hits(rays, {.level = Level::refined}), ulps);
+    const Outcome plain = compare(reference, rays, accel().closest_hits(rays), ulps);
     EXPECT_GT(refined.hits, 19'000u);
     EXPECT_LE(refined.worst_ulp, 0.5 + 1e-6);
     EXPECT_LE(refined.worst_uv, 1e-7);
@@ -92,13 +92,13 @@ TEST_P(Refined, AFarCameraHitsTheRightTriangles) {
     scene.meshes = {height_field(64)};
     scene.instances = {{"", 0, Transform{}}};
     accel().push(scene.meshes[0]);
-    const Oracle oracle = Oracle::of(scene);
+    const ReferenceScene reference = ReferenceScene::of(scene);
     for (int exponent = 1; exponent <= 9; ++exponent) {
         const std::vector<Ray> rays = rays_from(std::pow(10.0f, static_cast<float>(exponent)), 2000, 64, 3);
-        const Outcome refined = compare(oracle, rays, accel().closest_hits(rays, {.level = Level::refined}), ulps);
+        const Outcome refined = compare(reference, rays, accel().closest_hits(rays, {.level = Level::refined}), ulps);
         EXPECT_EQ(refined.wrong, 0u) << "from 1e" << exponent << " cells";
         EXPECT_LE(refined.worst_ulp, 0.5 + 1e-6) << "from 1e" << exponent << " cells";
-        const Outcome plain = compare(oracle, rays, accel().closest_hits(rays), ulps);
+        const Outcome plain = compare(reference, rays, accel().closest_hits(rays), ulps);
         if (exponent < 7) continue;
         EXPECT_GT(plain.wrong, 20u) << "without, from 1e" << exponent << " cells";
     }
@@ -110,8 +110,8 @@ TEST_P(Refined, AHitNearOneCornerKeepsItsDistanceWhereTheOthersAreFar) {
     mesh.positions = {far, near, farther};
     mesh.triangles = {uvec3(0, 1, 2), uvec3(1, 2, 0)};  // none of the two begins with the near corner, or both do
     const MeshView view = mesh;
-    const OracleInstance instance{0, Transform{}};
-    const Oracle oracle(std::span(&view, 1), std::span(&instance, 1));
+    const ReferenceInstance instance{0, Transform{}};
+    const ReferenceScene reference(std::span(&view, 1), std::span(&instance, 1));
     accel().push(mesh);
     std::mt19937 random(6);
     std::uniform_real_distribution<float> weight(1e-11f, 1e-10f);
@@ -123,7 +123,7 @@ TEST_P(Refined, AHitNearOneCornerKeepsItsDistanceWhereTheOthersAreFar) {
     const std::vector<Hit> hits = accel().closest_hits(rays, {.level = Level::refined});
     for (std::size_t i = 0; i < rays.size(); ++i) {
         ASSERT_TRUE(hits[i].hit) << i;
-        EXPECT_LE(ulps(hits[i].t, oracle.closest_hit(rays[i]).t), 0.55) << i;
+        EXPECT_LE(ulps(hits[i].t, reference.closest_hit(rays[i]).t), 0.55) << i;
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Multiplying everything by a power of two is exact, so it must change nothing but t.
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {

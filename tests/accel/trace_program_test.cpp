@@ -3,7 +3,7 @@
 #include <random>
 
 #include "engine/accel/trace_desc.h"
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 #include "test_kernel_hw.spv.h"
 #include "test_kernel_sw.spv.h"

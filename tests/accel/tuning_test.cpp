@@ -4,7 +4,7 @@
 #include <random>
 
 #include "engine/accel/all_hits.h"
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 #include "test_program.trace_program.h"
 #include "tests/accel/accel_fixture.h"
 

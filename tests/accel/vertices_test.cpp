@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "engine/verify/aimed_rays.h"
-#include "engine/verify/classify.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/reference/classify.h"
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {
@@ -17,7 +17,7 @@ using test::square;
 
 class Vertices : public test::AccelTest {
   protected:
-    // With the referee, on a mesh that is all there is.
+    // With the reference, on a mesh that is all there is.
     void expect_agreement(const Mesh& mesh);
 };
 TWINRAY_OVER_EVERY_ACCEL(Vertices);
@@ -26,16 +26,17 @@ void Vertices::expect_agreement(const Mesh& mesh) {
     Scene scene;
     scene.meshes = {mesh};
     scene.instances = {{"", 0, Transform{}}};
-    const Oracle oracle = Oracle::of(scene);
+    const ReferenceScene reference = ReferenceScene::of(scene);
     std::vector<Ray> rays = random_rays(bounds_of(mesh), 2000, 1);
-    for (const Ray& ray : vertex_aimed_rays(oracle, 500, 2)) rays.push_back(ray);
+    for (const Ray& ray : vertex_aimed_rays(reference, 500, 2)) rays.push_back(ray);
     const std::vector<Hit> hits = accel().closest_hits(rays);
     const bool ours = is_ours();
-    Classes classes;
-    for (const Verdict& verdict : ours ? classify_all(oracle, rays, hits, {}) : classify_all(oracle, rays, {}, hits))
-        classes.add(ours ? *verdict.software : *verdict.hardware);
+    HitClassCounts classes;
+    for (const RayResult& ray_result :
+         ours ? classify_all(reference, rays, hits, {}) : classify_all(reference, rays, {}, hits))
+        classes.add(ours ? *ray_result.software : *ray_result.hardware);
     EXPECT_EQ(classes.faults_of_ours(), 0u);
-    EXPECT_EQ(classes[Class::hw_false] + classes[Class::hw_t_err] + classes[Class::hw_range], 0u);
+    EXPECT_EQ(classes[HitClass::hw_false] + classes[HitClass::hw_t_err] + classes[HitClass::hw_range], 0u);
 }
 
 std::vector<vec3> raised(const Mesh& mesh, float height) {
@@ -106,7 +107,7 @@ TEST_P(Vertices, UpdateReplacesMovedVertices) {
 }
 
 // From one triangle to a mesh of several groups; a sphere that becomes a spiked one.
-TEST_P(Vertices, MovedVerticesAgreeWithTheReferee) {
+TEST_P(Vertices, MovedVerticesAgreeWithTheReference) {
     for (Mesh mesh : {make_soup(1, 3), make_soup(2, 4), make_box(vec3(0), vec3(1)), make_icosphere(4)}) {
         const AccelHandle handle = accel().push(mesh);
         accel().sync();

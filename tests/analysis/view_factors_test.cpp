@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <twinray/scene.h>
-#include "engine/report/statistics.h"
+#include "engine/core/statistics.h"
 
 #include "tests/accel/accel_fixture.h"
 #include "tests/analysis/view_factor_scenes.h"

@@ -56,16 +56,16 @@ assert all(r["vs_sw"] is not None for r in records)
 
 # Some, on some.
 _, records = bench("--scene", "instances:4x80", "--width", "16", "--rounds", "1", "--ray-kinds", "occlusion", "--layouts", "bvh2",
-                   "--levels", "fast,watertight", "--contestants", "sw", "--no-build")
+                   "--levels", "fast,watertight", "--backends", "sw", "--no-build")
 assert [(r["rays"], r["contestant"]) for r in records] == [("occlusion", "sw bvh2 fast"), ("occlusion", "sw bvh2 watertight")]
 assert all(r["build_ms"] is None and r["vs_embree8"] is None and r["triangles"] == 320 for r in records)
 _, records = bench("--scene", "soup:100", "--width", "16", "--rounds", "1", "--ray-kinds", "primary", "--no-embree",
-                   "--contestants", "compressed4,embree")
+                   "--backends", "compressed4,embree")
 assert not any(r["backend"] == "embree" for r in records)
 
 # Rays in random order, and who sorts them.
 said, records = bench("--scene", "sphere:320", "--width", "32", "--rounds", "1", "--ray-kinds", "incoherent,shuffled", "--layouts",
-                      "bvh2", "--contestants", "sw,embree8 low", "--ray-orders", "given,sorted", "--no-build")
+                      "bvh2", "--backends", "sw,embree8 low", "--ray-orders", "given,sorted", "--no-build")
 ours = [r for r in records if r["backend"] == "sw"]
 assert [(r["rays"], r["contestant"], r["ray_order"]) for r in ours] == [
     (kind, "sw bvh2 watertight" + suffix, order) for kind in ("incoherent", "shuffled")
@@ -75,12 +75,12 @@ assert len({r["hits_hash"] for r in ours}) == 2, "shuffled rays are not"
 assert all(r["ray_order"] == "" for r in records if r["backend"] == "embree")
 
 # Whoever is too slow traces whole tiles, evenly chosen, and has no hash.
-_, records = bench("--scene", "sphere:80", "--width", "64", "--rounds", "1", "--contestants", "compressed4", "--max-seconds",
+_, records = bench("--scene", "sphere:80", "--width", "64", "--rounds", "1", "--backends", "compressed4", "--max-seconds",
                    "1e-9")
 assert all(r["n"] == 4 * 64 and r["hits_hash"] is None and r["mrays_per_s"] > 0 for r in records)
 
 # How times grow.
-said, records = bench("--growth", "80,320,1280", "--width", "16", "--rounds", "1", "--contestants", "compressed4")
+said, records = bench("--growth", "80,320,1280", "--width", "16", "--rounds", "1", "--backends", "compressed4")
 assert [r["scene"] for r in records[:-1:2]] == ["sphere:80", "sphere:320", "sphere:1280"]
 growth = records[-1]
 assert (growth["triangles_from"], growth["triangles_to"]) == (80, 1280) and " a doubling" in said
@@ -93,15 +93,15 @@ assert abs(growth["growth"]["primary_ns_per_ray"]["per_doubling"] - (times[2] - 
 _, records = bench("--moves", "20", "--rounds", "1")
 assert records and all(r["refit_ms"] > 0 and r["rebuild_ms"] > 0 for r in records)
 
-# What features cost: rungs hold more and more, and find the same.
-said, records = bench("--validation", "--ladder", "--scene", "sphere:320", "--width", "16", "--rounds", "5", "--ray-kinds",
+# What features cost: steps hold more and more, and find the same.
+said, records = bench("--validation", "--feature-costs", "--scene", "sphere:320", "--width", "16", "--rounds", "5", "--ray-kinds",
                       "incoherent,occlusion")
 for kind in KINDS[1:]:
-    rungs = [r for r in records if r.get("rays") == kind]
-    assert rungs[0]["rung"] == "needed" and len(rungs) == (9 if kind == "occlusion" else 8)
-    assert all(a["features"] & b["features"] == a["features"] for a, b in zip(rungs, rungs[1:]))
-    assert len({r["hits_hash"] for r in rungs}) == 1 and rungs[0]["hits_hash"] in said
-    assert all(r["ns_per_ray"] > 0 and r["rounds"] == 5 for r in rungs) and rungs[0]["of_needed"] == 1
+    steps = [r for r in records if r.get("rays") == kind]
+    assert steps[0]["step"] == "needed" and len(steps) == (9 if kind == "occlusion" else 8)
+    assert all(a["features"] & b["features"] == a["features"] for a, b in zip(steps, steps[1:]))
+    assert len({r["hits_hash"] for r in steps}) == 1 and steps[0]["hits_hash"] in said
+    assert all(r["ns_per_ray"] > 0 and r["rounds"] == 5 for r in steps) and steps[0]["of_needed"] == 1
 # And what is kept: the least first, vertices alone where they move or levels are refined, no layout in less.
 kept = {r["keeping"]: r for r in records if "keeping" in r}
 assert list(kept)[0] == "needed" and "bytes/triangle" in said and all(r["build_ms"] > 0 for r in kept.values())
@@ -109,9 +109,9 @@ assert kept["needed"]["total_bytes_per_triangle"] <= 1.01 * min(r["total_bytes_p
 assert {name for name, r in kept.items() if r["vertices_bytes_per_triangle"] > 0} == {
     "vertices moved", "level refined", "level certified"}
 assert kept["layout bvh2"]["structures_bytes_per_triangle"] > kept["needed"]["structures_bytes_per_triangle"]
-_, records = bench("--ladder", "--no-build", "--scene", "instances:3x80", "--width", "16", "--layouts", "bvh2", "--ray-kinds",
+_, records = bench("--feature-costs", "--no-build", "--scene", "instances:3x80", "--width", "16", "--layouts", "bvh2", "--ray-kinds",
                    "primary")
-assert [r["rung"] for r in records] == ["needed", "+ masks", "+ culling", "+ filters", "+ boxes", "+ other layouts"]
+assert [r["step"] for r in records] == ["needed", "+ masks", "+ culling", "+ filters", "+ boxes", "+ other layouts"]
 
 # Trees: counts of each layout and quality; a wider node is fetched less often.
 said, records = bench("--trees", "--scene", "sphere:320", "--width", "16", "--ray-kinds", "primary")
@@ -127,18 +127,18 @@ assert "--scene" in bench("--trees", status=2)[0]
 
 # What is wrong is said.
 assert "'abc' is not a whole number" in bench("--scene", "sphere:abc", status=1)[0]
-assert "no contestant's name has a part 'nobody'" in bench("--scene", "sphere:80", "--contestants", "nobody", status=1)[0]
+assert "no backend's name has a part 'nobody'" in bench("--scene", "sphere:80", "--backends", "nobody", status=1)[0]
 bench("--scene", "sphere:80", "--ray-kinds", "diffuse", status=2)
 bench("--scene", "sphere:80", "--ray-orders", "random", status=2)
 bench("--scene", "sphere:80", "--width", "12", status=2)
 bench("--scene", "sphere:80", "--max-seconds", "0", status=2)
 bench("--growth", "1", status=2)
 bench("--rounds", "1", status=2)
-bench("--ladder", status=2)
+bench("--feature-costs", status=2)
 bench("--scene", "sphere:80", "--growth", "80", status=2)
 
 # History: each run is appended, and drawn where matplotlib is.
-options = ["--", "--width", "16", "--rounds", "1", "--contestants", "sw compressed4"]
+options = ["--", "--width", "16", "--rounds", "1", "--backends", "sw compressed4"]
 for runs in (1, 2):
     call(scripts / "record_history.sh", "-t", twinray, "-o", str(here / "history"), "sphere:80", "soup:80", *options)
     (history,) = (here / "history").glob("*.jsonl")

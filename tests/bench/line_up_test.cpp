@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "bench/embree_contestant.h"
+#include "bench/embree_backend.h"
 #include "bench/hits_hash.h"
-#include "bench/judge.h"
+#include "bench/hit_check.h"
 #include "bench/rays.h"
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"
@@ -15,15 +15,15 @@ namespace {
 
 class LineUpTest : public test::VulkanTest {
   protected:
-    static std::vector<Hit> traced(Contestant& contestant, const RayBatch& rays) {
-        EXPECT_GT(contestant.trace(rays), 0) << contestant.labels().name;
-        return contestant.hits(rays);
+    static std::vector<Hit> traced(Backend& backend, const RayBatch& rays) {
+        EXPECT_GT(backend.trace(rays), 0) << backend.labels().name;
+        return backend.hits(rays);
     }
 };
 
 std::vector<std::string> names_of(const LineUp& line_up) {
     std::vector<std::string> names;
-    for (const auto& contestant : line_up) names.push_back(contestant->labels().name);
+    for (const auto& backend : line_up) names.push_back(backend->labels().name);
     return names;
 }
 
@@ -50,9 +50,9 @@ TEST_F(LineUpTest, TracesInEachOrderThatIsAskedFor) {
     const BenchScene scene = make_scene("sphere:500");
     const RayBatch rays(make_rays(context(), scene, 16, 1)[0], Query::closest, true);
     std::vector<std::uint64_t> hashes;
-    for (const auto& contestant : line_up) {
-        contestant->build(scene.scene);
-        hashes.push_back(hash_of(traced(*contestant, rays), rays.query()));
+    for (const auto& backend : line_up) {
+        backend->build(scene.scene);
+        hashes.push_back(hash_of(traced(*backend, rays), rays.query()));
     }
     EXPECT_EQ(hashes[0], hashes[1]);
     EXPECT_EQ(line_up[0]->labels().ray_order, "given");
@@ -71,7 +71,7 @@ TEST_F(LineUpTest, EveryBaselineIsItself) {
 }
 
 // The sets of rays, and primary rays whose intervals end before their hits or begin behind them.
-std::vector<RayBatch> batches_of(Context& context, const BenchScene& scene, Contestant& first) {
+std::vector<RayBatch> batches_of(Context& context, const BenchScene& scene, Backend& first) {
     auto sets = make_rays(context, scene, 48, 1);
     std::vector<Ray> cut = sets[0];
     std::vector<RayBatch> batches;
@@ -103,21 +103,21 @@ TEST_F(LineUpTest, AllGiveTheSameHits) {
     LineUp line_up = make_line_up(context(), nullptr, {});
     for (const char* name : {"sphere:2000", "instances:20x320"}) {
         const BenchScene scene = make_scene(name);
-        const Judge judge(scene.scene);
-        for (const auto& contestant : line_up) EXPECT_GT(contestant->build(scene.scene).bytes, 0u);
+        const HitCheck hit_check(scene.scene);
+        for (const auto& backend : line_up) EXPECT_GT(backend->build(scene.scene).bytes, 0u);
         const std::vector<RayBatch> batches = batches_of(context(), scene, *line_up.front());
         for (std::size_t batch = 0; batch < batches.size(); ++batch) {
             const RayBatch& rays = batches[batch];
             const std::vector<Hit> expected = traced(*line_up.front(), rays);
-            for (const auto& contestant : line_up) {
-                SCOPED_TRACE(text(name, ", batch ", batch, ", ", contestant->labels().name));
-                const std::vector<Hit> hits = traced(*contestant, rays);
+            for (const auto& backend : line_up) {
+                SCOPED_TRACE(text(name, ", batch ", batch, ", ", backend->labels().name));
+                const std::vector<Hit> hits = traced(*backend, rays);
                 ASSERT_EQ(hits.size(), expected.size());
                 std::size_t others = 0;
                 for (std::size_t i = 0; i < hits.size(); ++i) others += !are_alike(hits[i], expected[i], rays.query());
                 EXPECT_LE(others, hits.size() / 500);
-                const bool is_ours = contestant->labels().backend == "sw";
-                const Soundness soundness = judge.judge(rays.rays(), hits, rays.query(), is_ours);
+                const bool is_ours = backend->labels().backend == "sw";
+                const Soundness soundness = hit_check.check(rays.rays(), hits, rays.query(), is_ours);
                 EXPECT_EQ(soundness.n, hits.size());
                 EXPECT_GT(soundness.sound, 0.998);
                 if (!is_ours) continue;
@@ -134,32 +134,32 @@ TEST_F(LineUpTest, AnyHitsAreNotTheClosest) {
     const BenchScene scene = make_scene("soup:2000");
     const std::vector<Ray> rays = make_rays(context(), scene, 16, 1)[0];
     const RayBatch closest(rays, Query::closest, true), any(rays, Query::any, true);
-    for (const auto& contestant : line_up) {
-        contestant->build(scene.scene);
-        const std::vector<Hit> near = traced(*contestant, closest), found = traced(*contestant, any);
+    for (const auto& backend : line_up) {
+        backend->build(scene.scene);
+        const std::vector<Hit> near = traced(*backend, closest), found = traced(*backend, any);
         std::size_t farther = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) farther += found[i].t > near[i].t;
-        EXPECT_GT(farther, 0u) << contestant->labels().name;
+        EXPECT_GT(farther, 0u) << backend->labels().name;
     }
 }
 
-TEST_F(LineUpTest, TheJudgeSeesWrongHits) {
+TEST_F(LineUpTest, TheCheckSeesWrongHits) {
     const BenchScene scene = make_scene("sphere:2000");
     const std::vector<Ray> rays = make_rays(context(), scene, 16, 1)[0];
     Hit claimed = miss();
     claimed.hit = 1;
     const std::vector<Hit> misses(rays.size(), miss()), claims(rays.size(), claimed);
-    const Judge judge(scene.scene);
+    const HitCheck hit_check(scene.scene);
     for (const bool is_ours : {false, true}) {
         for (const Query query : {Query::closest, Query::any}) {
-            const Soundness soundness = judge.judge(rays, misses, query, is_ours);
+            const Soundness soundness = hit_check.check(rays, misses, query, is_ours);
             EXPECT_LT(soundness.sound, 0.9);
             EXPECT_GT(soundness.faults, rays.size() / 10);
         }
         // Either the one or the other is right.
-        EXPECT_NEAR(
-            judge.judge(rays, misses, Query::any, is_ours).sound + judge.judge(rays, claims, Query::any, is_ours).sound,
-            1, 0.02);
+        EXPECT_NEAR(hit_check.check(rays, misses, Query::any, is_ours).sound +
+                        hit_check.check(rays, claims, Query::any, is_ours).sound,
+                    1, 0.02);
     }
 }
 

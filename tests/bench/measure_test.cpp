@@ -9,16 +9,16 @@ namespace twinray::bench {
 namespace {
 
 // Takes `ns_per_ray` by its own word, the first time 1000 times as long; writes down whose turn it was.
-class FakeContestant : public Contestant {
+class FakeBackend : public Backend {
   public:
-    FakeContestant(std::string name, double ns_per_ray, std::vector<std::string>& log)
-        : Contestant({.name = std::move(name),
-                      .backend = "sw",
-                      .path = "",
-                      .order = "",
-                      .layout = "",
-                      .builder = "",
-                      .level = ""}),
+    FakeBackend(std::string name, double ns_per_ray, std::vector<std::string>& log)
+        : Backend({.name = std::move(name),
+                   .backend = "sw",
+                   .path = "",
+                   .order = "",
+                   .layout = "",
+                   .builder = "",
+                   .level = ""}),
           ns_per_ray_(ns_per_ray),
           log_(log) {}
 
@@ -46,8 +46,8 @@ RayBatch batch_of(std::size_t tiles) { return {std::vector<Ray>(tiles * rays_a_t
 
 std::size_t affordable(double ns_per_ray, std::size_t tiles, double max_ms) {
     std::vector<std::string> log;
-    FakeContestant contestant("a", ns_per_ray, log);
-    return affordable_tiles(contestant, batch_of(tiles), max_ms);
+    FakeBackend backend("a", ns_per_ray, log);
+    return affordable_tiles(backend, batch_of(tiles), max_ms);
 }
 
 TEST(AffordableTiles, AreAllForWhoIsFast) {
@@ -64,11 +64,11 @@ TEST(AffordableTiles, AreThoseWithinTheBudgetForWhoIsSlow) {
     EXPECT_EQ(affordable(1e9, 100'000, 1000), 4u);  // the least
 }
 
-TEST(MeasureTraces, ContestantsTakeTurns) {
+TEST(MeasureTraces, BackendsTakeTurns) {
     std::vector<std::string> log;
     LineUp line_up;
-    line_up.push_back(std::make_unique<FakeContestant>("a", 100, log));
-    line_up.push_back(std::make_unique<FakeContestant>("b", 1e6, log));
+    line_up.push_back(std::make_unique<FakeBackend>("a", 100, log));
+    line_up.push_back(std::make_unique<FakeBackend>("b", 1e6, log));
     std::size_t steps = 0;
     const RayBatch rays = batch_of(100);
     const std::vector<TraceRounds> results =
@@ -87,8 +87,8 @@ TEST(MeasureTraces, ContestantsTakeTurns) {
 TEST(MeasureBuilds, TheFirstDoesNotCount) {
     std::vector<std::string> log;
     LineUp line_up;
-    line_up.push_back(std::make_unique<FakeContestant>("a", 100, log));
-    line_up.push_back(std::make_unique<FakeContestant>("b", 100, log));
+    line_up.push_back(std::make_unique<FakeBackend>("a", 100, log));
+    line_up.push_back(std::make_unique<FakeBackend>("b", 100, log));
     const std::vector<BuildRounds> results = measure_builds(line_up, {}, 2, [] {});
     EXPECT_EQ(log, (std::vector<std::string>{"build a", "build b", "build a", "build b", "build a", "build b"}));
     EXPECT_EQ(results[0].ms, (std::vector<double>{3, 5}));

@@ -9,8 +9,9 @@
 #include <twinray/geometry.h>
 #include <twinray/scene.h>
 
-#include "engine/verify/aimed_rays.h"
-#include "engine/verify/oracle.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/reference/reference_scene.h"
+#include "validation/suite/shapes.h"
 
 namespace twinray::bench {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 // A convex shape, turned, stretched and far from the origin, with its primary rays and where they meet it.
 struct Convex {
     Scene scene;
-    Oracle oracle;
+    ReferenceScene reference;
     std::vector<Ray> primary;
     std::vector<Surface> points;
 };
@@ -33,11 +34,11 @@ Scene ball() {
 
 Convex convex() {
     Scene scene = ball();
-    Oracle oracle = Oracle::of(scene);
+    ReferenceScene reference = ReferenceScene::of(scene);
     std::vector<Ray> primary = primary_rays(bounds_of(scene), 64);
     std::vector<Hit> hits;
     for (const Ray& ray : primary) {
-        const OracleHit found = oracle.closest_hit(ray);
+        const ReferenceHit found = reference.closest_hit(ray);
         Hit hit = miss();
         hit.hit = found.hit;
         hit.primitive_index = found.primitive;
@@ -46,7 +47,7 @@ Convex convex() {
         hits.push_back(hit);
     }
     std::vector<Surface> points = surfaces_of(scene, primary, hits);
-    return {std::move(scene), std::move(oracle), std::move(primary), std::move(points)};
+    return {std::move(scene), std::move(reference), std::move(primary), std::move(points)};
 }
 
 void expect_traceable(const Ray& ray) {
@@ -71,7 +72,7 @@ void expect_order(const std::vector<Ray>& rays, const std::vector<Surface>& poin
 TEST(BenchRays, PointsLieWhereRaysMetTheScene) {
     const Convex shape = convex();
     std::size_t hits = 0;
-    for (const Ray& ray : shape.primary) hits += shape.oracle.closest_hit(ray).hit;
+    for (const Ray& ray : shape.primary) hits += shape.reference.closest_hit(ray).hit;
     ASSERT_GT(hits, 500u);
     ASSERT_EQ(shape.points.size(), hits);
     for (const Surface& point : shape.points) {
@@ -91,7 +92,7 @@ TEST(BenchRays, IncoherentRaysLeaveTheSurface) {
     for (const Ray& ray : rays) {
         expect_traceable(ray);
         EXPECT_EQ(ray.t_max, INFINITY);
-        ASSERT_FALSE(shape.oracle.any_hit(ray));
+        ASSERT_FALSE(shape.reference.any_hit(ray));
     }
 }
 
@@ -121,7 +122,7 @@ TEST(BenchRays, OcclusionRaysEndJustBeforeALightOutside) {
     for (const Ray& ray : rays) {
         expect_traceable(ray);
         ends.include(ray.origin + ray.direction * ray.t_max);
-        lit += !shape.oracle.any_hit(ray);
+        lit += !shape.reference.any_hit(ray);
     }
     EXPECT_GT(ends.lo.y, bounds.hi.y);
     EXPECT_LT(length(ends.size()), length(bounds.size()));

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "bench/displaced_sphere.h"
-#include "engine/verify/closed_mesh.h"
+#include "validation/leaks/closed_mesh.h"
 #include "tests/scene/temp_dir.h"
 
 namespace twinray::bench {

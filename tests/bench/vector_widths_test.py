@@ -24,7 +24,7 @@ def hits_of(setting):
     variables = {"LP_NATIVE_VECTOR_WIDTH": str(width), "TWINRAY_TUNING": tuning}
     command = [twinray, "bench", "--quiet", "--json", str(file), "--pipelines", "", "--device", "llvmpipe", "--scene",
                "instances:12x80", "--width", "32", "--rounds", "1", "--levels", "fast,watertight,certified",
-               "--contestants", "sw",
+               "--backends", "sw",
                "--no-embree", "--no-build"]
     run = subprocess.run(command, capture_output=True, text=True, env={**os.environ, **variables})
     assert run.returncode == 0, f"{variables}: {run.stdout}{run.stderr}"

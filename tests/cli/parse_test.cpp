@@ -48,7 +48,9 @@ TEST(Parse, ListsLettersRepetitionsAndFormerNames) {
     EXPECT_EQ(parsed({"-o", "here", "a.ply"}).output, "here");
     EXPECT_EQ(parsed({"a.ply", "--picture", "1.png", "--picture", "2.GLB"}).pictures,
               (std::vector<std::filesystem::path>{"1.png", "2.GLB"}));
+    testing::internal::CaptureStderr();
     EXPECT_EQ(parsed({"a.ply", "--rays", "3"}).count, 3u) << "--count was called so";
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "twinray: --rays is now called --count\n");
     const SampleValues alone = parsed({"a.ply", "--growth"});
     EXPECT_TRUE(alone.is_growth && alone.growth.size() == 2);
     EXPECT_EQ(parsed({"a.ply", "--growth", "1e3,5"}).growth, (std::vector<double>{1000, 5}));

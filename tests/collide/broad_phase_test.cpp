@@ -72,7 +72,7 @@ class BroadPhaseTest : public test::AccelTest {
   private:
     std::unique_ptr<BroadPhase> broad_phase_;
 };
-TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFEREE(BroadPhaseTest);
+TWINRAY_OVER_EVERY_ACCEL_AND_THE_REFERENCE(BroadPhaseTest);
 
 TEST_P(BroadPhaseTest, FindsWhatBruteForceFindsAmongTenThousand) {
     const std::vector<Cube> cubes = random_cubes(10'000, 1, 12);

@@ -7,7 +7,7 @@
 #include "engine/collide/exact_class.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/collide/triangle_pairs.h"
-#include "tests/verify/meshes.h"
+#include "tests/validation/reference/meshes.h"
 
 namespace twinray {
 namespace {

@@ -51,7 +51,7 @@ const Family families[] = {
     // By twinray_add_kernel and twinray_add_trace_program.
     {"all_hits_"},
     {"headless_dispatch_"},
-    {"ladder_program_"},
+    {"feature_costs_program_"},
     {"crossings_"},
     {"host_kernel_"},
     {"cube_"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the tests of HwTlas share: every way of tracing as a parameter, and a float64 brute force as the judge.
+// What the tests of HwTlas share: every way of tracing as a parameter, and a float64 brute force as the check.
 #pragma once
 
 #include <algorithm>

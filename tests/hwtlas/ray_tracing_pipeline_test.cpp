@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "hwtlas/ray_tracing_pipeline.h"
 
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 #include "hwtlas_trace_rchit.spv.h"
 #include "hwtlas_trace_rgen.spv.h"
 #include "hwtlas_trace_rmiss.spv.h"

@@ -9,7 +9,7 @@
 #include "engine/core/parallel.h"
 #include "tests/accel/accel_fixture.h"
 #include "tests/points/point_reference.h"
-#include "tests/verify/meshes.h"
+#include "tests/validation/reference/meshes.h"
 
 namespace twinray {
 namespace {

@@ -5,7 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
+#include <twinray/scene.h>
 #include "tests/accel/accel_fixture.h"
 
 namespace twinray {

@@ -4,7 +4,7 @@
 
 #include <array>
 #include <cmath>
-#include "engine/verify/draws.h"
+#include "validation/reference/draws.h"
 #include "swtlas/structures.h"
 
 namespace twinray {

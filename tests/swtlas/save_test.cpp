@@ -11,7 +11,7 @@
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 #include <twinray/tlas.h>
 #include "tests/scene/temp_dir.h"
 #include "tests/support/device.h"

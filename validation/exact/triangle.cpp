@@ -11,8 +11,8 @@ std::array<Vector, 3> from_origin(const Line& line, const Triangle64& triangle) 
             vector_of(triangle[2]) - line.origin};
 }
 
-std::array<Rational, 3> edge_values(const Vector& direction, const std::array<Vector, 3>& corners) {
-    const auto& [a, b, c] = corners;
+std::array<Rational, 3> edge_values(const Vector& direction, const std::array<Vector, 3>& vertices) {
+    const auto& [a, b, c] = vertices;
     return {dot(direction, cross(b, c)), dot(direction, cross(c, a)), dot(direction, cross(a, b))};
 }
 
@@ -32,16 +32,16 @@ std::array<Rational, 3> edge_values(const Line& line, const Triangle64& triangle
 }
 
 std::optional<Crossing> crossing(const Line& line, const Triangle64& triangle) {
-    const std::array<Vector, 3> corners = from_origin(line, triangle);
-    const std::array<Rational, 3> values = edge_values(line.direction, corners);
+    const std::array<Vector, 3> vertices = from_origin(line, triangle);
+    const std::array<Rational, 3> values = edge_values(line.direction, vertices);
     const auto count = [&](int sign) {
         return std::count_if(values.begin(), values.end(), [&](const Rational& value) { return sgn(value) == sign; });
     };
     if (count(-1) > 0 && count(1) > 0) return std::nullopt;
     const Rational sum = values[0] + values[1] + values[2];
     if (sum == 0) return std::nullopt;
-    const Vector normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-    return Crossing{dot(normal, corners[0]) / dot(normal, line.direction), values[1] / sum, values[2] / sum,
+    const Vector normal = cross(vertices[1] - vertices[0], vertices[2] - vertices[0]);
+    return Crossing{dot(normal, vertices[0]) / dot(normal, line.direction), values[1] / sum, values[2] / sum,
                     static_cast<Incidence>(count(0))};
 }
 

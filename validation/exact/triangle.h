@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "validation/exact/rational.h"
-#include "engine/verify/triangle64.h"
+#include "validation/reference/triangle64.h"
 
 namespace twinray::exact {
 
@@ -15,8 +15,8 @@ struct Line {
     Vector origin, direction;
 };
 
-// What a line meets of a closed triangle: its inside, an edge but no corner, or a corner.
-enum class Incidence : std::uint8_t { interior, edge, corner };
+// What a line meets of a closed triangle: its inside, an edge but no vertex, or a vertex.
+enum class Incidence : std::uint8_t { interior, edge, vertex };
 
 struct Crossing {
     Rational t;     // in units of the line's direction
@@ -24,9 +24,9 @@ struct Crossing {
     Incidence incidence = Incidence::interior;
 };
 
-// Six times the signed volumes of (direction, b, c), (direction, c, a) and (direction, a, b), corners a, b, c taken
-// from the origin: the weights of the three corners, times a common factor. The line meets the triangle where they have
-// one sign; one that is 0 puts the line on the edge across from its corner; all 0: the plane contains the line.
+// Six times the signed volumes of (direction, b, c), (direction, c, a) and (direction, a, b), vertices a, b, c taken
+// from the origin: the weights of the three vertices, times a common factor. The line meets the triangle where they
+// have one sign; one that is 0 puts the line on the edge across from its vertex; all 0: the plane contains the line.
 std::array<Rational, 3> edge_values(const Line& line, const Triangle64& triangle);
 
 // Nothing where the line passes the triangle or lies in its plane. Any t, also negative.

@@ -59,8 +59,8 @@ void print_path(std::ostream& out, const char* tree, const std::vector<Box>& pat
 
 }  // namespace
 
-Explainer::Explainer(const Scene& scene, const Oracle& oracle, const Ray& ray, Level level)
-    : oracle_(oracle), ray_(ray), twin_(suite::twin_of(scene, {.layout = Layout::bvh2})) {
+Explainer::Explainer(const Scene& scene, const ReferenceScene& reference, const Ray& ray, Level level)
+    : reference_(reference), ray_(ray), twin_(suite::twin_of(scene, {.layout = Layout::bvh2})) {
     double advance = 0;
     searched_ = twin_->searched_ray(ray, static_cast<uint>(level), advance);
 }
@@ -77,25 +77,25 @@ void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const 
     out << "  triangle " << triangle.primitive << " of instance " << triangle.instance << '\n';
     const reference::Scene::Tree tree = twin_->geometry_tree(triangle.instance);
     const auto leaf = std::ranges::find(tree.triangles, triangle.primitive, &BvhTriangle::primitive_index);
-    const ActiveTriangle* active = oracle_.geometry(triangle.instance).find(triangle.primitive);
+    const ActiveTriangle* active = reference_.geometry(triangle.instance).find(triangle.primitive);
     if (leaf == tree.triangles.end() || !active) {
         out << "    is not active: not finite, or without area\n";
         return;
     }
     const RaySpace space = object_space(triangle.instance);
-    const vec3 corners[] = {sheared(leaf->v0, space), sheared(leaf->v1, space), sheared(leaf->v2, space)};
+    const vec3 vertices[] = {sheared(leaf->v0, space), sheared(leaf->v1, space), sheared(leaf->v2, space)};
     for (int i = 0; i < 3; ++i)
-        out << "    corner " << i << ", sheared so that the ray is (0, 0): " << corners[i].x << ", " << corners[i].y
-            << "; along the ray " << corners[i].z << '\n';
+        out << "    vertex " << i << ", sheared so that the ray is (0, 0): " << vertices[i].x << ", " << vertices[i].y
+            << "; along the ray " << vertices[i].z << '\n';
 
-    const exact::Line line = exact::object_line(ray_, oracle_.placement(triangle.instance));
-    const auto values = exact::edge_values(line, active->corners64());
+    const exact::Line line = exact::object_line(ray_, reference_.placement(triangle.instance));
+    const auto values = exact::edge_values(line, active->vertices64());
     const Rational unit = line.direction[static_cast<int>(space.axis)] * Rational(tree.scale) * Rational(tree.scale);
     for (int i = 0; i < 3; ++i) {
-        const vec3 a = corners[(i + 1) % 3], b = corners[(i + 2) % 3];
+        const vec3 a = vertices[(i + 1) % 3], b = vertices[(i + 2) % 3];
         const float area = edge_function(a, b);
         const Rational truth = unit == 0 ? Rational(0) : Rational(values[static_cast<std::size_t>(i)] / unit);
-        out << "    edge across from corner " << i << ": float32 " << area;
+        out << "    edge across from vertex " << i << ": float32 " << area;
         if (area == 0)
             out << ", a tie, with its rounding error " << accurate_edge_function(a, b) << ", decided "
                 << sign_of(exact_side(a, b));
@@ -106,8 +106,8 @@ void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const 
         out << "    float32: hit at t = " << hit.t << ", u = " << hit.u << ", v = " << hit.v << '\n';
     else
         out << "    float32: the ray passes\n";
-    if (const auto crossing = exact::crossing(line, active->corners64())) {
-        const char* where[] = {"inside", "on an edge", "at a corner"};
+    if (const auto crossing = exact::crossing(line, active->vertices64())) {
+        const char* where[] = {"inside", "on an edge", "at a vertex"};
         out << "    exactly: hit at t = " << exact::rounded(crossing->t) << ", "
             << where[static_cast<std::size_t>(crossing->incidence)] << '\n';
     } else {

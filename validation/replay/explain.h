@@ -4,17 +4,17 @@
 
 #include <iosfwd>
 
-#include "validation/exact/referee.h"
+#include "validation/exact/exact_reference.h"
 #include "validation/suite/twin.h"
 
 namespace twinray::replay {
 
 class Explainer {
   public:
-    // The scene is only read here; the oracle must outlive it.
-    Explainer(const Scene& scene, const Oracle& oracle, const Ray& ray, Level level);
+    // The scene is only read here; the reference must outlive it.
+    Explainer(const Scene& scene, const ReferenceScene& reference, const Ray& ray, Level level);
 
-    // The triangle test: corners as the ray sees them, edge functions in float32 and exactly, and what each decides.
+    // The triangle test: vertices as the ray sees them, edge functions in float32 and exactly, and what each decides.
     void print_test(std::ostream& out, exact::TriangleId triangle) const;
     // The boxes of SwTlas's trees that lead to it, and whether the ray enters them with the padding and without.
     void print_boxes(std::ostream& out, exact::TriangleId triangle) const;
@@ -22,7 +22,7 @@ class Explainer {
   private:
     RaySpace object_space(uint instance) const;
 
-    const Oracle& oracle_;
+    const ReferenceScene& reference_;
     Ray ray_;       // as given
     Ray searched_;  // as the level searches with it
     std::unique_ptr<reference::Scene> twin_;

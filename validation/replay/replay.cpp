@@ -58,7 +58,7 @@ Hit answer_of(const json& hit) {
             0};
 }
 
-OracleHit reference_of(const json& hit) {
+ReferenceHit reference_hit(const json& hit) {
     if (hit.is_null()) return {};
     return {true,
             number(hit.at("t")),
@@ -109,7 +109,7 @@ Replay read(const std::filesystem::path& file) {
                 {vector(ray.at("origin")), float_of(ray.at("t_min")), vector(ray.at("direction")),
                  float_of(ray.at("t_max"))},
                 answer_of(object.at("answer")),
-                reference_of(object.at("reference")),
+                reference_hit(object.at("reference")),
                 object.at("device").get<std::string>(),
                 object.at("driver").get<std::string>(),
                 object.at("twinray").get<std::string>()};

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/core/ray.h"
-#include "engine/verify/oracle.h"
+#include "validation/reference/reference_scene.h"
 
 namespace twinray::replay {
 
@@ -18,7 +18,7 @@ struct Replay {
     std::string kind;             // class of the answer: "HW_LEAK"
     Ray ray{};
     Hit answer{};
-    OracleHit reference;
+    ReferenceHit reference;
     std::string device, driver, twinray;  // who answered
 };
 

@@ -23,7 +23,7 @@ Mesh mesh_of(const Geometry64& geometry) {
     for (uint primitive = 0; primitive < count; ++primitive) {
         mesh.triangles.push_back(uvec3(3 * primitive, 3 * primitive + 1, 3 * primitive + 2));
         if (const ActiveTriangle* active = geometry.find(primitive))
-            std::ranges::copy(active->corners, mesh.positions.begin() + 3 * std::ptrdiff_t{primitive});
+            std::ranges::copy(active->vertices, mesh.positions.begin() + 3 * std::ptrdiff_t{primitive});
     }
     return mesh;
 }
@@ -104,13 +104,14 @@ class Fnv1a {
 
 }  // namespace
 
-Scene scene_of(const Oracle& oracle) {
+Scene scene_of(const ReferenceScene& reference) {
     Scene scene;
     const Geometry64* last = nullptr;  // instances of one mesh stand together, as push() places them
-    for (uint i = 0; i < oracle.instance_count(); ++i) {
-        if (&oracle.geometry(i) != last) scene.meshes.push_back(mesh_of(oracle.geometry(i)));
-        last = &oracle.geometry(i);
-        scene.instances.push_back({"", static_cast<uint>(scene.meshes.size() - 1), transform_of(oracle.placement(i))});
+    for (uint i = 0; i < reference.instance_count(); ++i) {
+        if (&reference.geometry(i) != last) scene.meshes.push_back(mesh_of(reference.geometry(i)));
+        last = &reference.geometry(i);
+        scene.instances.push_back(
+            {"", static_cast<uint>(scene.meshes.size() - 1), transform_of(reference.placement(i))});
     }
     return scene;
 }

@@ -7,13 +7,13 @@
 
 #include <twinray/scene.h>
 
-#include "engine/verify/oracle.h"
+#include "validation/reference/reference_scene.h"
 
 namespace twinray::replay {
 
-// What an oracle was made of: meshes in the order of its instances, triangles by the same numbers; those that cannot be
-// hit have all corners at 0. Masks and culling are left out.
-Scene scene_of(const Oracle& oracle);
+// What a reference was made of: meshes in the order of its instances, triangles by the same numbers; those that cannot
+// be hit have all vertices at 0. Masks and culling are left out.
+Scene scene_of(const ReferenceScene& reference);
 
 // Binary glTF of positions and transforms alone, relative to the scene's origin: load_scene(file, dvec3(0)) gives the
 // same floats, triangles and instances. Throws Error where the file cannot be written.

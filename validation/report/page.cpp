@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <iomanip>
 #include <map>
 #include <set>
 #include <sstream>
+
+#include "engine/core/error.h"
 
 namespace twinray::report {
 namespace {
@@ -17,7 +20,7 @@ h1 { font-size: 1.6em; } h2 { margin-top: 2em; border-bottom: 1px solid #ccc; } 
 table { border-collapse: collapse; width: 100%; font-size: 12.5px; font-variant-numeric: tabular-nums; }
 th, td { text-align: left; padding: 3px 8px; border-bottom: 1px solid #e4e4e4; vertical-align: top; }
 th { background: #f3f3f3; } td.n, th.n { text-align: right; white-space: nowrap; }
-.verdict { white-space: nowrap; font-weight: 600; } .pass { color: #00714f; } .twinray { color: #b00020; }
+.result { white-space: nowrap; font-weight: 600; } .pass { color: #00714f; } .twinray { color: #b00020; }
 .driver { color: #b45300; } .measured, .notrun { color: #666; } .big { font-size: 1.2em; font-weight: 600; }
 code { font-size: 11px; overflow-wrap: anywhere; } svg { max-width: 100%; height: auto; } dt { font-weight: 600; }
 dl.facts { display: grid; grid-template-columns: max-content 1fr; gap: 2px 14px; } dl.facts dd { margin: 0; }
@@ -40,7 +43,7 @@ std::string shown(const Value& value) {
     return figure ? number(*figure, 4) : value.text();
 }
 
-std::string verdict_class(const Record& record) {
+std::string result_class(const Record& record) {
     if (!record.was_run) return "notrun";
     if (!record.pass) return "measured";
     return *record.pass ? "pass" : record.fault_of;
@@ -66,7 +69,7 @@ void write_summary(std::ostream& out, const PageInput& input) {
     std::map<std::string, std::size_t> sums;
     std::uint64_t rays = 0, faults = 0;
     for (const Record& record : input.records) {
-        ++sums[verdict(record)];
+        ++sums[result_of(record)];
         if (record.backend == "sw" && record.pass && record.variant.empty()) rays += record.n, faults += record.faults;
     }
     const std::size_t ours = faults_of_ours(input.records);
@@ -74,7 +77,7 @@ void write_summary(std::ostream& out, const PageInput& input) {
     out << "<h2 id=\"summary\">Summary</h2>\n<p class=\"big " << (is_sound ? "pass" : "twinray") << "\">"
         << (is_sound ? "No fault of ours" : std::to_string(ours) + " measurements show faults of ours")
         << "</p>\n<p>SwTlas at watertight and above: " << faults << " faults in " << rays
-        << " judged items; true rate below " << number(upper_bound_95(faults, rays)) << " (95 %).</p>\n<p>";
+        << " checked items; true rate below " << number(upper_bound_95(faults, rays)) << " (95 %).</p>\n<p>";
     const char* separator = "";
     for (const auto& [kind, count] : sums)
         if (count) {
@@ -86,7 +89,7 @@ void write_summary(std::ostream& out, const PageInput& input) {
 
 void write_legend(std::ostream& out) {
     out << R"(<details><summary>How to read this page</summary>
-<p>Every answer is judged by a float64 referee. <b>AGREE</b>: the same hit, t within its error bound. <b>TIE</b>: another
+<p>Every answer is checked by a float64 reference. <b>AGREE</b>: the same hit, t within its error bound. <b>TIE</b>: another
 triangle at the same t. <b>BOUNDARY</b>: nearer to a silhouette or rim than rounding, either answer is right;
 <b>BOUNDARY_HW_MISS</b>: hardware missed there. <b>UNSPECIFIED</b>: Vulkan promises nothing. Faults of ours, which must
 be 0: <b>SW_LEAK</b> (the ray slipped between triangles that share an edge), <b>SW_FALSE</b> (a hit where there is
@@ -151,7 +154,7 @@ void write_row(std::ostream& out, const Record& record) {
         out << number(time->median, 4) << " &#177; " << number(time->mad, 2);
         if (time->metric != "ns_per_ray") out << ' ' << escaped(time->metric);
     }
-    out << "</td><td class=\"verdict " << verdict_class(record) << "\">" << escaped(verdict(record))
+    out << "</td><td class=\"result " << result_class(record) << "\">" << escaped(result_of(record))
         << (record.variant.empty() ? "" : " (" + escaped(record.variant) + ")") << "</td></tr>\n";
     if (!record.reason.empty() || !record.example.empty())
         out << "<tr><td></td><td colspan=\"9\">" << escaped(record.reason) << " <code>" << escaped(record.example)
@@ -165,7 +168,7 @@ void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vecto
         << "<table><tr><th>setting</th><th>accelerator</th><th>level</th><th class=\"n\">n</th><th>classes, "
            "results</th>"
            "<th class=\"n\">faults</th><th class=\"n\">95 % bound</th><th class=\"n\">t, ulp: median / p99 / max</th>"
-           "<th class=\"n\">ns per ray</th><th>verdict</th></tr>\n";
+           "<th class=\"n\">ns per ray</th><th>result</th></tr>\n";
     for (const Record* record : records) write_row(out, *record);
     out << "</table>\n";
     for (const Plot& plot : plots)
@@ -210,7 +213,7 @@ void write_not_run(std::ostream& out, const PageInput& input) {
 
 }  // namespace
 
-std::string verdict(const Record& record) {
+std::string result_of(const Record& record) {
     if (!record.was_run) return "not run";
     if (!record.pass) return "measured";
     return *record.pass ? "pass" : "fault of " + record.fault_of;
@@ -272,6 +275,12 @@ std::string page(const PageInput& input) {
     }
     out << "</body>\n</html>\n";
     return out.str();
+}
+
+void write_page(const std::filesystem::path& file, const PageInput& input) {
+    std::ofstream out(file);
+    out << page(input);
+    if (!out.flush()) fail("page '", file.string(), "' cannot be written");
 }
 
 }  // namespace twinray::report

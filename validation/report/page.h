@@ -16,7 +16,7 @@ struct PageInput {
 };
 
 // "pass", "fault of twinray", "fault of driver", "measured" or "not run".
-std::string verdict(const Record& record);
+std::string result_of(const Record& record);
 
 // Records that show a fault of ours: where there is one the command exits with 1.
 std::size_t faults_of_ours(std::span<const Record> records);
@@ -33,5 +33,7 @@ std::vector<LevelPrice> level_prices(std::span<const Record> records);
 
 // One page of HTML that is XML, too, and refers to nothing outside of itself but the replays that it links.
 std::string page(const PageInput& input);
+// Throws Error naming the file.
+void write_page(const std::filesystem::path& file, const PageInput& input);
 
 }  // namespace twinray::report

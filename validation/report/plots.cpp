@@ -23,8 +23,8 @@ std::string label_of(const Record& record) {
 
 // A kernel of its own is a curve of its own; that fast is a control in some case makes no other kernel of it.
 std::string curve_of(const Record& record) {
-    const std::string subject = record.level.empty() ? record.backend : record.backend + ' ' + record.level;
-    return is_users_kernel(record) ? subject : subject + ", " + record.variant;
+    const std::string configuration = record.level.empty() ? record.backend : record.backend + ' ' + record.level;
+    return is_users_kernel(record) ? configuration : configuration + ", " + record.variant;
 }
 
 PlotPoint timed_point(const Record& record) {
@@ -89,7 +89,7 @@ std::optional<PowerLaw> fit_of(const std::vector<PlotPoint>& points) {
     return fit_power_law(errors, times);
 }
 
-// One curve a subject, in the order of their first records.
+// One curve a configuration, in the order of their first records.
 std::vector<PlotCurve> curves_of(std::span<const Record* const> records, const PointOf& point_of, bool with_fit) {
     std::vector<PlotCurve> curves;
     for (const Record* record : records) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/report/record.h"
+#include "validation/records/record.h"
 
 namespace twinray::report {
 
@@ -40,9 +40,9 @@ struct Plot {
 bool is_users_kernel(const Record& record);
 
 // For each section of the catalogue, over all its cases: the rate of faults, and the 99th percentile of the error of t,
-// against time; then the same for each case that shows such an error and has three settings or more on one subject, and
-// for each of its settings the median error of estimates over numbers of rays. A rate of 0 stands at its 95 % bound,
-// 3 / n, an error below that of rounding at that. Plots without a point are left out.
+// against time; then the same for each case that shows such an error and has three settings or more on one
+// configuration, and for each of its settings the median error of estimates over numbers of rays. A rate of 0 stands at
+// its 95 % bound, 3 / n, an error below that of rounding at that. Plots without a point are left out.
 std::vector<Plot> plots_of(std::span<const Record> records);
 
 // A decade-aligned range around what the plot shows.

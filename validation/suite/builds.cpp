@@ -8,9 +8,10 @@
 
 #include "validation/suite/builds.h"
 #include "validation/suite/scenes.h"
+#include "engine/accel/geometry.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 #include "swtlas/check.h"
 #include "validation/cpu_reference/reference.h"
 
@@ -45,19 +46,20 @@ std::vector<std::byte> bytes_of(const BuiltTree& tree) {
 }  // namespace
 
 void expect_sound_tree(CaseRun& run, const Mesh& mesh, Values params) {
-    for (const Subject& subject : run.one_subject_each()) {
-        if (!is_ours(subject.backend)) continue;  // the driver shows no tree
-        auto& accel = dynamic_cast<SwTlas&>(run.devices().empty_accel(subject));
+    for (const Configuration& configuration : run.one_configuration_each()) {
+        if (!is_ours(configuration.backend)) continue;  // the driver shows no tree
+        auto& accel = dynamic_cast<SwTlas&>(run.devices().empty_accel(configuration));
         const AccelHandle handle = accel.push(mesh);
         accel.sync();
         const TreeCheck tree = check(download_geometry(accel, handle), mesh);
         const bool is_deep = tree.depth > depth_limit(mesh.triangles.size());
         params.insert_or_assign("measured", "tree");
-        run.expect(subject, {.params = params,
-                             .results = {{"depth", tree.depth}, {"sah", tree.sah}},
-                             .n = mesh.triangles.size(),
-                             .faults = tree.violations.size() + (is_deep ? 1u : 0u),
-                             .what = tree.violations.empty() ? text("depth ", tree.depth) : tree.violations.front()});
+        run.expect(configuration,
+                   {.params = params,
+                    .results = {{"depth", tree.depth}, {"sah", tree.sah}},
+                    .n = mesh.triangles.size(),
+                    .faults = tree.violations.size() + (is_deep ? 1u : 0u),
+                    .what = tree.violations.empty() ? text("depth ", tree.depth) : tree.violations.front()});
     }
 }
 
@@ -82,7 +84,7 @@ void equal_centroids(CaseRun& run) {
     measure_and_check(run, copies, random_rays(bounds_of(copies), rays, run.seed()), {{"triangles", "copies"}});
 }
 
-// Triangle k has size and place 2^k: each is alone in its half of what remains. One ray at each, from above.
+// Triangle k has size and position 2^k: each is alone in its half of what remains. One ray at each, from above.
 void geometric_series(CaseRun& run) {
     Mesh chain;
     std::vector<Ray> rays;
@@ -104,7 +106,7 @@ void lines_and_planes(CaseRun& run) {
     }
     const Mesh plane = make_grid(64, 64);
     measure_and_check(run, line, random_rays(bounds_of(line), rays, run.seed()), {{"centroids", "on a line"}});
-    measure_and_check(run, plane, edge_aimed_rays(world_of(plane).oracle, rays, run.seed()),
+    measure_and_check(run, plane, edge_aimed_rays(world_of(plane).reference, rays, run.seed()),
                       {{"centroids", "in a plane"}});
 }
 
@@ -119,16 +121,16 @@ void morton_cluster(CaseRun& run) {
     measure_and_check(run, cluster, rays, {{"outlier", "at 1e6"}});
 }
 
-// Corners at +-1e18 and at the end of float32.
+// Vertices at +-1e18 and at the end of float32.
 void huge_extents(CaseRun& run) {
     for (const float extent : {1e18f, 3e38f}) {
         Mesh mesh;
         std::mt19937 random(4);
         const auto coordinate = [&] { return extent * (static_cast<float>(random() >> 8) * 0x1p-23f - 1.0f); };
         for (int i = 0; i < 64; ++i) {
-            vec3 corners[3];
-            for (vec3& corner : corners) corner.x = coordinate(), corner.y = coordinate(), corner.z = coordinate();
-            add_triangle(mesh, corners[0], corners[1], corners[2]);
+            vec3 vertices[3];
+            for (vec3& vertex : vertices) vertex.x = coordinate(), vertex.y = coordinate(), vertex.z = coordinate();
+            add_triangle(mesh, vertices[0], vertices[1], vertices[2]);
         }
         std::vector<Ray> rays;
         for (std::size_t i = 0; i < run.amount(1'024, 100'000); ++i) {
@@ -143,14 +145,14 @@ void huge_extents(CaseRun& run) {
 void deep_tree(CaseRun& run) {
     Mesh mesh;
     std::vector<Ray> rays;
-    const auto add = [&](float place, float size) {
-        add_triangle(mesh, vec3(place), vec3(place + size, place, place), vec3(place, place + size, place));
+    const auto add = [&](float at, float size) {
+        add_triangle(mesh, vec3(at), vec3(at + size, at, at), vec3(at, at + size, at));
     };
     for (int bit = 0; bit <= 10; ++bit)
         for (int axis = 0; axis < 3; ++axis) {
-            const float place = std::ldexp(1.0f, -bit);
-            add(place, place * (0.1f + 0.1f * static_cast<float>(axis)));
-            rays.push_back({vec3(place * 1.02f, place * 1.02f, 2), 0, vec3(0, 0, -1), inf});
+            const float at = std::ldexp(1.0f, -bit);
+            add(at, at * (0.1f + 0.1f * static_cast<float>(axis)));
+            rays.push_back({vec3(at * 1.02f, at * 1.02f, 2), 0, vec3(0, 0, -1), inf});
         }
     for (std::size_t copies = run.amount(4'096, 1 << 20); copies > 0; --copies) add(0, 1e-5f);
     rays.push_back({vec3(1e-6f, 1e-6f, 2), 0, vec3(0, 0, -1), inf});
@@ -167,23 +169,23 @@ void repeated_builds(CaseRun& run) {
     constexpr std::size_t builds = 10;
     const Mesh mesh = make_soup(static_cast<uint>(run.amount(5'000, 500'000)), 21);
     const std::vector<Ray> rays = random_rays(bounds_of(mesh), run.amount(1'024, 100'000), run.seed());
-    for (const Subject& subject : run.one_subject_each()) {
+    for (const Configuration& configuration : run.one_configuration_each()) {
         std::vector<std::byte> nodes;
         std::vector<Hit> hits;
-        CaseRun::Outcome outcome{.params = {{"compared", is_ours(subject.backend) ? "nodes and hits" : "hits"}},
+        CaseRun::Outcome outcome{.params = {{"compared", is_ours(configuration.backend) ? "nodes and hits" : "hits"}},
                                  .n = builds,
                                  .what = "a build differs from the first",
                                  .reference = "invariance"};
         for (std::size_t i = 0; i < builds; ++i) {
-            AbstractAccel& accel = run.devices().empty_accel(subject);
+            AbstractAccel& accel = run.devices().empty_accel(configuration);
             const AccelHandle handle = accel.push(mesh);
-            const std::vector<Hit> now = accel.closest_hits(rays, {.level = subject.level});
+            const std::vector<Hit> now = accel.closest_hits(rays, {.level = configuration.level});
             const auto* software = dynamic_cast<SwTlas*>(&accel);
             const auto tree = software ? bytes_of(download_geometry(*software, handle)) : std::vector<std::byte>();
             if (i == 0) nodes = tree, hits = now;
             if (!same_bytes(nodes, tree) || !same_bytes(hits, now)) ++outcome.faults;
         }
-        run.expect(subject, outcome);
+        run.expect(configuration, outcome);
     }
 }
 
@@ -198,50 +200,52 @@ void sound_trees(CaseRun& run) {
 // Meshes whose boxes are far from the origin for their size, flat, or of very different sizes in one node.
 void quantised_nodes(CaseRun& run) {
     std::vector<std::pair<std::string, Mesh>> meshes = {{"height field", make_grid(60, 60, 0.2f, 3)}};
-    for (const int place : {0, 8, 16, 22}) {
+    for (const int exponent : {0, 8, 16, 22}) {
         Mesh far = make_soup(static_cast<uint>(run.amount(1'000, 100'000)), 17, 0.1f);
-        for (vec3& position : far.positions) position += std::ldexp(1.0f, place) * vec3(1, -0.7f, 0.3f);
-        meshes.push_back({text("soup of size 2 near 2^", place), std::move(far)});
+        for (vec3& position : far.positions) position += std::ldexp(1.0f, exponent) * vec3(1, -0.7f, 0.3f);
+        meshes.push_back({text("soup of size 2 near 2^", exponent), std::move(far)});
     }
     Mesh sizes = make_soup(static_cast<uint>(run.amount(1'000, 100'000)), 18);
     for (std::size_t i = 0; i < sizes.positions.size(); ++i)
         sizes.positions[i] *= std::ldexp(1.0f, -static_cast<int>(i / 3 % 60));
     meshes.push_back({"sizes from 1 to 2^-59", std::move(sizes)});
-    for (const Subject& subject : run.one_subject_each()) {
-        if (!is_ours(subject.backend)) continue;
-        auto& accel = dynamic_cast<SwTlas&>(run.devices().empty_accel(subject, Layout::compressed4));
+    for (const Configuration& configuration : run.one_configuration_each()) {
+        if (!is_ours(configuration.backend)) continue;
+        auto& accel = dynamic_cast<SwTlas&>(run.devices().empty_accel(configuration, Layout::compressed4));
         for (const auto& [name, mesh] : meshes) {
             const AccelHandle handle = accel.push(mesh);
             accel.sync();
             const TreeCheck tree = check(download_geometry(accel, handle), mesh);
-            run.expect(subject, {.params = {{"mesh", name}},
-                                 .results = {{"depth", tree.depth}, {"sah", tree.sah}},
-                                 .n = mesh.triangles.size(),
-                                 .faults = tree.violations.size(),
-                                 .what = tree.violations.empty() ? "sound" : tree.violations.front()});
+            run.expect(configuration, {.params = {{"mesh", name}},
+                                       .results = {{"depth", tree.depth}, {"sah", tree.sah}},
+                                       .n = mesh.triangles.size(),
+                                       .faults = tree.violations.size(),
+                                       .what = tree.violations.empty() ? "sound" : tree.violations.front()});
         }
     }
 }
 
 // Each of these sizes has another shape of tree.
 void small_sizes(CaseRun& run) {
-    std::map<std::string, Judgement> sums;
-    std::vector<Subject> subjects = run.subjects();
+    std::map<std::string, CheckResult> sums;
+    std::vector<Configuration> configurations = run.configurations();
     const uint step = static_cast<uint>(run.amount(7, 1));
     for (uint n = 1; n <= 300; n += n < 16 ? 1 : step) {
         const Mesh soup = make_soup(n, n, 0.4f);
         const World world = world_of(soup);
         const std::vector<Ray> rays = random_rays(bounds_of(soup), 64, run.seed() + n);
-        for (const Traced& traced : trace(run.devices(), subjects, world, {.rays = rays, .reps = 0})) {
-            const Judgement judgement = judge(world.oracle, rays, traced.hits, traced.subject.backend);
-            Judgement& sum = sums[std::string(name(traced.subject.backend)) + std::string(name(traced.subject.level))];
-            sum.classes += judgement.classes;
-            sum.faults += judgement.faults;
-            if (sum.example.empty()) sum.example = judgement.example;
+        for (const Traced& traced : trace(run.devices(), configurations, world, {.rays = rays, .reps = 0})) {
+            const CheckResult checked = check(world.reference, rays, traced.hits, traced.configuration.backend);
+            CheckResult& sum = sums[std::string(name_of(traced.configuration.backend)) +
+                                    std::string(name_of(traced.configuration.level))];
+            sum.classes += checked.classes;
+            sum.faults += checked.faults;
+            if (sum.example.empty()) sum.example = checked.example;
         }
     }
-    for (const Subject& subject : subjects)
-        run.add_judged(subject, sums[std::string(name(subject.backend)) + std::string(name(subject.level))]);
+    for (const Configuration& configuration : configurations)
+        run.add_checked(configuration,
+                        sums[std::string(name_of(configuration.backend)) + std::string(name_of(configuration.level))]);
 }
 
 }  // namespace

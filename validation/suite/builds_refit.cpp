@@ -7,7 +7,7 @@
 #include "validation/suite/builds.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -38,7 +38,7 @@ struct Refitted {
     double build_ms = 0;
 };
 
-void expect_same(CaseRun& run, const Subject& subject, const Refitted& refitted, const char* moved) {
+void expect_same(CaseRun& run, const Configuration& configuration, const Refitted& refitted, const char* moved) {
     CaseRun::Outcome outcome{.params = {{"moved", moved}}, .n = refitted.refit.size(), .reference = "invariance"};
     if (refitted.sah_ratio) outcome.results.emplace("sah_ratio", *refitted.sah_ratio);
     if (!refitted.refit_ms.empty()) {
@@ -46,10 +46,10 @@ void expect_same(CaseRun& run, const Subject& subject, const Refitted& refitted,
         outcome.time->phases_ms["build"] = refitted.build_ms;
     }
     for (std::size_t i = 0; i < refitted.refit.size(); ++i)
-        if (!is_same(refitted.refit[i], refitted.rebuilt[i], is_ours(subject.backend)) && outcome.faults++ == 0)
+        if (!is_same(refitted.refit[i], refitted.rebuilt[i], is_ours(configuration.backend)) && outcome.faults++ == 0)
             outcome.what = text("ray ", i, " hits at t = ", refitted.refit[i].t, " after refits, at ",
                                 refitted.rebuilt[i].t, " after a rebuild");
-    run.expect(subject, outcome);
+    run.expect(configuration, outcome);
 }
 
 std::optional<double> ratio(std::optional<double> refitted, std::optional<double> rebuilt) {
@@ -57,10 +57,11 @@ std::optional<double> ratio(std::optional<double> refitted, std::optional<double
     return *refitted / *rebuilt;
 }
 
-Refitted refit_vertices(CaseRun& run, const Subject& subject, std::size_t steps, std::span<const Ray> rays) {
+Refitted refit_vertices(CaseRun& run, const Configuration& configuration, std::size_t steps,
+                        std::span<const Ray> rays) {
     Mesh mesh = make_icosphere(3);
     RandomWalk walk(run.seed());
-    AbstractAccel& accel = run.devices().empty_accel(subject);
+    AbstractAccel& accel = run.devices().empty_accel(configuration);
     accel.set_rebuild_ratio(INFINITY);
     const AccelHandle handle = accel.push(mesh);
     accel.sync();
@@ -71,11 +72,11 @@ Refitted refit_vertices(CaseRun& run, const Subject& subject, std::size_t steps,
         accel.sync();
         result.refit_ms.push_back(total_ms(accel.build_timings()));
     }
-    result.refit = accel.closest_hits(rays, {.level = subject.level});
+    result.refit = accel.closest_hits(rays, {.level = configuration.level});
     const std::optional<double> refitted = accel.sah(handle);
-    const std::unique_ptr<AbstractAccel> fresh = run.devices().make_accel(subject);
+    const std::unique_ptr<AbstractAccel> fresh = run.devices().make_accel(configuration);
     const AccelHandle again = fresh->push(mesh);
-    result.rebuilt = fresh->closest_hits(rays, {.level = subject.level});
+    result.rebuilt = fresh->closest_hits(rays, {.level = configuration.level});
     result.build_ms = total_ms(fresh->build_timings());
     fresh->update_vertices(again, mesh.positions);  // in place: its SAH is then measured
     fresh->sync();
@@ -83,31 +84,32 @@ Refitted refit_vertices(CaseRun& run, const Subject& subject, std::size_t steps,
     return result;
 }
 
-Refitted refit_instances(CaseRun& run, const Subject& subject, std::size_t steps, std::span<const Ray> rays) {
+Refitted refit_instances(CaseRun& run, const Configuration& configuration, std::size_t steps,
+                         std::span<const Ray> rays) {
     const Mesh mesh = make_icosphere(1, 0.05f);
     RandomWalk walk(run.seed());
-    std::vector<vec3> places(200);
-    for (vec3& place : places) place = walk.step(1);
+    std::vector<vec3> centers(200);
+    for (vec3& center : centers) center = walk.step(1);
     const auto transforms = [&] {
         std::vector<Transform> all;
-        for (const vec3& place : places) all.push_back(Transform::translation(place));
+        for (const vec3& center : centers) all.push_back(Transform::translation(center));
         return all;
     };
-    AbstractAccel& accel = run.devices().empty_accel(subject);
+    AbstractAccel& accel = run.devices().empty_accel(configuration);
     accel.set_rebuild_ratio(INFINITY);
     const AccelHandle handle = accel.push(mesh, transforms());
     accel.sync();
     Refitted result;
     for (std::size_t i = 0; i < steps; ++i) {
-        for (vec3& place : places) place += walk.step(0.05f);
+        for (vec3& center : centers) center += walk.step(0.05f);
         accel.update_transforms(handle, transforms());
         accel.sync();
         result.refit_ms.push_back(total_ms(accel.build_timings()));
     }
-    result.refit = accel.closest_hits(rays, {.level = subject.level});
-    const std::unique_ptr<AbstractAccel> fresh = run.devices().make_accel(subject);
+    result.refit = accel.closest_hits(rays, {.level = configuration.level});
+    const std::unique_ptr<AbstractAccel> fresh = run.devices().make_accel(configuration);
     fresh->push(mesh, transforms());
-    result.rebuilt = fresh->closest_hits(rays, {.level = subject.level});
+    result.rebuilt = fresh->closest_hits(rays, {.level = configuration.level});
     result.build_ms = total_ms(fresh->build_timings());
     result.sah_ratio = ratio(accel.sah(), fresh->sah());
     return result;
@@ -118,9 +120,9 @@ Refitted refit_instances(CaseRun& run, const Subject& subject, std::size_t steps
 void refit_many_times(CaseRun& run) {
     const std::size_t steps = run.amount(100, 10'000);
     const std::vector<Ray> rays = random_rays({vec3(-1), vec3(1)}, run.amount(2'048, 100'000), run.seed());
-    for (const Subject& subject : run.one_subject_each()) {
-        expect_same(run, subject, refit_vertices(run, subject, steps, rays), "vertices");
-        expect_same(run, subject, refit_instances(run, subject, steps, rays), "instances");
+    for (const Configuration& configuration : run.one_configuration_each()) {
+        expect_same(run, configuration, refit_vertices(run, configuration, steps, rays), "vertices");
+        expect_same(run, configuration, refit_instances(run, configuration, steps, rays), "instances");
         run.devices().drop_accels();  // whose rebuild ratio was changed
     }
 }
@@ -128,19 +130,20 @@ void refit_many_times(CaseRun& run) {
 void refit_collapse(CaseRun& run) {
     const Mesh mesh = make_icosphere(4);
     const std::vector<vec3> one_point(mesh.positions.size(), vec3(0.25f));
-    const std::vector<Ray> rays = vertex_aimed_rays(world_of(mesh).oracle, run.amount(2'048, 100'000), run.seed());
-    for (const Subject& subject : run.one_subject_each()) {
-        AbstractAccel& accel = run.devices().empty_accel(subject);
+    const std::vector<Ray> rays = vertex_aimed_rays(world_of(mesh).reference, run.amount(2'048, 100'000), run.seed());
+    for (const Configuration& configuration : run.one_configuration_each()) {
+        AbstractAccel& accel = run.devices().empty_accel(configuration);
         accel.set_rebuild_ratio(INFINITY);
         const AccelHandle handle = accel.push(mesh);
-        Refitted result{.rebuilt = accel.closest_hits(rays, {.level = subject.level})};
+        Refitted result{.rebuilt = accel.closest_hits(rays, {.level = configuration.level})};
         accel.update_vertices(handle, one_point);
         CaseRun::Outcome collapsed{.params = {{"moved", "to a point"}}, .n = rays.size(), .what = "a point was hit"};
-        for (const Hit& hit : accel.closest_hits(rays, {.level = subject.level})) collapsed.faults += hit.hit != 0;
-        run.expect(subject, collapsed);
+        for (const Hit& hit : accel.closest_hits(rays, {.level = configuration.level}))
+            collapsed.faults += hit.hit != 0;
+        run.expect(configuration, collapsed);
         accel.update_vertices(handle, mesh.positions);
-        result.refit = accel.closest_hits(rays, {.level = subject.level});
-        expect_same(run, subject, result, "back");
+        result.refit = accel.closest_hits(rays, {.level = configuration.level});
+        expect_same(run, configuration, result, "back");
         run.devices().drop_accels();
     }
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t quick_reps = 3, full_reps = 15;
 
 // Sets pass and whose fault it is where it is false.
-void decide(Record& record, const Subject& subject, const Measurement& measurement) {
+void decide(Record& record, const Configuration& configuration, const Measurement& measurement) {
     if (const auto& control = measurement.control) {
         record.variant = control->code.name;
         if (!control->must_show) return;
@@ -21,7 +21,7 @@ void decide(Record& record, const Subject& subject, const Measurement& measureme
         record.fault_of = *record.pass ? "" : "twinray";
         return;
     }
-    if (is_ours(subject.backend) && subject.level == Level::fast) {
+    if (is_ours(configuration.backend) && configuration.level == Level::fast) {
         if (!measurement.fast_is_control) {
             record.criterion = "none: fast promises nothing at edges";
             return;
@@ -33,7 +33,7 @@ void decide(Record& record, const Subject& subject, const Measurement& measureme
         return;
     }
     record.pass = record.faults == 0;
-    if (!*record.pass) record.fault_of = is_ours(subject.backend) ? "twinray" : "driver";
+    if (!*record.pass) record.fault_of = is_ours(configuration.backend) ? "twinray" : "driver";
 }
 
 }  // namespace
@@ -60,104 +60,104 @@ std::string variant_of(const AccelOptions& trees) {
 
 }  // namespace
 
-Record CaseRun::record(const Subject& subject) const {
+Record CaseRun::record(const Configuration& configuration) const {
     Record record = blank();
-    record.backend = name(subject.backend);
-    record.level = name(subject.level);
-    if (is_ours(subject.backend)) record.variant = variant_of(devices_.trees());
+    record.backend = name_of(configuration.backend);
+    record.level = name_of(configuration.level);
+    if (is_ours(configuration.backend)) record.variant = variant_of(devices_.trees());
     return record;
 }
 
-std::vector<Subject> CaseRun::subjects() {
-    std::vector<Subject> able;
+std::vector<Configuration> CaseRun::configurations() {
+    std::vector<Configuration> able;
     for (const Backend backend : settings_.backends)
         for (const Level level : settings_.levels) {
-            const Subject subject{backend, level};
+            const Configuration configuration{backend, level};
             if (!is_ours(backend) && level == Level::fast) continue;
-            const std::string reason = devices_.why_not(subject);
+            const std::string reason = devices_.why_not(configuration);
             if (reason.empty()) {
-                able.push_back(subject);
+                able.push_back(configuration);
             } else if (!has_told_) {
-                add_not_run(reason, &subject);
+                add_not_run(reason, &configuration);
             }
         }
     has_told_ = true;
     return able;
 }
 
-std::vector<Subject> CaseRun::one_subject_each() {
-    std::vector<Subject> chosen;
-    for (const Subject& subject : subjects())
-        if (subject.level != Level::fast && (chosen.empty() || chosen.back().backend != subject.backend))
-            chosen.push_back(subject);
+std::vector<Configuration> CaseRun::one_configuration_each() {
+    std::vector<Configuration> chosen;
+    for (const Configuration& configuration : configurations())
+        if (configuration.level != Level::fast && (chosen.empty() || chosen.back().backend != configuration.backend))
+            chosen.push_back(configuration);
     return chosen;
 }
 
-std::vector<Subject> CaseRun::control_subject() {
-    const Subject software{Backend::software, Level::watertight};
+std::vector<Configuration> CaseRun::control_configuration() {
+    const Configuration software{Backend::software, Level::watertight};
     const auto& wanted = settings_.backends;
     if (std::find(wanted.begin(), wanted.end(), Backend::software) == wanted.end()) return {};
     return {software};
 }
 
 std::string CaseRun::write_replay(const World& world, std::span<const Ray> rays, const Traced& traced,
-                                  const Judgement& judgement) const {
-    if (settings_.replays_in.empty() || !judgement.first_fault) return {};
+                                  const CheckResult& checked) const {
+    if (settings_.replays_in.empty() || !checked.first_fault) return {};
     const std::filesystem::path folder = settings_.replays_in / "replays";
     std::filesystem::create_directories(folder);
-    const Scene scene = replay::scene_of(world.oracle);
+    const Scene scene = replay::scene_of(world.reference);
     const std::string hash = replay::hash_of(scene);
     const std::filesystem::path scene_file = "scene-" + hash + ".glb";
     if (!std::filesystem::exists(folder / scene_file)) replay::write_glb(folder / scene_file, scene);
 
-    const std::size_t at = *judgement.first_fault;
-    const std::string backend(name(traced.subject.backend)), level(name(traced.subject.level));
+    const std::size_t at = *checked.first_fault;
+    const std::string backend(name_of(traced.configuration.backend)), level(name_of(traced.configuration.level));
     const Recorder::Run& run = recorder_.run();
     const std::string file = text(row_.id, '-', recorder_.records().size() + 1, '-', backend, '-', level, ".json");
-    replay::write(folder / file,
-                  {scene_file, hash, backend, level, judgement.example.substr(0, judgement.example.find(' ')), rays[at],
-                   traced.hits[at], world.oracle.closest_hit(rays[at]), run.device.name, run.device.driver, run.git});
+    replay::write(folder / file, {scene_file, hash, backend, level,
+                                  checked.example.substr(0, checked.example.find(' ')), rays[at], traced.hits[at],
+                                  world.reference.closest_hit(rays[at]), run.device.name, run.device.driver, run.git});
     return "replays/" + file;
 }
 
 Measured CaseRun::measure(const World& world, std::span<const Ray> rays, const Measurement& measurement) {
-    const std::vector<Subject> able = measurement.control ? control_subject() : subjects();
+    const std::vector<Configuration> able = measurement.control ? control_configuration() : configurations();
     if (able.empty() || rays.empty()) return {};
     const std::size_t reps = measurement.reps ? measurement.reps : amount(quick_reps, full_reps);
     std::vector<Traced> traces =
         trace(devices_, able, world,
               {.rays = rays, .reps = reps, .control = measurement.control ? &*measurement.control : nullptr});
-    std::vector<OracleHit> references = references_of(world.oracle, rays);
+    std::vector<ReferenceHit> references = references_of(world.reference, rays);
     for (const Traced& traced : traces) {
-        Record result = record(traced.subject);
+        Record result = record(traced.configuration);
         result.params = measurement.params;
         result.results = measurement.results;
         result.reference = "f64";
-        const Judgement judgement = judge(world.oracle, rays, traced.hits, traced.subject.backend);
-        set_judgement(result, judgement);
+        const CheckResult checked = check(world.reference, rays, traced.hits, traced.configuration.backend);
+        set_check_result(result, checked);
         result.error = t_error(references, traced.hits);
         result.time = time_figures(traced);
-        decide(result, traced.subject, measurement);
-        if (!result.pass.value_or(true)) result.replay = write_replay(world, rays, traced, judgement);
+        decide(result, traced.configuration, measurement);
+        if (!result.pass.value_or(true)) result.replay = write_replay(world, rays, traced, checked);
         add(result);
     }
     return {std::move(traces), std::move(references)};
 }
 
-std::vector<Subject> CaseRun::crossing_subjects() {
-    std::vector<Subject> able = subjects();
-    std::erase_if(able, [](const Subject& subject) { return subject.backend == Backend::pipeline; });
+std::vector<Configuration> CaseRun::crossing_configurations() {
+    std::vector<Configuration> able = configurations();
+    std::erase_if(able, [](const Configuration& configuration) { return configuration.backend == Backend::pipeline; });
     return able;
 }
 
 void CaseRun::count_crossings(const World& world, std::span<const Ray> rays, const RightCount& right,
                               const Measurement& measurement) {
-    for (const Subject& subject : crossing_subjects()) {
-        AbstractAccel& accel = devices_.empty_accel(subject);
-        world.place(accel);
+    for (const Configuration& configuration : crossing_configurations()) {
+        AbstractAccel& accel = devices_.empty_accel(configuration);
+        world.fill(accel);
         accel.sync();
-        const std::vector<uint> counts = devices_.crossing_counter(subject).count(accel, rays);
-        Record result = record(subject);
+        const std::vector<uint> counts = devices_.crossing_counter(configuration).count(accel, rays);
+        Record result = record(configuration);
         result.params = measurement.params;
         result.params.emplace("counted", "crossings");
         result.reference = "analytic";
@@ -169,23 +169,24 @@ void CaseRun::count_crossings(const World& world, std::span<const Ray> rays, con
             result.example = text("crossed ", counts[i], " times ", hexadecimal(rays[i]));
         }
         result.bound95 = upper_bound_95(result.faults, result.n);
-        decide(result, subject, measurement);
+        decide(result, configuration, measurement);
         add(result);
     }
 }
 
-void CaseRun::add_judged(const Subject& subject, const Judgement& judgement, const Measurement& measurement) {
-    Record result = record(subject);
+void CaseRun::add_checked(const Configuration& configuration, const CheckResult& checked,
+                          const Measurement& measurement) {
+    Record result = record(configuration);
     result.params = measurement.params;
     result.results = measurement.results;
     result.reference = "f64";
-    set_judgement(result, judgement);
-    decide(result, subject, measurement);
+    set_check_result(result, checked);
+    decide(result, configuration, measurement);
     add(result);
 }
 
-void CaseRun::expect(const Subject& subject, const Outcome& outcome) {
-    Record result = record(subject);
+void CaseRun::expect(const Configuration& configuration, const Outcome& outcome) {
+    Record result = record(configuration);
     result.params = outcome.params;
     result.results = outcome.results;
     result.reference = outcome.reference;
@@ -201,15 +202,15 @@ void CaseRun::expect(const Subject& subject, const Outcome& outcome) {
     result.pass = outcome.faults == 0;
     if (!*result.pass) {
         result.reason = outcome.what;
-        result.fault_of = !outcome.fault_of.empty()  ? outcome.fault_of
-                          : is_ours(subject.backend) ? "twinray"
-                                                     : "driver";
+        result.fault_of = !outcome.fault_of.empty()        ? outcome.fault_of
+                          : is_ours(configuration.backend) ? "twinray"
+                                                           : "driver";
     }
     add(result);
 }
 
-void CaseRun::add_not_run(const std::string& reason, const Subject* subject) {
-    Record result = subject ? record(*subject) : blank();
+void CaseRun::add_not_run(const std::string& reason, const Configuration* configuration) {
+    Record result = configuration ? record(*configuration) : blank();
     result.was_run = false;
     result.reason = reason;
     add(result);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "validation/suite/judging.h"
+#include "validation/suite/checks.h"
 #include "validation/suite/tracing.h"
 
 namespace twinray::suite {
@@ -14,14 +14,14 @@ struct Measurement {
     // Elsewhere fast promises nothing at edges and is only measured.
     bool fast_is_control = false;
     std::size_t reps = 0;  // timed repetitions; 0: as many as the suite takes
-    // Instead of all subjects, SwTlas's kernel compiled as this says, at watertight.
+    // Instead of all configurations, SwTlas's kernel compiled as this says, at watertight.
     std::optional<Control> control = {};
 };
 
-// What was judged, for what a case asks of the answers beyond their classes.
+// What was checked, for what a case asks of the answers beyond their classes.
 struct Measured {
-    std::vector<Traced> traces;         // one of each subject
-    std::vector<OracleHit> references;  // one of each ray
+    std::vector<Traced> traces;            // one of each configuration
+    std::vector<ReferenceHit> references;  // one of each ray
 };
 
 // A case while it runs: what it may use, and where its results go.
@@ -36,26 +36,27 @@ class CaseRun {
     Devices& devices() { return devices_; }
     // Those that can answer here; the others are recorded as not run, once a case. Hardware has one test of its own,
     // which is not asked again for Level::fast.
-    std::vector<Subject> subjects();
+    std::vector<Configuration> configurations();
     // The first level of each backend, watertight or above: for what does not depend on the level.
-    std::vector<Subject> one_subject_each();
+    std::vector<Configuration> one_configuration_each();
 
-    // Traces the closest hits on all subjects, judges them by the referee and records what came out. Ours pass with 0
-    // SW_LEAK, SW_FALSE, T_ERR and 0 hits of invalid rays; a fault of hardware is the driver's.
+    // Traces the closest hits on all configurations, checks them by the reference and records what came out. Ours pass
+    // with 0 SW_LEAK, SW_FALSE, T_ERR and 0 hits of invalid rays; a fault of hardware is the driver's.
     Measured measure(const World& world, std::span<const Ray> rays, const Measurement& measurement = {});
 
-    // Counts how often each ray crosses `world`, all of whose instances are filtered, on the subjects that can (see
-    // CrossingCounter: not the pipeline), and records the counts that are not `right`: those of ours are faults, of
-    // hardware the driver's. Record::counts has them by number: CROSSED_0, CROSSED_2, ..., CROSSED_OFTEN from 8 on.
+    // Counts how often each ray crosses `world`, all of whose instances are filtered, on the configurations that can
+    // (see CrossingCounter: not the pipeline), and records the counts that are not `right`: those of ours are faults,
+    // of hardware the driver's. Record::counts has them by number: CROSSED_0, CROSSED_2, ..., CROSSED_OFTEN from 8 on.
     using RightCount = std::function<bool(const Ray&, uint)>;
     void count_crossings(const World& world, std::span<const Ray> rays, const RightCount& right,
                          const Measurement& measurement = {});
-    std::vector<Subject> crossing_subjects();
+    std::vector<Configuration> crossing_configurations();
 
-    // The same as measure for answers that a case has traced and judged itself, as the sum of many small scenes.
-    void add_judged(const Subject& subject, const Judgement& judgement, const Measurement& measurement = {});
+    // The same as measure for answers that a case has traced and checked itself, as the sum of many small scenes.
+    void add_checked(const Configuration& configuration, const CheckResult& checked,
+                     const Measurement& measurement = {});
 
-    // For what no referee judges: `faults` of `n` things were not as specified. `what` says which, and is recorded if
+    // For what no reference checks: `faults` of `n` things were not as specified. `what` says which, and is recorded if
     // there are any. fault_of: see Record; "" = by the backend. only_measured: why nothing is demanded; "" = it is.
     struct Outcome {
         Values params = {};
@@ -68,28 +69,28 @@ class CaseRun {
         std::optional<TimeFigures> time = {};
         std::string only_measured = {};
     };
-    void expect(const Subject& subject, const Outcome& outcome);
+    void expect(const Configuration& configuration, const Outcome& outcome);
 
     // A record of this case, to be filled further and added.
-    Record record(const Subject& subject) const;
+    Record record(const Configuration& configuration) const;
     void add(const Record& record) { recorder_.add(record); }
     // Of the cases before this one, too.
     std::span<const Record> earlier() const { return recorder_.records(); }
-    void add_not_run(const std::string& reason, const Subject* subject = nullptr);
+    void add_not_run(const std::string& reason, const Configuration* configuration = nullptr);
     void add_failure(const std::string& what);  // an exception: a fault of ours
 
   private:
     Record blank() const;
-    // Writes the ray of judgement.first_fault, if there is one, and returns the file as Record::replay wants it.
+    // Writes the ray of checked.first_fault, if there is one, and returns the file as Record::replay wants it.
     std::string write_replay(const World& world, std::span<const Ray> rays, const Traced& traced,
-                             const Judgement& judgement) const;
-    std::vector<Subject> control_subject();  // SwTlas at watertight if it was asked for
+                             const CheckResult& checked) const;
+    std::vector<Configuration> control_configuration();  // SwTlas at watertight if it was asked for
 
     const SuiteCase& row_;
     const Settings& settings_;
     Devices& devices_;
     Recorder& recorder_;
-    bool has_told_ = false;  // which subjects cannot answer
+    bool has_told_ = false;  // which configurations cannot answer
 };
 
 }  // namespace twinray::suite

@@ -40,7 +40,7 @@ void coplanar(CaseRun& run) {
                       {base, {dvec3(3, 3, 0), dvec3(4, 3, 0), dvec3(3, 4, 0)}, separate}});
 }
 
-// A corner above, on or below a face by so much.
+// A vertex above, on or below a face by so much.
 void add_gap(std::vector<KnownPair>& pairs, double level, double gap) {
     const WorldTriangle pointed = {dvec3(1, 1, level + gap), dvec3(1, 1.5, level + 1), dvec3(2, 1, level + 1)};
     pairs.push_back({moved(base, dvec3(0, 0, level)), pointed, gap > 0 ? separate : gap < 0 ? crossing : vertex_touch});
@@ -128,17 +128,17 @@ Mesh torus(float tube) {
     return mesh;
 }
 
-std::size_t triangles_at(const Mesh& mesh, vec3 corner) {
+std::size_t triangles_at(const Mesh& mesh, vec3 vertex) {
     std::size_t count = 0;
     for (const uvec3& t : mesh.triangles)
-        for (int k = 0; k < 3; ++k) count += mesh.positions[t[k]] == corner;
+        for (int k = 0; k < 3; ++k) count += mesh.positions[t[k]] == vertex;
     return count;
 }
 
 void solids(CaseRun& run) {
     const Mesh ball = make_icosphere(3), outer = make_box(vec3(-1), vec3(1)), inner = make_box(vec3(-0.5f), vec3(0.5f));
     const vec3 top = ball.positions.front();
-    const std::size_t around = triangles_at(ball, top);  // each is in one plane with its mirror image in that corner
+    const std::size_t around = triangles_at(ball, top);  // each is in one plane with its mirror image in that vertex
     ask_contacts(run, "tangent spheres", {ball}, {{0, {}}, {0, Transform::translation(top * 2.0f)}},
                  {{coplanar_touch, around}, {vertex_touch, around * (around - 1)}});
     ask_contacts(run, "nested boxes", {outer, inner}, {{0, {}}, {1, {}}}, {});
@@ -177,8 +177,8 @@ void baked(CaseRun& run) {
 void identical_boxes(CaseRun& run) {
     const std::uint64_t n = run.amount(2'000, 10'000);
     const Mesh box = make_box(vec3(-1), vec3(1));
-    for (const Subject& subject : run.one_subject_each()) {
-        AbstractAccel& accel = run.devices().empty_accel(subject);
+    for (const Configuration& configuration : run.one_configuration_each()) {
+        AbstractAccel& accel = run.devices().empty_accel(configuration);
         accel.push(box, std::vector<Transform>(n));
         BroadPhase broad_phase(accel.context());
         const std::uint64_t expected = n * (n - 1) / 2;
@@ -188,13 +188,13 @@ void identical_boxes(CaseRun& run) {
             times.push_back(seconds_of([&] { wrong += broad_phase.instance_pairs(accel).size() != expected; }) * 1e9 /
                             static_cast<double>(expected));
         wrong += broad_phase.count(accel) != expected;
-        run.expect(subject, {.params = {{"boxes", n}},
-                             .results = {{"pairs", expected}},
-                             .n = expected,
-                             .faults = wrong,
-                             .what = "another number of pairs than n (n - 1) / 2",
-                             .reference = "analytic",
-                             .time = time_figures("ns_per_pair", times)});
+        run.expect(configuration, {.params = {{"boxes", n}},
+                                   .results = {{"pairs", expected}},
+                                   .n = expected,
+                                   .faults = wrong,
+                                   .what = "another number of pairs than n (n - 1) / 2",
+                                   .reference = "analytic",
+                                   .time = time_figures("ns_per_pair", times)});
     }
 }
 
@@ -204,17 +204,17 @@ std::vector<SuiteCase> collision_cases() {
     const std::string classes = "triangles of another class";
     const std::string none = "no pair has another class";
     return {
-        {"C01", "corners and edges that touch exactly", classes, none, touches},
+        {"C01", "vertices and edges that touch exactly", classes, none, touches},
         {"C02", "triangles in one plane", classes, none, coplanar},
-        {"C03", "-4 to 4 ulp between a corner and a face, up to 10^6 from the origin", classes, none, ulps},
-        {"C04", "a corner 10^-7 to 10^-30 above and below a face", classes, none, gaps},
+        {"C03", "-4 to 4 ulp between a vertex and a face, up to 10^6 from the origin", classes, none, ulps},
+        {"C04", "a vertex 10^-7 to 10^-30 above and below a face", classes, none, gaps},
         {"C05", "pairs on the lattice {-2..2}^3", "time and wrong classes, beside signs of plain arithmetic", none,
          lattice},
         {"C06", "triangles and needles that cross at 10^-8", classes, none, slivers},
         {"C07", "tangent spheres, nested boxes, interlocked tori", "contacts by class", "as many as are known", solids},
         {"C08", "identical boxes", "pairs of instances, time", "n (n - 1) / 2", identical_boxes},
         {"C09", "boxes wall to wall", "contacts by class", "as many as are known", walls},
-        {"C10", "triangles and their corners in every order", classes, none, orders},
+        {"C10", "triangles and their vertices in every order", classes, none, orders},
         {"C11", "triangles of one mesh", "contacts by class", "none of neighbours; those of a fold", within_a_mesh},
         {"C12", "triangles without area", classes, none, degenerate},
         {"C13", "an instance that is moved, and its mesh moved", "contacts of only one of them", "the same contacts",

@@ -78,7 +78,7 @@ void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::s
     }
     Record record = query_record(run, reference);
     record.n = pairs.size();
-    add_judged(run, record, wrong, first);
+    add_checked(run, record, wrong, first);
 }
 
 void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector<TrianglePair>& pairs) {
@@ -96,7 +96,7 @@ void measure_lattice(CaseRun& run, const std::string& lattice, const std::vector
     record.params = {{"lattice", lattice}};
     record.n = pairs.size();
     record.time = time_figures("ns_per_pair", times);
-    add_judged(run, record, wrong, "classes differ from those of exact arithmetic");
+    add_checked(run, record, wrong, "classes differ from those of exact arithmetic");
     measure_host(run, lattice, pairs, known, "exact, on the host alone",
                  [](const WorldTriangle& a, const WorldTriangle& b) { return exact_class(a, b); });
     measure_host(run, lattice, pairs, known, "control: float64 without a bound", class_by_float64);
@@ -114,15 +114,15 @@ void ask_contacts(CaseRun& run, const std::string& what, const std::vector<MeshV
     record.params = {{"scene", what}};
     record.n = std::max<std::uint64_t>(1, contacts.candidates);
     for (const auto& [pair_class, count] : found) record.counts[std::string(name_of(pair_class))] = count;
-    add_judged(run, record, found == known ? 0 : 1, "contacts: " + told(found) + "; known are " + told(known));
+    add_checked(run, record, found == known ? 0 : 1, "contacts: " + told(found) + "; known are " + told(known));
 }
 
 // Two triangles against two in the common wall, cut along the same diagonal or across it, and the walls around.
 ContactCounts wall_to_wall() {
     const Mesh box = make_box(vec3(-1), vec3(1));
     const auto placed = [&](const uvec3& t, double x) {
-        const auto corner = [&](uint i) { return dvec3(box.positions[i]) + dvec3(x, 0, 0); };
-        return WorldTriangle{corner(t.x), corner(t.y), corner(t.z)};
+        const auto vertex = [&](uint i) { return dvec3(box.positions[i]) + dvec3(x, 0, 0); };
+        return WorldTriangle{vertex(t.x), vertex(t.y), vertex(t.z)};
     };
     ContactCounts counts;
     for (const uvec3& a : box.triangles)
@@ -142,7 +142,7 @@ void ask_same_contacts(CaseRun& run, const std::vector<MeshView>& meshes, const 
     Record record = query_record(run, "invariance");
     record.n = std::max<std::uint64_t>(1, a.size());
     record.results = {{"contacts", a.size()}};
-    add_judged(run, record, a.empty() ? 1 : only.size(), a.empty() ? "no contact" : "contacts of only one of them");
+    add_checked(run, record, a.empty() ? 1 : only.size(), a.empty() ? "no contact" : "contacts of only one of them");
 }
 
 }  // namespace twinray::suite

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What cases of collisions ask, and how they are judged. The GPU answers, and the host where it is in doubt; neither
+// What cases of collisions ask, and how they are checked. The GPU answers, and the host where it is in doubt; neither
 // accelerator takes part but for the boxes of instances.
 #pragma once
 
@@ -16,9 +16,9 @@ struct KnownPair {
     PairClass known;
 };
 
-// Corners among {-2..2}^3, of every fourth pair in one plane.
+// Vertices among {-2..2}^3, of every fourth pair in one plane.
 std::vector<TrianglePair> lattice_pairs(std::size_t count, std::uint64_t seed);
-// The six orders of its corners.
+// The six orders of its vertices.
 std::vector<WorldTriangle> permutations(const WorldTriangle& triangle);
 
 void ask_classes(CaseRun& run, const std::vector<KnownPair>& pairs, const std::string& reference = "analytic");

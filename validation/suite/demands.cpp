@@ -17,10 +17,10 @@ std::string not_defined(const Hit& hit) {
 
 }  // namespace
 
-CaseRun::Outcome ask_each(const Subject& subject, std::span<const Ray> rays,
+CaseRun::Outcome ask_each(const Configuration& configuration, std::span<const Ray> rays,
                           const std::function<std::string(std::size_t)>& complaint) {
     CaseRun::Outcome outcome{.n = rays.size()};
-    if (!is_robust(subject)) outcome.only_measured = "fast promises nothing at edges";
+    if (!is_robust(configuration)) outcome.only_measured = "fast promises nothing at edges";
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const std::string wrong = complaint(i);
         if (!wrong.empty() && outcome.faults++ == 0) outcome.what = text(wrong, ": ", hexadecimal(rays[i]));
@@ -30,50 +30,50 @@ CaseRun::Outcome ask_each(const Subject& subject, std::span<const Ray> rays,
 
 CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays,
                           const std::function<std::string(std::size_t, const Hit&)>& complaint) {
-    return ask_each(traced.subject, rays, [&](std::size_t i) { return complaint(i, traced.hits[i]); });
+    return ask_each(traced.configuration, rays, [&](std::size_t i) { return complaint(i, traced.hits[i]); });
 }
 
 void expect_refined_t(CaseRun& run, const Measured& measured, std::span<const Ray> rays, double ulps, Values params) {
     params.insert_or_assign("measured", "refined t");
     for (const Traced& traced : measured.traces) {
-        if (traced.subject.level < Level::refined) continue;
+        if (traced.configuration.level < Level::refined) continue;
         double largest = 0;
         std::size_t compared = 0;
         CaseRun::Outcome outcome = ask_each(traced, rays, [&](std::size_t i, const Hit& hit) -> std::string {
             const std::optional<double> error = t_ulps(measured.references[i], hit);
-            if (!error) return "";  // of another triangle, or none: judged elsewhere
+            if (!error) return "";  // of another triangle, or none: checked elsewhere
             ++compared;
             largest = std::max(largest, *error);
             return *error <= ulps ? "" : text("t is off by ", *error, " units in the last place");
         });
-        if (compared == 0) fail("no ray hits the triangle that the referee names");
+        if (compared == 0) fail("no ray hits the triangle that the reference names");
         outcome.n = compared;
         outcome.params = params;
         outcome.results = {{"t_ulp_max", largest}};
         outcome.reference = "f64";
         outcome.fault_of = "twinray";
-        run.expect(traced.subject, outcome);
+        run.expect(traced.configuration, outcome);
     }
 }
 
 void expect_defined(CaseRun& run, const World& world, std::span<const Ray> rays, const Values& params) {
-    const std::vector<OracleHit> references = references_of(world.oracle, rays);
-    for (const Subject& subject : run.subjects()) {
-        if (!is_robust(subject)) continue;
+    const std::vector<ReferenceHit> references = references_of(world.reference, rays);
+    for (const Configuration& configuration : run.configurations()) {
+        if (!is_robust(configuration)) continue;
         CaseRun::Outcome outcome{.n = rays.size()};
         try {
-            const std::vector<Traced> traces = trace(run.devices(), std::span(&subject, 1), world, {rays, 0});
+            const std::vector<Traced> traces = trace(run.devices(), std::span(&configuration, 1), world, {rays, 0});
             std::size_t agree = 0;
             outcome = ask_each(traces.front(), rays, [&](std::size_t i, const Hit& hit) {
                 if ((hit.hit != 0) == references[i].hit) ++agree;
                 return not_defined(hit);
             });
-            outcome.results = {{"as_the_referee", static_cast<double>(agree) / static_cast<double>(rays.size())}};
+            outcome.results = {{"as_the_reference", static_cast<double>(agree) / static_cast<double>(rays.size())}};
         } catch (const Error& error) {
             outcome.results = {{"error", error.what()}};
         }
         outcome.params = params;
-        run.expect(subject, outcome);
+        run.expect(configuration, outcome);
     }
 }
 

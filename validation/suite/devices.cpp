@@ -29,37 +29,41 @@ Context& Devices::context(Backend backend) {
     return *pipeline_context_;
 }
 
-std::string Devices::why_not(const Subject& subject) {
+std::string Devices::why_not(const Configuration& configuration) {
     const DeviceFacts& facts = context_->facts();
-    if (subject.backend == Backend::ray_query && !facts.ray_query) return "the device has no ray queries";
-    if (subject.backend == Backend::pipeline && !facts.ray_tracing_pipeline)
+    if (configuration.backend == Backend::ray_query && !facts.ray_query) return "the device has no ray queries";
+    if (configuration.backend == Backend::pipeline && !facts.ray_tracing_pipeline)
         return "the device has no ray tracing pipelines";
-    const Feature level = feature_of(subject.level);
-    const DeviceFacts& seen = context(subject.backend).facts();
+    const Feature level = feature_of(configuration.level);
+    const DeviceFacts& seen = context(configuration.backend).facts();
     const Capability able =
-        is_ours(subject.backend) ? SwTlas::capability_on(seen, level) : HwTlas::capability_on(seen, level);
+        is_ours(configuration.backend) ? SwTlas::capability_on(seen, level) : HwTlas::capability_on(seen, level);
     return able.support == Support::unsupported ? text(name_of(level), " is unsupported: ", able.note) : "";
 }
 
-Level Devices::level_to_make(const Subject& subject) { return std::max(subject.level, Level::watertight); }
+Level Devices::level_to_make(const Configuration& configuration) {
+    return std::max(configuration.level, Level::watertight);
+}
 
-std::unique_ptr<AbstractAccel> Devices::make_accel(const Subject& subject, Layout layout) {
-    const AccelOptions options{level_to_make(subject), layout, trees_.build_quality};
-    Context& where = context(subject.backend);
-    if (is_ours(subject.backend)) return std::make_unique<SwTlas>(where, options);
+std::unique_ptr<AbstractAccel> Devices::make_accel(const Configuration& configuration, Layout layout) {
+    const AccelOptions options{level_to_make(configuration), layout, trees_.build_quality};
+    Context& where = context(configuration.backend);
+    if (is_ours(configuration.backend)) return std::make_unique<SwTlas>(where, options);
     return std::make_unique<HwTlas>(where, BuildOrder::automatic, options);
 }
 
-AbstractAccel& Devices::empty_accel(const Subject& subject, Layout layout) {
-    std::unique_ptr<AbstractAccel>& accel = accels_[{subject.backend, level_to_make(subject), layout}];
-    if (!accel) accel = make_accel(subject, layout);
+AbstractAccel& Devices::empty_accel(const Configuration& configuration, Layout layout) {
+    std::unique_ptr<AbstractAccel>& accel = accels_[{configuration.backend, level_to_make(configuration), layout}];
+    if (!accel) accel = make_accel(configuration, layout);
     for (const AccelHandle handle : accel->handles()) accel->erase(handle);
     return *accel;
 }
 
-const CrossingCounter& Devices::crossing_counter(const Subject& subject) {
-    std::unique_ptr<CrossingCounter>& counter = counters_[{subject.backend, subject.level}];
-    if (!counter) counter = std::make_unique<CrossingCounter>(context(subject.backend), subject);
+const CrossingCounter& Devices::crossing_counter(const Configuration& configuration) {
+    std::unique_ptr<CrossingCounter>& counter = counters_[{configuration.backend, configuration.level}];
+    if (!counter)
+        counter = std::make_unique<CrossingCounter>(context(configuration.backend), is_ours(configuration.backend),
+                                                    configuration.level);
     return *counter;
 }
 

@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "validation/suite/crossings.h"
+#include "validation/leaks/crossings.h"
+#include "validation/suite/suite.h"
 #include <twinray/abstract_accel.h>
 
 namespace twinray::suite {
@@ -28,17 +29,20 @@ class Devices {
     Context& context(Backend backend);
     const AccelOptions& trees() const { return trees_; }
     // Why it cannot answer here; "" if it can.
-    std::string why_not(const Subject& subject);
+    std::string why_not(const Configuration& configuration);
     // Empty: whatever an earlier case left is erased.
-    AbstractAccel& empty_accel(const Subject& subject) { return empty_accel(subject, trees_.layout); }
-    AbstractAccel& empty_accel(const Subject& subject, Layout layout);
-    // The level of the accelerator that a subject's traces run on: subjects that share it share the accelerator.
-    static Level level_to_make(const Subject& subject);
+    AbstractAccel& empty_accel(const Configuration& configuration) { return empty_accel(configuration, trees_.layout); }
+    AbstractAccel& empty_accel(const Configuration& configuration, Layout layout);
+    // The level of the accelerator that a configuration's traces run on: configurations that share it share the
+    // accelerator.
+    static Level level_to_make(const Configuration& configuration);
     // One of a case's own.
-    std::unique_ptr<AbstractAccel> make_accel(const Subject& subject) { return make_accel(subject, trees_.layout); }
-    std::unique_ptr<AbstractAccel> make_accel(const Subject& subject, Layout layout);
+    std::unique_ptr<AbstractAccel> make_accel(const Configuration& configuration) {
+        return make_accel(configuration, trees_.layout);
+    }
+    std::unique_ptr<AbstractAccel> make_accel(const Configuration& configuration, Layout layout);
     // Compiled when first needed; not for the pipeline, in which no kernel traces.
-    const CrossingCounter& crossing_counter(const Subject& subject);
+    const CrossingCounter& crossing_counter(const Configuration& configuration);
     // What the library has warned of since the last call; cases provoke warnings, so they are not printed.
     std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
     // After a failure: the next case gets new ones.

@@ -11,7 +11,7 @@
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include <twinray/geometry.h>
-#include "engine/verify/point_distance.h"
+#include "validation/reference/point_distance.h"
 
 namespace twinray::suite {
 namespace {
@@ -67,7 +67,7 @@ void measure_nearest(CaseRun& run, const Mesh& mesh, const std::vector<dvec3>& p
     record.error = error_figures("relative", errors);
     record.error->floor = 0x1p-53;
     record.time = time_figures("ns_per_point", times);
-    add_judged(run, record, wrong, "another triangle is nearer");
+    add_checked(run, record, wrong, "another triangle is nearer");
 }
 
 void sizes(CaseRun& run) {
@@ -87,17 +87,17 @@ void far_away(CaseRun& run) {
 void on_the_surface(CaseRun& run) {
     const Mesh ball = make_icosphere(4);
     std::vector<dvec3> points(ball.positions.begin(), ball.positions.end());
-    const std::size_t corners = points.size();
+    const std::size_t vertices = points.size();
     for (const uvec3& t : ball.triangles) points.push_back((points[t.x] + points[t.y]) * 0.5);
     PointQuery query(run.devices().context(query_backend));
     query.set(std::vector<MeshView>{ball}, std::vector<MeshInstance>{{0, {}}});
     const std::vector<ClosestPoint> found = query.closest(points);
     std::uint64_t wrong = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) wrong += !(found[i].distance <= (i < corners ? 0 : 0x1p-52));
+    for (std::size_t i = 0; i < points.size(); ++i) wrong += !(found[i].distance <= (i < vertices ? 0 : 0x1p-52));
     Record record = query_record(run, "analytic");
     record.n = points.size();
-    add_judged(run, record, wrong,
-               "a corner is away from its triangle, or the middle of an edge by more than rounding");
+    add_checked(run, record, wrong,
+                "a vertex is away from its triangle, or the middle of an edge by more than rounding");
 }
 
 void scaled(CaseRun& run) {
@@ -122,7 +122,7 @@ void scaled(CaseRun& run) {
         Record record = query_record(run, "invariance");
         record.params = {{"scale", text("2^", exponent)}};
         record.n = points.size();
-        add_judged(run, record, wrong, "another triangle, or another distance, than at a scale of 1");
+        add_checked(run, record, wrong, "another triangle, or another distance, than at a scale of 1");
     }
 }
 
@@ -147,11 +147,11 @@ void radius(CaseRun& run) {
     Record record = query_record(run, "f64");
     record.n = points.size() * ball.triangles.size();
     record.results = {{"found", count}};
-    add_judged(run, record, wrong + (near.size() - next),
-               "a triangle within the radius is missing, or one beyond is listed");
+    add_checked(run, record, wrong + (near.size() - next),
+                "a triangle within the radius is missing, or one beyond is listed");
 }
 
-// Lines along +x from lattice points meet edges, corners and whole faces of lattice boxes.
+// Lines along +x from lattice points meet edges, vertices and whole faces of lattice boxes.
 void sides(CaseRun& run) {
     const Mesh box = make_box(vec3(-2), vec3(2));
     const int n = static_cast<int>(run.amount(6, 24));
@@ -164,18 +164,18 @@ void sides(CaseRun& run) {
     const std::vector<MeshInstance> twice = {{0, {}}, {0, Transform::translation(vec3(1, 0, 0))}};
     query.set(std::vector<MeshView>{box}, twice);
     const std::vector<int> found = query.winding_numbers(points);
-    std::uint64_t wrong = 0, judged = 0;
+    std::uint64_t wrong = 0, checked = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto size = [](const dvec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); };
         const double first = size(points[i]), second = size(points[i] - dvec3(1, 0, 0));
         if (first == 2 || second == 2) continue;  // on a face
-        ++judged;
+        ++checked;
         wrong += found[i] != (first < 2) + (second < 2);
     }
     Record record = query_record(run, "analytic");
-    record.n = judged;
+    record.n = checked;
     record.results = {{"host_decided", query.host_decided()}};
-    add_judged(run, record, wrong, "another winding number than the number of boxes around the point");
+    add_checked(run, record, wrong, "another winding number than the number of boxes around the point");
 }
 
 }  // namespace
@@ -185,7 +185,7 @@ std::vector<SuiteCase> distance_cases() {
     return {
         {"D01", "nearest triangles of spheres", error, "no other triangle is nearer", sizes},
         {"D02", "points up to 10^15 away", error, "no other triangle is nearer", far_away},
-        {"D03", "points at corners and on edges", "distances", "0 at corners, rounding on edges", on_the_surface},
+        {"D03", "points at vertices and on edges", "distances", "0 at vertices, rounding on edges", on_the_surface},
         {"D04", "the scene 2^-120 to 2^120 as large", "triangles, distances", "the same, scaled", scaled},
         {"D05", "all triangles within a radius", "those that are listed", "as all triangles one by one", radius},
         {"D06", "winding numbers on a lattice", "numbers", "as many boxes as are around the point", sides},

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include <twinray/geometry.h>
-#include "engine/verify/draws.h"
+#include "validation/reference/draws.h"
 
 namespace twinray::suite {
 namespace {
@@ -21,11 +21,11 @@ class Lattice {
     void add_square(uint axis, bool is_last, uint i, uint j) {
         const uint a = (axis + 1) % 3, b = (axis + 2) % 3;
         const auto vertex_at = [&](uint di, uint dj) {
-            uvec3 place;
-            place[static_cast<int>(axis)] = is_last ? static_cast<uint>(planes_[axis].size()) - 1 : 0;
-            place[static_cast<int>(a)] = i + di;
-            place[static_cast<int>(b)] = j + dj;
-            return vertex(place);
+            uvec3 cell;
+            cell[static_cast<int>(axis)] = is_last ? static_cast<uint>(planes_[axis].size()) - 1 : 0;
+            cell[static_cast<int>(a)] = i + di;
+            cell[static_cast<int>(b)] = j + dj;
+            return vertex(cell);
         };
         const uint v00 = vertex_at(0, 0), v10 = vertex_at(1, 0), v11 = vertex_at(1, 1), v01 = vertex_at(0, 1);
         if (is_last)
@@ -36,10 +36,10 @@ class Lattice {
     Mesh mesh() && { return std::move(mesh_); }
 
   private:
-    uint vertex(const uvec3& place) {
+    uint vertex(const uvec3& cell) {
         const auto [at, is_new] =
-            vertices_.try_emplace({place.x, place.y, place.z}, static_cast<uint>(mesh_.positions.size()));
-        if (is_new) mesh_.positions.emplace_back(planes_[0][place.x], planes_[1][place.y], planes_[2][place.z]);
+            vertices_.try_emplace({cell.x, cell.y, cell.z}, static_cast<uint>(mesh_.positions.size()));
+        if (is_new) mesh_.positions.emplace_back(planes_[0][cell.x], planes_[1][cell.y], planes_[2][cell.z]);
         return at->second;
     }
 

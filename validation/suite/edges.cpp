@@ -3,8 +3,8 @@
 #include "validation/suite/edge_meshes.h"
 #include "validation/suite/edges.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
-#include "engine/verify/inside_rays.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/leaks/inside_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -41,7 +41,7 @@ void leak_test(CaseRun& run) {
     const ClosedMesh closed(ball);
     const std::vector<Ray> rays = InsideRays(closed, Aim::both, run.seed()).rays(0, run.amount(8'192, 10'000'000));
     const auto is_right = [&](const Ray& ray, uint count) {
-        const Parity parity = judge_crossings(closed, ray, count);
+        const Parity parity = check_crossings(closed, ray, count);
         return parity == Parity::odd || parity == Parity::unspecified;
     };
     run.count_crossings(world_of(ball, {}, {.filtered = true}), rays, is_right,
@@ -66,7 +66,7 @@ std::vector<SuiteCase> edge_cases() {
          at_vertices_from_inside},
         {"W03", "the same, aimed at random points of edges", closest,
          "0 SW_LEAK, SW_FALSE, T_ERR; exactly one crossing", at_edges_from_inside},
-        {"W04", "flat integer grid, slanted rays exactly through corners, edges and diagonals of its cells", closest,
+        {"W04", "flat integer grid, slanted rays exactly through vertices, edges and diagonals of its cells", closest,
          "0 SW_LEAK, SW_FALSE, T_ERR; exactly one crossing", slanted_through_a_grid},
         {"W05", "the same, straight up and down, with +0 and -0 across", closest,
          "0 SW_LEAK, SW_FALSE, T_ERR; exactly one crossing; the same bits for +0 and -0", straight_through_a_grid},
@@ -78,7 +78,7 @@ std::vector<SuiteCase> edge_cases() {
          "0 SW_LEAK, SW_FALSE, T_ERR; exactly one crossing", jittered_grid},
         {"W09", "closed fans of 3 to 1000 triangles, flat and cones, rays aimed at the hub", closest,
          "0 SW_LEAK, SW_FALSE, T_ERR; exactly one crossing", fans},
-        {"W10", "T-junctions: on one side of an edge lies a corner that the other side does not have", closest,
+        {"W10", "T-junctions: on one side of an edge lies a vertex that the other side does not have", closest,
          "0 SW_LEAK, SW_FALSE, T_ERR: what slips through the gap is BOUNDARY or UNSPECIFIED", t_junctions},
         {"W11", "silhouettes: rays from outside that graze convex meshes", "closest hits; crossings",
          "0 SW_LEAK, SW_FALSE, T_ERR; an even number of crossings", silhouettes},

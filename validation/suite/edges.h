@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cases of the section W, and how they are judged.
+// Cases of the section W, and how they are checked.
 #pragma once
 
 #include "validation/suite/case_run.h"
@@ -10,7 +10,7 @@ namespace twinray::suite {
 inline bool is_one(const Ray&, uint count) { return count == 1; }
 inline bool is_even(const Ray&, uint count) { return count % 2 == 0; }
 
-// Closest hits judged by the referee, and crossings by `right`.
+// Closest hits checked by the reference, and crossings by `right`.
 void measure_both(CaseRun& run, const Mesh& mesh, std::span<const Ray> rays, const CaseRun::RightCount& right,
                   const Measurement& measurement = {});
 

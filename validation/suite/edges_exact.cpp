@@ -7,8 +7,8 @@
 #include "validation/suite/edges.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/verify/draws.h"
-#include "engine/verify/inside_rays.h"
+#include "validation/reference/draws.h"
+#include "validation/leaks/inside_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -43,7 +43,7 @@ void straight_through_a_grid(CaseRun& run) {
         }
         const Values params = {{"zeros", text(signs & 1 ? "-" : "+", "0 ", signs & 2 ? "-" : "+", "0")}};
         if (signs == 0 || signs == 3) measure_both(run, grid, signed_rays, is_one, {.params = params, .reps = 1});
-        by_sign.push_back(trace(run.devices(), run.subjects(), world, {.rays = signed_rays, .reps = 0}));
+        by_sign.push_back(trace(run.devices(), run.configurations(), world, {.rays = signed_rays, .reps = 0}));
     }
     for (std::size_t s = 0; s < by_sign[0].size(); ++s) {
         CaseRun::Outcome outcome{.params = {{"compared", "signs of 0"}}, .n = rays.size(), .reference = "invariance"};
@@ -54,7 +54,7 @@ void straight_through_a_grid(CaseRun& run) {
             });
             if (!is_same && outcome.faults++ == 0) outcome.what = "differs by the sign of 0: " + hexadecimal(rays[i]);
         }
-        run.expect(by_sign[0][s].subject, outcome);
+        run.expect(by_sign[0][s].configuration, outcome);
     }
 }
 
@@ -137,17 +137,17 @@ void through_corners_of_boxes(CaseRun& run) {
     constexpr uint size = 16;
     Draws draws(run.seed(), ~0ull);
     std::array<std::vector<float>, 3> planes;
-    for (std::vector<float>& places : planes)
-        for (uint i = 0; i <= size; ++i) places.push_back(static_cast<float>(i + draws.between(-0.4, 0.4)) * 0.1f);
+    for (std::vector<float>& plane : planes)
+        for (uint i = 0; i <= size; ++i) plane.push_back(static_cast<float>(i + draws.between(-0.4, 0.4)) * 0.1f);
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < run.amount(4'096, 1'000'000); ++i) {
         Draws draw(run.seed(), i);
-        const std::size_t ends = 1 + i % 3;  // axes on which the target lies at an end: of a face, an edge, a corner
+        const std::size_t ends = 1 + i % 3;  // axes on which the target lies at an end: of a face, an edge, a vertex
         const uint first = draw.below(3);
         vec3 origin(0), target(0);
         for (uint k = 0; k < 3; ++k) {
-            const uint axis = (first + k) % 3, place = k < ends ? size * draw.below(2) : draw.below(size + 1);
-            target[static_cast<int>(axis)] = planes[axis][place];
+            const uint axis = (first + k) % 3, index = k < ends ? size * draw.below(2) : draw.below(size + 1);
+            target[static_cast<int>(axis)] = planes[axis][index];
             origin[static_cast<int>(axis)] = static_cast<float>(draw.between(0.3, 1.3));
         }
         rays.push_back(make_ray(origin, target - origin));

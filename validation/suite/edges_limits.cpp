@@ -6,14 +6,14 @@
 #include "validation/suite/edge_meshes.h"
 #include "validation/suite/edges.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
-#include "engine/verify/draws.h"
-#include "engine/verify/inside_rays.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/reference/draws.h"
+#include "validation/leaks/inside_rays.h"
 
 namespace twinray::suite {
 namespace {
 
-// Two triangles whose common edge has a corner m on one side only: (a, b, c) against (a, m, d) and (m, b, d).
+// Two triangles whose common edge has a vertex m on one side only: (a, b, c) against (a, m, d) and (m, b, d).
 struct TJunction {
     vec3 a, b, m;
 };
@@ -47,7 +47,7 @@ std::vector<ConvexEdge> edges_of(const Mesh& mesh) {
             edge.faces.push_back({at(triangle.x), at(triangle.y), at(triangle.z)});
         }
     std::vector<ConvexEdge> list;
-    for (const auto& [corners, edge] : edges) list.push_back(edge);
+    for (const auto& [vertices, edge] : edges) list.push_back(edge);
     return list;
 }
 
@@ -84,15 +84,15 @@ struct Part {
 
 World world_of_parts(const std::vector<Part>& parts) {
     std::vector<MeshView> views;
-    std::vector<OracleInstance> instances;
+    std::vector<ReferenceInstance> instances;
     for (const Part& part : parts) {
         instances.push_back({static_cast<uint>(views.size()), part.transform, {.filtered = true}});
         views.emplace_back(part.mesh);
     }
-    const auto place = [parts](AbstractAccel& accel) {
+    const auto fill = [parts](AbstractAccel& accel) {
         for (const Part& part : parts) accel.push(part.mesh, part.transform, {.filtered = true});
     };
-    return {place, Oracle(views, instances)};
+    return {fill, ReferenceScene(views, instances)};
 }
 
 // Triangles for which `is_first` says so go to the first mesh.
@@ -173,26 +173,26 @@ void with_two_matrices(CaseRun& run) {
     const World world = world_of_parts(parts);
     const Placement64 placement(parts[0].transform, "half");
     std::vector<Ray> rays;
-    std::vector<double> places;
+    std::vector<double> offsets;
     for (std::size_t i = 0; i < run.amount(8'192, 1'000'000); ++i) {
         const RayBeside made = ray_beside_edge(placement, reach, Draws(run.seed(), i));
         rays.push_back(made.ray);
-        places.push_back(made.x);
+        offsets.push_back(made.x);
     }
-    for (const Subject& subject : run.crossing_subjects()) {
-        AbstractAccel& accel = run.devices().empty_accel(subject);
-        world.place(accel);
+    for (const Configuration& configuration : run.crossing_configurations()) {
+        AbstractAccel& accel = run.devices().empty_accel(configuration);
+        world.fill(accel);
         accel.sync();
-        const std::vector<uint> counts = run.devices().crossing_counter(subject).count(accel, rays);
+        const std::vector<uint> counts = run.devices().crossing_counter(configuration).count(accel, rays);
         std::uint64_t lost = 0, twice = 0;
         double farthest = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             lost += counts[i] == 0;
             twice += counts[i] > 1;
-            if (counts[i] != 1) farthest = std::max(farthest, std::abs(places[i]));
+            if (counts[i] != 1) farthest = std::max(farthest, std::abs(offsets[i]));
         }
         const double width = 2 * reach / static_cast<double>(rays.size());
-        Record record = run.record(subject);
+        Record record = run.record(configuration);
         record.params = {{"split", "two halves"}, {"matrices", 2}};
         record.criterion = "none: nothing is promised across different matrices";
         record.reference = "f64";
@@ -236,7 +236,7 @@ void silhouettes(CaseRun& run) {
                      {.params = {{"mesh", name}}});
 }
 
-// Rounding of sheared corners grows with their distance, that of boxes with the hit's: triangles far longer than what
+// Rounding of sheared vertices grows with their distance, that of boxes with the hit's: triangles far longer than what
 // is between them and the ray have to be hit beside their edges, too.
 void beside_long_edges(CaseRun& run) {
     std::vector<float> across;
@@ -266,7 +266,7 @@ void without_precise_on_a_grid(CaseRun& run) {
     Mesh grid = make_grid(32, 32);
     for (vec3& position : grid.positions) position = position * 32.0f + vec3(1e7f, 0, 1e7f);
     const World world = world_of(grid);
-    const std::vector<Ray> rays = edge_aimed_rays(world.oracle, run.amount(8'192, 1'000'000), run.seed());
+    const std::vector<Ray> rays = edge_aimed_rays(world.reference, run.amount(8'192, 1'000'000), run.seed());
     run.measure(world, rays, {.params = {{"offset", 1e7}}, .control = without_precise()});
     if (run.devices().context(Backend::software).facts().shader_float64)
         run.measure(world, rays, {.params = {{"offset", 1e7}}, .control = contracted()});

@@ -151,17 +151,17 @@ void set_series(Record& record, const Series& series) {
     if (!*record.pass) record.fault_of = "twinray";
 }
 
-Record record_of(const CaseRun& run, const Subject& subject, const FactorQuestion& question,
+Record record_of(const CaseRun& run, const Configuration& configuration, const FactorQuestion& question,
                  const EstimatorMethod& method) {
-    Record record = run.record(subject);
+    Record record = run.record(configuration);
     record.params = question.params;
     record.results = question.results;
     record.variant = name(method);
     return record;
 }
 
-void measure_sampled(CaseRun& run, Estimators& estimators, const Subject& subject, const FactorQuestion& question,
-                     const EstimatorMethod& method) {
+void measure_sampled(CaseRun& run, Estimators& estimators, const Configuration& configuration,
+                     const FactorQuestion& question, const EstimatorMethod& method) {
     const auto answer = [&](std::uint64_t rays, std::uint64_t seed) {
         return method.estimator == PairEstimator::hits
                    ? estimators.hits(method.sequence, rays, static_cast<uint>(seed))
@@ -178,7 +178,7 @@ void measure_sampled(CaseRun& run, Estimators& estimators, const Subject& subjec
             series.add(answer(count, run.seed() + seed + seeds * errors.size()), question.value);
         rays.push_back(static_cast<double>(series.rays));
         errors.push_back(series.rms());
-        Record record = record_of(run, subject, question, method);
+        Record record = record_of(run, configuration, question, method);
         record.params.emplace("rays", count);
         set_series(record, series);
         const std::optional<PowerLaw> law = fit_power_law(rays, errors);
@@ -208,25 +208,27 @@ std::vector<EstimatorMethod> methods_of(std::span<const PairEstimator> estimator
     return methods;
 }
 
-std::vector<Subject> analysis_subjects(CaseRun& run) {
-    std::vector<Subject> chosen;
-    for (const Subject& subject : run.one_subject_each())
-        if (chosen.empty() || is_ours(chosen.back().backend) != is_ours(subject.backend)) chosen.push_back(subject);
+std::vector<Configuration> analysis_configurations(CaseRun& run) {
+    std::vector<Configuration> chosen;
+    for (const Configuration& configuration : run.one_configuration_each())
+        if (chosen.empty() || is_ours(chosen.back().backend) != is_ours(configuration.backend))
+            chosen.push_back(configuration);
     return chosen;
 }
 
 void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<const EstimatorMethod> methods) {
-    const std::vector<Subject> subjects = analysis_subjects(run);
-    for (const Subject& subject : subjects) {
-        Estimators estimators(run.devices().empty_accel(subject), question);
+    const std::vector<Configuration> configurations = analysis_configurations(run);
+    for (const Configuration& configuration : configurations) {
+        Estimators estimators(run.devices().empty_accel(configuration), question);
         for (const EstimatorMethod& method : methods)
-            if (method.estimator != PairEstimator::contour) measure_sampled(run, estimators, subject, question, method);
+            if (method.estimator != PairEstimator::contour)
+                measure_sampled(run, estimators, configuration, question, method);
     }
     for (const EstimatorMethod& method : methods) {
-        if (method.estimator != PairEstimator::contour || subjects.empty()) continue;
+        if (method.estimator != PairEstimator::contour || configurations.empty()) continue;
         Series series;
         for (int i = 0; i < 3; ++i) series.add(Estimators::contour(question), question.value);
-        Record record = record_of(run, subjects.front(), question, method);
+        Record record = record_of(run, configurations.front(), question, method);
         record.backend = "cpu";
         record.level = "";
         set_series(record, series);

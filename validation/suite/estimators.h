@@ -34,8 +34,8 @@ std::vector<EstimatorMethod> methods_of(std::span<const PairEstimator> estimator
 // than 95 % of all could explain.
 void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<const EstimatorMethod> methods);
 
-// The subjects of these cases: software, and hardware once.
-std::vector<Subject> analysis_subjects(CaseRun& run);
+// The configurations of these cases: software, and hardware once.
+std::vector<Configuration> analysis_configurations(CaseRun& run);
 
 // In float64, where nothing is between the meshes.
 double contour_value(const Scene& scene, uint from, uint to);

@@ -11,8 +11,9 @@
 #include "validation/suite/twin.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
-#include "engine/verify/float_probe.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/reference/float_probe.h"
+#include "validation/suite/shapes.h"
 
 namespace twinray::suite {
 namespace {
@@ -26,26 +27,26 @@ Scene scene_with(const Mesh& mesh, std::vector<Transform> transforms = {Transfor
     return scene;
 }
 
-// What a subject answers and what its twin does, batch by batch.
-Difference compared(CaseRun& run, const Subject& subject, const Scene& scene, std::span<const Ray> rays,
+// What a configuration answers and what its twin does, batch by batch.
+Difference compared(CaseRun& run, const Configuration& configuration, const Scene& scene, std::span<const Ray> rays,
                     const std::optional<Control>& control = {}) {
     const World world = world_of(scene);
     const std::unique_ptr<reference::Scene> twin = twin_of(scene, run.devices().trees());
     Difference sum;
     for (std::size_t first = 0; first < rays.size(); first += batch_size) {
         const auto batch = rays.subspan(first, std::min(batch_size, rays.size() - first));
-        const std::vector<Traced> traced = trace(run.devices(), std::span(&subject, 1), world,
+        const std::vector<Traced> traced = trace(run.devices(), std::span(&configuration, 1), world,
                                                  {.rays = batch, .reps = 0, .control = control ? &*control : nullptr});
-        sum += difference(batch, traced.front().hits, trace_twin(*twin, batch, subject.level));
+        sum += difference(batch, traced.front().hits, trace_twin(*twin, batch, configuration.level));
     }
     return sum;
 }
 
-// SwTlas's subjects whose arithmetic is `precise` throughout.
-std::vector<Subject> precise_subjects(CaseRun& run) {
-    std::vector<Subject> chosen;
-    for (const Subject& subject : run.subjects())
-        if (is_ours(subject.backend) && subject.level != Level::fast) chosen.push_back(subject);
+// SwTlas's configurations whose arithmetic is `precise` throughout.
+std::vector<Configuration> precise_configurations(CaseRun& run) {
+    std::vector<Configuration> chosen;
+    for (const Configuration& configuration : run.configurations())
+        if (is_ours(configuration.backend) && configuration.level != Level::fast) chosen.push_back(configuration);
     return chosen;
 }
 
@@ -56,9 +57,9 @@ Mesh far_grid() {
     return grid;
 }
 
-void record_contraction(CaseRun& run, const Subject& subject, const Difference& found, std::size_t count,
+void record_contraction(CaseRun& run, const Configuration& configuration, const Difference& found, std::size_t count,
                         const std::optional<Control>& control) {
-    Record record = run.record(subject);
+    Record record = run.record(configuration);
     record.reference = "invariance";
     record.n = count;
     record.faults = found.decisions;
@@ -95,9 +96,9 @@ std::vector<NamedScene> scenes_for_twins() {
 }
 
 std::vector<Ray> random_and_aimed(const Scene& scene, std::size_t random, std::size_t aimed, std::uint64_t seed) {
-    const Oracle oracle = Oracle::of(scene);
+    const ReferenceScene reference = ReferenceScene::of(scene);
     std::vector<Ray> rays = random_rays(bounds_of(scene), random, seed);
-    for (const auto& more : {vertex_aimed_rays(oracle, aimed, seed), edge_aimed_rays(oracle, aimed, seed)})
+    for (const auto& more : {vertex_aimed_rays(reference, aimed, seed), edge_aimed_rays(reference, aimed, seed)})
         rays.insert(rays.end(), more.begin(), more.end());
     return rays;
 }
@@ -124,39 +125,40 @@ std::vector<Ray> with_denormals(std::vector<Ray> rays, std::uint64_t seed) {
 
 void contraction(CaseRun& run) {
     const Scene scene = scene_with(far_grid());
-    const Oracle oracle = Oracle::of(scene);
-    const std::vector<Ray> rays = edge_aimed_rays(oracle, run.amount(8'192, 1'000'000), run.seed());
-    for (const Subject& subject : precise_subjects(run)) {
-        record_contraction(run, subject, compared(run, subject, scene, rays), rays.size(), {});
-        if (subject.level != Level::watertight) continue;
+    const ReferenceScene reference = ReferenceScene::of(scene);
+    const std::vector<Ray> rays = edge_aimed_rays(reference, run.amount(8'192, 1'000'000), run.seed());
+    for (const Configuration& configuration : precise_configurations(run)) {
+        record_contraction(run, configuration, compared(run, configuration, scene, rays), rays.size(), {});
+        if (configuration.level != Level::watertight) continue;
         const std::optional<Control> control = without_precise();
-        record_contraction(run, subject, compared(run, subject, scene, rays, control), rays.size(), control);
+        record_contraction(run, configuration, compared(run, configuration, scene, rays, control), rays.size(),
+                           control);
     }
 }
 
 void float_probe(CaseRun& run) {
-    for (const Subject& subject : run.one_subject_each()) {
-        if (!is_ours(subject.backend)) continue;
-        const FloatFacts& facts = probe_floats(run.devices().context(subject.backend));
+    for (const Configuration& configuration : run.one_configuration_each()) {
+        if (!is_ours(configuration.backend)) continue;
+        const FloatFacts& facts = probe_floats(run.devices().context(configuration.backend));
         const std::vector<std::string> faults = robust_faults(facts);
-        run.expect(subject, {.results = {{"product_ulp", facts.product_ulp},
-                                         {"sum_ulp", facts.sum_ulp},
-                                         {"quotient_ulp", facts.quotient_ulp},
-                                         {"keeps_denormals", facts.keeps_denormals},
-                                         {"has_exact_float64", facts.has_exact_float64}},
-                             .n = robust_conditions,
-                             .faults = faults.size(),
-                             .what = "watertightness cannot be claimed: " + joined(faults),
-                             .fault_of = "driver"});
+        run.expect(configuration, {.results = {{"product_ulp", facts.product_ulp},
+                                               {"sum_ulp", facts.sum_ulp},
+                                               {"quotient_ulp", facts.quotient_ulp},
+                                               {"keeps_denormals", facts.keeps_denormals},
+                                               {"has_exact_float64", facts.has_exact_float64}},
+                                   .n = robust_conditions,
+                                   .faults = faults.size(),
+                                   .what = "watertightness cannot be claimed: " + joined(faults),
+                                   .fault_of = "driver"});
     }
 }
 
 // A ray displaced by a denormal passes a shared edge on the other side, so that the triangle may change, but no answer
 // may become wrong.
 void denormals(CaseRun& run) {
-    for (const Subject& subject : precise_subjects(run)) {
+    for (const Configuration& configuration : precise_configurations(run)) {
         if (!FlushDenormals::is_able()) {
-            run.add_not_run("the host's denormals cannot be flushed", &subject);
+            run.add_not_run("the host's denormals cannot be flushed", &configuration);
             continue;
         }
         for (const auto& [name, scene] : scenes_for_twins()) {
@@ -165,30 +167,30 @@ void denormals(CaseRun& run) {
             const std::vector<Ray> rays =
                 with_denormals(random_and_aimed(scene, count, count / 4, run.seed()), run.seed());
             const std::unique_ptr<reference::Scene> twin = twin_of(scene, run.devices().trees());
-            const std::vector<Hit> flushed = trace_twin(*twin, rays, subject.level, Denormals::flushed);
+            const std::vector<Hit> flushed = trace_twin(*twin, rays, configuration.level, Denormals::flushed);
             const std::vector<Traced> traced =
-                trace(run.devices(), std::span(&subject, 1), world, {.rays = rays, .reps = 0});
-            const Difference changed = difference(rays, flushed, trace_twin(*twin, rays, subject.level));
-            Judgement judgement = judge(world.oracle, rays, flushed, subject.backend);
-            const Judgement of_device = judge(world.oracle, rays, traced.front().hits, subject.backend);
-            judgement.classes += of_device.classes;
-            judgement.faults += of_device.faults;
-            if (judgement.example.empty()) judgement.example = of_device.example;
-            run.add_judged(subject, judgement,
-                           {.params = {{"scene", name}}, .results = {{"changed_by_flushing", changed.decisions}}});
+                trace(run.devices(), std::span(&configuration, 1), world, {.rays = rays, .reps = 0});
+            const Difference changed = difference(rays, flushed, trace_twin(*twin, rays, configuration.level));
+            CheckResult checked = check(world.reference, rays, flushed, configuration.backend);
+            const CheckResult of_device = check(world.reference, rays, traced.front().hits, configuration.backend);
+            checked.classes += of_device.classes;
+            checked.faults += of_device.faults;
+            if (checked.example.empty()) checked.example = of_device.example;
+            run.add_checked(configuration, checked,
+                            {.params = {{"scene", name}}, .results = {{"changed_by_flushing", changed.decisions}}});
         }
     }
 }
 
 void device_against_twin(CaseRun& run) {
-    for (const Subject& subject : precise_subjects(run)) {
-        const FloatFacts& facts = probe_floats(run.devices().context(subject.backend));
+    for (const Configuration& configuration : precise_configurations(run)) {
+        const FloatFacts& facts = probe_floats(run.devices().context(configuration.backend));
         const bool divides_exactly = facts.quotient_ulp <= 0.5;
         for (const auto& [name, scene] : scenes_for_twins()) {
             const std::vector<Ray> rays =
                 random_and_aimed(scene, run.amount(25'000, 2'500'000), run.amount(2'500, 250'000), run.seed());
-            const Difference found = compared(run, subject, scene, rays);
-            Record record = run.record(subject);
+            const Difference found = compared(run, configuration, scene, rays);
+            Record record = run.record(configuration);
             record.params = {{"scene", name}};
             record.reference = "invariance";
             record.n = rays.size();

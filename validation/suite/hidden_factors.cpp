@@ -20,8 +20,9 @@ struct Rows {
     std::vector<ViewFactorRow> rows;
     std::vector<double> areas;
 };
-Rows rows_of(CaseRun& run, const Subject& subject, const Scene& scene, FaceGrouping grouping, std::uint64_t rays) {
-    AbstractAccel& accel = run.devices().empty_accel(subject);
+Rows rows_of(CaseRun& run, const Configuration& configuration, const Scene& scene, FaceGrouping grouping,
+             std::uint64_t rays) {
+    AbstractAccel& accel = run.devices().empty_accel(configuration);
     push_scene(accel, scene);
     const Faces faces(accel.context(), scene);
     ViewFactors factors(accel, faces, {.grouping = grouping, .rays = rays, .seed = static_cast<uint>(run.seed())});
@@ -37,25 +38,25 @@ ViewFactor factor_of(const ViewFactorRow& row, uint target) {
 
 // Before projection, pairs differ as counts do; after it, by rounding to float32.
 void expect_reciprocity(CaseRun& run, const Scene& scene, FaceGrouping grouping, const Values& params) {
-    for (const Subject& subject : analysis_subjects(run)) {
-        auto [rows, areas] = rows_of(run, subject, scene, grouping, run.amount(1 << 13, 1 << 17));
+    for (const Configuration& configuration : analysis_configurations(run)) {
+        auto [rows, areas] = rows_of(run, configuration, scene, grouping, run.amount(1 << 13, 1 << 17));
         const ViewFactorResiduals before = residuals_of(rows, areas);
         project(rows, areas);
         const ViewFactorResiduals after = residuals_of(rows, areas);
         constexpr double rounding = 0x1p-22;
         const bool is_far = before.reciprocity_sigma > most_sigma, is_left = after.reciprocity_scaled > rounding;
-        run.expect(subject, {.params = params,
-                             .results = {{"reciprocity", before.reciprocity},
-                                         {"reciprocity_sigma", before.reciprocity_sigma},
-                                         {"closure", before.closure},
-                                         {"reciprocity_scaled", before.reciprocity_scaled},
-                                         {"reciprocity_projected", after.reciprocity},
-                                         {"reciprocity_scaled_projected", after.reciprocity_scaled},
-                                         {"closure_projected", after.closure}},
-                             .n = rows.size(),
-                             .faults = static_cast<std::uint64_t>(is_far) + is_left + (after.closure > rounding),
-                             .what = "A_i F_ij is not A_j F_ji within its error, or not after projection",
-                             .reference = "analytic"});
+        run.expect(configuration, {.params = params,
+                                   .results = {{"reciprocity", before.reciprocity},
+                                               {"reciprocity_sigma", before.reciprocity_sigma},
+                                               {"closure", before.closure},
+                                               {"reciprocity_scaled", before.reciprocity_scaled},
+                                               {"reciprocity_projected", after.reciprocity},
+                                               {"reciprocity_scaled_projected", after.reciprocity_scaled},
+                                               {"closure_projected", after.closure}},
+                                   .n = rows.size(),
+                                   .faults = static_cast<std::uint64_t>(is_far) + is_left + (after.closure > rounding),
+                                   .what = "A_i F_ij is not A_j F_ji within its error, or not after projection",
+                                   .reference = "analytic"});
     }
 }
 
@@ -65,10 +66,10 @@ void reciprocity(CaseRun& run) {
 }
 
 void expect_nothing(CaseRun& run, const Scene& scene, const std::string& what) {
-    for (const Subject& subject : analysis_subjects(run)) {
+    for (const Configuration& configuration : analysis_configurations(run)) {
         std::uint64_t rays = 0, seen = 0;
         for (const ViewFactorRow& row :
-             rows_of(run, subject, scene, FaceGrouping::mesh, run.amount(1 << 16, 1 << 22)).rows) {
+             rows_of(run, configuration, scene, FaceGrouping::mesh, run.amount(1 << 16, 1 << 22)).rows) {
             if (row.group > 1) continue;
             rays += row.rays;
             for (const ViewFactor& factor : row.factors)
@@ -76,11 +77,11 @@ void expect_nothing(CaseRun& run, const Scene& scene, const std::string& what) {
                     seen += static_cast<std::uint64_t>(
                         std::llround(static_cast<double>(factor.value) * static_cast<double>(row.rays)));
         }
-        run.expect(subject, {.params = {{"faces", what}},
-                             .n = rays,
-                             .faults = seen,
-                             .what = "rays from one met the other",
-                             .reference = "analytic"});
+        run.expect(configuration, {.params = {{"faces", what}},
+                                   .n = rays,
+                                   .faults = seen,
+                                   .what = "rays from one met the other",
+                                   .reference = "analytic"});
     }
 }
 
@@ -151,14 +152,14 @@ void refined(CaseRun& run) {
     // Each face sends some rays: many faces are slow, and asked once.
     const auto most = static_cast<uint>(run.amount(64, 224));
     const Scene scene = parallel_squares(1, most);
-    for (const Subject& subject : analysis_subjects(run)) {
-        const ViewFactor found = factor_of(rows_of(run, subject, scene, FaceGrouping::mesh, 1 << 16).rows[0], 1);
+    for (const Configuration& configuration : analysis_configurations(run)) {
+        const ViewFactor found = factor_of(rows_of(run, configuration, scene, FaceGrouping::mesh, 1 << 16).rows[0], 1);
         const double error = static_cast<double>(found.value) - known, half = (found.high - found.low) / 2.0;
-        run.expect(subject, {.params = {{"faces", 4 * most * most}},
-                             .results = {{"error", error}, {"half_interval", half}},
-                             .faults = std::abs(error) > 3 * half ? 1u : 0u,
-                             .what = "the estimate is wrong by more than 3 times half of its interval",
-                             .reference = "analytic"});
+        run.expect(configuration, {.params = {{"faces", 4 * most * most}},
+                                   .results = {{"error", error}, {"half_interval", half}},
+                                   .faults = std::abs(error) > 3 * half ? 1u : 0u,
+                                   .what = "the estimate is wrong by more than 3 times half of its interval",
+                                   .reference = "analytic"});
     }
 }
 

@@ -6,7 +6,7 @@
 #include "validation/suite/inputs.h"
 #include "validation/suite/scenes.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -38,13 +38,13 @@ void time_of_bad_rays(CaseRun& run) {
     const std::vector<Ray> normal = random_rays(bounds_of(sphere), run.amount(16'384, 1'000'000), run.seed());
     std::vector<Ray> bad = normal;
     for (std::size_t i = 0; i < bad.size(); ++i) spoil_component(bad[i], i);
-    const std::vector<Subject> subjects = run.subjects();
+    const std::vector<Configuration> configurations = run.configurations();
     const std::size_t reps = run.amount(5, 15);
-    const std::vector<Traced> normals = trace(run.devices(), subjects, world, {.rays = normal, .reps = reps});
-    const std::vector<Traced> bads = trace(run.devices(), subjects, world, {.rays = bad, .reps = reps});
-    for (std::size_t i = 0; i < subjects.size(); ++i) {
+    const std::vector<Traced> normals = trace(run.devices(), configurations, world, {.rays = normal, .reps = reps});
+    const std::vector<Traced> bads = trace(run.devices(), configurations, world, {.rays = bad, .reps = reps});
+    for (std::size_t i = 0; i < configurations.size(); ++i) {
         const double ratio = median(bads[i].ns_per_ray) / median(normals[i].ns_per_ray);
-        run.expect(subjects[i],
+        run.expect(configurations[i],
                    {.params = {{"measured", "time"}},
                     .results = {{"time_ratio", ratio}},
                     .faults = ratio > limit ? 1u : 0u,
@@ -119,12 +119,12 @@ void ends_at_the_hit(CaseRun& run) {
     for (const EndedRay& one : ended) rays.push_back(one.ray);
     for (const Query query : {Query::closest, Query::any})
         for (const Traced& traced :
-             trace(run.devices(), run.subjects(), world, {.rays = rays, .reps = 0, .query = query})) {
+             trace(run.devices(), run.configurations(), world, {.rays = rays, .reps = 0, .query = query})) {
             CaseRun::Outcome outcome{.params = {{"query", query == Query::any ? "any" : "closest"}}, .n = rays.size()};
             for (std::size_t i = 0; i < rays.size(); ++i)
                 if ((traced.hits[i].hit != 0) != ended[i].hits && outcome.faults++ == 0)
                     outcome.what = (ended[i].hits ? "missed " : "hit ") + hexadecimal(rays[i]);
-            run.expect(traced.subject, outcome);
+            run.expect(traced.configuration, outcome);
         }
 }
 
@@ -156,7 +156,7 @@ std::vector<SuiteCase> input_cases() {
         {"N11", "buffers beyond 4 GiB", "hits", "chunks, or an Error that names the limit", nullptr,
          "needs more than 4 GiB of device memory for one scene; not part of either suite yet"},
         {"N12", "masks, cull flags, mirrored, turned and uncullable instances: all combinations, seen from both sides",
-         "hits", "equal to the referee's", masks_and_culling},
+         "hits", "equal to the reference's", masks_and_culling},
         {"N13", "a call of Vulkan fails, or the device is lost", "errors, leaks", "a clean Error and no leak", nullptr,
          "needs a driver that fails on command; the library's tests inject each failure (core/fault_test, "
          "accel/fault_test)"},

@@ -8,7 +8,8 @@
 #include "validation/suite/inputs.h"
 #include "validation/suite/scenes.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/suite/shapes.h"
 
 namespace twinray::suite {
 namespace {
@@ -26,13 +27,15 @@ void spoiled_vertex(CaseRun& run, int axis, float value, const char* setting) {
     const auto counts = [&](const std::string& warning) { return warning.find(sentence) != std::string::npos; };
     // Each accelerator warns when the mesh is pushed.
     std::set<std::pair<Backend, Level>> accels;
-    for (const Subject& subject : run.subjects()) accels.emplace(subject.backend, Devices::level_to_make(subject));
+    for (const Configuration& configuration : run.configurations())
+        accels.emplace(configuration.backend, Devices::level_to_make(configuration));
     const auto warned = static_cast<std::size_t>(std::count_if(warnings.begin(), warnings.end(), counts));
-    for (const Subject& subject : run.one_subject_each())
-        run.expect(subject, {.params = {{"vertex", setting}, {"measured", "warning"}},
-                             .faults = warned == accels.size() ? 0u : 1u,
-                             .what = text(warned, " warnings say '", sentence, "', ", accels.size(), " were expected"),
-                             .fault_of = "twinray"});
+    for (const Configuration& configuration : run.one_configuration_each())
+        run.expect(configuration,
+                   {.params = {{"vertex", setting}, {"measured", "warning"}},
+                    .faults = warned == accels.size() ? 0u : 1u,
+                    .what = text(warned, " warnings say '", sentence, "', ", accels.size(), " were expected"),
+                    .fault_of = "twinray"});
 }
 
 // What is to be refused, and a part of the error's text.
@@ -111,20 +114,20 @@ std::string refusal(AbstractAccel& accel, const std::function<void(AbstractAccel
 }
 
 void expect_refused(CaseRun& run, const std::vector<WrongUse>& uses) {
-    for (const Subject& subject : run.one_subject_each()) {
+    for (const Configuration& configuration : run.one_configuration_each()) {
         CaseRun::Outcome outcome{.n = uses.size(), .fault_of = "twinray"};
         for (const WrongUse& wrong : uses) {
-            const std::string error = refusal(run.devices().empty_accel(subject), wrong.use);
+            const std::string error = refusal(run.devices().empty_accel(configuration), wrong.use);
             if (error.find(wrong.named) == std::string::npos && outcome.faults++ == 0)
                 outcome.what = text(wrong.what, ": ", error.empty() ? "not refused" : error);
         }
         // Refused use leaves nothing behind: the next scene is right.
-        AbstractAccel& accel = run.devices().empty_accel(subject);
+        AbstractAccel& accel = run.devices().empty_accel(configuration);
         accel.push(make_box(vec3(0), vec3(1)));
         const Ray down{vec3(0.3f, 0.4f, 5), 0, vec3(0, 0, -1), inf};
         const Hit hit = accel.closest_hits(std::span(&down, 1)).front();
         if (hit.hit == 0 || hit.t != 4) outcome.faults++, outcome.what += " afterwards a box is not hit at t = 4";
-        run.expect(subject, outcome);
+        run.expect(configuration, outcome);
     }
 }
 
@@ -152,8 +155,9 @@ void empty_and_small(CaseRun& run) {
         run.measure(world_of(soup), random_rays(bounds_of(soup), count, run.seed()),
                     {.params = {{"triangles", triangles}}, .reps = 1});
     }
-    run.measure({[](AbstractAccel&) {}, Oracle(std::span<const MeshView>(), std::span<const OracleInstance>())},
-                random_rays({}, count, run.seed()), {.params = {{"instances", 0}}, .reps = 1});
+    run.measure(
+        {[](AbstractAccel&) {}, ReferenceScene(std::span<const MeshView>(), std::span<const ReferenceInstance>())},
+        random_rays({}, count, run.seed()), {.params = {{"instances", 0}}, .reps = 1});
     Scene mixed;
     mixed.meshes = {empty, box, empty};
     for (uint i = 0; i < 9; ++i)
@@ -167,8 +171,8 @@ void too_many(CaseRun& run) {
     std::vector<WrongUse> uses = {
         {"2^25 triangles", "33554431",
          [](AbstractAccel& accel) {
-             const std::array<vec3, 3> corners{};
-             accel.push(MeshView("huge", corners, std::vector<uvec3>(limit)));
+             const std::array<vec3, 3> vertices{};
+             accel.push(MeshView("huge", vertices, std::vector<uvec3>(limit)));
          }},
         {"2^25 boxes", "33554431", [](AbstractAccel& accel) {
              accel.push(BoxesView{"huge", std::vector<Bounds>(limit, Bounds{vec3(0), vec3(1)})});
@@ -187,7 +191,7 @@ void masks_and_culling(CaseRun& run) {
     constexpr std::array<std::uint8_t, 3> masks = {0x00, 0x01, 0xfe};
     std::vector<Transform> transforms;
     std::vector<InstanceOptions> options;
-    std::vector<OracleInstance> instances;
+    std::vector<ReferenceInstance> instances;
     std::vector<Ray> rays;
     for (uint i = 0; i < 24; ++i) {
         const float x = 2 * static_cast<float>(i);
@@ -199,17 +203,17 @@ void masks_and_culling(CaseRun& run) {
         for (const float side : {5.0f, -5.0f}) rays.push_back({vec3(x + 0.3f, 0.4f, side), 0, vec3(0, 0, -side), inf});
     }
     const MeshView view = square;
-    const Oracle oracle(std::span(&view, 1), instances);
-    for (const Subject& subject : run.subjects()) {
-        AbstractAccel& accel = run.devices().empty_accel(subject);
+    const ReferenceScene reference(std::span(&view, 1), instances);
+    for (const Configuration& configuration : run.configurations()) {
+        AbstractAccel& accel = run.devices().empty_accel(configuration);
         accel.push(square, transforms, options);
         CaseRun::Outcome outcome{.n = 0, .reference = "f64"};
         for (const Cull cull : {Cull::none, Cull::back, Cull::front})
             for (const std::uint8_t mask : std::array<std::uint8_t, 4>{0x01, 0x02, 0xff, 0x00}) {
                 const std::vector<Hit> hits =
-                    accel.closest_hits(rays, {.mask = mask, .cull = cull, .level = subject.level});
+                    accel.closest_hits(rays, {.mask = mask, .cull = cull, .level = configuration.level});
                 for (std::size_t i = 0; i < rays.size(); ++i, ++outcome.n) {
-                    const OracleHit expected = oracle.closest_hit(rays[i], {mask, flags_of(cull)});
+                    const ReferenceHit expected = reference.closest_hit(rays[i], {mask, flags_of(cull)});
                     const bool is_right = (hits[i].hit != 0) == expected.hit &&
                                           (!expected.hit || hits[i].instance_index == expected.instance);
                     if (!is_right && outcome.faults++ == 0)
@@ -217,7 +221,7 @@ void masks_and_culling(CaseRun& run) {
                                             static_cast<int>(cull), ": ", expected.hit ? "missed" : "hit");
                 }
             }
-        run.expect(subject, outcome);
+        run.expect(configuration, outcome);
     }
 }
 

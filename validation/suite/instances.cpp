@@ -10,7 +10,8 @@
 #include "validation/suite/spawning.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/suite/shapes.h"
 
 namespace twinray::suite {
 namespace {
@@ -58,25 +59,25 @@ void mirrored(CaseRun& run) {
     const Scene scene = instances_of(sphere, transforms);
     const World world = world_of(scene);
     const std::vector<Ray> rays = random_rays(bounds_of(scene), run.amount(2'048, 200'000), run.seed());
-    for (const Subject& subject : run.subjects()) {
-        AbstractAccel& accel = run.devices().empty_accel(subject);
-        world.place(accel);
+    for (const Configuration& configuration : run.configurations()) {
+        AbstractAccel& accel = run.devices().empty_accel(configuration);
+        world.fill(accel);
         for (const Cull cull : {Cull::none, Cull::back, Cull::front}) {
-            const std::vector<Hit> hits = accel.closest_hits(rays, {.cull = cull, .level = subject.level});
+            const std::vector<Hit> hits = accel.closest_hits(rays, {.cull = cull, .level = configuration.level});
             CaseRun::Outcome outcome{.params = {{"cull", cull == Cull::none   ? "none"
                                                          : cull == Cull::back ? "back"
                                                                               : "front"}},
                                      .n = rays.size(),
                                      .reference = "f64"};
             for (std::size_t i = 0; i < rays.size(); ++i) {
-                const OracleHit expected = world.oracle.closest_hit(rays[i], {0xff, flags_of(cull)});
+                const ReferenceHit expected = world.reference.closest_hit(rays[i], {0xff, flags_of(cull)});
                 // Not the primitive, on which rays at an edge may differ.
                 const bool is_right = (hits[i].hit != 0) == expected.hit &&
                                       (!expected.hit || hits[i].instance_index == expected.instance) &&
                                       (!expected.hit || std::abs(hits[i].t - expected.t) < 1e-3 * expected.t + 1e-4);
                 if (!is_right && outcome.faults++ == 0) outcome.what = "differs: " + hexadecimal(rays[i]);
             }
-            run.expect(subject, outcome);
+            run.expect(configuration, outcome);
         }
     }
 }
@@ -101,19 +102,19 @@ void refused_transforms(CaseRun& run) {
         {"infinite", Transform::translation({inf, 0, 0})},
         {"inverse beyond float32", Transform::scaling(vec3(1e-39f))},
     };
-    for (const Subject& subject : run.one_subject_each()) {
+    for (const Configuration& configuration : run.one_configuration_each()) {
         CaseRun::Outcome outcome{.n = bad.size(), .fault_of = "twinray"};
         for (const auto& [what, transform] : bad) {
             std::string error;
             try {
-                run.devices().empty_accel(subject).push(make_box(vec3(0), vec3(1)), transform);
+                run.devices().empty_accel(configuration).push(make_box(vec3(0), vec3(1)), transform);
             } catch (const Error& refusal) {
                 error = refusal.what();
             }
             if (error.find("instance") == std::string::npos && outcome.faults++ == 0)
                 outcome.what = text(what, ": ", error.empty() ? "not refused" : error);
         }
-        run.expect(subject, outcome);
+        run.expect(configuration, outcome);
     }
 }
 
@@ -165,7 +166,7 @@ void box_touched_by_rounding(CaseRun& run) {
     Scene scene = instances_of(square, rotations(run.seed() + 1, 100));
     // Two halves of one plane share an edge within the geometry: rays at it may not slip through the box's rim.
     const World world = world_of(scene);
-    run.measure(world, edge_aimed_rays(world.oracle, run.amount(8'192, 1'000'000), run.seed()));
+    run.measure(world, edge_aimed_rays(world.reference, run.amount(8'192, 1'000'000), run.seed()));
 }
 
 // Scaling instance and rays by a power of two changes nothing but the unit: the same ids, u and v, and t to the bit.
@@ -174,14 +175,14 @@ void powers_of_two(CaseRun& run) {
     const Scene unit = instances_of(sphere, {Transform()});
     const World world = world_of(unit);
     const std::vector<Ray> rays = mixed_rays(world, bounds_of(unit), run.amount(1'024, 100'000), run.seed());
-    for (const Subject& subject : run.subjects()) {
+    for (const Configuration& configuration : run.configurations()) {
         const auto hits_at = [&](int exponent) {
             const float scale = std::ldexp(1.0f, exponent);
-            AbstractAccel& accel = run.devices().empty_accel(subject);
+            AbstractAccel& accel = run.devices().empty_accel(configuration);
             accel.push(sphere, Transform::scaling(vec3(scale)));
             std::vector<Ray> scaled = rays;
             for (Ray& ray : scaled) ray.origin *= scale;
-            std::vector<Hit> hits = accel.closest_hits(scaled, {.level = subject.level});
+            std::vector<Hit> hits = accel.closest_hits(scaled, {.level = configuration.level});
             for (Hit& hit : hits)
                 if (hit.hit) hit.t /= scale;
             return hits;
@@ -193,7 +194,7 @@ void powers_of_two(CaseRun& run) {
             for (std::size_t i = 0; i < rays.size(); ++i)
                 if (std::memcmp(&hits[i], &expected[i], sizeof(Hit)) != 0 && outcome.faults++ == 0)
                     outcome.what = "differs from the unit scale: " + hexadecimal(rays[i]);
-            run.expect(subject, outcome);
+            run.expect(configuration, outcome);
         }
     }
 }
@@ -203,17 +204,17 @@ void with_and_without_top_level(CaseRun& run) {
     const Mesh mesh = make_soup(static_cast<uint>(run.amount(2'000, 100'000)), 23, 0.1f);
     const World world = world_of(mesh);
     const std::vector<Ray> rays = mixed_rays(world, bounds_of(mesh), run.amount(4'096, 500'000), run.seed());
-    for (const Subject& subject : run.subjects()) {
-        AbstractAccel& accel = run.devices().empty_accel(subject);
+    for (const Configuration& configuration : run.configurations()) {
+        AbstractAccel& accel = run.devices().empty_accel(configuration);
         accel.push(mesh);
-        const std::vector<Hit> alone = accel.closest_hits(rays, {.level = subject.level});
+        const std::vector<Hit> alone = accel.closest_hits(rays, {.level = configuration.level});
         accel.push(Mesh{});
-        const std::vector<Hit> below_top = accel.closest_hits(rays, {.level = subject.level});
+        const std::vector<Hit> below_top = accel.closest_hits(rays, {.level = configuration.level});
         CaseRun::Outcome outcome{
             .n = rays.size(), .what = "a hit differs where there is a top level", .reference = "invariance"};
         for (std::size_t i = 0; i < rays.size(); ++i)
             if (std::memcmp(&alone[i], &below_top[i], sizeof(Hit)) != 0) ++outcome.faults;
-        run.expect(subject, outcome);
+        run.expect(configuration, outcome);
     }
 }
 

@@ -6,7 +6,7 @@
 #include <twinray/scene.h>
 
 #include "validation/suite/estimators.h"
-#include "engine/report/bootstrap.h"
+#include "validation/records/bootstrap.h"
 #include "samples/path_tracer/camera.h"
 
 namespace twinray::suite {
@@ -20,7 +20,7 @@ struct FlatPicture {
     double rms = 0;                 // of their relative errors
 };
 
-FlatPicture judged(const HdrImage& picture, double truth) {
+FlatPicture checked(const HdrImage& picture, double truth) {
     const auto n = static_cast<double>(picture.rgb.size());
     FlatPicture result;
     for (const vec3& pixel : picture.rgb) result.mean += static_cast<double>(pixel.y) / n;
@@ -33,9 +33,9 @@ FlatPicture judged(const HdrImage& picture, double truth) {
     return result;
 }
 
-void judge(Record& record, const FlatQuestion& question, std::span<const FlatPicture> pictures) {
+void check(Record& record, const FlatQuestion& question, std::span<const FlatPicture> pictures) {
     const auto n = static_cast<double>(pictures.size());
-    const double pixels = double{1} * question.shot.settings.width * question.shot.settings.height;
+    const double pixels = double{1} * question.desc.settings.width * question.desc.settings.height;
     double mean = 0, variance = 0;
     for (const FlatPicture& picture : pictures) mean += picture.mean / n, variance += picture.variance / n;
     const double deviation = std::sqrt(variance / (n * pixels)), off = mean - question.value;
@@ -91,14 +91,14 @@ void Census::add_to(Record& record) const {
         {{"PIXELS", pixels}, {"NOT_FINITE", not_finite}, {"NEGATIVE", negative}, {"DROPPED", dropped}});
 }
 
-Studio::Studio(CaseRun& run, const Subject& subject, const Shot& shot)
-    : settings_(shot.settings),
-      context_(run.devices().context(subject.backend)),
-      accel_(run.devices().empty_accel(subject)),
-      sky_(path_tracer::constant_sky(vec3(shot.sky))),
-      scene_(context_, shot.scene, path_tracer::collect_lights(shot.scene), shot.sky > 0 ? &sky_ : nullptr),
-      renderer_(context_, scene_, shot.settings) {
-    push_scene(accel_, shot.scene);
+RenderFixture::RenderFixture(CaseRun& run, const Configuration& configuration, const RenderDesc& desc)
+    : settings_(desc.settings),
+      context_(run.devices().context(configuration.backend)),
+      accel_(run.devices().empty_accel(configuration)),
+      sky_(path_tracer::constant_sky(vec3(desc.sky))),
+      scene_(context_, desc.scene, path_tracer::collect_lights(desc.scene), desc.sky > 0 ? &sky_ : nullptr),
+      renderer_(context_, scene_, desc.settings) {
+    push_scene(accel_, desc.scene);
     accel_.sync();
     const auto depth = std::min(settings_.max_depth, 2u);
     RenderSettings settings = settings_;
@@ -108,7 +108,7 @@ Studio::Studio(CaseRun& run, const Subject& subject, const Shot& shot)
     render_picture(once, settings, accel_, true);
 }
 
-std::vector<Exposure> Studio::expose(std::uint64_t seed, std::span<const uint> spp) {
+std::vector<Exposure> RenderFixture::expose(std::uint64_t seed, std::span<const uint> spp) {
     renderer_.set_frame(settings_.camera, static_cast<uint>(seed));
     path_tracer::Film film = renderer_.make_film();
     renderer_.start(film);
@@ -124,21 +124,21 @@ std::vector<Exposure> Studio::expose(std::uint64_t seed, std::span<const uint> s
     return exposures;
 }
 
-Exposure Studio::expose(std::uint64_t seed, uint spp) { return std::move(expose(seed, {&spp, 1}).front()); }
+Exposure RenderFixture::expose(std::uint64_t seed, uint spp) { return std::move(expose(seed, {&spp, 1}).front()); }
 
-void measure_flat(CaseRun& run, const Subject& subject, const FlatQuestion& question) {
-    Studio studio(run, subject, question.shot);
+void measure_flat(CaseRun& run, const Configuration& configuration, const FlatQuestion& question) {
+    RenderFixture fixture(run, configuration, question.desc);
     std::vector<std::vector<FlatPicture>> pictures(question.spp.size());
     std::vector<std::vector<double>> ms(question.spp.size());
     for (std::size_t seed = 0; seed < question.seeds; ++seed) {
-        const std::vector<Exposure> exposures = studio.expose(run.seed() + seed, question.spp);
+        const std::vector<Exposure> exposures = fixture.expose(run.seed() + seed, question.spp);
         for (std::size_t i = 0; i < exposures.size(); ++i) {
-            pictures[i].push_back(judged(exposures[i].picture, question.value));
+            pictures[i].push_back(checked(exposures[i].picture, question.value));
             ms[i].push_back(exposures[i].ms);
         }
     }
     for (std::size_t i = 0; i < question.spp.size(); ++i) {
-        Record record = run.record(subject);
+        Record record = run.record(configuration);
         record.params = question.params;
         if (question.is_swept) record.params.emplace("spp", question.spp[i]);
         record.variant = question.variant;
@@ -152,9 +152,9 @@ void measure_flat(CaseRun& run, const Subject& subject, const FlatQuestion& ques
         record.error = error_figures("relative", errors);
         if (variances.front() > 0) record.error->floor = 0;  // noise is what bounds it
         record.time = time_figures("ms_per_picture", ms[i]);
-        judge(record, question, pictures[i]);
+        check(record, question, pictures[i]);
         set_efficiency(record, variances, ms[i]);
-        if (i == 0) studio.census().add_to(record);
+        if (i == 0) fixture.census().add_to(record);
         run.add(record);
     }
 }

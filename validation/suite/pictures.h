@@ -12,7 +12,7 @@ namespace twinray::suite {
 using path_tracer::RenderSettings;
 
 // What is rendered, but for its samples and seed.
-struct Shot {
+struct RenderDesc {
     Scene scene = {};
     float sky = 0;  // radiance from everywhere
     RenderSettings settings = {.width = 16, .height = 16};
@@ -47,11 +47,11 @@ struct Exposure {
     double ms = 0;  // of rendering, from its first sample on
 };
 
-// A shot on one accelerator. Another studio of the same subject takes the accelerator away.
-class Studio {
+// A renderer of one scene on one accelerator. Another fixture of the same configuration takes the accelerator away.
+class RenderFixture {
   public:
     // Renders once, so that everything is compiled.
-    Studio(CaseRun& run, const Subject& subject, const Shot& shot);
+    RenderFixture(CaseRun& run, const Configuration& configuration, const RenderDesc& desc);
 
     // A picture for each of `spp`, which ascend: the first samples of those that follow.
     std::vector<Exposure> expose(std::uint64_t seed, std::span<const uint> spp);
@@ -74,7 +74,7 @@ class Studio {
 
 // Pictures all of whose pixels have the same expectation.
 struct FlatQuestion {
-    Shot shot = {};
+    RenderDesc desc = {};
     double value = 1;  // the truth
     std::vector<uint> spp = {64};
     std::size_t seeds = 4;
@@ -84,7 +84,7 @@ struct FlatQuestion {
 };
 // Records a row for each number of samples: the root mean square of the pixels' relative errors, one a seed; the mean
 // of all pixels and its z-score, which must not be beyond 4 (plus what float32 rounds); the efficiency.
-void measure_flat(CaseRun& run, const Subject& subject, const FlatQuestion& question);
+void measure_flat(CaseRun& run, const Configuration& configuration, const FlatQuestion& question);
 
 // 1 / (variance * seconds) of a series of pictures, with its interval by bootstrap over the seeds: `variances` and `ms`
 // are one a seed. Nothing where no picture varies.

@@ -27,15 +27,15 @@ Mesh flat_sphere(uint subdivisions, float radius = 1) {
 void add_floor(Scene& scene, float y = 0) { add(scene, make_quad({-5, y, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1)); }
 
 void white_furnace(CaseRun& run) {
-    for (const Subject& subject : run.one_subject_each())
+    for (const Configuration& configuration : run.one_configuration_each())
         for (const uint depth : {1u, 8u}) {
             FlatQuestion question{.value = 1, .params = {{"depth", depth}}, .is_swept = false};
-            add(question.shot.scene, flat_sphere(2), lambert(1));
-            question.shot.sky = 1;
-            question.shot.settings.max_depth = depth;
-            question.shot.settings.camera = look({0, 0, 4}, vec3(0), 0.2f);
+            add(question.desc.scene, flat_sphere(2), lambert(1));
+            question.desc.sky = 1;
+            question.desc.settings.max_depth = depth;
+            question.desc.settings.camera = look({0, 0, 4}, vec3(0), 0.2f);
             question.seeds = run.amount(4, 32);
-            measure_flat(run, subject, question);
+            measure_flat(run, configuration, question);
         }
 }
 
@@ -45,31 +45,31 @@ FlatQuestion closed_furnace(double albedo, uint depth) {
     Material wall = lambert(static_cast<float>(albedo));
     wall.emission = vec3(1);
     wall.double_sided = true;
-    add(question.shot.scene, flat_sphere(2), wall);
-    question.shot.settings.max_depth = depth;
-    question.shot.settings.strategy = STRATEGY_BSDF;
-    question.shot.settings.camera = look({0.1f, 0, 0}, {1, 0.2f, 0.3f}, 0.5f);
+    add(question.desc.scene, flat_sphere(2), wall);
+    question.desc.settings.max_depth = depth;
+    question.desc.settings.strategy = STRATEGY_BSDF;
+    question.desc.settings.camera = look({0.1f, 0, 0}, {1, 0.2f, 0.3f}, 0.5f);
     return question;
 }
 
 void closed_furnaces(CaseRun& run) {
-    for (const Subject& subject : analysis_subjects(run))
+    for (const Configuration& configuration : analysis_configurations(run))
         for (const double albedo : {0.5, 0.9, 0.99}) {
             FlatQuestion question = closed_furnace(albedo, 2000);
             question.spp = albedo < 0.95 ? std::vector<uint>{1, 4, 16} : std::vector<uint>{1, 2, 4};
             question.seeds = run.amount(2, 16);
-            measure_flat(run, subject, question);
+            measure_flat(run, configuration, question);
         }
 }
 
 void deep_paths(CaseRun& run) {
-    for (const Subject& subject : analysis_subjects(run)) {
+    for (const Configuration& configuration : analysis_configurations(run)) {
         FlatQuestion question = closed_furnace(0.999, 10'000);
         question.params.emplace("depth", 10'000);
         question.spp = {1};
         question.seeds = run.amount(2, 16);
         question.is_swept = false;
-        measure_flat(run, subject, question);
+        measure_flat(run, configuration, question);
     }
 }
 
@@ -86,22 +86,22 @@ void lights_over_a_floor(CaseRun& run) {
         {"rectangle", make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), 0.554126423979571987},
         {"triangle", triangle, 0.6876173887350159 / std::numbers::pi},
     };
-    for (const Subject& subject : analysis_subjects(run))
+    for (const Configuration& configuration : analysis_configurations(run))
         for (const auto& light : lights)
             for (const uint strategy : all_strategies) {
                 FlatQuestion question{.value = light.value, .params = {{"light", light.name}}};
-                add_floor(question.shot.scene);
+                add_floor(question.desc.scene);
                 Material two_sided = lamp(1);
                 two_sided.double_sided = true;
-                add(question.shot.scene, light.mesh, two_sided);
-                question.shot.settings.max_depth = 1;
-                question.shot.settings.strategy = strategy;
-                question.shot.settings.camera = look({0, 0.5f, 0}, vec3(0), 1e-4f);
+                add(question.desc.scene, light.mesh, two_sided);
+                question.desc.settings.max_depth = 1;
+                question.desc.settings.strategy = strategy;
+                question.desc.settings.camera = look({0, 0.5f, 0}, vec3(0), 1e-4f);
                 question.spp = {1, 4, 16, 64};
                 if (run.amount(0, 1)) question.spp.push_back(256);
                 question.seeds = run.amount(3, 16);
                 question.variant = name_of_strategy(strategy);
-                measure_flat(run, subject, question);
+                measure_flat(run, configuration, question);
             }
 }
 
@@ -126,40 +126,40 @@ void tiny_lights(CaseRun& run) {
         float distance;
     } lights[] = {{"square, area 1e-8", make_quad({-5e-5f, 0, -5e-5f}, {1e-4f, 0, 0}, {0, 0, 1e-4f}), 1},
                   {"sphere, radius 1e-6", flat_sphere(2, 1e-6f), 1e3f}};
-    for (const Subject& subject : analysis_subjects(run))
+    for (const Configuration& configuration : analysis_configurations(run))
         for (const auto& light : lights)
             for (const uint strategy : {STRATEGY_MIS, STRATEGY_LIGHTS}) {
                 const double seen = seen_over_pi(light.mesh, double{light.distance});
                 const auto radiance = static_cast<float>(1 / seen);
                 FlatQuestion question{.value = double{radiance} * seen,
                                       .params = {{"light", light.name}, {"distance", light.distance}}};
-                add_floor(question.shot.scene, -light.distance);
-                add(question.shot.scene, light.mesh, lamp(radiance));
-                question.shot.settings.max_depth = 1;
-                question.shot.settings.strategy = strategy;
-                question.shot.settings.camera = look({0, 0.5f - light.distance, 0}, {0, -light.distance, 0}, 1e-4f);
+                add_floor(question.desc.scene, -light.distance);
+                add(question.desc.scene, light.mesh, lamp(radiance));
+                question.desc.settings.max_depth = 1;
+                question.desc.settings.strategy = strategy;
+                question.desc.settings.camera = look({0, 0.5f - light.distance, 0}, {0, -light.distance, 0}, 1e-4f);
                 question.spp = {16};
                 question.seeds = run.amount(2, 16);
                 question.variant = name_of_strategy(strategy);
                 question.is_swept = false;
-                measure_flat(run, subject, question);
+                measure_flat(run, configuration, question);
             }
 }
 
-Shot lit_box(float scale) {
-    Shot shot{.scene = cornell_box_scene()};
-    for (Material& material : shot.scene.materials) material.emission *= scale;
-    shot.settings.camera = path_tracer::camera_rays(shot.scene.cameras[0], 1);
-    return shot;
+RenderDesc lit_box(float scale) {
+    RenderDesc desc{.scene = cornell_box_scene()};
+    for (Material& material : desc.scene.materials) material.emission *= scale;
+    desc.settings.camera = path_tracer::camera_rays(desc.scene.cameras[0], 1);
+    return desc;
 }
 
 void scaled_light(CaseRun& run) {
-    for (const Subject& subject : analysis_subjects(run)) {
-        const Exposure plain = Studio(run, subject, lit_box(1)).expose(run.seed(), 2);
+    for (const Configuration& configuration : analysis_configurations(run)) {
+        const Exposure plain = RenderFixture(run, configuration, lit_box(1)).expose(run.seed(), 2);
         for (const int power : {-100, -20, 20, 100}) {
-            Studio studio(run, subject, lit_box(std::ldexp(1.0f, power)));
-            const Exposure scaled = studio.expose(run.seed(), 2);
-            Record record = run.record(subject);
+            RenderFixture fixture(run, configuration, lit_box(std::ldexp(1.0f, power)));
+            const Exposure scaled = fixture.expose(run.seed(), 2);
+            Record record = run.record(configuration);
             record.params = {{"power_of_two", power}};
             record.reference = "invariance";
             record.n = plain.picture.rgb.size();
@@ -167,7 +167,7 @@ void scaled_light(CaseRun& run) {
                 record.faults += plain.picture.rgb[i] * std::ldexp(1.0f, power) != scaled.picture.rgb[i];
             record.bound95 = upper_bound_95(record.faults, record.n);
             record.time = time_figures("ms_per_picture", {scaled.ms});
-            studio.census().add_to(record);
+            fixture.census().add_to(record);
             record.pass = record.faults == 0;
             if (!*record.pass) record.fault_of = "twinray", record.reason = "pixels are not scaled exactly";
             run.add(record);

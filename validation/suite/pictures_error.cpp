@@ -19,46 +19,46 @@
 namespace twinray::suite {
 namespace {
 
-Shot box_shot(uint side) {
-    Shot shot{.scene = cornell_box_scene()};
-    shot.settings.width = shot.settings.height = side;
-    shot.settings.camera = path_tracer::camera_rays(shot.scene.cameras[0], 1);
-    return shot;
+RenderDesc box_shot(uint side) {
+    RenderDesc desc{.scene = cornell_box_scene()};
+    desc.settings.width = desc.settings.height = side;
+    desc.settings.camera = path_tracer::camera_rays(desc.scene.cameras[0], 1);
+    return desc;
 }
 
 // Of disagreeing rays, those that SwTlas is wrong about.
 std::uint64_t faults_of_ours_in(const Scene& scene, std::span<const path_tracer::Disagreement> rays) {
     if (rays.empty()) return 0;
-    const Oracle oracle = Oracle::of(scene);
+    const ReferenceScene reference = ReferenceScene::of(scene);
     std::uint64_t faults = 0;
     for (const path_tracer::Disagreement& d : rays) {
-        const Verdict verdict = d.is_any ? classify_any(oracle, d.ray, d.second.hit != 0, d.first.hit != 0)
-                                         : classify(oracle, d.ray, d.second, d.first);
-        faults += is_fault_of_ours(*verdict.software);
+        const RayResult ray_result = d.is_any ? classify_any(reference, d.ray, d.second.hit != 0, d.first.hit != 0)
+                                              : classify(reference, d.ray, d.second, d.first);
+        faults += is_fault_of_ours(*ray_result.software);
     }
     return faults;
 }
 
 void by_both_accelerators(CaseRun& run) {
-    const std::vector<Subject> subjects = analysis_subjects(run);
-    if (subjects.size() < 2 || subjects[1].backend != Backend::ray_query)
+    const std::vector<Configuration> configurations = analysis_configurations(run);
+    if (configurations.size() < 2 || configurations[1].backend != Backend::ray_query)
         return run.add_not_run("needs SwTlas and ray queries, to trace each ray on both");
-    Shot shot = box_shot(48);
-    shot.settings.samples = static_cast<uint>(run.amount(4, 64));
-    shot.settings.seed = static_cast<uint>(run.seed());
-    Studio software(run, subjects[0], shot), hardware(run, subjects[1], shot);
-    const std::uint64_t pixels = std::uint64_t{shot.settings.width} * shot.settings.height;
+    RenderDesc desc = box_shot(48);
+    desc.settings.samples = static_cast<uint>(run.amount(4, 64));
+    desc.settings.seed = static_cast<uint>(run.seed());
+    RenderFixture software(run, configurations[0], desc), hardware(run, configurations[1], desc);
+    const std::uint64_t pixels = std::uint64_t{desc.settings.width} * desc.settings.height;
     path_tracer::CrossChecker checker(hardware.context(), software.accel(), hardware.renderer(), pixels);
-    const HdrImage by_hardware = render_picture(hardware.renderer(), shot.settings, hardware.accel(), true, &checker);
-    const Exposure by_software = software.expose(run.seed(), shot.settings.samples);
+    const HdrImage by_hardware = render_picture(hardware.renderer(), desc.settings, hardware.accel(), true, &checker);
+    const Exposure by_software = software.expose(run.seed(), desc.settings.samples);
     const path_tracer::PictureDifference difference =
         path_tracer::compare_pictures(by_hardware, by_software.picture, checker.marks());
-    Record record = run.record(subjects[0]);
+    Record record = run.record(configurations[0]);
     record.reference = "invariance";
-    record.params = {{"spp", shot.settings.samples}};
+    record.params = {{"spp", desc.settings.samples}};
     record.n = pixels;
     record.counts = {{"DIFFERING", difference.differing}, {"RAYS_DISAGREEING", checker.found()}};
-    const std::uint64_t ours = faults_of_ours_in(shot.scene, checker.recorded());
+    const std::uint64_t ours = faults_of_ours_in(desc.scene, checker.recorded());
     record.faults = difference.unexplained + ours;
     record.bound95 = upper_bound_95(record.faults, record.n);
     software.census().add_to(record);
@@ -114,18 +114,18 @@ void by_mitsuba(CaseRun& run) {
     std::ifstream file(folder / "cornell_box.json");
     const nlohmann::json json = nlohmann::json::parse(file);
     const std::vector<double> mean = json["mean"], error = json["error"];
-    Shot shot{.scene = load_scene(folder / "cornell_box.gltf")};
-    shot.settings.width = shot.settings.height = json["side"];
-    shot.settings.max_depth = json["depth"];
-    shot.settings.filter = path_tracer::FILTER_BOX;
-    shot.settings.camera = path_tracer::camera_rays(shot.scene.cameras[0], 1);
-    for (const Subject& subject : analysis_subjects(run)) {
-        Studio studio(run, subject, shot);
+    RenderDesc desc{.scene = load_scene(folder / "cornell_box.gltf")};
+    desc.settings.width = desc.settings.height = json["side"];
+    desc.settings.max_depth = json["depth"];
+    desc.settings.filter = path_tracer::FILTER_BOX;
+    desc.settings.camera = path_tracer::camera_rays(desc.scene.cameras[0], 1);
+    for (const Configuration& configuration : analysis_configurations(run)) {
+        RenderFixture fixture(run, configuration, desc);
         std::vector<std::vector<double>> runs;
         std::vector<double> ms;
         const std::size_t seeds = run.amount(10, 32);
         for (std::size_t seed = 0; seed < seeds; ++seed) {
-            const Exposure exposure = studio.expose(run.seed() + seed, static_cast<uint>(run.amount(4, 64)));
+            const Exposure exposure = fixture.expose(run.seed() + seed, static_cast<uint>(run.amount(4, 64)));
             runs.push_back(block_means(exposure.picture, json["block"]));
             ms.push_back(exposure.ms);
         }
@@ -133,7 +133,7 @@ void by_mitsuba(CaseRun& run) {
         // Channels of a block go together: a third as many independent scores, of Student's variance.
         const double independent = static_cast<double>(mean.size()) / 3, n = static_cast<double>(seeds);
         const double expected = std::sqrt((n - 1) / (n - 3)), allowed = 4 / std::sqrt(independent);
-        Record record = run.record(subject);
+        Record record = run.record(configuration);
         record.reference = "Mitsuba 3";
         record.n = mean.size();
         record.time = time_figures("ms_per_picture", ms);
@@ -143,7 +143,7 @@ void by_mitsuba(CaseRun& run) {
                           {"z_largest", scores.largest},
                           {"relMSE", scores.relative_mse}};
         record.faults = !(std::abs(scores.mean) < allowed) || !(scores.rms < expected + 1.5 * allowed);
-        studio.census().add_to(record);
+        fixture.census().add_to(record);
         record.pass = record.faults == 0;
         if (!*record.pass) record.fault_of = "twinray", record.reason = "more than the noise of both explains";
         run.add(record);
@@ -159,9 +159,9 @@ struct Method {
     }
 };
 
-// What one method makes of the box on one subject: pictures by seed, then by samples.
+// What one method makes of the box on one configuration: pictures by seed, then by samples.
 struct Series {
-    Subject subject;
+    Configuration configuration;
     Method method;
     Census census;
     std::vector<std::vector<Exposure>> exposures;
@@ -177,13 +177,13 @@ struct Reference {
 };
 
 // The mean of the pictures with the most samples by both light and surface sampling, of all other seeds and methods of
-// the first subject: none shares a random number with what is compared.
-Reference reference_without(std::span<const Series> of_subject, std::size_t method, std::size_t seed) {
+// the first configuration: none shares a random number with what is compared.
+Reference reference_without(std::span<const Series> of_configuration, std::size_t method, std::size_t seed) {
     std::vector<const HdrImage*> pictures;
-    for (std::size_t m = 0; m < of_subject.size(); ++m)
-        for (std::size_t s = 0; s < of_subject[m].exposures.size(); ++s)
-            if (of_subject[m].method.strategy == path_tracer::STRATEGY_MIS && (m != method || s != seed))
-                pictures.push_back(&of_subject[m].exposures[s].back().picture);
+    for (std::size_t m = 0; m < of_configuration.size(); ++m)
+        for (std::size_t s = 0; s < of_configuration[m].exposures.size(); ++s)
+            if (of_configuration[m].method.strategy == path_tracer::STRATEGY_MIS && (m != method || s != seed))
+                pictures.push_back(&of_configuration[m].exposures[s].back().picture);
     const auto count = static_cast<double>(pictures.size());
     Reference reference{{pictures[0]->width, pictures[0]->height, {}}};
     const auto values = static_cast<double>(3 * pictures[0]->rgb.size());
@@ -217,12 +217,12 @@ std::vector<double> squared_deviations(std::span<const std::vector<Exposure>> se
     return result;
 }
 
-void add_figures(CaseRun& run, std::span<const Series> all, std::size_t of_subject, std::size_t which,
+void add_figures(CaseRun& run, std::span<const Series> all, std::size_t of_configuration, std::size_t which,
                  std::span<const uint> spp) {
     const Series& series = all[which];
     std::vector<Reference> references;
     for (std::size_t seed = 0; seed < series.exposures.size(); ++seed)
-        references.push_back(reference_without(all.first(of_subject), which % of_subject, seed));
+        references.push_back(reference_without(all.first(of_configuration), which % of_configuration, seed));
     for (std::size_t at = 0; at < spp.size(); ++at) {
         std::vector<double> errors, flips, ms;
         for (std::size_t seed = 0; seed < references.size(); ++seed) {
@@ -234,7 +234,7 @@ void add_figures(CaseRun& run, std::span<const Series> all, std::size_t of_subje
         }
         const std::vector<double> variances = squared_deviations(series.exposures, at);
         const auto add = [&](const char* metric, const std::vector<double>& of_seeds, bool is_first) {
-            Record record = run.record(series.subject);
+            Record record = run.record(series.configuration);
             record.params = {{"measure", metric}, {"spp", spp[at]}};
             record.variant = series.method.name();
             record.criterion = "none: measured";
@@ -262,16 +262,16 @@ void work_and_precision(CaseRun& run) {
                                          {path_tracer::STRATEGY_LIGHTS, 1},
                                          {path_tracer::STRATEGY_BSDF, 1}};
     std::vector<Series> all;
-    for (const Subject& subject : analysis_subjects(run))
+    for (const Configuration& configuration : analysis_configurations(run))
         for (std::size_t method = 0; method < methods.size(); ++method) {
-            Shot shot = box_shot(32);
-            shot.settings.strategy = methods[method].strategy;
-            shot.settings.block_size = methods[method].block_size;
-            Studio studio(run, subject, shot);
-            Series series{subject, methods[method], {}, {}};
+            RenderDesc desc = box_shot(32);
+            desc.settings.strategy = methods[method].strategy;
+            desc.settings.block_size = methods[method].block_size;
+            RenderFixture fixture(run, configuration, desc);
+            Series series{configuration, methods[method], {}, {}};
             for (std::size_t seed = 0; seed < seeds; ++seed)
-                series.exposures.push_back(studio.expose(seed_of(run, method, seed), spp));
-            series.census = studio.census();
+                series.exposures.push_back(fixture.expose(seed_of(run, method, seed), spp));
+            series.census = fixture.census();
             all.push_back(std::move(series));
         }
     for (std::size_t which = 0; which < all.size(); ++which) add_figures(run, all, methods.size(), which, spp);

@@ -34,13 +34,13 @@ void census(CaseRun& run) {
 }
 
 void fireflies(CaseRun& run) {
-    for (const Subject& subject : analysis_subjects(run)) {
-        Shot shot{.scene = cornell_box_scene()};
-        shot.settings.width = shot.settings.height = 64;
-        shot.settings.camera = path_tracer::camera_rays(shot.scene.cameras[0], 1);
-        Studio studio(run, subject, shot);
+    for (const Configuration& configuration : analysis_configurations(run)) {
+        RenderDesc desc{.scene = cornell_box_scene()};
+        desc.settings.width = desc.settings.height = 64;
+        desc.settings.camera = path_tracer::camera_rays(desc.scene.cameras[0], 1);
+        RenderFixture fixture(run, configuration, desc);
         const auto spp = static_cast<uint>(run.amount(4, 64));
-        const Exposure exposure = studio.expose(run.seed(), spp);
+        const Exposure exposure = fixture.expose(run.seed(), spp);
         const auto n = static_cast<double>(exposure.picture.rgb.size());
         double mean = 0, second = 0, fourth = 0, largest = 0;
         for (const vec3& pixel : exposure.picture.rgb) mean += static_cast<double>(path_tracer::luminance(pixel)) / n;
@@ -50,7 +50,7 @@ void fireflies(CaseRun& run) {
             fourth += off * off * off * off / n;
             largest = std::max(largest, off + mean);
         }
-        Record record = run.record(subject);
+        Record record = run.record(configuration);
         record.params = {{"spp", spp}};
         record.n = exposure.picture.rgb.size();
         for (const vec3& pixel : exposure.picture.rgb)
@@ -58,37 +58,37 @@ void fireflies(CaseRun& run) {
                 static_cast<double>(path_tracer::luminance(pixel)) - mean > 10 * std::sqrt(second);
         record.results = {{"max_over_mean", largest / mean}, {"kurtosis", fourth / (second * second)}};
         record.time = time_figures("ms_per_picture", {exposure.ms});
-        studio.census().add_to(record);
+        fixture.census().add_to(record);
         run.add(record);
     }
 }
 
 // Nothing lights the floor but from below, where only tilted shading normals look.
 void tilted_normals(CaseRun& run) {
-    for (const Subject& subject : analysis_subjects(run))
+    for (const Configuration& configuration : analysis_configurations(run))
         for (const float height : {0.5f, 0.05f, 1e-3f}) {
             Mesh floor = make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0});
             floor.normals.assign(4, normalize(vec3(1, height, 0)));
             const Material plastic{.name = "plastic", .metallic = 0, .roughness = 0.5f};
-            Shot from_below;
+            RenderDesc from_below;
             add(from_below.scene, floor, plastic);
             from_below.scene.lights = {
                 {.name = "sun", .kind = Light::Kind::directional, .direction = normalize(vec3(-1, height / 2, 0))}};
             from_below.settings.camera = look({1, 0.5f, 0}, vec3(0), 0.1f);
-            Shot furnace;
+            RenderDesc furnace;
             add(furnace.scene, floor, plastic);
             furnace.sky = 1;
             furnace.settings.camera = from_below.settings.camera;
-            Record record = run.record(subject);
+            Record record = run.record(configuration);
             record.params = {{"normal's height", height}};
             record.reference = "analytic";
-            Studio dark(run, subject, from_below);
+            RenderFixture dark(run, configuration, from_below);
             for (const vec3& pixel : dark.expose(run.seed(), 16).picture.rgb) {
                 record.faults += pixel != vec3(0);
                 ++record.n;
             }
             dark.census().add_to(record);
-            Studio bright(run, subject, furnace);
+            RenderFixture bright(run, configuration, furnace);
             const HdrImage picture = bright.expose(run.seed(), 64).picture;
             double mean = 0;
             for (const vec3& pixel : picture.rgb)
@@ -158,23 +158,23 @@ void add_correlation(CaseRun& run, Record record, const char* between, std::span
 // A floor below a light, which all pixels see alike: what differs is noise.
 void seeds(CaseRun& run) {
     const auto spp = static_cast<uint>(run.amount(2, 16));
-    for (const Subject& subject : analysis_subjects(run)) {
-        Shot shot;
-        add(shot.scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
-        add(shot.scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
-        shot.settings.width = shot.settings.height = 64;
-        shot.settings.max_depth = 1;
-        shot.settings.camera = look({0, 0.5f, 0}, vec3(0), 1e-4f);
-        Studio studio(run, subject, shot);
+    for (const Configuration& configuration : analysis_configurations(run)) {
+        RenderDesc desc;
+        add(desc.scene, make_quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
+        add(desc.scene, make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}), lamp(1));
+        desc.settings.width = desc.settings.height = 64;
+        desc.settings.max_depth = 1;
+        desc.settings.camera = look({0, 0.5f, 0}, vec3(0), 1e-4f);
+        RenderFixture fixture(run, configuration, desc);
         std::array<std::vector<double>, 2> values;
         for (std::size_t i = 0; i < 2; ++i)
-            for (const vec3& pixel : studio.expose(run.seed() + i, spp).picture.rgb)
+            for (const vec3& pixel : fixture.expose(run.seed() + i, spp).picture.rgb)
                 values[i].push_back(static_cast<double>(pixel.y));
-        Record first = run.record(subject), record = first;
-        studio.census().add_to(first);
+        Record first = run.record(configuration), record = first;
+        fixture.census().add_to(first);
         add_correlation(run, first, "seeds", values[0], values[1]);
         const std::span<const double> all(values[0]);
-        const std::size_t row = shot.settings.width;
+        const std::size_t row = desc.settings.width;
         add_correlation(run, record, "neighbours in a row", all.first(all.size() - 1), all.subspan(1));
         add_correlation(run, record, "neighbours in a column", all.first(all.size() - row), all.subspan(row));
     }
@@ -191,19 +191,20 @@ void seeds(CaseRun& run) {
 }
 
 // A mean of all pixels that must lie within [low, high].
-void expect_within(CaseRun& run, const Subject& subject, const char* what, const Shot& shot, double low, double high) {
-    Studio studio(run, subject, shot);
-    const Exposure exposure = studio.expose(run.seed(), 16);
+void expect_within(CaseRun& run, const Configuration& configuration, const char* what, const RenderDesc& desc,
+                   double low, double high) {
+    RenderFixture fixture(run, configuration, desc);
+    const Exposure exposure = fixture.expose(run.seed(), 16);
     double mean = 0;
     for (const vec3& pixel : exposure.picture.rgb)
         mean += static_cast<double>(pixel.y) / static_cast<double>(exposure.picture.rgb.size());
-    Record record = run.record(subject);
+    Record record = run.record(configuration);
     record.params = {{"scene", what}};
     record.reference = "analytic";
     record.n = exposure.picture.rgb.size();
     record.results = {{"mean", mean}, {"at_least", low}, {"at_most", high}};
     record.faults = !(low <= mean && mean <= high);
-    studio.census().add_to(record);
+    fixture.census().add_to(record);
     record.pass = record.faults == 0;
     if (!*record.pass) record.fault_of = "twinray", record.reason = "the mean of all pixels is another";
     run.add(record);
@@ -212,38 +213,38 @@ void expect_within(CaseRun& run, const Subject& subject, const char* what, const
 void what_is_lacking(CaseRun& run) {
     constexpr double rounding = 1e-5;
     const path_tracer::CameraRays outside = look({0, 0, 4}, vec3(0), 0.3f);
-    for (const Subject& subject : analysis_subjects(run)) {
-        Shot shot;
-        shot.sky = 1;
-        shot.settings.max_depth = 200;
-        add(shot.scene, make_icosphere(3),
+    for (const Configuration& configuration : analysis_configurations(run)) {
+        RenderDesc desc;
+        desc.sky = 1;
+        desc.settings.max_depth = 200;
+        add(desc.scene, make_icosphere(3),
             {.name = "glass", .metallic = 0, .roughness = 0, .transmission = 1, .ior = 1.5f, .thickness = 1});
-        shot.settings.camera = look(vec3(0), {0, 0, -1}, 0.3f);
-        expect_within(run, subject, "camera inside glass", shot, 1 - rounding, 1 + rounding);
+        desc.settings.camera = look(vec3(0), {0, 0, -1}, 0.3f);
+        expect_within(run, configuration, "camera inside glass", desc, 1 - rounding, 1 + rounding);
 
-        Shot enclosed;
+        RenderDesc enclosed;
         add(enclosed.scene, make_box(vec3(-1), vec3(1)), lambert(0.5f));
         add(enclosed.scene, make_quad({-0.5f, 0, -0.5f}, {1, 0, 0}, {0, 0, 1}), lamp(10));
         enclosed.settings.camera = outside;
-        expect_within(run, subject, "light inside an object", enclosed, 0, 0);
+        expect_within(run, configuration, "light inside an object", enclosed, 0, 0);
 
-        Shot unlit;
+        RenderDesc unlit;
         add(unlit.scene, make_icosphere(2), lambert(0.5f));
         unlit.settings.camera = outside;
-        expect_within(run, subject, "no light", unlit, 0, 0);
+        expect_within(run, configuration, "no light", unlit, 0, 0);
 
-        Shot plain;
+        RenderDesc plain;
         plain.sky = 1;
         plain.scene.meshes = {make_icosphere(2)};
         plain.scene.instances = {{"sphere", 0, {}}};
         plain.scene.materials.resize(1);
         plain.settings.camera = look({0, 0, 4}, vec3(0), 0.1f);
-        expect_within(run, subject, "no materials: the default of glTF", plain, 0.3, 1);
+        expect_within(run, configuration, "no materials: the default of glTF", plain, 0.3, 1);
 
-        Shot empty;
+        RenderDesc empty;
         empty.sky = 1;
         empty.settings.camera = outside;
-        expect_within(run, subject, "nothing at all", empty, 1, 1);
+        expect_within(run, configuration, "nothing at all", empty, 1, 1);
     }
 }
 

@@ -52,7 +52,7 @@ Record record_of_cpu(CaseRun& run, const Values& params) {
     return record;
 }
 
-void add_judged(CaseRun& run, Record record, double value, double truth, double allowed) {
+void add_checked(CaseRun& run, Record record, double value, double truth, double allowed) {
     record.error = error_figures("relative", {std::abs(value - truth) / truth});
     record.results.insert({{"value", value}, {"expected", truth}});
     record.faults = !(std::abs(value - truth) <= allowed);
@@ -83,8 +83,8 @@ void microfacet_albedo(CaseRun& run) {
                  {0.25f, 0.1f, 0.891622}, {0.5f, 1, 0.68785},     {0.5f, 0.5f, 0.698251}, {0.5f, 0.1f, 0.860105},
                  {1, 1, 0.306852819440},  {1, 0.5f, 0.450694},    {1, 0.1f, 0.760211}};
     for (const auto& row : table)
-        add_judged(run, record_of_cpu(run, {{"alpha", row.alpha}, {"cosine", row.cosine}}),
-                   albedo_of(mirror(row.alpha), row.cosine, 512), row.albedo, 1e-4);
+        add_checked(run, record_of_cpu(run, {{"alpha", row.alpha}, {"cosine", row.cosine}}),
+                    albedo_of(mirror(row.alpha), row.cosine, 512), row.albedo, 1e-4);
 }
 
 // Cosine-weighted mean of Fresnel's reflectance, by the midpoint rule over the squared cosine.
@@ -98,20 +98,20 @@ double mean_fresnel(float eta) {
 }
 
 void glass_energy(CaseRun& run) {
-    add_judged(run, record_of_cpu(run, {{"mean of Fresnel", "from outside"}}), mean_fresnel(1.5f), 0.09177795934235121,
-               1e-6);
-    add_judged(run, record_of_cpu(run, {{"mean of Fresnel", "from inside"}}), mean_fresnel(1 / 1.5f),
-               0.59634575970771165, 1e-6);
-    for (const Subject& subject : analysis_subjects(run)) {
+    add_checked(run, record_of_cpu(run, {{"mean of Fresnel", "from outside"}}), mean_fresnel(1.5f), 0.09177795934235121,
+                1e-6);
+    add_checked(run, record_of_cpu(run, {{"mean of Fresnel", "from inside"}}), mean_fresnel(1 / 1.5f),
+                0.59634575970771165, 1e-6);
+    for (const Configuration& configuration : analysis_configurations(run)) {
         FlatQuestion question{.value = 1, .params = {{"sphere", "glass under a white sky"}}, .is_swept = false};
-        add(question.shot.scene, make_icosphere(4),
+        add(question.desc.scene, make_icosphere(4),
             {.name = "glass", .metallic = 0, .roughness = 0, .transmission = 1, .ior = 1.5f, .thickness = 1});
-        question.shot.sky = 1;
-        question.shot.settings.max_depth = 200;
-        question.shot.settings.camera = look({0, 0, 4}, vec3(0), 0.15f);
+        question.desc.sky = 1;
+        question.desc.settings.max_depth = 200;
+        question.desc.settings.camera = look({0, 0, 4}, vec3(0), 0.15f);
         question.spp = {16};
         question.seeds = run.amount(2, 16);
-        measure_flat(run, subject, question);
+        measure_flat(run, configuration, question);
     }
 }
 

@@ -50,15 +50,15 @@ dvec3 point_of(const Mesh& mesh, uint primitive, double u, double v) {
 
 // What far cameras lose: the triangle, and the point, which u and v give without the coarse t. From level refined on, u
 // and v are rounded once (2^-24 each) from float64, whose roundings at the distance are 2^-53 each. Another triangle
-// than the referee's is right within what float32 rounding does to a ray that begins two sizes of the field away, as a
-// Tube bounds it, on a surface that it meets at a slope of up to 4.
+// than the reference's is right within what float32 rounding does to a ray that begins two sizes of the field away, as
+// ErrorBounds tell, on a surface that it meets at a slope of up to 4.
 void expect_right_points(CaseRun& run, const Measured& measured, const Mesh& mesh, std::span<const Ray> rays,
                          double distance, double size) {
     const double same_bound = 0x1p-22 + distance * 0x1p-50, other_bound = 4 * 16 * 0x1p-24 * 3 * size;
     for (const Traced& traced : measured.traces) {
         double largest = 0, wrong = 0, missed = 0;
         CaseRun::Outcome outcome = ask_each(traced, rays, [&](std::size_t i, const Hit& hit) -> std::string {
-            const OracleHit& reference = measured.references[i];
+            const ReferenceHit& reference = measured.references[i];
             if (!hit.hit) {
                 ++missed;
                 return "missed";
@@ -74,9 +74,9 @@ void expect_right_points(CaseRun& run, const Measured& measured, const Mesh& mes
         outcome.params = {{"cells_away", distance}, {"measured", "points"}};
         outcome.results = {{"wrong_triangles", wrong}, {"missed", missed}, {"point_error_cells_max", largest}};
         outcome.reference = "f64";
-        if (traced.subject.level < Level::refined) outcome.only_measured = "origins are advanced from refined on";
+        if (traced.configuration.level < Level::refined) outcome.only_measured = "origins are advanced from refined on";
         if (distance > 1e9) outcome.only_measured = "float64 itself is no more exact than the bound";
-        run.expect(traced.subject, outcome);
+        run.expect(traced.configuration, outcome);
     }
 }
 

@@ -5,7 +5,8 @@
 
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/suite/shapes.h"
 
 namespace twinray::suite {
 namespace {

@@ -13,7 +13,7 @@ Record query_record(CaseRun& run, const std::string& reference, const std::strin
     return record;
 }
 
-void add_judged(CaseRun& run, Record record, std::uint64_t faults, const std::string& what) {
+void add_checked(CaseRun& run, Record record, std::uint64_t faults, const std::string& what) {
     record.faults = faults;
     record.bound95 = upper_bound_95(faults, record.n);
     record.pass = faults == 0;

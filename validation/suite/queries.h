@@ -12,8 +12,8 @@ inline constexpr Backend query_backend = Backend::software;  // whose context th
 
 // A record without a backend and a level.
 Record query_record(CaseRun& run, const std::string& reference, const std::string& variant = {});
-// With the verdict: any fault is ours, and `what` it was.
-void add_judged(CaseRun& run, Record record, std::uint64_t faults, const std::string& what);
+// With the ray_result: any fault is ours, and `what` it was.
+void add_checked(CaseRun& run, Record record, std::uint64_t faults, const std::string& what);
 
 double seconds_of(const std::function<void()>& work);
 

@@ -76,8 +76,8 @@ void set_solution(Record& record, const Solution& last, std::vector<double> erro
 void by_rays(CaseRun& run) {
     constexpr double rho = 0.9;
     const Scene scene = cube();
-    for (const Subject& subject : analysis_subjects(run)) {
-        AbstractAccel& accel = run.devices().empty_accel(subject);
+    for (const Configuration& configuration : analysis_configurations(run)) {
+        AbstractAccel& accel = run.devices().empty_accel(configuration);
         push_scene(accel, scene);
         const Faces faces(accel.context(), scene);
         for (const std::uint64_t rays : {1 << 10, 1 << 12, 1 << 14, 1 << 16}) {
@@ -95,7 +95,7 @@ void by_rays(CaseRun& run) {
                 for (const double half : last->light.sampling) sampling = std::max(sampling, half);
                 faults += last->error * known_radiosities(rho)[0] > 3 * sampling;
             }
-            Record record = run.record(subject);
+            Record record = run.record(configuration);
             record.params = {{"rays", rays}, {"reflectance", rho}};
             record.variant = "hits, sobol";
             set_solution(record, *last, std::move(errors), std::move(ms));
@@ -109,10 +109,10 @@ void by_rays(CaseRun& run) {
 
 // With view factors that are exact but for float32: what the solver loses where hardly anything is absorbed.
 void by_reflectance(CaseRun& run) {
-    const std::vector<Subject> subjects = analysis_subjects(run);
-    if (subjects.empty()) return;
+    const std::vector<Configuration> configurations = analysis_configurations(run);
+    if (configurations.empty()) return;
     const Scene scene = cube();
-    AbstractAccel& accel = run.devices().empty_accel(subjects.front());
+    AbstractAccel& accel = run.devices().empty_accel(configurations.front());
     push_scene(accel, scene);
     const Faces faces(accel.context(), scene);
     const ViewFactorOptions options{.grouping = FaceGrouping::mesh, .rays = 1024};
@@ -125,7 +125,7 @@ void by_reflectance(CaseRun& run) {
             errors.push_back(last->error);
             ms.push_back(last->ms);
         }
-        Record record = run.record(subjects.front());
+        Record record = run.record(configurations.front());
         record.backend = "cpu";
         record.level = "";
         record.variant = "contour";

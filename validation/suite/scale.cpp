@@ -12,7 +12,8 @@
 #include "validation/suite/scenes.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
+#include "validation/suite/shapes.h"
 
 namespace twinray::suite {
 namespace {
@@ -23,13 +24,13 @@ void powers_of_two(CaseRun& run) {
     const std::vector<Ray> rays =
         mixed_rays(world_of(sphere), bounds_of(sphere), run.amount(1'024, 20'000), run.seed());
     const int step = static_cast<int>(run.amount(25, 1));
-    for (const Subject& subject : run.subjects()) {
-        if (!is_robust(subject)) continue;
+    for (const Configuration& configuration : run.configurations()) {
+        if (!is_robust(configuration)) continue;
         const auto hits_at = [&](int exponent) {
             const float scale = std::ldexp(1.0f, exponent);
-            AbstractAccel& accel = run.devices().empty_accel(subject);
+            AbstractAccel& accel = run.devices().empty_accel(configuration);
             accel.push(scaled(sphere, scale));
-            std::vector<Hit> hits = accel.closest_hits(scaled(rays, scale), {.level = subject.level});
+            std::vector<Hit> hits = accel.closest_hits(scaled(rays, scale), {.level = configuration.level});
             for (Hit& hit : hits)
                 if (hit.hit) hit.t /= scale;
             return hits;
@@ -44,7 +45,7 @@ void powers_of_two(CaseRun& run) {
                 if (std::memcmp(&hits[i], &expected[i], sizeof(Hit)) != 0 && outcome.faults++ == 0)
                     outcome.what = text("differs at 2^", exponent, " from the unit scale: ", hexadecimal(rays[i]));
         }
-        run.expect(subject, outcome);
+        run.expect(configuration, outcome);
     }
 }
 
@@ -63,7 +64,7 @@ void ends_of_float32(CaseRun& run) {
     for (const float extent : {1e38f, 3.4e38f}) {
         const Mesh sphere = scaled(make_icosphere(2), extent);
         const World world = world_of(sphere);
-        run.measure(world, vertex_aimed_rays(world.oracle, count, run.seed()), {.params = {{"extent", extent}}});
+        run.measure(world, vertex_aimed_rays(world.reference, count, run.seed()), {.params = {{"extent", extent}}});
     }
     for (const float extent : {1e-38f, 1e-41f, 1e-44f}) {
         const Mesh sphere = scaled(make_icosphere(2), extent);
@@ -78,18 +79,18 @@ void ends_of_float32(CaseRun& run) {
 // A closed, toothed disc about the y axis, of radius and height 1, which its centre sees all of.
 Mesh make_gear(uint teeth) {
     Mesh gear;
-    const uint corners = 4 * teeth;
+    const uint vertices = 4 * teeth;
     for (const float y : {-0.5f, 0.5f}) {
         gear.positions.push_back(vec3(0, y, 0));
-        for (uint i = 0; i < corners; ++i) {
-            const double angle = 2 * std::numbers::pi * i / corners;
+        for (uint i = 0; i < vertices; ++i) {
+            const double angle = 2 * std::numbers::pi * i / vertices;
             const double radius = i % 4 < 2 ? 0.8 : 1.0;
             gear.positions.push_back(vec3(radius * std::cos(angle), y, radius * std::sin(angle)));
         }
     }
-    const uint top = corners + 1;
-    for (uint i = 0; i < corners; ++i) {
-        const uint a = 1 + i, b = 1 + (i + 1) % corners;
+    const uint top = vertices + 1;
+    for (uint i = 0; i < vertices; ++i) {
+        const uint a = 1 + i, b = 1 + (i + 1) % vertices;
         for (const uvec3& triangle :
              {uvec3(0, a, b), uvec3(top, top + b, top + a), uvec3(a, top + a, b), uvec3(b, top + a, top + b)})
             gear.triangles.push_back(triangle);
@@ -97,7 +98,7 @@ Mesh make_gear(uint teeth) {
     return gear;
 }
 
-// From around the middle of the gear, aimed at its corners and edges.
+// From around the middle of the gear, aimed at its vertices and edges.
 std::vector<Ray> rays_inside(const Mesh& gear, std::size_t count, std::uint64_t seed) {
     Random random(seed);
     const vec3 middle = bounds_of(gear).center();
@@ -133,11 +134,11 @@ void gear_on_a_floor(CaseRun& run) {
         });
         outcome.params = {{"from", "inside"}, {"measured", "leaks"}};
         outcome.reference = "analytic";
-        run.expect(traced.subject, outcome);
+        run.expect(traced.configuration, outcome);
     }
 }
 
-// Each coordinate of each corner has a size of its own.
+// Each coordinate of each vertex has a size of its own.
 void mixed_sizes(CaseRun& run) {
     Random random(run.seed());
     const auto coordinate = [&] {
@@ -185,14 +186,14 @@ void smallest_beside_largest(CaseRun& run) {
     two.instances = {{"", 0, {}}, {"", 1, {}}};
     run.measure(world_of(two), rays, {.params = {{"meshes", 2}}});
     append(small, large);
-    for (const Traced& traced : trace(run.devices(), run.subjects(), world_of(small), {rays, 0})) {
+    for (const Traced& traced : trace(run.devices(), run.configurations(), world_of(small), {rays, 0})) {
         CaseRun::Outcome outcome = ask_each(traced, rays, [&](std::size_t i, const Hit& hit) -> std::string {
             return hit.hit && hit.primitive_index == i % 2 ? "" : "missed its triangle";
         });
         outcome.params = {{"meshes", 1}};
         outcome.reference = "analytic";
         outcome.only_measured = "sizes that differ by 1e36 in one mesh leave the range of float32 in its unit";
-        run.expect(traced.subject, outcome);
+        run.expect(traced.configuration, outcome);
     }
 }
 

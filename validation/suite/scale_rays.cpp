@@ -8,7 +8,7 @@
 #include "validation/suite/scenes.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -30,10 +30,10 @@ std::vector<Ray> rays_of_any_length(const World& world, const Bounds& bounds, st
 }
 
 void lengths_by_powers_of_two(CaseRun& run, const World& world, std::span<const Ray> rays) {
-    const std::vector<Traced> expected = trace(run.devices(), run.subjects(), world, {rays, 0});
+    const std::vector<Traced> expected = trace(run.devices(), run.configurations(), world, {rays, 0});
     for (const int exponent : {-100, -60, -20, 20, 60, 100}) {
         const std::vector<Ray> long_rays = stretched({rays.begin(), rays.end()}, std::ldexp(1.0f, exponent));
-        const std::vector<Traced> traces = trace(run.devices(), run.subjects(), world, {long_rays, 0});
+        const std::vector<Traced> traces = trace(run.devices(), run.configurations(), world, {long_rays, 0});
         for (std::size_t k = 0; k < traces.size(); ++k) {
             CaseRun::Outcome outcome = ask_each(traces[k], rays, [&](std::size_t i, Hit hit) -> std::string {
                 if (hit.hit) hit.t = std::ldexp(hit.t, exponent);
@@ -41,7 +41,7 @@ void lengths_by_powers_of_two(CaseRun& run, const World& world, std::span<const 
             });
             outcome.params = {{"length", text("2^", exponent)}};
             outcome.reference = "invariance";
-            run.expect(traces[k].subject, outcome);
+            run.expect(traces[k].configuration, outcome);
         }
     }
 }
@@ -63,7 +63,7 @@ void lengths_of_directions(CaseRun& run) {
         expect_defined(run, world, stretched(rays, length), {{"length", length}});
 }
 
-// Down at the corners and edges of a grid, whose x they keep, and between them.
+// Down at the vertices and edges of a grid, whose x they keep, and between them.
 void nearly_zero_components(CaseRun& run) {
     const Mesh grid = scaled(make_grid(16, 16), 16);
     const World world = world_of(grid);
@@ -85,7 +85,7 @@ void nearly_zero_components(CaseRun& run) {
                 });
             outcome.params = {{"component", component}, {"measured", "beside 0"}};
             outcome.reference = "invariance";
-            run.expect(measured.traces[k].subject, outcome);
+            run.expect(measured.traces[k].configuration, outcome);
         }
     }
 }
@@ -117,7 +117,7 @@ void largest_distances(CaseRun& run) {
             outcome.params = params;
             outcome.params.insert_or_assign("measured", "hits");
             outcome.reference = "analytic";
-            run.expect(traced.subject, outcome);
+            run.expect(traced.configuration, outcome);
         }
     }
 }
@@ -138,7 +138,7 @@ void expect_those_of_zeros(CaseRun& run, const Measured& measured, std::span<con
             });
         outcome.params = params;
         outcome.reference = "invariance";
-        run.expect(measured.traces[k].subject, outcome);
+        run.expect(measured.traces[k].configuration, outcome);
     }
 }
 
@@ -165,7 +165,7 @@ void denormal_coordinates(CaseRun& run) {
     std::vector<Ray> rays;
     for (std::size_t i = 0; i < count; ++i)
         rays.push_back({vec3(0), 0, i % 4 ? random.direction() : sphere.positions[i % sphere.positions.size()], inf});
-    const std::vector<Traced> from_zero = trace(run.devices(), run.subjects(), world, {rays, 0});
+    const std::vector<Traced> from_zero = trace(run.devices(), run.configurations(), world, {rays, 0});
     for (const float size : {1e-38f, 1e-42f, 1e-45f}) {
         for (Ray& ray : rays) ray.origin = vec3(size, -size, size);
         const Measured measured = run.measure(world, rays, {.params = {{"origin", size}}, .reps = 1});
@@ -174,7 +174,7 @@ void denormal_coordinates(CaseRun& run) {
     for (std::size_t i = 0; i < count; ++i)
         rays[i] = ray_to(dvec3(i % 2 ? random.in_box(0.4f) : vec3(0)) * dvec3(1, 1, 0),
                          dvec3(random.in_box(0.5f) + vec3(0, 0, 2)));
-    const std::vector<Traced> at_zero = trace(run.devices(), run.subjects(), world_of(fan_about(0)), {rays, 0});
+    const std::vector<Traced> at_zero = trace(run.devices(), run.configurations(), world_of(fan_about(0)), {rays, 0});
     for (const float size : {1e-38f, 1e-42f, 1e-45f}) {
         const Measured measured =
             run.measure(world_of(fan_about(size)), rays, {.params = {{"vertex", size}}, .reps = 1});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "validation/suite/scenes.h"
 
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 
@@ -85,7 +85,7 @@ Ray ray_to(const dvec3& target, const dvec3& origin) {
 std::vector<Ray> mixed_rays(const World& world, const Bounds& bounds, std::size_t count, std::uint64_t seed) {
     std::vector<Ray> rays = random_rays(bounds, count / 2, seed);
     for (const auto& aimed :
-         {vertex_aimed_rays(world.oracle, count / 4, seed), edge_aimed_rays(world.oracle, count / 4, seed)})
+         {vertex_aimed_rays(world.reference, count / 4, seed), edge_aimed_rays(world.reference, count / 4, seed)})
         rays.insert(rays.end(), aimed.begin(), aimed.end());
     return rays;
 }

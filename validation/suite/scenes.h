@@ -21,7 +21,7 @@ class Random {
     Transform rotation();  // uniform
     vec2 in_triangle();    // (u, v), uniform
     uint below(std::size_t count) { return static_cast<uint>(engine_()) % static_cast<uint>(count); }
-    // Positive weights of three corners, which sum to 1 and are at least `least`.
+    // Positive weights of three vertices, which sum to 1 and are at least `least`.
     dvec3 weights(double least);
 
   private:

@@ -15,7 +15,7 @@
 #include "validation/suite/scenes.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -38,8 +38,8 @@ void expect_targets(CaseRun& run, const Mesh& mesh, const AimedRays& aimed, Valu
         });
         outcome.params = params;
         outcome.reference = "exact";
-        if (!is_ours(traced.subject.backend) && !excuse.empty()) outcome.only_measured = excuse;
-        run.expect(traced.subject, outcome);
+        if (!is_ours(traced.configuration.backend) && !excuse.empty()) outcome.only_measured = excuse;
+        run.expect(traced.configuration, outcome);
     }
 }
 
@@ -109,7 +109,7 @@ void fan_of_needles(CaseRun& run) {
     run.measure(world_of(fan), rays, {.params = {{"needles", needles}}, .fast_is_control = true});
 }
 
-// Points, lines, two equal corners, two equal indices, among the triangles of a sphere; aimed at all of them.
+// Points, lines, two equal vertices, two equal indices, among the triangles of a sphere; aimed at all of them.
 void degenerate_triangles(CaseRun& run) {
     Mesh mesh = make_icosphere(3);
     Random random(run.seed());
@@ -164,14 +164,14 @@ void lattice_needles(CaseRun& run) {
         if (std::gcd(a.x, a.y) != 1) continue;
         const LatticeVector b = next_to(a);
         const auto z = static_cast<float>(2 * mesh.triangles.size());
-        const auto corner = [&](const LatticeVector& v) {
+        const auto vertex = [&](const LatticeVector& v) {
             return vec3(static_cast<float>(v.x), static_cast<float>(v.y), z);
         };
         const vec3 middle(static_cast<float>(a.x + b.x) / 4, static_cast<float>(a.y + b.y) / 4, z + 0.5f);
         aimed.rays.push_back({middle, 0, vec3(0, 0, -1), 1});
         aimed.targets.push_back(static_cast<uint>(mesh.triangles.size()));
         const bool is_turned = random.between(0, 1) < 0.5f;
-        add_triangle(mesh, vec3(0, 0, z), corner(is_turned ? a : b), corner(is_turned ? b : a));
+        add_triangle(mesh, vec3(0, 0, z), vertex(is_turned ? a : b), vertex(is_turned ? b : a));
     }
     expect_targets(run, mesh, aimed, {{"area", "1e-13"}});
 }
@@ -233,7 +233,7 @@ std::vector<SuiteCase> shape_cases() {
         {"T04", "rays in the plane of a triangle", "hits", "0", in_the_plane},
         {"T05", "rays in the planes of a box's faces, through its edges", "crossings", "an even number",
          in_the_plane_of_a_face},
-        {"T06", "points, lines, two equal corners, two equal indices among triangles", "hits, tree",
+        {"T06", "points, lines, two equal vertices, two equal indices among triangles", "hits, tree",
          "0 hits of them; 0 faults; the tree is sound", degenerate_triangles},
         {"T07", "triangles of an area of 1e-13 and 1e-40 of the square of their length", "hits",
          "each ray hits its triangle", nearly_degenerate},

@@ -9,7 +9,7 @@
 #include "validation/suite/shapes.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
-#include "engine/verify/aimed_rays.h"
+#include "validation/reference/aimed_rays.h"
 
 namespace twinray::suite {
 namespace {
@@ -42,7 +42,7 @@ void expect_lowest(CaseRun& run, const char* what, const Mesh& mesh, std::size_t
     const World world = world_of(scene.mesh);
     const std::vector<Ray> rays = random_rays(bounds_of(mesh), rays_count, run.seed());
     const Measured measured = run.measure(world, rays, {.params = {{"of", what}, {"copies", copies}}, .reps = 1});
-    const std::vector<Traced> again = trace(run.devices(), run.subjects(), world, {rays, 0});
+    const std::vector<Traced> again = trace(run.devices(), run.configurations(), world, {rays, 0});
     for (std::size_t k = 0; k < again.size(); ++k) {
         CaseRun::Outcome outcome =
             ask_each(measured.traces[k], rays, [&](std::size_t i, const Hit& hit) -> std::string {
@@ -53,8 +53,8 @@ void expect_lowest(CaseRun& run, const char* what, const Mesh& mesh, std::size_t
             });
         outcome.params = {{"of", what}, {"copies", copies}, {"measured", "lowest"}};
         outcome.reference = "invariance";
-        if (!is_ours(again[k].subject.backend)) outcome.only_measured = driver_chooses;
-        run.expect(again[k].subject, outcome);
+        if (!is_ours(again[k].configuration.backend)) outcome.only_measured = driver_chooses;
+        run.expect(again[k].configuration, outcome);
     }
 }
 
@@ -65,14 +65,14 @@ void expect_order(CaseRun& run, const Measured& measured, const Mesh& mesh, std:
     for (const Traced& traced : measured.traces) {
         double farther = 0;
         CaseRun::Outcome outcome = ask_each(traced, rays, [&](std::size_t i, const Hit& hit) -> std::string {
-            const OracleHit& nearest = measured.references[i];
+            const ReferenceHit& nearest = measured.references[i];
             if (!hit.hit || !nearest.hit) return "";
             const ShearedRay line(dvec3(rays[i].origin), dvec3(rays[i].direction));
-            const auto other = line.intersect(world.oracle.geometry(0).find(hit.primitive_index)->corners64());
+            const auto other = line.intersect(world.reference.geometry(0).find(hit.primitive_index)->vertices64());
             if (!other || other->t <= nearest.t) return "";
             ++farther;
             // From certified on 2^-46 of what t is made of can be told apart, else what a float of it can.
-            const bool is_certified = traced.subject.level == Level::certified;
+            const bool is_certified = traced.configuration.level == Level::certified;
             const double reach = length(dvec3(rays[i].origin)) / length(dvec3(rays[i].direction));
             if (is_certified ? other->t - nearest.t <= 0x1p-46 * (reach + other->t)
                              : static_cast<float>(other->t) == static_cast<float>(nearest.t))
@@ -83,8 +83,9 @@ void expect_order(CaseRun& run, const Measured& measured, const Mesh& mesh, std:
         outcome.params = params;
         outcome.results = {{"farther", farther}};
         outcome.reference = "f64";
-        if (traced.subject.level < Level::certified) outcome.only_measured = "the order is certified from certified on";
-        run.expect(traced.subject, outcome);
+        if (traced.configuration.level < Level::certified)
+            outcome.only_measured = "the order is certified from certified on";
+        run.expect(traced.configuration, outcome);
     }
 }
 
@@ -100,8 +101,8 @@ void duplicates(CaseRun& run) {
     expect_lowest(run, "one triangle", one, run.amount(2'000, 100'000), run.amount(64, 256));
     Random random(run.seed());
     for (int i = 0; i < 16; ++i) {
-        const vec3 corner = random.in_box(1);
-        add_triangle(centred, corner, -corner, corner * random.in_box(1));
+        const vec3 vertex = random.in_box(1);
+        add_triangle(centred, vertex, -vertex, vertex * random.in_box(1));
     }
     expect_lowest(run, "one centre", centred, run.amount(8, 256), run.amount(1'024, 20'000));
 }
@@ -118,8 +119,8 @@ void coplanar_tessellations(CaseRun& run) {
                               dvec3(random.in_box(1) + vec3(0.5f, 2, 0.5f))));
     const Measured measured = run.measure(world_of(both), rays);
     expect_refined_t(run, measured, rays, 1, {});
-    const std::vector<Traced> first = trace(run.devices(), run.subjects(), world_of(coarse), {rays, 0});
-    const std::vector<Traced> second = trace(run.devices(), run.subjects(), world_of(fine), {rays, 0});
+    const std::vector<Traced> first = trace(run.devices(), run.configurations(), world_of(coarse), {rays, 0});
+    const std::vector<Traced> second = trace(run.devices(), run.configurations(), world_of(fine), {rays, 0});
     for (std::size_t k = 0; k < first.size(); ++k) {
         const Traced& traced = measured.traces[k];
         double of_the_second = 0;
@@ -133,9 +134,10 @@ void coplanar_tessellations(CaseRun& run) {
         outcome.params = {{"measured", "ids"}};
         outcome.results = {{"of_the_second", of_the_second}};
         outcome.reference = "invariance";
-        if (traced.subject.level > Level::watertight) outcome.only_measured = "t is not what the order was decided by";
-        if (!is_ours(traced.subject.backend)) outcome.only_measured = driver_chooses;
-        run.expect(traced.subject, outcome);
+        if (traced.configuration.level > Level::watertight)
+            outcome.only_measured = "t is not what the order was decided by";
+        if (!is_ours(traced.configuration.backend)) outcome.only_measured = driver_chooses;
+        run.expect(traced.configuration, outcome);
     }
 }
 

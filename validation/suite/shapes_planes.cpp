@@ -12,7 +12,7 @@
 namespace twinray::suite {
 
 // The plane contains two axes, so that heights above it are exact however small; another is turned, and there the
-// roundings of its corners and of the rays limit the cosine.
+// roundings of its vertices and of the rays limit the cosine.
 void grazing(CaseRun& run) {
     const Mesh flat = moved(scaled(make_grid(16, 16), 4), vec3(-2, 0, -2));
     Random random(run.seed());
@@ -40,7 +40,7 @@ void grazing(CaseRun& run) {
     }
 }
 
-// Planes in which the corners and the rays lie exactly, and still do when seen along the ray: z = 0.375, and x = y.
+// Planes in which the vertices and the rays lie exactly, and still do when seen along the ray: z = 0.375, and x = y.
 void in_the_plane(CaseRun& run) {
     Random random(run.seed());
     for (const char* plane : {"z = 0.375", "x = y"}) {
@@ -49,24 +49,24 @@ void in_the_plane(CaseRun& run) {
         const auto some = [&] { return random.between(-1, 1); };
         Mesh mesh;
         for (int i = 0; i < 32; ++i) {
-            vec3 corners[3];
-            for (vec3& corner : corners) {
+            vec3 vertices[3];
+            for (vec3& vertex : vertices) {
                 const float a = some();
-                corner = placed(a, some());
+                vertex = placed(a, some());
             }
-            add_triangle(mesh, corners[0], corners[1], corners[2]);
+            add_triangle(mesh, vertices[0], vertices[1], vertices[2]);
         }
         std::vector<Ray> rays;
         for (std::size_t i = 0; i < run.amount(1'024, 100'000); ++i) {
             const float a = 2 * some(), b = 2 * some(), c = some();
             rays.push_back({placed(a, b), 0, moving(c, some()), inf});
         }
-        for (const Traced& traced : trace(run.devices(), run.subjects(), world_of(mesh), {rays, 0})) {
+        for (const Traced& traced : trace(run.devices(), run.configurations(), world_of(mesh), {rays, 0})) {
             CaseRun::Outcome outcome = ask_each(
                 traced, rays, [](std::size_t, const Hit& hit) { return hit.hit ? text("hit at t = ", hit.t) : ""; });
             outcome.params = {{"plane", plane}};
             outcome.reference = "exact";
-            run.expect(traced.subject, outcome);
+            run.expect(traced.configuration, outcome);
         }
     }
 }
@@ -132,7 +132,7 @@ void along_edges(CaseRun& run) {
                 rays.push_back({origin, 0, direction, inf});
                 is_inward.push_back(sign > 0);
             }
-    for (const Traced& traced : trace(run.devices(), run.subjects(), world, {rays, 0})) {
+    for (const Traced& traced : trace(run.devices(), run.configurations(), world, {rays, 0})) {
         CaseRun::Outcome outcome = ask_each(traced, rays, [&](std::size_t i, const Hit& hit) -> std::string {
             const vec3 size = abs(rays[i].direction);
             const bool is_through = is_inward[i] && size.x + size.y + size.z == 3;
@@ -140,7 +140,7 @@ void along_edges(CaseRun& run) {
             return is_inward[i] && std::abs(hit.t - 1) <= 0x1p-22f ? "" : text("hit at t = ", hit.t);
         });
         outcome.reference = "exact";
-        run.expect(traced.subject, outcome);
+        run.expect(traced.configuration, outcome);
     }
 }
 

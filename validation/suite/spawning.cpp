@@ -20,10 +20,10 @@ Values prices_of(std::span<const SpawnPrice> prices) {
 
 // What came of the rays of each method.
 struct Tally {
-    std::map<Fate, std::uint64_t> fates;
+    std::map<SpawnOutcome, std::uint64_t> outcomes;
     std::string example = {};  // the first fault
 
-    std::uint64_t faults() { return fates[Fate::false_hit] + fates[Fate::leak]; }
+    std::uint64_t faults() { return outcomes[SpawnOutcome::false_hit] + outcomes[SpawnOutcome::leak]; }
 };
 using Tallies = std::array<Tally, SPAWN_METHODS>;
 
@@ -32,10 +32,10 @@ Tallies tallies_of(const Departures& departures, const SpawnedRays& spawned, std
     const std::size_t count = departures.items.size();
     for (std::size_t ray = 0; ray < hits.size(); ++ray) {
         Tally& tally = tallies[ray / count];
-        const Fate fate = departures.judge(ray % count, hits[ray], spawned.prices[ray % count]);
-        ++tally.fates[fate];
-        if ((fate == Fate::false_hit || fate == Fate::leak) && tally.example.empty())
-            tally.example = (fate == Fate::leak ? "leak " : "false hit ") + hexadecimal(spawned.rays[ray]);
+        const SpawnOutcome outcome = departures.outcome_of(ray % count, hits[ray], spawned.prices[ray % count]);
+        ++tally.outcomes[outcome];
+        if ((outcome == SpawnOutcome::false_hit || outcome == SpawnOutcome::leak) && tally.example.empty())
+            tally.example = (outcome == SpawnOutcome::leak ? "leak " : "false hit ") + hexadecimal(spawned.rays[ray]);
     }
     return tallies;
 }
@@ -46,9 +46,11 @@ void set_tallies(Record& record, Tallies tallies) {
     record.faults = bound.faults();
     record.bound95 = upper_bound_95(record.faults, record.n);
     record.example = bound.example;
-    record.results.emplace("flagged", bound.fates[Fate::flagged]);
+    record.results.emplace("flagged", bound.outcomes[SpawnOutcome::flagged]);
     // These tell no offset, so that nothing of theirs is flagged.
-    const auto faults = [&](uint method) { return tallies[method].faults() + tallies[method].fates[Fate::flagged]; };
+    const auto faults = [&](uint method) {
+        return tallies[method].faults() + tallies[method].outcomes[SpawnOutcome::flagged];
+    };
     record.results.emplace("faults_no_offset", faults(SPAWN_NONE));
     record.results.emplace("faults_t_min_1e-4", faults(SPAWN_T_MIN));
     record.results.emplace("faults_integer_offset", faults(SPAWN_INTEGER));
@@ -68,8 +70,8 @@ SpawnItem leaving(Random& random, const Mesh& mesh, const glm::dmat3& normals) {
     SpawnItem item{};
     item.primitive = random.below(mesh.triangles.size());
     item.uv = random.in_triangle();
-    const uvec3 corners = mesh.triangles[item.primitive];
-    const dvec3 a(mesh.positions[corners.x]), b(mesh.positions[corners.y]), c(mesh.positions[corners.z]);
+    const uvec3 vertices = mesh.triangles[item.primitive];
+    const dvec3 a(mesh.positions[vertices.x]), b(mesh.positions[vertices.y]), c(mesh.positions[vertices.z]);
     const dvec3 normal = normalize(normals * normalize(cross(b - a, c - a)));
     const dvec3 any(random.direction());
     const dvec3 along = normalize(any - dot(any, normal) * normal);
@@ -85,13 +87,13 @@ std::vector<SpawnItem> leaving(Random& random, const Mesh& mesh, const Transform
     return items;
 }
 
-Fate meets_itself(const SpawnItem& item, const Hit& hit) {
-    return hit.hit && hit.primitive_index == item.primitive ? Fate::false_hit : Fate::right;
+SpawnOutcome meets_itself(const SpawnItem& item, const Hit& hit) {
+    return hit.hit && hit.primitive_index == item.primitive ? SpawnOutcome::false_hit : SpawnOutcome::right;
 }
 
 // Of departures whose rays may meet other triangles.
 void measure_self_hits(CaseRun& run, const Spawner& spawner, Departures departures) {
-    departures.judge = [&](std::size_t i, const Hit& hit, const SpawnPrice&) {
+    departures.outcome_of = [&](std::size_t i, const Hit& hit, const SpawnPrice&) {
         return meets_itself(departures.items[i], hit);
     };
     measure_departures(run, spawner, departures);
@@ -112,7 +114,7 @@ Mesh triangles_of(Random& random, const Kind& kind) {
     for (uint i = 0; i < 128; ++i) {
         const vec3 a = random.in_box(4), to_b = random.in_box(1) * kind.extent;
         const vec3 to_c = to_b * random.between(0, 1) + random.in_box(1) * kind.extent * kind.aspect;
-        for (const vec3& corner : {a, a + to_b, a + to_c}) mesh.positions.push_back(kind.centre + corner * kind.size);
+        for (const vec3& vertex : {a, a + to_b, a + to_c}) mesh.positions.push_back(kind.centre + vertex * kind.size);
         mesh.triangles.push_back(uvec3(3 * i) + uvec3(0, 1, 2));
     }
     return mesh;
@@ -158,18 +160,18 @@ glm::dmat3 linear_of(const Transform& transform) {
 glm::dmat3 normals_of(const Transform& transform) { return transpose(inverse(linear_of(transform))); }
 
 void measure_departures(CaseRun& run, const Spawner& spawner, const Departures& departures) {
-    const std::vector<Subject> subjects = run.one_subject_each();
-    if (subjects.empty()) return;
+    const std::vector<Configuration> configurations = run.one_configuration_each();
+    if (configurations.empty()) return;
     const SpawnedRays spawned = spawner(departures.mesh, departures.transform, departures.items);
     const World world = world_of(departures.mesh, departures.transform);
-    for (const Traced& traced : trace(run.devices(), subjects, world, {.rays = spawned.rays, .reps = 0})) {
+    for (const Traced& traced : trace(run.devices(), configurations, world, {.rays = spawned.rays, .reps = 0})) {
         Tallies tallies = tallies_of(departures, spawned, traced.hits);
-        Record record = run.record(traced.subject);
+        Record record = run.record(traced.configuration);
         record.params = departures.params;
         record.n = departures.items.size();
         record.results = prices_of(spawned.prices);
         set_tallies(record, tallies);
-        decide(record, departures, tallies[SPAWN_NONE].faults() > 0, traced.subject.backend);
+        decide(record, departures, tallies[SPAWN_NONE].faults() > 0, traced.configuration.backend);
         run.add(record);
     }
 }
@@ -180,8 +182,8 @@ void leave_a_sphere(CaseRun& run) {
     Random random(run.seed());
     Departures departures{.mesh = make_icosphere(5)};
     departures.items = leaving(random, departures.mesh, {}, run.amount(8'192, 1'000'000));
-    departures.judge = [](std::size_t, const Hit& hit, const SpawnPrice&) {
-        return hit.hit ? Fate::false_hit : Fate::right;
+    departures.outcome_of = [](std::size_t, const Hit& hit, const SpawnPrice&) {
+        return hit.hit ? SpawnOutcome::false_hit : SpawnOutcome::right;
     };
     measure_departures(run, spawner, departures);
 }

@@ -14,7 +14,7 @@ void leave_between_plates(CaseRun& run);
 void leave_a_concave_corner(CaseRun& run);
 
 // What came of a ray that left a surface.
-enum class Fate : std::uint8_t {
+enum class SpawnOutcome : std::uint8_t {
     right,
     false_hit,  // of its own triangle, or of nothing that lies there
     leak,       // past what it had to meet
@@ -26,7 +26,7 @@ struct Departures {
     Transform transform = {};
     std::vector<SpawnItem> items = {};  // of instance 0
     Values params = {};
-    std::function<Fate(std::size_t item, const Hit& hit, const SpawnPrice& price)> judge = {};
+    std::function<SpawnOutcome(std::size_t item, const Hit& hit, const SpawnPrice& price)> outcome_of = {};
     // Negative control: without an offset there have to be faults on software, or the case sees nothing.
     bool must_show = true;
     std::string fault_of = "twinray";  // "" = by the backend

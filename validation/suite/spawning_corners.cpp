@@ -84,10 +84,10 @@ void leave_between_plates(CaseRun& run) {
             departures.items.back().direction =
                 vec3(linear * normalize(dvec3(direction.x, direction.y, std::max(std::abs(direction.z), 0.1f))));
         }
-        departures.judge = [gap](std::size_t, const Hit& hit, const SpawnPrice& price) {
-            if (is_second_quad(hit)) return Fate::right;
-            if (hit.hit) return Fate::false_hit;
-            return 2 * price.offset < gap ? Fate::leak : Fate::flagged;
+        departures.outcome_of = [gap](std::size_t, const Hit& hit, const SpawnPrice& price) {
+            if (is_second_quad(hit)) return SpawnOutcome::right;
+            if (hit.hit) return SpawnOutcome::false_hit;
+            return 2 * price.offset < gap ? SpawnOutcome::leak : SpawnOutcome::flagged;
         };
         measure_departures(run, spawner, departures);
     }
@@ -100,14 +100,14 @@ void leave_a_concave_corner(CaseRun& run) {
         Corner corner = concave_corner(random, degrees, run.amount(1'024, 262'144));
         corner.departures.params = {{"dihedral", degrees}};
         corner.departures.fault_of = "";
-        corner.departures.judge = [&corner](std::size_t i, const Hit& hit, const SpawnPrice& price) {
+        corner.departures.outcome_of = [&corner](std::size_t i, const Hit& hit, const SpawnPrice& price) {
             const bool is_flagged = corner.distance[i] < 2 * double{price.offset};
             if (corner.ends_on_wall[i]) {
-                if (is_second_quad(hit)) return Fate::right;
-                return is_flagged ? Fate::flagged : hit.hit ? Fate::false_hit : Fate::leak;
+                if (is_second_quad(hit)) return SpawnOutcome::right;
+                return is_flagged ? SpawnOutcome::flagged : hit.hit ? SpawnOutcome::false_hit : SpawnOutcome::leak;
             }
-            if (!hit.hit) return Fate::right;
-            return is_flagged && is_second_quad(hit) ? Fate::flagged : Fate::false_hit;
+            if (!hit.hit) return SpawnOutcome::right;
+            return is_flagged && is_second_quad(hit) ? SpawnOutcome::flagged : SpawnOutcome::false_hit;
         };
         measure_departures(run, spawner, corner.departures);
     }

@@ -31,21 +31,11 @@ void run_guarded(const SuiteCase& row, const Settings& settings, Devices& device
 
 }  // namespace
 
-std::string_view name(Backend backend) {
+std::string_view name_of(Backend backend) {
     switch (backend) {
         case Backend::software: return "sw";
         case Backend::ray_query: return "hw";
         case Backend::pipeline: return "hw-pipeline";
-    }
-    return "";
-}
-
-std::string_view name(Level level) {
-    switch (level) {
-        case Level::fast: return "fast";
-        case Level::watertight: return "watertight";
-        case Level::refined: return "refined";
-        case Level::certified: return "certified";
     }
     return "";
 }

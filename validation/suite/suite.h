@@ -10,28 +10,26 @@
 #include <vector>
 
 #include "engine/accel/trace_desc.h"
-#include "engine/report/recorder.h"
+#include "validation/records/recorder.h"
 
 namespace twinray::suite {
 
 // Who answers: SwTlas, HwTlas by ray query, HwTlas by ray tracing pipeline.
 enum class Backend : std::uint8_t { software, ray_query, pipeline };
 inline constexpr std::array all_backends = {Backend::software, Backend::ray_query, Backend::pipeline};
-inline constexpr std::array all_levels = {Level::fast, Level::watertight, Level::refined, Level::certified};
 
-std::string_view name(Backend backend);  // "sw", "hw", "hw-pipeline"
-std::string_view name(Level level);      // "fast", ...
+std::string_view name_of(Backend backend);  // "sw", "hw", "hw-pipeline"
 constexpr bool is_ours(Backend backend) { return backend == Backend::software; }
 
 // An accelerator at a level: a curve of the plots.
-struct Subject {
+struct Configuration {
     Backend backend = Backend::software;
     Level level = Level::watertight;
 
-    bool operator==(const Subject&) const = default;
+    bool operator==(const Configuration&) const = default;
 };
 // False of Level::fast, which promises nothing at edges.
-constexpr bool is_robust(const Subject& subject) { return subject.level != Level::fast; }
+constexpr bool is_robust(const Configuration& configuration) { return configuration.level != Level::fast; }
 
 struct Settings {
     bool is_full = false;

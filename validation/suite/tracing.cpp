@@ -24,11 +24,11 @@ struct Stage {
     double upload_ms = 0;
 };
 
-Stage make_stage(Devices& devices, const Subject& subject, const World& world, const Tracing& tracing) {
+Stage make_stage(Devices& devices, const Configuration& configuration, const World& world, const Tracing& tracing) {
     const std::span<const Ray> rays = tracing.rays;
     const std::optional<Layout> wanted = tracing.control ? tracing.control->layout : std::nullopt;
-    AbstractAccel& accel = devices.empty_accel(subject, wanted.value_or(devices.trees().layout));
-    world.place(accel);
+    AbstractAccel& accel = devices.empty_accel(configuration, wanted.value_or(devices.trees().layout));
+    world.fill(accel);
     accel.sync();
     Context& context = accel.context();
     Stage stage{accel, Buffer(context, {.name = "suite rays", .bytes = rays.size_bytes()})};
@@ -52,7 +52,7 @@ struct Timing {
     bool has_timestamps = true;
 };
 
-Timing trace_once(const Stage& stage, const Subject& subject, const Tracing& tracing, const Buffer& hits) {
+Timing trace_once(const Stage& stage, const Configuration& configuration, const Tracing& tracing, const Buffer& hits) {
     const auto start = Clock::now();
     Commands commands(stage.accel.context(), "suite trace");
     stage.accel.trace(commands, stage.accel.view(),
@@ -60,7 +60,7 @@ Timing trace_once(const Stage& stage, const Subject& subject, const Tracing& tra
                        .hits = hits.ref<Hit>(),
                        .count = tracing.rays.size(),
                        .query = tracing.query,
-                       .level = subject.level,
+                       .level = configuration.level,
                        .program = stage.control.get()});
     commands.submit();
     const std::vector<PassTiming> timings = commands.timings();
@@ -69,10 +69,10 @@ Timing trace_once(const Stage& stage, const Subject& subject, const Tracing& tra
 }
 
 // The first trace, which compiles; the hits are its.
-Traced trace_first(const Stage& stage, const Subject& subject, const Tracing& tracing, const Buffer& hits) {
-    Traced traced{.subject = subject, .hits = {}, .ns_per_ray = {}, .phases_ms = {}};
+Traced trace_first(const Stage& stage, const Configuration& configuration, const Tracing& tracing, const Buffer& hits) {
+    Traced traced{.configuration = configuration, .hits = {}, .ns_per_ray = {}, .phases_ms = {}};
     traced.phases_ms["build"] = stage.build_ms;
-    traced.phases_ms["first_trace"] = trace_once(stage, subject, tracing, hits).wall_ms;
+    traced.phases_ms["first_trace"] = trace_once(stage, configuration, tracing, hits).wall_ms;
     const auto start = Clock::now();
     traced.hits = download<Hit>(stage.accel.context(), hits, tracing.rays.size());
     traced.phases_ms["copy"] = stage.upload_ms + ms_since(start);
@@ -82,33 +82,35 @@ Traced trace_first(const Stage& stage, const Subject& subject, const Tracing& tr
 }  // namespace
 
 World world_of(const Scene& scene) {
-    return {[scene](AbstractAccel& accel) { push_scene(accel, scene); }, Oracle::of(scene)};
+    return {[scene](AbstractAccel& accel) { push_scene(accel, scene); }, ReferenceScene::of(scene)};
 }
 
 World world_of(const Mesh& mesh, const Transform& transform, const InstanceOptions& options) {
     const MeshView view = mesh;
-    const OracleInstance instance{0, transform, options};
+    const ReferenceInstance instance{0, transform, options};
     return {[=](AbstractAccel& accel) { accel.push(mesh, transform, options); },
-            Oracle(std::span(&view, 1), std::span(&instance, 1))};
+            ReferenceScene(std::span(&view, 1), std::span(&instance, 1))};
 }
 
-std::vector<Traced> trace(Devices& devices, std::span<const Subject> subjects, const World& world,
+std::vector<Traced> trace(Devices& devices, std::span<const Configuration> configurations, const World& world,
                           const Tracing& tracing) {
     std::map<std::pair<Backend, Level>, Stage> stages;
-    const auto key = [](const Subject& subject) { return std::pair(subject.backend, Devices::level_to_make(subject)); };
+    const auto key = [](const Configuration& configuration) {
+        return std::pair(configuration.backend, Devices::level_to_make(configuration));
+    };
     std::vector<Buffer> hits;
     std::vector<Traced> all;
-    for (const Subject& subject : subjects) {
-        auto stage = stages.find(key(subject));
+    for (const Configuration& configuration : configurations) {
+        auto stage = stages.find(key(configuration));
         if (stage == stages.end())
-            stage = stages.emplace(key(subject), make_stage(devices, subject, world, tracing)).first;
+            stage = stages.emplace(key(configuration), make_stage(devices, configuration, world, tracing)).first;
         hits.emplace_back(stage->second.accel.context(),
                           BufferDesc{.name = "suite hits", .bytes = tracing.rays.size() * sizeof(Hit)});
-        all.push_back(trace_first(stage->second, subject, tracing, hits.back()));
+        all.push_back(trace_first(stage->second, configuration, tracing, hits.back()));
     }
     for (std::size_t rep = 0; rep < tracing.reps; ++rep)
-        for (std::size_t i = 0; i < subjects.size(); ++i) {
-            const Timing timing = trace_once(stages.at(key(subjects[i])), subjects[i], tracing, hits[i]);
+        for (std::size_t i = 0; i < configurations.size(); ++i) {
+            const Timing timing = trace_once(stages.at(key(configurations[i])), configurations[i], tracing, hits[i]);
             all[i].has_timestamps = timing.has_timestamps;
             all[i].ns_per_ray.push_back((timing.has_timestamps ? timing.gpu_ms : timing.wall_ms) * 1e6 /
                                         static_cast<double>(tracing.rays.size()));

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Tracing the same rays on several subjects, timed side by side.
+// Tracing the same rays on several configurations, timed side by side.
 #pragma once
 
 #include <map>
 
 #include "validation/suite/controls.h"
 #include "validation/suite/devices.h"
-#include "engine/verify/oracle.h"
+#include "validation/reference/reference_scene.h"
 
 namespace twinray::suite {
 
 // What the rays of a case meet.
 struct World {
-    std::function<void(AbstractAccel&)> place;  // into an empty accelerator
-    Oracle oracle;                              // of the same
+    std::function<void(AbstractAccel&)> fill;  // into an empty accelerator
+    ReferenceScene reference;                  // of the same
 };
 World world_of(const Scene& scene);
 World world_of(const Mesh& mesh, const Transform& transform = {}, const InstanceOptions& options = {});
@@ -26,7 +26,7 @@ struct Tracing {
 };
 
 struct Traced {
-    Subject subject;
+    Configuration configuration;
     std::vector<Hit> hits;
     // GPU time of the trace alone, one entry a repetition; wall time where the queue has no timestamps.
     std::vector<double> ns_per_ray;
@@ -34,8 +34,9 @@ struct Traced {
     std::map<std::string, double> phases_ms;  // build, compile (with the first trace), copy
 };
 
-// One entry a subject. The repetitions take turns, so that whatever else the machine does meets all subjects alike.
-std::vector<Traced> trace(Devices& devices, std::span<const Subject> subjects, const World& world,
+// One entry a configuration. The repetitions take turns, so that whatever else the machine does meets all
+// configurations alike.
+std::vector<Traced> trace(Devices& devices, std::span<const Configuration> configurations, const World& world,
                           const Tracing& tracing);
 
 TimeFigures time_figures(const Traced& traced);

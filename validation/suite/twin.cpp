@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "validation/suite/flush.h"
-#include "validation/suite/judging.h"
+#include "validation/suite/checks.h"
 #include "engine/core/parallel.h"
 
 namespace twinray::suite {

@@ -109,8 +109,8 @@ void tiny_faces(CaseRun& run) {
 // A closed room and things in it: every ray must meet a face, and a front.
 void closed_room(CaseRun& run) {
     const Scene scene = scene_of({seen_from_inside(make_box(vec3(-2), vec3(2))), make_icosphere(2)}, vec3(0.5f));
-    for (const Subject& subject : analysis_subjects(run)) {
-        AbstractAccel& accel = run.devices().empty_accel(subject);
+    for (const Configuration& configuration : analysis_configurations(run)) {
+        AbstractAccel& accel = run.devices().empty_accel(configuration);
         push_scene(accel, scene);
         const Faces faces(accel.context(), scene);
         ViewFactors factors(accel, faces, {.rays = run.amount(1024, 65'536), .seed = static_cast<uint>(run.seed())});
@@ -121,7 +121,7 @@ void closed_room(CaseRun& run) {
             lost += row.rays - row.hits;
         }
         const ViewFactorResiduals residuals = residuals_of(rows, factors.areas());
-        run.expect(subject,
+        run.expect(configuration,
                    {.results = {{"closure", residuals.closure}, {"reciprocity_sigma", residuals.reciprocity_sigma}},
                     .n = rays,
                     .faults = lost,

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Whatever builds scenes and traces rays, so that it can be measured beside others.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <twinray/scene.h>
+
+#include "bench/ray_batch.h"
+
+namespace twinray::bench {
+
+// What records say of a backend; "" where there is no such choice.
+struct Labels {
+    std::string name;     // unique among those that run: "sw compressed4 watertight"
+    std::string backend;  // "sw", "hw", "embree"
+    std::string path;     // "compute", "ray query", "ray tracing pipeline", "packets of 8", "stream"
+    std::string order;    // in which triangles go to a driver: "sorted", "input"
+    std::string layout;
+    std::string builder;
+    std::string level;
+    std::string ray_order = {};  // in which it traces rays: "given", "sorted"
+};
+
+struct BuildFigures {
+    double ms = 0;       // GPU time of a sync(); elsewhere the time of the build call
+    double wall_ms = 0;  // from the scene in host memory until rays can be traced: with copies and work of the host
+    std::uint64_t bytes = 0;          // of what was built
+    std::uint64_t scratch_bytes = 0;  // that the build took beyond that
+};
+
+class Backend {
+  public:
+    explicit Backend(Labels labels) : labels_(std::move(labels)) {}
+    virtual ~Backend() = default;
+    Backend(const Backend&) = delete;
+    Backend& operator=(const Backend&) = delete;
+
+    const Labels& labels() const { return labels_; }
+    // From nothing; what was built before is freed first.
+    virtual BuildFigures build(const Scene& scene) = 0;
+    // In ms, from rays to hits as 32-byte records. After build().
+    virtual double trace(const RayBatch& batch) = 0;
+    // Those of the last trace, which was of this batch.
+    virtual std::vector<Hit> hits(const RayBatch& batch) const = 0;
+
+  private:
+    Labels labels_;
+};
+
+using LineUp = std::vector<std::unique_ptr<Backend>>;
+
+}  // namespace twinray::bench

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "engine/analysis/row_run.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "engine/scene/bytes.h"
+
+namespace twinray {
+
+std::string configuration_of(const ViewFactorOptions& options, PairEstimator estimator, std::string_view accel,
+                             const Scene& scene, const Faces& faces) {
+    const std::vector<uint> groups = faces.groups(options.grouping);
+    std::ostringstream out;
+    out << std::hexfloat << count_triangles(scene) << " faces " << checksum_of(scene) << ", by "
+        << name_of(options.grouping) << ' ' << crc32_of(std::as_bytes(std::span(groups))) << ", "
+        << name_of(options.sides) << ", " << name_of(options.sequence) << ", " << options.rays << " rays, error "
+        << options.target_error.value_or(0) << ", seed " << options.seed << ", " << accel << ", estimator "
+        << name_of(estimator);
+    return out.str();
+}
+
+std::uint64_t ComputedRows::rays() const {
+    std::uint64_t rays = 0;
+    for (std::size_t i = resumed; i < rows.size(); ++i) rays += rows[i].rays;
+    return rays;
+}
+
+ComputedRows begin_rows(RowFile* file, bool resumes) {
+    ComputedRows computed;
+    if (file && resumes) computed.rows = file->load();
+    if (file && !resumes) file->create();
+    computed.resumed = computed.rows.size();
+    return computed;
+}
+
+void complete_rows(ComputedRows& computed, ViewFactors& factors, RowFile* file, Progress& progress) {
+    std::vector<ViewFactorRow>& rows = computed.rows;
+    progress.advance(rows.size());
+    while (rows.size() < factors.row_count()) {
+        const std::size_t last = std::min(rows.size() + factors.block(), factors.row_count());
+        const std::vector<ViewFactorRow> block = factors.rows(rows.size(), last);
+        if (file) file->append(block);
+        rows.insert(rows.end(), block.begin(), block.end());
+        progress.advance(block.size());
+    }
+}
+
+MatrixTotals totals_of(std::span<const ViewFactorRow> rows) {
+    MatrixTotals totals;
+    for (const PairEstimator by : {PairEstimator::hits, PairEstimator::area, PairEstimator::contour})
+        totals.entries_by[name_of(by)] = 0;
+    for (const ViewFactorRow& row : rows) {
+        totals.rays += row.rays;
+        totals.hits += row.hits;
+        totals.entries += row.factors.size();
+        for (const ViewFactor& factor : row.factors) {
+            ++totals.entries_by[name_of(factor.by)];
+            totals.widest = std::max(totals.widest, static_cast<double>(factor.high - factor.low) / 2);
+        }
+    }
+    return totals;
+}
+
+}  // namespace twinray

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "engine/scene/ray_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "engine/core/error.h"
+#include "engine/scene/bytes.h"
+
+namespace twinray {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "ray and hit files are little-endian");
+
+constexpr std::size_t numbers_a_ray = sizeof(Ray) / sizeof(float);
+
+// All of the file, as many T as fit into it.
+template <class T>
+std::vector<T> read_all(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    if (!in || std::filesystem::is_directory(file)) fail("rays file '", file.string(), "' cannot be opened");
+    const auto bytes = static_cast<std::uint64_t>(in.tellg());
+    if (bytes % sizeof(T) != 0)
+        fail("rays file '", file.string(), "': ", bytes, " bytes is not a multiple of ", sizeof(T),
+             ", the size of a ray");
+    std::vector<T> values(bytes / sizeof(T));
+    in.seekg(0);
+    if (!in.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(bytes)))
+        fail("rays file '", file.string(), "' cannot be read");
+    return values;
+}
+
+// A .npy file (numpy.lib.format): 6 bytes of magic, 2 of version, the length of the header in 2 bytes or from version 2
+// on 4, the header, and the array.
+class Npy {
+  public:
+    explicit Npy(const std::filesystem::path& file) : file_(file), bytes_(read_all<char>(file)) {
+        const std::string_view all(bytes_.data(), bytes_.size());
+        if (!all.starts_with("\x93NUMPY") || all.size() < 12) refuse("it is not a NumPy array");
+        const std::size_t start = all[6] > 1 ? 12 : 10;
+        std::size_t length = 0;
+        for (std::size_t i = start; i-- > 8;) length = length << 8 | static_cast<std::uint8_t>(all[i]);
+        if (length > all.size() - start) refuse("its header is cut off");
+        header_ = all.substr(start, length);
+        data_ = all.substr(start + length);
+    }
+
+    std::vector<Ray> rays(const dvec3& origin) const {
+        if (!value_of("'fortran_order':").starts_with("False")) refuse("its order is Fortran's, not C's");
+        const std::string_view type = value_of("'descr':");
+        if (type.starts_with("'<f8'")) return rays_of<double>(origin);
+        if (type.starts_with("'<f4'")) return rays_of<float>(origin);
+        refuse("its numbers are neither float64 nor float32, little endian");
+    }
+
+  private:
+    [[noreturn]] void refuse(const char* why) const { fail("rays file '", file_.string(), "': ", why); }
+
+    std::string_view value_of(std::string_view key) const {
+        const std::size_t at = header_.find(key);
+        if (at == std::string_view::npos) refuse("its header is not that of a NumPy array");
+        const std::string_view rest = header_.substr(at + key.size());
+        return rest.substr(std::min(rest.find_first_not_of(' '), rest.size()));
+    }
+
+    template <class T>
+    std::vector<Ray> rays_of(const dvec3& origin) const {
+        using Row = std::array<T, numbers_a_ray>;
+        std::vector<Ray> rays(data_.size() / sizeof(Row));
+        if (!value_of("'shape':").starts_with(text("(", rays.size(), ", ", numbers_a_ray, ")")) ||
+            data_.size() % sizeof(Row) != 0)
+            refuse("its shape is not (N, 8), or it does not hold as many numbers");
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            Row row;
+            std::memcpy(row.data(), data_.data() + i * sizeof row, sizeof row);
+            rays[i] = {vec3(dvec3(row[0], row[1], row[2]) - origin), static_cast<float>(row[3]),
+                       vec3(row[4], row[5], row[6]), static_cast<float>(row[7])};
+        }
+        return rays;
+    }
+
+    const std::filesystem::path& file_;
+    std::vector<char> bytes_;
+    std::string_view header_, data_;
+};
+
+}  // namespace
+
+std::vector<Ray> read_rays(const std::filesystem::path& file, const dvec3& origin) {
+    if (lower_suffix(file) == ".npy") return Npy(file).rays(origin);
+    std::vector<Ray> rays = read_all<Ray>(file);
+    for (Ray& ray : rays) ray.origin = vec3(dvec3(ray.origin) - origin);
+    return rays;
+}
+
+void write_hits(const std::filesystem::path& file, const std::vector<Hit>& hits) {
+    std::ofstream out(file, std::ios::binary);
+    out.write(reinterpret_cast<const char*>(hits.data()), static_cast<std::streamsize>(hits.size() * sizeof(Hit)));
+    if (!out.flush()) fail("hits file '", file.string(), "' cannot be written");
+}
+
+}  // namespace twinray

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// Whether hits are right. A Reference answers rays in float64 on the CPU and gives every answer of an accelerator a
+// class; a LeakTest needs no reference: a ray from inside a closed mesh must cross it an odd number of times.
+//
+//     Reference reference(scene);
+//     const std::vector<Ray> rays = vertex_aimed_rays(reference, 100'000, seed);
+//     const HitClassCounts counts = count(reference.classify(rays, accel.closest_hits(rays), TracedBy::software));
+//     counts.faults_of_ours();  // 0 unless twinray has a fault
+//     counts.bound_95();        // with 95 % confidence no more of such rays are faulty
+//
+// An answer is accepted if it is the exact answer to some ray within float32 rounding of the given one, so that a miss
+// at the rim of an open mesh is no fault; a leak is called only where no such ray exists.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <twinray/trace.h>
+
+namespace twinray {
+
+class AbstractAccel;
+class Context;
+class ReferenceScene;
+struct Scene;
+
+// What an answer is worth.
+enum class HitClass : std::uint8_t {
+    agree,             // same hit or miss as the reference, t within its error bound
+    tie,               // another primitive at the same t, within both error bounds
+    boundary,          // rounding decides: a silhouette, a rim, a triangle that the ray passes within rounding
+    boundary_hw_miss,  // the same, and hardware missed
+    unspecified,       // Vulkan promises nothing: T-junction, or t at t_min, t_max or beyond float32
+    invalid_input,     // hit reported for a ray that is not is_traceable()
+    sw_leak,           // missed a hit that no rounding of the ray excuses, wholly or for one farther away
+    sw_false,          // reported a triangle that the ray misses by more than rounding, or a t outside the interval
+    t_err,             // SW reported the right triangle at a t, u or v beyond the error bound
+    hw_leak,
+    hw_false,
+    hw_t_err,
+    hw_range,  // not finite t, u or v, or u, v beyond the error bound: over- or underflow in the driver
+};
+inline constexpr std::size_t hit_class_count = 13;
+std::string_view name_of(HitClass kind);   // "AGREE", "SW_LEAK", "T_ERR", ... as in reports
+bool is_fault_of_ours(HitClass kind);      // sw_leak, sw_false, t_err: their count must be 0
+bool is_fault_of_hardware(HitClass kind);  // hw_leak, hw_false, hw_t_err, hw_range: the driver's
+
+// How often each class occurred.
+struct HitClassCounts {
+    std::array<std::uint64_t, hit_class_count> counts{};
+
+    std::uint64_t operator[](HitClass kind) const { return counts[static_cast<std::size_t>(kind)]; }
+    void add(HitClass kind) { ++counts[static_cast<std::size_t>(kind)]; }
+    HitClassCounts& operator+=(const HitClassCounts& other);
+    std::uint64_t total() const, faults_of_ours() const, faults_of_hardware() const;
+    // Upper bound of the rate of faults (Clopper, Pearson 1934): 3 / total() where none was seen; 1 for no ray.
+    double bound_95() const;
+};
+HitClassCounts count(std::span<const HitClass> classes);
+
+// One instance of a mesh, in the order of the accelerator's instance array.
+struct ReferenceInstance {
+    uint geometry = 0;  // index into the meshes
+    Transform object_to_world;
+    InstanceOptions options = {};
+};
+
+// The reference's answer to a ray.
+struct ReferenceHit {
+    bool hit = false;
+    double t = -1;        // in units of the ray's direction
+    double u = 0, v = 0;  // the point is (1-u-v) v0 + u v1 + v v2
+    uint primitive = 0, instance = 0, custom_index = 0;
+
+    bool operator==(const ReferenceHit&) const = default;
+};
+
+// Whose rules hold: SwTlas must be right wherever float32 can be; of a driver a class says what it does.
+enum class TracedBy : std::uint8_t { software, hardware };
+
+// A scene in float64, built once on the CPU. Copies share it, and threads may.
+class Reference {
+  public:
+    // Copies what it needs. Throws Error on an index out of range and on a singular or non-finite transform.
+    explicit Reference(const Scene& scene);
+    Reference(std::span<const MeshView> meshes, std::span<const ReferenceInstance> instances);
+
+    // The smallest t in (t_min, t_max), then the lowest (instance, primitive); rays that are not is_traceable() miss.
+    ReferenceHit closest_hit(const Ray& ray) const;
+    bool any_hit(const Ray& ray) const;
+
+    // The class of a closest hit or a miss; Hit::custom_index and flags are not compared.
+    HitClass classify(const Ray& ray, const Hit& hit, TracedBy by) const;
+    // Of all, on all cores. Throws Error unless there is a hit a ray.
+    std::vector<HitClass> classify(std::span<const Ray> rays, std::span<const Hit> hits, TracedBy by) const;
+    // Of an any-hit query, of which only hit or miss is compared.
+    HitClass classify_any(const Ray& ray, bool is_hit, TracedBy by) const;
+
+    const ReferenceScene& scene() const { return *scene_; }  // for twinray's own parts
+
+  private:
+    std::shared_ptr<const ReferenceScene> scene_;
+};
+
+// The reference behind the interface of the accelerators, without boxes and filters. The host answers while a trace is
+// recorded, so that sync(), the rays and an indirect count are to be submitted before.
+std::unique_ptr<AbstractAccel> make_reference_accel(Context& context);
+
+// Rays from everywhere around the scene in uniform directions, or aimed at random vertices or points of edges, where
+// intersection tests break. Ray i depends on (seed, i) and the scene alone; t_min = 0, t_max = infinity.
+std::vector<Ray> random_rays(const Bounds& bounds, std::size_t count, std::uint64_t seed);
+std::vector<Ray> vertex_aimed_rays(const Reference& reference, std::size_t count, std::uint64_t seed);
+std::vector<Ray> edge_aimed_rays(const Reference& reference, std::size_t count, std::uint64_t seed);
+
+// What a leak test has found so far.
+struct LeakCounts {
+    std::uint64_t rays = 0;
+    std::uint64_t leaks = 0;        // that lost a crossing
+    std::uint64_t double_hits = 0;  // with one too many
+    std::uint64_t unspecified = 0;  // rounding decides whether a triangle seen edge-on lies before the origin
+
+    std::uint64_t faults() const { return leaks + double_hits; }
+    double bound_95() const;  // as of HitClassCounts
+};
+struct LeakFault {
+    std::uint64_t ray_index = 0;
+    Ray ray{};
+    uint crossings = 0;    // as counted: an even number
+    bool is_leak = false;  // else a double hit
+};
+
+// Rays from inside a closed mesh, aimed at its vertices and edges, with all their crossings counted on the device.
+class LeakTest {
+  public:
+    // Fills `accel`, which is empty, has Feature::kernel_queries and outlives the test. Throws Error naming the mesh
+    // and an edge that is not between two triangles, or where no point inside is found.
+    LeakTest(AbstractAccel& accel, const Mesh& mesh, Level level, std::uint64_t seed);
+    ~LeakTest();
+
+    // Traces the next `count` rays, those from counts.rays on, and adds what came out. `on_fault` gets each fault.
+    void trace(std::size_t count, LeakCounts& counts, const std::function<void(const LeakFault&)>& on_fault = {}) const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace twinray

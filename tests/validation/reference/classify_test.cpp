@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+#include "validation/reference/classify.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/core/error.h"
+#include "tests/validation/reference/float32_kernels.h"
+
+namespace twinray {
+namespace {
+
+using namespace test;  // NOLINT
+
+constexpr std::uint32_t seed = 77;
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+RayResult both(HitClass software, HitClass hardware) { return {software, hardware}; }
+
+// The same answer from both accelerators.
+RayResult check(const ReferenceScene& reference, const Ray& ray, const Hit& hit) {
+    return classify(reference, ray, hit, hit);
+}
+
+Hit hit_of(const ReferenceHit& hit) {
+    return {1, float(hit.t), hit.primitive, 0, float(hit.u), float(hit.v), hit.instance, 0};
+}
+
+Scene32 one(const Soup& soup, const Transform& transform = {}) { return {{soup}, {{0, transform, 0}}}; }
+
+// Unit squares in z = 4 and z = 6: triangles 0, 1 and 2, 3, split along x = y.
+Scene32 two_sheets() {
+    Soup soup;
+    for (const float z : {4.0f, 6.0f}) {
+        soup.add({0, 0, z}, {1, 0, z}, {1, 1, z});
+        soup.add({0, 0, z}, {1, 1, z}, {0, 1, z});
+    }
+    return one(soup);
+}
+
+const Ray inner_ray = make_ray({0.7f, 0.2f, 0}, {0, 0, 1});
+const Hit near_hit = {1, 4, 0, 0, 0.5f, 0.2f, 0, 0};
+const Hit far_hit = {1, 6, 2, 0, 0.5f, 0.2f, 0, 0};
+
+TEST(Classify, RightAnswersAgree) {
+    const ReferenceScene reference = two_sheets().reference();
+    EXPECT_EQ(check(reference, inner_ray, near_hit), both(HitClass::agree, HitClass::agree));
+    EXPECT_EQ(check(reference, make_ray({2, 2, 0}, {0, 0, 1}), miss()), both(HitClass::agree, HitClass::agree));
+}
+
+TEST(Classify, AnAcceleratorWithoutAnAnswerHasNoClass) {
+    const RayResult ray_result = classify(two_sheets().reference(), inner_ray, near_hit, std::nullopt);
+    EXPECT_EQ(ray_result.software, HitClass::agree);
+    EXPECT_EQ(ray_result.hardware, std::nullopt);
+}
+
+TEST(Classify, InteriorHitReportedAsMissIsALeak) {
+    EXPECT_EQ(check(two_sheets().reference(), inner_ray, miss()), both(HitClass::sw_leak, HitClass::hw_leak));
+}
+
+TEST(Classify, FarHitInPlaceOfANearOneIsALeak) {
+    EXPECT_EQ(check(two_sheets().reference(), inner_ray, far_hit), both(HitClass::sw_leak, HitClass::hw_leak));
+}
+
+TEST(Classify, FarHitThroughASharedEdgeIsALeak) {
+    const Ray ray = make_ray({0.5f, 0.5f, 0}, {0, 0, 1});
+    const Hit through = {1, 6, 2, 0, 0, 0.5f, 0, 0};
+    EXPECT_EQ(check(two_sheets().reference(), ray, through), both(HitClass::sw_leak, HitClass::hw_leak));
+}
+
+TEST(Classify, TriangleThatTheRayClearlyMissesIsFalse) {
+    const ReferenceScene reference = two_sheets().reference();
+    const Hit other = {1, 4, 1, 0, 0.2f, 0, 0, 0};
+    EXPECT_EQ(check(reference, inner_ray, other), both(HitClass::sw_false, HitClass::hw_false));
+    EXPECT_EQ(check(reference, make_ray({2, 2, 0}, {0, 0, 1}), near_hit), both(HitClass::sw_false, HitClass::hw_false));
+}
+
+TEST(Classify, HitOutsideTheIntervalIsFalse) {
+    Ray ray = inner_ray;
+    ray.t_min = 4.5f;
+    EXPECT_EQ(check(two_sheets().reference(), ray, near_hit), both(HitClass::sw_false, HitClass::hw_false));
+}
+
+TEST(Classify, PrimitiveOrInstanceThatCannotBeHitIsFalse) {
+    Scene32 scene = two_sheets();
+    scene.soups[0].add(vec3(nan), vec3(0), vec3(1));
+    const ReferenceScene reference = scene.reference();
+    for (const auto& [primitive, instance] : {std::pair{4u, 0u}, std::pair{5u, 0u}, std::pair{0u, 1u}}) {
+        Hit hit = near_hit;
+        hit.primitive_index = primitive;
+        hit.instance_index = instance;
+        EXPECT_EQ(check(reference, inner_ray, hit), both(HitClass::sw_false, HitClass::hw_false));
+    }
+}
+
+TEST(Classify, NeighbourAcrossASharedEdgeIsATie) {
+    const ReferenceScene reference = two_sheets().reference();
+    const Ray ray = make_ray({0.5f, 0.5f, 0}, {0, 0, 1});
+    ASSERT_EQ(reference.closest_hit(ray).primitive, 0u);
+    const Hit neighbour = {1, 4, 1, 0, 0.5f, 0, 0, 0};
+    EXPECT_EQ(check(reference, ray, neighbour), both(HitClass::tie, HitClass::tie));
+}
+
+TEST(Classify, SilhouetteIsBoundary) {
+    const ReferenceScene reference = two_sheets().reference();
+    const Ray on_rim = make_ray({1, 0.5f, 0}, {0, 0, 1});
+    ASSERT_TRUE(reference.closest_hit(on_rim).hit);
+    EXPECT_EQ(check(reference, on_rim, {1, 6, 2, 0, 0.5f, 0.5f, 0, 0}), both(HitClass::boundary, HitClass::boundary));
+    EXPECT_EQ(check(reference, on_rim, miss()), both(HitClass::boundary, HitClass::boundary_hw_miss));
+    const Ray past_rim = make_ray({std::nextafter(1.0f, 2.0f), 0.5f, 0}, {0, 0, 1});
+    ASSERT_FALSE(reference.closest_hit(past_rim).hit);
+    EXPECT_EQ(check(reference, past_rim, {1, 4, 0, 0, 0.5f, 0.5f, 0, 0}), both(HitClass::boundary, HitClass::boundary));
+}
+
+TEST(Classify, RayDownTheWallOfACubeMayHitTopOrFloor) {
+    Scene32 scene = one(cube());
+    scene.soups[0].add({-9, -9, 0}, {9, -9, 0}, {0, 9, 0});
+    const ReferenceScene reference = scene.reference();
+    const Ray ray = make_ray({1, 0.3f, 3}, {0, 0, -1});
+    const ReferenceHit top = reference.closest_hit(ray);
+    ASSERT_EQ(top.t, 2);
+    EXPECT_EQ(check(reference, ray, hit_of(top)), both(HitClass::agree, HitClass::agree));
+    const ReferenceHit floor = reference.closest_hit(make_ray({1 + 1e-6f, 0.3f, 3}, {0, 0, -1}));
+    ASSERT_EQ(floor.primitive, 12u);
+    EXPECT_EQ(check(reference, ray, hit_of(floor)), both(HitClass::boundary, HitClass::boundary));
+    EXPECT_EQ(check(reference, ray, miss()), both(HitClass::sw_leak, HitClass::hw_leak));
+}
+
+TEST(Classify, WrongTIsTErr) {
+    const ReferenceScene reference = two_sheets().reference();
+    Hit hit = near_hit;
+    hit.t = 4 + 1e-4f;
+    EXPECT_EQ(check(reference, inner_ray, hit), both(HitClass::t_err, HitClass::hw_t_err));
+    hit.t = std::nextafter(4.0f, 5.0f);
+    EXPECT_EQ(check(reference, inner_ray, hit), both(HitClass::agree, HitClass::agree));
+}
+
+TEST(Classify, HardwareIsAllowedTheErrorOfItsOwnInverse) {
+    const Transform nearly_singular = {{vec4(1, 1, 0, 0), vec4(1, 1 + 0x1p-10f, 0, 0), vec4(0, 0, 1, 0)}};
+    const ReferenceScene reference = one(two_sheets().soups[0], nearly_singular).reference();
+    const Ray ray = make_ray(transform_point(nearly_singular, {0.7f, 0.2f, 0}), {0, 0, 1});
+    Hit hit = near_hit;
+    ASSERT_EQ(check(reference, ray, hit), both(HitClass::agree, HitClass::agree));
+    hit.t = 4.02f;
+    EXPECT_EQ(check(reference, ray, hit), both(HitClass::t_err, HitClass::agree));
+}
+
+TEST(Classify, WrongBarycentricsAreOutOfRange) {
+    const ReferenceScene reference = two_sheets().reference();
+    Hit swapped = near_hit;
+    std::swap(swapped.u, swapped.v);
+    EXPECT_EQ(check(reference, inner_ray, swapped), both(HitClass::t_err, HitClass::hw_range));
+    for (float Hit::*field : {&Hit::t, &Hit::u, &Hit::v}) {
+        Hit hit = near_hit;
+        hit.*field = nan;
+        EXPECT_EQ(check(reference, inner_ray, hit), both(HitClass::t_err, HitClass::hw_range));
+    }
+}
+
+TEST(Classify, RaysThatNobodyMayTraceMustMiss) {
+    const ReferenceScene reference = two_sheets().reference();
+    const Ray ray = make_ray(vec3(nan), {0, 0, 1});
+    EXPECT_EQ(check(reference, ray, miss()), both(HitClass::agree, HitClass::agree));
+    EXPECT_EQ(check(reference, ray, near_hit), both(HitClass::invalid_input, HitClass::invalid_input));
+    EXPECT_EQ(classify_any(reference, ray, true, false), both(HitClass::invalid_input, HitClass::agree));
+}
+
+TEST(Classify, HitAtAnEndOfTheIntervalIsUnspecified) {
+    const ReferenceScene reference = two_sheets().reference();
+    Ray ray = inner_ray;
+    ray.t_max = std::nextafter(4.0f, 5.0f);
+    ASSERT_TRUE(reference.closest_hit(ray).hit);
+    EXPECT_EQ(check(reference, ray, miss()), both(HitClass::unspecified, HitClass::unspecified));
+    ray.t_max = INFINITY;
+    ray.t_min = 4;
+    Hit hit = near_hit;
+    hit.t = std::nextafter(4.0f, 5.0f);
+    EXPECT_EQ(check(reference, ray, hit), both(HitClass::unspecified, HitClass::unspecified));
+}
+
+TEST(Classify, DistanceBeyondFloat32IsUnspecified) {
+    Ray ray = inner_ray;
+    ray.direction.z = 1e-39f;
+    ASSERT_TRUE(two_sheets().reference().closest_hit(ray).hit);
+    EXPECT_EQ(check(two_sheets().reference(), ray, miss()), both(HitClass::unspecified, HitClass::unspecified));
+}
+
+// No rounding excuses a miss of a closed mesh from inside.
+void expect_misses_leak(const Soup& soup, const Transform& transform = {}) {
+    const ReferenceScene reference = one(soup, transform).reference();
+    std::vector<Ray> rays = rays_from_inside(soup, transform, 1000, seed);
+    for (std::size_t i = 0; i < 100; ++i)  // exactly through vertices, where nothing moves them
+        rays.push_back(make_ray(transform_point(transform, vec3(0)),
+                                transform_vector(transform, soup.positions[i % soup.positions.size()])));
+    for (const Ray& ray : rays) {
+        ASSERT_TRUE(reference.closest_hit(ray).hit);
+        ASSERT_EQ(check(reference, ray, miss()), both(HitClass::sw_leak, HitClass::hw_leak))
+            << "seed " << seed << ", direction " << ray.direction.x << " " << ray.direction.y << " " << ray.direction.z;
+        ASSERT_EQ(classify_any(reference, ray, false, true), both(HitClass::sw_leak, HitClass::agree))
+            << "seed " << seed;
+    }
+}
+
+TEST(Classify, MissFromInsideAClosedSphereIsALeakAlsoAtVerticesAndEdges) { expect_misses_leak(sphere(3)); }
+
+TEST(Classify, LeaksAreFoundWhateverTheWinding) {
+    Soup soup = sphere(3);
+    for (std::size_t i = 0; i < soup.triangles.size(); i += 3) std::swap(soup.triangles[i].x, soup.triangles[i].y);
+    expect_misses_leak(soup);
+}
+
+TEST(Classify, LeaksAreFoundInDoubledSurfacesAndWithoutSharedIndices) {
+    Soup doubled;
+    const Soup indexed = sphere(3);
+    for (const uvec3& t : indexed.triangles) {
+        doubled.add(indexed.positions[t.x], indexed.positions[t.y], indexed.positions[t.z]);
+        doubled.add(indexed.positions[t.y], indexed.positions[t.x], indexed.positions[t.z]);
+    }
+    expect_misses_leak(doubled);
+}
+
+TEST(Classify, LeaksAreFoundInMovedAndStretchedInstances) {
+    const Transform stretched = rotation(0.5f, 0.3f) * Transform::scaling({1, 2, 3});
+    expect_misses_leak(sphere(3), Transform::translation({1, 2, 3}) * stretched);
+}
+
+// The square's right half is split at (1, 0.3), which is no vertex of the left half.
+TEST(Classify, TJunctionIsUnspecified) {
+    Soup soup;
+    soup.add({0, 0, 4}, {1, 0, 4}, {1, 1, 4});
+    soup.add({1, 0, 4}, {2, 0, 4}, {1, 0.3f, 4});
+    soup.add({1, 0.3f, 4}, {2, 0, 4}, {1, 1, 4});
+    const ReferenceScene reference = one(soup).reference();
+    const Ray ray = make_ray({1, 0.3f, 0}, {0, 0, 1});
+    EXPECT_EQ(check(reference, ray, miss()), both(HitClass::unspecified, HitClass::unspecified));
+}
+
+TEST(Classify, SilhouetteOfAClosedMeshIsBoundary) {
+    const ReferenceScene reference = one(cube()).reference();
+    for (const float x : {0.0f, 1.0f}) {
+        const Ray down_a_wall = make_ray({x, 0.3f, 3}, {0, 0, -1});
+        EXPECT_EQ(check(reference, down_a_wall, miss()), both(HitClass::boundary, HitClass::boundary_hw_miss));
+        EXPECT_EQ(classify_any(reference, down_a_wall, false, false),
+                  both(HitClass::boundary, HitClass::boundary_hw_miss));
+    }
+}
+
+TEST(Classify, AnyHitIsClassifiedByHitAndMiss) {
+    const ReferenceScene reference = two_sheets().reference();
+    EXPECT_EQ(classify_any(reference, inner_ray, true, false), both(HitClass::agree, HitClass::hw_leak));
+    EXPECT_EQ(classify_any(reference, make_ray({2, 2, 0}, {0, 0, 1}), true, false),
+              both(HitClass::sw_false, HitClass::agree));
+    const Ray past_rim = make_ray({std::nextafter(1.0f, 2.0f), 0.5f, 0}, {0, 0, 1});
+    EXPECT_EQ(classify_any(reference, past_rim, true, false), both(HitClass::boundary, HitClass::agree));
+}
+
+TEST(ClassifyAll, ClassifiesEachRayAndRejectsListsOfAnotherLength) {
+    const ReferenceScene reference = two_sheets().reference();
+    const std::vector<Ray> rays(3, inner_ray);
+    const std::vector<Hit> hits = {near_hit, far_hit, miss()};
+    const std::vector<RayResult> ray_results = classify_all(reference, rays, hits, {});
+    ASSERT_EQ(ray_results.size(), 3u);
+    EXPECT_EQ(ray_results[0], (RayResult{HitClass::agree, {}}));
+    EXPECT_EQ(ray_results[1], (RayResult{HitClass::sw_leak, {}}));
+    EXPECT_EQ(ray_results[2], (RayResult{HitClass::sw_leak, {}}));
+    EXPECT_THROW(classify_all(reference, rays, {hits.data(), 2}, {}), Error);
+}
+
+}  // namespace
+}  // namespace twinray

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "validation/reference/reference_scene.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/core/error.h"
+#include "validation/reference/aimed_rays.h"
+#include "tests/validation/reference/meshes.h"
+
+namespace twinray {
+namespace {
+
+using namespace test;  // NOLINT
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+// One sheet: z = 4 over the unit square.
+ReferenceScene plane_at_4() {
+    Soup soup;
+    soup.add({0, 0, 4}, {1, 0, 4}, {1, 1, 4});
+    soup.add({0, 0, 4}, {1, 1, 4}, {0, 1, 4});
+    return reference_of(soup);
+}
+
+TEST(ReferenceScene, FindsWhatAPlainPlaneEquationFinds) {
+    const std::uint32_t seed = 61;
+    const Soup soup = random_soup(50, 0.5f, seed);
+    const ReferenceScene reference = reference_of(soup);
+    for (const Ray& ray : random_rays({vec3(-1), vec3(1)}, 2000, seed)) {
+        double best = INFINITY;
+        const dvec3 o(ray.origin), d(ray.direction);
+        for (const uvec3& index : soup.triangles) {
+            const dvec3 a(soup.positions[index.x]), b(soup.positions[index.y]), c(soup.positions[index.z]);
+            const dvec3 n = cross(b - a, c - a);
+            const double t = dot(a - o, n) / dot(d, n);
+            const dvec3 p = o + t * d;
+            const bool is_inside = dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 &&
+                                   dot(cross(a - c, p - c), n) >= 0;
+            if (is_inside && t > 0) best = std::min(best, t);
+        }
+        const ReferenceHit hit = reference.closest_hit(ray);
+        ASSERT_EQ(hit.hit, best < INFINITY) << "seed " << seed;
+        if (!hit.hit) continue;
+        ASSERT_NEAR(hit.t, best, 1e-10 * best) << "seed " << seed;
+        const uvec3 index = soup.triangles[hit.primitive];
+        const dvec3 point = (1 - hit.u - hit.v) * dvec3(soup.positions[index.x]) +
+                            hit.u * dvec3(soup.positions[index.y]) + hit.v * dvec3(soup.positions[index.z]);
+        ASSERT_LT(length(point - (o + hit.t * d)), 1e-10) << "seed " << seed;
+    }
+}
+
+TEST(ReferenceScene, ClosedMeshesNeverLeakFromInside) {
+    const std::uint32_t seed = 71;
+    const Soup soup = sphere(4);
+    for (const Transform& transform : {Transform{}, rotation(0.5f, 0.3f) * Transform::scaling({3, 1, 0.2f})}) {
+        const ReferenceScene reference = reference_of({soup}, {{0, transform, 0}});
+        for (const Ray& ray : rays_from_inside(soup, transform, 40000, seed))
+            ASSERT_TRUE(reference.closest_hit(ray).hit) << "seed " << seed;
+    }
+}
+
+TEST(ReferenceScene, IntervalIsOpenAtBothEnds) {
+    const ReferenceScene reference = plane_at_4();
+    const auto hits = [&](float t_min, float t_max) {
+        return reference.closest_hit(make_ray({0.7f, 0.2f, 0}, {0, 0, 1}, t_min, t_max)).hit;
+    };
+    EXPECT_TRUE(hits(0, INFINITY));
+    EXPECT_FALSE(hits(4, INFINITY));
+    EXPECT_FALSE(hits(0, 4));
+    EXPECT_TRUE(hits(std::nextafter(4.0f, 0.0f), INFINITY));
+    EXPECT_TRUE(hits(0, std::nextafter(4.0f, 5.0f)));
+    EXPECT_FALSE(hits(std::nextafter(4.0f, 5.0f), INFINITY));
+}
+
+TEST(ReferenceScene, ReportsTInUnitsOfTheDirection) {
+    const ReferenceHit hit = plane_at_4().closest_hit(make_ray({0.75f, 0.25f, 0}, {0, 0, 0.5f}));
+    EXPECT_EQ(hit, (ReferenceHit{true, 8, 0.5, 0.25, 0, 0, 0}));
+}
+
+TEST(ReferenceScene, NegativeTMinCountsAsZero) {
+    const ReferenceScene reference = plane_at_4();
+    EXPECT_FALSE(reference.any_hit(make_ray({0.7f, 0.2f, 5}, {0, 0, 1}, -10)));
+    EXPECT_FALSE(reference.any_hit(make_ray({0.7f, 0.2f, 4}, {0, 0, 1}, -10)));
+    EXPECT_TRUE(reference.any_hit(make_ray({0.7f, 0.2f, 3}, {0, 0, 1}, -10)));
+}
+
+TEST(ReferenceScene, RaysThatVulkanForbidsMiss) {
+    const ReferenceScene reference = plane_at_4();
+    const vec3 o(0.7f, 0.2f, 0), z(0, 0, 1);
+    for (const Ray& ray : {make_ray(o, vec3(0)), make_ray({nan, 0, 0}, z), make_ray(o, {0, INFINITY, 1}),
+                           make_ray(o, z, nan), make_ray(o, z, 0, nan), make_ray(o, z, 5, 3), make_ray(o, z, 0, -1)}) {
+        EXPECT_FALSE(reference.closest_hit(ray).hit);
+        EXPECT_FALSE(reference.closest_hit_brute_force(ray).hit);
+        EXPECT_FALSE(reference.any_hit(ray));
+        EXPECT_TRUE(reference.instances_hit(ray, INFINITY).empty());
+    }
+}
+
+TEST(ReferenceScene, NonFiniteAndDegenerateTrianglesAreNeverHit) {
+    Soup soup;
+    soup.add({0, 0, 1}, {1, 0, 1}, {nan, 1, 1});
+    soup.add({0, 0, 1}, {1, 0, 1}, {1, INFINITY, 1});
+    soup.add({0, 0, 1}, {1, 0, 1}, {1, 0, 1});
+    soup.add({0, 0, 1}, {0.25f, 0.125f, 1}, {1, 0.5f, 1});  // on a line
+    soup.add({0, 0, 1}, {0.1f, 0.3f, 1}, {0.7f, 2.1f, 1});  // not quite: rounded coordinates
+    soup.add({0, 0, 4}, {1, 0, 4}, {1, 1, 4});
+    const ReferenceScene reference = reference_of(soup);
+    const ReferenceHit hit = reference.closest_hit(make_ray({0.25f, 0.125f, 0}, {0, 0, 1}));
+    EXPECT_EQ(hit.primitive, 5u);
+    EXPECT_EQ(hit.t, 4);
+    for (const uint inactive : {0u, 1u, 2u, 3u}) EXPECT_EQ(reference.geometry(0).find(inactive), nullptr) << inactive;
+    EXPECT_NE(reference.geometry(0).find(4), nullptr);
+    EXPECT_NE(reference.geometry(0).find(5), nullptr);
+    EXPECT_EQ(reference.geometry(0).find(6), nullptr);
+}
+
+TEST(ReferenceScene, DuplicatesAnswerWithTheLowestInstanceThenPrimitive) {
+    Soup soup;
+    for (int i = 0; i < 40; ++i) soup.add({0, 0, 4}, {1, 0, 4}, {1, 1, 4});
+    const ReferenceScene reference = reference_of({soup}, {{0, Transform::translation({0, 0, 1}), 0}, {}, {}});
+    const ReferenceHit hit = reference.closest_hit(make_ray({0.7f, 0.2f, 0}, {0, 0, 1}));
+    EXPECT_EQ(hit.primitive, 0u);
+    EXPECT_EQ(hit.instance, 1u);
+}
+
+TEST(ReferenceScene, HandsTheCustomIndexThrough) {
+    const ReferenceScene reference = reference_of({cube()}, {{0, Transform::translation({0, 0, 5}), 16777215}});
+    EXPECT_EQ(reference.closest_hit(make_ray({0.5f, 0.3f, 0}, {0, 0, 1})).custom_index, 16777215u);
+}
+
+TEST(ReferenceScene, EmptyScenesMiss) {
+    Soup all_degenerate;
+    all_degenerate.add(vec3(1), vec3(1), vec3(2));
+    const Ray ray = make_ray(vec3(0), vec3(1));
+    for (const ReferenceScene& reference :
+         {reference_of(std::vector<Soup>{}, {}), reference_of(Soup{}), reference_of(all_degenerate)}) {
+        EXPECT_FALSE(reference.closest_hit(ray).hit);
+        EXPECT_FALSE(reference.closest_hit_brute_force(ray).hit);
+        EXPECT_FALSE(reference.any_hit(ray));
+    }
+}
+
+TEST(ReferenceScene, WorksAtTheEndsOfFloat32) {
+    for (const float scale : {1e-38f, 1e-20f, 1e20f, 1e37f}) {
+        Soup soup = sphere(2);
+        for (vec3& p : soup.positions) p *= scale;
+        const ReferenceScene reference = reference_of(soup);
+        for (const vec3& p : soup.positions) {
+            const ReferenceHit hit = reference.closest_hit(make_ray(vec3(0), p));
+            EXPECT_TRUE(hit.hit) << scale;
+            EXPECT_NEAR(hit.t, 1, 1e-6) << scale;
+        }
+    }
+}
+
+TEST(ReferenceScene, ListsTheInstancesThatARayHitsBeforeALimit) {
+    std::vector<ReferenceInstance> instances;
+    for (int i = 0; i < 9; ++i) instances.push_back({0, Transform::translation({0, 0, 20.0f - 2.0f * float(i)}), 0});
+    const ReferenceScene reference = reference_of({cube()}, instances);
+    const Ray ray = make_ray({0.5f, 0.3f, 0}, {0, 0, 1});
+    EXPECT_EQ(reference.instances_hit(ray, INFINITY).size(), 9u);
+    EXPECT_EQ(reference.instances_hit(ray, 8.5), (std::vector<uint>{6, 7, 8}));
+    EXPECT_EQ(reference.instances_hit(ray, 8.0), (std::vector<uint>{7, 8}));
+}
+
+TEST(ReferenceScene, MasksLeaveInstancesOut) {
+    const ReferenceScene reference =
+        reference_of({cube()}, {{0, {}, {.custom_index = 1, .mask = 0x0f}},
+                                {0, Transform::translation({0, 0, 4}), {.custom_index = 2, .mask = 0x30}},
+                                {0, Transform::translation({0, 0, -4}), {.mask = 0}}});
+    const Ray ray = make_ray({0.5f, 0.3f, -9}, {0, 0, 1});
+    EXPECT_EQ(reference.closest_hit(ray).custom_index, 1u);
+    EXPECT_EQ(reference.closest_hit(ray, {.mask = 0x18}).custom_index, 1u);
+    EXPECT_EQ(reference.closest_hit(ray, {.mask = 0x10}).custom_index, 2u);
+    EXPECT_FALSE(reference.closest_hit(ray, {.mask = 0xc0}).hit);
+    EXPECT_FALSE(reference.any_hit(ray, {.mask = 0xc0}));
+}
+
+// What is left after culling is what a search over all triangles of the side that faces the ray finds.
+TEST(ReferenceScene, CullingKeepsTheTrianglesWhoseNormalTellsSo) {
+    const std::uint32_t seed = 81;
+    const Soup soup = random_soup(300, 0.5f, seed);
+    const ReferenceScene all = reference_of(soup);
+    std::size_t hits = 0;
+    for (const Ray& ray : random_rays({vec3(-1), vec3(1)}, 200, seed)) {
+        Soup sides[2];  // shows the front, the back
+        std::vector<uint> kept[2];
+        for (uint i = 0; i < soup.triangles.size(); ++i) {
+            const uvec3 t = soup.triangles[i];
+            const dvec3 a(soup.positions[t.x]), b(soup.positions[t.y]), c(soup.positions[t.z]);
+            const bool is_back = dot(cross(b - a, c - a), dvec3(ray.direction)) > 0;
+            sides[is_back].positions = soup.positions;
+            sides[is_back].triangles.push_back(t);
+            kept[is_back].push_back(i);
+        }
+        for (const bool cull_back : {false, true}) {
+            const ReferenceHit expected = reference_of(sides[!cull_back]).closest_hit_brute_force(ray);
+            const ReferenceHit found = all.closest_hit(ray, {.flags = cull_back ? CULL_BACK : CULL_FRONT});
+            ASSERT_EQ(found.hit, expected.hit) << "seed " << seed;
+            if (!found.hit) continue;
+            ASSERT_EQ(found.t, expected.t);
+            ASSERT_EQ(found.primitive, kept[!cull_back][expected.primitive]);
+            ++hits;
+        }
+    }
+    EXPECT_GT(hits, 50u);
+}
+
+TEST(ReferenceScene, WrongInputIsNamed) {
+    Soup soup = cube();
+    soup.triangles[3].y = 8;
+    const auto message = [](const auto& make) -> std::string {
+        try {
+            make();
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "no error";
+    };
+    EXPECT_EQ(message([&] { reference_of(soup); }),
+              "mesh 'test': triangle 3 has vertex index 8, but the mesh has only 8 vertices");
+    EXPECT_EQ(message([] { reference_of({cube()}, {{}, {1, {}, 0}}); }), "instance 1: geometry 1 of 1");
+    EXPECT_NE(message([] {
+                  reference_of({cube()}, {{0, Transform::scaling({1, 0, 1}), 0}});
+              }).find("instance 0"),
+              std::string::npos);
+}
+
+TEST(ReferenceScene, OfASceneFollowsItsInstances) {
+    Scene scene;
+    const Soup soup = cube();
+    Mesh mesh;
+    mesh.positions = soup.positions;
+    mesh.triangles = soup.triangles;
+    scene.meshes = {Mesh{}, mesh};
+    scene.instances = {{"empty", 0, {}}, {"cube", 1, Transform::translation({0, 0, 5})}};
+    const ReferenceHit hit = ReferenceScene::of(scene).closest_hit(make_ray({0.5f, 0.3f, 0}, {0, 0, 1}));
+    EXPECT_EQ(hit.t, 5);
+    EXPECT_EQ(hit.instance, 1u);
+}
+
+}  // namespace
+}  // namespace twinray

@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Writes replays by `twinray verify` and shows them. Usage: replay_command_test.py TWINRAY"""
+import json
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+
+twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+
+
+def run(*arguments, status=0):
+    done = subprocess.run([twinray, *arguments, "--quiet"], capture_output=True, text=True, cwd=here)
+    assert done.returncode == status, f"{arguments}: status {done.returncode}\n{done.stdout}{done.stderr}"
+    return done.stdout + done.stderr
+
+
+# A flat grid of unit cells, where the boxes of drivers are flat, too.
+n = 8
+vertices = "".join(f"{x} 0 {z}\n" for z in range(n + 1) for x in range(n + 1))
+faces = "".join(f"3 {i} {i + n + 1} {i + 1}\n3 {i + 1} {i + n + 1} {i + n + 2}\n"
+                for z in range(n) for x in range(n) for i in [z * (n + 1) + x])
+(here / "grid.ply").write_text(f"ply\nformat ascii 1.0\nelement vertex {(n + 1) ** 2}\nproperty float x\n"
+                               "property float y\nproperty float z\n"
+                               f"element face {2 * n * n}\nproperty list uchar int vertex_indices\nend_header\n"
+                               + vertices + faces)
+run("verify", "grid.ply", "--random", "100", "--aimed", "20000", "--replays", "out", "--json", "all.jsonl")
+assert not (here / "twinray_replays").exists(), "no fault of ours, but a folder of that name"
+records = [json.loads(line) for line in (here / "all.jsonl").read_text().splitlines()]
+leaks = sum(min(100, r["counts"]["HW_LEAK"]) for r in records if r["backend"] == "hw")
+files = sorted((here / "out").glob("*HW_LEAK*.json")) if leaks else []
+assert len(files) == leaks, (len(files), leaks)
+
+# By hand: a ray through a vertex of four cells, that nobody loses.
+ray = {"origin": ["0x1p+1", "0x1.8p+1", "0x1p+1"], "direction": ["0x0p+0", "-0x1p+0", "0x0p+0"], "t_min": "0x0p+0", "t_max": "inf"}
+if files:
+    replay = json.loads(files[0].read_text())
+    assert replay["class"] == "HW_LEAK" and pathlib.Path(replay["scene"]) == here / "grid.ply"
+    shown = run("verify", "--replay", str(files[0]))
+    for words in ["HW_LEAK of hw", "What is true", "exactly", "Triangle tests", "edge across from vertex 2", "Boxes",
+                  "padded enters", "slipped between", "no fault of ours"]:
+        assert words in shown, f"no '{words}' in\n{shown}"
+    assert ": padded PASSES" not in shown, shown  # the padding is what the driver lacks
+
+    replay["ray"] = ray
+    (here / "vertex.json").write_text(json.dumps(replay))
+    shown = run("verify", "--replay", "vertex.json")
+    assert "at its vertex; 6 triangles meet the ray at this t" in shown and "a tie" in shown, shown
+
+    replay["scene_hash"] = "0" * 16
+    (here / "other.json").write_text(json.dumps(replay))
+    assert "is not the one that was traced" in run("verify", "--replay", "other.json", status=1)
+assert "--replay" in run("verify", status=2)
+run("verify", "grid.ply", "--replay", "all.jsonl", status=2)
+print(f"replay: {len(files)} leaks of the driver, the first one shown")

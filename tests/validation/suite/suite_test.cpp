@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// The suite's runner, on a device.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "validation/replay/replay.h"
+#include "validation/replay/scene_file.h"
+#include "validation/report/page.h"
+#include "validation/suite/case_run.h"
+#include "validation/suite/checks.h"
+#include "engine/core/error.h"
+#include <twinray/geometry.h>
+#include "validation/reference/aimed_rays.h"
+#include "tests/scene/temp_dir.h"
+#include "tests/support/device.h"
+
+namespace twinray::suite {
+namespace {
+
+class SuiteRun : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        if (!test::make_context()) return;
+        devices_ = std::make_unique<Devices>(ContextDesc{.validation = true});
+        can_run_ = true;
+    }
+    std::vector<Record> run(const std::vector<SuiteCase>& cases, const Settings& settings = {}) {
+        Recorder recorder({"now", "0.1", {}});
+        suite::run(cases, settings, *devices_, recorder, true);
+        EXPECT_TRUE(devices_->context(Backend::software).validation_messages().empty());
+        return recorder.records();
+    }
+    bool can_run_ = false;
+    std::unique_ptr<Devices> devices_;
+};
+
+SuiteCase make_case(const char* id, std::function<void(CaseRun&)> run, const char* not_run = "") {
+    return {id, "title", "measures", "criterion", std::move(run), not_run};
+}
+
+// Of every second triangle, so that a reference of the whole finds leaks.
+World world_with_holes() {
+    World world = world_of(make_icosphere(3));
+    Mesh holes = make_icosphere(3);
+    for (std::size_t i = 0; i < holes.triangles.size(); i += 2) holes.triangles[i] = uvec3(0);
+    world.fill = [holes](AbstractAccel& accel) { accel.push(holes); };
+    return world;
+}
+
+std::vector<Ray> rays() { return random_rays({vec3(-1), vec3(1)}, 500, 1); }
+
+const std::function<void(CaseRun&)> sound = [](CaseRun& run) { run.measure(world_of(make_icosphere(3)), rays()); };
+
+TEST_F(SuiteRun, MeasuresEveryAbleConfigurationAndListsTheOthers) {
+    if (!can_run_) return;
+    const std::vector<Record> records = run({make_case("W01", sound)});
+    std::size_t configurations = 0;
+    for (const Record& record : records) {
+        if (!record.was_run) {
+            EXPECT_FALSE(record.reason.empty());
+            continue;
+        }
+        ++configurations;
+        EXPECT_EQ(record.n, 500u);
+        ASSERT_TRUE(record.time && record.error);
+        EXPECT_EQ(record.time->reps, 3u);
+        EXPECT_GT(record.time->median, 0);
+        EXPECT_TRUE(record.time->phases_ms.contains("build"));
+    }
+    EXPECT_GE(configurations, 2u);
+    EXPECT_EQ(report::faults_of_ours(records), 0u);
+}
+
+TEST_F(SuiteRun, LeaksOfOursAndOfTheDriverAreToldApart) {
+    if (!can_run_) return;
+    const test::TempDir folder;
+    const std::vector<Record> records =
+        run({make_case("W01", [](CaseRun& here) { here.measure(world_with_holes(), rays()); })},
+            {.levels = {Level::fast, Level::watertight}, .replays_in = folder / "report"});
+    std::size_t ours = 0;
+    for (const Record& record : records) {
+        if (!record.was_run || record.level != "watertight") continue;
+        EXPECT_EQ(record.pass, false);
+        EXPECT_EQ(record.fault_of, record.backend == "sw" ? "twinray" : "driver");
+        EXPECT_GT(record.counts.at(record.backend == "sw" ? "SW_LEAK" : "HW_LEAK"), 0u);
+        EXPECT_FALSE(record.example.empty());
+        const std::filesystem::path file = folder / "report" / record.replay;
+        const replay::Replay replay = replay::read(file);
+        EXPECT_EQ(record.example, replay.kind + ' ' + hexadecimal(replay.ray));
+        EXPECT_EQ(replay.backend + replay.level, record.backend + record.level);
+        EXPECT_EQ(replay::hash_of(load_scene(file.parent_path() / replay.scene)), replay.scene_hash);
+        if (record.backend == "sw") ++ours;
+    }
+    EXPECT_EQ(ours, 1u);
+    EXPECT_EQ(report::faults_of_ours(records), 1u);
+}
+
+TEST_F(SuiteRun, AControlThatShowsNothingIsAFaultOfOurs) {
+    if (!can_run_) return;
+    const Settings software{.backends = {Backend::software}, .levels = {Level::watertight, Level::fast}};
+    Control control = without_precise();
+    control.must_show = true;
+    const auto measure = [&](const World& world) {
+        return run({make_case("W01", [&](CaseRun& here) { here.measure(world, rays(), {.control = control}); })},
+                   software);
+    };
+    const std::vector<Record> shown = measure(world_with_holes()), hidden = measure(world_of(make_icosphere(3)));
+    ASSERT_TRUE(shown.size() == 1 && hidden.size() == 1);
+    EXPECT_EQ(shown[0].variant, "control: without precise");
+    EXPECT_EQ(shown[0].pass, true);
+    EXPECT_EQ(hidden[0].pass, false);
+    EXPECT_EQ(hidden[0].fault_of, "twinray");
+    const auto fast = [&](const World& world) {
+        const Settings only_fast{.backends = {Backend::software}, .levels = {Level::fast}};
+        return run({make_case("W01", [&](CaseRun& here) { here.measure(world, rays(), {.fast_is_control = true}); })},
+                   only_fast);
+    };
+    EXPECT_EQ(fast(world_with_holes())[0].pass, true);
+    EXPECT_EQ(fast(world_of(make_icosphere(3)))[0].pass, false);
+}
+
+TEST_F(SuiteRun, ACaseThatThrowsIsRecordedAndTheRestGoesOn) {
+    if (!can_run_) return;
+    const std::vector<Record> records = run({make_case("W01", [](CaseRun&) { fail("broken"); }),
+                                             make_case("W02", nullptr, "nobody wrote it"), make_case("W03", sound)});
+    ASSERT_GE(records.size(), 3u);
+    EXPECT_EQ(records[0].reason, "broken");
+    EXPECT_EQ(records[0].fault_of, "twinray");
+    EXPECT_FALSE(records[1].was_run);
+    EXPECT_EQ(records[1].reason, "nobody wrote it");
+    EXPECT_TRUE(std::any_of(records.begin(), records.end(),
+                            [](const Record& r) { return r.case_id == "W03" && r.pass.value_or(false); }));
+    EXPECT_EQ(report::faults_of_ours(records), 1u);
+}
+
+TEST_F(SuiteRun, OnlyWhatIsAskedForRuns) {
+    if (!can_run_) return;
+    const Settings settings{.backends = {Backend::software}, .levels = {Level::watertight}, .only = {"W0?"}};
+    const std::vector<Record> records = run({make_case("W01", sound), make_case("S01", sound)}, settings);
+    ASSERT_EQ(records.size(), 1u);
+    EXPECT_EQ(records[0].case_id + records[0].backend + records[0].level, "W01swwatertight");
+}
+
+TEST_F(SuiteRun, NoCaseBeginsAfterTheTime) {
+    if (!can_run_) return;
+    const Settings settings{.seconds = 1e-9};
+    const std::vector<Record> records = run({make_case("W01", sound)}, settings);
+    ASSERT_EQ(records.size(), 1u);
+    EXPECT_FALSE(records[0].was_run);
+    EXPECT_NE(records[0].reason.find("was spent before its turn"), std::string::npos) << records[0].reason;
+}
+
+}  // namespace
+}  // namespace twinray::suite

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "validation/kernels/compile.h"
+
+#include "engine/core/parallel.h"
+#include "validation/kernels/family.h"
+#include "validation/kernels/kernel_list.h"
+
+namespace twinray::kernels {
+namespace {
+
+bool fits(const ListedKernel& kernel, const std::string& filter) {
+    return (kernel.name + ' ' + kernel.variant).find(filter) != std::string::npos;
+}
+
+// Each pipeline goes before its thread compiles the next one.
+std::vector<KernelRow> compile_all(const KernelList& list, const std::string& device, const std::string& filter) {
+    std::vector<KernelRow> rows(list.kernels.size());
+    parallel_for(rows.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const ListedKernel& kernel = list.kernels[i];
+            if (!fits(kernel, filter)) continue;
+            const KernelStatistics statistics = compile_for_statistics(*list.context, kernel.desc, kernel.args_bytes);
+            rows[i] = {device, kernel.name, kernel.variant, figures_of(statistics.told), statistics.subgroup_size};
+        }
+    });
+    std::erase_if(rows, [](const KernelRow& row) { return row.kernel.empty(); });
+    return rows;
+}
+
+}  // namespace
+
+CompiledKernels compile_kernels(const ContextDesc& desc, const std::string& family, const std::string& filter) {
+    if (!family.empty()) pretend_family(family);
+    const KernelList list = list_kernels(desc);
+    const DeviceFacts& facts = list.context->facts();
+    const std::string device = family.empty() ? facts.name : family;
+    return {device, facts.name, facts.driver, compile_all(list, device, filter),
+            filter.empty() ? list_builds(*list.context) : std::vector<BuildRow>()};
+}
+
+}  // namespace twinray::kernels

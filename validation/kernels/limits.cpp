@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "validation/kernels/limits.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "engine/core/error.h"
+
+namespace twinray::kernels {
+namespace {
+
+using Figure = std::optional<std::uint64_t> KernelFigures::*;
+
+struct Column {
+    const char* key;    // in files
+    const char* title;  // in tables; null: not there
+    const char* words;  // in sentences; null: it has no limit
+    Figure figure;
+    bool has_margin;
+};
+
+constexpr Column columns[] = {
+    {"vgprs", "VGPR", "registers", &KernelFigures::vgprs, false},
+    {"sgprs", nullptr, nullptr, &KernelFigures::sgprs, false},
+    {"waves", "waves", nullptr, &KernelFigures::waves, false},
+    {"scratch", "scratch", "bytes of scratch", &KernelFigures::scratch_bytes, false},
+    {"shared", "shared", "bytes of shared memory", &KernelFigures::shared_bytes, false},
+    {"instructions", "instructions", "instructions", &KernelFigures::instructions, true},
+    {"code", nullptr, nullptr, &KernelFigures::code_bytes, false},
+};
+
+std::string name_of(const KernelRow& row) {
+    return row.device + ": " + row.kernel + (row.variant.empty() ? "" : ", " + row.variant);
+}
+
+KernelRow row_of(const nlohmann::json& json) {
+    KernelRow row{json.at("device"), json.at("kernel"), json.at("variant"), {}, json.value("subgroup", 0u)};
+    for (const Column& column : columns)
+        if (json.contains(column.key)) row.figures.*column.figure = json.at(column.key).get<std::uint64_t>();
+    return row;
+}
+
+void compare(const KernelRow& row, const KernelRow& limit, double margin, std::vector<std::string>& faults) {
+    for (const Column& column : columns) {
+        const auto now = row.figures.*column.figure, most = limit.figures.*column.figure;
+        if (!column.words || !now || !most) continue;
+        const double allowed = static_cast<double>(*most) * (column.has_margin ? 1 + margin : 1);
+        if (static_cast<double>(*now) > allowed)
+            faults.push_back(
+                text(name_of(row), ": ", *now, ' ', column.words, ", at most ", static_cast<std::uint64_t>(allowed)));
+    }
+}
+
+std::vector<std::string> cells_of(const KernelRow& row) {
+    std::vector<std::string> cells{row.kernel, row.variant};
+    for (const Column& column : columns)
+        if (const auto value = row.figures.*column.figure; column.title)
+            cells.push_back(value ? std::to_string(*value) : "");
+    return cells;
+}
+
+}  // namespace
+
+nlohmann::json to_json(const KernelRow& row) {
+    nlohmann::json json{{"device", row.device}, {"kernel", row.kernel}, {"variant", row.variant}};
+    for (const Column& column : columns)
+        if (const auto value = row.figures.*column.figure) json[column.key] = *value;
+    if (row.subgroup_size) json["subgroup"] = row.subgroup_size;
+    return json;
+}
+
+std::vector<KernelRow> read_rows(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    if (!in) fail("'", file.string(), "' cannot be read");
+    std::vector<KernelRow> rows;
+    std::string line;
+    for (int number = 1; std::getline(in, line); ++number) {
+        try {
+            const nlohmann::json json = nlohmann::json::parse(line);
+            if (json.contains("kernel")) rows.push_back(row_of(json));
+        } catch (const nlohmann::json::exception& failure) {
+            fail("'", file.string(), "', line ", number, ": ", failure.what());
+        }
+    }
+    return rows;
+}
+
+std::vector<std::string> grown(std::span<const KernelRow> rows, std::span<const KernelRow> limits, double margin) {
+    std::vector<std::string> faults;
+    for (const KernelRow& row : rows) {
+        const auto limit =
+            std::ranges::find_if(limits, [&](const KernelRow& other) { return name_of(other) == name_of(row); });
+        if (limit == limits.end())
+            faults.push_back(name_of(row) + ": there is no limit for it");
+        else
+            compare(row, *limit, margin, faults);
+    }
+    return faults;
+}
+
+std::string table_of(std::span<const KernelRow> rows) {
+    std::vector<std::vector<std::string>> lines{{"kernel", "specialisation"}};
+    for (const Column& column : columns)
+        if (column.title) lines.front().push_back(column.title);
+    for (const KernelRow& row : rows) lines.push_back(cells_of(row));
+    std::vector<std::size_t> widths(lines.front().size());
+    for (const auto& cells : lines)
+        for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], cells[i].size());
+    std::string table;
+    for (const auto& cells : lines) {
+        std::ostringstream line;
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            line << (i == 0 ? "" : "  ") << (i < 2 ? std::left : std::right) << std::setw(static_cast<int>(widths[i]))
+                 << cells[i];
+        const std::string text = line.str();
+        table += text.substr(0, text.find_last_not_of(' ') + 1) + '\n';
+    }
+    return table;
+}
+
+}  // namespace twinray::kernels

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "validation/leaks/leak_state.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+
+void trace_until(const LeakTest& test, std::uint64_t rays, LeakState& state,
+                 const std::function<void(const LeakFault&)>& on_fault, const std::function<void(std::size_t)>& after) {
+    constexpr std::uint64_t batch_size = 1 << 17;
+    const auto begin = std::chrono::steady_clock::now();
+    const double seconds_before = state.seconds;
+    while (state.counts.rays < rays) {
+        const auto count = static_cast<std::size_t>(std::min(batch_size, rays - state.counts.rays));
+        test.trace(count, state.counts, on_fault);
+        state.seconds =
+            seconds_before + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        after(count);
+    }
+}
+
+std::uint64_t hash_of(const Mesh& mesh) {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (const uvec3& triangle : mesh.triangles)
+        for (int vertex = 0; vertex < 3; ++vertex)
+            for (int axis = 0; axis < 3; ++axis)
+                hash = (hash ^ std::bit_cast<std::uint32_t>(mesh.positions[triangle[vertex]][axis])) * 0x100000001b3u;
+    return hash;
+}
+
+LeakState read_state(const std::filesystem::path& file, const nlohmann::json& identity) {
+    std::ifstream in(file);
+    const nlohmann::json state = nlohmann::json::parse(in, nullptr, false);
+    if (!state.is_object()) fail("'", file.string(), "' holds no state of `twinray leaks`");
+    for (const auto& [name, value] : identity.items())
+        if (const nlohmann::json was = state.value(name, nlohmann::json()); was != value)
+            fail("'", file.string(), "' is of another run: its ", name, " is ", was.dump(), ", not ", value.dump());
+    try {
+        return {{state.at("rays"), state.at("leaks"), state.at("double_hits"), state.at("unspecified")},
+                state.at("seconds")};
+    } catch (const nlohmann::json::exception& error) {
+        fail("'", file.string(), "': ", error.what());
+    }
+}
+
+void write_state(const std::filesystem::path& file, nlohmann::json identity, const LeakState& state) {
+    identity.update({{"rays", state.counts.rays},
+                     {"leaks", state.counts.leaks},
+                     {"double_hits", state.counts.double_hits},
+                     {"unspecified", state.counts.unspecified},
+                     {"seconds", state.seconds}});
+    const std::filesystem::path unfinished = file.string() + ".unfinished";
+    std::ofstream out(unfinished);
+    out << identity.dump(2) << '\n';
+    if (!out.flush()) fail("state file '", unfinished.string(), "' cannot be written");
+    out.close();
+    std::filesystem::rename(unfinished, file);
+}
+
+}  // namespace twinray

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "validation/records/recorder.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Row = std::vector<std::pair<std::string, std::string>>;  // (column, cell)
+
+void flatten(const std::string& name, const Json& json, Row& row) {
+    if (json.is_structured()) {
+        for (const auto& [key, value] : json.items()) flatten(name.empty() ? key : name + '.' + key, value, row);
+    } else if (!json.is_null()) {
+        row.emplace_back(name, json.is_string() ? json.get<std::string>() : json.dump());
+    }
+}
+
+std::string quoted(const std::string& cell) {
+    if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
+    std::string result = "\"";
+    for (const char c : cell) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return result + '"';
+}
+
+// Columns stay beside those of the same group, in the order of their first appearance.
+std::vector<std::string> columns_of(const std::vector<Row>& rows) {
+    std::vector<std::string> columns;
+    for (const Row& row : rows) {
+        auto after = columns.begin();
+        for (const auto& [column, cell] : row) {
+            const auto found = std::find(columns.begin(), columns.end(), column);
+            after = std::next(found == columns.end() ? columns.insert(after, column) : found);
+        }
+    }
+    return columns;
+}
+
+}  // namespace
+
+Recorder::Recorder(Run run, const std::filesystem::path& json_lines) : run_(std::move(run)), path_(json_lines) {
+    if (path_.empty()) return;
+    file_.open(path_);
+    if (!file_) fail("report '", path_.string(), "' cannot be written");
+}
+
+void Recorder::add(Record record) {
+    record.run = run_.started;
+    record.git = run_.git;
+    record.device = run_.device;
+    if (file_.is_open()) {
+        file_ << to_json(record) << '\n';
+        if (!file_.flush()) fail("report '", path_.string(), "' cannot be written");
+    }
+    records_.push_back(std::move(record));
+}
+
+void write_csv(const std::filesystem::path& file, std::span<const Record> records) {
+    std::vector<Row> rows;
+    for (const Record& record : records) flatten("", Json::parse(to_json(record)), rows.emplace_back());
+    const std::vector<std::string> columns = columns_of(rows);
+    std::ofstream out(file);
+    const auto write_line = [&](const auto& cell_of) {
+        for (std::size_t i = 0; i < columns.size(); ++i) out << (i ? "," : "") << quoted(cell_of(columns[i]));
+        out << "\r\n";
+    };
+    write_line([](const std::string& column) { return column; });
+    for (const Row& row : rows)
+        write_line([&](const std::string& column) {
+            const auto found = std::find_if(row.begin(), row.end(), [&](const auto& at) { return at.first == column; });
+            return found == row.end() ? std::string() : found->second;
+        });
+    if (!out.flush()) fail("table '", file.string(), "' cannot be written");
+}
+
+JsonLines read_json_lines(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    if (!in || std::filesystem::is_directory(file)) fail("report '", file.string(), "' cannot be opened");
+    JsonLines lines;
+    std::string line;
+    for (std::size_t number = 1; std::getline(in, line); ++number) {
+        if (line.empty()) continue;
+        try {
+            if (const std::string kind = kind_of_json(line); !kind.empty())
+                ++lines.others[kind];
+            else
+                lines.records.push_back(record_of_json(line));
+        } catch (const Error& error) {
+            fail("report '", file.string(), "' line ", number, ": ", error.what());
+        }
+    }
+    return lines;
+}
+
+std::string utc_now() {
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm utc{};
+    if (!gmtime_r(&now, &utc)) fail("the system's clock shows no date: ", now);
+    char text[32];
+    return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
+}
+
+}  // namespace twinray

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Writes the records of one run.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "validation/records/record.h"
+
+namespace twinray {
+
+// Appends each record to a file of JSON lines at once, so that a run that is cut short leaves what it has measured.
+class Recorder {
+  public:
+    // What all records of the run share.
+    struct Run {
+        std::string started;  // ISO 8601, UTC
+        std::string git;
+        RecordedDevice device;
+    };
+    // Replaces `json_lines`; an empty path keeps the records in memory alone. Throws Error naming the file.
+    explicit Recorder(Run run, const std::filesystem::path& json_lines = {});
+
+    // Fills in the run. Throws Error when the file cannot be written.
+    void add(Record record);
+    const Run& run() const { return run_; }
+    const std::vector<Record>& records() const { return records_; }
+
+  private:
+    Run run_;
+    std::filesystem::path path_;
+    std::ofstream file_;
+    std::vector<Record> records_;
+};
+
+// The same as a table: one row each, one column for each field that any of them has, nested names joined by dots
+// ("counts.AGREE"), quoted by RFC 4180. Throws Error naming the file.
+void write_csv(const std::filesystem::path& file, std::span<const Record> records);
+
+// What a file of JSON lines holds, to which any command may have appended.
+struct JsonLines {
+    std::vector<Record> records;                // of reports
+    std::map<std::string, std::size_t> others;  // how many of each kind_of_json()
+};
+// Throws Error naming the file and the line.
+JsonLines read_json_lines(const std::filesystem::path& file);
+
+// Now, as Recorder::Run::started.
+std::string utc_now();
+
+}  // namespace twinray

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Checks what the accelerators answered, ray by ray, against the float64 reference. An answer is accepted if it is the
+// exact answer to some ray within float32 rounding of the given one (see ErrorBounds); a leak is called only where no
+// such ray exists (see Coverage), so a miss at a shared edge of a closed mesh is a leak and not an excuse.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/core/ray.h"
+#include <twinray/validation.h>
+#include "validation/reference/reference_scene.h"
+
+namespace twinray {
+
+// Empty for an accelerator that gave no answer.
+struct RayResult {
+    std::optional<HitClass> software;
+    std::optional<HitClass> hardware;
+
+    bool operator==(const RayResult&) const = default;
+};
+
+// The exact closest hit, t, u and v rounded once: asked where float64 does not decide (see is_certain). Empty: float64
+// has the last word.
+using Arbiter = std::function<ReferenceHit(const Ray&)>;
+
+// The reference's closest hit, or the arbiter's where float64 cannot tell.
+ReferenceHit reference_hit(const ReferenceScene& reference, const Ray& ray, const Arbiter& arbiter);
+
+// For QUERY_CLOSEST. Hit::custom_index and flags are not checked. Pure and deterministic; threads may share the
+// reference.
+RayResult classify(const ReferenceScene& reference, const Ray& ray, const std::optional<Hit>& software,
+                   const std::optional<Hit>& hardware, const Arbiter& arbiter = {});
+
+// For QUERY_ANY, of which only hit or miss is checked.
+RayResult classify_any(const ReferenceScene& reference, const Ray& ray, const std::optional<bool>& software,
+                       const std::optional<bool>& hardware);
+
+// classify for every ray on all cores, which call the arbiter at once; each list of hits is empty or as long as the
+// rays (else Error).
+std::vector<RayResult> classify_all(const ReferenceScene& reference, std::span<const Ray> rays,
+                                    std::span<const Hit> software, std::span<const Hit> hardware,
+                                    const Arbiter& arbiter = {});
+
+}  // namespace twinray

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "validation/report/summary.h"
+
+#include <iomanip>
+#include <map>
+
+#include "validation/report/page.h"
+
+namespace twinray::report {
+
+void print_summary(std::ostream& out, std::span<const Record> records) {
+    std::map<std::string, std::size_t> sums;
+    for (const Record& record : records) {
+        ++sums[result_of(record)];
+        if (!record.pass.value_or(true))
+            out << "  " << std::left << std::setw(5) << record.case_id << std::setw(12) << record.backend
+                << std::setw(11) << record.level << result_of(record) << ": " << record.faults << " of " << record.n
+                << (record.reason.empty() ? "" : "; ") << record.reason << (record.example.empty() ? "" : "; ")
+                << record.example << '\n';
+    }
+    out << "  ";
+    const char* separator = "";
+    for (const auto& [kind, count] : sums) {
+        out << separator << kind << ' ' << count;
+        separator = ", ";
+    }
+    out << '\n';
+}
+
+void print_baseline(std::ostream& out, const JsonLines& baseline, std::span<const Record> records) {
+    out << "  baseline: " << count_comparable(baseline.records, records) << " of " << records.size()
+        << " records have one there to be compared with";
+    const char* separator = "; not compared: ";
+    for (const auto& [kind, count] : baseline.others) {
+        out << separator << count << " of " << kind;
+        separator = ", ";
+    }
+    out << '\n';
+}
+
+void print_changes(std::ostream& out, std::span<const Change> changes) {
+    for (const Change& change : changes) out << "  worse: " << change.what << ": " << change.how << '\n';
+}
+
+}  // namespace twinray::report

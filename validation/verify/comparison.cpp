@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "validation/verify/comparison.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <twinray/scene.h>
+#include "engine/core/error.h"
+#include "validation/reference/aimed_rays.h"
+
+namespace twinray {
+namespace {
+
+bool is_same(const Hit& a, const Hit& b) {
+    return a.hit == b.hit && a.instance_index == b.instance_index && a.primitive_index == b.primitive_index;
+}
+
+template <class Call>
+auto timed(double& seconds, const Call& call) {
+    const auto start = std::chrono::steady_clock::now();
+    auto result = call();
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+void keep(std::vector<Fault>& faults, const Fault& fault) {
+    if (!is_fault_of_ours(fault.kind) && !is_fault_of_hardware(fault.kind)) return;
+    const auto alike = std::ranges::count(faults, fault.kind, &Fault::kind);
+    if (static_cast<std::size_t>(alike) < (fault.is_of_software ? max_faults_of_ours : max_faults_of_driver))
+        faults.push_back(fault);
+}
+
+AccelOptions options_for(Level level) { return {.level = std::max(level, Level::watertight)}; }
+
+// Built, and its kernel compiled.
+void build(AbstractAccel& accel, const Scene& scene, Level level) {
+    push_scene(accel, scene);
+    const Ray ray{vec3(0), 0, vec3(1), 1};
+    static_cast<void>(accel.closest_hits(std::span(&ray, 1), {.level = level}));
+}
+
+std::string lacking_for_hardware(const DeviceFacts& device, Level level) {
+    if (const std::vector<std::string> missing = missing_for_hardware(device); !missing.empty())
+        return "the device lacks " + joined(missing);
+    const Capability able = HwTlas::capability_on(device, feature_of(level));
+    return able.support == Support::unsupported ? text(name_of(able.feature), ": ", able.note) : "";
+}
+
+}  // namespace
+
+std::vector<RaySet> test_rays(const ReferenceScene& reference, const Scene& scene, std::size_t random,
+                              std::size_t aimed, std::uint64_t seed) {
+    return {{"random", random_rays(bounds_of(scene), random, seed)},
+            {"vertex", vertex_aimed_rays(reference, aimed, seed)},
+            {"edge", edge_aimed_rays(reference, aimed, seed)}};
+}
+
+std::uint64_t Comparison::disagreeing() const {
+    std::uint64_t count = 0;
+    for (const auto& [classes, n] : disagreements) count += n;
+    return count;
+}
+
+Verifier::Verifier(Context& context, const Scene& scene, Level level)
+    : level_(level),
+      reference_(ReferenceScene::of(scene)),
+      why_no_hardware_(lacking_for_hardware(context.facts(), level)),
+      software_(context, options_for(level)) {
+    build(software_, scene, level);
+    if (!why_no_hardware_.empty()) return;
+    hardware_ = std::make_unique<HwTlas>(context, BuildOrder::automatic, options_for(level));
+    build(*hardware_, scene, level);
+}
+
+Comparison Verifier::compare(std::span<const Ray> rays, const Arbiter& arbiter, Progress& progress) {
+    constexpr std::size_t batch_size = 1 << 18;
+    Comparison comparison;
+    for (std::size_t first = 0; first < rays.size(); first += batch_size) {
+        const auto batch = rays.subspan(first, std::min(batch_size, rays.size() - first));
+        compare_batch(batch, arbiter, comparison);
+        progress.advance(batch.size());
+    }
+    return comparison;
+}
+
+void Verifier::compare_batch(std::span<const Ray> rays, const Arbiter& arbiter, Comparison& comparison) {
+    const TraceDesc desc{.level = level_};
+    const std::vector<Hit> software =
+        timed(comparison.software_seconds, [&] { return software_.closest_hits(rays, desc); });
+    std::vector<Hit> hardware;
+    if (hardware_) hardware = timed(comparison.hardware_seconds, [&] { return hardware_->closest_hits(rays, desc); });
+    const std::vector<RayResult> results = classify_all(reference_, rays, software, hardware, arbiter);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const HitClass of_software = *results[i].software;
+        comparison.software.add(of_software);
+        keep(comparison.faults, {rays[i], software[i], of_software, true});
+        if (!hardware_) continue;
+        const HitClass of_hardware = *results[i].hardware;
+        comparison.hardware.add(of_hardware);
+        keep(comparison.faults, {rays[i], hardware[i], of_hardware, false});
+        if (!is_same(software[i], hardware[i])) ++comparison.disagreements[{of_software, of_hardware}];
+    }
+}
+
+}  // namespace twinray

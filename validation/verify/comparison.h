@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Both accelerators on one scene, compared with the reference, a set of rays at a time.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/core/progress.h"
+#include <twinray/tlas.h>
+#include "validation/reference/classify.h"
+
+namespace twinray {
+
+struct RaySet {
+    std::string name;  // "random", "vertex", "edge", "file"
+    std::vector<Ray> rays;
+};
+// Random rays, and rays aimed at vertices and at edges.
+std::vector<RaySet> test_rays(const ReferenceScene& reference, const Scene& scene, std::size_t random,
+                              std::size_t aimed, std::uint64_t seed);
+
+// An answer that is a fault, of ours or of the driver's.
+struct Fault {
+    Ray ray;
+    Hit answer;
+    HitClass kind;
+    bool is_of_software;
+};
+
+// What one set of rays gave.
+struct Comparison {
+    HitClassCounts software, hardware;
+    std::map<std::pair<HitClass, HitClass>, std::uint64_t> disagreements;  // by (software, hardware), where hits differ
+    std::vector<Fault> faults;  // the first ones of each class, see max_faults_of_ours and max_faults_of_driver
+    double software_seconds = 0, hardware_seconds = 0;
+
+    std::uint64_t disagreeing() const;
+};
+
+inline constexpr std::size_t max_faults_of_ours = 10'000, max_faults_of_driver = 100;
+
+class Verifier {
+  public:
+    // Builds both accelerators, or SwTlas alone where the device lacks what HwTlas needs at the level, and compiles
+    // their kernels, so that what is timed is tracing. The scene must outlive it.
+    Verifier(Context& context, const Scene& scene, Level level);
+
+    const ReferenceScene& reference() const { return reference_; }
+    const HwTlas* hardware() const { return hardware_.get(); }               // null: see the next
+    const std::string& why_no_hardware() const { return why_no_hardware_; }  // "" where there is one
+
+    // Traces the closest hits of all rays by both and gives each a class. `arbiter`: see Arbiter.
+    Comparison compare(std::span<const Ray> rays, const Arbiter& arbiter, Progress& progress);
+
+  private:
+    void compare_batch(std::span<const Ray> rays, const Arbiter& arbiter, Comparison& comparison);
+
+    Level level_;
+    ReferenceScene reference_;
+    std::string why_no_hardware_;
+    SwTlas software_;
+    std::unique_ptr<HwTlas> hardware_;
+};
+
+}  // namespace twinray
