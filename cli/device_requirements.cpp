@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cli/common.h"
+#include "engine/core/requirement.h"
 
 namespace twinray::cli {
 namespace {

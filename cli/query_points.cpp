@@ -7,6 +7,7 @@
 #include "cli/command/values.h"
 #include "engine/scene/number_lines.h"
 #include "engine/core/error.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray::cli {
 namespace {

@@ -30,13 +30,7 @@ install(DIRECTORY include/twinray DESTINATION ${headers_dir})
 set(glsl_dir ${headers_dir}/twinray/glsl)
 install(DIRECTORY shaders/shared shaders/scene shaders/sampling DESTINATION ${glsl_dir}/shaders)
 install(FILES shaders/engine/trace.comp DESTINATION ${glsl_dir}/shaders/engine)
-install(
-    DIRECTORY shaders/hwtlas
-    DESTINATION ${glsl_dir}/shaders
-    FILES_MATCHING
-    PATTERN "*.glsl"
-    PATTERN "trace.r*"
-)
+install(DIRECTORY shaders/hwtlas DESTINATION ${glsl_dir}/shaders FILES_MATCHING PATTERN "*.glsl" PATTERN "trace.r*")
 
 # A static library leaves it to the host to link what it uses itself.
 set(find_link_only "")

@@ -51,11 +51,7 @@ function(twinray_add_library name)
         twinray_${name}
         PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     )
-    target_link_libraries(
-        twinray_${name}
-        PUBLIC ${arg_SEES} Vulkan::Headers Threads::Threads
-        PRIVATE ${arg_USES}
-    )
+    target_link_libraries(twinray_${name} PUBLIC ${arg_SEES} Vulkan::Headers Threads::Threads PRIVATE ${arg_USES})
     set(TWINRAY_LIBRARIES ${TWINRAY_LIBRARIES} twinray_${name} PARENT_SCOPE)
     set(TWINRAY_PARTS ${TWINRAY_PARTS} ${arg_PARTS} PARENT_SCOPE)
 endfunction()

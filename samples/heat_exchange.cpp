@@ -9,7 +9,6 @@
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
 
-
 namespace {
 
 using namespace twinray;

@@ -187,7 +187,8 @@ std::unique_ptr<AccelBackend::BuiltScene> SwBackend::build_scene(Commands& comma
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
     }
-    builder_.record_instances(commands, plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
+    builder_.record_instances(commands,
+                              plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
                               {scene->tree(input.count), input.records, scene->instances()});
     const Builder::Measured measured{{scene->address}, scene->records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), true);
@@ -216,7 +217,8 @@ BuildBytes SwBackend::scene_bytes(std::size_t count, std::size_t capacity) const
 
 void SwBackend::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
     const auto& scene = static_cast<const SwBuiltScene&>(current);
-    builder_.record_refit(commands, plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
+    builder_.record_refit(commands,
+                          plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
                           {scene.tree(input.count), input.records, scene.instances()});
     const Builder::Measured measured{{scene.address}, scene.records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), false);

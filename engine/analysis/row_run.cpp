@@ -38,7 +38,7 @@ void complete_rows(ComputedRows& computed, ViewFactors& factors, RowFile* file, 
     std::vector<ViewFactorRow>& rows = computed.rows;
     progress.advance(rows.size());
     while (rows.size() < factors.row_count()) {
-        const std::size_t last = std::min(rows.size() + factors.block(), factors.row_count());
+        const std::size_t last = std::min(rows.size() + factors.batch_size(), factors.row_count());
         const std::vector<ViewFactorRow> block = factors.rows(rows.size(), last);
         if (file) file->append(block);
         rows.insert(rows.end(), block.begin(), block.end());

@@ -41,9 +41,7 @@ struct Deformer::State {
 };
 
 Deformer::State::State(Context& context, std::shared_ptr<const Rig> rig)
-    : context_(context),
-      rig_(std::move(rig)),
-      kernel_(context, {.name = "scene_deform", .spirv = scene_deform_spirv}) {
+    : context_(context), rig_(std::move(rig)), kernel_(context, {.name = "scene_deform", .spirv = scene_deform_spirv}) {
     if (rig_->meshes.empty()) return;
     Commands commands(context, "deformer upload");
     {

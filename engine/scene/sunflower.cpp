@@ -5,7 +5,6 @@
 #include <twinray/geometry.h>
 #include <twinray/scene.h>
 
-
 namespace twinray {
 namespace {
 

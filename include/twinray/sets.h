@@ -17,7 +17,6 @@
 #include <utility>
 #include <vector>
 
-
 #include <twinray/commands.h>
 
 namespace twinray {

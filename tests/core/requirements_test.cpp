@@ -6,6 +6,7 @@
 #include <map>
 
 #include "engine/core/device_facts.h"
+#include "engine/core/requirement.h"
 
 namespace twinray {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <twinray/geometry.h>
 #include "tests/scene/temp_dir.h"
+#include "twinray/glsl/vector_math.h"
 
 namespace twinray::test {
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tests/support/sw_build.h"
+#include "swtlas/plan.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "swtlas/plan.h"
 #include "tests/support/sw_build.h"
 
 namespace twinray {
@@ -142,7 +143,8 @@ TEST_P(SwBuild, ALargeSubtreeIsLeftBelowTheLastLevel) {
     const BuiltTree tree = checked_tree(mesh);
     // Others make it less deep.
     if (!has_records(tree) || width_of(tree) == 8 || quality() != BuildQuality::fast) return;
-    const uint levels = plan_build(std::span(&count, 1), Layout::compressed4, context().state().tuning()).collapse_levels;
+    const uint levels =
+        plan_build(std::span(&count, 1), Layout::compressed4, context().state().tuning()).collapse_levels;
     EXPECT_GT(check_tree(tree.bvh, tree.records, leaf_boxes(tree, mesh)).depth, levels + 10);
 }
 

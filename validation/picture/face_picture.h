@@ -9,7 +9,6 @@
 #include "validation/picture/raster.h"
 #include <twinray/scene.h>
 
-
 namespace twinray {
 
 // Of faces of which nothing is said.

@@ -14,7 +14,6 @@
 #include "validation/reference/geometry64.h"
 #include <twinray/validation.h>
 
-
 namespace twinray {
 
 // What a query leaves out, as TraceDesc says it.

@@ -14,6 +14,8 @@
 #include "validation/reference/aimed_rays.h"
 #include "swtlas/check.h"
 #include "validation/cpu_reference/reference.h"
+#include "swtlas/plan.h"
+#include "swtlas/tree.h"
 
 namespace twinray::suite {
 namespace {

@@ -7,7 +7,6 @@
 #include <twinray/geometry.h>
 #include <twinray/scene.h>
 
-
 namespace twinray::suite {
 
 Scene scene_of(std::vector<Mesh> meshes, vec3 second_at) {

@@ -8,6 +8,7 @@
 #include "validation/suite/estimators.h"
 #include "validation/records/bootstrap.h"
 #include "samples/path_tracer/camera.h"
+#include "engine/core/error.h"
 
 namespace twinray::suite {
 namespace {

@@ -15,6 +15,7 @@
 #include "samples/path_tracer/camera.h"
 #include "samples/path_tracer/cross_check.h"
 #include "samples/path_tracer/reference.h"
+#include "engine/core/error.h"
 
 namespace twinray::suite {
 namespace {

@@ -9,6 +9,7 @@
 #include "validation/suite/pictures.h"
 #include <twinray/geometry.h>
 #include "samples/path_tracer/camera.h"
+#include "engine/core/error.h"
 
 namespace twinray::suite {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "validation/suite/estimators.h"
 #include "validation/suite/pictures.h"
+#include "engine/core/error.h"
 #include <twinray/geometry.h>
 
 namespace twinray::suite {

@@ -11,7 +11,6 @@
 namespace twinray {
 namespace {
 
-
 // The vertices in the plane that the polygon faces most, turned so that its area is positive, as whole numbers up to
 // 2^52: differences of them are exact. That costs no more than their own rounding where they are farthest from 0.
 std::vector<dvec2> flattened(std::span<const dvec3> vertices) {

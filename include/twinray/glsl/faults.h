@@ -3,10 +3,9 @@
 #ifndef TWINRAY_SHARED_FAULTS_H
 #define TWINRAY_SHARED_FAULTS_H
 
-struct Faults
-{
+struct Faults {
     uint count;
-    uint type;     // of a SetKey; 0 for an index into a structure of arrays
+    uint type;  // of a SetKey; 0 for an index into a structure of arrays
     uint index;
     uint reserved;
 };

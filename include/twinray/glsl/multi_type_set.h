@@ -8,10 +8,9 @@
 #include "twinray/glsl/faults.h"
 
 // Names one element of a set, for as long as the set lives. All zero: names none.
-struct SetKey
-{
-    uint type;  // its number in the list of types + 1
-    uint index; // among the elements of its type, from 0
+struct SetKey {
+    uint type;   // its number in the list of types + 1
+    uint index;  // among the elements of its type, from 0
 };
 BUFFER_OF(SetKey, 4);
 
@@ -19,6 +18,13 @@ FUNC bool is_valid(SetKey key) { return key.type != 0u; }
 
 // TWINRAY_SET_VIEW(MaterialSet, MATERIALS): struct MaterialSet with, for each type, the array `diffuse` of its elements
 // and their number `diffuse_count`. 16 bytes a type and 16 more. The element types need a BUFFER_OF before it.
-#define TWINRAY_SET_FIELD(P, number, Type, name) REF(Type) name; uint name##_count; uint name##_reserved;
-#define TWINRAY_SET_VIEW(Name, LIST) struct Name { LIST(TWINRAY_SET_FIELD, 0) REF(Faults) faults; Uint64 revision; };
+#define TWINRAY_SET_FIELD(P, number, Type, name) \
+    REF(Type) name;                              \
+    uint name##_count;                           \
+    uint name##_reserved;
+#define TWINRAY_SET_VIEW(Name, LIST)                   \
+    struct Name {                                      \
+        LIST(TWINRAY_SET_FIELD, 0) REF(Faults) faults; \
+        Uint64 revision;                               \
+    };
 #endif
