@@ -34,7 +34,7 @@ double AccelBackend::trace(const RayBatch& batch) {
                    .count = batch.rays().size(),
                    .query = batch.query(),
                    .level = level_,
-                   .answer_only = batch.query() == Query::any,
+                   .occlusion_only = batch.query() == Query::any,
                    .order = order_});
     const Stopwatch watch;
     commands.submit();

@@ -30,8 +30,8 @@ Setup set_up(const Session& session) {
     Setup setup;
     ContextDesc desc = session.device;
     setup.context = std::make_unique<Context>(desc);
-    const DeviceFacts& facts = setup.context->facts();
-    if (facts.ray_query && facts.ray_tracing_pipeline) {
+    const DeviceProperties& properties = setup.context->properties();
+    if (properties.ray_query && properties.ray_tracing_pipeline) {
         desc.use_ray_query = false;
         setup.pipeline = std::make_unique<Context>(desc);
     }
@@ -84,7 +84,7 @@ void bench_scene(const Session& session, const BenchScene& scene) {
     const RunOptions& run = session.run;
     session.out << "bench " << scene.name << ": " << count_triangles(scene.scene) << " triangles, "
                 << run.width * run.width << " rays a set, medians of " << run.rounds << " interleaved rounds, on "
-                << setup.context->facts().name << '\n';
+                << setup.context->properties().name << '\n';
     const Measured measured = measure(*setup.context, setup.line_up, scene, run);
     const Results results{scene, setup.line_up, measured.builds};
     if (run.times_builds) print_builds(session.out, results);
@@ -98,7 +98,7 @@ void bench_scene(const Session& session, const BenchScene& scene) {
 void bench_growth(const Session& session, std::span<const double> sizes) {
     Setup setup = set_up(session);
     session.out << "bench: growth with the number of triangles of displaced spheres, medians of " << session.run.rounds
-                << " interleaved rounds, on " << setup.context->facts().name << '\n';
+                << " interleaved rounds, on " << setup.context->properties().name << '\n';
     const nlohmann::json base = base_record(session, *setup.context);
     std::vector<std::vector<GrowthPoint>> points(setup.line_up.size());
     for (const double size : sizes) {
@@ -117,10 +117,10 @@ void bench_growth(const Session& session, std::span<const double> sizes) {
 void bench_moves(const Session& session, std::size_t count) {
     Context context(session.device);
     session.out << "bench: " << count << " instances moved from device memory, GPU times, median of "
-                << session.run.rounds << " rounds, on " << context.facts().name << '\n';
+                << session.run.rounds << " rounds, on " << context.properties().name << '\n';
     SwTlas software(context);
     tell_moves(session, software, count);
-    if (!missing_for_hardware(context.facts()).empty()) return;
+    if (!missing_for_hardware(context.properties()).empty()) return;
     HwTlas hardware(context);
     tell_moves(session, hardware, count);
 }
@@ -135,7 +135,7 @@ void bench_feature_costs(const Session& session, const BenchScene& scene) {
                                      .width = run.width};
     session.out << "bench " << scene.name << ": features that " << name_of(options.layout) << ' '
                 << name_of(options.level) << " does not need, one more in each line, medians of " << options.rounds
-                << " interleaved rounds, on " << context.facts().name << '\n';
+                << " interleaved rounds, on " << context.properties().name << '\n';
     nlohmann::json base = base_record(session, context);
     const dvec3& origin = scene.scene.origin;
     base.update({{"scene", scene.name}, {"origin", {origin.x, origin.y, origin.z}}});

@@ -56,7 +56,7 @@ class FeatureBackend : public Backend {
                       .count = batch.rays().size(),
                       .query = batch.query(),
                       .level = level_,
-                      .answer_only = true,
+                      .occlusion_only = true,
                       .program = program_.get()});
         const Stopwatch watch;
         commands.submit();
@@ -84,7 +84,7 @@ LineUp line_up_of(AbstractAccel& accel, Level level, Query query) {
     const auto add = [&](const std::string& name, uint features) {
         line_up.push_back(std::make_unique<FeatureBackend>(accel, level, program_of(accel, name, features)));
     };
-    uint features = accel.features_for({.query = query, .answer_only = true});
+    uint features = accel.features_for({.query = query, .occlusion_only = true});
     add("needed", features);
     for (const Addition& addition : additions) {
         if ((addition.features & ~features) == 0) continue;

@@ -18,7 +18,7 @@ struct Configuration {
     bool moves_vertices = false;
 };
 
-std::vector<Configuration> configurations_on(const DeviceFacts& device) {
+std::vector<Configuration> configurations_on(const DeviceProperties& device) {
     std::vector<Configuration> configurations = {
         {"needed", {.can_move = false}},
         {"may move", {}},
@@ -74,7 +74,7 @@ std::vector<std::pair<const char*, double>> shares_of(const MemoryUsage& usage, 
 }  // namespace
 
 std::vector<Keeping> measure_keepings(Context& context, const BenchScene& scene, std::size_t rounds) {
-    const std::vector<Configuration> configurations = configurations_on(context.facts());
+    const std::vector<Configuration> configurations = configurations_on(context.properties());
     std::vector<Keeping> keepings;
     for (const Configuration& configuration : configurations)
         keepings.push_back({.name = configuration.name, .usage = {}, .build_ms = {}});

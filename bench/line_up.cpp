@@ -35,16 +35,16 @@ class LineUpFactory {
 
     // All that the device can do, from the first level on.
     void add_hardware(Context& context) {
-        if (!missing_for_hardware(context.facts()).empty()) return;
+        if (!missing_for_hardware(context.properties()).empty()) return;
         for (const Level level : options_.levels) add_hardware(context, BuildOrder::automatic, level);
-        if (context.state().tuning().builds_in_input_order && context.facts().ray_query)
+        if (context.state().tuning().builds_in_input_order && context.properties().ray_query)
             add_hardware(context, BuildOrder::input, options_.levels.front());
     }
 
     void add_hardware(Context& context, BuildOrder order, Level level) {
-        if (HwTlas::capability_on(context.facts(), feature_of(level)).support == Support::unsupported) return;
+        if (HwTlas::capability_on(context.properties(), feature_of(level)).support == Support::unsupported) return;
         const HwTlas probe(context, order);
-        const char* path = context.facts().ray_query ? "query" : "pipeline";
+        const char* path = context.properties().ray_query ? "query" : "pipeline";
         add({.name = order == BuildOrder::input ? "hw query input order" : text("hw ", path, ' ', name_of(level)),
              .backend = "hw",
              .path = probe.trace_path(),

@@ -21,7 +21,7 @@ const Surface& point_of(std::span<const Surface> points, std::size_t i, std::siz
 
 std::vector<Hit> primary_hits(Context& context, const Scene& scene, std::span<const Ray> rays) {
     const bool can_refine =
-        SwTlas::capability_on(context.facts(), Feature::level_refined).support != Support::unsupported;
+        SwTlas::capability_on(context.properties(), Feature::level_refined).support != Support::unsupported;
     const Level level = can_refine ? Level::refined : Level::watertight;
     SwTlas accel(context, AccelOptions{.level = level});
     push_scene(accel, scene);

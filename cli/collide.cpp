@@ -45,7 +45,7 @@ void draw(const CollideOptions& options, AbstractAccel& accel, const Scene& scen
 void run_broad(const CollideOptions& options) {
     const Scene scene = load_scene(options.scene, options.common);
     const std::unique_ptr<Context> context = make_context(options.common);
-    const AccelChoice choice = choose_accel(context->facts(), options.accel);
+    const AccelChoice choice = choose_accel(context->properties(), options.accel);
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene);
     BroadPhase broad_phase(*context);
     broad_phase.set_max_pairs(options.max_pairs);
@@ -98,7 +98,7 @@ void run_exact(const CollideOptions& options) {
                         << name_of(c.pair_class) << '\n';
                 });
     if (!options.pictures.files.empty())
-        draw(options, *make_accel(*context, choose_accel(context->facts(), options.accel), scene), scene,
+        draw(options, *make_accel(*context, choose_accel(context->properties(), options.accel), scene), scene,
              picture_of_contacts(scene, contacts),
              text(contacts.list.size(), " pairs of triangles touch or intersect"));
     const nlohmann::json counts = counts_of(contacts);

@@ -12,7 +12,7 @@
 namespace twinray::cli {
 namespace {
 
-nlohmann::json describe_requirements(std::size_t index, const DeviceFacts& device) {
+nlohmann::json describe_requirements(std::size_t index, const DeviceProperties& device) {
     nlohmann::json all = nlohmann::json::array();
     for (const Requirement& requirement : requirements_of(device))
         all.push_back({{"of", name_of(requirement.of)},
@@ -24,16 +24,16 @@ nlohmann::json describe_requirements(std::size_t index, const DeviceFacts& devic
 
 }  // namespace
 
-void print_requirements(std::span<const DeviceFacts> devices, const std::filesystem::path& json) {
+void print_requirements(std::span<const DeviceProperties> devices, const std::filesystem::path& json) {
     // One column for each; without any, the rows of one that has nothing.
     std::vector<std::vector<Requirement>> columns;
     if (!devices.empty()) std::cout << "Devices, from left to right\n";
-    for (const DeviceFacts& device : devices) {
+    for (const DeviceProperties& device : devices) {
         std::cout << "  " << columns.size() << "  " << device.name << '\n';
         append_json(json, describe_requirements(columns.size(), device));
         columns.push_back(requirements_of(device));
     }
-    const std::vector<Requirement> rows = columns.empty() ? requirements_of(DeviceFacts{}) : columns.front();
+    const std::vector<Requirement> rows = columns.empty() ? requirements_of(DeviceProperties{}) : columns.front();
     const std::string indent(5 * columns.size() + 2, ' ');
     std::optional<Requirement::Of> part;
     for (std::size_t row = 0; row < rows.size(); ++row) {

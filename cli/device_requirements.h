@@ -9,6 +9,6 @@
 
 namespace twinray::cli {
 
-void print_requirements(std::span<const DeviceFacts> devices, const std::filesystem::path& json);
+void print_requirements(std::span<const DeviceProperties> devices, const std::filesystem::path& json);
 
 }  // namespace twinray::cli

@@ -17,16 +17,16 @@ std::string answer(const std::vector<std::string>& missing, const std::string& a
     return missing.empty() ? able : "no: lacks " + joined(missing);
 }
 
-std::string hardware_able(const DeviceFacts& device) {
+std::string hardware_able(const DeviceProperties& device) {
     std::string able = "yes: ";
     if (device.ray_query) able += "ray query";
     if (device.ray_tracing_pipeline) able += device.ray_query ? ", ray tracing pipeline" : "ray tracing pipeline";
     return able;
 }
 
-using CapabilityOn = Capability (*)(const DeviceFacts&, Feature);
+using CapabilityOn = Capability (*)(const DeviceProperties&, Feature);
 
-nlohmann::json describe_capabilities(const DeviceFacts& device, CapabilityOn capability_on) {
+nlohmann::json describe_capabilities(const DeviceProperties& device, CapabilityOn capability_on) {
     nlohmann::json all;
     for (std::size_t i = 0; i < feature_count; ++i) {
         const Capability capability = capability_on(device, static_cast<Feature>(i));
@@ -36,7 +36,7 @@ nlohmann::json describe_capabilities(const DeviceFacts& device, CapabilityOn cap
 }
 
 // One line for each kind of support, with notes.
-void print_capabilities(const DeviceFacts& device, CapabilityOn capability_on) {
+void print_capabilities(const DeviceProperties& device, CapabilityOn capability_on) {
     for (const Support support : {Support::native, Support::emulated, Support::unsupported}) {
         std::vector<std::string> features;
         for (std::size_t i = 0; i < feature_count; ++i) {
@@ -50,22 +50,22 @@ void print_capabilities(const DeviceFacts& device, CapabilityOn capability_on) {
 }
 
 // What --accel auto takes; null where nothing works.
-nlohmann::json auto_choice(const DeviceFacts& device) {
+nlohmann::json auto_choice(const DeviceProperties& device) {
     return missing_for_software(device).empty() ? describe(choose_accel(device, "auto")) : nlohmann::json();
 }
 
 // Without what TWINRAY_DISABLE leaves unused.
-std::vector<DeviceFacts> usable_devices() {
+std::vector<DeviceProperties> usable_devices() {
     const ContextDesc desc = context_desc({});
-    std::vector<DeviceFacts> devices = list_devices();
-    for (DeviceFacts& device : devices) {
+    std::vector<DeviceProperties> devices = list_devices();
+    for (DeviceProperties& device : devices) {
         device.ray_query &= desc.use_ray_query;
         device.ray_tracing_pipeline &= desc.use_ray_tracing_pipeline;
     }
     return devices;
 }
 
-nlohmann::json describe_device(std::size_t index, const DeviceFacts& device) {
+nlohmann::json describe_device(std::size_t index, const DeviceProperties& device) {
     return {{"index", index},
             {"name", device.name},
             {"driver", device.driver},
@@ -82,10 +82,10 @@ nlohmann::json describe_device(std::size_t index, const DeviceFacts& device) {
 }
 
 void print_devices(const std::filesystem::path& json) {
-    const std::vector<DeviceFacts> devices = usable_devices();
+    const std::vector<DeviceProperties> devices = usable_devices();
     const DeviceChoice choice = choose_device(devices, "");
     for (std::size_t i = 0; i < devices.size(); ++i) {
-        const DeviceFacts& device = devices[i];
+        const DeviceProperties& device = devices[i];
         const std::uint32_t api = device.api_version;
         std::cout << (static_cast<int>(i) == choice.index ? "* " : "  ") << i << "  " << device.name << " ("
                   << name_of(device.kind) << ")\n"

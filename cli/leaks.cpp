@@ -106,14 +106,14 @@ std::uint64_t run(const LeaksOptions& options) {
     const Mesh mesh = joined(scene, file);
     const std::unique_ptr<Context> context = make_context(options.common);
     const AccelChoice choice =
-        choose_accel(context->facts(), options.accel, {.level = options.level, .kernel_queries = true});
+        choose_accel(context->properties(), options.accel, {.level = options.level, .kernel_queries = true});
     const nlohmann::json identity = identity_of(options, choice, mesh, *context);
     const bool goes_on = !options.state.empty() && std::filesystem::exists(options.state);
     LeakState state = goes_on ? read_state(options.state, identity) : LeakState();
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, options.level);
     const LeakTest test(*accel, mesh, options.level, options.common.seed);
     std::cout << "leaks " << file << ": closed, " << mesh.triangles.size() << " triangles; " << text_of(choice)
-              << " at " << name_of(options.level) << " on " << context->facts().name << '\n';
+              << " at " << name_of(options.level) << " on " << context->properties().name << '\n';
     if (goes_on) std::cout << "  goes on after " << state.counts.rays << " rays\n";
     trace_all(options, test, identity, state);
     print(choice, state);

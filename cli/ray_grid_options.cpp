@@ -55,7 +55,7 @@ Analysed::Analysed(const AnalysisOptions& options) {
     check_pictures(options.pictures);
     scene = load_scene(options.scene, options.common);
     context = make_context(options.common);
-    choice = choose_accel(context->facts(), options.accel);
+    choice = choose_accel(context->properties(), options.accel);
     accel = make_accel(*context, choice, scene);
 }
 
@@ -68,7 +68,7 @@ nlohmann::json Analysed::record(const char* schema, const AnalysisOptions& optio
 
 std::string Analysed::head(const char* command, const AnalysisOptions& options) const {
     return text(command, ' ', options.scene.filename().string(), ": ", count_triangles(scene), " faces, ",
-                text_of(choice), ", on ", context->facts().name, '\n');
+                text_of(choice), ", on ", context->properties().name, '\n');
 }
 
 double seconds_of(const std::function<void()>& work) {

@@ -63,7 +63,7 @@ int run(const ReportOptions& options) {
     suite::Devices devices(context_desc(options.common), options.trees);
     Context& context = devices.context(suite::Backend::software);
     Recorder recorder({utc_now(), twinray_version, probed_device(context)}, options.folder / "report.jsonl");
-    std::cout << "report, suite " << options.suite << ", on " << context.facts().name << '\n';
+    std::cout << "report, suite " << options.suite << ", on " << context.properties().name << '\n';
     suite::run(cases, settings_of(options), devices, recorder, options.common.quiet);
 
     write_csv(options.folder / "report.csv", recorder.records());

@@ -67,7 +67,7 @@ void run(const TraceOptions& options) {
     const std::vector<Ray> rays = read_rays(options.rays, scene.origin);
     const std::unique_ptr<Context> context = make_context(options.common);
     const AccelChoice choice =
-        choose_accel(context->facts(), options.accel, {.level = options.level, .kernel_queries = is_all});
+        choose_accel(context->properties(), options.accel, {.level = options.level, .kernel_queries = is_all});
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene, options.level);
     const auto start = std::chrono::steady_clock::now();
     const std::vector<Hit> hits = is_all ? trace_all(*accel, rays, options) : trace_in_batches(*accel, rays, options);

@@ -50,7 +50,7 @@ std::filesystem::path replay_folder(const VerifyOptions& options, const Comparis
 }
 
 // What all replays of a run have in common.
-replay::Replay replay_of(const VerifyOptions& options, const Scene& scene, const DeviceFacts& device) {
+replay::Replay replay_of(const VerifyOptions& options, const Scene& scene, const DeviceProperties& device) {
     return {.scene = std::filesystem::absolute(options.scene),
             .scene_hash = replay::hash_of(scene),
             .backend = device.ray_query ? "hw" : "hw-pipeline",
@@ -73,7 +73,7 @@ std::uint64_t run(const VerifyOptions& options) {
     const HwTlas* const hardware = verifier.hardware();
     std::cout << "verify " << options.scene.filename().string() << ": " << count_triangles(scene) << " triangles in "
               << scene.instances.size() << " instances, at " << name_of(options.level) << " on "
-              << context->facts().name
+              << context->properties().name
               << (hardware ? text("; HwTlas by ", hardware->trace_path())
                            : text("; without HwTlas (", verifier.why_no_hardware(), ')'))
               << '\n';
@@ -90,7 +90,7 @@ std::uint64_t run(const VerifyOptions& options) {
         if (!folder.empty() && !comparison.faults.empty())
             std::cout << "    "
                       << replay::write_faults(folder, set.name, comparison.faults, !options.replays.empty(),
-                                              replay_of(options, scene, context->facts()),
+                                              replay_of(options, scene, context->properties()),
                                               [&](const Ray& ray) { return reference_hit(reference, ray, arbiter); })
                       << " replays in " << folder.string() << "; show one: twinray verify --replay FILE\n";
         faults += faults_of_ours(options, comparison);

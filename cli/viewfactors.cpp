@@ -83,7 +83,7 @@ void run(const Options& options) {
     check_writable(options.shown.matrix);
     const Scene scene = load_scene(options.scene, options.common);
     const std::unique_ptr<Context> context = make_context(options.common);
-    const AccelChoice choice = choose_accel(context->facts(), options.accel);
+    const AccelChoice choice = choose_accel(context->properties(), options.accel);
     const std::unique_ptr<AbstractAccel> accel = make_accel(*context, choice, scene);
     Faces faces(*context, scene);
     options.groups.set_groups(faces);

@@ -146,7 +146,7 @@ std::vector<AccelerationStructure> build_structures(Commands& commands, const st
     Buffer scratch = make_build_scratch(context, pass_name + " scratch", batches.scratch_bytes);
     for (const Batches::Run& run : batches.runs)
         record_builds(commands, pass_name, std::span(work).subspan(run.first, run.count), scratch.address());
-    commands.keep(std::move(scratch));
+    commands.retain(std::move(scratch));
     return structures;
 }
 

@@ -47,7 +47,7 @@ StructureBuild record_input(Commands& commands, const std::string& name, const B
                             : build_of_boxes(name, boxes);
     if (input.boxes.empty()) build.geometry.geometry.triangles.indexData.deviceAddress = triangles.address();
     build.flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
-    for (Buffer* buffer : {&positions, &triangles, &boxes}) commands.keep(std::move(*buffer));
+    for (Buffer* buffer : {&positions, &triangles, &boxes}) commands.retain(std::move(*buffer));
     return build;
 }
 

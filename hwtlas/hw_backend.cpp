@@ -14,8 +14,8 @@ namespace twinray {
 namespace {
 
 Context& checked(Context& context) {
-    const std::vector<std::string> missing = missing_for_hardware(context.facts());
-    if (!missing.empty()) fail("HwTlas: device '", context.facts().name, "' lacks ", joined(missing));
+    const std::vector<std::string> missing = missing_for_hardware(context.properties());
+    if (!missing.empty()) fail("HwTlas: device '", context.properties().name, "' lacks ", joined(missing));
     return context;
 }
 
@@ -30,7 +30,7 @@ struct HwBackend::HwBuiltGeometry : BuiltGeometry {
     }
 };
 
-struct HwBackend::HwTopLevel : BuiltScene {
+struct HwBackend::HwTopLevel : BuiltTlas {
     explicit HwTopLevel(Tlas&& built) : tlas(std::move(built)) {
         address = tlas.scene.address();
         bytes = tlas.bytes();
@@ -53,7 +53,7 @@ HwBackend::HwBackend(Context& context, BuildOrder order, const AccelOptions& opt
 HwBackend::~HwBackend() = default;
 
 std::unique_ptr<TraceProgram> HwBackend::create_program(const TraceProgramCode* code, uint features) const {
-    if (!context().facts().ray_query) return std::make_unique<PipelineProgram>(context(), id(), features, code);
+    if (!context().properties().ray_query) return std::make_unique<PipelineProgram>(context(), id(), features, code);
     return std::make_unique<KernelProgram>(
         context(), id(), features, code ? code->name : "hwtlas_trace",
         code ? code->ray_query : std::span<const std::uint32_t>(hwtlas_trace_query_spirv),
@@ -144,8 +144,8 @@ HwBackend::Built HwBackend::compact_geometries(Commands& commands, std::span<con
     return built;
 }
 
-std::unique_ptr<AccelBackend::BuiltScene> HwBackend::build_scene(Commands& commands, const SceneInput& input,
-                                                                 const BuiltScene* current) {
+std::unique_ptr<AccelBackend::BuiltTlas> HwBackend::build_tlas(Commands& commands, const TlasInput& input,
+                                                               const BuiltTlas* current) {
     const auto* level = static_cast<const HwTopLevel*>(current);
     std::unique_ptr<HwTopLevel> made;
     const std::size_t capacity = capacity_for(input.count, level ? level->tlas.capacity : 0);
@@ -158,7 +158,7 @@ std::unique_ptr<AccelBackend::BuiltScene> HwBackend::build_scene(Commands& comma
     return made;
 }
 
-void HwBackend::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
+void HwBackend::refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) {
     tlas_builder_.record_update(commands, static_cast<const HwTopLevel&>(current).tlas,
                                 {input.records, input.count, input.bound, input.cost});
 }

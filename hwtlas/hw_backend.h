@@ -17,7 +17,9 @@ class HwBackend final : public AccelBackend {
     HwBackend(Context& context, BuildOrder order, const AccelOptions& options);
     ~HwBackend() override;
 
-    Capability capability(Feature feature) const override { return HwTlas::capability_on(context().facts(), feature); }
+    Capability capability(Feature feature) const override {
+        return HwTlas::capability_on(context().properties(), feature);
+    }
     bool is_software() const override { return false; }
     bool reorders() const override { return reorder_; }
 
@@ -29,9 +31,9 @@ class HwBackend final : public AccelBackend {
     BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
     bool can_compact(const BuiltGeometry& built, SyncPoint done) const override;
     Built compact_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
-    std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
-                                            const BuiltScene* current) override;
-    void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
+    std::unique_ptr<BuiltTlas> build_tlas(Commands& commands, const TlasInput& input,
+                                          const BuiltTlas* current) override;
+    void refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) override;
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
 
     struct HwBuiltGeometry;

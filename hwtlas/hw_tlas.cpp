@@ -8,7 +8,7 @@ namespace twinray {
 HwTlas::HwTlas(Context& context, BuildOrder order, const AccelOptions& options)
     : AbstractAccel(std::make_unique<HwBackend>(context, order, options)) {}
 
-Capability HwTlas::capability_on(const DeviceFacts& device, Feature feature) {
+Capability HwTlas::capability_on(const DeviceProperties& device, Feature feature) {
     switch (feature) {
         case Feature::deterministic_ties: return {feature, Support::unsupported, "the driver chooses"};
         case Feature::kernel_queries:
@@ -26,7 +26,9 @@ Capability HwTlas::capability_on(const DeviceFacts& device, Feature feature) {
     }
 }
 
-const char* HwTlas::trace_path() const { return context().facts().ray_query ? "ray query" : "ray tracing pipeline"; }
+const char* HwTlas::trace_path() const {
+    return context().properties().ray_query ? "ray query" : "ray tracing pipeline";
+}
 bool HwTlas::reorders() const { return backend().reorders(); }
 
 }  // namespace twinray

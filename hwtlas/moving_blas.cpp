@@ -167,7 +167,7 @@ void MovingBlasBuilder::record(Commands& commands, std::span<const MovingMesh> m
         Batch batch = begin(commands, meshes.subspan(run.first, run.count), mode, scratch);
         record_batch(commands, batch);
     }
-    commands.keep(std::move(scratch));
+    commands.retain(std::move(scratch));
 }
 
 }  // namespace twinray

@@ -92,7 +92,7 @@ Uints TlasBuilder::record_order(Commands& commands, const TlasInput& input) cons
     codes_.dispatch(commands, {input.records, input.bound, part(0), input.count, 0}, input.count);
     const RadixSort::Pairs sorted =
         sort_.record_iota(commands, part(0), {part(0), part(1)}, {part(2), part(3)}, part(4), input.count, morton_bits);
-    commands.keep(std::move(scratch));
+    commands.retain(std::move(scratch));
     return sorted.values;
 }
 

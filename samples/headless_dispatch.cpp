@@ -6,11 +6,12 @@
 
 #include <twinray/scene.h>
 
-#include "engine/core/cpu_vectors.h"
-#include "engine/core/error.h"
-#include "engine/core/kernel.h"
+#include <twinray/context.h>
+#include "samples/support/text.h"
+#include <twinray/commands.h>
 #include "headless_dispatch_hw.spv.h"
 #include "headless_dispatch_sw.spv.h"
+#include "twinray/glsl/vector_math.h"
 #include <twinray/tlas.h>
 
 using namespace twinray;
@@ -47,7 +48,7 @@ std::vector<float> sky_view(AbstractAccel& accel, const Scene& scene, Args args)
 
 int main(int argc, char** argv) try {
     widen_cpu_vectors();
-    if (argc < 2) fail("usage: headless_dispatch SCENE [map.pgm]");
+    if (argc < 2) throw Error("usage: headless_dispatch SCENE [map.pgm]");
     const Scene scene = load_scene(argv[1]);
     const Bounds bounds = bounds_of(scene);
     const uint width = 128, rays = 64;
@@ -57,7 +58,7 @@ int main(int argc, char** argv) try {
     Context context;
     SwTlas software(context);
     const std::vector<float> map = sky_view(software, scene, args);
-    if (context.facts().ray_query) {
+    if (context.properties().ray_query) {
         HwTlas hardware(context);
         if (sky_view(hardware, scene, args) != map) std::cout << "the accelerators differ in some ray\n";
     }
@@ -65,7 +66,7 @@ int main(int argc, char** argv) try {
     std::ofstream file(argv[2], std::ios::binary);
     file << "P5\n" << width << ' ' << depth << "\n255\n";
     for (const float value : map) file.put(static_cast<char>(value * 255.0f + 0.5f));
-    if (!file.flush()) fail("'", argv[2], "' could not be written");
+    if (!file.flush()) throw Error("'" + std::string(argv[2]) + "' could not be written");
 } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

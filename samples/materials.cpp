@@ -5,8 +5,7 @@
 #include <twinray/scene.h>
 #include <twinray/sets.h>
 
-#include "engine/core/error.h"
-#include "engine/core/kernel.h"
+#include <twinray/commands.h>
 #include <twinray/geometry.h>
 #include "materials_buffers.spv.h"
 #include "materials_images.spv.h"

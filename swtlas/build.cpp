@@ -149,12 +149,12 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
         for (BuildTree& tree : with_nodes) tree.nodes.address = base + at.nodes + tree.first * sizeof(BvhNode);
     {
         const auto pass = commands.pass("swtlas build input");
-        const Commands::Piece pieces[] = {{at.trees, std::as_bytes(std::span(with_nodes))},
-                                          {at.chunks, std::as_bytes(std::span(plan.chunks))},
-                                          {at.centroids, std::as_bytes(std::span(empty))},
-                                          {at.duplicate_codes, std::as_bytes(std::span(&no_duplicates, 1))},
-                                          {at.levels, std::as_bytes(std::span(levels))}};
-        commands.upload_pieces(scratch, pieces);
+        const Commands::Region regions[] = {{at.trees, std::as_bytes(std::span(with_nodes))},
+                                            {at.chunks, std::as_bytes(std::span(plan.chunks))},
+                                            {at.centroids, std::as_bytes(std::span(empty))},
+                                            {at.duplicate_codes, std::as_bytes(std::span(&no_duplicates, 1))},
+                                            {at.levels, std::as_bytes(std::span(levels))}};
+        commands.upload_regions(scratch, regions);
         commands.fill(scratch, at.duplicates, trees.size() * sizeof(uint), 0);
         commands.fill(scratch, at.other_bounds, std::uint64_t{plan.leaf_count} * sizeof(uint), NOTHING);
     }
@@ -265,7 +265,7 @@ void Builder::record_instances(Commands& commands, const BuildPlan& plan, const 
     if (plan.leaf_count == 0) return;
     Buffer scratch = build_scratch(commands.context(), plan);
     record_tree(commands, plan, begin_instances(commands, plan, tree, scratch));
-    commands.keep(std::move(scratch));
+    commands.retain(std::move(scratch));
 }
 
 }  // namespace twinray

@@ -66,7 +66,7 @@ void Builder::record_refit(Commands& commands, const BuildPlan& plan, const Inst
     if (plan.leaf_count == 0) return;
     Buffer scratch = build_scratch(commands.context(), plan);
     record_boxes(commands, plan, begin_instances(commands, plan, tree, scratch));
-    commands.keep(std::move(scratch));
+    commands.retain(std::move(scratch));
 }
 
 }  // namespace twinray

@@ -20,9 +20,9 @@ void SwBackend::save(const std::filesystem::path& file) const {
                               std::move(tree.records), std::move(instances)});
     }
     const EncodedSave encoded = encode_save(options().layout, geometries);
-    std::vector<std::span<const std::byte>> pieces = {encoded.head};
-    pieces.insert(pieces.end(), encoded.body.begin(), encoded.body.end());
-    write_file(file, pieces);
+    std::vector<std::span<const std::byte>> regions = {encoded.head};
+    regions.insert(regions.end(), encoded.body.begin(), encoded.body.end());
+    write_file(file, regions);
 }
 
 AccelHandle SwBackend::push_saved(Commands& commands, SavedGeometry&& saved) {
@@ -32,10 +32,10 @@ AccelHandle SwBackend::push_saved(Commands& commands, SavedGeometry&& saved) {
     {
         const auto pass = commands.pass("swtlas load");
         commands.write(block, SwGeometry{saved.bvh, built->triangles(), built->records(), saved.mesh.kind, 0});
-        const Commands::Piece pieces[] = {{built->layout.nodes, std::as_bytes(std::span(saved.nodes))},
-                                          {built->layout.triangles, std::as_bytes(std::span(saved.leaves))},
-                                          {built->layout.records, std::as_bytes(std::span(saved.records))}};
-        commands.upload_pieces(built->buffer, pieces);
+        const Commands::Region regions[] = {{built->layout.nodes, std::as_bytes(std::span(saved.nodes))},
+                                            {built->layout.triangles, std::as_bytes(std::span(saved.leaves))},
+                                            {built->layout.records, std::as_bytes(std::span(saved.records))}};
+        commands.upload_regions(built->buffer, regions);
     }
     return push_built(std::move(saved.mesh), std::move(block), std::move(built), saved.instances);
 }

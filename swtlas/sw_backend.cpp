@@ -42,7 +42,7 @@ struct SwBackend::Batch {
     }
 };
 
-struct SwBackend::SwBuiltScene : BuiltScene {
+struct SwBackend::SwBuiltTlas : BuiltTlas {
     Buffer buffer;
     SceneLayout layout;
 
@@ -87,7 +87,7 @@ void SwBackend::record_batches(Commands& commands, std::span<const GeometryInput
         batch.plan = plan_build(batch.counts, options().layout, context().state().tuning());
         record(batch, scratch);
     }
-    commands.keep(std::move(scratch));
+    commands.retain(std::move(scratch));
 }
 
 std::vector<Builder::Measured> SwBackend::measured(const Batch& batch, std::span<const BuildTree> trees) {
@@ -100,12 +100,12 @@ std::vector<Builder::Measured> SwBackend::measured(const Batch& batch, std::span
 
 // Where the meshes lie on the device; those that are not there yet are uploaded.
 std::vector<DeviceMesh> SwBackend::record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch) {
-    std::vector<Commands::Piece> pieces;
+    std::vector<Commands::Region> regions;
     std::uint64_t next = batch.plan.scratch.bytes;
     const auto stage = [&](std::span<const std::byte> data) {
-        pieces.push_back({next, data});
+        regions.push_back({next, data});
         next += data.size();
-        return scratch.address() + pieces.back().offset;
+        return scratch.address() + regions.back().offset;
     };
     std::vector<DeviceMesh> meshes;
     for (const GeometryInput& input : batch.inputs) {
@@ -119,7 +119,7 @@ std::vector<DeviceMesh> SwBackend::record_meshes(Commands& commands, const Batch
         meshes.back().positions.address = stage(std::as_bytes(std::span(geometry.positions)));
         meshes.back().indices.address = stage(std::as_bytes(std::span(geometry.triangles)));
     }
-    commands.upload_pieces(scratch, pieces);
+    commands.upload_regions(scratch, regions);
     return meshes;
 }
 
@@ -166,13 +166,13 @@ SwBackend::Built SwBackend::refit_geometries(Commands& commands, std::span<const
     return Built(inputs.size());
 }
 
-std::unique_ptr<AccelBackend::BuiltScene> SwBackend::build_scene(Commands& commands, const SceneInput& input,
-                                                                 const BuiltScene* current) {
-    const auto* scene = static_cast<const SwBuiltScene*>(current);
-    std::unique_ptr<SwBuiltScene> made;
+std::unique_ptr<AccelBackend::BuiltTlas> SwBackend::build_tlas(Commands& commands, const TlasInput& input,
+                                                               const BuiltTlas* current) {
+    const auto* scene = static_cast<const SwBuiltTlas*>(current);
+    std::unique_ptr<SwBuiltTlas> made;
     if (const std::size_t capacity = capacity_for(input.count, scene ? scene->capacity : 0);
         !scene || capacity != scene->capacity) {
-        made = std::make_unique<SwBuiltScene>();
+        made = std::make_unique<SwBuiltTlas>();
         made->capacity = capacity;
         made->layout = layout_scene(static_cast<uint>(capacity), options().layout);
         made->buffer =
@@ -215,8 +215,8 @@ BuildBytes SwBackend::scene_bytes(std::size_t count, std::size_t capacity) const
                 Builder::cost_bytes(leaves, options().layout)};
 }
 
-void SwBackend::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
-    const auto& scene = static_cast<const SwBuiltScene&>(current);
+void SwBackend::refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) {
+    const auto& scene = static_cast<const SwBuiltTlas&>(current);
     builder_.record_refit(commands,
                           plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
                           {scene.tree(input.count), input.records, scene.instances()});
@@ -241,7 +241,7 @@ BuiltTree SwBackend::download_geometry(AccelHandle handle) const {
 }
 
 BuiltTree SwBackend::download_scene() const {
-    const auto& built = static_cast<const SwBuiltScene&>(built_scene());
+    const auto& built = static_cast<const SwBuiltTlas&>(built_tlas());
     const Bvh bvh = download<SwTlasHeader>(context(), built.buffer, 1).front().bvh;
     const SceneLayout of_them = layout_scene(bvh.leaf_count, options().layout);
     return {bvh,

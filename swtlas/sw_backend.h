@@ -19,7 +19,9 @@ class SwBackend final : public AccelBackend {
   public:
     explicit SwBackend(Context& context, const AccelOptions& options = {});
 
-    Capability capability(Feature feature) const override { return SwTlas::capability_on(context().facts(), feature); }
+    Capability capability(Feature feature) const override {
+        return SwTlas::capability_on(context().properties(), feature);
+    }
     bool is_software() const override { return true; }
 
     // SwTlas and swtlas/tree.h say what these do.
@@ -30,7 +32,7 @@ class SwBackend final : public AccelBackend {
 
   private:
     struct SwBuiltGeometry;
-    struct SwBuiltScene;
+    struct SwBuiltTlas;
     struct Batch;
     using Built = std::vector<std::unique_ptr<BuiltGeometry>>;
     Built build_geometries(Commands& commands, std::span<const GeometryInput> inputs) override;
@@ -43,9 +45,9 @@ class SwBackend final : public AccelBackend {
                         const std::function<void(const Batch&, const Buffer& scratch)>& record);
     void record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built);
     static std::vector<DeviceMesh> record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch);
-    std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
-                                            const BuiltScene* current) override;
-    void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
+    std::unique_ptr<BuiltTlas> build_tlas(Commands& commands, const TlasInput& input,
+                                          const BuiltTlas* current) override;
+    void refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) override;
     float unit_of(std::span<const vec3> positions) const override { return software_unit(positions); }
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
 

@@ -12,7 +12,7 @@ SwTlas::SwTlas(Context& context, const AccelOptions& options)
 
 SwBackend& SwTlas::backend() const { return static_cast<SwBackend&>(AbstractAccel::backend()); }
 
-Capability SwTlas::capability_on(const DeviceFacts& device, Feature feature) {
+Capability SwTlas::capability_on(const DeviceProperties& device, Feature feature) {
     switch (feature) {
         case Feature::level_refined:
         case Feature::level_certified:

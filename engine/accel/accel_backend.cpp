@@ -36,9 +36,9 @@ AccelBackend::AccelBackend(Context& context, std::string name, const AccelOption
       bound_(context),
       scene_costs_(context) {
     if (options.level < Level::refined) return;
-    if (!context.facts().shader_float64)
-        fail(name_, ": ", name_of(feature_of(options.level)), " needs float64, which device '", context.facts().name,
-             "' has not enabled");
+    if (!context.properties().shader_float64)
+        fail(name_, ": ", name_of(feature_of(options.level)), " needs float64, which device '",
+             context.properties().name, "' has not enabled");
     refinement_ = std::make_unique<Refinement>(context);
 }
 
@@ -64,40 +64,40 @@ AccelHandle AccelBackend::place(Geometry&& geometry, std::span<const Transform> 
     if (!options.empty() && options.size() != transforms.size())
         fail(name_, ": mesh '", geometry.name, "': ", options.size(), " instance options for ", transforms.size(),
              " transforms; the lengths must match");
-    Placement placement{std::move(geometry),
-                        Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}),
-                        nullptr,
-                        {},
-                        {},
-                        {}};
+    PushedGeometry pushed{std::move(geometry),
+                          Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}),
+                          nullptr,
+                          {},
+                          {},
+                          {}};
     for (std::size_t i = 0; i < transforms.size(); ++i)
-        placement.instances.records.push_back(
-            checked_record(placement, i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
-    warn_of_inactive_triangles(placement.geometry);
+        pushed.instances.records.push_back(
+            checked_record(pushed, i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
+    warn_of_inactive_triangles(pushed.geometry);
     const AccelHandle handle{next_handle()};
-    placements_.emplace(handle.id, std::move(placement));
+    pushed_.emplace(handle.id, std::move(pushed));
     mark(Dirty::structure);
     return handle;
 }
 
 AccelHandle AccelBackend::push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
                                      std::span<const InstanceRecord> records) {
-    Placement placement{std::move(geometry), std::move(block), std::move(built), {}, {}, {}};
+    PushedGeometry pushed{std::move(geometry), std::move(block), std::move(built), {}, {}, {}};
     for (const InstanceRecord& record : records) {
-        placement.instances.records.push_back(make_instance_record(transform_of(record), options_of(record)));
-        placement.instances.records.back().geometry = placement.block.address();
+        pushed.instances.records.push_back(make_instance_record(transform_of(record), options_of(record)));
+        pushed.instances.records.back().geometry = pushed.block.address();
     }
     const AccelHandle handle{next_handle()};
-    placements_.emplace(handle.id, std::move(placement));
+    pushed_.emplace(handle.id, std::move(pushed));
     mark(Dirty::structure);
     return handle;
 }
 
 bool AccelBackend::erase(AccelHandle handle) {
-    const auto found = placements_.find(handle.id);
-    if (found == placements_.end()) return false;
+    const auto found = pushed_.find(handle.id);
+    if (found == pushed_.end()) return false;
     if (found->second.built) erased_.push_back(std::move(found->second.built));
-    placements_.erase(found);
+    pushed_.erase(found);
     mark(Dirty::structure);
     return true;
 }
@@ -112,77 +112,77 @@ void AccelBackend::update(AccelHandle handle, const BoxesView& boxes) {
 }
 
 void AccelBackend::replace(AccelHandle handle, Geometry&& geometry) {
-    Placement& placement = live(handle, "update");
+    PushedGeometry& pushed = live(handle, "update");
     warn_of_inactive_triangles(geometry);
-    if (placement.built) erased_.push_back(std::move(placement.built));
-    placement.geometry = std::move(geometry);
-    placement.has_source = false;
-    placement.vertices = {};
+    if (pushed.built) erased_.push_back(std::move(pushed.built));
+    pushed.geometry = std::move(geometry);
+    pushed.has_source = false;
+    pushed.vertices = {};
     mark(Dirty::structure);
 }
 
-AccelBackend::Placement& AccelBackend::checked_for_vertices(AccelHandle handle, std::size_t count) {
-    Placement& placement = live(handle, "update_vertices");
-    const Geometry& geometry = placement.geometry;
+AccelBackend::PushedGeometry& AccelBackend::checked_for_vertices(AccelHandle handle, std::size_t count) {
+    PushedGeometry& pushed = live(handle, "update_vertices");
+    const Geometry& geometry = pushed.geometry;
     if (geometry.kind == GEOMETRY_BOXES)
         fail(name_, ": update_vertices: handle ", handle.id, " holds boxes, '", geometry.name, "', not triangles");
     if (const std::size_t n = geometry.positions.size(); count != n)
         fail(name_, ": update_vertices: mesh '", geometry.name, "': ", count, " positions for its ", n,
              " vertices; update() changes their number");
-    return placement;
+    return pushed;
 }
 
 void AccelBackend::update_vertices(AccelHandle handle, std::span<const vec3> positions) {
-    Placement& placement = checked_for_vertices(handle, positions.size());
-    Geometry& geometry = placement.geometry;
+    PushedGeometry& pushed = checked_for_vertices(handle, positions.size());
+    Geometry& geometry = pushed.geometry;
     const std::size_t inactive = count_non_finite_triangles({geometry.name, positions, geometry.triangles});
     geometry.move_to(positions);
     geometry.non_finite_triangles = inactive;
     warn_of_inactive_triangles(geometry);
     if (geometry.triangles.empty()) return;
-    placement.vertices.incoming = {};
-    placement.vertices.device_wrote = false;
-    placement.vertices.edited = placement.built || placement.vertices.on_device();
+    pushed.vertices.incoming = {};
+    pushed.vertices.device_wrote = false;
+    pushed.vertices.edited = pushed.built || pushed.vertices.on_device();
     mark(Dirty::moves);
 }
 
 void AccelBackend::update_vertices(AccelHandle handle, Floats positions, std::size_t count) {
-    Placement& placement = checked_for_vertices(handle, count);
+    PushedGeometry& pushed = checked_for_vertices(handle, count);
     if (!works_on_device()) fail(name_, ": update_vertices: vertices in device memory are unsupported");
     if (!positions.address || positions.address % 4)
         fail(name_, ": update_vertices: device address ", positions.address, " must be a multiple of 4 and not 0");
-    if (placement.geometry.triangles.empty()) return;
-    placement.vertices.incoming = positions;
-    placement.vertices.edited = true;
+    if (pushed.geometry.triangles.empty()) return;
+    pushed.vertices.incoming = positions;
+    pushed.vertices.edited = true;
     mark(Dirty::moves);
 }
 
-void AccelBackend::Placement::add_to(SceneFacts& facts) const {
+void AccelBackend::PushedGeometry::add_to(SceneTraits& traits) const {
     if (instances.records.empty()) return;
-    facts.has_boxes |= geometry.kind == GEOMETRY_BOXES;
-    facts.has_transforms |= geometry.scale != 1;
-    facts.instances += instances.records.size();
+    traits.has_boxes |= geometry.kind == GEOMETRY_BOXES;
+    traits.has_transforms |= geometry.scale != 1;
+    traits.instances += instances.records.size();
     for (const InstanceRecord& record : instances.records) {
-        facts.has_filters |= (flags_of(record) & INSTANCE_NON_OPAQUE) != 0;
-        facts.common_mask &= mask_of(record);
-        facts.has_transforms |= transform_of(record) != Transform{};
+        traits.has_filters |= (flags_of(record) & INSTANCE_NON_OPAQUE) != 0;
+        traits.common_mask &= mask_of(record);
+        traits.has_transforms |= transform_of(record) != Transform{};
     }
 }
 
-SceneFacts AccelBackend::facts_of_placements() const {
-    SceneFacts facts{.instances = 0, .has_transforms = options_.can_move};
-    for (const auto& [id, placement] : placements_) placement.add_to(facts);
-    return facts;
+SceneTraits AccelBackend::scene_traits() const {
+    SceneTraits traits{.instances = 0, .has_transforms = options_.can_move};
+    for (const auto& [id, pushed] : pushed_) pushed.add_to(traits);
+    return traits;
 }
 
-InstanceRecord AccelBackend::checked_record(const Placement& placement, std::size_t index, const Transform& transform,
+InstanceRecord AccelBackend::checked_record(const PushedGeometry& pushed, std::size_t index, const Transform& transform,
                                             const InstanceOptions& options) const {
     std::string fault = fault_of(transform);
     if (options.custom_index > max_custom_index)
         fault = text("custom index ", options.custom_index, " exceeds 24 bits (at most ", max_custom_index, ")");
-    if (!fault.empty()) fail(name_, ": mesh '", placement.geometry.name, "', instance ", index, ": ", fault);
+    if (!fault.empty()) fail(name_, ": mesh '", pushed.geometry.name, "', instance ", index, ": ", fault);
     InstanceRecord record = make_instance_record(transform, options);
-    record.geometry = placement.block.address();
+    record.geometry = pushed.block.address();
     return record;
 }
 
@@ -192,14 +192,14 @@ void AccelBackend::warn_of_inactive_triangles(const Geometry& geometry) const {
                                    geometry.triangles.size(), " triangles have a non-finite vertex and are inactive"));
 }
 
-const AccelBackend::Placement& AccelBackend::live(AccelHandle handle, const char* action) const {
-    const auto found = placements_.find(handle.id);
-    if (found == placements_.end()) fail(name_, ": ", action, ": handle ", handle.id, " is not alive");
+const AccelBackend::PushedGeometry& AccelBackend::live(AccelHandle handle, const char* action) const {
+    const auto found = pushed_.find(handle.id);
+    if (found == pushed_.end()) fail(name_, ": ", action, ": handle ", handle.id, " is not alive");
     return found->second;
 }
 
-AccelBackend::Placement& AccelBackend::live(AccelHandle handle, const char* action) {
-    return const_cast<Placement&>(std::as_const(*this).live(handle, action));
+AccelBackend::PushedGeometry& AccelBackend::live(AccelHandle handle, const char* action) {
+    return const_cast<PushedGeometry&>(std::as_const(*this).live(handle, action));
 }
 
 void AccelBackend::update_transform(AccelHandle handle, const Transform& transform) {
@@ -213,84 +213,84 @@ void AccelBackend::check_movable(const char* action) const {
 }
 
 void AccelBackend::update_transforms(AccelHandle handle, std::span<const Transform> transforms) {
-    Placement& placement = live(handle, "update_transforms");
+    PushedGeometry& pushed = live(handle, "update_transforms");
     check_movable("update_transforms");
-    check_count(handle, placement, transforms.size());
+    check_count(handle, pushed, transforms.size());
     std::vector<InstanceRecord> records;
     records.reserve(transforms.size());
     for (std::size_t i = 0; i < transforms.size(); ++i)
-        records.push_back(checked_record(placement, i, transforms[i], options_of(placement.instances.records[i])));
-    placement.instances.edit_all(std::move(records));
+        records.push_back(checked_record(pushed, i, transforms[i], options_of(pushed.instances.records[i])));
+    pushed.instances.edit_all(std::move(records));
     mark(Dirty::moves);
 }
 
 void AccelBackend::update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count) {
-    Placement& placement = live(handle, "update_transforms");
+    PushedGeometry& pushed = live(handle, "update_transforms");
     check_movable("update_transforms");
-    check_count(handle, placement, count);
+    check_count(handle, pushed, count);
     if (!transforms.address || transforms.address % 4)
         fail(name_, ": update_transforms: device address ", transforms.address, " must be a multiple of 4 and not 0");
-    placement.instances.replace_transforms(transforms);
+    pushed.instances.replace_transforms(transforms);
     mark(Dirty::moves);
 }
 
-void AccelBackend::check_count(AccelHandle handle, const Placement& placement, std::size_t count) const {
-    if (const std::size_t n = placement.instances.records.size(); count != n)
+void AccelBackend::check_count(AccelHandle handle, const PushedGeometry& pushed, std::size_t count) const {
+    if (const std::size_t n = pushed.instances.records.size(); count != n)
         fail(name_, ": update_transforms: ", count, " transforms for the ", n, " instances of handle ", handle.id);
 }
 
-void AccelBackend::check_index(AccelHandle handle, const Placement& placement, std::size_t index,
+void AccelBackend::check_index(AccelHandle handle, const PushedGeometry& pushed, std::size_t index,
                                const char* action) const {
-    if (const std::size_t n = placement.instances.records.size(); index >= n)
+    if (const std::size_t n = pushed.instances.records.size(); index >= n)
         fail(name_, ": ", action, ": index ", index, " of the ", n, " instances of handle ", handle.id);
 }
 
 void AccelBackend::update_transform_at(AccelHandle handle, std::size_t index, const Transform& transform) {
-    Placement& placement = live(handle, "update_transform_at");
+    PushedGeometry& pushed = live(handle, "update_transform_at");
     check_movable("update_transform_at");
-    check_index(handle, placement, index, "update_transform_at");
-    const InstanceOptions options = options_of(placement.instances.records[index]);
-    placement.instances.edit(index, checked_record(placement, index, transform, options));
+    check_index(handle, pushed, index, "update_transform_at");
+    const InstanceOptions options = options_of(pushed.instances.records[index]);
+    pushed.instances.edit(index, checked_record(pushed, index, transform, options));
     mark(Dirty::moves);
 }
 
 InstanceRange AccelBackend::instance_buffer(AccelHandle handle) const {
-    const Placement& placement = live(handle, "instance_buffer");
-    if (dirty_ == Dirty::structure || !placement.instances.first)
+    const PushedGeometry& pushed = live(handle, "instance_buffer");
+    if (dirty_ == Dirty::structure || !pushed.instances.first)
         fail(name_, ": instance_buffer: edits are pending; call sync() first");
-    const std::uint64_t offset = *placement.instances.first * sizeof(InstanceRecord);
+    const std::uint64_t offset = *pushed.instances.first * sizeof(InstanceRecord);
     const Buffer& buffer = instances_.buffer();
-    return {buffer.handle(), offset, buffer.ref<InstanceRecord>(offset), placement.instances.records.size()};
+    return {buffer.handle(), offset, buffer.ref<InstanceRecord>(offset), pushed.instances.records.size()};
 }
 
 void AccelBackend::mark_transforms_dirty(AccelHandle handle) {
-    Placement& placement = live(handle, "mark_transforms_dirty");
+    PushedGeometry& pushed = live(handle, "mark_transforms_dirty");
     check_movable("mark_transforms_dirty");
-    if (!placement.instances.first)
+    if (!pushed.instances.first)
         fail(name_, ": mark_transforms_dirty: handle ", handle.id, " is not on the device yet; call sync() first");
-    placement.instances.device_wrote = true;
+    pushed.instances.device_wrote = true;
     mark(Dirty::moves);
 }
 
 std::size_t AccelBackend::n_instances() const {
     std::size_t count = 0;
-    for (const auto& [id, placement] : placements_) count += placement.instances.records.size();
+    for (const auto& [id, pushed] : pushed_) count += pushed.instances.records.size();
     return count;
 }
 
 std::size_t AccelBackend::n_instances(AccelHandle handle) const {
-    const auto found = placements_.find(handle.id);
-    return found == placements_.end() ? 0 : found->second.instances.records.size();
+    const auto found = pushed_.find(handle.id);
+    return found == pushed_.end() ? 0 : found->second.instances.records.size();
 }
 
 std::size_t AccelBackend::n_primitives(AccelHandle handle) const {
-    const auto found = placements_.find(handle.id);
-    return found == placements_.end() ? 0 : found->second.geometry.primitive_count();
+    const auto found = pushed_.find(handle.id);
+    return found == pushed_.end() ? 0 : found->second.geometry.primitive_count();
 }
 
 std::vector<AccelHandle> AccelBackend::handles() const {
     std::vector<AccelHandle> alive;
-    for (const auto& [id, placement] : placements_) alive.push_back({id});
+    for (const auto& [id, pushed] : pushed_) alive.push_back({id});
     return alive;
 }
 
@@ -312,23 +312,23 @@ std::vector<InstanceState> AccelBackend::get_instances(AccelHandle handle) const
 }
 
 const AccelBackend::BuiltGeometry& AccelBackend::built_geometry(AccelHandle handle) const {
-    const Placement& placement = live(handle, "built geometry");
-    if (!placement.built) fail(name_, ": handle ", handle.id, " is not built yet; call sync() first");
-    return *placement.built;
+    const PushedGeometry& pushed = live(handle, "built geometry");
+    if (!pushed.built) fail(name_, ": handle ", handle.id, " is not built yet; call sync() first");
+    return *pushed.built;
 }
 
 const Buffer& AccelBackend::geometry_block(AccelHandle handle) const { return live(handle, "geometry block").block; }
 
 Geometry AccelBackend::geometry(AccelHandle handle) const {
-    const Placement& placement = live(handle, "geometry");
-    Geometry geometry = placement.geometry;
-    if (!placement.vertices.device_wrote) return geometry;
-    geometry.positions = download<vec3>(context_, placement.vertices.positions, geometry.positions.size());
+    const PushedGeometry& pushed = live(handle, "geometry");
+    Geometry geometry = pushed.geometry;
+    if (!pushed.vertices.device_wrote) return geometry;
+    geometry.positions = download<vec3>(context_, pushed.vertices.positions, geometry.positions.size());
     geometry.non_finite_triangles = count_non_finite_triangles({geometry.name, geometry.positions, geometry.triangles});
     return geometry;
 }
 
-const AccelBackend::BuiltScene& AccelBackend::built_scene() const {
+const AccelBackend::BuiltTlas& AccelBackend::built_tlas() const {
     if (!scene_) fail(name_, ": the scene is not built yet; call sync() first");
     return *scene_;
 }

@@ -14,7 +14,7 @@
 #include "engine/accel/features_of.h"
 #include "engine/accel/geometry.h"
 #include "engine/accel/instance_array.h"
-#include "engine/accel/own_programs.h"
+#include "engine/accel/pipeline_variants.h"
 #include "engine/accel/refinement.h"
 #include "engine/accel/trace_program.h"
 #include "engine/accel/vertices.h"
@@ -48,12 +48,12 @@ class AccelBackend {
     void update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count);
     InstanceRange instance_buffer(AccelHandle handle) const;
     void mark_transforms_dirty(AccelHandle handle);
-    bool is_valid(AccelHandle handle) const { return placements_.contains(handle.id); }
+    bool is_valid(AccelHandle handle) const { return pushed_.contains(handle.id); }
     InstanceState get_instance(AccelHandle handle, std::size_t index) const;
     std::vector<InstanceState> get_instances(AccelHandle handle) const;
     std::size_t n_instances() const;
     std::size_t n_instances(AccelHandle handle) const;  // 0 for a dead handle
-    std::size_t n_geometries() const { return placements_.size(); }
+    std::size_t n_geometries() const { return pushed_.size(); }
     std::size_t n_primitives(AccelHandle handle) const;  // triangles or boxes of its geometry; 0 for a dead handle
     std::vector<AccelHandle> handles() const;            // those alive, in push order
     SyncPoint sync();
@@ -118,15 +118,15 @@ class AccelBackend {
     virtual std::vector<std::unique_ptr<BuiltGeometry>> compact_geometries(Commands& commands,
                                                                            std::span<const GeometryInput> inputs);
     // The top level as the implementation built it.
-    struct BuiltScene {
-        virtual ~BuiltScene() = default;
+    struct BuiltTlas {
+        virtual ~BuiltTlas() = default;
         std::uint64_t address = 0;  // what AccelView::scene holds
         std::uint64_t bytes = 0;
         std::uint64_t scratch_bytes = 0;  // kept with it
         std::size_t capacity = 0;         // instances that it has room for
     };
     // What to build the top level from, all on the device by the time it runs.
-    struct SceneInput {
+    struct TlasInput {
         Ref<InstanceRecord> records;
         uint count = 0;
         Ref<WorldBound> bound;
@@ -144,14 +144,14 @@ class AccelBackend {
     virtual std::vector<std::unique_ptr<BuiltGeometry>> refit_geometries(Commands& commands,
                                                                          std::span<const GeometryInput> inputs) = 0;
     // Builds into the memory of `current` where that suffices, and then returns null.
-    virtual std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
-                                                    const BuiltScene* current) = 0;
+    virtual std::unique_ptr<BuiltTlas> build_tlas(Commands& commands, const TlasInput& input,
+                                                  const BuiltTlas* current) = 0;
     // What building them from the host's memory takes.
     virtual BuildBytes geometry_bytes(std::span<const GeometrySize> geometries) const = 0;
     // What building a top level for `count` instances takes, with room for `capacity`.
     virtual BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const = 0;
     // Adapts `current`, built with will_move, to instances that only moved.
-    virtual void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) = 0;
+    virtual void refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) = 0;
     // What an implementation built; throws Error on a dead handle or pending edits.
     const BuiltGeometry& built_geometry(AccelHandle handle) const;
     const Buffer& geometry_block(AccelHandle handle) const;
@@ -163,7 +163,7 @@ class AccelBackend {
     // need not name the block, may hold what push() would refuse: transforms that kernels have made unusable.
     AccelHandle push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
                            std::span<const InstanceRecord> records);
-    const BuiltScene& built_scene() const;
+    const BuiltTlas& built_tlas() const;
 
     // What meshes with these positions are built in units of: a power of two.
     virtual float unit_of(std::span<const vec3> positions) const { return Geometry::near_unit(positions); }
@@ -177,7 +177,7 @@ class AccelBackend {
 
   private:
     // What one push placed.
-    struct Placement {
+    struct PushedGeometry {
         Geometry geometry;
         Buffer block;                          // see GeometryInput
         std::unique_ptr<BuiltGeometry> built;  // null: `geometry` is not built yet
@@ -186,20 +186,20 @@ class AccelBackend {
         InstanceSlice instances;
         bool has_source = false;  // the block's GeometrySource is that of `geometry`
 
-        void add_to(SceneFacts& facts) const;
+        void add_to(SceneTraits& traits) const;
     };
     struct Work;
     // What a sync recorded, to be committed once it is certain to run.
     struct Staged {
         VertexArrays::Staged vertices;
-        std::vector<Placement*> sources;  // whose GeometrySource was written
-        std::vector<bool> is_rebuilt;     // by moved item of `vertices`, which come first
+        std::vector<PushedGeometry*> sources;  // whose GeometrySource was written
+        std::vector<bool> is_rebuilt;          // by moved item of `vertices`, which come first
         std::optional<Buffer> refinement;
-        std::vector<Placement*> building;
+        std::vector<PushedGeometry*> building;
         std::vector<std::unique_ptr<BuiltGeometry>> built;  // by `building`
         std::vector<InstanceSlice*> slices;
         InstanceArray::Staged instances;
-        std::unique_ptr<BuiltScene> scene;
+        std::unique_ptr<BuiltTlas> scene;
         bool is_scene_built = false;  // not refitted
         bool has_moved = false;
 
@@ -211,30 +211,30 @@ class AccelBackend {
     AccelHandle place(Geometry&& geometry, std::span<const Transform> transforms,
                       std::span<const InstanceOptions> options);
     void replace(AccelHandle handle, Geometry&& geometry);
-    InstanceRecord checked_record(const Placement& placement, std::size_t index, const Transform& transform,
+    InstanceRecord checked_record(const PushedGeometry& pushed, std::size_t index, const Transform& transform,
                                   const InstanceOptions& options) const;
-    Placement& live(AccelHandle handle, const char* action);
-    const Placement& live(AccelHandle handle, const char* action) const;
+    PushedGeometry& live(AccelHandle handle, const char* action);
+    const PushedGeometry& live(AccelHandle handle, const char* action) const;
     void warn_of_inactive_triangles(const Geometry& geometry) const;
-    Placement& checked_for_vertices(AccelHandle handle, std::size_t count);
-    void check_count(AccelHandle handle, const Placement& placement, std::size_t count) const;
-    void check_index(AccelHandle handle, const Placement& placement, std::size_t index, const char* action) const;
+    PushedGeometry& checked_for_vertices(AccelHandle handle, std::size_t count);
+    void check_count(AccelHandle handle, const PushedGeometry& pushed, std::size_t count) const;
+    void check_index(AccelHandle handle, const PushedGeometry& pushed, std::size_t index, const char* action) const;
     Staged stage(Commands& commands);
     void stage_vertices(Commands& commands, Staged& staged);
     void stage_sources(Commands& commands, Staged& staged);
-    bool lacks_refinement(const Placement& placement) const;
+    bool lacks_refinement(const PushedGeometry& pushed) const;
     void stage_geometries(Commands& commands, Staged& staged);
     void stage_scene(Commands& commands, Staged& staged);
     void commit(Staged&& staged, SyncPoint done);
     enum class Wait : std::uint8_t { no, yes };
     std::optional<double> sah_of(const CostLog& costs, Wait wait) const;
     bool has_degraded(const CostLog& costs) const;
-    bool is_compactable(const Placement& placement) const;
-    AccelFacts accel_facts() const { return {is_software(), options_.layout, reorders()}; }
-    SceneFacts facts_of_placements() const;
+    bool is_compactable(const PushedGeometry& pushed) const;
+    AccelTraits accel_traits() const { return {is_software(), options_.layout, reorders()}; }
+    SceneTraits scene_traits() const;
     void check_movable(const char* action) const;
     void warn_of_unusable_instances();
-    const TraceProgram& own_program(uint features, const TraceDesc& desc) const;
+    const TraceProgram& variant_for(uint features, const TraceDesc& desc) const;
     const TraceProgram& program_for(const TraceDesc& desc) const;
     void check_desc(const AccelView& view, const TraceDesc& desc) const;
     void check_buffers(const TraceDesc& desc) const;
@@ -252,16 +252,16 @@ class AccelBackend {
     CostLog scene_costs_;
     double rebuild_ratio_ = default_rebuild_ratio;
     std::uint64_t scratch_budget_ = 64 << 20;
-    std::map<std::uint64_t, Placement> placements_;  // in push order: ids only grow
+    std::map<std::uint64_t, PushedGeometry> pushed_;  // in push order: ids only grow
     Dirty dirty_ = Dirty::structure;
     bool has_moved_ = false;  // something has moved after a build, so that builds allow refits
     std::uint64_t revision_ = 0;
-    SceneFacts facts_;                                   // of the scene that was built
-    mutable std::unique_ptr<OwnPrograms> own_programs_;  // made by the first trace
-    mutable std::unique_ptr<RaySort> ray_sort_;          // made by the first that sorts
+    SceneTraits traits_;                                           // of the scene that was built
+    mutable std::unique_ptr<PipelineVariants> pipeline_variants_;  // made by the first trace
+    mutable std::unique_ptr<RaySort> ray_sort_;                    // made by the first that sorts
     SyncPoint synced_;
     uint warned_unusable_ = 0;
-    std::unique_ptr<BuiltScene> scene_;
+    std::unique_ptr<BuiltTlas> scene_;
     // Its instances.
     std::size_t scene_count_ = 0;
     std::vector<std::unique_ptr<BuiltGeometry>> erased_;  // since the last sync: scene_ still refers to them

@@ -7,7 +7,7 @@ namespace twinray {
 namespace {
 
 // "" if it can.
-std::string why_not_hardware(const DeviceFacts& device, const AccelNeeds& needs) {
+std::string why_not_hardware(const DeviceProperties& device, const AccelNeeds& needs) {
     if (const std::vector<std::string> missing = missing_for_hardware(device); !missing.empty())
         return text("device '", device.name, "' lacks ", joined(missing));
     if (needs.kernel_queries && !device.ray_query)
@@ -20,7 +20,7 @@ std::string why_not_hardware(const DeviceFacts& device, const AccelNeeds& needs)
 
 const char* name_of(const AccelChoice& choice) { return choice.is_software ? "SwTlas" : "HwTlas"; }
 
-AccelChoice choose_accel(const DeviceFacts& device, const std::string& request, const AccelNeeds& needs) {
+AccelChoice choose_accel(const DeviceProperties& device, const std::string& request, const AccelNeeds& needs) {
     if (request == "sw") return {true, "asked for"};
     const std::string why_not = why_not_hardware(device, needs);
     if (request == "hw") {

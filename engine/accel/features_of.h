@@ -8,13 +8,13 @@
 
 namespace twinray {
 
-struct AccelFacts {
+struct AccelTraits {
     bool is_software = true;
     Layout layout = Layout::compressed4;  // of software
     bool reorders = false;                // hardware: see FEATURE_REMAP
 };
 
-struct SceneFacts {
+struct SceneTraits {
     bool has_boxes = false;
     bool has_filters = false;
     std::size_t instances = 1;
@@ -22,19 +22,19 @@ struct SceneFacts {
     bool has_transforms = false;  // an instance may be, now or later, elsewhere than its geometry as it was built
 
     // The scene that needs everything that needs no trace program.
-    static constexpr SceneFacts of_every_kind() { return {.instances = 2, .common_mask = 0, .has_transforms = true}; }
+    static constexpr SceneTraits of_every_kind() { return {.instances = 2, .common_mask = 0, .has_transforms = true}; }
 };
 
-struct TraceFacts {
+struct TraceTraits {
     uint mask = 0xff;
     bool culls = false;
     bool wants_hits = true;  // all of each, not only whether there is one
 
-    static TraceFacts of(const TraceDesc& desc) {
-        return {desc.mask, desc.cull != Cull::none, desc.query == Query::closest || !desc.answer_only};
+    static TraceTraits of(const TraceDesc& desc) {
+        return {desc.mask, desc.cull != Cull::none, desc.query == Query::closest || !desc.occlusion_only};
     }
     // A kernel may ask for any mask, and cull.
-    static constexpr TraceFacts of_every_kind() { return {.mask = 0, .culls = true}; }
+    static constexpr TraceTraits of_every_kind() { return {.mask = 0, .culls = true}; }
 };
 
 constexpr uint feature_of_layout(Layout layout) {
@@ -42,7 +42,7 @@ constexpr uint feature_of_layout(Layout layout) {
     return features[static_cast<std::size_t>(layout)];
 }
 
-constexpr uint features_of(const AccelFacts& accel, const SceneFacts& scene, const TraceFacts& trace) {
+constexpr uint features_of(const AccelTraits& accel, const SceneTraits& scene, const TraceTraits& trace) {
     const auto if_needed = [](bool is_needed, uint feature) { return is_needed ? feature : 0; };
     const uint of_both = if_needed(scene.has_boxes, FEATURE_BOXES) | if_needed(scene.has_filters, FEATURE_FILTERS) |
                          if_needed(trace.wants_hits, FEATURE_HITS);

@@ -69,18 +69,18 @@ InstanceRecord make_instance_record(const Transform& transform, const InstanceOp
     InstanceRecord record{};
     for (int row = 0; row < 3; ++row) record.object_to_world[row] = transform.rows[static_cast<std::size_t>(row)];
     record.custom_index_mask = options.custom_index | (uint{options.mask} << 24);
-    record.sbt_offset_flags = (options.no_culling ? INSTANCE_DISABLE_CULLING << 24 : 0) |
-                              (options.turned ? INSTANCE_FLIP_FACING << 24 : 0) |
-                              (options.filtered ? INSTANCE_NON_OPAQUE << 24 : 0);
+    record.sbt_offset_flags = (options.disable_culling ? INSTANCE_DISABLE_CULLING << 24 : 0) |
+                              (options.flip_facing ? INSTANCE_FLIP_FACING << 24 : 0) |
+                              (options.non_opaque ? INSTANCE_NON_OPAQUE << 24 : 0);
     return record;
 }
 
 InstanceOptions options_of(const InstanceRecord& record) {
     return {.custom_index = custom_index_of(record),
             .mask = static_cast<std::uint8_t>(mask_of(record)),
-            .no_culling = (flags_of(record) & INSTANCE_DISABLE_CULLING) != 0,
-            .turned = (flags_of(record) & INSTANCE_FLIP_FACING) != 0,
-            .filtered = (flags_of(record) & INSTANCE_NON_OPAQUE) != 0};
+            .disable_culling = (flags_of(record) & INSTANCE_DISABLE_CULLING) != 0,
+            .flip_facing = (flags_of(record) & INSTANCE_FLIP_FACING) != 0,
+            .non_opaque = (flags_of(record) & INSTANCE_NON_OPAQUE) != 0};
 }
 
 Transform transform_of(const InstanceRecord& record) {

@@ -89,15 +89,15 @@ void InstanceArray::record_moves(Commands& commands, const Staged& staged,
 
 void InstanceArray::record_uploads(Commands& commands, const Staged& staged,
                                    std::span<InstanceSlice* const> slices) const {
-    std::vector<Commands::Piece> pieces;
+    std::vector<Commands::Region> regions;
     for (std::size_t i = 0; i < slices.size(); ++i) {
         const InstanceSlice& slice = *slices[i];
         if (lies_on_device(slice) || (!staged.replacement && slice.first == staged.firsts[i])) continue;
-        pieces.push_back({staged.firsts[i] * stride, bytes_of(slice, 0, slice.records.size())});
+        regions.push_back({staged.firsts[i] * stride, bytes_of(slice, 0, slice.records.size())});
     }
-    if (pieces.empty()) return;
+    if (regions.empty()) return;
     const auto pass = commands.pass("instance upload");
-    commands.upload_pieces(staged.replacement ? *staged.replacement : buffer_, pieces);
+    commands.upload_regions(staged.replacement ? *staged.replacement : buffer_, regions);
 }
 
 void InstanceArray::record_incoming(Commands& commands, const Staged& staged,
@@ -114,16 +114,16 @@ void InstanceArray::record_incoming(Commands& commands, const Staged& staged,
 
 void InstanceArray::record_edits(Commands& commands, const Staged& staged,
                                  std::span<InstanceSlice* const> slices) const {
-    std::vector<Commands::Piece> pieces;
+    std::vector<Commands::Region> regions;
     for (std::size_t i = 0; i < slices.size(); ++i) {
         const InstanceSlice& slice = *slices[i];
-        if (slice.all_edited) pieces.push_back({staged.firsts[i] * stride, bytes_of(slice, 0, slice.records.size())});
+        if (slice.all_edited) regions.push_back({staged.firsts[i] * stride, bytes_of(slice, 0, slice.records.size())});
         for (const std::size_t index : slice.edited)
-            pieces.push_back({(staged.firsts[i] + index) * stride, bytes_of(slice, index, index + 1)});
+            regions.push_back({(staged.firsts[i] + index) * stride, bytes_of(slice, index, index + 1)});
     }
-    if (pieces.empty()) return;
+    if (regions.empty()) return;
     const auto pass = commands.pass("instance edits");
-    commands.upload_pieces(staged.replacement ? *staged.replacement : buffer_, pieces);
+    commands.upload_regions(staged.replacement ? *staged.replacement : buffer_, regions);
 }
 
 void InstanceArray::commit(Staged&& staged, std::span<InstanceSlice* const> slices) {

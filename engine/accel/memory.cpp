@@ -10,19 +10,18 @@ MemoryUsage AccelBackend::memory_usage() const {
     if (scene_) usage.scene = scene_->bytes;
     if (scene_) usage.scratch = scene_->scratch_bytes;
     usage.instances = instances_.buffer().bytes() + (refinement_ ? refinement_->bytes() : 0);
-    for (const auto& [id, placement] : placements_) {
-        usage.blocks += placement.block.bytes();
-        usage.vertices += placement.vertices.bytes();
-        if (placement.built) usage.geometries += placement.built->bytes;
+    for (const auto& [id, pushed] : pushed_) {
+        usage.blocks += pushed.block.bytes();
+        usage.vertices += pushed.vertices.bytes();
+        if (pushed.built) usage.geometries += pushed.built->bytes;
     }
     return usage;
 }
 
 BuildBytes AccelBackend::memory_requirements() const {
     std::vector<GeometrySize> sizes;
-    for (const auto& [id, placement] : placements_)
-        if (!placement.built)
-            sizes.push_back({placement.geometry.positions.size(), placement.geometry.primitive_count()});
+    for (const auto& [id, pushed] : pushed_)
+        if (!pushed.built) sizes.push_back({pushed.geometry.positions.size(), pushed.geometry.primitive_count()});
     BuildBytes bytes = geometry_bytes(sizes);
     if (dirty_ == Dirty::no) return bytes;
     const std::size_t count = n_instances(), room = scene_ ? scene_->capacity : 0;

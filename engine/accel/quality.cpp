@@ -32,13 +32,13 @@ bool AccelBackend::has_degraded(const CostLog& costs) const {
     return cost && cost->now > rebuild_ratio_ * cost->at_build;
 }
 
-bool AccelBackend::is_compactable(const Placement& placement) const {
-    return placement.built && !placement.vertices.edited && can_compact(*placement.built, placement.built_at);
+bool AccelBackend::is_compactable(const PushedGeometry& pushed) const {
+    return pushed.built && !pushed.vertices.edited && can_compact(*pushed.built, pushed.built_at);
 }
 
 bool AccelBackend::compact() {
-    const bool any = std::any_of(placements_.begin(), placements_.end(),
-                                 [&](const auto& entry) { return is_compactable(entry.second); });
+    const bool any =
+        std::any_of(pushed_.begin(), pushed_.end(), [&](const auto& entry) { return is_compactable(entry.second); });
     if (any) mark(Dirty::compaction);
     return any;
 }

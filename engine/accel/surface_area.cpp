@@ -57,7 +57,7 @@ void SurfaceArea::place(Commands& commands, std::span<AreaWork> work) {
     for (const AreaWork& tree : work) bytes += tree.bytes();
     Buffer items(commands.context(), {.name = "area items", .bytes = bytes});
     place(items.address(), work);
-    commands.keep(std::move(items));
+    commands.retain(std::move(items));
 }
 
 void SurfaceArea::record(Commands& commands, std::vector<AreaWork> work) const {

@@ -11,11 +11,11 @@ namespace twinray {
 
 // Geometries of which the same is wanted.
 struct AccelBackend::Work {
-    std::vector<Placement*> placements;
+    std::vector<PushedGeometry*> pushed;
     std::vector<GeometryInput> inputs;
 
-    void add(Placement& placement, const GeometryInput& input) {
-        placements.push_back(&placement);
+    void add(PushedGeometry& item, const GeometryInput& input) {
+        pushed.push_back(&item);
         inputs.push_back(input);
     }
 };
@@ -23,7 +23,7 @@ struct AccelBackend::Work {
 void AccelBackend::Staged::add(const Work& work, std::vector<std::unique_ptr<BuiltGeometry>>&& done) {
     for (std::size_t i = 0; i < done.size(); ++i) {
         if (!done[i]) continue;  // what it had was adapted
-        building.push_back(work.placements[i]);
+        building.push_back(work.pushed[i]);
         built.push_back(std::move(done[i]));
     }
 }
@@ -47,7 +47,7 @@ AccelBackend::Staged AccelBackend::stage(Commands& commands) {
         fail(name_, ": sync: ", n, " instances; at most ", max_instances, " fit");
     warn_of_unusable_instances();
     Staged staged;
-    for (auto& [id, placement] : placements_) staged.slices.push_back(&placement.instances);
+    for (auto& [id, pushed] : pushed_) staged.slices.push_back(&pushed.instances);
     stage_geometries(commands, staged);
     staged.instances = instances_.stage(commands, staged.slices);
     bound_.record(commands, staged.instances.records, static_cast<uint>(staged.instances.count));
@@ -57,28 +57,28 @@ AccelBackend::Staged AccelBackend::stage(Commands& commands) {
 
 void AccelBackend::stage_vertices(Commands& commands, Staged& staged) {
     std::vector<VertexArrays::Item> items;
-    for (auto& [id, placement] : placements_)
-        if (placement.vertices.edited) items.push_back({&placement.geometry, &placement.vertices});
-    for (auto& [id, placement] : placements_)
-        if (lacks_refinement(placement)) items.push_back({&placement.geometry, &placement.vertices});
+    for (auto& [id, pushed] : pushed_)
+        if (pushed.vertices.edited) items.push_back({&pushed.geometry, &pushed.vertices});
+    for (auto& [id, pushed] : pushed_)
+        if (lacks_refinement(pushed)) items.push_back({&pushed.geometry, &pushed.vertices});
     staged.vertices = vertices_.stage(commands, std::move(items));
     stage_sources(commands, staged);
 }
 
 // Whether refining lacks its mesh on the device, which no edit brings there.
-bool AccelBackend::lacks_refinement(const Placement& placement) const {
-    return refinement_ && !placement.vertices.edited && !placement.vertices.on_device() &&
-           placement.geometry.kind == GEOMETRY_TRIANGLES;
+bool AccelBackend::lacks_refinement(const PushedGeometry& pushed) const {
+    return refinement_ && !pushed.vertices.edited && !pushed.vertices.on_device() &&
+           pushed.geometry.kind == GEOMETRY_TRIANGLES;
 }
 
 void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
-    for (auto& [id, placement] : placements_)
-        if (!placement.has_source) staged.sources.push_back(&placement);
+    for (auto& [id, pushed] : pushed_)
+        if (!pushed.has_source) staged.sources.push_back(&pushed);
     if (staged.sources.empty()) return;
     const auto pass = commands.pass("geometry sources");
-    for (const Placement* placement : staged.sources) {
-        const DeviceMesh mesh = refinement_ ? staged.vertices.mesh_of(placement->vertices) : DeviceMesh{};
-        commands.write(placement->block, GeometrySource{mesh.positions, mesh.indices, placement->geometry.scale, 0},
+    for (const PushedGeometry* pushed : staged.sources) {
+        const DeviceMesh mesh = refinement_ ? staged.vertices.mesh_of(pushed->vertices) : DeviceMesh{};
+        commands.write(pushed->block, GeometrySource{mesh.positions, mesh.indices, pushed->geometry.scale, 0},
                        GEOMETRY_SOURCE_OFFSET);
     }
 }
@@ -86,20 +86,20 @@ void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
 void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
     stage_vertices(commands, staged);
     Work builds, refits, compactions;
-    for (auto& [id, placement] : placements_) {
-        GeometryInput input{&placement.geometry, &placement.block, {}, placement.built.get(), {}};
-        const bool is_refit = placement.vertices.edited && placement.built && !has_degraded(placement.vertices.costs);
-        if (placement.vertices.edited) {
+    for (auto& [id, pushed] : pushed_) {
+        GeometryInput input{&pushed.geometry, &pushed.block, {}, pushed.built.get(), {}};
+        const bool is_refit = pushed.vertices.edited && pushed.built && !has_degraded(pushed.vertices.costs);
+        if (pushed.vertices.edited) {
             input.mesh = staged.vertices.mesh(staged.is_rebuilt.size());
             input.cost = staged.vertices.cost_target(staged.is_rebuilt.size());
             staged.is_rebuilt.push_back(!is_refit);
         }
         if (is_refit)
-            refits.add(placement, input);
-        else if (!placement.built || placement.vertices.edited)
-            builds.add(placement, input);
-        else if (is_compactable(placement))
-            compactions.add(placement, input);
+            refits.add(pushed, input);
+        else if (!pushed.built || pushed.vertices.edited)
+            builds.add(pushed, input);
+        else if (is_compactable(pushed))
+            compactions.add(pushed, input);
     }
     staged.add(builds, build_geometries(commands, builds.inputs));
     staged.add(refits, refit_geometries(commands, refits.inputs));
@@ -108,9 +108,9 @@ void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
 
 void AccelBackend::stage_scene(Commands& commands, Staged& staged) {
     staged.has_moved = has_moved_ || (scene_ && dirty_ == Dirty::moves);
-    const SceneInput input{staged.instances.records, static_cast<uint>(staged.instances.count),
-                           bound_.result(),          staged.has_moved,
-                           scene_costs_.target(),    refinement_ ? refinement_->scene() : Ref<RefineScene>{}};
+    const TlasInput input{staged.instances.records, static_cast<uint>(staged.instances.count),
+                          bound_.result(),          staged.has_moved,
+                          scene_costs_.target(),    refinement_ ? refinement_->scene() : Ref<RefineScene>{}};
     if (refinement_) staged.refinement = refinement_->stage(commands, input.records, input.count, input.bound);
     staged.is_scene_built = must_build({.is_built = scene_ != nullptr,
                                         .was_moved = has_moved_,
@@ -120,9 +120,9 @@ void AccelBackend::stage_scene(Commands& commands, Staged& staged) {
                                         .built_count = scene_count_,
                                         .count = staged.instances.count});
     if (staged.is_scene_built)
-        staged.scene = build_scene(commands, input, scene_.get());
+        staged.scene = build_tlas(commands, input, scene_.get());
     else
-        refit_scene(commands, input, *scene_);
+        refit_tlas(commands, input, *scene_);
 }
 
 void AccelBackend::commit(Staged&& staged, SyncPoint done) {
@@ -132,13 +132,13 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     }
     const std::vector<VertexSlice*> moved = VertexArrays::commit(std::move(staged.vertices));
     for (std::size_t i = 0; i < staged.is_rebuilt.size(); ++i) moved[i]->costs.commit(staged.is_rebuilt[i], done);
-    for (Placement* placement : staged.sources) placement->has_source = true;
+    for (PushedGeometry* pushed : staged.sources) pushed->has_source = true;
     if (refinement_) refinement_->commit(std::move(staged.refinement));
     scene_costs_.commit(staged.is_scene_built, done);
     scene_count_ = staged.instances.count;
     has_moved_ = staged.has_moved;
     revision_ += dirty_ == Dirty::structure;
-    if (dirty_ == Dirty::structure) facts_ = facts_of_placements();
+    if (dirty_ == Dirty::structure) traits_ = scene_traits();
     if (staged.scene) scene_ = std::move(staged.scene);
     instances_.commit(std::move(staged.instances), staged.slices);
     erased_.clear();

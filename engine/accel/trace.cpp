@@ -34,7 +34,7 @@ void AccelBackend::check_synced(const char* action) const {
 
 AccelView AccelBackend::view() const {
     check_synced("view");
-    return {scene_->address, id_, revision_, features_of(accel_facts(), facts_, TraceFacts::of_every_kind())};
+    return {scene_->address, id_, revision_, features_of(accel_traits(), traits_, TraceTraits::of_every_kind())};
 }
 
 void AccelBackend::trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const {
@@ -84,7 +84,7 @@ Uints AccelBackend::record_order(Commands& commands, const TraceDesc& desc) cons
     Buffer scratch(context_,
                    {.name = "ray sort scratch", .bytes = RaySort::scratch_bytes(count, context_.state().tuning())});
     const Uints order = ray_sort_->record(commands, scratch, desc.rays, count, desc.indirect_count).values;
-    commands.keep(std::move(scratch));
+    commands.retain(std::move(scratch));
     return order;
 }
 
@@ -107,28 +107,29 @@ void AccelBackend::check_desc(const AccelView& view, const TraceDesc& desc) cons
 
 uint AccelBackend::features_for(const TraceDesc& desc) const {
     check_synced("features_for");
-    return features_of(accel_facts(), facts_, TraceFacts::of(desc));
+    return features_of(accel_traits(), traits_, TraceTraits::of(desc));
 }
 
-const TraceProgram& AccelBackend::own_program(uint features, const TraceDesc& desc) const {
-    if (!own_programs_) {
-        const uint all = features_of(accel_facts(), SceneFacts::of_every_kind(), TraceFacts::of_every_kind());
-        own_programs_ = std::make_unique<OwnPrograms>([this](uint wanted) { return create_program(nullptr, wanted); },
-                                                      all, is_software() && options_.compiles_in_background);
+const TraceProgram& AccelBackend::variant_for(uint features, const TraceDesc& desc) const {
+    if (!pipeline_variants_) {
+        const uint all = features_of(accel_traits(), SceneTraits::of_every_kind(), TraceTraits::of_every_kind());
+        pipeline_variants_ =
+            std::make_unique<PipelineVariants>([this](uint wanted) { return create_program(nullptr, wanted); }, all,
+                                               is_software() && options_.compiles_in_background);
     }
-    return own_programs_->get(features, desc.query, desc.level);
+    return pipeline_variants_->get(features, desc.query, desc.level);
 }
 
 void AccelBackend::wait_for_programs() const {
-    if (own_programs_) own_programs_->wait();
+    if (pipeline_variants_) pipeline_variants_->wait();
 }
 
 // Boxes that nothing can meet, and hits that nobody judges, are no answer.
 const TraceProgram& AccelBackend::program_for(const TraceDesc& desc) const {
-    const uint needed = features_of(accel_facts(), facts_, TraceFacts::of(desc));
+    const uint needed = features_of(accel_traits(), traits_, TraceTraits::of(desc));
     if (const uint of_user = needed & (FEATURE_BOXES | FEATURE_FILTERS); !desc.program && of_user)
         fail(name_, ": trace: the scene has ", words_for(of_user), ", and TraceDesc::program is not set");
-    if (!desc.program) return own_program(needed, desc);
+    if (!desc.program) return variant_for(needed, desc);
     const TraceProgram& program = *desc.program;
     if (program.accel() != id_) fail(name_, ": trace: program '", program.name(), "' was made by another accelerator");
     if (const uint missing = needed & ~program.features())
@@ -138,7 +139,7 @@ const TraceProgram& AccelBackend::program_for(const TraceDesc& desc) const {
 }
 
 std::unique_ptr<TraceProgram> AccelBackend::make_program(const TraceProgramCode& code, uint features) const {
-    const uint of_any_scene = features_of(accel_facts(), {.has_transforms = options_.can_move}, {});
+    const uint of_any_scene = features_of(accel_traits(), {.has_transforms = options_.can_move}, {});
     std::unique_ptr<TraceProgram> program = create_program(&code, (features & FEATURES_ALL) | of_any_scene);
     program->prepare(Query::closest, Level::watertight);
     return program;
@@ -153,7 +154,7 @@ std::vector<Hit> AccelBackend::closest_hits(std::span<const Ray> rays, const Tra
 std::vector<Hit> AccelBackend::any_hits(std::span<const Ray> rays, const TraceDesc& desc) {
     TraceDesc any = desc;
     any.query = Query::any;
-    any.answer_only = false;
+    any.occlusion_only = false;
     return trace_host(rays, any);
 }
 

@@ -70,7 +70,7 @@ void PairSampler::trace(std::span<const PairChunk> chunks) {
                          sequence_ == Sequence::sobol ? SEQUENCE_SOBOL : SEQUENCE_RANDOM, sides_ == Sides::both, 0},
                         count);
     accel_.trace(commands, accel_.view(),
-                 {.rays = rays, .hits = hits, .count = count, .query = Query::any, .answer_only = true}, pace_);
+                 {.rays = rays, .hits = hits, .count = count, .query = Query::any, .occlusion_only = true}, pace_);
     mark_blocked_.dispatch(commands, {hits, weights, static_cast<uint>(count), 0}, count);
     pace_.finish(commands);
 }

@@ -72,7 +72,7 @@ void SkyRays::record(Commands& commands, SkyRaysArgs args, Pace& pace) const {
                   .hits = hits_.ref<Hit>(),
                   .count = args.ray_count,
                   .query = Query::any,
-                  .answer_only = true},
+                  .occlusion_only = true},
                  pace);
     const uint pairs = args.ray_count / args.samples * ((args.samples + 1) / 2);
     count_kernel_.dispatch(

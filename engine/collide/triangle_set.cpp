@@ -47,13 +47,13 @@ std::vector<uint> ids_by_position(std::span<const vec3> positions) {
 
 // What a mesh brings to the device, one after the other.
 struct Upload {
-    std::vector<Commands::Piece> pieces;
+    std::vector<Commands::Region> regions;
     std::uint64_t bytes = 0;
 
     template <class T>
     std::uint64_t add(std::span<const T> values) {
         const std::uint64_t at = bytes;
-        if (!values.empty()) pieces.push_back({at, std::as_bytes(values)});
+        if (!values.empty()) regions.push_back({at, std::as_bytes(values)});
         bytes += values.size_bytes();
         return at;
     }
@@ -146,7 +146,7 @@ void TriangleSet::set(std::span<const MeshView> meshes, std::span<const MeshInst
     Commands commands(context_, "collide meshes");
     {
         const auto pass = commands.pass("collide meshes");
-        commands.upload_pieces(data_, upload.pieces);
+        commands.upload_regions(data_, upload.regions);
         commands.upload(table_, std::span<const InstancedMesh>(table));
     }
     commands.submit();

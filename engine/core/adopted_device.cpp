@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "engine/core/device_facts.h"
+#include "engine/core/device_properties.h"
 #include "engine/core/error.h"
 #include "engine/core/requirement.h"
 
@@ -21,18 +21,18 @@ void check_queue_family(const AdoptedDevice& adopted, const VulkanFunctions& vk)
         fail("adopted device: queue family ", adopted.queue_family, " does not support compute");
 }
 
-void check_needs(const DeviceFacts& enabled) {
+void check_needs(const DeviceProperties& enabled) {
     std::string lacking;
     for (const Requirement& requirement : requirements_of(enabled))
         if (!requirement.is_met && requirement.of == Requirement::Of::everything)
             lacking += text("\n  twinray needs ", requirement.what, " because ", requirement.why);
     if (!lacking.empty())
         fail("adopted device '", enabled.name,
-             "': not enabled (see DeviceRequirements::add_to and enabled_facts):", lacking);
+             "': not enabled (see DeviceRequirements::add_to and enabled_properties):", lacking);
 }
 
 // A host that tells what the driver supports, and not what it enabled, is found out where it can be.
-void check_claims(const DeviceFacts& told, const DeviceFacts& supported, const VulkanFunctions& vk) {
+void check_claims(const DeviceProperties& told, const DeviceProperties& supported, const VulkanFunctions& vk) {
     if (const char* feature = feature_beyond(told, supported))
         fail("adopted device '", told.name, "': ", feature, " is told to be enabled but the device has none");
     const auto check_function = [&](bool is_told, const void* function, const char* extension) {
@@ -48,18 +48,18 @@ void check_claims(const DeviceFacts& told, const DeviceFacts& supported, const V
 
 }  // namespace
 
-DeviceFacts check_adoption(const AdoptedDevice& adopted, const VulkanFunctions& vk) {
+DeviceProperties check_adoption(const AdoptedDevice& adopted, const VulkanFunctions& vk) {
     if (!vk.vkGetPhysicalDeviceFeatures2)
         fail("adopted device: its VkInstance was created for less than Vulkan 1.1; twinray needs 1.2");
     check_queue_family(adopted, vk);
-    const DeviceFacts supported = query_device_facts(vk, adopted.physical_device);
-    DeviceFacts facts = supported;
-    facts.has_compute_queue = true;
-    facts.api_version = std::min(supported.api_version, adopted.api_version);
-    for (const FeatureBit& bit : feature_bits()) facts.*bit.fact = adopted.enabled.*bit.fact;
-    check_needs(facts);
-    check_claims(facts, supported, vk);
-    return facts;
+    const DeviceProperties supported = query_device_properties(vk, adopted.physical_device);
+    DeviceProperties properties = supported;
+    properties.has_compute_queue = true;
+    properties.api_version = std::min(supported.api_version, adopted.api_version);
+    for (const FeatureBit& bit : feature_bits()) properties.*bit.fact = adopted.enabled.*bit.fact;
+    check_needs(properties);
+    check_claims(properties, supported, vk);
+    return properties;
 }
 
 }  // namespace twinray

@@ -8,10 +8,10 @@
 
 namespace twinray {
 
-// What twinray may use of it: the features of `adopted.enabled`, all other facts from the driver. Throws Error, naming
-// what the host has to change, unless twinray can run on the device: something needed is not enabled, the queue family
-// has no compute, or `enabled` claims what the device does not support or the VkDevice was not created with. The
+// What twinray may use of it: the features of `adopted.enabled`, all other properties from the driver. Throws Error,
+// naming what the host has to change, unless twinray can run on the device: something needed is not enabled, the queue
+// family has no compute, or `enabled` claims what the device does not support or the VkDevice was not created with. The
 // handles must be set and the functions of all levels loaded.
-DeviceFacts check_adoption(const AdoptedDevice& adopted, const VulkanFunctions& vk);
+DeviceProperties check_adoption(const AdoptedDevice& adopted, const VulkanFunctions& vk);
 
 }  // namespace twinray

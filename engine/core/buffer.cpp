@@ -12,7 +12,7 @@ VkBufferUsageFlags usage_of(const Context& context, const BufferDesc& desc) {
     VkBufferUsageFlags usage = desc.usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                                VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
                                VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
-    if (context.facts().acceleration_structure)
+    if (context.properties().acceleration_structure)
         usage |= VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
     return usage;
 }

@@ -131,7 +131,7 @@ SyncPoint Commands::submit() {
         submissions.push_back({part.handle, part.passes});
     }
     state_->done = state_->context.state().submit(state_->name, std::move(submissions));
-    state_->kept.clear();  // retired behind the submission just made
+    state_->retained.clear();  // retired behind the submission just made
     return state_->done;
 }
 

@@ -65,7 +65,7 @@ bool Commands::is_of_caller() const { return state_->is_of_caller; }
 SyncPoint Commands::done() const { return state_->done; }
 Context& Commands::context() const { return state_->context; }
 VkCommandBuffer Commands::handle() const { return state_->handle(); }
-void Commands::keep(Buffer&& temporary) { state_->kept.push_back(std::move(temporary)); }
+void Commands::retain(Buffer&& temporary) { state_->retained.push_back(std::move(temporary)); }
 void Commands::count_work(std::uint64_t groups) { state_->groups += groups; }
 
 void Commands::count_groups(std::uint64_t groups) {
@@ -74,8 +74,8 @@ void Commands::count_groups(std::uint64_t groups) {
 }
 
 void Commands::upload(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data) {
-    const Piece piece{offset, data};
-    upload_pieces(target, std::span(&piece, 1));
+    const Region region{offset, data};
+    upload_regions(target, std::span(&region, 1));
 }
 
 void Commands::write_bytes(const Buffer& target, std::uint64_t offset, std::span<const std::byte> data) {
@@ -83,26 +83,26 @@ void Commands::write_bytes(const Buffer& target, std::uint64_t offset, std::span
     state_->context.state().vk().vkCmdUpdateBuffer(handle(), target.handle(), offset, data.size(), data.data());
 }
 
-void Commands::upload_pieces(const Buffer& target, std::span<const Piece> pieces) {
-    std::vector<VkBufferCopy> regions;
+void Commands::upload_regions(const Buffer& target, std::span<const Region> regions) {
+    std::vector<VkBufferCopy> copies;
     std::uint64_t bytes = 0;
-    for (const Piece& piece : pieces) {
-        if (piece.data.empty()) continue;
-        check_range(target, piece.offset, piece.data.size(), "upload");
-        regions.push_back({bytes, piece.offset, piece.data.size()});
-        bytes += piece.data.size();
+    for (const Region& region : regions) {
+        if (region.data.empty()) continue;
+        check_range(target, region.offset, region.data.size(), "upload");
+        copies.push_back({bytes, region.offset, region.data.size()});
+        bytes += region.data.size();
     }
-    if (regions.empty()) return;
+    if (copies.empty()) return;
     Buffer staging(state_->context, {.name = "staging for " + target.name(), .bytes = bytes, .memory = Memory::upload});
     std::byte* next = staging.mapped();
-    for (const Piece& piece : pieces) {
-        if (piece.data.empty()) continue;
-        std::memcpy(next, piece.data.data(), piece.data.size());
-        next += piece.data.size();
+    for (const Region& region : regions) {
+        if (region.data.empty()) continue;
+        std::memcpy(next, region.data.data(), region.data.size());
+        next += region.data.size();
     }
     state_->context.state().vk().vkCmdCopyBuffer(handle(), staging.handle(), target.handle(),
-                                                 static_cast<std::uint32_t>(regions.size()), regions.data());
-    keep(std::move(staging));
+                                                 static_cast<std::uint32_t>(copies.size()), copies.data());
+    retain(std::move(staging));
 }
 
 void Commands::copy(const Buffer& from, std::uint64_t from_offset, const Buffer& to, std::uint64_t to_offset,

@@ -35,7 +35,7 @@ struct Commands::State {
     std::vector<Part> parts = {};          // of which the last is recorded into; none where beginning another failed
     std::vector<PassTiming> earlier = {};  // of parts that were submitted before these
     std::uint64_t groups = 0;              // of the last part
-    std::vector<Buffer> kept = {};
+    std::vector<Buffer> retained = {};
     bool in_pass = false;
     bool is_ended = false;
 };

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "engine/core/device_facts.h"
+#include "engine/core/device_properties.h"
 #include "engine/core/dry_device.h"
 #include "engine/core/error.h"
 #include "engine/core/statistics_feature.h"
@@ -45,10 +45,10 @@ VkInstance new_instance(const VulkanFunctions& vk, const std::string& name, bool
     return instance;
 }
 
-std::vector<DeviceFacts> facts_of(const VulkanFunctions& vk, const std::vector<VkPhysicalDevice>& devices) {
-    std::vector<DeviceFacts> facts;
-    for (VkPhysicalDevice device : devices) facts.push_back(query_device_facts(vk, device));
-    return facts;
+std::vector<DeviceProperties> facts_of(const VulkanFunctions& vk, const std::vector<VkPhysicalDevice>& devices) {
+    std::vector<DeviceProperties> properties;
+    for (VkPhysicalDevice device : devices) properties.push_back(query_device_properties(vk, device));
+    return properties;
 }
 
 bool has_timestamps(const VulkanFunctions& vk, VkPhysicalDevice device, std::uint32_t family) {
@@ -115,7 +115,7 @@ Context::State::State(const AdoptedDevice& adopted)
     vk_.load_global(adopted.get_instance_proc_addr);
     vk_.load_instance(instance_);
     vk_.load_device(device_);
-    facts_ = check_adoption(adopted, vk_);
+    properties_ = check_adoption(adopted, vk_);
     set_tuning(asked_tuning(), adopted.most_submission_seconds);
     try {
         create_own_objects(adopted.allocator, {});
@@ -147,18 +147,18 @@ void Context::State::create_instance(const ContextDesc& desc) {
 
 void Context::State::create_device(const ContextDesc& desc) {
     const std::vector<VkPhysicalDevice> devices = physical_devices(vk_, instance_);
-    const std::vector<DeviceFacts> facts = facts_of(vk_, devices);
-    const DeviceChoice choice = choose_device(facts, desc.device);
+    const std::vector<DeviceProperties> properties = facts_of(vk_, devices);
+    const DeviceChoice choice = choose_device(properties, desc.device);
     if (choice.index < 0) fail(no_device_message(choice));
     physical_device_ = devices[static_cast<std::size_t>(choice.index)];
-    facts_ = facts[static_cast<std::size_t>(choice.index)];
-    facts_.ray_query &= desc.use_ray_query;
-    facts_.ray_tracing_pipeline &= desc.use_ray_tracing_pipeline;
+    properties_ = properties[static_cast<std::size_t>(choice.index)];
+    properties_.ray_query &= desc.use_ray_query;
+    properties_.ray_tracing_pipeline &= desc.use_ray_tracing_pipeline;
     set_tuning(desc.tuning ? desc.tuning : asked_tuning(), desc.most_submission_seconds);
     queue_family_ = static_cast<std::uint32_t>(compute_queue_family(vk_, physical_device_));
-    api_version_ = std::min(facts_.api_version, std::uint32_t{VK_API_VERSION_1_3});
+    api_version_ = std::min(properties_.api_version, std::uint32_t{VK_API_VERSION_1_3});
 
-    const DeviceRequirements requirements(facts_);
+    const DeviceRequirements requirements(properties_);
     const float priority = 1;
     VkDeviceQueueCreateInfo queue{};
     queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
@@ -175,14 +175,14 @@ void Context::State::create_device(const ContextDesc& desc) {
     StatisticsFeature statistics;
     if (watch_) statistics.add_to(info, vk_, physical_device_);
     vk_check(vk_.vkCreateDevice(physical_device_, &info, nullptr, &device_), "create a Vulkan device");
-    state_features(info, facts_);
+    state_features(info, properties_);
     vk_.load_device(device_);
     vk_.vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
     if (watch_) run_nothing(vk_);
 }
 
 void Context::State::set_tuning(std::optional<TuningRow> row, std::optional<double> most_submission_seconds) {
-    tuning_ = tuning_for(facts_, row);
+    tuning_ = tuning_for(properties_, row);
     if (most_submission_seconds) tuning_.most_submission_seconds = std::max(*most_submission_seconds, 0.0);
 }
 
@@ -245,8 +245,8 @@ void Context::State::destroy_everything() noexcept {
 VkPipelineStageFlags Context::State::stages() const {
     VkPipelineStageFlags stages =
         VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
-    if (facts_.acceleration_structure) stages |= VK_PIPELINE_STAGE_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
-    if (facts_.ray_tracing_pipeline) stages |= VK_PIPELINE_STAGE_RAY_TRACING_SHADER_BIT_KHR;
+    if (properties_.acceleration_structure) stages |= VK_PIPELINE_STAGE_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
+    if (properties_.ray_tracing_pipeline) stages |= VK_PIPELINE_STAGE_RAY_TRACING_SHADER_BIT_KHR;
     return stages;
 }
 
@@ -289,7 +289,7 @@ Context::~Context() = default;
 VkDevice Context::device() const { return state_->device(); }
 VkPhysicalDevice Context::physical_device() const { return state_->physical_device(); }
 std::uint32_t Context::queue_family() const { return state_->queue_family(); }
-const DeviceFacts& Context::facts() const { return state_->facts(); }
+const DeviceProperties& Context::properties() const { return state_->properties(); }
 std::uint64_t Context::allocated_bytes() const { return state_->allocator().live_bytes(); }
 void Context::wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages) {
     state_->wait_before_next_submission(point, stages);
@@ -301,7 +301,7 @@ void Context::wait_for_gpu() { state_->wait_for_gpu(); }
 void Context::announce(SyncPoint point) { state_->announce(point); }
 std::vector<std::string> Context::validation_messages() const { return state_->validation_messages(); }
 
-std::vector<DeviceFacts> list_devices(PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
+std::vector<DeviceProperties> list_devices(PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
     VulkanFunctions vk;
     vk.load_global(get_instance_proc_addr);
     const VkInstance instance = new_instance(vk, "twinray devices", false);

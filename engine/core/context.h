@@ -39,8 +39,8 @@ struct Context::State {
     // where the device has no image arrays.
     VkDescriptorSetLayout image_array_layout();
     std::uint32_t queue_family() const { return queue_family_; }
-    const KernelWatch& watch() const { return watch_; }  // ContextDesc::watch_kernels
-    const DeviceFacts& facts() const { return facts_; }  // what is enabled, not merely supported
+    const KernelWatch& watch() const { return watch_; }                 // ContextDesc::watch_kernels
+    const DeviceProperties& properties() const { return properties_; }  // what is enabled, not merely supported
     const KernelTuning& tuning() const { return tuning_; }
     float timestamp_period_ns() const { return timestamp_period_ns_; }  // 0: the queue has no timestamps
 
@@ -98,7 +98,7 @@ struct Context::State {
     void destroy_everything() noexcept;
 
     VulkanFunctions vk_;
-    DeviceFacts facts_;
+    DeviceProperties properties_;
     KernelTuning tuning_;
     Log log_;
     KernelWatch watch_;

@@ -21,27 +21,27 @@ bool is_index(const std::string& request) {
            std::all_of(request.begin(), request.end(), [](unsigned char c) { return std::isdigit(c); });
 }
 
-bool is_requested(const DeviceFacts& device, std::size_t index, const std::string& request) {
+bool is_requested(const DeviceProperties& device, std::size_t index, const std::string& request) {
     if (request.empty()) return true;
     if (is_index(request)) return std::to_string(index) == request;
     return lower(device.name).find(lower(request)) != std::string::npos;
 }
 
 // Larger is better.
-auto rank(const DeviceFacts& device) {
+auto rank(const DeviceProperties& device) {
     return std::tuple(missing_for_hardware(device).empty(), -static_cast<int>(device.kind));
 }
 
 }  // namespace
 
-std::vector<std::string> missing_for_software(const DeviceFacts& device) {
+std::vector<std::string> missing_for_software(const DeviceProperties& device) {
     std::vector<std::string> missing;
     for (const Requirement& requirement : requirements_of(device))
         if (!requirement.is_met && requirement.of == Requirement::Of::everything) missing.push_back(requirement.what);
     return missing;
 }
 
-std::vector<std::string> missing_for_hardware(const DeviceFacts& device) {
+std::vector<std::string> missing_for_hardware(const DeviceProperties& device) {
     std::vector<std::string> missing;
     for (const Requirement& requirement : requirements_of(device))
         if (!requirement.is_met &&
@@ -50,7 +50,7 @@ std::vector<std::string> missing_for_hardware(const DeviceFacts& device) {
     return missing;
 }
 
-DeviceChoice choose_device(std::span<const DeviceFacts> devices, const std::string& request) {
+DeviceChoice choose_device(std::span<const DeviceProperties> devices, const std::string& request) {
     DeviceChoice choice;
     std::vector<std::string> reasons(devices.size());
     for (std::size_t i = 0; i < devices.size(); ++i) {

@@ -7,7 +7,7 @@
 namespace twinray {
 
 std::string Context::State::words_of_loss() const {
-    if (!fault_) fault_ = facts_.device_fault ? sentence(query_device_fault(vk_, device_)) : "";
+    if (!fault_) fault_ = properties_.device_fault ? sentence(query_device_fault(vk_, device_)) : "";
     return name_of(VK_ERROR_DEVICE_LOST) + in_flight_.sentence() + *fault_;
 }
 
@@ -18,7 +18,7 @@ void Context::State::check(VkResult result, const char* action) const {
 }
 
 void Context::State::check_alive() const {
-    if (is_lost_) throw DeviceLost(text("device '", facts_.name, "': ", words_of_loss()));
+    if (is_lost_) throw DeviceLost(text("device '", properties_.name, "': ", words_of_loss()));
 }
 
 }  // namespace twinray

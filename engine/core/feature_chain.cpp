@@ -17,41 +17,43 @@ constexpr VkStructureType query = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FE
 constexpr VkStructureType tracing = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
 constexpr VkStructureType fault = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FAULT_FEATURES_EXT;
 
-constexpr FeatureBit alone(bool DeviceFacts::*fact, const char* name, VkStructureType type, std::size_t offset) {
+constexpr FeatureBit alone(bool DeviceProperties::*fact, const char* name, VkStructureType type, std::size_t offset) {
     return {fact, name, type, offset, type, offset};
 }
 
 constexpr FeatureBit bits[] = {
-    alone(&DeviceFacts::shader_int64, "shaderInt64", core, offsetof(VkPhysicalDeviceFeatures2, features.shaderInt64)),
-    alone(&DeviceFacts::shader_float64, "shaderFloat64", core,
+    alone(&DeviceProperties::shader_int64, "shaderInt64", core,
+          offsetof(VkPhysicalDeviceFeatures2, features.shaderInt64)),
+    alone(&DeviceProperties::shader_float64, "shaderFloat64", core,
           offsetof(VkPhysicalDeviceFeatures2, features.shaderFloat64)),
-    {&DeviceFacts::timeline_semaphore, "timelineSemaphore", timeline,
+    {&DeviceProperties::timeline_semaphore, "timelineSemaphore", timeline,
      offsetof(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore), vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, timelineSemaphore)},
-    {&DeviceFacts::buffer_device_address, "bufferDeviceAddress", address,
+    {&DeviceProperties::buffer_device_address, "bufferDeviceAddress", address,
      offsetof(VkPhysicalDeviceBufferDeviceAddressFeatures, bufferDeviceAddress), vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, bufferDeviceAddress)},
-    {&DeviceFacts::scalar_block_layout, "scalarBlockLayout", layout,
+    {&DeviceProperties::scalar_block_layout, "scalarBlockLayout", layout,
      offsetof(VkPhysicalDeviceScalarBlockLayoutFeatures, scalarBlockLayout), vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, scalarBlockLayout)},
-    {&DeviceFacts::runtime_descriptor_array, "runtimeDescriptorArray", indexing,
+    {&DeviceProperties::runtime_descriptor_array, "runtimeDescriptorArray", indexing,
      offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, runtimeDescriptorArray), vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, runtimeDescriptorArray)},
-    {&DeviceFacts::variable_descriptor_count, "descriptorBindingVariableDescriptorCount", indexing,
+    {&DeviceProperties::variable_descriptor_count, "descriptorBindingVariableDescriptorCount", indexing,
      offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingVariableDescriptorCount), vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, descriptorBindingVariableDescriptorCount)},
-    {&DeviceFacts::nonuniform_sampled_images, "shaderSampledImageArrayNonUniformIndexing", indexing,
+    {&DeviceProperties::nonuniform_sampled_images, "shaderSampledImageArrayNonUniformIndexing", indexing,
      offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, shaderSampledImageArrayNonUniformIndexing), vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, shaderSampledImageArrayNonUniformIndexing)},
-    {&DeviceFacts::update_after_bind_images, "descriptorBindingSampledImageUpdateAfterBind", indexing,
+    {&DeviceProperties::update_after_bind_images, "descriptorBindingSampledImageUpdateAfterBind", indexing,
      offsetof(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingSampledImageUpdateAfterBind), vulkan12,
      offsetof(VkPhysicalDeviceVulkan12Features, descriptorBindingSampledImageUpdateAfterBind)},
-    alone(&DeviceFacts::acceleration_structure, "accelerationStructure", structure,
+    alone(&DeviceProperties::acceleration_structure, "accelerationStructure", structure,
           offsetof(VkPhysicalDeviceAccelerationStructureFeaturesKHR, accelerationStructure)),
-    alone(&DeviceFacts::ray_query, "rayQuery", query, offsetof(VkPhysicalDeviceRayQueryFeaturesKHR, rayQuery)),
-    alone(&DeviceFacts::ray_tracing_pipeline, "rayTracingPipeline", tracing,
+    alone(&DeviceProperties::ray_query, "rayQuery", query, offsetof(VkPhysicalDeviceRayQueryFeaturesKHR, rayQuery)),
+    alone(&DeviceProperties::ray_tracing_pipeline, "rayTracingPipeline", tracing,
           offsetof(VkPhysicalDeviceRayTracingPipelineFeaturesKHR, rayTracingPipeline)),
-    alone(&DeviceFacts::device_fault, "deviceFault", fault, offsetof(VkPhysicalDeviceFaultFeaturesEXT, deviceFault)),
+    alone(&DeviceProperties::device_fault, "deviceFault", fault,
+          offsetof(VkPhysicalDeviceFaultFeaturesEXT, deviceFault)),
 };
 
 VkBool32* bit_at(VkBaseOutStructure* node, std::size_t offset) {
@@ -109,7 +111,7 @@ VkBool32& provide_bit(VkDeviceCreateInfo& info, FeatureStructs& ours, const Feat
     return *find_bit(added, bit);
 }
 
-void state_features(const VkDeviceCreateInfo& info, DeviceFacts& facts) {
+void state_features(const VkDeviceCreateInfo& info, DeviceProperties& properties) {
     auto* chain = static_cast<VkBaseOutStructure*>(const_cast<void*>(info.pNext));
     VkPhysicalDeviceFeatures2 old_style{};
     old_style.sType = core;
@@ -118,17 +120,17 @@ void state_features(const VkDeviceCreateInfo& info, DeviceFacts& facts) {
         const VkBool32* found = find_bit(chain, bit);
         if (!found && bit.own == core)
             found = bit_at(reinterpret_cast<VkBaseOutStructure*>(&old_style), bit.own_offset);
-        facts.*bit.fact = found && *found;
+        properties.*bit.fact = found && *found;
     }
-    facts.acceleration_structure &= has_extension(info, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) &&
-                                    has_extension(info, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME);
-    facts.ray_query &= facts.acceleration_structure && has_extension(info, VK_KHR_RAY_QUERY_EXTENSION_NAME);
-    facts.ray_tracing_pipeline &=
-        facts.acceleration_structure && has_extension(info, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
-    facts.device_fault &= has_extension(info, VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
+    properties.acceleration_structure &= has_extension(info, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) &&
+                                         has_extension(info, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME);
+    properties.ray_query &= properties.acceleration_structure && has_extension(info, VK_KHR_RAY_QUERY_EXTENSION_NAME);
+    properties.ray_tracing_pipeline &=
+        properties.acceleration_structure && has_extension(info, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+    properties.device_fault &= has_extension(info, VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
 }
 
-const char* feature_beyond(const DeviceFacts& told, const DeviceFacts& supported) {
+const char* feature_beyond(const DeviceProperties& told, const DeviceProperties& supported) {
     for (const FeatureBit& bit : bits)
         if (told.*bit.fact && !(supported.*bit.fact)) return bit.name;
     return nullptr;

@@ -29,7 +29,7 @@ struct FeatureStructs {
 };
 
 struct FeatureBit {
-    bool DeviceFacts::*fact;
+    bool DeviceProperties::*fact;
     const char* name;
     VkStructureType own;  // which of FeatureStructs, and where in it
     std::size_t own_offset;
@@ -44,10 +44,10 @@ VkBool32* find_bit(VkBaseOutStructure* chain, const FeatureBit& bit);
 // The same in a device's info. Where its chain does not hold the feature, a struct of `ours` is put before the chain.
 VkBool32& provide_bit(VkDeviceCreateInfo& info, FeatureStructs& ours, const FeatureBit& bit);
 
-// Which features and extensions a device has that was created with `info`; the other facts stay.
-void state_features(const VkDeviceCreateInfo& info, DeviceFacts& facts);
+// Which features and extensions a device has that was created with `info`; the other properties stay.
+void state_features(const VkDeviceCreateInfo& info, DeviceProperties& properties);
 
 // The first feature that `told` has and `supported` lacks; null if there is none.
-const char* feature_beyond(const DeviceFacts& told, const DeviceFacts& supported);
+const char* feature_beyond(const DeviceProperties& told, const DeviceProperties& supported);
 
 }  // namespace twinray

@@ -10,8 +10,8 @@ namespace twinray {
 
 // The context. Throws Error, beginning with `what` needs it, where the device has no float64.
 inline Context& with_float64(Context& context, std::string_view what) {
-    if (!context.facts().shader_float64)
-        fail(what, " need float64 (shaderFloat64), which device '", context.facts().name, "' has not enabled");
+    if (!context.properties().shader_float64)
+        fail(what, " need float64 (shaderFloat64), which device '", context.properties().name, "' has not enabled");
     return context;
 }
 

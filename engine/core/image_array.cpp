@@ -46,8 +46,8 @@ VkSampler Samplers::get(VkSamplerAddressMode wrap_u, VkSamplerAddressMode wrap_v
 VkDescriptorSetLayout Context::State::image_array_layout() {
     const std::lock_guard lock(image_array_mutex_);
     if (image_array_layout_) return image_array_layout_;
-    if (!facts_.has_image_arrays())
-        fail("device '", facts_.name, "': descriptor indexing is not enabled; keep textures in buffers");
+    if (!properties_.has_image_arrays())
+        fail("device '", properties_.name, "': descriptor indexing is not enabled; keep textures in buffers");
     const VkDescriptorBindingFlags flags =
         VK_DESCRIPTOR_BINDING_VARIABLE_DESCRIPTOR_COUNT_BIT | VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT;
     VkDescriptorSetLayoutBindingFlagsCreateInfo binding_flags{};
@@ -131,7 +131,7 @@ void SampledImage::upload(Commands& commands, std::span<const std::byte> texels)
     context_->state().vk().vkCmdCopyBufferToImage(commands.handle(), staging.handle(), made_.image,
                                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
     change_layout(commands, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    commands.keep(std::move(staging));
+    commands.retain(std::move(staging));
 }
 
 ImageArray::ImageArray(Context& context, std::span<const VkDescriptorImageInfo> images) : context_(&context) {

@@ -25,13 +25,13 @@ bool has_fused_fma(std::uint32_t driver) {
     }
 }
 
-TuningRow row_of(const DeviceFacts& device) {
+TuningRow row_of(const DeviceProperties& device) {
     return device.driver_id == VK_DRIVER_ID_MESA_LLVMPIPE ? TuningRow::cpu_driver : TuningRow::gpu;
 }
 
 // A core goes through its groups one by one, so that a group is one vector, and a run of rays of one lane finds in the
 // caches what the rays before it met. Shared memory is memory as any other.
-void shape_for_cpu_driver(KernelTuning& tuning, const DeviceFacts& device) {
+void shape_for_cpu_driver(KernelTuning& tuning, const DeviceProperties& device) {
     constexpr std::uint32_t counters = CPU_GROUP << SORT_CPU_DIGIT_BITS;
     tuning.threads = std::max(device.cpu_threads, 1u);
     tuning.vector_lanes = std::bit_floor(std::max(device.subgroup_size, 1u));
@@ -54,7 +54,7 @@ void shape_for_cpu_driver(KernelTuning& tuning, const DeviceFacts& device) {
 
 const char* name_of(TuningRow row) { return row == TuningRow::gpu ? "gpu" : "cpu_driver"; }
 
-KernelTuning tuning_for(const DeviceFacts& device, std::optional<TuningRow> row) {
+KernelTuning tuning_for(const DeviceProperties& device, std::optional<TuningRow> row) {
     KernelTuning tuning;
     tuning.row = row.value_or(row_of(device));
     if (tuning.row == TuningRow::cpu_driver) shape_for_cpu_driver(tuning, device);

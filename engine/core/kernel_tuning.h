@@ -48,7 +48,7 @@ struct KernelTuning {
 };
 
 // `row`: instead of the one that the device would get.
-KernelTuning tuning_for(const DeviceFacts& device, std::optional<TuningRow> row = {});
+KernelTuning tuning_for(const DeviceProperties& device, std::optional<TuningRow> row = {});
 
 // "gpu", "cpu_driver", or "", which is none. Throws Error that names the value.
 std::optional<TuningRow> parse_tuning_row(std::string_view name);

@@ -39,7 +39,4 @@ class PipelineStore {
 // Whether data of a pipeline cache begins with the header of this driver (Vulkan, VkPipelineCacheHeaderVersionOne).
 bool is_of_driver(std::span<const std::uint8_t> pipelines, const VkPhysicalDeviceProperties& driver);
 
-// "twinray" in the user's folder for caches: $XDG_CACHE_HOME, else .cache in $HOME; empty where neither is set.
-std::filesystem::path user_pipeline_folder();
-
 }  // namespace twinray

@@ -52,7 +52,7 @@ constexpr Part parts[] = {
 };
 const Part& part_of(Requirement::Of part) { return parts[static_cast<std::size_t>(part)]; }
 
-std::vector<Requirement> limits_of(const DeviceFacts& device) {
+std::vector<Requirement> limits_of(const DeviceProperties& device) {
     using enum Requirement::Of;
     using Limits = KernelLimits;
     return {
@@ -85,7 +85,7 @@ const char* never_required() {
            "size, and Vulkan above 1.2";
 }
 
-std::vector<Requirement> requirements_of(const DeviceFacts& device) {
+std::vector<Requirement> requirements_of(const DeviceProperties& device) {
     using enum Requirement::Of;
     const std::vector<Requirement> limits = limits_of(device);
     std::vector<Requirement> all = {

@@ -43,7 +43,7 @@ struct Requirement {
     std::string sentence() const;
 };
 // All of them, those of one part together.
-std::vector<Requirement> requirements_of(const DeviceFacts& device);
+std::vector<Requirement> requirements_of(const DeviceProperties& device);
 
 // "refinement", and in words: "Level::refined and above (...)".
 const char* name_of(Requirement::Of part);

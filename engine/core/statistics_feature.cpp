@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "engine/core/device_facts.h"
+#include "engine/core/device_properties.h"
 
 namespace twinray {
 namespace {

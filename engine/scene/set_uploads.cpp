@@ -82,12 +82,12 @@ void SetUploads::record_uploads(Commands& commands, const Staged& staged, Elemen
         const Array& array = arrays_[i];
         std::vector<ElementRun> runs = runs_of(array.edited);
         runs.push_back({array.count, staged.slots[i].count});
-        std::vector<Commands::Piece> pieces;
+        std::vector<Commands::Region> regions;
         for (const ElementRun& run : runs)
-            pieces.push_back(
+            regions.push_back(
                 {run.first * array.type.bytes,
                  elements[i].subspan(run.first * array.type.bytes, (run.last - run.first) * array.type.bytes)});
-        commands.upload_pieces(staged.replacements[i] ? *staged.replacements[i] : array.buffer, pieces);
+        commands.upload_regions(staged.replacements[i] ? *staged.replacements[i] : array.buffer, regions);
     }
 }
 

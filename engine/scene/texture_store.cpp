@@ -102,7 +102,7 @@ struct TextureStore::State {
 };
 
 TextureStorage TextureStore::best_storage(const Context& context) {
-    const bool has_images = context.facts().has_image_arrays() && context.state().allocator().has_images();
+    const bool has_images = context.properties().has_image_arrays() && context.state().allocator().has_images();
     return has_images ? TextureStorage::images : TextureStorage::buffers;
 }
 
@@ -116,7 +116,7 @@ TextureStore::State::State(Context& context, std::string name, TextureStorage st
       faults_(context, name_) {
     if (has_images() && best_storage(context) != storage)
         fail(name_, ": textures as images need descriptor indexing and an allocator of images, which '",
-             context.facts().name, "' does not have enabled; use buffers");
+             context.properties().name, "' does not have enabled; use buffers");
 }
 
 void TextureStore::State::check_image(const Image& image, const char* action) const {

@@ -153,11 +153,12 @@ class AbstractAccel {
     // TraceDesc::indirect_count is set, too.
     void trace(Commands& commands, const AccelView& view, const TraceDesc& desc, Pace& pace) const;
     // Host convenience: syncs, uploads, traces, waits and downloads. Of `desc` all counts but rays, hits, count, query
-    // and answer_only.
+    // and occlusion_only.
     std::vector<Hit> closest_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
     std::vector<Hit> any_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
-    // AccelView::features without what traces with this mask, cull and answer_only do not need: as long as revision()
-    // does not change, kernels that ask for nothing else may be specialised for it. Throws Error if edits are pending.
+    // AccelView::features without what traces with this mask, cull and occlusion_only do not need: as long as
+    // revision() does not change, kernels that ask for nothing else may be specialised for it. Throws Error if edits
+    // are pending.
     uint features_for(const TraceDesc& desc) const;
     // Until no program is left to compile in the background.
     void wait_for_programs() const;

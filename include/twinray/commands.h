@@ -118,11 +118,11 @@ class Commands {
         write_bytes(target, offset, std::as_bytes(std::span(&value, 1)));
     }
     // Many pieces through one staging buffer and one copy.
-    struct Piece {
+    struct Region {
         std::uint64_t offset;  // in the target
         std::span<const std::byte> data;
     };
-    void upload_pieces(const Buffer& target, std::span<const Piece> pieces);
+    void upload_regions(const Buffer& target, std::span<const Region> regions);
     void copy(const Buffer& from, std::uint64_t from_offset, const Buffer& to, std::uint64_t to_offset,
               std::uint64_t bytes);
     // bytes must be a multiple of 4.
@@ -135,7 +135,7 @@ class Commands {
     void count_work(std::uint64_t groups);
 
     // Takes ownership until the GPU has finished these commands.
-    void keep(Buffer&& temporary);
+    void retain(Buffer&& temporary);
 
     // Once, at the end, even if it fails. The object may then be destroyed at any time. Throws Error for commands of
     // the caller.

@@ -28,8 +28,8 @@ using Log = std::function<void(std::string_view)>;
 
 enum class DeviceKind : std::uint8_t { discrete, integrated, virtual_gpu, cpu, other };
 
-// What twinray wants to know of a device; filled by query_device_facts.
-struct DeviceFacts {
+// What twinray wants to know of a device; filled by query_device_properties.
+struct DeviceProperties {
     std::string name;
     std::string driver;
     DeviceKind kind = DeviceKind::other;
@@ -62,9 +62,9 @@ struct DeviceFacts {
 };
 
 // What the software accelerator and everything else of twinray needs and this device lacks.
-std::vector<std::string> missing_for_software(const DeviceFacts& device);
+std::vector<std::string> missing_for_software(const DeviceProperties& device);
 // The same for the hardware accelerator (includes what software needs).
-std::vector<std::string> missing_for_hardware(const DeviceFacts& device);
+std::vector<std::string> missing_for_hardware(const DeviceProperties& device);
 
 const char* name_of(DeviceKind kind);
 
@@ -75,31 +75,31 @@ struct DeviceChoice {
 
 // request: "" = best (hardware ray tracing first, then discrete > integrated > virtual > cpu, then order),
 // a decimal index, or a part of the device's name (case-insensitive).
-DeviceChoice choose_device(std::span<const DeviceFacts> devices, const std::string& request);
+DeviceChoice choose_device(std::span<const DeviceProperties> devices, const std::string& request);
 
 // Every Vulkan device with what it offers. Throws Error when there is no Vulkan at all. Null: the system's loader.
-std::vector<DeviceFacts> list_devices(PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr);
+std::vector<DeviceProperties> list_devices(PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr);
 
 // Of a physical device of a host's instance. Throws Error for an instance below Vulkan 1.1.
-DeviceFacts query_device_facts(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
-                               VkPhysicalDevice device);
+DeviceProperties query_device_properties(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+                                         VkPhysicalDevice device);
 
-// The facts of a device that a host created with `info`: what it enabled, not what else the driver supports. For
+// The properties of a device that a host created with `info`: what it enabled, not what else the driver supports. For
 // AdoptedDevice::enabled.
-DeviceFacts enabled_facts(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
-                          VkPhysicalDevice device, const VkDeviceCreateInfo& info);
+DeviceProperties enabled_properties(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+                                    VkPhysicalDevice device, const VkDeviceCreateInfo& info);
 
 // What twinray enables on a device, told before the device is created. What the device lacks is left out; only hardware
 // ray tracing may be lacking.
 class DeviceRequirements {
   public:
-    // `supported`: from query_device_facts.
-    explicit DeviceRequirements(const DeviceFacts& supported);
+    // `supported`: from query_device_properties.
+    explicit DeviceRequirements(const DeviceProperties& supported);
     ~DeviceRequirements();
     DeviceRequirements(const DeviceRequirements&) = delete;
     DeviceRequirements& operator=(const DeviceRequirements&) = delete;
 
-    const DeviceFacts& supported() const;
+    const DeviceProperties& supported() const;
     // A sentence each: "twinray needs timelineSemaphore because ...; this device has it".
     std::vector<std::string> sentences() const;
 
@@ -176,9 +176,9 @@ struct AdoptedDevice {
     std::uint32_t queue_family = 0;
     PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;  // required
     std::uint32_t api_version = 0;  // VkApplicationInfo::apiVersion of the instance; at least 1.2
-    // What was *enabled* on the device: told by the host, never guessed. enabled_facts() makes it of the
+    // What was *enabled* on the device: told by the host, never guessed. enabled_properties() makes it of the
     // VkDeviceCreateInfo that the device was created with.
-    DeviceFacts enabled;
+    DeviceProperties enabled;
     std::function<void()> lock_queue;  // held around each submission; may be empty
     std::function<void()> unlock_queue;
     AllocatorHooks allocator;                         // none: memory comes from an allocator of twinray's own
@@ -228,6 +228,15 @@ struct ContextDesc {
 // programs that take it from their user, as TWINRAY_DISABLE. Throws Error naming anything else in the list.
 void disable_features(ContextDesc& desc, const std::string& list);
 
+// "twinray" in the user's folder for caches: $XDG_CACHE_HOME, else .cache in $HOME; empty where neither is set.
+std::filesystem::path user_pipeline_folder();
+
+// For programs that compute alone: where the driver is Mesa's for CPUs and the processor has AVX-512, its vectors
+// become 512 bits wide, with which SwTlas traces 1.0 to 2 times as fast and ray queries 0.8 to 1.3 times; Mesa 25.0's
+// rasteriser crashes with them. Sets LP_NATIVE_VECTOR_WIDTH and MESA_SHADER_CACHE_DIR for this process and those it
+// starts, unless the user has set one of them. To be called before other threads and the first Context.
+void widen_cpu_vectors();
+
 // One device with its memory allocator, one queue and one timeline. Not copyable; used by one thread at a time.
 class Context {
   public:
@@ -244,8 +253,8 @@ class Context {
     VkDevice device() const;
     VkPhysicalDevice physical_device() const;
     std::uint32_t queue_family() const;
-    const DeviceFacts& facts() const;       // what is enabled, not merely supported
-    std::uint64_t allocated_bytes() const;  // of the buffers and images that are alive
+    const DeviceProperties& properties() const;  // what is enabled, not merely supported
+    std::uint64_t allocated_bytes() const;       // of the buffers and images that are alive
 
     // The next submission, whichever call makes it (Commands::submit, AbstractAccel::sync, ...), runs its `stages`, and
     // all that is submitted later does, only once the GPU has reached `point`, on a timeline semaphore of the host, and

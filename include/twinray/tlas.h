@@ -19,7 +19,7 @@ class SwTlas final : public AbstractAccel {
     explicit SwTlas(Context& context, const AccelOptions& options = {});
 
     // What the software accelerator can do on a device that it runs on.
-    static Capability capability_on(const DeviceFacts& device, Feature feature);
+    static Capability capability_on(const DeviceProperties& device, Feature feature);
 
     // Writes the built geometries and their instances. Throws Error when edits are pending and when the file cannot be
     // written, which is then as it was before.
@@ -53,7 +53,7 @@ class HwTlas final : public AbstractAccel {
     explicit HwTlas(Context& context, BuildOrder order = BuildOrder::automatic, const AccelOptions& options = {});
 
     // What the hardware accelerator can do on a device that it runs on.
-    static Capability capability_on(const DeviceFacts& device, Feature feature);
+    static Capability capability_on(const DeviceProperties& device, Feature feature);
 
     // "ray query" or "ray tracing pipeline".
     const char* trace_path() const;
@@ -82,6 +82,6 @@ const char* name_of(const AccelChoice& choice);
 // request, as --accel takes it: "sw", "hw" or "auto": hardware, but software where the device is a CPU, on which a
 // driver's structures are code, too, and where hardware lacks something. Throws Error for "hw" in the latter case; it
 // names what is lacking.
-AccelChoice choose_accel(const DeviceFacts& device, const std::string& request, const AccelNeeds& needs = {});
+AccelChoice choose_accel(const DeviceProperties& device, const std::string& request, const AccelNeeds& needs = {});
 
 }  // namespace twinray

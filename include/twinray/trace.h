@@ -99,7 +99,7 @@ struct TraceDesc {
     Cull cull = Cull::none;
     Level level = Level::watertight;
     // Of any hits: of each Hit only `hit` is written for sure; the rest is undefined.
-    bool answer_only = false;
+    bool occlusion_only = false;
     RayOrder order = RayOrder::given;
     // Needed where the scene has boxes or filtered instances; made by AbstractAccel::make_program of the same
     // accelerator, and kept alive until the GPU is done.
@@ -216,11 +216,11 @@ constexpr std::size_t max_instances = (1u << 24) - 1;  // what Vulkan guarantees
 constexpr uint max_custom_index = (1u << 24) - 1;
 
 struct InstanceOptions {
-    uint custom_index = 0;     // returned in Hit::custom_index; at most 2^24 - 1
-    std::uint8_t mask = 0xff;  // an instance is seen by rays whose mask shares a bit
-    bool no_culling = false;   // both sides are hit by rays that cull, too
-    bool turned = false;       // front and back exchanged
-    bool filtered = false;     // not opaque: a trace program decides about each hit
+    uint custom_index = 0;         // returned in Hit::custom_index; at most 2^24 - 1
+    std::uint8_t mask = 0xff;      // an instance is seen by rays whose mask shares a bit
+    bool disable_culling = false;  // both sides are hit by rays that cull, too
+    bool flip_facing = false;      // front and back exchanged
+    bool non_opaque = false;       // not opaque: a trace program decides about each hit
 
     bool operator==(const InstanceOptions&) const = default;
 };

@@ -3,7 +3,6 @@
 
 #include <vk_mem_alloc.h>
 
-#include "engine/core/error.h"
 #include <twinray/vma_adapter.h>
 #include "samples/support/devices.h"
 #include "samples/support/text.h"
@@ -108,18 +107,18 @@ void Device::choose(const std::string& request) {
     require(vkEnumeratePhysicalDevices(instance_, &count, nullptr), "list the devices");
     std::vector<VkPhysicalDevice> devices(count);
     require(vkEnumeratePhysicalDevices(instance_, &count, devices.data()), "list the devices");
-    std::vector<DeviceFacts> facts;
+    std::vector<DeviceProperties> properties;
     for (VkPhysicalDevice device : devices) {
-        facts.push_back(query_device_facts(vkGetInstanceProcAddr, instance_, device));
-        facts.back().has_compute_queue = universal_family(device) >= 0;
+        properties.push_back(query_device_properties(vkGetInstanceProcAddr, instance_, device));
+        properties.back().has_compute_queue = universal_family(device) >= 0;
     }
-    const std::optional<std::size_t> best = samples::best_device(facts, request);
-    if (!best) fail("of ", facts.size(), " devices none that matches '", request, "' rasterises and runs twinray");
+    const std::optional<std::size_t> best = samples::best_device(properties, request);
+    if (!best) fail("of ", properties.size(), " devices none that matches '", request, "' rasterises and runs twinray");
     physical_ = devices[*best];
     queue_family_ = static_cast<std::uint32_t>(universal_family(physical_));
-    VkPhysicalDeviceProperties properties;
-    vkGetPhysicalDeviceProperties(physical_, &properties);
-    timestamp_period_ns_ = static_cast<double>(properties.limits.timestampPeriod);
+    VkPhysicalDeviceProperties chosen;
+    vkGetPhysicalDeviceProperties(physical_, &chosen);
+    timestamp_period_ns_ = static_cast<double>(chosen.limits.timestampPeriod);
 }
 
 // The renderer asks for what it wants, twinray adds what it needs.
@@ -138,13 +137,13 @@ void Device::create_device(const DeviceDesc& desc) {
     info.pNext = &own;
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
-    DeviceFacts wanted = query_device_facts(vkGetInstanceProcAddr, instance_, physical_);
+    DeviceProperties wanted = query_device_properties(vkGetInstanceProcAddr, instance_, physical_);
     wanted.ray_query &= desc.use_ray_query;
     wanted.ray_tracing_pipeline &= desc.use_ray_tracing_pipeline;
     DeviceRequirements requirements(wanted);
     requirements.add_to(info);
     require(vkCreateDevice(physical_, &info, nullptr, &device_), "create a device");
-    enabled_ = enabled_facts(vkGetInstanceProcAddr, instance_, physical_, info);
+    enabled_ = enabled_properties(vkGetInstanceProcAddr, instance_, physical_, info);
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/adopted_device.h"
+#include <twinray/context.h>
 
 typedef struct VmaAllocator_T* VmaAllocator;
 
@@ -61,7 +61,7 @@ class Device {
     VkQueue queue_ = VK_NULL_HANDLE;
     std::uint32_t queue_family_ = 0;
     double timestamp_period_ns_ = 0;
-    DeviceFacts enabled_;
+    DeviceProperties enabled_;
     VmaAllocator allocator_ = nullptr;
 };
 

@@ -2,7 +2,7 @@
 // The renderer's command buffers, one frame at a time, on a timeline of its own.
 #pragma once
 
-#include "engine/core/context.h"
+#include <twinray/context.h>
 #include "samples/embed_renderer/device.h"
 
 namespace twinray::embed_renderer {

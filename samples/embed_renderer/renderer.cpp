@@ -12,7 +12,6 @@
 #include "embed_renderer_gbuffer_vert.spv.h"
 #include "embed_renderer_move.spv.h"
 #include "embed_renderer_rays.spv.h"
-#include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
 #include "samples/path_tracer/camera.h"
@@ -63,7 +62,7 @@ Renderer::Renderer(const Device& device, const Stage& stage, const Options& opti
     : device_(device),
       stage_(stage),
       context_(device.adopted()),
-      choice_(choose_accel(context_.facts(), options.accel)),
+      choice_(choose_accel(context_.properties(), options.accel)),
       accel_(samples::make_accel(context_, choice_)),
       targets_(device, {options.width, options.height}),
       scene_(device, context_, stage.scene),
@@ -196,7 +195,7 @@ void Renderer::make_rays(VkCommandBuffer commands) {
                                          shadow_rays_.ref<Ray>(), ao_rays_.ref<Ray>()});
     over_pixels(commands);
     barrier(commands, compute, VK_ACCESS_SHADER_WRITE_BIT,
-            context_.state().stages() | compute | VK_PIPELINE_STAGE_TRANSFER_BIT,
+            VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_READ_BIT);
 }
 

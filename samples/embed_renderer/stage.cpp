@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include <twinray/scene.h>
 

@@ -3,8 +3,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "engine/core/cpu_vectors.h"
-#include "engine/core/error.h"
+#include <twinray/context.h>
 #include <twinray/tlas.h>
 #include "samples/particles/report.h"
 #include "samples/support/text.h"
@@ -40,7 +39,7 @@ int run(const Options& options) {
     if (!options.output.empty() && !is_image_file(options.output))
         samples::fail("'", options.output.string(), "': pictures are .png or .exr");
     Context context(samples::context_desc(options, "particles"));
-    const AccelChoice choice = choose_accel(context.facts(), options.accel);
+    const AccelChoice choice = choose_accel(context.properties(), options.accel);
     const std::unique_ptr<AbstractAccel> accel = samples::make_accel(context, choice);
     Simulation simulation(*accel, make_particles(options.count, options.seed));
     Renderer renderer(simulation, options.size);

@@ -99,7 +99,7 @@ void Renderer::draw() {
                  .hits = hits_.ref<Hit>(),
                  .count = ray_count_,
                  .query = Query::any,
-                 .answer_only = true});
+                 .occlusion_only = true});
     const uint pixels = size_.width * size_.height;
     add_light_.dispatch(*last_, {light_.ref<Light>(), hits_.ref<Hit>(), picture_.ref<vec3>(), pixels, size_.samples},
                         pixels);

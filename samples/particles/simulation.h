@@ -3,7 +3,7 @@
 #pragma once
 
 #include <twinray/abstract_accel.h>
-#include "engine/core/kernel.h"
+#include <twinray/commands.h>
 #include "samples/particles/shared.h"
 
 namespace twinray::particles {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/core/cpu_vectors.h"
+#include <twinray/context.h>
 #include "samples/path_tracer/frames.h"
 #include "samples/path_tracer/merge.h"
 #include "samples/path_tracer/report.h"
@@ -32,9 +32,9 @@ int cross_check(const Options& options, const Ranks& ranks) {
     if (!is_image_file(options.output)) fail("--cross-check: '", options.output.string(), "' must be a picture");
     const Session session = make_session(options, ranks);
     Renderer& renderer = *session.renderer;
-    const DeviceFacts& facts = session.context->facts();
-    const auto hardware = make_accel(*session.context, session.scene, choose_accel(facts, "hw"));
-    const auto software = make_accel(*session.context, session.scene, choose_accel(facts, "sw"));
+    const DeviceProperties& properties = session.context->properties();
+    const auto hardware = make_accel(*session.context, session.scene, choose_accel(properties, "hw"));
+    const auto software = make_accel(*session.context, session.scene, choose_accel(properties, "sw"));
     CrossCheck result;
     result.hardware_path = trace_path(*hardware);
     result.pixel_count = renderer.film_size();

@@ -8,10 +8,10 @@
 
 namespace twinray::path_tracer {
 
-std::size_t device_of_rank(std::span<const DeviceFacts> devices, uint local_index) {
+std::size_t device_of_rank(std::span<const DeviceProperties> devices, uint local_index) {
     const std::optional<std::size_t> best = samples::best_device(devices);
     if (!best) return 0;
-    const auto is_alike = [&](const DeviceFacts& device) {
+    const auto is_alike = [&](const DeviceProperties& device) {
         return device.kind == devices[*best].kind && missing_for_software(device).empty();
     };
     std::vector<std::size_t> alike;

@@ -31,6 +31,6 @@ class Ranks {
 };
 
 // Processes of one machine take turns on its best devices. Returns the index of the device.
-std::size_t device_of_rank(std::span<const DeviceFacts> devices, uint local_index);
+std::size_t device_of_rank(std::span<const DeviceProperties> devices, uint local_index);
 
 }  // namespace twinray::path_tracer

@@ -6,7 +6,7 @@
 #include <map>
 
 #include <twinray/abstract_accel.h>
-#include "engine/core/pace.h"
+#include <twinray/commands.h>
 #include "samples/path_tracer/film.h"
 #include "samples/path_tracer/wave_buffers.h"
 

@@ -26,8 +26,8 @@ nlohmann::json settings_json(const Options& options, const Session& session) {
             {"scene", options.scene.string()},
             {"origin", {origin.x, origin.y, origin.z}},
             {"picture", options.output.string()},
-            {"device", session.context->facts().name},
-            {"driver", session.context->facts().driver},
+            {"device", session.context->properties().name},
+            {"driver", session.context->properties().driver},
             {"width", session.settings.width},
             {"height", session.settings.height},
             {"max_depth", session.settings.max_depth},
@@ -148,8 +148,8 @@ void print_stats(const Session& session, const AbstractAccel& accel, const Rende
 std::string cross_check_text(const Options& options, const Session& session, const CrossCheck& result) {
     std::ostringstream out;
     out << "cross-check " << options.scene.filename().string() << ", " << session.settings.width << " x "
-        << session.settings.height << ", " << session.settings.samples << " spp, on " << session.context->facts().name
-        << ": HwTlas by " << result.hardware_path << " against SwTlas\n"
+        << session.settings.height << ", " << session.settings.samples << " spp, on "
+        << session.context->properties().name << ": HwTlas by " << result.hardware_path << " against SwTlas\n"
         << "  rays traced by both                  " << result.path_rays + result.shadow_rays << " ("
         << result.path_rays << " path, " << result.shadow_rays << " shadow)\n"
         << "  rays with different hits             " << result.disagreeing << '\n';

@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/core/commands.h"
-#include "engine/core/kernel.h"
+#include <twinray/commands.h>
 #include "samples/path_tracer/environment.h"
 #include "samples/path_tracer/lights.h"
 #include "samples/path_tracer/material_kinds.h"

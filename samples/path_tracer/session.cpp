@@ -6,7 +6,6 @@
 #include <cstdio>
 
 #include <twinray/scene.h>
-#include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/local_origin.h"
 #include <twinray/geometry.h>
@@ -194,7 +193,7 @@ Session make_session(const Options& options, const Ranks& ranks) {
     session.configuration =
         configuration_of(session.settings, session.scene, session.lights, session.environment.get(), is_default_sky);
     session.context = std::make_unique<Context>(desc_for(options, ranks));
-    session.accel = choose_accel(session.context->facts(), options.accel);
+    session.accel = choose_accel(session.context->properties(), options.accel);
     session.device_scene = std::make_unique<DeviceScene>(
         *session.context, session.scene, session.lights, session.environment.get(),
         options.all_features ? all_features(session.scene)

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "engine/core/error.h"
+#include <twinray/geometry.h>
 
 namespace twinray::samples {
 

@@ -4,7 +4,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bridge.glsl"
 #include "shaders/collide/box_tree.h"
-#include "shaders/engine/group_box.glsl"
 layout(local_size_x = WORLD_BOUND_GROUP) in;
 #include "shaders/engine/group_box.glsl"
 layout(push_constant, scalar) uniform Push { HilbertOrderArgs args; };

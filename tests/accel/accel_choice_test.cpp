@@ -8,8 +8,8 @@
 namespace twinray {
 namespace {
 
-DeviceFacts device_of(DeviceKind kind) {
-    DeviceFacts device;
+DeviceProperties device_of(DeviceKind kind) {
+    DeviceProperties device;
     device.name = "GPU 9";
     device.kind = kind;
     device.api_version = (1u << 22) | (2u << 12);  // Vulkan 1.2
@@ -20,7 +20,7 @@ DeviceFacts device_of(DeviceKind kind) {
     return device;
 }
 
-std::string refusal_of(const DeviceFacts& device, const std::string& request, const AccelNeeds& needs = {}) {
+std::string refusal_of(const DeviceProperties& device, const std::string& request, const AccelNeeds& needs = {}) {
     try {
         choose_accel(device, request, needs);
     } catch (const Error& error) {
@@ -33,7 +33,7 @@ TEST(AccelChoice, AutomaticIsHardwareWhereTheDeviceHasIt) {
     for (const DeviceKind kind :
          {DeviceKind::discrete, DeviceKind::integrated, DeviceKind::virtual_gpu, DeviceKind::other})
         EXPECT_EQ(choose_accel(device_of(kind), "auto"), (AccelChoice{false, "device 'GPU 9' has VK_KHR_ray_query"}));
-    DeviceFacts pipelines = device_of(DeviceKind::discrete);
+    DeviceProperties pipelines = device_of(DeviceKind::discrete);
     pipelines.ray_query = false;
     EXPECT_EQ(choose_accel(pipelines, "auto"), (AccelChoice{false, "device 'GPU 9' has VK_KHR_ray_tracing_pipeline"}));
 }
@@ -45,7 +45,7 @@ TEST(AccelChoice, AutomaticIsSoftwareOnACpu) {
 }
 
 TEST(AccelChoice, WhatHardwareLacksIsNamed) {
-    DeviceFacts none = device_of(DeviceKind::discrete);
+    DeviceProperties none = device_of(DeviceKind::discrete);
     none.acceleration_structure = none.ray_query = none.ray_tracing_pipeline = false;
     EXPECT_EQ(choose_accel(none, "auto"),
               (AccelChoice{true,
@@ -58,7 +58,7 @@ TEST(AccelChoice, WhatHardwareLacksIsNamed) {
 }
 
 TEST(AccelChoice, NeedsThatHardwareDoesNotMeetChooseSoftware) {
-    DeviceFacts device = device_of(DeviceKind::discrete);
+    DeviceProperties device = device_of(DeviceKind::discrete);
     const AccelNeeds certified{.level = Level::certified}, kernels{.kernel_queries = true};
     EXPECT_FALSE(choose_accel(device, "auto", {.level = Level::refined}).is_software);
     EXPECT_FALSE(choose_accel(device, "auto", kernels).is_software);

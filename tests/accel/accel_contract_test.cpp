@@ -491,7 +491,8 @@ TEST_P(Accel, TransformsComeFromDeviceMemory) {
 
 TEST_P(Accel, NewTransformsKeepCustomIndicesMasksAndFlags) {
     const std::vector<InstanceOptions> options = {
-        {.custom_index = 5, .mask = 0x11}, {.custom_index = 6, .mask = 0x22, .no_culling = true, .turned = true}};
+        {.custom_index = 5, .mask = 0x11},
+        {.custom_index = 6, .mask = 0x22, .disable_culling = true, .flip_facing = true}};
     const AccelHandle pair = accel().push(square(0), std::vector<Transform>(2), options);
     const std::vector<Transform> moved = {Transform::translation({0, 0, 1}), Transform::translation({0, 0, 2})};
     const auto expect_kept = [&] {
@@ -564,7 +565,7 @@ TEST_P(Accel, InstancesTellTheirState) {
 // The square faces up: a ray down sees its front, the ray up its back.
 TEST_P(Accel, CullingHidesOneSideAndInstancesMayTurnOrRefuseIt) {
     const InstanceOptions options[] = {
-        {}, {.turned = true}, {.no_culling = true}, {.no_culling = true, .turned = true}};
+        {}, {.flip_facing = true}, {.disable_culling = true}, {.disable_culling = true, .flip_facing = true}};
     std::vector<Transform> places;
     for (int i = 0; i < 4; ++i) places.push_back(Transform::translation({2.0f * static_cast<float>(i), 0, 0}));
     accel().push(square(0), places, options);

@@ -27,10 +27,10 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        if (!is_ours() && !missing_for_hardware(context().facts()).empty())
-            TWINRAY_LACKS("ray_tracing", context().facts().name + " has no such ray tracing");
+        if (!is_ours() && !missing_for_hardware(context().properties()).empty())
+            TWINRAY_LACKS("ray_tracing", context().properties().name + " has no such ray tracing");
         if (!has_level(accel_options().level))
-            TWINRAY_LACKS("float64", context().facts().name + " lacks what this level needs");
+            TWINRAY_LACKS("float64", context().properties().name + " lacks what this level needs");
         accel_ = make_accel();
     }
     void TearDown() override {
@@ -44,7 +44,7 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
     bool has_level(Level level) const {
         if (GetParam() == Kind::reference) return true;
         const auto capability_on = is_ours() ? SwTlas::capability_on : HwTlas::capability_on;
-        return capability_on(context().facts(), feature_of(level)).support != Support::unsupported;
+        return capability_on(context().properties(), feature_of(level)).support != Support::unsupported;
     }
     // Programs that no test waits for are not compiled.
     virtual AccelOptions accel_options() const { return {.compiles_in_background = false}; }

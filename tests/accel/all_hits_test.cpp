@@ -65,7 +65,7 @@ TEST_P(AllHitsTest, ClosedSurfacesAreLeftAsOftenAsEntered) {
 TEST_P(AllHitsTest, IntervalMaskCullingAndFilters) {
     const Mesh box = make_box(vec3(-1), vec3(1));
     accel().push(box, {}, {.mask = 1});
-    accel().push(box, Transform::translation(vec3(4, 0, 0)), {.mask = 2, .filtered = true});
+    accel().push(box, Transform::translation(vec3(4, 0, 0)), {.mask = 2, .non_opaque = true});
     AllHits all(accel());
     const std::vector rays = {make_ray(vec3(-3, 0.25f, 0.5f), vec3(1, 0, 0)),
                               make_ray(vec3(-3, 0.25f, 0.5f), vec3(1, 0, 0), 2, 6), make_ray(vec3(9), vec3(1, 0, 0))};

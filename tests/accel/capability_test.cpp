@@ -22,7 +22,7 @@ TEST(Capability, LevelsHaveTheirFeatures) {
 }
 
 TEST(Capability, QueriesInKernelsNeedRayQueriesOnHardwareAlone) {
-    DeviceFacts device;
+    DeviceProperties device;
     EXPECT_EQ(HwTlas::capability_on(device, Feature::kernel_queries).support, Support::unsupported);
     EXPECT_EQ(SwTlas::capability_on(device, Feature::kernel_queries).support, Support::native);
     device.ray_query = true;

@@ -18,8 +18,8 @@ class Certified : public test::VulkanTest {
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        if (SwTlas::capability_on(context().facts(), Feature::level_certified).support == Support::unsupported)
-            TWINRAY_LACKS("float64", context().facts().name + " has no float64");
+        if (SwTlas::capability_on(context().properties(), Feature::level_certified).support == Support::unsupported)
+            TWINRAY_LACKS("float64", context().properties().name + " has no float64");
     }
     // Rays for which SwTlas names another hit than the reference.
     std::size_t wrong(const Scene& scene, std::span<const Ray> rays, Level level, const TraceDesc& desc = {}) {
@@ -180,7 +180,7 @@ TEST_F(Certified, NoDistanceBeyondTheLargestFloatIsReported) {
 }
 
 TEST_F(Certified, IsRefusedWhereTheDriverOrdersTheHits) {
-    if (!missing_for_hardware(context().facts()).empty()) TWINRAY_LACKS("ray_tracing", "no hardware ray tracing");
+    if (!missing_for_hardware(context().properties()).empty()) TWINRAY_LACKS("ray_tracing", "no hardware ray tracing");
     EXPECT_NE(error_of([&] {
                   HwTlas(context(), BuildOrder::automatic, {.level = Level::certified});
               }).find("the driver orders"),

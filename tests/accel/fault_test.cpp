@@ -40,8 +40,8 @@ class Faults : public ::testing::TestWithParam<Kind> {
     }
     void SetUp() override {
         const std::unique_ptr<Context> context = test::make_context(desc());
-        if (!context || GetParam() == Kind::software || missing_for_hardware(context->facts()).empty()) return;
-        TWINRAY_LACKS("ray_tracing", context->facts().name + " has no such ray tracing");
+        if (!context || GetParam() == Kind::software || missing_for_hardware(context->properties()).empty()) return;
+        TWINRAY_LACKS("ray_tracing", context->properties().name + " has no such ray tracing");
     }
     static void TearDownTestSuite() {
         for (const auto& [accelerator, points] : points_)
@@ -403,7 +403,7 @@ TEST_P(Faults, AdoptingADevice) {
     host.state().vk().vkGetDeviceQueue(host.device(), host.queue_family(), 0, &device.queue);
     device.get_instance_proc_addr = faults().entry();
     device.api_version = VK_API_VERSION_1_2;
-    device.enabled = host.facts();
+    device.enabled = host.properties();
     const Counts before = faults().live();
     for (std::uint64_t n = 1; !HasFailure(); ++n) {
         faults().inject({.first = n});

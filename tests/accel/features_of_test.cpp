@@ -9,7 +9,7 @@
 namespace twinray {
 namespace {
 
-constexpr AccelFacts software{}, bvh2{.layout = Layout::bvh2}, hardware{.is_software = false};
+constexpr AccelTraits software{}, bvh2{.layout = Layout::bvh2}, hardware{.is_software = false};
 
 TEST(FeaturesOf, TheSimplestTraceNeedsItsLayoutAndItsHits) {
     EXPECT_EQ(features_of(software, {}, {}), FEATURE_COMPRESSED | FEATURE_HITS);
@@ -19,7 +19,7 @@ TEST(FeaturesOf, TheSimplestTraceNeedsItsLayoutAndItsHits) {
 }
 
 TEST(FeaturesOf, EachFactOfTheSceneAddsItsFeature) {
-    const auto added = [](const SceneFacts& scene) {
+    const auto added = [](const SceneTraits& scene) {
         return features_of(software, scene, {}) & ~features_of(software, {}, {});
     };
     EXPECT_EQ(added({.has_boxes = true}), FEATURE_BOXES);
@@ -42,22 +42,22 @@ TEST(FeaturesOf, MasksCountWhereOneInstanceMayBeHidden) {
 }
 
 TEST(FeaturesOf, TheTraceSaysWhetherItCullsAndWhatItWants) {
-    const auto of = [](const TraceDesc& desc) { return features_of(software, {}, TraceFacts::of(desc)); };
+    const auto of = [](const TraceDesc& desc) { return features_of(software, {}, TraceTraits::of(desc)); };
     const uint least = FEATURE_COMPRESSED | FEATURE_HITS;
     EXPECT_EQ(of({.cull = Cull::front}), least | FEATURE_CULLING);
     EXPECT_EQ(of({.query = Query::any}), least);
-    EXPECT_EQ(of({.query = Query::any, .answer_only = true}), FEATURE_COMPRESSED);
-    EXPECT_EQ(of({.query = Query::closest, .answer_only = true}), least) << "of any hits alone";
+    EXPECT_EQ(of({.query = Query::any, .occlusion_only = true}), FEATURE_COMPRESSED);
+    EXPECT_EQ(of({.query = Query::closest, .occlusion_only = true}), least) << "of any hits alone";
     EXPECT_EQ(of({.mask = 0}), least | FEATURE_MASKS);
 }
 
 TEST(FeaturesOf, HardwareLeavesTheRestToTheDriver) {
-    EXPECT_EQ(features_of(hardware, SceneFacts::of_every_kind(), TraceFacts::of_every_kind()), FEATURE_HITS);
+    EXPECT_EQ(features_of(hardware, SceneTraits::of_every_kind(), TraceTraits::of_every_kind()), FEATURE_HITS);
 }
 
 // So that an accelerator keeps as many programs at most.
 TEST(FeaturesOf, AnAcceleratorHas32SetsAtMostAndOneHoldsThemAll) {
-    const uint all = features_of(software, SceneFacts::of_every_kind(), TraceFacts::of_every_kind());
+    const uint all = features_of(software, SceneTraits::of_every_kind(), TraceTraits::of_every_kind());
     std::set<uint> sets;
     for (const std::size_t instances : {0, 1, 2})
         for (const uint common_mask : {0u, 1u, 0xffu})

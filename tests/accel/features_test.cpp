@@ -35,7 +35,7 @@ class Features : public test::VulkanTest, public ::testing::WithParamInterface<s
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        if (SwTlas::capability_on(context().facts(), feature_of(level())).support == Support::unsupported)
+        if (SwTlas::capability_on(context().properties(), feature_of(level())).support == Support::unsupported)
             TWINRAY_LACKS("float64", "no float64");
         accel_ = std::make_unique<SwTlas>(
             context(),
@@ -107,7 +107,7 @@ class Features : public test::VulkanTest, public ::testing::WithParamInterface<s
         desc.hits = hits.ref<Hit>();
         desc.count = rays.size();
         desc.query = Query::any;
-        desc.answer_only = true;
+        desc.occlusion_only = true;
         accel().trace(commands, accel().view(), desc);
         commands.submit();
         return download<Hit>(context(), hits, rays.size());
@@ -149,8 +149,8 @@ TEST_P(Features, LeanProgramsFindWhatTheGeneralOneFinds) {
     expect_equal({.mask = 2});
     expect_equal({.cull = Cull::front});
 
-    accel().push(make_soup(300, 3, 0.3f), Transform{}, {.mask = 3, .turned = true});
-    accel().push(make_grid(8, 8), Transform{}, {.mask = 2, .no_culling = true});
+    accel().push(make_soup(300, 3, 0.3f), Transform{}, {.mask = 3, .flip_facing = true});
+    accel().push(make_grid(8, 8), Transform{}, {.mask = 2, .disable_culling = true});
     EXPECT_EQ(features_for({}), several) << "all have bit 1";
     EXPECT_EQ(features_for({.mask = 5}), several | FEATURE_MASKS);
     expect_equal();

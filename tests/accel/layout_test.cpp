@@ -18,7 +18,7 @@ class Layouts : public test::VulkanTest, public ::testing::WithParamInterface<Le
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        if (SwTlas::capability_on(context().facts(), feature_of(GetParam())).support == Support::unsupported)
+        if (SwTlas::capability_on(context().properties(), feature_of(GetParam())).support == Support::unsupported)
             TWINRAY_LACKS("float64", "no float64");
         for (const Layout layout : all_layouts)
             for (const BuildQuality quality : all_build_qualities)
@@ -67,7 +67,7 @@ TEST_P(Layouts, AgreeOnInstancesOfEveryKind) {
             const vec3 place = 3.0f * vec3(unit(random), unit(random), unit(random));
             const vec3 size(unit(random), 0.7f, i % 5 ? 1 : -1e-3f);
             accel->push(meshes[i % 4], Transform::translation(place) * Transform::scaling(size),
-                        {.custom_index = i, .mask = static_cast<std::uint8_t>(1 + i % 3), .filtered = i % 7 == 0});
+                        {.custom_index = i, .mask = static_cast<std::uint8_t>(1 + i % 3), .non_opaque = i % 7 == 0});
         }
     }
     const std::vector<Ray> rays = random_rays({vec3(-4), vec3(4)}, 20'000, 4);

@@ -54,8 +54,8 @@ void expect_equal_in_parts(const Work& work, std::uint64_t more, ContextDesc des
         desc.most_submission_seconds = is_cut ? 1e-9 : 0;
         const std::unique_ptr<Context> context = test::make_context(desc);
         if (!context) return;
-        if (!context->facts().shader_float64) TWINRAY_LACKS("float64", "no float64");
-        if (!missing_for_hardware(context->facts()).empty()) TWINRAY_LACKS("ray_tracing", "no ray tracing");
+        if (!context->properties().shader_float64) TWINRAY_LACKS("float64", "no float64");
+        if (!missing_for_hardware(context->properties()).empty()) TWINRAY_LACKS("ray_tracing", "no ray tracing");
         work(*context, found[is_cut]);
         submissions[is_cut] = context->last_submission().value;
         for (const std::string& message : context->validation_messages()) ADD_FAILURE() << message;

@@ -97,7 +97,7 @@ TEST_P(SortedRays, KeepToTheCountOnTheDevice) {
 TEST_P(SortedRays, GiveAnswersAlone) {
     push_scene();
     const std::vector<Ray> rays = mixed_rays(1000);
-    TraceDesc desc{.query = Query::any, .answer_only = true};
+    TraceDesc desc{.query = Query::any, .occlusion_only = true};
     const std::vector<Hit> given = hits_of(rays, desc);
     desc.order = RayOrder::sorted;
     const std::vector<Hit> sorted = hits_of(rays, desc);
@@ -122,7 +122,7 @@ TEST_P(SortedRaysOfAccels, FindTheSameAtEveryLevel) {
 }
 
 TEST_P(SortedRaysOfAccels, FindWhatTheProgramAccepts) {
-    accel().push(make_icosphere(3), Transform{}, {.filtered = true});
+    accel().push(make_icosphere(3), Transform{}, {.non_opaque = true});
     accel().sync();
     const auto program = accel().make_program(test_program);
     expect_equal(mixed_rays(1000), {.program = program.get()});

@@ -103,7 +103,7 @@ TEST_P(Program, BoxesAreWhatTheProgramMakesOfThem) {
 TEST_P(Program, TheHitThatTheFilterAcceptsIsTheClosest) {
     const std::unique_ptr<AbstractAccel> opaque = make_accel();
     for (uint i = 0; i < 6; ++i) {
-        accel().push(square(static_cast<float>(i)), Transform{}, {.custom_index = i, .filtered = i != 3});
+        accel().push(square(static_cast<float>(i)), Transform{}, {.custom_index = i, .non_opaque = i != 3});
         opaque->push(square(static_cast<float>(i)), Transform{},
                      {.custom_index = i, .mask = static_cast<std::uint8_t>(1u << i)});
     }
@@ -131,7 +131,7 @@ TEST_P(Program, TheHitThatTheFilterAcceptsIsTheClosest) {
 }
 
 TEST_P(Program, AnyHitTakesOnlyWhatTheFilterAccepts) {
-    accel().push(square(0), Transform{}, {.filtered = true});
+    accel().push(square(0), Transform{}, {.non_opaque = true});
     const auto program = accel().make_program(test_program);
     const std::vector<Ray> rays = rays_down(2000);
     const std::vector<Hit> any = accel().any_hits(rays, {.program = program.get()});
@@ -149,7 +149,7 @@ TEST_P(Program, BoxesAreFilteredToo) {
     const Sphere sphere{vec3(0.5f, 0.5f, 0), 0.4f};
     const Bounds box = sphere.bounds();
     const Buffer user = device_copy(std::vector<Sphere>{sphere});
-    accel().push(BoxesView{"sphere", std::span(&box, 1)}, Transform{}, {.filtered = true});
+    accel().push(BoxesView{"sphere", std::span(&box, 1)}, Transform{}, {.non_opaque = true});
     accel().push(square(-1));
     const auto program = accel().make_program(test_program);
     const std::vector<Ray> rays = rays_down(2000);
@@ -196,7 +196,7 @@ TEST_P(Program, WhatNoProgramCanMeetIsRefused) {
     EXPECT_NE(error_of([&] { trace({.program = foreign.get()}); }).find("made by another accelerator"),
               std::string::npos);
     accel().erase(handle);
-    accel().push(square(0), Transform{}, {.filtered = true});
+    accel().push(square(0), Transform{}, {.non_opaque = true});
     EXPECT_NE(error_of([&] { trace({}); }).find("filtered instances"), std::string::npos);
 }
 
@@ -216,8 +216,8 @@ TEST_P(Program, TheFilterSeesTheDistanceOfTheGivenRayAtEveryLevel) {
     for (const Level level : {Level::watertight, Level::refined, Level::certified}) {
         if (accel().capability(feature_of(level)).support == Support::unsupported) continue;
         const std::unique_ptr<AbstractAccel> here = make_accel({.level = level});
-        here->push(square(0), Transform{}, {.custom_index = 2'000'000, .filtered = true});
-        here->push(square(1), Transform{}, {.custom_index = 1000, .filtered = true});
+        here->push(square(0), Transform{}, {.custom_index = 2'000'000, .non_opaque = true});
+        here->push(square(1), Transform{}, {.custom_index = 1000, .non_opaque = true});
         const auto program = here->make_program(test_program);
         const Hit hit = here->closest_hits({&ray, 1}, {.level = level, .program = program.get()}).front();
         EXPECT_EQ(hit.custom_index, 2'000'000u) << "level " << static_cast<int>(level);

@@ -21,8 +21,8 @@ class Tunings : public ::testing::TestWithParam<Setting> {
     void SetUp() override {
         const std::unique_ptr<Context> context = test::make_context();
         if (!context) return;
-        if (SwTlas::capability_on(context->facts(), feature_of(GetParam().level)).support == Support::unsupported)
-            TWINRAY_LACKS("float64", context->facts().name + " has no float64");
+        if (SwTlas::capability_on(context->properties(), feature_of(GetParam().level)).support == Support::unsupported)
+            TWINRAY_LACKS("float64", context->properties().name + " has no float64");
     }
     // Of all the scenes, hits of the closest and any query, and all hits, as bytes in turn.
     std::vector<std::vector<std::byte>> trace_all(TuningRow row) {

@@ -20,7 +20,7 @@ class NarrowPhaseTest : public test::VulkanTest {
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        if (!context().facts().shader_float64) GTEST_SKIP() << "no float64";
+        if (!context().properties().shader_float64) GTEST_SKIP() << "no float64";
         narrow_phase_ = std::make_unique<NarrowPhase>(context());
     }
     void TearDown() override {

@@ -34,7 +34,7 @@ void expect_both_trace(const AdoptedDevice& device) {
     Context context(device);
     std::vector<std::unique_ptr<AbstractAccel>> accels;
     accels.push_back(std::make_unique<SwTlas>(context));
-    if (missing_for_hardware(context.facts()).empty()) accels.push_back(std::make_unique<HwTlas>(context));
+    if (missing_for_hardware(context.properties()).empty()) accels.push_back(std::make_unique<HwTlas>(context));
     for (const std::unique_ptr<AbstractAccel>& accel : accels) {
         accel->push(make_box(vec3(-1), vec3(1)));
         const Ray ray{vec3(0.25f, 0.5f, 5), 0, vec3(0, 0, -1), INFINITY};

@@ -6,8 +6,8 @@
 namespace twinray {
 namespace {
 
-DeviceFacts capable(const char* name, DeviceKind kind) {
-    DeviceFacts device;
+DeviceProperties capable(const char* name, DeviceKind kind) {
+    DeviceProperties device;
     device.name = name;
     device.kind = kind;
     device.api_version = (1u << 22) | (3u << 12);
@@ -19,17 +19,17 @@ DeviceFacts capable(const char* name, DeviceKind kind) {
 }
 
 TEST(DeviceChoice, PrefersRayTracingThenDiscrete) {
-    DeviceFacts plain = capable("plain discrete", DeviceKind::discrete);
+    DeviceProperties plain = capable("plain discrete", DeviceKind::discrete);
     plain.acceleration_structure = false;
-    const std::vector<DeviceFacts> devices = {capable("cpu", DeviceKind::cpu), plain,
-                                              capable("integrated", DeviceKind::integrated)};
+    const std::vector<DeviceProperties> devices = {capable("cpu", DeviceKind::cpu), plain,
+                                                   capable("integrated", DeviceKind::integrated)};
     EXPECT_EQ(choose_device(devices, "").index, 2);
     EXPECT_EQ(choose_device(std::span(devices).first(2), "").index, 0);
 }
 
 TEST(DeviceChoice, TakesAnIndexOrAPartOfTheName) {
-    const std::vector<DeviceFacts> devices = {capable("Alpha One", DeviceKind::discrete),
-                                              capable("Beta Two", DeviceKind::cpu)};
+    const std::vector<DeviceProperties> devices = {capable("Alpha One", DeviceKind::discrete),
+                                                   capable("Beta Two", DeviceKind::cpu)};
     EXPECT_EQ(choose_device(devices, "1").index, 1);
     EXPECT_EQ(choose_device(devices, "two").index, 1);
     EXPECT_EQ(choose_device(devices, "gamma").index, -1);
@@ -37,11 +37,11 @@ TEST(DeviceChoice, TakesAnIndexOrAPartOfTheName) {
 }
 
 TEST(DeviceChoice, SaysWhyEachOtherDeviceWasRejected) {
-    DeviceFacts old = capable("old", DeviceKind::discrete);
+    DeviceProperties old = capable("old", DeviceKind::discrete);
     old.api_version = (1u << 22) | (1u << 12);
     old.scalar_block_layout = false;
-    const std::vector<DeviceFacts> devices = {old, capable("good", DeviceKind::cpu),
-                                              capable("also good", DeviceKind::cpu)};
+    const std::vector<DeviceProperties> devices = {old, capable("good", DeviceKind::cpu),
+                                                   capable("also good", DeviceKind::cpu)};
     const DeviceChoice choice = choose_device(devices, "");
     ASSERT_EQ(choice.index, 1);
     ASSERT_EQ(choice.rejections.size(), 2u);
@@ -55,7 +55,7 @@ TEST(DeviceChoice, OfNothingIsNothing) {
 }
 
 TEST(DeviceChoice, APipelineAloneIsEnoughForHardware) {
-    DeviceFacts device = capable("data centre", DeviceKind::discrete);
+    DeviceProperties device = capable("data centre", DeviceKind::discrete);
     device.ray_query = false;
     EXPECT_FALSE(missing_for_hardware(device).empty());
     device.ray_tracing_pipeline = true;

@@ -127,7 +127,7 @@ std::unique_ptr<AbstractAccel> make(Context& context, bool hardware) {
 TEST_F(HostAllocator, ServesBothAccelerators) {
     Context context(host_.device);
     for (const bool hardware : {false, true}) {
-        if (hardware && !missing_for_hardware(context.facts()).empty()) continue;
+        if (hardware && !missing_for_hardware(context.properties()).empty()) continue;
         const std::size_t before = memory_.made;
         EXPECT_EQ(hits_of(*make(context, hardware)).front().t, 4.0f);
         EXPECT_GT(memory_.made, before);
@@ -142,7 +142,7 @@ TEST_F(HostAllocator, ServesBothAccelerators) {
 TEST_F(HostAllocator, AFailureAnywhereIsAnErrorAndLeaksNothing) {
     Context context(host_.device);
     for (const bool hardware : {false, true}) {
-        if (hardware && !missing_for_hardware(context.facts()).empty()) continue;
+        if (hardware && !missing_for_hardware(context.properties()).empty()) continue;
         bool has_failed = true;
         for (std::size_t n = 0; has_failed; ++n) {
             has_failed = false;

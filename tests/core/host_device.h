@@ -22,7 +22,7 @@ struct Host {
     AdoptedDevice device;
     int locked = 0, submissions = 0;
 
-    DeviceFacts supported;
+    DeviceProperties supported;
     bool wants_hardware = true;                            // false: without the ray tracing extensions
     std::function<void(VkDeviceCreateInfo&)> extend = {};  // with what the host wants for itself
 
@@ -84,8 +84,8 @@ inline bool Host::create() {
     VkPhysicalDevice physical = VK_NULL_HANDLE;
     vkEnumeratePhysicalDevices(instance, &count, &physical);
     if (count == 0) return false;
-    supported = query_device_facts(vkGetInstanceProcAddr, instance, physical);
-    DeviceFacts wanted = supported;
+    supported = query_device_properties(vkGetInstanceProcAddr, instance, physical);
+    DeviceProperties wanted = supported;
     if (!wants_hardware) wanted.acceleration_structure = wanted.ray_query = wanted.ray_tracing_pipeline = false;
     DeviceRequirements requirements(wanted);
     if (!create_device(physical, requirements)) return false;
@@ -117,7 +117,7 @@ inline bool Host::create_device(VkPhysicalDevice physical, DeviceRequirements& r
     if (extend) extend(info);
     requirements.add_to(info);
     if (vkCreateDevice(physical, &info, nullptr, &device.device) != VK_SUCCESS) return false;
-    device.enabled = enabled_facts(vkGetInstanceProcAddr, instance, physical, info);
+    device.enabled = enabled_properties(vkGetInstanceProcAddr, instance, physical, info);
     return true;
 }
 

@@ -10,8 +10,8 @@
 namespace twinray {
 namespace {
 
-DeviceFacts device_of(VkDriverId driver, DeviceKind kind) {
-    DeviceFacts device;
+DeviceProperties device_of(VkDriverId driver, DeviceKind kind) {
+    DeviceProperties device;
     device.kind = kind;
     device.driver_id = driver;
     device.cpu_threads = kind == DeviceKind::cpu ? 3 : 0;
@@ -21,7 +21,7 @@ DeviceFacts device_of(VkDriverId driver, DeviceKind kind) {
 }
 
 TEST(KernelTuning, AnyDeviceIsAGpuUntilItsDriverIsKnown) {
-    EXPECT_EQ(tuning_for(DeviceFacts{}).row, TuningRow::gpu);
+    EXPECT_EQ(tuning_for(DeviceProperties{}).row, TuningRow::gpu);
     EXPECT_EQ(tuning_for(device_of(VK_DRIVER_ID_NVIDIA_PROPRIETARY, DeviceKind::discrete)).row, TuningRow::gpu);
     EXPECT_EQ(tuning_for(device_of(VK_DRIVER_ID_GOOGLE_SWIFTSHADER, DeviceKind::cpu)).row, TuningRow::gpu);
     EXPECT_EQ(tuning_for(device_of(VK_DRIVER_ID_MESA_LLVMPIPE, DeviceKind::cpu)).row, TuningRow::cpu_driver);
@@ -49,13 +49,13 @@ TEST(KernelTuning, OfACpuDriverGroupsAreItsVectors) {
 }
 
 TEST(KernelTuning, SortsNeedRoomForTheirCounters) {
-    DeviceFacts device = device_of(VK_DRIVER_ID_MESA_LLVMPIPE, DeviceKind::cpu);
+    DeviceProperties device = device_of(VK_DRIVER_ID_MESA_LLVMPIPE, DeviceKind::cpu);
     device.shared_bytes = 16 << 10;
     EXPECT_EQ(tuning_for(device).sort_threads, 0u);
 }
 
 TEST(KernelTuning, AnyDeviceCanHaveEitherRow) {
-    const DeviceFacts gpu = device_of(VK_DRIVER_ID_MESA_RADV, DeviceKind::discrete);
+    const DeviceProperties gpu = device_of(VK_DRIVER_ID_MESA_RADV, DeviceKind::discrete);
     const KernelTuning tuning = tuning_for(gpu, TuningRow::cpu_driver);
     EXPECT_EQ(tuning.row, TuningRow::cpu_driver);
     EXPECT_EQ(tuning.threads, 1u) << "some thread runs the groups";

@@ -5,19 +5,19 @@
 #include <cstring>
 #include <map>
 
-#include "engine/core/device_facts.h"
+#include "engine/core/device_properties.h"
 #include "engine/core/requirement.h"
 
 namespace twinray {
 namespace {
 
-DeviceFacts capable() {
-    DeviceFacts facts;
-    facts.api_version = VK_API_VERSION_1_2;
-    facts.has_compute_queue = true;
-    facts.group_invocations = KernelLimits::group_invocations;
-    for (const FeatureBit& bit : feature_bits()) facts.*bit.fact = true;
-    return facts;
+DeviceProperties capable() {
+    DeviceProperties properties;
+    properties.api_version = VK_API_VERSION_1_2;
+    properties.has_compute_queue = true;
+    properties.group_invocations = KernelLimits::group_invocations;
+    for (const FeatureBit& bit : feature_bits()) properties.*bit.fact = true;
+    return properties;
 }
 
 struct Info : VkDeviceCreateInfo {
@@ -38,21 +38,21 @@ struct Info : VkDeviceCreateInfo {
 };
 
 void expect_all_on(const Info& info) {
-    DeviceFacts facts = capable();
-    for (const FeatureBit& bit : feature_bits()) facts.*bit.fact = false;
-    state_features(info, facts);
-    for (const FeatureBit& bit : feature_bits()) EXPECT_TRUE(facts.*bit.fact) << bit.name;
+    DeviceProperties properties = capable();
+    for (const FeatureBit& bit : feature_bits()) properties.*bit.fact = false;
+    state_features(info, properties);
+    for (const FeatureBit& bit : feature_bits()) EXPECT_TRUE(properties.*bit.fact) << bit.name;
     for (const auto& [type, count] : info.types()) EXPECT_EQ(count, 1) << type;
     EXPECT_EQ(info.count_of(VK_KHR_RAY_QUERY_EXTENSION_NAME), 1);
 }
 
 TEST(Requirements, AreToldInSentences) {
-    DeviceFacts facts = capable();
-    for (const Requirement& met : requirements_of(facts))
+    DeviceProperties properties = capable();
+    for (const Requirement& met : requirements_of(properties))
         EXPECT_NE(met.sentence().find("; this device has it"), std::string::npos) << met.sentence();
-    facts.scalar_block_layout = facts.acceleration_structure = false;
+    properties.scalar_block_layout = properties.acceleration_structure = false;
     std::vector<std::string> lacking;
-    for (const Requirement& requirement : requirements_of(facts))
+    for (const Requirement& requirement : requirements_of(properties))
         if (!requirement.is_met) lacking.push_back(requirement.sentence());
     ASSERT_EQ(lacking.size(), 2u);
     EXPECT_EQ(
@@ -65,12 +65,12 @@ TEST(Requirements, AreToldInSentences) {
 }
 
 TEST(Requirements, AreLimitsToo) {
-    DeviceFacts facts = capable();
-    EXPECT_TRUE(missing_for_software(facts).empty());
-    facts.group_invocations = 128;
-    facts.shared_bytes = 8192;
-    facts.push_constant_bytes = 64;
-    const std::vector<std::string> missing = missing_for_software(facts);
+    DeviceProperties properties = capable();
+    EXPECT_TRUE(missing_for_software(properties).empty());
+    properties.group_invocations = 128;
+    properties.shared_bytes = 8192;
+    properties.push_constant_bytes = 64;
+    const std::vector<std::string> missing = missing_for_software(properties);
     ASSERT_EQ(missing.size(), 3u);
     EXPECT_EQ(missing[0], "groups of 256 invocations (maxComputeWorkGroupInvocations, maxComputeWorkGroupSize)");
     EXPECT_EQ(missing[1], "16384 bytes of shared memory (maxComputeSharedMemorySize)");
@@ -79,14 +79,15 @@ TEST(Requirements, AreLimitsToo) {
 
 // What a GPU of 2018 may lack is asked for by no other part than the one that needs it.
 TEST(Requirements, AreOfTheirPartAlone) {
-    DeviceFacts facts = capable();
-    facts.shader_float64 = facts.shader_int64 = facts.acceleration_structure = facts.ray_query = false;
-    facts.ray_tracing_pipeline = facts.runtime_descriptor_array = false;
-    facts.subgroup_size = 1;
-    facts.shared_bytes = KernelLimits::shared_bytes;
-    EXPECT_TRUE(missing_for_software(facts).empty());
+    DeviceProperties properties = capable();
+    properties.shader_float64 = properties.shader_int64 = properties.acceleration_structure = properties.ray_query =
+        false;
+    properties.ray_tracing_pipeline = properties.runtime_descriptor_array = false;
+    properties.subgroup_size = 1;
+    properties.shared_bytes = KernelLimits::shared_bytes;
+    EXPECT_TRUE(missing_for_software(properties).empty());
     std::vector<Requirement::Of> lacking;
-    for (const Requirement& requirement : requirements_of(facts))
+    for (const Requirement& requirement : requirements_of(properties))
         if (!requirement.is_met) lacking.push_back(requirement.of);
     using enum Requirement::Of;
     EXPECT_EQ(lacking, (std::vector{hardware, hardware, ray_queries, ray_pipelines, refinement, points, contacts,
@@ -95,15 +96,18 @@ TEST(Requirements, AreOfTheirPartAlone) {
 
 TEST(Requirements, TexturesAreImagesWhereNothingOfDescriptorIndexingLacks) {
     EXPECT_TRUE(capable().has_image_arrays());
-    for (bool DeviceFacts::*fact : {&DeviceFacts::runtime_descriptor_array, &DeviceFacts::variable_descriptor_count,
-                                    &DeviceFacts::nonuniform_sampled_images, &DeviceFacts::update_after_bind_images}) {
-        DeviceFacts facts = capable();
-        facts.*fact = false;
-        EXPECT_FALSE(facts.has_image_arrays());
-        EXPECT_TRUE(missing_for_software(facts).empty() && missing_for_hardware(facts).empty());
-        EXPECT_NE(
-            requirements_of(facts).back().sentence().find("this device lacks it, textures in buffers work without"),
-            std::string::npos);
+    for (bool DeviceProperties::*fact :
+         {&DeviceProperties::runtime_descriptor_array, &DeviceProperties::variable_descriptor_count,
+          &DeviceProperties::nonuniform_sampled_images, &DeviceProperties::update_after_bind_images}) {
+        DeviceProperties properties = capable();
+        properties.*fact = false;
+        EXPECT_FALSE(properties.has_image_arrays());
+        EXPECT_TRUE(missing_for_software(properties).empty() && missing_for_hardware(properties).empty());
+        EXPECT_NE(requirements_of(properties)
+                      .back()
+                      .sentence()
+                      .find("this device lacks it, textures in buffers work without"),
+                  std::string::npos);
     }
 }
 
@@ -177,9 +181,9 @@ TEST(Requirements, TakeOverFeaturesInTheOldPlace) {
 }
 
 TEST(Requirements, LeaveOutWhatTheDeviceLacks) {
-    DeviceFacts facts = capable();
-    facts.ray_tracing_pipeline = false;
-    DeviceRequirements requirements(facts);
+    DeviceProperties properties = capable();
+    properties.ray_tracing_pipeline = false;
+    DeviceRequirements requirements(properties);
     Info info;
     requirements.add_to(info);
     EXPECT_EQ(info.count_of(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME), 0);
@@ -190,10 +194,10 @@ TEST(EnabledFeatures, AFeatureWithoutItsExtensionIsNotEnabled) {
     const DeviceRequirements requirements(capable());
     Info info;
     info.pNext = requirements.features();
-    DeviceFacts facts = capable();
-    state_features(info, facts);
-    EXPECT_FALSE(facts.acceleration_structure || facts.ray_query || facts.ray_tracing_pipeline);
-    EXPECT_TRUE(facts.timeline_semaphore);
+    DeviceProperties properties = capable();
+    state_features(info, properties);
+    EXPECT_FALSE(properties.acceleration_structure || properties.ray_query || properties.ray_tracing_pipeline);
+    EXPECT_TRUE(properties.timeline_semaphore);
 }
 
 TEST(EnabledFeatures, TheOldPlaceCounts) {
@@ -201,14 +205,14 @@ TEST(EnabledFeatures, TheOldPlaceCounts) {
     features.shaderInt64 = VK_TRUE;
     Info info;
     info.pEnabledFeatures = &features;
-    DeviceFacts facts;
-    state_features(info, facts);
-    EXPECT_TRUE(facts.shader_int64);
-    EXPECT_FALSE(facts.timeline_semaphore);
+    DeviceProperties properties;
+    state_features(info, properties);
+    EXPECT_TRUE(properties.shader_int64);
+    EXPECT_FALSE(properties.timeline_semaphore);
 }
 
 TEST(EnabledFeatures, ThatTheDeviceLacksAreNamed) {
-    DeviceFacts supported = capable();
+    DeviceProperties supported = capable();
     EXPECT_EQ(feature_beyond(capable(), supported), nullptr);
     supported.ray_query = false;
     EXPECT_STREQ(feature_beyond(capable(), supported), "rayQuery");

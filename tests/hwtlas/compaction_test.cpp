@@ -23,7 +23,8 @@ class Compaction : public test::VulkanTest {
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFailure()) return;
-        if (!missing_for_hardware(context().facts()).empty()) TWINRAY_LACKS("ray_tracing", context().facts().name);
+        if (!missing_for_hardware(context().properties()).empty())
+            TWINRAY_LACKS("ray_tracing", context().properties().name);
         driver_.set_structure_slack(slack);
         accel_ = std::make_unique<HwTlas>(context());
     }

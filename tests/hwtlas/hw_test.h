@@ -27,10 +27,10 @@ class HwTlasTest : public VulkanTest, public ::testing::WithParamInterface<Way> 
         VulkanTest::SetUp();
         if (IsSkipped()) return;
         if (HasFailure()) FAIL() << "no device";
-        const DeviceFacts& facts = context().facts();
-        const bool has_way = GetParam().use_ray_query ? facts.ray_query : facts.ray_tracing_pipeline;
-        if (!has_way || !missing_for_hardware(facts).empty())
-            TWINRAY_LACKS("ray_tracing", facts.name + " has no such ray tracing");
+        const DeviceProperties& properties = context().properties();
+        const bool has_way = GetParam().use_ray_query ? properties.ray_query : properties.ray_tracing_pipeline;
+        if (!has_way || !missing_for_hardware(properties).empty())
+            TWINRAY_LACKS("ray_tracing", properties.name + " has no such ray tracing");
         accel_ = std::make_unique<HwTlas>(context(), GetParam().order);
     }
     void TearDown() override {

@@ -120,7 +120,8 @@ class HwTlasOrder : public VulkanTest {
         VulkanTest::SetUp();
         if (IsSkipped()) return;
         if (HasFailure()) FAIL() << "no device";
-        if (!missing_for_hardware(context().facts()).empty()) TWINRAY_LACKS("ray_tracing", context().facts().name);
+        if (!missing_for_hardware(context().properties()).empty())
+            TWINRAY_LACKS("ray_tracing", context().properties().name);
     }
 };
 

@@ -203,7 +203,7 @@ class HwTlasWithoutHardware : public VulkanTest {
 
 TEST_F(HwTlasWithoutHardware, NamesTheDeviceAndWhatItLacks) {
     const std::string message = message_of([&] { HwTlas accel(context()); });
-    EXPECT_NE(message.find(context().facts().name), std::string::npos) << message;
+    EXPECT_NE(message.find(context().properties().name), std::string::npos) << message;
     EXPECT_NE(message.find("VK_KHR_ray_query or VK_KHR_ray_tracing_pipeline"), std::string::npos) << message;
 }
 

@@ -36,8 +36,8 @@ class EmbedRenderer : public ::testing::Test {
     void SetUp() override {
         const std::unique_ptr<Context> context = test::make_context();
         if (!context) TWINRAY_LACKS("vulkan", "no usable device");
-        has_pipeline_ = context->facts().ray_tracing_pipeline;
-        has_hardware_ = missing_for_hardware(context->facts()).empty();
+        has_pipeline_ = context->properties().ray_tracing_pipeline;
+        has_hardware_ = missing_for_hardware(context->properties()).empty();
     }
     // One frame for each of `turns`.
     std::vector<FrameResult> render(const Options& options, const std::vector<float>& turns,

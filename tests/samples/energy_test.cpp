@@ -66,7 +66,7 @@ TEST_F(Energy, DeepPathsArriveWithTheirShare) {
 // A shadow ray is rounded by more than the light's own points are known.
 TEST_F(Energy, ALightSmallForItsDistanceDoesNotHideItself) {
     for (const bool hardware : {false, true}) {
-        if (hardware && !missing_for_hardware(context().facts()).empty()) continue;
+        if (hardware && !missing_for_hardware(context().properties()).empty()) continue;
         Scene scene;
         add(scene, make_quad({-5, -1, -5}, {0, 0, 10}, {10, 0, 0}), lambert(1));
         add(scene, make_quad({-5e-5f, 0, -5e-5f}, {1e-4f, 0, 0}, {0, 0, 1e-4f}), lamp(1e8f * PI));

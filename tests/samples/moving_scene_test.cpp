@@ -84,7 +84,7 @@ class MovingSceneTest : public test::VulkanTest {
 TEST_F(MovingSceneTest, IsAsIfItHadBeenMadeSo) {
     const Scene scene = moving_scene();
     for (const bool hardware : {false, true}) {
-        if (hardware && !missing_for_hardware(context().facts()).empty())
+        if (hardware && !missing_for_hardware(context().properties()).empty())
             TWINRAY_LACKS("ray_tracing", "no ray tracing extensions");
         SCOPED_TRACE(hardware ? "hw" : "sw");
         const Pictures found = pictures(scene, pose_at(*scene.rig, scene.rig->animations[0], 0.5), hardware);

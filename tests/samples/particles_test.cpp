@@ -70,7 +70,7 @@ class ParticlesBy : public test::VulkanTest, public ::testing::WithParamInterfac
         if (kind == "hw") return std::make_unique<HwTlas>(context());
         return std::make_unique<SwTlas>(context());
     }
-    bool has_hardware() { return missing_for_hardware(context().facts()).empty(); }
+    bool has_hardware() { return missing_for_hardware(context().properties()).empty(); }
     // After some frames.
     HdrImage picture_of(const std::string& kind, const Motions& start, uint frames) {
         const std::unique_ptr<AbstractAccel> accel = make_accel(kind);

@@ -26,7 +26,8 @@ TEST_F(PathTracer, TheSameSeedGivesTheSameBitsAndAnotherDoesNot) {
 }
 
 TEST_F(PathTracer, EveryDifferenceBetweenTheAcceleratorsComesFromARayOnWhichTheyDisagree) {
-    if (!missing_for_hardware(context().facts()).empty()) TWINRAY_LACKS("ray_tracing", "no ray tracing extensions");
+    if (!missing_for_hardware(context().properties()).empty())
+        TWINRAY_LACKS("ray_tracing", "no ray tracing extensions");
     Scene scene = cornell_box_scene();
     // Blended and masked surfaces too, so that rays pass surfaces.
     scene.materials[1].base_color.w = 0.5f;

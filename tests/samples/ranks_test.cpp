@@ -6,19 +6,19 @@
 namespace twinray::path_tracer {
 namespace {
 
-DeviceFacts device(DeviceKind kind) {
-    DeviceFacts facts;
-    facts.kind = kind;
-    facts.api_version = VK_API_VERSION_1_3;
-    facts.has_compute_queue = facts.timeline_semaphore = facts.buffer_device_address = true;
-    facts.scalar_block_layout = facts.shader_int64 = true;
-    facts.group_invocations = 1024;
-    return facts;
+DeviceProperties device(DeviceKind kind) {
+    DeviceProperties properties;
+    properties.kind = kind;
+    properties.api_version = VK_API_VERSION_1_3;
+    properties.has_compute_queue = properties.timeline_semaphore = properties.buffer_device_address = true;
+    properties.scalar_block_layout = properties.shader_int64 = true;
+    properties.group_invocations = 1024;
+    return properties;
 }
 
 TEST(Ranks, TakeTurnsOnTheBestDevices) {
-    const std::vector<DeviceFacts> machine = {device(DeviceKind::cpu), device(DeviceKind::discrete),
-                                              device(DeviceKind::integrated), device(DeviceKind::discrete)};
+    const std::vector<DeviceProperties> machine = {device(DeviceKind::cpu), device(DeviceKind::discrete),
+                                                   device(DeviceKind::integrated), device(DeviceKind::discrete)};
     EXPECT_EQ(device_of_rank(machine, 0), 1u);
     EXPECT_EQ(device_of_rank(machine, 1), 3u);
     EXPECT_EQ(device_of_rank(machine, 2), 1u);

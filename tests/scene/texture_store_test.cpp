@@ -52,7 +52,7 @@ class Textures : public test::VulkanTest, public ::testing::WithParamInterface<T
     void SetUp() override {
         test::VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        if (GetParam() == TextureStorage::images && !context().facts().has_image_arrays())
+        if (GetParam() == TextureStorage::images && !context().properties().has_image_arrays())
             TWINRAY_LACKS("descriptor_indexing", "no descriptor indexing");
         store_ = std::make_unique<TextureStore>(context(), "textures", GetParam());
     }
@@ -78,7 +78,7 @@ class Textures : public test::VulkanTest, public ::testing::WithParamInterface<T
         const auto count = static_cast<uint>(questions.size());
         kernel.dispatch(commands, {store().view(), asked.ref<TextureQuestion>(), answers.ref<TextureAnswer>(), count},
                         count, store().images());
-        commands.keep(std::move(asked));
+        commands.retain(std::move(asked));
         return answers;
     }
     Buffer ask(const std::vector<TextureQuestion>& questions, bool is_debug = false) {

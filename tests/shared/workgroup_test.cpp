@@ -63,10 +63,10 @@ std::uint64_t launched(std::uint64_t groups) {
 }
 
 KernelTuning on_cpu(uint lanes, uint threads) {
-    DeviceFacts facts;
-    facts.subgroup_size = lanes;
-    facts.cpu_threads = threads;
-    return tuning_for(facts, TuningRow::cpu_driver);
+    DeviceProperties properties;
+    properties.subgroup_size = lanes;
+    properties.cpu_threads = threads;
+    return tuning_for(properties, TuningRow::cpu_driver);
 }
 
 TEST(GroupsForRays, TraceEachRayOnce) {

@@ -55,11 +55,11 @@ void expect_apart(std::vector<Region> regions, std::uint64_t bytes) {
 }
 
 KernelTuning tuning_of(TuningRow row) {
-    DeviceFacts facts;
-    facts.cpu_threads = 2;
-    facts.shared_bytes = 64 << 10;
-    facts.subgroup_size = 16;
-    return tuning_for(facts, row);
+    DeviceProperties properties;
+    properties.cpu_threads = 2;
+    properties.shared_bytes = 64 << 10;
+    properties.subgroup_size = 16;
+    return tuning_for(properties, row);
 }
 
 class BuildPlans : public testing::TestWithParam<std::tuple<TuningRow, Layout>> {};

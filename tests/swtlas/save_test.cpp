@@ -45,10 +45,12 @@ class SwSave : public test::VulkanTest {
         const AccelHandle gone = accel.push(make_soup(10, 4));
         Mesh bad = make_soup(300, 5);
         bad.positions[40].x = NAN;
-        handles.push_back(accel.push(bad, std::vector<Transform>(2),
-                                     std::vector<InstanceOptions>{{.mask = 0x0f, .turned = true}, {.mask = 0xf0}}));
+        handles.push_back(
+            accel.push(bad, std::vector<Transform>(2),
+                       std::vector<InstanceOptions>{{.mask = 0x0f, .flip_facing = true}, {.mask = 0xf0}}));
         handles.push_back(accel.push(Mesh{}));
-        handles.push_back(accel.push(make_soup(1, 6), Transform{}, {.custom_index = 0xffffff, .no_culling = true}));
+        handles.push_back(
+            accel.push(make_soup(1, 6), Transform{}, {.custom_index = 0xffffff, .disable_culling = true}));
         handles.push_back(accel.push(make_box(vec3(-0.2f), vec3(0.2f)), std::vector<Transform>(3)));
         accel.erase(gone);
         accel.sync();
@@ -157,7 +159,7 @@ TEST_F(SwSave, BoxesAndFilteredInstancesComeBackToo) {
     commands.submit();
     SwTlas accel(context());
     accel.push(BoxesView{"spheres", boxes});
-    accel.push(make_icosphere(3), Transform::translation({0, 0, -1}), {.filtered = true});
+    accel.push(make_icosphere(3), Transform::translation({0, 0, -1}), {.non_opaque = true});
     accel.sync();
     accel.save(folder_ / "boxes.swtlas");
     const SwTlas::Loaded loaded = SwTlas::load(context(), folder_ / "boxes.swtlas");

@@ -27,7 +27,7 @@ SavedGeometry saved(Layout layout, const Mesh& mesh, std::size_t instances) {
     std::vector<InstanceRecord> placed;
     for (uint i = 0; i < instances; ++i)
         placed.push_back(make_instance_record(Transform::translation({static_cast<float>(i), 0, 0}),
-                                              {.custom_index = i, .mask = 0x55, .turned = i % 2 == 1}));
+                                              {.custom_index = i, .mask = 0x55, .flip_facing = i % 2 == 1}));
     const auto count = static_cast<uint>(boxes.size());
     if (has_records(layout)) {
         const reference::Hierarchy tree = reference::hierarchy(boxes, codes, order, false);

@@ -92,7 +92,7 @@ Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {
     double advance = 0;
     const Ray searched = searched_ray(ray, level, advance);
     const uint features = features_of({.layout = layout_}, {.instances = instances_.size(), .has_transforms = true},
-                                      TraceFacts::of_every_kind());
+                                      TraceTraits::of_every_kind());
     const TraceOptions options{
         mask, 0, query, level, features, 0, ray, advance, Ref<RefineInstance>::to(refined_.data())};
     const Hit hit = traverse(header_, searched, options);

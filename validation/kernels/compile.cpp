@@ -32,9 +32,9 @@ std::vector<KernelRow> compile_all(const KernelList& list, const std::string& de
 CompiledKernels compile_kernels(const ContextDesc& desc, const std::string& family, const std::string& filter) {
     if (!family.empty()) pretend_family(family);
     const KernelList list = list_kernels(desc);
-    const DeviceFacts& facts = list.context->facts();
-    const std::string device = family.empty() ? facts.name : family;
-    return {device, facts.name, facts.driver, compile_all(list, device, filter),
+    const DeviceProperties& properties = list.context->properties();
+    const std::string device = family.empty() ? properties.name : family;
+    return {device, properties.name, properties.driver, compile_all(list, device, filter),
             filter.empty() ? list_builds(*list.context) : std::vector<BuildRow>()};
 }
 

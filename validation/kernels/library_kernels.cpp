@@ -22,7 +22,7 @@
 namespace twinray::kernels {
 namespace {
 
-AccelOptions options_for(const DeviceFacts& device, Layout layout, BuildQuality quality) {
+AccelOptions options_for(const DeviceProperties& device, Layout layout, BuildQuality quality) {
     return {.level = device.shader_float64 ? Level::refined : Level::watertight,
             .layout = layout,
             .build_quality = quality};
@@ -31,14 +31,14 @@ AccelOptions options_for(const DeviceFacts& device, Layout layout, BuildQuality 
 void make_builds(Context& context) {
     for (const BuildQuality quality : all_build_qualities)
         for (const Layout layout : all_layouts) {
-            SwTlas accel(context, options_for(context.facts(), layout, quality));
+            SwTlas accel(context, options_for(context.properties(), layout, quality));
             accel.push(make_box(vec3(0), vec3(1)));
             accel.sync();
         }
     const RaySort sort(context);
     const ReferenceAccel reference(context);
-    if (missing_for_hardware(context.facts()).empty()) {
-        const AccelOptions options = options_for(context.facts(), Layout::compressed4, BuildQuality::fast);
+    if (missing_for_hardware(context.properties()).empty()) {
+        const AccelOptions options = options_for(context.properties(), Layout::compressed4, BuildQuality::fast);
         const HwTlas accel(context, BuildOrder::morton, options);
     }
 }
@@ -65,7 +65,7 @@ void make_library_kernels(Context& context) {
     make_builds(context);
     SwTlas software(context);
     make_queries(software);
-    if (missing_for_hardware(context.facts()).empty()) {
+    if (missing_for_hardware(context.properties()).empty()) {
         HwTlas hardware(context);
         make_queries(hardware);
     }

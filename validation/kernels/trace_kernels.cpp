@@ -12,7 +12,7 @@ namespace {
 enum class Stage : std::uint8_t { one_mesh, instances, everything };
 constexpr Stage all_stages[] = {Stage::one_mesh, Stage::instances, Stage::everything};
 
-AccelOptions options_for(const DeviceFacts& device, Layout layout, Stage stage) {
+AccelOptions options_for(const DeviceProperties& device, Layout layout, Stage stage) {
     return {.level = device.shader_float64 ? Level::certified : Level::watertight,
             .layout = layout,
             .can_move = stage == Stage::everything,
@@ -53,14 +53,14 @@ void trace_all(AbstractAccel& accel, Stage stage) {
                           .mask = static_cast<std::uint8_t>(stage == Stage::everything ? 2 : 0xff),
                           .cull = stage == Stage::everything ? Cull::back : Cull::none,
                           .level = level,
-                          .answer_only = query == Query::any});
+                          .occlusion_only = query == Query::any});
     }
 }
 
 }  // namespace
 
 void make_trace_kernels(Context& context) {
-    const DeviceFacts& device = context.facts();
+    const DeviceProperties& device = context.properties();
     for (const Layout layout : all_layouts)
         for (const Stage stage : all_stages) {
             SwTlas accel(context, options_for(device, layout, stage));

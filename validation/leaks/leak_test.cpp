@@ -17,7 +17,7 @@ struct LeakTest::State {
           closed(mesh),
           inside(closed, Aim::both, seed),
           counter(accel.context(), accel.is_software(), level) {
-        accel.push(mesh, {}, {.filtered = true});
+        accel.push(mesh, {}, {.non_opaque = true});
         accel.sync();
     }
 

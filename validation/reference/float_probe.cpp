@@ -47,26 +47,26 @@ double ulps(float found, double exact) {
     return std::abs(found - exact) / std::ldexp(1.0, exponent - 24);
 }
 
-void check_random(FloatFacts& facts, const FloatCase& c, const FloatAnswer& answer) {
+void check_random(FloatFacts& properties, const FloatCase& c, const FloatAnswer& answer) {
     const double a = c.a, b = c.b, error = a * b - c.product;
     const auto worst = [](double& so_far, double ulp) { so_far = std::max(so_far, ulp); };
-    worst(facts.product_ulp, ulps(answer.product, a * b));
-    if (a + b != 0) worst(facts.sum_ulp, ulps(answer.sum, a + b));
-    worst(facts.quotient_ulp, ulps(answer.quotient, a / b));
-    worst(facts.square_root_ulp, ulps(answer.square_root, std::sqrt(std::abs(a))));
-    worst(facts.inverse_square_root_ulp, ulps(answer.inverse_square_root, 1 / std::sqrt(std::abs(a))));
-    facts.contracts_precise |= answer.precise_residual != 0;
-    facts.contracts_plain |= answer.plain_residual != 0;
-    facts.fuses_fma &= answer.fma_residual == error;
-    facts.error_free_products &= answer.error_free == error;
+    worst(properties.product_ulp, ulps(answer.product, a * b));
+    if (a + b != 0) worst(properties.sum_ulp, ulps(answer.sum, a + b));
+    worst(properties.quotient_ulp, ulps(answer.quotient, a / b));
+    worst(properties.square_root_ulp, ulps(answer.square_root, std::sqrt(std::abs(a))));
+    worst(properties.inverse_square_root_ulp, ulps(answer.inverse_square_root, 1 / std::sqrt(std::abs(a))));
+    properties.contracts_precise |= answer.precise_residual != 0;
+    properties.contracts_plain |= answer.plain_residual != 0;
+    properties.fuses_fma &= answer.fma_residual == error;
+    properties.error_free_products &= answer.error_free == error;
 }
 
-void check_special(FloatFacts& facts, std::span<const FloatAnswer> answers) {
+void check_special(FloatFacts& properties, std::span<const FloatAnswer> answers) {
     constexpr uint none_but_negated = 8;
-    facts.compares_nan = answers[0].comparisons == none_but_negated && answers[1].comparisons == none_but_negated;
-    facts.min_max_drop_nan =
+    properties.compares_nan = answers[0].comparisons == none_but_negated && answers[1].comparisons == none_but_negated;
+    properties.min_max_drop_nan =
         answers[0].minimum == 1 && answers[0].maximum == 1 && answers[1].minimum == 1 && answers[1].maximum == 1;
-    facts.keeps_denormals = answers[2].product == 1e-40f;
+    properties.keeps_denormals = answers[2].product == 1e-40f;
 }
 
 Buffer make_buffer(Context& context, const char* name, std::uint64_t bytes) {
@@ -106,13 +106,13 @@ FloatFacts probe(Context& context) {
                     cases.size());
     commands.submit();
     const auto found = download<FloatAnswer>(context, answers, cases.size());
-    FloatFacts facts;
-    facts.fuses_fma = facts.error_free_products = true;
-    for (std::size_t i = 0; i < random_case_count; ++i) check_random(facts, cases[i], found[i]);
-    check_special(facts, std::span(found).subspan(random_case_count));
-    facts.has_float64 = context.facts().shader_float64;
-    facts.has_exact_float64 = facts.has_float64 && has_exact_float64(context, source, cases);
-    return facts;
+    FloatFacts properties;
+    properties.fuses_fma = properties.error_free_products = true;
+    for (std::size_t i = 0; i < random_case_count; ++i) check_random(properties, cases[i], found[i]);
+    check_special(properties, std::span(found).subspan(random_case_count));
+    properties.has_float64 = context.properties().shader_float64;
+    properties.has_exact_float64 = properties.has_float64 && has_exact_float64(context, source, cases);
+    return properties;
 }
 
 }  // namespace
@@ -121,20 +121,22 @@ const FloatFacts& probe_floats(Context& context) {
     static std::mutex mutex;
     static std::map<std::string, FloatFacts> by_driver;
     const std::lock_guard lock(mutex);
-    const std::string driver = context.facts().name + '\n' + context.facts().driver;
+    const std::string driver = context.properties().name + '\n' + context.properties().driver;
     const auto known = by_driver.find(driver);
     return known != by_driver.end() ? known->second : by_driver.emplace(driver, probe(context)).first->second;
 }
 
-std::vector<std::string> robust_faults(const FloatFacts& facts) {
+std::vector<std::string> robust_faults(const FloatFacts& properties) {
     std::vector<std::string> faults;
-    if (facts.product_ulp > 0.5) faults.push_back(text("products are wrong by up to ", facts.product_ulp, " ulp"));
-    if (facts.sum_ulp > 0.5) faults.push_back(text("sums are wrong by up to ", facts.sum_ulp, " ulp"));
+    if (properties.product_ulp > 0.5)
+        faults.push_back(text("products are wrong by up to ", properties.product_ulp, " ulp"));
+    if (properties.sum_ulp > 0.5) faults.push_back(text("sums are wrong by up to ", properties.sum_ulp, " ulp"));
     // What the padding of boxes allows for (shaders/shared/ray_space.h).
-    if (facts.quotient_ulp > 2.5) faults.push_back(text("quotients are wrong by up to ", facts.quotient_ulp, " ulp"));
-    if (facts.contracts_precise) faults.emplace_back("precise products are contracted");
-    if (!facts.error_free_products) faults.emplace_back("the rounding error of products is not found");
-    if (!facts.compares_nan) faults.emplace_back("comparisons with NaN are not false");
+    if (properties.quotient_ulp > 2.5)
+        faults.push_back(text("quotients are wrong by up to ", properties.quotient_ulp, " ulp"));
+    if (properties.contracts_precise) faults.emplace_back("precise products are contracted");
+    if (!properties.error_free_products) faults.emplace_back("the rounding error of products is not found");
+    if (!properties.compares_nan) faults.emplace_back("comparisons with NaN are not false");
     return faults;
 }
 

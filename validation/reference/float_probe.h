@@ -32,6 +32,6 @@ const FloatFacts& probe_floats(Context& context);
 // Why watertightness cannot be claimed on such a device, one phrase for each of the conditions that do not hold; empty:
 // it can.
 inline constexpr std::size_t robust_conditions = 6;
-std::vector<std::string> robust_faults(const FloatFacts& facts);
+std::vector<std::string> robust_faults(const FloatFacts& properties);
 
 }  // namespace twinray

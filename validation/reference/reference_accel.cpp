@@ -70,9 +70,9 @@ class ReferenceBackend final : public AccelBackend {
     BuildBytes geometry_bytes(std::span<const GeometrySize>) const override { return {}; }
     BuildBytes scene_bytes(std::size_t count, std::size_t capacity) const override;
     bool works_on_device() const override { return false; }
-    std::unique_ptr<BuiltScene> build_scene(Commands& commands, const SceneInput& input,
-                                            const BuiltScene* current) override;
-    void refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) override;
+    std::unique_ptr<BuiltTlas> build_tlas(Commands& commands, const TlasInput& input,
+                                          const BuiltTlas* current) override;
+    void refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) override;
     std::unique_ptr<TraceProgram> create_program(const TraceProgramCode* code, uint features) const override;
     std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc) override;
 
@@ -93,7 +93,7 @@ struct ReferenceBackend::ReferenceGeometry : BuiltGeometry {
 };
 
 // What the last sync left: the instance records, once its commands have run, and what they may point at.
-struct ReferenceBackend::ReferenceState : BuiltScene {
+struct ReferenceBackend::ReferenceState : BuiltTlas {
     Buffer records;
     std::map<std::uint64_t, std::shared_ptr<const Geometry64>> geometries;  // by the address of their block
     uint count = 0;
@@ -182,19 +182,19 @@ BuildBytes ReferenceBackend::scene_bytes(std::size_t count, std::size_t) const {
     return {std::max<std::size_t>(count, 1) * sizeof(InstanceRecord), 0};
 }
 
-std::unique_ptr<AccelBackend::BuiltScene> ReferenceBackend::build_scene(Commands& commands, const SceneInput& input,
-                                                                        const BuiltScene*) {
+std::unique_ptr<AccelBackend::BuiltTlas> ReferenceBackend::build_tlas(Commands& commands, const TlasInput& input,
+                                                                      const BuiltTlas*) {
     auto made = std::make_unique<ReferenceState>();
     made->count = input.count;
     made->bytes = std::max(input.count, 1u) * sizeof(InstanceRecord);
     made->records = Buffer(context(), {.name = "reference records", .bytes = made->bytes, .memory = Memory::readback});
     std::erase_if(geometries_, [](const auto& named) { return named.second.expired(); });
     for (const auto& [block, geometry] : geometries_) made->geometries.emplace(block, geometry.lock());
-    refit_scene(commands, input, *made);
+    refit_tlas(commands, input, *made);
     return made;
 }
 
-void ReferenceBackend::refit_scene(Commands& commands, const SceneInput& input, const BuiltScene& current) {
+void ReferenceBackend::refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) {
     if (input.count)
         record_copy(commands, input.records, static_cast<const ReferenceState&>(current).records.ref<InstanceRecord>(),
                     input.count);
@@ -202,7 +202,7 @@ void ReferenceBackend::refit_scene(Commands& commands, const SceneInput& input, 
 
 // Of the scene as the last sync, which must be done, has left it.
 ReferenceScene ReferenceBackend::synced_scene() const {
-    const auto& scene = static_cast<const ReferenceState&>(built_scene());
+    const auto& scene = static_cast<const ReferenceState&>(built_tlas());
     std::vector<InstanceRecord> records(scene.count);
     if (scene.count) std::memcpy(records.data(), scene.records.mapped(), scene.count * sizeof(InstanceRecord));
     std::vector<std::shared_ptr<const Geometry64>> geometries;
@@ -256,7 +256,7 @@ void ReferenceBackend::record_trace(Commands& commands, const TraceArgs& args) c
         for (std::size_t i = begin; i < end; ++i) found[i] = hit_of(reference.closest_hit(rays[i], query), rays[i]);
     });
     record_copy(commands, hits.ref<Hit>(), args.hits, count);
-    commands.keep(std::move(hits));
+    commands.retain(std::move(hits));
 }
 
 }  // namespace twinray

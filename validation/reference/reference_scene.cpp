@@ -42,8 +42,8 @@ std::vector<std::shared_ptr<const Geometry64>> built(std::span<const MeshView> m
 
 // Whether culling hides the triangle from the ray: `along` tells which of its sides the ray sees.
 bool is_culled(const InstanceOptions& instance, uint flags, bool along) {
-    if (instance.no_culling) return false;
-    const bool shows_its_back = along != instance.turned;
+    if (instance.disable_culling) return false;
+    const bool shows_its_back = along != instance.flip_facing;
     return (flags & (shows_its_back ? CULL_BACK : CULL_FRONT)) != 0;
 }
 

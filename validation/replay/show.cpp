@@ -80,8 +80,8 @@ void print(std::ostream& out, const char* who, bool is_hit, uint instance, uint 
 
 std::vector<Answer> print_answers(std::ostream& out, const Stage& stage, suite::Devices& devices) {
     std::vector<Answer> answers;
-    out << "What the accelerators of " << devices.context(suite::Backend::software).facts().name << " answer at level "
-        << stage.replay.level << "\n";
+    out << "What the accelerators of " << devices.context(suite::Backend::software).properties().name
+        << " answer at level " << stage.replay.level << "\n";
     for (const suite::Backend backend : suite::all_backends) {
         const suite::Configuration configuration{backend, level_of(stage.replay)};
         const std::string name(name_of(backend));

@@ -23,7 +23,7 @@ th { background: #f3f3f3; } td.n, th.n { text-align: right; white-space: nowrap;
 .result { white-space: nowrap; font-weight: 600; } .pass { color: #00714f; } .twinray { color: #b00020; }
 .driver { color: #b45300; } .measured, .notrun { color: #666; } .big { font-size: 1.2em; font-weight: 600; }
 code { font-size: 11px; overflow-wrap: anywhere; } svg { max-width: 100%; height: auto; } dt { font-weight: 600; }
-dl.facts { display: grid; grid-template-columns: max-content 1fr; gap: 2px 14px; } dl.facts dd { margin: 0; }
+dl.properties { display: grid; grid-template-columns: max-content 1fr; gap: 2px 14px; } dl.properties dd { margin: 0; }
 )";
 
 std::string number(double value, int digits = 3) {

@@ -30,12 +30,12 @@ Context& Devices::context(Backend backend) {
 }
 
 std::string Devices::why_not(const Configuration& configuration) {
-    const DeviceFacts& facts = context_->facts();
-    if (configuration.backend == Backend::ray_query && !facts.ray_query) return "the device has no ray queries";
-    if (configuration.backend == Backend::pipeline && !facts.ray_tracing_pipeline)
+    const DeviceProperties& properties = context_->properties();
+    if (configuration.backend == Backend::ray_query && !properties.ray_query) return "the device has no ray queries";
+    if (configuration.backend == Backend::pipeline && !properties.ray_tracing_pipeline)
         return "the device has no ray tracing pipelines";
     const Feature level = feature_of(configuration.level);
-    const DeviceFacts& seen = context(configuration.backend).facts();
+    const DeviceProperties& seen = context(configuration.backend).properties();
     const Capability able =
         is_ours(configuration.backend) ? SwTlas::capability_on(seen, level) : HwTlas::capability_on(seen, level);
     return able.support == Support::unsupported ? text(name_of(level), " is unsupported: ", able.note) : "";

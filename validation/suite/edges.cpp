@@ -44,7 +44,7 @@ void leak_test(CaseRun& run) {
         const Parity parity = check_crossings(closed, ray, count);
         return parity == Parity::odd || parity == Parity::unspecified;
     };
-    run.count_crossings(world_of(ball, {}, {.filtered = true}), rays, is_right,
+    run.count_crossings(world_of(ball, {}, {.non_opaque = true}), rays, is_right,
                         {.params = {{"triangles", ball.triangles.size()}}, .fast_is_control = true});
 }
 
@@ -55,7 +55,7 @@ void measure_both(CaseRun& run, const Mesh& mesh, std::span<const Ray> rays, con
     Measurement closest = measurement;
     closest.fast_is_control = false;  // the crossings are
     run.measure(world_of(mesh), rays, closest);
-    run.count_crossings(world_of(mesh, {}, {.filtered = true}), rays, right, measurement);
+    run.count_crossings(world_of(mesh, {}, {.non_opaque = true}), rays, right, measurement);
 }
 
 std::vector<SuiteCase> edge_cases() {

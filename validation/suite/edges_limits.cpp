@@ -86,11 +86,11 @@ World world_of_parts(const std::vector<Part>& parts) {
     std::vector<MeshView> views;
     std::vector<ReferenceInstance> instances;
     for (const Part& part : parts) {
-        instances.push_back({static_cast<uint>(views.size()), part.transform, {.filtered = true}});
+        instances.push_back({static_cast<uint>(views.size()), part.transform, {.non_opaque = true}});
         views.emplace_back(part.mesh);
     }
     const auto fill = [parts](AbstractAccel& accel) {
-        for (const Part& part : parts) accel.push(part.mesh, part.transform, {.filtered = true});
+        for (const Part& part : parts) accel.push(part.mesh, part.transform, {.non_opaque = true});
     };
     return {fill, ReferenceScene(views, instances)};
 }
@@ -268,7 +268,7 @@ void without_precise_on_a_grid(CaseRun& run) {
     const World world = world_of(grid);
     const std::vector<Ray> rays = edge_aimed_rays(world.reference, run.amount(8'192, 1'000'000), run.seed());
     run.measure(world, rays, {.params = {{"offset", 1e7}}, .control = without_precise()});
-    if (run.devices().context(Backend::software).facts().shader_float64)
+    if (run.devices().context(Backend::software).properties().shader_float64)
         run.measure(world, rays, {.params = {{"offset", 1e7}}, .control = contracted()});
     else
         run.add_not_run("the control that contracts by itself needs float64");

@@ -139,13 +139,13 @@ void contraction(CaseRun& run) {
 void float_probe(CaseRun& run) {
     for (const Configuration& configuration : run.one_configuration_each()) {
         if (!is_ours(configuration.backend)) continue;
-        const FloatFacts& facts = probe_floats(run.devices().context(configuration.backend));
-        const std::vector<std::string> faults = robust_faults(facts);
-        run.expect(configuration, {.results = {{"product_ulp", facts.product_ulp},
-                                               {"sum_ulp", facts.sum_ulp},
-                                               {"quotient_ulp", facts.quotient_ulp},
-                                               {"keeps_denormals", facts.keeps_denormals},
-                                               {"has_exact_float64", facts.has_exact_float64}},
+        const FloatFacts& properties = probe_floats(run.devices().context(configuration.backend));
+        const std::vector<std::string> faults = robust_faults(properties);
+        run.expect(configuration, {.results = {{"product_ulp", properties.product_ulp},
+                                               {"sum_ulp", properties.sum_ulp},
+                                               {"quotient_ulp", properties.quotient_ulp},
+                                               {"keeps_denormals", properties.keeps_denormals},
+                                               {"has_exact_float64", properties.has_exact_float64}},
                                    .n = robust_conditions,
                                    .faults = faults.size(),
                                    .what = "watertightness cannot be claimed: " + joined(faults),
@@ -184,8 +184,8 @@ void denormals(CaseRun& run) {
 
 void device_against_twin(CaseRun& run) {
     for (const Configuration& configuration : precise_configurations(run)) {
-        const FloatFacts& facts = probe_floats(run.devices().context(configuration.backend));
-        const bool divides_exactly = facts.quotient_ulp <= 0.5;
+        const FloatFacts& properties = probe_floats(run.devices().context(configuration.backend));
+        const bool divides_exactly = properties.quotient_ulp <= 0.5;
         for (const auto& [name, scene] : scenes_for_twins()) {
             const std::vector<Ray> rays =
                 random_and_aimed(scene, run.amount(25'000, 2'500'000), run.amount(2'500, 250'000), run.seed());

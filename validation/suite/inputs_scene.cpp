@@ -198,7 +198,7 @@ void masks_and_culling(CaseRun& run) {
         const bool is_mirrored = i & 1;
         transforms.push_back(Transform::translation({x, 0, 0}) *
                              Transform::scaling({1, 1, is_mirrored ? -1.0f : 1.0f}));
-        options.push_back({.mask = masks[i / 8], .no_culling = (i & 2) != 0, .turned = (i & 4) != 0});
+        options.push_back({.mask = masks[i / 8], .disable_culling = (i & 2) != 0, .flip_facing = (i & 4) != 0});
         instances.push_back({0, transforms.back(), options.back()});
         for (const float side : {5.0f, -5.0f}) rays.push_back({vec3(x + 0.3f, 0.4f, side), 0, vec3(0, 0, -side), inf});
     }

@@ -39,7 +39,7 @@ void build(AbstractAccel& accel, const Scene& scene, Level level) {
     static_cast<void>(accel.closest_hits(std::span(&ray, 1), {.level = level}));
 }
 
-std::string lacking_for_hardware(const DeviceFacts& device, Level level) {
+std::string lacking_for_hardware(const DeviceProperties& device, Level level) {
     if (const std::vector<std::string> missing = missing_for_hardware(device); !missing.empty())
         return "the device lacks " + joined(missing);
     const Capability able = HwTlas::capability_on(device, feature_of(level));
@@ -64,7 +64,7 @@ std::uint64_t Comparison::disagreeing() const {
 Verifier::Verifier(Context& context, const Scene& scene, Level level)
     : level_(level),
       reference_(ReferenceScene::of(scene)),
-      why_no_hardware_(lacking_for_hardware(context.facts(), level)),
+      why_no_hardware_(lacking_for_hardware(context.properties(), level)),
       software_(context, options_for(level)) {
     build(software_, scene, level);
     if (!why_no_hardware_.empty()) return;

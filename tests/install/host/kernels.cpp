@@ -52,7 +52,7 @@ int main() try {
     twinray::Context context;
     twinray::SwTlas software(context);
     run(software);
-    if (context.facts().ray_query) {
+    if (context.properties().ray_query) {
         twinray::HwTlas hardware(context);
         run(hardware);
     }

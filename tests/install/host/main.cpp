@@ -46,7 +46,7 @@ twinray::AdoptedDevice create_device() {
     require(count == 1, "no device");
 
     twinray::DeviceRequirements requirements(
-        twinray::query_device_facts(vkGetInstanceProcAddr, host.instance, host.physical_device));
+        twinray::query_device_properties(vkGetInstanceProcAddr, host.instance, host.physical_device));
     for (const std::string& sentence : requirements.sentences()) std::cout << sentence << '\n';
     const float priority = 1;
     VkDeviceQueueCreateInfo queue{};
@@ -65,7 +65,7 @@ twinray::AdoptedDevice create_device() {
     requirements.add_to(device);
     require(vkCreateDevice(host.physical_device, &device, nullptr, &host.device) == VK_SUCCESS, "no device");
     vkGetDeviceQueue(host.device, host.queue_family, 0, &host.queue);
-    host.enabled = twinray::enabled_facts(vkGetInstanceProcAddr, host.instance, host.physical_device, device);
+    host.enabled = twinray::enabled_properties(vkGetInstanceProcAddr, host.instance, host.physical_device, device);
     return host;
 }
 
@@ -115,7 +115,7 @@ void trace_with_both(const twinray::AdoptedDevice& host) {
     twinray::Context context(host);
     twinray::SwTlas software(context);
     trace(software);
-    if (!twinray::missing_for_hardware(context.facts()).empty()) return;
+    if (!twinray::missing_for_hardware(context.properties()).empty()) return;
     twinray::HwTlas hardware(context);
     trace(hardware);
 }

@@ -33,7 +33,7 @@ class KernelListTest : public ::testing::Test {
   protected:
     void SetUp() override { device_ = test::make_context(); }
     bool has_device() const { return device_ != nullptr; }
-    const DeviceFacts& facts() const { return device_->facts(); }
+    const DeviceProperties& properties() const { return device_->properties(); }
 
   private:
     std::unique_ptr<Context> device_;
@@ -41,7 +41,7 @@ class KernelListTest : public ::testing::Test {
 
 TEST_F(KernelListTest, HoldsEveryComputeModule) {
     if (!has_device()) return;
-    if (!facts().ray_query) TWINRAY_LACKS("ray_tracing", "modules of the hardware accelerator need ray queries");
+    if (!properties().ray_query) TWINRAY_LACKS("ray_tracing", "modules of the hardware accelerator need ray queries");
     const KernelList list = list_kernels({});
     const std::string_view of_other_tuning =
         list.context->state().tuning().has_wide_loads ? "swtlas_trace" : "swtlas_trace_int64";

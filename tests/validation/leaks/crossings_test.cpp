@@ -54,7 +54,7 @@ World twelve_double_walls() {
     World world = world_of(walls);
     world.fill = [walls](AbstractAccel& accel) {
         const std::vector<Transform> twice(2);
-        accel.push(walls, twice, std::vector<InstanceOptions>(2, {.filtered = true}));
+        accel.push(walls, twice, std::vector<InstanceOptions>(2, {.non_opaque = true}));
     };
     return world;
 }
@@ -82,7 +82,7 @@ TEST_F(CrossingsTest, AMissingTriangleIsALeakOfItsBackend) {
     holed.triangles[7] = uvec3(0);
     const auto count_on = [&](const Mesh& mesh, bool fast_is_control) {
         return run([&](CaseRun& here) {
-            here.count_crossings(world_of(mesh, {}, {.filtered = true}), rays,
+            here.count_crossings(world_of(mesh, {}, {.non_opaque = true}), rays,
                                  [](const Ray&, uint count) { return count == 1; },
                                  {.fast_is_control = fast_is_control});
         });

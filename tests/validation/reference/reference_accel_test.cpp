@@ -74,7 +74,7 @@ TEST_F(ReferenceAccelTest, RefusesWhatNeedsGpuCode) {
                           "ReferenceAccel: program 'spheres': the host runs no GPU code");
     accel.update(handle, square());
     EXPECT_EQ(accel.closest_hits(std::span(&down, 1)).front().t, 10.0f);
-    accel.push(square(), Transform{}, {.filtered = true});
+    accel.push(square(), Transform{}, {.non_opaque = true});
     test::expect_contains(test::error_of([&] { accel.any_hits(std::span(&down, 1)); }), "filtered instances");
     for (const Feature feature : {Feature::boxes, Feature::filters, Feature::kernel_queries, Feature::save_and_load}) {
         EXPECT_EQ(accel.capability(feature).support, Support::unsupported);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/device_facts.h"
+#include "engine/core/device_properties.h"
 
 #include <algorithm>
 #include <cstring>
@@ -22,7 +22,7 @@ DeviceKind kind_of(VkPhysicalDeviceType type) {
 }
 
 // As if a device were created with everything that this one has.
-void query_features(const VulkanFunctions& vk, VkPhysicalDevice device, DeviceFacts& facts) {
+void query_features(const VulkanFunctions& vk, VkPhysicalDevice device, DeviceProperties& properties) {
     const std::vector<VkExtensionProperties> extensions = device_extensions(vk, device);
     std::vector<const char*> names;
     for (const VkExtensionProperties& extension : extensions) names.push_back(extension.extensionName);
@@ -35,7 +35,7 @@ void query_features(const VulkanFunctions& vk, VkPhysicalDevice device, DeviceFa
     vk.vkGetPhysicalDeviceFeatures2(device, &structs.core);
     everything.enabledExtensionCount = static_cast<std::uint32_t>(names.size());
     everything.ppEnabledExtensionNames = names.data();
-    state_features(everything, facts);
+    state_features(everything, properties);
 }
 
 VulkanFunctions instance_functions(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance) {
@@ -43,7 +43,7 @@ VulkanFunctions instance_functions(PFN_vkGetInstanceProcAddr get_instance_proc_a
     vk.load_global(get_instance_proc_addr);
     vk.load_instance(instance);
     if (!vk.vkGetPhysicalDeviceFeatures2)
-        fail("facts of a device: its VkInstance was created for less than Vulkan 1.1; twinray needs 1.2");
+        fail("properties of a device: its VkInstance was created for less than Vulkan 1.1; twinray needs 1.2");
     return vk;
 }
 
@@ -76,60 +76,60 @@ int compute_queue_family(const VulkanFunctions& vk, VkPhysicalDevice device) {
     return -1;
 }
 
-DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice device) {
+DeviceProperties query_device_properties(const VulkanFunctions& vk, VkPhysicalDevice device) {
     VkPhysicalDeviceDriverProperties driver{};
     driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
     VkPhysicalDeviceSubgroupProperties subgroup{};
     subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
     subgroup.pNext = &driver;
-    VkPhysicalDeviceProperties2 properties{};
-    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-    properties.pNext = &subgroup;
-    vk.vkGetPhysicalDeviceProperties2(device, &properties);
+    VkPhysicalDeviceProperties2 reported{};
+    reported.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    reported.pNext = &subgroup;
+    vk.vkGetPhysicalDeviceProperties2(device, &reported);
 
-    DeviceFacts facts;
-    facts.name = properties.properties.deviceName;
-    facts.driver = std::string(driver.driverName) + " " + driver.driverInfo;
-    facts.kind = kind_of(properties.properties.deviceType);
-    facts.driver_id = driver.driverID;
-    if (facts.kind == DeviceKind::cpu) facts.cpu_threads = count_cpu_threads();
-    facts.subgroup_size = subgroup.subgroupSize;
-    facts.api_version = properties.properties.apiVersion;
-    const VkPhysicalDeviceLimits& limits = properties.properties.limits;
-    facts.shared_bytes = limits.maxComputeSharedMemorySize;
-    facts.group_invocations = std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
-    facts.push_constant_bytes = limits.maxPushConstantsSize;
-    facts.has_compute_queue = compute_queue_family(vk, device) >= 0;
-    if (facts.api_version >= VK_API_VERSION_1_2) query_features(vk, device, facts);
-    return facts;
+    DeviceProperties properties;
+    properties.name = reported.properties.deviceName;
+    properties.driver = std::string(driver.driverName) + " " + driver.driverInfo;
+    properties.kind = kind_of(reported.properties.deviceType);
+    properties.driver_id = driver.driverID;
+    if (properties.kind == DeviceKind::cpu) properties.cpu_threads = count_cpu_threads();
+    properties.subgroup_size = subgroup.subgroupSize;
+    properties.api_version = reported.properties.apiVersion;
+    const VkPhysicalDeviceLimits& limits = reported.properties.limits;
+    properties.shared_bytes = limits.maxComputeSharedMemorySize;
+    properties.group_invocations = std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
+    properties.push_constant_bytes = limits.maxPushConstantsSize;
+    properties.has_compute_queue = compute_queue_family(vk, device) >= 0;
+    if (properties.api_version >= VK_API_VERSION_1_2) query_features(vk, device, properties);
+    return properties;
 }
 
-DeviceFacts query_device_facts(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
-                               VkPhysicalDevice device) {
-    return query_device_facts(instance_functions(get_instance_proc_addr, instance), device);
+DeviceProperties query_device_properties(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+                                         VkPhysicalDevice device) {
+    return query_device_properties(instance_functions(get_instance_proc_addr, instance), device);
 }
 
-DeviceFacts enabled_facts(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
-                          VkPhysicalDevice device, const VkDeviceCreateInfo& info) {
-    DeviceFacts facts = query_device_facts(get_instance_proc_addr, instance, device);
-    state_features(info, facts);
-    return facts;
+DeviceProperties enabled_properties(PFN_vkGetInstanceProcAddr get_instance_proc_addr, VkInstance instance,
+                                    VkPhysicalDevice device, const VkDeviceCreateInfo& info) {
+    DeviceProperties properties = query_device_properties(get_instance_proc_addr, instance, device);
+    state_features(info, properties);
+    return properties;
 }
 
 struct DeviceRequirements::State {
-    explicit State(const DeviceFacts& device) : supported(device) {}
+    explicit State(const DeviceProperties& device) : supported(device) {}
     void switch_on(VkDeviceCreateInfo& info, FeatureStructs& structs) const {
         for (const FeatureBit& bit : feature_bits())
             if (supported.*bit.fact) provide_bit(info, structs, bit) = VK_TRUE;
     }
 
-    DeviceFacts supported;
+    DeviceProperties supported;
     std::vector<const char*> extensions, all_extensions;
     VkDeviceCreateInfo alone{};
     FeatureStructs alone_structs, added_structs;
 };
 
-DeviceRequirements::DeviceRequirements(const DeviceFacts& supported) : state_(new State(supported)) {
+DeviceRequirements::DeviceRequirements(const DeviceProperties& supported) : state_(new State(supported)) {
     std::vector<const char*>& extensions = state_->extensions;
     if (supported.acceleration_structure)
         extensions = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
@@ -140,7 +140,7 @@ DeviceRequirements::DeviceRequirements(const DeviceFacts& supported) : state_(ne
 }
 
 DeviceRequirements::~DeviceRequirements() = default;
-const DeviceFacts& DeviceRequirements::supported() const { return state_->supported; }
+const DeviceProperties& DeviceRequirements::supported() const { return state_->supported; }
 const std::vector<const char*>& DeviceRequirements::extensions() const { return state_->extensions; }
 const void* DeviceRequirements::features() const { return state_->alone.pNext; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/own_programs.h"
+#include "engine/accel/pipeline_variants.h"
 
 #include <utility>
 
@@ -7,10 +7,10 @@
 
 namespace twinray {
 
-OwnPrograms::OwnPrograms(Create create, uint all, bool in_background)
+PipelineVariants::PipelineVariants(Create create, uint all, bool in_background)
     : create_(std::move(create)), all_(all), in_background_(in_background) {}
 
-OwnPrograms::~OwnPrograms() {
+PipelineVariants::~PipelineVariants() {
     {
         const std::lock_guard lock(mutex_);
         is_ending_ = true;
@@ -19,7 +19,7 @@ OwnPrograms::~OwnPrograms() {
     if (worker_.joinable()) worker_.join();
 }
 
-const TraceProgram& OwnPrograms::get(uint features, Query query, Level level) {
+const TraceProgram& PipelineVariants::get(uint features, Query query, Level level) {
     const Job wanted = job(features, query, level);
     if (state(wanted) == State::ready) return *wanted.program;
     if (!in_background_) {
@@ -36,25 +36,25 @@ const TraceProgram& OwnPrograms::get(uint features, Query query, Level level) {
     return *wanted.program;
 }
 
-void OwnPrograms::wait() const {
+void PipelineVariants::wait() const {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return queue_.empty(); });
 }
 
-OwnPrograms::Job OwnPrograms::job(uint features, Query query, Level level) {
+PipelineVariants::Job PipelineVariants::job(uint features, Query query, Level level) {
     std::unique_ptr<TraceProgram>& program = programs_[features];
     if (!program) program = create_(features);
     return {program.get(), query, level};
 }
 
-OwnPrograms::State OwnPrograms::state(const Job& job) const {
+PipelineVariants::State PipelineVariants::state(const Job& job) const {
     const std::lock_guard lock(mutex_);
     const auto found = states_.find(job);
     return found == states_.end() ? State::missing : found->second;
 }
 
 // What has failed in the background is not tried there again.
-void OwnPrograms::queue(const Job& job) {
+void PipelineVariants::queue(const Job& job) {
     {
         const std::lock_guard lock(mutex_);
         State& state = states_[job];
@@ -66,7 +66,7 @@ void OwnPrograms::queue(const Job& job) {
     changed_.notify_all();
 }
 
-void OwnPrograms::compile_now(const Job& job) {
+void PipelineVariants::compile_now(const Job& job) {
     {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [&] { return states_[job] != State::queued; });
@@ -77,7 +77,7 @@ void OwnPrograms::compile_now(const Job& job) {
     states_[job] = State::ready;
 }
 
-void OwnPrograms::work() {
+void PipelineVariants::work() {
     std::unique_lock lock(mutex_);
     for (;;) {
         changed_.wait(lock, [&] { return is_ending_ || !queue_.empty(); });

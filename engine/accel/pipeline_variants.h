@@ -19,16 +19,16 @@ namespace twinray {
 // are at most 32 sets of features of an accelerator (see features_of.h), so that none has to go.
 //
 // Used by one thread at a time; one of its own compiles. The context must outlive it.
-class OwnPrograms {
+class PipelineVariants {
   public:
     using Create = std::function<std::unique_ptr<TraceProgram>(uint features)>;
     // `in_background`: false lets every first trace wait for the program that fits. `all` holds the features of every
     // get().
-    OwnPrograms(Create create, uint all, bool in_background);
+    PipelineVariants(Create create, uint all, bool in_background);
     // Waits for the program that is being compiled, if there is one; those not begun are dropped.
-    ~OwnPrograms();
-    OwnPrograms(const OwnPrograms&) = delete;
-    OwnPrograms& operator=(const OwnPrograms&) = delete;
+    ~PipelineVariants();
+    PipelineVariants(const PipelineVariants&) = delete;
+    PipelineVariants& operator=(const PipelineVariants&) = delete;
 
     // A program, ready to record, for these features or more. Throws Error where none can be compiled.
     const TraceProgram& get(uint features, Query query, Level level);

@@ -9,7 +9,7 @@
 namespace twinray {
 
 // Asks the driver. Functions of the instance level must be loaded.
-DeviceFacts query_device_facts(const VulkanFunctions& vk, VkPhysicalDevice device);
+DeviceProperties query_device_properties(const VulkanFunctions& vk, VkPhysicalDevice device);
 std::vector<VkPhysicalDevice> physical_devices(const VulkanFunctions& vk, VkInstance instance);
 std::vector<VkExtensionProperties> device_extensions(const VulkanFunctions& vk, VkPhysicalDevice device);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which program serves while others are compiled.
-#include "engine/accel/own_programs.h"
+#include "engine/accel/pipeline_variants.h"
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@ namespace {
 
 constexpr uint all_programs = 7;
 
-class OwnProgramsTest : public ::testing::Test {
+class PipelineVariantsTest : public ::testing::Test {
   protected:
     // Compiles while it holds `gate`; features 4 cannot be compiled.
     class Program : public TraceProgram {
       public:
-        Program(OwnProgramsTest& test, uint features) : TraceProgram(1, features, "test"), test_(test) {}
+        Program(PipelineVariantsTest& test, uint features) : TraceProgram(1, features, "test"), test_(test) {}
         void prepare(Query, Level) const override {
             test_.gate.acquire();
             test_.gate.release();
@@ -29,14 +29,14 @@ class OwnProgramsTest : public ::testing::Test {
         void record(Commands&, const TraceArgs&, Query, Level) const override {}
 
       private:
-        OwnProgramsTest& test_;
+        PipelineVariantsTest& test_;
     };
 
-    std::unique_ptr<OwnPrograms> make(bool in_background) {
-        return std::make_unique<OwnPrograms>(
+    std::unique_ptr<PipelineVariants> make(bool in_background) {
+        return std::make_unique<PipelineVariants>(
             [this](uint features) { return std::make_unique<Program>(*this, features); }, all_programs, in_background);
     }
-    static uint serving(OwnPrograms& programs, uint features, Query query = Query::closest) {
+    static uint serving(PipelineVariants& programs, uint features, Query query = Query::closest) {
         return programs.get(features, query, Level::watertight).features();
     }
 
@@ -44,14 +44,14 @@ class OwnProgramsTest : public ::testing::Test {
     std::atomic<int> compiled = 0;
 };
 
-TEST_F(OwnProgramsTest, TheFirstTraceHasTheProgramThatFits) {
+TEST_F(PipelineVariantsTest, TheFirstTraceHasTheProgramThatFits) {
     const auto programs = make(true);
     EXPECT_EQ(serving(*programs, 1), 1u);
     programs->wait();
     EXPECT_EQ(compiled, 2) << "and the general one in the background";
 }
 
-TEST_F(OwnProgramsTest, TheGeneralOneServesUntilTheLeanOneIsThere) {
+TEST_F(PipelineVariantsTest, TheGeneralOneServesUntilTheLeanOneIsThere) {
     const auto programs = make(true);
     serving(*programs, 1);
     programs->wait();
@@ -66,13 +66,13 @@ TEST_F(OwnProgramsTest, TheGeneralOneServesUntilTheLeanOneIsThere) {
     EXPECT_EQ(serving(*programs, 2, Query::any), 2u) << "first of its kind";
 }
 
-TEST_F(OwnProgramsTest, WithoutABackgroundEachTraceWaits) {
+TEST_F(PipelineVariantsTest, WithoutABackgroundEachTraceWaits) {
     const auto programs = make(false);
     for (const uint features : {1u, 2u, all_programs}) EXPECT_EQ(serving(*programs, features), features);
     EXPECT_EQ(compiled, 3);
 }
 
-TEST_F(OwnProgramsTest, WhatFailsInTheBackgroundIsNeverServed) {
+TEST_F(PipelineVariantsTest, WhatFailsInTheBackgroundIsNeverServed) {
     const auto programs = make(true);
     EXPECT_THROW(serving(*programs, 4), Error) << "no other is there";
     serving(*programs, 1);
@@ -82,7 +82,7 @@ TEST_F(OwnProgramsTest, WhatFailsInTheBackgroundIsNeverServed) {
     EXPECT_EQ(serving(*programs, 4), all_programs);
 }
 
-TEST_F(OwnProgramsTest, TheEndWaitsForTheOneThatIsBeingCompiledAlone) {
+TEST_F(PipelineVariantsTest, TheEndWaitsForTheOneThatIsBeingCompiledAlone) {
     auto programs = make(true);
     serving(*programs, 1);
     programs->wait();
