@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/run.h"
 
-#include "engine/core/progress.h"
+#include "validation/records/progress.h"
 
 namespace twinray::bench {
 

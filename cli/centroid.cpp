@@ -9,7 +9,7 @@
 #include "cli/coordinates.h"
 #include "cli/ray_grid_options.h"
 #include "engine/core/error.h"
-#include "engine/core/progress.h"
+#include "validation/records/progress.h"
 
 namespace twinray::cli {
 namespace {

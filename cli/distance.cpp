@@ -12,7 +12,7 @@
 #include "cli/commands.h"
 #include "cli/common.h"
 #include "cli/distance_slice.h"
-#include "engine/core/npz.h"
+#include "engine/analysis/npz.h"
 #include "cli/query_points.h"
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"

@@ -10,7 +10,7 @@
 #include "cli/face_groups.h"
 #include "cli/sky_light.h"
 #include "engine/core/error.h"
-#include "engine/core/progress.h"
+#include "validation/records/progress.h"
 
 namespace twinray::cli {
 namespace {

@@ -13,7 +13,7 @@
 #include "validation/leaks/crossings.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
-#include "engine/core/progress.h"
+#include "validation/records/progress.h"
 #include "engine/core/statistics.h"
 #include "validation/leaks/inside_rays.h"
 #include <twinray/abstract_accel.h>

@@ -9,7 +9,7 @@
 #include "cli/command/values.h"
 #include "engine/scene/number_lines.h"
 #include "engine/core/error.h"
-#include "engine/core/progress.h"
+#include "validation/records/progress.h"
 
 namespace twinray::cli {
 namespace {

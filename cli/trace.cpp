@@ -14,7 +14,7 @@
 #include "engine/accel/all_hits.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
-#include "engine/core/progress.h"
+#include "validation/records/progress.h"
 
 namespace twinray::cli {
 namespace {

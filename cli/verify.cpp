@@ -15,7 +15,7 @@
 #include "validation/replay/scene_file.h"
 #include "validation/replay/show.h"
 #include "validation/verify/output.h"
-#include "engine/core/progress.h"
+#include "validation/records/progress.h"
 #include "validation/reference/aimed_rays.h"
 #include <twinray/tlas.h>
 #include "validation/replay/write_faults.h"

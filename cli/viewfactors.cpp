@@ -16,7 +16,7 @@
 #include "engine/analysis/matrix_file.h"
 #include "engine/analysis/row_run.h"
 #include "engine/core/error.h"
-#include "engine/core/progress.h"
+#include "validation/records/progress.h"
 #include "engine/scene/bytes.h"
 
 namespace twinray::cli {
@@ -59,7 +59,7 @@ ComputedRows compute(const Options& options, ViewFactors& factors, const std::st
     if (computed.resumed > 0 && !options.common.quiet)
         std::cout << "resumed after " << computed.resumed << " of " << factors.row_count() << " rows\n";
     Progress progress("view factors", factors.row_count(), options.common.quiet);
-    complete_rows(computed, factors, file ? &*file : nullptr, progress);
+    complete_rows(computed, factors, file ? &*file : nullptr, [&](std::uint64_t rows) { progress.advance(rows); });
     return computed;
 }
 

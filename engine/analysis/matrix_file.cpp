@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "engine/core/files.h"
-#include "engine/core/npz.h"
+#include "engine/analysis/npz.h"
 
 namespace twinray {
 

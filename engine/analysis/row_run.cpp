@@ -34,15 +34,16 @@ ComputedRows begin_rows(RowFile* file, bool resumes) {
     return computed;
 }
 
-void complete_rows(ComputedRows& computed, ViewFactors& factors, RowFile* file, Progress& progress) {
+void complete_rows(ComputedRows& computed, ViewFactors& factors, RowFile* file,
+                   const std::function<void(std::uint64_t)>& advance) {
     std::vector<ViewFactorRow>& rows = computed.rows;
-    progress.advance(rows.size());
+    advance(rows.size());
     while (rows.size() < factors.row_count()) {
         const std::size_t last = std::min(rows.size() + factors.batch_size(), factors.row_count());
         const std::vector<ViewFactorRow> block = factors.rows(rows.size(), last);
         if (file) file->append(block);
         rows.insert(rows.end(), block.begin(), block.end());
-        progress.advance(block.size());
+        advance(block.size());
     }
 }
 

@@ -2,11 +2,11 @@
 // Rows of view factors, one after the other, in a run that a later one can go on from.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string_view>
 
 #include <twinray/analysis.h>
-#include "engine/core/progress.h"
 
 namespace twinray {
 
@@ -23,8 +23,10 @@ struct ComputedRows {
 
 // The rows of an earlier run if it `resumes`, else none, and an empty file. `file` may be null.
 ComputedRows begin_rows(RowFile* file, bool resumes);
-// Computes those that are missing and appends them to the file.
-void complete_rows(ComputedRows& computed, ViewFactors& factors, RowFile* file, Progress& progress);
+// Computes those that are missing and appends them to the file; tells `advance` how many rows are there now that were
+// not.
+void complete_rows(ComputedRows& computed, ViewFactors& factors, RowFile* file,
+                   const std::function<void(std::uint64_t)>& advance);
 
 struct MatrixTotals {
     std::uint64_t rays = 0, hits = 0, entries = 0;

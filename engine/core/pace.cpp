@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/pace.h"
+#include "engine/core/context.h"
 
 #include <algorithm>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/kernel_statistics.h"
+#include "validation/kernels/kernel_statistics.h"
 
 namespace twinray::kernels {
 

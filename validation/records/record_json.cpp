@@ -41,7 +41,7 @@ Json json_of(const Values& values) {
     return json;
 }
 
-Json json_of(const Interval& interval) { return {number(interval.low), number(interval.high)}; }
+Json json_of(const Interval& range) { return {number(range.low), number(range.high)}; }
 
 Json json_of(const ErrorFigures& error) {
     return {{"metric", error.metric},          {"median", number(error.median)}, {"p99", number(error.p99)},

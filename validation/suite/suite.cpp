@@ -6,7 +6,7 @@
 
 #include "validation/suite/case_run.h"
 #include "engine/core/error.h"
-#include "engine/core/progress.h"
+#include "validation/records/progress.h"
 
 namespace twinray::suite {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/progress.h"
+#include "validation/records/progress.h"
 #include <twinray/tlas.h>
 #include "validation/reference/classify.h"
 

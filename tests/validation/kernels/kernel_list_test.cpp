@@ -8,7 +8,7 @@
 #include "engine/core/buffer.h"
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
-#include "engine/core/kernel_statistics.h"
+#include "validation/kernels/kernel_statistics.h"
 #include "kernel_modules.h"
 #include "tests/support/device.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/progress.h"
+#include "validation/records/progress.h"
 
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/kernel_statistics.h"
+#include "validation/kernels/kernel_statistics.h"
 
 #include <algorithm>
 #include <cctype>

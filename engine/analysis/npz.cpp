@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/npz.h"
+#include "engine/analysis/npz.h"
 
 #include <zlib.h>
 
