@@ -14,14 +14,14 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 # The adapter goes with the application's own Vulkan Memory Allocator.
-mapfile -t headers < <(cd "$folder" && ls twinray/*.h | grep -v vma_adapter)
+mapfile -t headers < <(cd "$folder" && find twinray -maxdepth 1 -name '*.h' ! -name vma_adapter.h | sort)
 for header in "${headers[@]}"; do
     echo "#include <$header>" | "$cxx" -std=c++20 -I"$folder" -fsyntax-only -Wall -Wextra -Wconversion -Werror \
         -MD -MF "$work/$(basename "$header").d" -x c++ -
 done
 
 # What is neither ours, Vulkan's, the compiler's nor the C library's.
-others=$(cat "$work"/*.d | tr -d '\\' | tr ' ' '\n' | grep '^/' | sort -u |
+others=$(cat "$work"/*.d | grep -oE "(^| )/[^ :]+" | tr -d " " | sort -u |
     grep -vE "^$folder/|/vulkan/|/vk_video/|/c\+\+/|/lib/(gcc|llvm|clang)|^/usr/include/([a-z0-9_-]+-linux-gnu/|sys/|bits/|asm[a-z-]*/|linux/|gnu/)?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*\.h$" || true)
 others+=$(cat "$work"/*.d | tr ' ' '\n' | grep -E '/(glm|nlohmann|CLI|OpenEXR|Imath|eigen3|Eigen)/|(vk_mem_alloc|volk|stb_[a-z_]*|tiny_gltf[a-z_0-9]*|zlib|gmp(xx)?)\.h' || true)
 if [[ -n $others ]]; then

@@ -194,8 +194,7 @@ void Renderer::make_rays(VkCommandBuffer commands) {
     rays_kernel_.bind(commands, RaysArgs{frame_.ref<FrameData>(), counts_.ref<RayCounts>(), pixels_.ref<PixelRays>(),
                                          shadow_rays_.ref<Ray>(), ao_rays_.ref<Ray>()});
     over_pixels(commands);
-    barrier(commands, compute, VK_ACCESS_SHADER_WRITE_BIT,
-            VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+    barrier(commands, compute, VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_READ_BIT);
 }
 
