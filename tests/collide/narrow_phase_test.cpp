@@ -20,7 +20,7 @@ class NarrowPhaseTest : public test::VulkanTest {
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        if (!context().properties().shader_float64) GTEST_SKIP() << "no float64";
+        if (!context().properties().shader_float64) TWINRAY_LACKS("float64", "no float64");
         narrow_phase_ = std::make_unique<NarrowPhase>(context());
     }
     void TearDown() override {

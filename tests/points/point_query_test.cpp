@@ -22,7 +22,7 @@ class PointQueryTest : public test::VulkanTest {
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        if (!context().properties().shader_float64) GTEST_SKIP() << "no float64";
+        if (!context().properties().shader_float64) TWINRAY_LACKS("float64", "no float64");
         query_ = std::make_unique<PointQuery>(context());
     }
     void TearDown() override {

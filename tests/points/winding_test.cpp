@@ -18,7 +18,7 @@ class WindingTest : public test::VulkanTest {
     void SetUp() override {
         VulkanTest::SetUp();
         if (IsSkipped() || HasFatalFailure()) return;
-        if (!context().properties().shader_float64) GTEST_SKIP() << "no float64";
+        if (!context().properties().shader_float64) TWINRAY_LACKS("float64", "no float64");
     }
     std::vector<int> windings(const std::vector<MeshView>& meshes, const std::vector<MeshInstance>& instances,
                               const std::vector<dvec3>& points) {

@@ -87,7 +87,7 @@ class ParticlesBy : public test::VulkanTest, public ::testing::WithParamInterfac
 INSTANTIATE_TEST_SUITE_P(EveryAccel, ParticlesBy, ::testing::Values("sw", "hw"),
                          [](const auto& which) { return std::string(which.param); });
 
-TEST_P(ParticlesBy, TheKernelMovesAndColoursAsItsTwin) {
+TEST_P(ParticlesBy, TheKernelMovesAndColoursAsItsReference) {
     if (std::string(GetParam()) == "hw" && !has_hardware()) TWINRAY_LACKS("ray_tracing", "no ray tracing extensions");
     Motions reference = make_particles(200, 3);
     std::vector<HeatMaterial> materials(reference.radii.size());

@@ -35,7 +35,7 @@ Mesh equal_triangles(std::size_t n) {
     return mesh;
 }
 
-TEST_P(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsTwin) {
+TEST_P(SwBuild, EveryMeshOfABatchOfAllSmallSizesIsSoundAndEqualToItsReference) {
     SwTlas accel(context(), options());
     std::vector<Mesh> meshes;
     std::vector<AccelHandle> handles;
@@ -107,7 +107,7 @@ TEST_P(SwBuild, ATreeDoesNotDependOnTheScratchBudget) {
     }
 }
 
-TEST_P(SwBuild, TreesOfABatchWithLevelsAndSubtreesAreEqualToTheirTwins) {
+TEST_P(SwBuild, TreesOfABatchWithLevelsAndSubtreesAreEqualToTheirReferences) {
     const uint most = plan_build({}, Layout::compressed4, context().state().tuning()).subtree_leaves;
     SwTlas accel(context(), options());
     std::vector<Mesh> meshes;
@@ -204,7 +204,7 @@ TEST_P(SwBuild, ASecondBuildIsBitIdentical) {
     EXPECT_TRUE(same_bytes(trees[0].records, trees[1].records));
 }
 
-TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsTwin) {
+TEST_P(SwBuild, TheSceneTreeIsSoundOverInstancesAndEqualToItsReference) {
     for (const uint n : {777u, 9000u}) {
         SwTlas accel(context(), options());
         const Mesh mesh = make_soup(10, 1);

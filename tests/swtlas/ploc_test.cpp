@@ -77,7 +77,7 @@ TEST_P(SwPloc, NestedBoxesAtTheEndOfALongWayDownStayWithinTheDeepestTree) {
     }
 }
 
-TEST_P(SwPloc, RandomNestedBoxesAreSoundAndEqualToTheirTwins) {
+TEST_P(SwPloc, RandomNestedBoxesAreSoundAndEqualToTheirReferences) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(0, 1);
     for (uint round = 0; round < 12; ++round) {
@@ -98,7 +98,7 @@ TEST_P(SwPloc, EqualBoxesMakeABalancedTree) {
 }
 
 // Of no area, so that all pairs are the same.
-TEST_P(SwPloc, LeavesInALineAreSoundAndEqualToTheirTwin) {
+TEST_P(SwPloc, LeavesInALineAreSoundAndEqualToTheirReferences) {
     Mesh even, growing;
     even.name = "even";
     growing.name = "growing";
@@ -113,7 +113,7 @@ TEST_P(SwPloc, LeavesInALineAreSoundAndEqualToTheirTwin) {
     checked_depth(growing);
 }
 
-TEST_P(SwPloc, AreasBeyondTheRangeOfFloatsAreSoundAndEqualToTheirTwin) {
+TEST_P(SwPloc, AreasBeyondTheRangeOfFloatsAreSoundAndEqualToTheirReferences) {
     Mesh mesh = make_soup(500, 1);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
         mesh.positions[i] *= std::ldexp(1.0f, 120 - static_cast<int>(i / 3 % 60) * 4);
