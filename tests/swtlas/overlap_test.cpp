@@ -98,8 +98,8 @@ TEST_P(SwOverlap, IsThatOfItsDefinition) {
         accel.sync();
         const BuiltTree tree = download_geometry(accel, handle);
         const double expected = overlap_of(tree, mesh);
-        // Boxes of compressed nodes may stick out of their parents' by a rounding: whoever goes down the tree, as rays do,
-        // misses what lies there. Without that the two agree to 1e-9.
+        // Boxes of compressed nodes may stick out of their parents' by a rounding: whoever goes down the tree, as rays
+        // do, misses what lies there. Without that the two agree to 1e-9.
         EXPECT_NEAR(reference::end_point_overlap(tree), expected, 1e-6 * expected);
         EXPECT_GT(expected, 0.01) << "the test would see nothing";
     }
