@@ -11,7 +11,7 @@
 #include "bench/hits_hash.h"
 #include "bench/report.h"
 #include "bench/table.h"
-#include "ladder_program.trace_program.h"
+#include "feature_costs_program.trace_program.h"
 #include "feature_costs_program.trace_program.h"
 #include <twinray/tlas.h>
 
