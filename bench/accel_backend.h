@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Our accelerators as backends that the bench measures.
 #pragma once
 
 #include <functional>

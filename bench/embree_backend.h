@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Embree 3 as backends that the bench measures.
 #pragma once
 
 #include <functional>

@@ -5,7 +5,7 @@
 
 #include <twinray/scene.h>
 
-#include "engine/accel/spawn.h"
+#include "twinray/glsl/cpp_spawn.h"
 #include "engine/core/error.h"
 #include "validation/reference/aimed_rays.h"
 #include "validation/reference/draws.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Wall time.
 #pragma once
 
 #include <chrono>

@@ -28,7 +28,7 @@ endif()
 # The public face alone; beside its GLSL what that needs.
 install(DIRECTORY include/twinray DESTINATION ${headers_dir})
 set(glsl_dir ${headers_dir}/twinray/glsl)
-install(DIRECTORY shaders/shared shaders/scene shaders/sampling DESTINATION ${glsl_dir}/shaders)
+install(DIRECTORY shaders/shared shaders/scene DESTINATION ${glsl_dir}/shaders)
 install(FILES shaders/engine/trace.comp DESTINATION ${glsl_dir}/shaders/engine)
 install(DIRECTORY shaders/hwtlas DESTINATION ${glsl_dir}/shaders FILES_MATCHING PATTERN "*.glsl" PATTERN "trace.r*")
 

@@ -20,6 +20,11 @@ for header in "${headers[@]}"; do
         -MD -MF "$work/$(basename "$header").d" -x c++ -
 done
 
+# With GLM, of the application's choice: structs and functions of kernels as C++.
+for header in cpp cpp_spawn cpp_sampling; do
+    echo "#include <twinray/glsl/$header.h>" | "$cxx" -std=c++20 -I"$folder" -fsyntax-only -Wall -Wextra -Werror -x c++ -
+done
+
 # What is neither ours, Vulkan's, the compiler's nor the C library's.
 others=$(cat "$work"/*.d | grep -oE "(^| )/[^ :]+" | tr -d " " | sort -u |
     grep -vE "^$folder/|/vulkan/|/vk_video/|/c\+\+/|/lib/(gcc|llvm|clang)|^/usr/include/([a-z0-9_-]+-linux-gnu/|sys/|bits/|asm[a-z-]*/|linux/|gnu/)?[A-Za-z0-9_-]+(/[A-Za-z0-9_-]+)*\.h$" || true)
@@ -37,6 +42,8 @@ cat >"$work/kernel.comp" <<'GLSL'
 #include "twinray/glsl/spawn.glsl"
 #include "twinray/glsl/multi_type_set.glsl"
 #include "twinray/glsl/soa.glsl"
+#include "twinray/glsl/sampling.h"
+#include "twinray/glsl/sobol.h"
 #include "twinray/glsl/textures.glsl"
 #include "twinray/glsl/unrolled.glsl"
 layout(local_size_x = 64) in;
@@ -47,8 +54,11 @@ void main()
     Hit hit;
     Ray ray = AT(args.rays, 0);
     if (!closest_hit(args.scene, ray, hit)) return;
-    Corners corners = Corners(vec3(0.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0));
-    ray.origin = spawn_position(surface_point(placement_of(AT(REF(InstanceRecord)(args.scene), 0)), corners, vec2(hit.u, hit.v)), true);
+    Placement placement = placement_of(AT(REF(InstanceRecord)(args.scene), 0));
+    TriangleVertices vertices = TriangleVertices(vec3(0.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0));
+    SurfacePoint point = surface_point(placement, vertices, crossing_of(ray, placement, vertices).xy);
+    ray.origin = spawn_position(point, true);
+    ray.direction = sample_cosine_hemisphere(unit_floats(sobol_point(uvec4(0u), 1u).xy));
     if (!any_hit(args.scene, ray)) AT(args.hits, 0) = hit;
 }
 GLSL

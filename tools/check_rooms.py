@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Checks docs/architecture.md against the tree: each folder has its sentence under "## Rooms", and each sentence its
-folder; files that the page and its figures name exist, and so do functions that figures name.
+folder; files that sources, pages and figures name exist, and so do functions that figures name.
 Usage: check_rooms.py [ROOT]; prints what is wrong and exits with 1."""
 import os
 import pathlib
@@ -67,6 +67,15 @@ for number, line in numbered_lines(page):
     for name in re.findall(rf"`([\w./-]+\.{SUFFIXES})`", line):
         if name not in files and not ("/" not in name and name in last_names):
             found.append(f"{page}:{number}: no such file: {name}")
+
+tops = "|".join(sorted({name.split("/")[0] for name in files if "/" in name and not name.startswith(".")}) + ["twinray/glsl"])
+for name in files:
+    if not (SOURCE.search(name) or name.endswith(".md")) or name == "CHANGELOG.md":
+        continue
+    for number, line in numbered_lines(root / name):
+        found += [f"{root / name}:{number}: no such file: {named}"
+                  for named in re.findall(rf"(?<![\w/.])((?:{tops})/[\w./-]+\.{SUFFIXES})\b", line)
+                  if not any(folder + named in files for folder in ("", "include/", "shaders/"))]
 
 calls = set()
 for name in files:

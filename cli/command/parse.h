@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Arguments into values, by CLI11.
 #pragma once
 
 #include "cli/command/command.h"

@@ -22,8 +22,6 @@ std::uint64_t next_handle() {
     return ++last;
 }
 
-InstanceState state_of(const InstanceRecord& record) { return {transform_of(record), options_of(record)}; }
-
 }  // namespace
 
 AccelBackend::AccelBackend(Context& context, std::string name, const AccelOptions& options)
@@ -96,7 +94,7 @@ AccelHandle AccelBackend::push_built(Geometry&& geometry, Buffer&& block, std::u
 bool AccelBackend::erase(AccelHandle handle) {
     const auto found = pushed_.find(handle.id);
     if (found == pushed_.end()) return false;
-    if (found->second.built) erased_.push_back(std::move(found->second.built));
+    if (found->second.is_synced()) outdated_.push_back(std::move(found->second));
     pushed_.erase(found);
     mark(Dirty::structure);
     return true;
@@ -114,10 +112,12 @@ void AccelBackend::update(AccelHandle handle, const BoxesView& boxes) {
 void AccelBackend::replace(AccelHandle handle, Geometry&& geometry) {
     PushedGeometry& pushed = live(handle, "update");
     warn_of_inactive_triangles(geometry);
-    if (pushed.built) erased_.push_back(std::move(pushed.built));
+    if (pushed.built)
+        outdated_.push_back(
+            {std::move(pushed.geometry), {}, std::move(pushed.built), {}, std::move(pushed.vertices), {}});
     pushed.geometry = std::move(geometry);
-    pushed.has_source = false;
     pushed.vertices = {};
+    pushed.has_source = false;
     mark(Dirty::structure);
 }
 
@@ -202,76 +202,6 @@ AccelBackend::PushedGeometry& AccelBackend::live(AccelHandle handle, const char*
     return const_cast<PushedGeometry&>(std::as_const(*this).live(handle, action));
 }
 
-void AccelBackend::update_transform(AccelHandle handle, const Transform& transform) {
-    if (const std::size_t n = live(handle, "update_transform").instances.records.size(); n != 1)
-        fail(name_, ": update_transform: handle ", handle.id, " has ", n, " instances, not 1; use update_transforms");
-    update_transform_at(handle, 0, transform);
-}
-
-void AccelBackend::check_movable(const char* action) const {
-    if (!options_.can_move) fail(name_, ": ", action, ": the accelerator was made with AccelOptions::can_move = false");
-}
-
-void AccelBackend::update_transforms(AccelHandle handle, std::span<const Transform> transforms) {
-    PushedGeometry& pushed = live(handle, "update_transforms");
-    check_movable("update_transforms");
-    check_count(handle, pushed, transforms.size());
-    std::vector<InstanceRecord> records;
-    records.reserve(transforms.size());
-    for (std::size_t i = 0; i < transforms.size(); ++i)
-        records.push_back(checked_record(pushed, i, transforms[i], options_of(pushed.instances.records[i])));
-    pushed.instances.edit_all(std::move(records));
-    mark(Dirty::moves);
-}
-
-void AccelBackend::update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count) {
-    PushedGeometry& pushed = live(handle, "update_transforms");
-    check_movable("update_transforms");
-    check_count(handle, pushed, count);
-    if (!transforms.address || transforms.address % 4)
-        fail(name_, ": update_transforms: device address ", transforms.address, " must be a multiple of 4 and not 0");
-    pushed.instances.replace_transforms(transforms);
-    mark(Dirty::moves);
-}
-
-void AccelBackend::check_count(AccelHandle handle, const PushedGeometry& pushed, std::size_t count) const {
-    if (const std::size_t n = pushed.instances.records.size(); count != n)
-        fail(name_, ": update_transforms: ", count, " transforms for the ", n, " instances of handle ", handle.id);
-}
-
-void AccelBackend::check_index(AccelHandle handle, const PushedGeometry& pushed, std::size_t index,
-                               const char* action) const {
-    if (const std::size_t n = pushed.instances.records.size(); index >= n)
-        fail(name_, ": ", action, ": index ", index, " of the ", n, " instances of handle ", handle.id);
-}
-
-void AccelBackend::update_transform_at(AccelHandle handle, std::size_t index, const Transform& transform) {
-    PushedGeometry& pushed = live(handle, "update_transform_at");
-    check_movable("update_transform_at");
-    check_index(handle, pushed, index, "update_transform_at");
-    const InstanceOptions options = options_of(pushed.instances.records[index]);
-    pushed.instances.edit(index, checked_record(pushed, index, transform, options));
-    mark(Dirty::moves);
-}
-
-InstanceRange AccelBackend::instance_buffer(AccelHandle handle) const {
-    const PushedGeometry& pushed = live(handle, "instance_buffer");
-    if (dirty_ == Dirty::structure || !pushed.instances.first)
-        fail(name_, ": instance_buffer: edits are pending; call sync() first");
-    const std::uint64_t offset = *pushed.instances.first * sizeof(InstanceRecord);
-    const Buffer& buffer = instances_.buffer();
-    return {buffer.handle(), offset, buffer.ref<InstanceRecord>(offset), pushed.instances.records.size()};
-}
-
-void AccelBackend::mark_transforms_dirty(AccelHandle handle) {
-    PushedGeometry& pushed = live(handle, "mark_transforms_dirty");
-    check_movable("mark_transforms_dirty");
-    if (!pushed.instances.first)
-        fail(name_, ": mark_transforms_dirty: handle ", handle.id, " is not on the device yet; call sync() first");
-    pushed.instances.device_wrote = true;
-    mark(Dirty::moves);
-}
-
 std::size_t AccelBackend::n_instances() const {
     std::size_t count = 0;
     for (const auto& [id, pushed] : pushed_) count += pushed.instances.records.size();
@@ -292,23 +222,6 @@ std::vector<AccelHandle> AccelBackend::handles() const {
     std::vector<AccelHandle> alive;
     for (const auto& [id, pushed] : pushed_) alive.push_back({id});
     return alive;
-}
-
-InstanceState AccelBackend::get_instance(AccelHandle handle, std::size_t index) const {
-    check_index(handle, live(handle, "get_instance"), index, "get_instance");
-    return get_instances(handle)[index];
-}
-
-std::vector<InstanceState> AccelBackend::get_instances(AccelHandle handle) const {
-    const InstanceSlice& slice = live(handle, "get_instances").instances;
-    std::vector<InstanceRecord> records = slice.records;
-    if (slice.device_wrote && slice.first)
-        records = download<InstanceRecord>(context_, instances_.buffer(), records.size(),
-                                           *slice.first * sizeof(InstanceRecord));
-    for (const std::size_t i : slice.edited) records[i] = slice.records[i];
-    std::vector<InstanceState> states;
-    for (const InstanceRecord& record : records) states.push_back(state_of(record));
-    return states;
 }
 
 const AccelBackend::BuiltGeometry& AccelBackend::built_geometry(AccelHandle handle) const {

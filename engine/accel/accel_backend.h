@@ -186,6 +186,8 @@ class AccelBackend {
         InstanceSlice instances;
         bool has_source = false;  // the block's GeometrySource is that of `geometry`
 
+        bool is_synced() const { return built || instances.first; }
+
         void add_to(SceneTraits& traits) const;
     };
     struct Work;
@@ -264,7 +266,7 @@ class AccelBackend {
     std::unique_ptr<BuiltTlas> scene_;
     // Its instances.
     std::size_t scene_count_ = 0;
-    std::vector<std::unique_ptr<BuiltGeometry>> erased_;  // since the last sync: scene_ still refers to them
+    std::vector<PushedGeometry> outdated_;  // erased or replaced since the last sync: views of it still read them
     std::unique_ptr<Commands> last_build_;
 };
 

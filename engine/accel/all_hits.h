@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Every hit of a ray, in order, for hosts: batches of closest hits, each behind the one before.
 #pragma once
 
 #include <span>

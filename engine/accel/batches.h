@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Which geometries a sync builds at a time, so that their scratch memory stays within a budget.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The records of all instances on the device, and what the host edited of them.
 #pragma once
 
 #include <optional>

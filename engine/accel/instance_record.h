@@ -6,7 +6,7 @@
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/instance.h"
+#include "twinray/glsl/instance.h"
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(InstanceRecord) == 64);

@@ -141,7 +141,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     if (dirty_ == Dirty::structure) traits_ = scene_traits();
     if (staged.scene) scene_ = std::move(staged.scene);
     instances_.commit(std::move(staged.instances), staged.slices);
-    erased_.clear();
+    outdated_.clear();
     dirty_ = Dirty::no;
     synced_ = done;
 }

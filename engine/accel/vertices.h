@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Meshes in device memory whose vertices move.
 #pragma once
 
 #include <optional>

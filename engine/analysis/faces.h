@@ -7,7 +7,7 @@
 #include <twinray/scene.h>
 
 #include <twinray/abstract_accel.h>
-#include "engine/accel/spawn.h"
+#include "twinray/glsl/cpp_spawn.h"
 #include "engine/core/buffer.h"
 
 namespace twinray {

@@ -4,7 +4,7 @@
 
 #include "engine/analysis/estimate.h"
 #include "engine/analysis/faces.h"
-#include "engine/scene/sampling.h"
+#include "twinray/glsl/cpp_sampling.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"

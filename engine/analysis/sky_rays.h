@@ -5,7 +5,7 @@
 #include "engine/analysis/count_faces.h"
 #include "engine/core/kernel.h"
 #include "engine/core/pace.h"
-#include "engine/scene/sampling.h"
+#include "twinray/glsl/cpp_sampling.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"

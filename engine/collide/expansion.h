@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Sums of float64 without rounding.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Boxes in the order of a Hilbert curve.
 #pragma once
 
 #include "engine/accel/world_bound.h"

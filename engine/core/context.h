@@ -7,7 +7,7 @@
 
 #include "engine/core/adopted_device.h"
 #include "engine/core/allocator.h"
-#include "engine/core/in_flight.h"
+#include "engine/core/submission_log.h"
 #include "engine/core/kernel_tuning.h"
 #include "engine/core/pipeline_store.h"
 #include "engine/core/pipeline_table.h"
@@ -121,7 +121,7 @@ struct Context::State {
     std::size_t kept_pipeline_bytes_ = 0;
     VkSemaphore timeline_ = VK_NULL_HANDLE;
     std::uint64_t submitted_ = 0;
-    mutable InFlight in_flight_;
+    mutable SubmissionLog submission_log_;
     // What the driver says of a lost device, once it was asked.
     mutable std::optional<std::string> fault_;
     std::vector<Wait> awaited_;  // by the next submission

@@ -8,7 +8,7 @@ namespace twinray {
 
 std::string Context::State::words_of_loss() const {
     if (!fault_) fault_ = properties_.device_fault ? sentence(query_device_fault(vk_, device_)) : "";
-    return name_of(VK_ERROR_DEVICE_LOST) + in_flight_.sentence() + *fault_;
+    return name_of(VK_ERROR_DEVICE_LOST) + submission_log_.sentence() + *fault_;
 }
 
 void Context::State::check(VkResult result, const char* action) const {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What needs float64 says so before it makes a kernel.
 #pragma once
 
 #include <string_view>

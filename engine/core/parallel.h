@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Loops on all cores.
 #pragma once
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 namespace twinray {
 namespace {
 
-// Of shaders/shared/bridge.glsl.
+// Of twinray/glsl/common.glsl.
 constexpr std::uint32_t fused_fma_constant = 105, compares_numbers_constant = 106;
 
 std::string key_of(const KernelDesc& desc, std::uint32_t args_bytes) {

@@ -8,7 +8,7 @@
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/ray.h"
+#include "twinray/glsl/rays.h"
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(Ray) == 32 && sizeof(Hit) == 32);

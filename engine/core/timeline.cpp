@@ -67,7 +67,8 @@ SyncPoint Context::State::submit(const std::string& name, std::vector<Submission
     check_alive();
     if (submissions.empty()) return last_submission();
     check(enqueue(submissions), "submit to the queue");
-    for (Submission& submission : submissions) in_flight_.submitted(++submitted_, name, std::move(submission.passes));
+    for (Submission& submission : submissions)
+        submission_log_.submitted(++submitted_, name, std::move(submission.passes));
     awaited_.clear();
     collect();
     return last_submission();
@@ -89,7 +90,7 @@ void Context::State::wait(SyncPoint point) const {
     info.pSemaphores = &point.semaphore;
     info.pValues = &point.value;
     check(vk_.vkWaitSemaphores(device_, &info, UINT64_MAX), "wait for the GPU");
-    if (point.semaphore == timeline_) in_flight_.reached(point.value);
+    if (point.semaphore == timeline_) submission_log_.reached(point.value);
 }
 
 void Context::State::wait_for_gpu() {
@@ -123,7 +124,7 @@ void Context::State::collect() noexcept {
     if (retired_.empty() || !timeline_) return;
     std::erase_if(announced_, [&](SyncPoint point) { return reached(point.semaphore) >= point.value; });
     const std::uint64_t own = reached(timeline_);
-    in_flight_.reached(own);
+    submission_log_.reached(own);
     const auto is_past = [&](SyncPoint point) { return reached(point.semaphore) >= point.value; };
     while (!retired_.empty() && retired_.front().submitted <= own &&
            std::ranges::all_of(retired_.front().announced, is_past)) {

@@ -6,6 +6,6 @@
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/shared/triangle.h"
+#include "twinray/glsl/triangle.h"
 #include "twinray/glsl/cpp_end.h"
 }  // namespace twinray

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Writes scenes as glTF 2.0.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// OpenEXR files.
 #pragma once
 
 #include <twinray/scene.h>

@@ -37,7 +37,7 @@ struct InstanceRange {
 
 // What kernels need to trace: valid until the next sync() after which revision() has grown.
 struct AccelView {
-    std::uint64_t scene = 0;     // device address of the accelerator's scene block (SwScene or HwScene)
+    std::uint64_t scene = 0;     // device address of the accelerator's header (SwTlasHeader or HwTlasHeader)
     std::uint64_t accel = 0;     // which accelerator made it
     std::uint64_t revision = 0;  // its revision() then
     uint features = 0;           // of whatever traces of it may need: what kernels may be specialised for

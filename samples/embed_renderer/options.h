@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Command line of the sample.
 #pragma once
 
 #include <filesystem>

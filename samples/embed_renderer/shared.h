@@ -2,7 +2,6 @@
 // The structs that the renderer shares with its shaders, for C++.
 #pragma once
 
-#include "engine/accel/instance_record.h"
 #include "samples/path_tracer/shared.h"
 
 namespace twinray::embed_renderer {

@@ -6,7 +6,7 @@
 
 #include <twinray/sets.h>
 
-#include "engine/accel/spawn.h"
+#include "twinray/glsl/cpp_spawn.h"
 
 namespace twinray::particles {
 using std::sin;

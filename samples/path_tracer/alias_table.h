@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Sampling from discrete distributions in constant time (Walker 1977).
 #pragma once
 
 #include <span>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Cameras as kernels take them.
 #pragma once
 
 #include <twinray/scene.h>

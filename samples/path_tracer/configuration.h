@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What tells one picture from another, for checkpoints and reports.
 #pragma once
 
 #include "samples/path_tracer/environment.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Two accelerators on the same rays.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Pictures in a viewer of images while they are rendered.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Light from all around: maps and a sky, and how they are sampled.
 #pragma once
 
 #include <filesystem>

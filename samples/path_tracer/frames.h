@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Sequences of pictures.
 #pragma once
 
 #include "samples/path_tracer/options.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Signals that end a render in good order.
 #pragma once
 
 namespace twinray::path_tracer {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Lights of a scene, and how one is chosen.
 #pragma once
 
 #include <vector>

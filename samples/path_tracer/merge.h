@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Parts of a picture that were rendered apart.
 #pragma once
 
 #include "samples/path_tracer/options.h"

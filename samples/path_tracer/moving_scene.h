@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A scene on the device that is posed anew for each picture.
 #pragma once
 
 #include <twinray/abstract_accel.h>

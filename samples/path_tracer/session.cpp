@@ -6,8 +6,6 @@
 #include <cstdio>
 
 #include <twinray/scene.h>
-#include "engine/scene/bytes.h"
-#include "engine/scene/local_origin.h"
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
 #include "samples/path_tracer/camera.h"

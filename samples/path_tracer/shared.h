@@ -5,8 +5,8 @@
 #include <twinray/scene.h>
 #include <twinray/sets.h>
 
-#include "engine/accel/spawn.h"
-#include "engine/scene/sampling.h"
+#include "twinray/glsl/cpp_spawn.h"
+#include "twinray/glsl/cpp_sampling.h"
 
 namespace twinray::path_tracer {
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Warns of scenes whose lights cannot be seen.
 #pragma once
 
 #include <twinray/scene.h>

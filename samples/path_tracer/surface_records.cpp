@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "samples/path_tracer/surface_records.h"
-#include "engine/scene/mesh.h"
+
+#include <cmath>
 
 namespace twinray::path_tracer {
 namespace {
@@ -13,9 +14,15 @@ uint tangent_uv_set(const Material& material) {
     return 0;
 }
 
+// In float64, so that tiny and huge vectors keep their direction; 0 where there is none: of 0, NaN and infinities.
+vec3 unit_or_zero(dvec3 v) {
+    const double size = length(v);
+    return size > 0 && std::isfinite(size) ? vec3(v / size) : vec3(0);
+}
+
 // Without a direction: none.
 vec4 tangent_record(vec4 tangent) {
-    const vec3 direction(unit_or_zero(dvec3(tangent)));
+    const vec3 direction = unit_or_zero(dvec3(tangent));
     return direction == vec3(0) ? vec4(0) : vec4(direction, tangent.w < 0 ? -1 : 1);
 }
 
@@ -54,7 +61,7 @@ std::vector<SurfaceVertex> vertex_records(const Mesh& mesh) {
     std::vector<SurfaceVertex> records(mesh.positions.size());
     for (std::size_t i = 0; i < records.size(); ++i) {
         records[i].position = mesh.positions[i];
-        records[i].normal = mesh.normals.empty() ? vec3(0) : vec3(unit_or_zero(dvec3(mesh.normals[i])));
+        records[i].normal = mesh.normals.empty() ? vec3(0) : unit_or_zero(dvec3(mesh.normals[i]));
         records[i].uv = mesh.uvs.empty() ? vec2(0) : mesh.uvs[i];
         records[i].tangent = mesh.tangents.empty() ? vec4(0) : tangent_record(mesh.tangents[i]);
     }

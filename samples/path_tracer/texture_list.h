@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Textures of a scene, each uploaded once.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Queues of paths in device memory.
 #pragma once
 
 #include <twinray/sets.h>

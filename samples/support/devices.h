@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Chooses a device on the command line.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Progress on a terminal.
 #pragma once
 
 #include <chrono>

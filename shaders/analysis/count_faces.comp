@@ -2,7 +2,7 @@
 // Adds the hits of two neighbouring rays to the counts of their groups.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/analysis/face.glsl"
 #include "shaders/analysis/count_faces.h"
 layout(local_size_x = 64) in;

@@ -3,7 +3,7 @@
 // Whoever includes this has declared Face: face.glsl, in C++ <twinray/analysis.h>.
 #ifndef TWINRAY_ANALYSIS_FACES_H
 #define TWINRAY_ANALYSIS_FACES_H
-#include "shaders/shared/spawn.h"
+#include "twinray/glsl/spawn.h"
 
 struct FacesOfInstance
 {
@@ -43,7 +43,7 @@ FUNC SurfacePoint point_on_face(FaceTable table, uint face, vec2 uv)
     Face which = AT(table.faces, face);
     FacesOfInstance instance = AT(table.instances, which.instance);
     return surface_point(placement_of(to_world_of(instance)),
-                         corners_of(instance.positions, instance.indices, which.primitive), uv);
+                         vertices_of(instance.positions, instance.indices, which.primitive), uv);
 }
 
 // Whether a direction comes from the side on which the vertices turn counter-clockwise in object space.
@@ -51,7 +51,7 @@ FUNC bool meets_front(FaceTable table, uint face, vec3 direction)
 {
     Face which = AT(table.faces, face);
     FacesOfInstance instance = AT(table.instances, which.instance);
-    Corners vertices = corners_of(instance.positions, instance.indices, which.primitive);
+    TriangleVertices vertices = vertices_of(instance.positions, instance.indices, which.primitive);
     vec3 edge1 = vertices.b - vertices.a;
     vec3 edge2 = vertices.c - vertices.a;
     float scale = power_of_two_below(max(largest_entry(edge1), largest_entry(edge2)));

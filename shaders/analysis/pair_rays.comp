@@ -2,7 +2,7 @@
 // A group makes the rays of a chunk.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/analysis/face.glsl"
 #include "shaders/analysis/pair_rays.h"
 layout(local_size_x = CHUNK) in;

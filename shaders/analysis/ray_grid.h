@@ -2,8 +2,8 @@
 // Parallel rays through the cells of a plane: what one sees of a scene that looks at it from far away.
 #ifndef TWINRAY_ANALYSIS_RAY_GRID_H
 #define TWINRAY_ANALYSIS_RAY_GRID_H
-#include "shaders/sampling/random.h"
-#include "shaders/shared/ray.h"
+#include "twinray/glsl/random.h"
+#include "twinray/glsl/rays.h"
 
 const uint GRID_AT_CENTERS = 0u;
 const uint GRID_AT_RANDOM = 1u; // one point of each cell, uniform and independent

@@ -2,7 +2,7 @@
 // The rays of a run of faces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/analysis/face.glsl"
 #include "shaders/analysis/sky_rays.h"
 layout(local_size_x = 64) in;

@@ -3,8 +3,8 @@
 #ifndef TWINRAY_ANALYSIS_SKY_RAYS_H
 #define TWINRAY_ANALYSIS_SKY_RAYS_H
 #include "shaders/analysis/count_faces.h"
-#include "shaders/sampling/random.h"
-#include "shaders/sampling/sampling.h"
+#include "twinray/glsl/random.h"
+#include "twinray/glsl/sampling.h"
 
 const uint FACE_STREAM = 0x66616365u;
 

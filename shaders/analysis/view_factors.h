@@ -3,8 +3,8 @@
 #ifndef TWINRAY_ANALYSIS_VIEW_FACTORS_H
 #define TWINRAY_ANALYSIS_VIEW_FACTORS_H
 #include "shaders/analysis/faces.h"
-#include "shaders/sampling/sampling.h"
-#include "shaders/sampling/sobol.h"
+#include "twinray/glsl/sampling.h"
+#include "twinray/glsl/sobol.h"
 
 // Samples are drawn in as many independent sequences, whose scatter tells the error of the mean.
 const uint REPLICATES = 16u;

@@ -3,7 +3,7 @@
 // higher of those in the order that sorting by the former made.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/collide/box_tree.h"
 #include "shaders/collide/hilbert.h"
 layout(local_size_x = 64) in;

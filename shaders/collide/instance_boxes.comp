@@ -2,7 +2,7 @@
 // The world boxes of instances, rounded outward, for either accelerator.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/collide/box_tree.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { InstanceBoxesArgs args; };

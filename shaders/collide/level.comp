@@ -2,7 +2,7 @@
 // The nodes of one level: boxes around their children. Where there are no leaves below, they are empty.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/collide/box_tree.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { BoxTreeArgs args; };

@@ -3,7 +3,7 @@
 // once.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/collide/box_tree.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PairSearchArgs args; };

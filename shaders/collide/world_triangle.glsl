@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Triangles in world space, in float64.
 struct WorldTriangle
 {
     dvec3 a;

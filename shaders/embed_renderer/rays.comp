@@ -23,17 +23,17 @@ vec2 barycentrics(vec3 origin, vec3 direction, vec3 a, vec3 b, vec3 c)
 SurfacePoint visible_point(CameraRays camera, vec3 direction, uvec2 ids)
 {
     SurfaceInstance instance = AT(AT(args.frame, 0).instances, ids.x);
-    uvec3 vertices = AT(instance.triangles, ids.y).vertices;
+    uvec3 indices = AT(instance.triangles, ids.y).vertices;
     Placement placement;
     placement.to_world = to_world_of(instance);
     placement.to_object = to_object_of(instance);
-    Corners corners;
-    corners.a = AT(instance.vertices, vertices.x).position;
-    corners.b = AT(instance.vertices, vertices.y).position;
-    corners.c = AT(instance.vertices, vertices.z).position;
+    TriangleVertices vertices;
+    vertices.a = AT(instance.vertices, indices.x).position;
+    vertices.b = AT(instance.vertices, indices.y).position;
+    vertices.c = AT(instance.vertices, indices.z).position;
     vec3 origin = transform_point(placement.to_object, camera.origin);
     vec3 along = transform_vector(placement.to_object, direction);
-    return surface_point(placement, corners, barycentrics(origin, along, corners.a, corners.b, corners.c));
+    return surface_point(placement, vertices, barycentrics(origin, along, vertices.a, vertices.b, vertices.c));
 }
 
 Ray ray_to(SurfacePoint point, vec3 direction, float t_max)

@@ -2,7 +2,7 @@
 // Floats, times a factor, from the caller's device memory, of which only the address is known.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/copy_floats.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { CopyFloatsArgs args; };

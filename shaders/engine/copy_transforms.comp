@@ -2,7 +2,7 @@
 // Transforms from the caller's device memory into instance records; ids, masks and flags stay.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/copy_transforms.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { CopyTransformsArgs args; };

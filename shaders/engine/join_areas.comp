@@ -2,7 +2,7 @@
 // Sums the areas of a tree's boxes, always in the same order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/surface_area.h"
 layout(local_size_x = AREA_GROUP) in;
 layout(push_constant, scalar) uniform Push { JoinAreasArgs args; };

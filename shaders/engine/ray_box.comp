@@ -2,7 +2,7 @@
 // The box of the origins of those rays that are traced.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/ray_order.h"
 layout(local_size_x = WORLD_BOUND_GROUP) in;
 #include "shaders/engine/group_box.glsl"

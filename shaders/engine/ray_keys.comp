@@ -2,7 +2,7 @@
 // What rays are sorted by.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/ray_order.h"
 layout(local_size_x = WORLD_BOUND_GROUP) in;
 layout(push_constant, scalar) uniform Push { RayOrderArgs args; };

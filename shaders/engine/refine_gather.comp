@@ -2,7 +2,7 @@
 // What refining needs of each instance.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/refine_scene.h"
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { RefineGatherArgs args; };

@@ -2,7 +2,7 @@
 // Counts each digit in each block.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/engine/sort_columns.glsl"
 layout(push_constant, scalar) uniform Push { SortArgs args; };
 

@@ -2,7 +2,7 @@
 // Exclusive prefix sum in one group: each thread sums its run, the runs are scanned, each thread writes its run.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/sort.h"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 

@@ -2,7 +2,7 @@
 // Moves each pair to where its digit goes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/engine/sort_columns.glsl"
 layout(constant_id = IOTA_CONSTANT) const bool VALUES_ARE_IOTA = false;
 layout(push_constant, scalar) uniform Push { SortArgs args; };

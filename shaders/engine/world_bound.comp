@@ -2,7 +2,7 @@
 // A box around all usable instances, and how many are not.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/world_bound.h"
 layout(local_size_x = WORLD_BOUND_GROUP) in;
 #include "shaders/engine/group_box.glsl"

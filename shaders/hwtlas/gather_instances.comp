@@ -2,7 +2,7 @@
 // Writes the instances as the driver takes them, and the boxes around them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/world_bound.h"
 #include "shaders/shared/surface_area.h"
 #include "shaders/shared/hw_tlas_header.h"

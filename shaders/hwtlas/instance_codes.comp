@@ -2,7 +2,7 @@
 // Morton codes of instances, by which they are presorted.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/world_bound.h"
 #include "shaders/shared/hw_tlas_header.h"
 layout(local_size_x = 256) in;

@@ -2,7 +2,7 @@
 // What all shaders of the ray tracing pipeline begin with, after their extensions.
 #ifndef TWINRAY_HWTLAS_PIPELINE_GLSL
 #define TWINRAY_HWTLAS_PIPELINE_GLSL
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/hwtlas/ids.glsl"
 
 layout(constant_id = QUERY_CONSTANT) const uint TRACE_QUERY = QUERY_CLOSEST;

@@ -2,8 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_ray_tracing : require
-#include "shaders/shared/bridge.glsl"
-#include "shaders/shared/ray.h"
+#include "twinray/glsl/common.glsl"
+#include "twinray/glsl/rays.h"
 
 layout(location = 0) rayPayloadInEXT Hit payload;
 

@@ -2,7 +2,7 @@
 // The box of a mesh: around its active triangles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/world_bound.h"
 #include "shaders/shared/surface_area.h"
 #include "shaders/shared/hw_tlas_header.h"

@@ -2,7 +2,7 @@
 // Morton codes of the triangles within the mesh's box, for drivers that build in input order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/world_bound.h"
 #include "shaders/shared/surface_area.h"
 #include "shaders/shared/hw_tlas_header.h"

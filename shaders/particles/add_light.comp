@@ -2,7 +2,7 @@
 // The mean of a pixel's rays.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/particles/picture.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { AddLightArgs args; };

@@ -2,7 +2,7 @@
 // One frame of each particle: where it is, what the accelerator is told, and its material.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/particles/particles.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { MoveArgs args; };

@@ -2,7 +2,7 @@
 // kernels and by their serial references.
 #ifndef TWINRAY_PARTICLES_PARTICLES_H
 #define TWINRAY_PARTICLES_PARTICLES_H
-#include "shaders/shared/instance.h"
+#include "twinray/glsl/instance.h"
 #include "twinray/glsl/multi_type_set.h"
 #include "twinray/glsl/soa.h"
 

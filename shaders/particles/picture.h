@@ -3,7 +3,7 @@
 #ifndef TWINRAY_PARTICLES_PICTURE_H
 #define TWINRAY_PARTICLES_PICTURE_H
 #include "shaders/particles/particles.h"
-#include "shaders/shared/spawn.h"
+#include "twinray/glsl/spawn.h"
 
 struct MeshData
 {

@@ -62,7 +62,7 @@ void main()
     MeshData mesh = scene.walls;
     if (is_ball) mesh = scene.ball;
     Placement placement = placement_of(AT(scene.instances, hit.instance_index));
-    SurfacePoint point = surface_point(placement, corners_of(mesh.positions, mesh.indices, hit.primitive_index),
+    SurfacePoint point = surface_point(placement, vertices_of(mesh.positions, mesh.indices, hit.primitive_index),
                                        vec2(hit.u, hit.v));
     vec3 normal = is_ball ? normalize(point.position - offset_of(placement.to_world)) : point.normal;
 

@@ -2,8 +2,8 @@
 // Adds the sums of one block of samples to the film, and clears them for the next block.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
-#include "shaders/shared/ray.h"
+#include "twinray/glsl/common.glsl"
+#include "twinray/glsl/rays.h"
 #include "twinray/glsl/soa.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"

@@ -7,7 +7,7 @@
 // wave.h.
 #ifndef TWINRAY_PATH_TRACER_FILM_H
 #define TWINRAY_PATH_TRACER_FILM_H
-#include "shaders/shared/word64.h"
+#include "twinray/glsl/word64.h"
 
 const uint FILM_DIGIT_BITS = 40u; // 2^23 numbers fit into a sum of 64 bits with a sign
 const uint FILM_SQUARES = 3u;     // index of their sum

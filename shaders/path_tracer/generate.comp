@@ -2,14 +2,14 @@
 // One camera ray per pixel, through a random point of what its filter covers and of the lens.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
-#include "shaders/shared/ray.h"
-#include "shaders/sampling/sampling.h"
+#include "twinray/glsl/common.glsl"
+#include "twinray/glsl/rays.h"
+#include "twinray/glsl/sampling.h"
 #include "twinray/glsl/soa.h"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/camera.h"
-#include "shaders/sampling/random.h"
+#include "twinray/glsl/random.h"
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { GenerateArgs args; };
 layout(constant_id = PT_FILTER) const uint FILTER = FILTER_BOX;

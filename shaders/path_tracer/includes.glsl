@@ -2,16 +2,14 @@
 // Everything that kernels which look at surfaces need, in order.
 #ifndef TWINRAY_PATH_TRACER_INCLUDES_GLSL
 #define TWINRAY_PATH_TRACER_INCLUDES_GLSL
-#include "shaders/shared/bridge.glsl"
-#include "shaders/shared/intersect.h"
-#include "shaders/shared/spawn.h"
+#include "twinray/glsl/spawn.glsl"
 #include "twinray/glsl/soa.h"
 #include "twinray/glsl/multi_type_set.glsl"
 #include "twinray/glsl/textures.glsl"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/wave.h"
 #include "shaders/path_tracer/weights.h"
-#include "shaders/sampling/sampling.h"
+#include "twinray/glsl/sampling.h"
 #include "shaders/path_tracer/features.glsl"
 #include "shaders/path_tracer/microfacet.h"
 #include "shaders/path_tracer/bsdf_record.h"

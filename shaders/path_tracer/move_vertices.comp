@@ -2,7 +2,7 @@
 // Moved vertices, array by array, into the records of a mesh.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/path_tracer/scene.h"
 #include "shaders/path_tracer/move_vertices.h"
 layout(local_size_x = 64) in;

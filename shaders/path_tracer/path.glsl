@@ -2,7 +2,7 @@
 // The path that a ray belongs to, and the light that the ray finds by itself.
 #ifndef TWINRAY_PATH_TRACER_PATH_GLSL
 #define TWINRAY_PATH_TRACER_PATH_GLSL
-#include "shaders/sampling/random.h"
+#include "twinray/glsl/random.h"
 #include "shaders/path_tracer/lights.glsl"
 
 WaveData wave; // kernels fill it in first

@@ -65,29 +65,13 @@ Placement load_placement(REF(SurfaceInstance) instances, uint index)
     return placement;
 }
 
-// Where the ray crosses the plane of the triangle, without asking whether it does so inside; pulled into the triangle.
-// Returns (u, v, t).
-vec3 crossing_of(Ray ray, Placement placement, Corners corners)
+TriangleVertices vertices_of(TriangleData data)
 {
-    RaySpace space = make_ray_space(transform_point(placement.to_object, ray.origin),
-                                    transform_vector(placement.to_object, ray.direction), 0.0);
-    vec3 a = sheared(corners.a, space);
-    vec3 b = sheared(corners.b, space);
-    vec3 c = sheared(corners.c, space);
-    TriangleHit hit = crossing(a, b, c, space.shear_z);
-    // Compare and select: a NaN, where the triangle is seen edge on, becomes 0.
-    float u = hit.u > 0.0 ? (hit.u < 1.0 ? hit.u : 1.0) : 0.0;
-    float v = hit.v > 0.0 ? (hit.v < 1.0 - u ? hit.v : 1.0 - u) : 0.0;
-    return vec3(u, v, hit.t);
-}
-
-Corners corners_of(TriangleData data)
-{
-    Corners corners;
-    corners.a = data.vertex[0].position;
-    corners.b = data.vertex[1].position;
-    corners.c = data.vertex[2].position;
-    return corners;
+    TriangleVertices vertices;
+    vertices.a = data.vertex[0].position;
+    vertices.b = data.vertex[1].position;
+    vertices.c = data.vertex[2].position;
+    return vertices;
 }
 
 vec3 weights_of(vec2 at) { return vec3(1.0 - at.x - at.y, at); }
@@ -163,7 +147,7 @@ Surface surface_at(TriangleData data, Placement placement, vec2 at)
 {
     Surface surface;
     surface.placement = placement;
-    surface.point = surface_point(placement, corners_of(data), at);
+    surface.point = surface_point(placement, vertices_of(data), at);
     surface.uv = interpolated_uv(data, at);
     surface.color = interpolated_color(data, at);
     surface.material = data.material;
@@ -175,7 +159,7 @@ Surface surface_of(SceneData scene, Ray ray, Hit hit)
 {
     Placement placement = load_placement(scene.instances, hit.instance_index);
     TriangleData data = load_triangle_data(scene, hit.instance_index, hit.primitive_index);
-    vec3 at = crossing_of(ray, placement, corners_of(data));
+    vec3 at = crossing_of(ray, placement, vertices_of(data));
     Surface surface = surface_at(data, placement, at.xy);
     surface.material = material_of(hit.custom_index, data.material);
     surface.t = at.z;

@@ -2,9 +2,9 @@
 // One invocation a vertex: morph targets, then linear blend skinning.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
-#include "shaders/shared/ray.h"
-#include "shaders/shared/transform.h"
+#include "twinray/glsl/common.glsl"
+#include "twinray/glsl/rays.h"
+#include "twinray/glsl/transform.h"
 #include "shaders/scene/deform.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { DeformArgs args; };

@@ -3,7 +3,7 @@
 #ifndef TWINRAY_SHARED_ALL_HITS_H
 #define TWINRAY_SHARED_ALL_HITS_H
 #include "shaders/shared/list.h"
-#include "shaders/shared/ray.h"
+#include "twinray/glsl/rays.h"
 
 struct RayHit
 {

@@ -4,9 +4,9 @@
 #ifndef TWINRAY_SHARED_BUILD_H
 #define TWINRAY_SHARED_BUILD_H
 #include "shaders/shared/bvh.h"
-#include "shaders/shared/ray.h"
-#include "shaders/shared/transform.h"
-#include "shaders/shared/triangle.h"
+#include "twinray/glsl/rays.h"
+#include "twinray/glsl/transform.h"
+#include "twinray/glsl/triangle.h"
 #include "shaders/shared/workgroup.h"
 
 const uint BUILD_GROUP = 256u;

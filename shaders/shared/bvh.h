@@ -10,7 +10,7 @@
 // inner nodes; with one leaf the root is that leaf, with none it is NOTHING. Records have their root at 0.
 #ifndef TWINRAY_SHARED_BVH_H
 #define TWINRAY_SHARED_BVH_H
-#include "shaders/shared/instance.h"
+#include "twinray/glsl/instance.h"
 
 const uint LEAF_BIT = 0x80000000u;
 const uint INSTANCE_BIT = 0x40000000u; // in records of leaves

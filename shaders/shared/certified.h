@@ -4,8 +4,8 @@
 // errors:
 //  - Boxes are padded by what transforming the ray may move it, so that no box of a hit is passed by.
 //  - A triangle is refused where two edges see the ray on opposite sides by more than their error bounds (a
-//    floating-point
-//    filter: Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997).
+//    floating-point filter: Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
+//    Predicates", 1997).
 // All else is decided in float64: the watertight test of intersect.h, in world space, with the same rule for ties. Hits
 // keep 48 bits of t, so their order is right where the exact t differ by more than about 2^-46 of what they are made
 // of.

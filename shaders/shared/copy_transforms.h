@@ -2,7 +2,7 @@
 // What shaders/engine/copy_transforms.comp takes.
 #ifndef TWINRAY_SHARED_COPY_TRANSFORMS_H
 #define TWINRAY_SHARED_COPY_TRANSFORMS_H
-#include "shaders/shared/instance.h"
+#include "twinray/glsl/instance.h"
 
 struct CopyTransformsArgs
 {

@@ -2,7 +2,7 @@
 // What the kernels take that prepare the driver's input. Needs hw_tlas_header.h and surface_area.h before it.
 #ifndef TWINRAY_SHARED_HW_BUILD_H
 #define TWINRAY_SHARED_HW_BUILD_H
-#include "shaders/shared/triangle.h"
+#include "twinray/glsl/triangle.h"
 
 // What the driver builds from: the records in their build order, each with the address of its bottom-level structure.
 struct HwGatherArgs

@@ -2,7 +2,7 @@
 // Watertight ray-triangle tests.
 #ifndef TWINRAY_SHARED_INTERSECT_H
 #define TWINRAY_SHARED_INTERSECT_H
-#include "shaders/shared/exact.h"
+#include "twinray/glsl/exact.h"
 #include "shaders/shared/ray_space.h"
 
 // A vertex seen along the ray: x, y sheared so that the ray is the point (0, 0), z along the dominant axis. It depends

@@ -5,7 +5,7 @@
 #include "shaders/shared/bvh.h"
 #include "shaders/shared/ray_space.h"
 #include "shaders/shared/trace.h"
-#include "shaders/shared/transform.h"
+#include "twinray/glsl/transform.h"
 #ifdef TWINRAY_REFINED
 #include "shaders/shared/certified.h"
 #endif

@@ -3,7 +3,7 @@
 #ifndef TWINRAY_SHARED_RAY_ORDER_H
 #define TWINRAY_SHARED_RAY_ORDER_H
 #include "shaders/shared/morton.h"
-#include "shaders/shared/ray.h"
+#include "twinray/glsl/rays.h"
 #include "shaders/shared/world_bound.h"
 
 const uint RAY_CELL_BITS = 3u; // of each axis of the grid

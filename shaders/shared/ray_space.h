@@ -2,8 +2,8 @@
 // Rays prepared for a coordinate space, and ray-box tests that lose none of them.
 #ifndef TWINRAY_SHARED_RAY_SPACE_H
 #define TWINRAY_SHARED_RAY_SPACE_H
-#include "shaders/shared/ray.h"
-#include "shaders/shared/transform.h"
+#include "twinray/glsl/rays.h"
+#include "twinray/glsl/transform.h"
 
 // A ray prepared for one coordinate space.
 //  - Boxes: near and far planes use reciprocals padded by a factor 1 -+ 2^-20, which covers the 2.5 ulp that Vulkan

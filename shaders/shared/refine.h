@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Level refined: what float32 loses about a hit, by float64 spent once a ray instead of once a triangle.
-//  - A ray from far away is traced from near the scene: its origin moves along it, computed in float64. Rounding then
-// is
-//    relative to the scene's size, not to the distance.
+//  - A ray from far away is traced from near the scene: its origin moves along it, computed in float64. Rounding is
+//    then relative to the scene's size, not to the distance.
 //  - The hit that counts is computed again in float64 from what the user gave: the ray, the vertices, the transform.
 #ifndef TWINRAY_SHARED_REFINE_H
 #define TWINRAY_SHARED_REFINE_H
@@ -58,7 +57,7 @@ FUNC Ray advanced(Ray ray, vec3 lo, vec3 hi, uint level, INOUT(double) advance)
 // A vertex in world space, seen from the origin.
 FUNC dvec3 vertex_from(dvec3 origin, GivenMesh mesh, uint vertex)
 {
-    uint at = 3u * AT(mesh.indices, vertex);
+    uint at = 3u * AT(mesh.indices, vertex); // load_position costs AMD's compilers up to 40 registers here
     dvec3 v = dvec3(double(AT(mesh.positions, at)), double(AT(mesh.positions, at + 1u)),
                     double(AT(mesh.positions, at + 2u)));
     vec4 r0 = mesh.object_to_world[0];

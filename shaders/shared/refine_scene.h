@@ -32,7 +32,6 @@ struct RefineScene
 };
 BUFFER_OF(RefineScene, 8);
 
-// Fetched in 64-bit components, as in load_node of traverse.h.
 FUNC GivenMesh load_given_mesh(REF(RefineInstance) instances, uint index) { return AT(instances, index).mesh; }
 
 struct RefineGatherArgs

@@ -4,7 +4,7 @@
 #define TWINRAY_SHARED_SPLITS_H
 #include "shaders/shared/build.h"
 #include "shaders/shared/morton.h"
-#include "shaders/shared/word64.h"
+#include "twinray/glsl/word64.h"
 
 FUNC LeafBox bounds_of(CentroidBounds bits)
 {

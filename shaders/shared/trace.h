@@ -3,8 +3,8 @@
 #ifndef TWINRAY_SHARED_TRACE_H
 #define TWINRAY_SHARED_TRACE_H
 #include "shaders/shared/features.h"
-#include "shaders/shared/program.h"
-#include "shaders/shared/ray.h"
+#include "twinray/glsl/program.h"
+#include "twinray/glsl/rays.h"
 #include "shaders/shared/workgroup.h"
 #ifdef TWINRAY_REFINED
 #include "shaders/shared/refine_scene.h"

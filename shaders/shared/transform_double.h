@@ -3,7 +3,7 @@
 #ifndef TWINRAY_SHARED_TRANSFORM_DOUBLE_H
 #define TWINRAY_SHARED_TRANSFORM_DOUBLE_H
 #include "shaders/shared/exact_double.h"
-#include "shaders/shared/transform.h"
+#include "twinray/glsl/transform.h"
 
 struct RowsDouble
 {

@@ -2,8 +2,8 @@
 // A box around all instances, from the box of each geometry and the transforms, rounded outward.
 #ifndef TWINRAY_SHARED_WORLD_BOUND_H
 #define TWINRAY_SHARED_WORLD_BOUND_H
-#include "shaders/shared/exact.h"
-#include "shaders/shared/instance.h"
+#include "twinray/glsl/exact.h"
+#include "twinray/glsl/instance.h"
 #include "shaders/shared/morton.h"
 
 const uint WORLD_BOUND_GROUP = 256u;

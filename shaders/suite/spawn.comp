@@ -30,7 +30,7 @@ void main()
     if (i >= args.count) return;
     SpawnItem item = AT(args.items, i);
     Placement placement = placement_of(AT(args.instances, item.instance));
-    SurfacePoint point = surface_point(placement, corners_of(args.positions, args.indices, item.primitive), item.uv);
+    SurfacePoint point = surface_point(placement, vertices_of(args.positions, args.indices, item.primitive), item.uv);
     for (uint method = 0u; method < SPAWN_METHODS; ++method)
     {
         Ray ray;

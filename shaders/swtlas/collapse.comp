@@ -3,7 +3,7 @@
 // next, and those of subtrees that a group can do whole. Begun once per tree.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/collapse.h"
 layout(local_size_x = COLLAPSE_GROUP) in;
 layout(constant_id = 0) const uint STEP = COLLAPSE_LEVEL;

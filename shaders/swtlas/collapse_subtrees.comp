@@ -2,7 +2,7 @@
 // Collapses subtrees, a group each: items wait in a queue, from which the group takes as many as it has invocations.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/collapse.h"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(constant_id = NODE_WIDTH_CONSTANT) const uint NODE_WIDTH = 4u;

@@ -2,7 +2,7 @@
 // The triangles in sorted order, vertices inlined.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/build.h"
 layout(local_size_x = BUILD_GROUP) in;
 layout(push_constant, scalar) uniform Push { BuildArgs args; };

@@ -3,7 +3,7 @@
 // knows instances from triangles: all later ones see boxes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/place_instance.h"
 #include "shaders/swtlas/centroids.glsl"
 layout(push_constant, scalar) uniform Push { InstanceLeavesArgs args; };

@@ -2,7 +2,7 @@
 // The box of each triangle (or the box itself), and the bounds of each tree's centroids.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/swtlas/centroids.glsl"
 layout(push_constant, scalar) uniform Push { BuildArgs args; };
 

@@ -2,7 +2,7 @@
 // Links the inner nodes of built trees to those above them, one invocation per node.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/build.h"
 layout(local_size_x = BUILD_GROUP) in;
 layout(push_constant, scalar) uniform Push { BuildArgs args; };

@@ -2,7 +2,7 @@
 // The Morton code of each leaf's centre within its tree's centroids.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/build.h"
 #include "shaders/shared/splits.h"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;

@@ -3,7 +3,7 @@
 // others, in the order in which more invocations would.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/compressed.h"
 #include "shaders/shared/surface_area.h"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;

@@ -2,7 +2,7 @@
 // The node above each record of finished trees.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/swtlas/slots.glsl"
 layout(local_size_x = BUILD_GROUP) in;
 layout(push_constant, scalar) uniform Push { RefitArgs args; };

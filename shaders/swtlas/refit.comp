@@ -3,7 +3,7 @@
 // second goes on with both.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/build.h"
 layout(local_size_x = BUILD_GROUP) in;
 layout(push_constant, scalar) uniform Push { RefitArgs args; };

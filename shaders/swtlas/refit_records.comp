@@ -4,7 +4,7 @@
 // one goes up, its neighbours in a vector have leaves to do.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/collapse.h"
 #include "shaders/swtlas/slots.glsl"
 layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;

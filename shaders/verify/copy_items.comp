@@ -2,7 +2,7 @@
 // Copies between device addresses whose buffers are not known.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/verify/copy_items.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { CopyItemsArgs args; };

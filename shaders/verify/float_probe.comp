@@ -2,8 +2,8 @@
 // The arithmetic that the robust levels rest on, as this device does it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/shared/bridge.glsl"
-#include "shaders/shared/exact.h"
+#include "twinray/glsl/common.glsl"
+#include "twinray/glsl/exact.h"
 #include "shaders/verify/float_probe.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { FloatProbeArgs args; };

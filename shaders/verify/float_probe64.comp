@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/verify/float_probe.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { Float64Args args; };

@@ -80,6 +80,37 @@ TEST_P(Sync, NeverWaitsWhileTheQueueIsBusy) {
     EXPECT_TRUE(context().is_reached(busy));
 }
 
+// What a view reads is freed by the sync that ends it, not by the edit before: traces through the view may be submitted
+// in between.
+TEST_P(Sync, WhatAViewReadsIsFreedByTheNextOne) {
+    const std::uint64_t before = context().allocated_bytes();
+    {
+        const std::unique_ptr<AbstractAccel> refined = make_accel({.level = Level::refined});
+        const AccelHandle erased = refined->push(make_icosphere(2)), replaced = refined->push(make_icosphere(3));
+        refined->sync();
+        context().wait_for_gpu();
+        const std::uint64_t synced = context().allocated_bytes();
+        refined->update(replaced, square(0));
+        refined->erase(erased);
+        context().wait_for_gpu();
+        EXPECT_EQ(context().allocated_bytes(), synced);
+        refined->erase(replaced);
+        context().wait_for_gpu();
+        EXPECT_EQ(context().allocated_bytes(), synced) << "after an update without a sync";
+        refined->sync();
+        context().wait_for_gpu();
+        EXPECT_LT(context().allocated_bytes(), synced);
+        for (int i = 0; i < 3; ++i) refined->erase(refined->push(square(0)));
+        context().wait_for_gpu();
+        const std::uint64_t idle = context().allocated_bytes();
+        for (int i = 0; i < 3; ++i) refined->erase(refined->push(square(0)));
+        context().wait_for_gpu();
+        EXPECT_EQ(context().allocated_bytes(), idle) << "what no view has seen goes at once";
+    }
+    context().wait_for_gpu();
+    EXPECT_EQ(context().allocated_bytes(), before);
+}
+
 TEST_P(Sync, ACleanOneIsFree) {
     accel().push(square(0));
     const SyncPoint done = accel().sync();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The trace program of trace_program_test.cpp: boxes are spheres, and filtered hits count in stripes, or, of custom
 // indices from 1000 on, at a smaller t.
-#include "shaders/shared/program.h"
+#include "twinray/glsl/program.h"
 
 struct Sphere
 {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "engine/analysis/row_sums.h"
-#include "engine/scene/sampling.h"
+#include "twinray/glsl/cpp_sampling.h"
 
 namespace twinray {
 namespace {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A folder that is gone after the test.
 #pragma once
 
 #include <unistd.h>

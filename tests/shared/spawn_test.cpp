@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/spawn.h"
+#include "twinray/glsl/cpp_spawn.h"
 
 #include <gtest/gtest.h>
 
@@ -69,8 +69,8 @@ Rows plain_inverse(const Rows& m) {
 
 struct Setting {
     Placement placement;
-    Corners corners;
-    dvec3 normal;  // of the corners, object space, unit, float64
+    TriangleVertices vertices;
+    dvec3 normal;  // of the vertices, object space, unit, float64
 };
 
 // Meshes of 2^-60 to 2^60, up to 10^6 of their size away from their origin, slivers of 1 to 10^-4; rotated, scaled by
@@ -85,7 +85,7 @@ Setting random_setting(Random& random) {
     const dvec3 a = is_at_origin ? dvec3(0) : random.in_box(), b = random.in_box();
     const double aspect = random.below(2) ? 1 : std::pow(10, -4 * random.unit());
     const dvec3 c = a + (b - a) * random.unit() + aspect * random.in_box();
-    const Corners corners{vec3(centre + a * size), vec3(centre + b * size), vec3(centre + c * size)};
+    const TriangleVertices vertices{vec3(centre + a * size), vec3(centre + b * size), vec3(centre + c * size)};
 
     const double stretch = random.below(3) ? 1 : std::pow(10, 1.5 * random.unit());
     const dmat3 linear = random.rotation() * dmat3(1, 0, 0, 0, stretch, 0, 0, 0, 1 / stretch) *
@@ -95,31 +95,31 @@ Setting random_setting(Random& random) {
     if (random.below(4) == 0) offset = -(linear * centre);
     if (random.below(8) == 0) offset = dvec3(0, offset.y, 0);
     if (is_at_origin) offset = dvec3(0);
-    const dvec3 normal = cross(dvec3(corners.b) - dvec3(corners.a), dvec3(corners.c) - dvec3(corners.a));
-    return {placement_of(rows_of(linear, offset)), corners, normalize(normal)};
+    const dvec3 normal = cross(dvec3(vertices.b) - dvec3(vertices.a), dvec3(vertices.c) - dvec3(vertices.a));
+    return {placement_of(rows_of(linear, offset)), vertices, normalize(normal)};
 }
 
 bool has_area(const Setting& setting) { return std::isfinite(setting.normal.x); }
 
 double object_distance(const Setting& setting, const vec3& point) {
-    return dot(dvec3(point) - dvec3(setting.corners.a), setting.normal);
+    return dot(dvec3(point) - dvec3(setting.vertices.a), setting.normal);
 }
 double world_distance(const Setting& setting, const vec3& point) {
     const dvec3 back =
         inverse(linear_of(setting.placement.to_world)) * (dvec3(point) - dvec3(offset_of(setting.placement.to_world)));
-    return dot(back - dvec3(setting.corners.a), setting.normal);  // by the length of an object's unit
+    return dot(back - dvec3(setting.vertices.a), setting.normal);  // by the length of an object's unit
 }
 
 // The ray meets the triangle, tested in units of a power of two near its size, as accelerators build meshes.
-bool meets(Rows to_object, Corners corners, const Ray& ray) {
+bool meets(Rows to_object, TriangleVertices vertices, const Ray& ray) {
     const float unit =
-        power_of_two_below(std::max({largest_entry(corners.a), largest_entry(corners.b), largest_entry(corners.c)}));
-    for (vec3* corner : {&corners.a, &corners.b, &corners.c}) *corner /= unit;
+        power_of_two_below(std::max({largest_entry(vertices.a), largest_entry(vertices.b), largest_entry(vertices.c)}));
+    for (vec3* corner : {&vertices.a, &vertices.b, &vertices.c}) *corner /= unit;
     for (vec4* row : {&to_object.r0, &to_object.r1, &to_object.r2}) *row /= unit;
     const RaySpace space =
         make_ray_space(transform_point(to_object, ray.origin), transform_vector(to_object, ray.direction), 0);
     TriangleHit hit{};
-    return intersect_triangle(corners.a, corners.b, corners.c, space, hit) && hit.t > ray.t_min && hit.t < ray.t_max;
+    return intersect_triangle(vertices.a, vertices.b, vertices.c, space, hit) && hit.t > ray.t_min && hit.t < ray.t_max;
 }
 
 TEST(Spawn, TheBoundHoldsWithEitherInverseAndIsNotLoose) {
@@ -129,7 +129,7 @@ TEST(Spawn, TheBoundHoldsWithEitherInverseAndIsNotLoose) {
     for (int i = 0; i < 1'000'000; ++i) {
         const Setting setting = random_setting(random);
         if (!has_area(setting)) continue;
-        const SurfacePoint point = surface_point(setting.placement, setting.corners, random.barycentrics());
+        const SurfacePoint point = surface_point(setting.placement, setting.vertices, random.barycentrics());
         ASSERT_GT(point.offset, 0) << i;
         const bool is_front = random.below(2) != 0;
         const double side = is_front ? 1 : -1;
@@ -161,13 +161,13 @@ TEST(Spawn, RaysDoNotMeetTheTriangleTheyStartOn) {
     for (int i = 0; i < 300'000; ++i) {
         const Setting setting = random_setting(random);
         if (!has_area(setting)) continue;
-        const SurfacePoint point = surface_point(setting.placement, setting.corners, random.barycentrics());
+        const SurfacePoint point = surface_point(setting.placement, setting.vertices, random.barycentrics());
         const vec3 direction(random.direction());
         const bool is_front = dot(direction, point.normal) > 0;
         for (const Rows& inverse : {setting.placement.to_object, plain_inverse(setting.placement.to_world)}) {
-            ASSERT_FALSE(meets(inverse, setting.corners, {spawn_position(point, is_front), 0, direction, INFINITY}))
+            ASSERT_FALSE(meets(inverse, setting.vertices, {spawn_position(point, is_front), 0, direction, INFINITY}))
                 << i;
-            without_offset += meets(inverse, setting.corners, {point.position, 0, direction, INFINITY});
+            without_offset += meets(inverse, setting.vertices, {point.position, 0, direction, INFINITY});
         }
     }
     EXPECT_GT(without_offset, 100'000) << "the test does not test";
@@ -179,17 +179,17 @@ TEST(Spawn, RaysThatPassDoNotMeetTheTriangleAgain) {
     for (int i = 0; i < 300'000; ++i) {
         const Setting setting = random_setting(random);
         if (!has_area(setting)) continue;
-        const SurfacePoint point = surface_point(setting.placement, setting.corners, vec2(0.3f, 0.3f));
+        const SurfacePoint point = surface_point(setting.placement, setting.vertices, vec2(0.3f, 0.3f));
         const double far = std::max(length(dvec3(point.position)), double{point.feature});
         Ray ray{vec3(dvec3(point.position) + random.in_box() * far), 0, vec3(0), INFINITY};
         const dvec3 way = dvec3(point.position) - dvec3(ray.origin);
         ray.direction = vec3(normalize(way));
         const auto t = static_cast<float>(length(way));  // within rounding of what an accelerator finds
         ray.t_min = t;
-        again += meets(setting.placement.to_object, setting.corners, ray);
+        again += meets(setting.placement.to_object, setting.vertices, ray);
         ray.t_min = passing_t(point, setting.placement, ray, t);
-        ASSERT_FALSE(meets(setting.placement.to_object, setting.corners, ray)) << i;
-        ASSERT_FALSE(meets(plain_inverse(setting.placement.to_world), setting.corners, ray)) << i;
+        ASSERT_FALSE(meets(setting.placement.to_object, setting.vertices, ray)) << i;
+        ASSERT_FALSE(meets(plain_inverse(setting.placement.to_world), setting.vertices, ray)) << i;
     }
     EXPECT_GT(again, 30'000) << "the test does not test";
 }
@@ -211,10 +211,10 @@ TEST(Spawn, TheOffsetGrowsWithTheDistanceFromTheOriginAndTheFeatureDoesNot) {
 TEST(Spawn, CornersAndPlacementsAreReadFromBuffers) {
     const vec3 positions[] = {vec3(1, 2, 3), vec3(4, 5, 6), vec3(7, 8, 9), vec3(0)};
     const uint indices[] = {0, 1, 2, 3, 2, 0};
-    const Corners corners = corners_of(Floats::to(&positions[0].x), Uints::to(indices), 1);
-    EXPECT_EQ(corners.a, vec3(0));
-    EXPECT_EQ(corners.b, vec3(7, 8, 9));
-    EXPECT_EQ(corners.c, vec3(1, 2, 3));
+    const TriangleVertices vertices = vertices_of(Floats::to(&positions[0].x), Uints::to(indices), 1);
+    EXPECT_EQ(vertices.a, vec3(0));
+    EXPECT_EQ(vertices.b, vec3(7, 8, 9));
+    EXPECT_EQ(vertices.c, vec3(1, 2, 3));
     InstanceRecord record{};
     for (int row = 0; row < 3; ++row) record.object_to_world[row][row] = 2;
     record.object_to_world[1].w = 6;

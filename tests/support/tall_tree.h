@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A tree as tall as they come.
 #pragma once
 
 #include <algorithm>

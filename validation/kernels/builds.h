@@ -15,7 +15,7 @@ struct BuildRow {
     std::string what;  // "build", "refit"
     std::string layout, quality;
     std::uint64_t dispatches = 0, barriers = 0, copies = 0;
-    double read = 0, written = 0;  // bytes a triangle, by cli/kernels/traffic.h
+    double read = 0, written = 0;  // bytes a triangle, by validation/kernels/traffic.h
 };
 
 // Of one mesh of build_triangles and one instance, by the software accelerator, in each layout and quality. The context

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Kernels compiled for a device, and what its compiler says.
 #pragma once
 
 #include "validation/kernels/builds.h"

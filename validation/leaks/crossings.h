@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Counts how often rays cross a closed mesh, on the device.
 #pragma once
 
 #include <span>

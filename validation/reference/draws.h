@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Random numbers of rays.
 #pragma once
 
 #include <cmath>

@@ -20,8 +20,7 @@ namespace twinray {
 
 namespace {
 
-// Exact: the vertices are float32.
-// In units of its scale.
+// In units of its scale; exact, as vertices are float32.
 GeometryBox box_of(const Geometry& geometry, const Geometry64& triangles) {
     Bounds box{vec3(triangles.bounds().corners[0]), vec3(triangles.bounds().corners[1])};
     for (const Bounds& each : geometry.boxes) box.include(each);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The reference behind AbstractAccel.
 #pragma once
 
 #include <optional>

@@ -37,10 +37,10 @@ struct Placement64 {
     dvec3 vector_to_object(const dvec3& v) const { return is_identity ? v : to_object * v; }
 };
 
-// Answers by the rules of docs and shaders/shared/ray.h: t_min < t < t_max, both exclusive; a negative t_min counts
-// as 0; rays that are not is_traceable() miss; triangles that are not finite or have no area are never hit, nor is what
-// the query leaves out; the closest hit has the smallest t, then the lowest (instance, primitive). Immutable, so
-// threads may share it.
+// Answers by the rules of twinray/glsl/ray.h and docs/architecture.md, "Rules of a hit": t_min < t < t_max, both
+// exclusive; a negative t_min counts as 0; rays that are not is_traceable() miss; triangles that are not finite or have
+// no area are never hit, nor is what the query leaves out; the closest hit has the smallest t, then the lowest
+// (instance, primitive). Immutable, so threads may share it.
 class ReferenceScene {
   public:
     // Copies what it needs. Throws Error on an index out of range and on a singular or non-finite transform.

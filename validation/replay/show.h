@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Explains a faulty ray.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Faulty rays as files.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A report compared with an older one.
 #pragma once
 
 #include <span>

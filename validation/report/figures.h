@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Plots of the page.
 #pragma once
 
 #include <filesystem>

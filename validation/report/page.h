@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The page of a report.
 #pragma once
 
 #include "validation/report/baseline.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// A case of the suite while it runs.
 #pragma once
 
 #include "validation/suite/checks.h"

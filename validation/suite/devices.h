@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The accelerators on which cases of the suite run.
 #pragma once
 
 #include <map>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Perceived differences of pictures.
 #pragma once
 
 #include <twinray/scene.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "validation/suite/devices.h"
-#include "engine/accel/spawn.h"
+#include "twinray/glsl/cpp_spawn.h"
 #include "engine/core/kernel.h"
 #include "engine/scene/mesh.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Layers of glTF materials: KHR_materials_*.
 #pragma once
 
 #include "engine/scene/importers/gltf_texture.h"

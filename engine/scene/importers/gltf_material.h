@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Materials of glTF.
 #pragma once
 
 #include <twinray/scene.h>

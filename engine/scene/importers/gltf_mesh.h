@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Meshes of glTF.
 #pragma once
 
 #include <twinray/scene.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The local origin of a glTF scene.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Meshes of glTF by the shape that skins and morph targets give them.
 #pragma once
 
 #include "engine/scene/importers/gltf_nodes.h"

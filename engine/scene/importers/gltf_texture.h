@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Textures of glTF.
 #pragma once
 
 #include <twinray/scene.h>

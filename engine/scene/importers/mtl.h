@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Materials of Wavefront OBJ.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What importers skip.
 #pragma once
 
 #include <cstddef>

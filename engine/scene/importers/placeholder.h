@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Stands in for images that are missing.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What the header of a PLY file declares.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Polygons into triangles.
 #pragma once
 
 #include <cstddef>

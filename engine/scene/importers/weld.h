@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Equal vertices become one.
 #pragma once
 
 #include "engine/scene/mesh.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// No include guard on purpose: opens the vocabulary of shaders/shared/*.h for C++. Pair with bridge_end.h.
+// No include guard on purpose: opens the vocabulary of headers that are written for C++ and GLSL; cpp_end.h closes it.
 #define FUNC inline
 #define TWINRAY_REFINED
 #define INOUT(T) T&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Closes what bridge_begin.h opened.
+// Closes what cpp_begin.h opened.
 #undef FUNC
 #undef TWINRAY_REFINED
 #undef INOUT

@@ -2,7 +2,7 @@
 // In kernels compiled with TWINRAY_DEBUG: tells the host of a key or an index that names nothing.
 #ifndef TWINRAY_FAULTS_GLSL
 #define TWINRAY_FAULTS_GLSL
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "twinray/glsl/faults.h"
 
 #ifdef TWINRAY_DEBUG

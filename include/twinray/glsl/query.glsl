@@ -11,10 +11,10 @@
 //
 // Specialise FEATURES_CONSTANT with AccelView::features, or AbstractAccel::features_for, to leave out what the scene
 // does not need, and LEVEL_CONSTANT with the level. With TWINRAY_PROGRAM defined, the kernel defines
-// intersect_primitive and accept_hit itself (see shaders/shared/program.h), before or after this include.
+// intersect_primitive and accept_hit itself (see twinray/glsl/program.h), before or after this include.
 #ifndef TWINRAY_QUERY_GLSL
 #define TWINRAY_QUERY_GLSL
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 #include "shaders/shared/trace.h"
 
 layout(constant_id = FEATURES_CONSTANT) const uint TRACE_FEATURES = FEATURES_ALL;

@@ -25,7 +25,7 @@ struct Hit {
 };
 BUFFER_OF(Hit, 8);
 
-const uint QUERY_CLOSEST = 0u;  // the hit with smallest t, then lowest (instance, primitive)
+const uint QUERY_CLOSEST = 0u;  // the smallest t, then the lowest (instance, primitive); ties of HwTlas: the driver's
 const uint QUERY_ANY = 1u;      // whichever hit is found first
 
 // Flags of a trace, with the values of SPIR-V's ray flags.

@@ -13,7 +13,7 @@
 // `tuple` is a variable or a member, not a call. Loops of a constant count are unrolled by UNROLL before `for`.
 #ifndef TWINRAY_UNROLLED_GLSL
 #define TWINRAY_UNROLLED_GLSL
-#include "shaders/shared/bridge.glsl"
+#include "twinray/glsl/common.glsl"
 
 #define TUPLE_FIELD_(P, number, Type, name) Type name;
 #define TUPLE(Name, LIST) struct Name { LIST(TUPLE_FIELD_, 0) };

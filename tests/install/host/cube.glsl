@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "shaders/shared/program.h"
+#include "twinray/glsl/program.h"
 
 // A box whose surface halves the way to the ray's end.
 bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv)

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Warps from the unit square, and local frames.
-#ifndef TWINRAY_SAMPLING_SAMPLING_H
-#define TWINRAY_SAMPLING_SAMPLING_H
+#ifndef TWINRAY_SAMPLING_H
+#define TWINRAY_SAMPLING_H
 
 const float PI = 3.14159265358979f;
 
 // (cos, sin) of `turns` whole turns, for |turns| below 2^20. Vulkan promises only 11 bits of its own sin and cos;
 // these Taylor polynomials on an eighth of a turn are good to 23.
-FUNC vec2 unit_circle(float turns)
-{
+FUNC vec2 unit_circle(float turns) {
     float quarters = floor(turns * 4.0f + 0.5f);
     float x = (turns - quarters * 0.25f) * (2.0f * PI);
     float x2 = x * x;
@@ -21,29 +20,25 @@ FUNC vec2 unit_circle(float turns)
 }
 
 // Density cos / pi.
-FUNC vec3 sample_cosine_hemisphere(vec2 u)
-{
+FUNC vec3 sample_cosine_hemisphere(vec2 u) {
     vec2 circle = unit_circle(u.y) * sqrt(u.x);
     return vec3(circle.x, circle.y, sqrt(1.0f - u.x));
 }
 
 // Barycentric u and v, uniform by area.
-FUNC vec2 sample_triangle(vec2 u)
-{
+FUNC vec2 sample_triangle(vec2 u) {
     float root = sqrt(u.x);
     return vec2(1.0f - root, u.y * root);
 }
 
-struct Frame
-{
+struct Frame {
     vec3 x;
     vec3 y;
     vec3 z;
 };
 
 // Duff et al., "Building an Orthonormal Basis, Revisited", 2017.
-FUNC Frame frame_about(vec3 z)
-{
+FUNC Frame frame_about(vec3 z) {
     float s = z.z < 0.0f ? -1.0f : 1.0f;
     float a = -1.0f / (s + z.z);
     float b = z.x * z.y * a;

@@ -15,7 +15,7 @@ struct PassWork {
     std::uint64_t groups = 0;
 };
 
-class InFlight {
+class SubmissionLog {
   public:
     // `value`: of the timeline, when they are done.
     void submitted(std::uint64_t value, std::string commands, std::vector<PassWork> passes);

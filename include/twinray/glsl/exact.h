@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Error-free float transformations. `precise` is repeated in every helper: it does not reach into callees, and a
 // contracted product would break both the exactness here and the watertightness that rests on it.
-#ifndef TWINRAY_SHARED_EXACT_H
-#define TWINRAY_SHARED_EXACT_H
+#ifndef TWINRAY_EXACT_H
+#define TWINRAY_EXACT_H
 
-const float HALF_ULP = 5.9604644775390625e-08f; // u = 2^-24, the unit roundoff of float32
+const float HALF_ULP = 5.9604644775390625e-08f;  // u = 2^-24, the unit roundoff of float32
 
 // A number with the first 12 bits of its significand. What is left has 12, too, so that products of two parts are
 // exact.
@@ -12,10 +12,8 @@ FUNC float high_part(float x) { return uintBitsToFloat(floatBitsToUint(x) & 0xff
 
 // The rounding error of the product p = fl(a b): a b = p + error, exactly, barring over- and underflow. Dekker, "A
 // floating-point technique for extending the available precision", 1971, but numbers are cut, not rounded, in two.
-FUNC float product_error(float a, float b, float p)
-{
-    if (FUSED_FMA)
-    {
+FUNC float product_error(float a, float b, float p) {
+    if (FUSED_FMA) {
         PRECISE float fused = FUSED(a, b, -p);
         return fused;
     }
@@ -35,8 +33,7 @@ FUNC float product_error(float a, float b, float p)
 }
 
 // The rounding error of the sum s = fl(a + b): a + b = s + error, exactly (Knuth's TwoSum).
-FUNC float sum_error(float a, float b, float s)
-{
+FUNC float sum_error(float a, float b, float s) {
     PRECISE float b_virtual = s - a;
     PRECISE float a_virtual = s - b_virtual;
     PRECISE float b_error = b - b_virtual;
@@ -46,8 +43,7 @@ FUNC float sum_error(float a, float b, float s)
 }
 
 // p - q in doubled precision for the products p = a b and q = c d: the difference, and what is missing from it.
-FUNC float doubled_difference(float a, float b, float c, float d, INOUT(float) missing)
-{
+FUNC float doubled_difference(float a, float b, float c, float d, INOUT(float) missing) {
     PRECISE float p = a * b;
     PRECISE float q = c * d;
     PRECISE float difference = p - q;
@@ -60,8 +56,7 @@ FUNC float doubled_difference(float a, float b, float c, float d, INOUT(float) m
 // a.x b.x + a.y b.y + a.z b.z + c in doubled precision: the sum rounded in float32, which is returned, and what is
 // missing from it (Ogita, Rump, Oishi, "Accurate sum and dot product", 2005), with the sum of the magnitudes that this
 // is made of: it is off by five roundings of those.
-FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing, INOUT(float) missing_size)
-{
+FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing, INOUT(float) missing_size) {
     PRECISE float p0 = a.x * b.x;
     PRECISE float p1 = a.y * b.y;
     PRECISE float p2 = a.z * b.z;
@@ -86,8 +81,7 @@ FUNC float doubled_dot(vec3 a, vec3 b, float c, INOUT(float) missing, INOUT(floa
 }
 
 // The same, rounded once; where something overflows, the plain sum.
-FUNC float accurate_dot(vec3 a, vec3 b, float c)
-{
+FUNC float accurate_dot(vec3 a, vec3 b, float c) {
     float missing = 0.0f;
     float missing_size = 0.0f;
     PRECISE float sum = doubled_dot(a, b, c, missing, missing_size);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The GLSL side of the bridge: gives shared headers the words that both languages understand.
-// Its C++ side is engine/core/shader_bridge.h; no shared header contains a language #ifdef.
-#ifndef TWINRAY_BRIDGE_GLSL
-#define TWINRAY_BRIDGE_GLSL
+// What GLSL needs to compile headers that are written for both languages; twinray/glsl/cpp.h is the same for C++. To be
+// included first.
+#ifndef TWINRAY_COMMON_GLSL
+#define TWINRAY_COMMON_GLSL
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_buffer_reference2 : require
 #extension GL_EXT_buffer_reference_uvec2 : require

@@ -1,22 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Which triangles can be hit at all: those with finite vertices that span an area. Decided exactly: three distinct
 // vertices on a line would otherwise be hit now and then, because a sheared image of them is not quite on a line.
-#ifndef TWINRAY_SHARED_TRIANGLE_H
-#define TWINRAY_SHARED_TRIANGLE_H
-#include "shaders/shared/exact.h"
-#include "shaders/shared/ray.h"
-#include "shaders/shared/transform.h"
+#ifndef TWINRAY_TRIANGLE_H
+#define TWINRAY_TRIANGLE_H
+#include "twinray/glsl/exact.h"
+#include "twinray/glsl/rays.h"
+#include "twinray/glsl/transform.h"
 
 // Whether 12 floats sum to 0, exactly: they are added one by one to an expansion, a sum of floats that do not overlap,
 // which is 0 only if all of them are (Shewchuk, "Adaptive Precision Floating-Point Arithmetic", 1997, theorem 10).
-FUNC bool sums_to_zero(float terms[12])
-{
+FUNC bool sums_to_zero(float terms[12]) {
     float expansion[12];
-    for (uint i = 0u; i < 12u; i = i + 1u)
-    {
+    for (uint i = 0u; i < 12u; i = i + 1u) {
         float carry = terms[i];
-        for (uint j = 0u; j < i; j = j + 1u)
-        {
+        for (uint j = 0u; j < i; j = j + 1u) {
             PRECISE float sum = carry + expansion[j];
             expansion[j] = sum_error(carry, expansion[j], sum);
             carry = sum;
@@ -29,8 +26,7 @@ FUNC bool sums_to_zero(float terms[12])
 }
 
 // Whether (b - a) x (c - a) = 0 for points of the plane: the six products and their rounding errors cancel.
-FUNC bool is_flat(vec2 a, vec2 b, vec2 c)
-{
+FUNC bool is_flat(vec2 a, vec2 b, vec2 c) {
     float terms[12];
     PRECISE float bc = b.x * c.y;
     PRECISE float ba = b.x * a.y;
@@ -54,8 +50,7 @@ FUNC bool is_flat(vec2 a, vec2 b, vec2 c)
 }
 
 // Whether rounding cannot hide that p - q is not 0, for products p and q of rounded differences: 8 roundings of 2^-24.
-FUNC bool is_surely_not_zero(float p, float q)
-{
+FUNC bool is_surely_not_zero(float p, float q) {
     PRECISE float difference = p - q;
     PRECISE float size = abs(p) + abs(q);
     return abs(difference) > size * 4.76837158203125e-07f;
@@ -63,8 +58,7 @@ FUNC bool is_surely_not_zero(float p, float q)
 
 FUNC bool is_finite_triangle(vec3 a, vec3 b, vec3 c) { return is_finite(a) && is_finite(b) && is_finite(c); }
 
-FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c)
-{
+FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c) {
     if (!is_finite_triangle(a, b, c)) return false;
     PRECISE vec3 u = b - a;
     PRECISE vec3 v = c - a;
@@ -75,7 +69,7 @@ FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c)
     float largest = max(largest_entry(a), max(largest_entry(b), largest_entry(c)));
     if (largest == 0.0f) return false;
     float scale = power_of_two_below(largest);
-    if (scale == 0.0f) scale = 1.0f; // denormal vertices
+    if (scale == 0.0f) scale = 1.0f;  // denormal vertices
     a = a / scale;
     b = b / scale;
     c = c / scale;

@@ -1,23 +1,21 @@
 // SPDX-License-Identifier: MIT
 // One placement of a geometry: the bytes of VkAccelerationStructureInstanceKHR, read by both accelerators.
-#ifndef TWINRAY_SHARED_INSTANCE_H
-#define TWINRAY_SHARED_INSTANCE_H
-#include "shaders/shared/ray.h"
-#include "shaders/shared/transform.h"
+#ifndef TWINRAY_INSTANCE_H
+#define TWINRAY_INSTANCE_H
+#include "twinray/glsl/rays.h"
+#include "twinray/glsl/transform.h"
 
-struct InstanceRecord
-{
-    vec4 object_to_world[3];   // rows of a 3x4 matrix
-    uint custom_index_mask;    // 24-bit custom index, 8-bit mask in the high byte
-    uint sbt_offset_flags;     // 24-bit shader binding table offset (0), 8-bit VkGeometryInstanceFlagsKHR
+struct InstanceRecord {
+    vec4 object_to_world[3];  // rows of a 3x4 matrix
+    uint custom_index_mask;   // 24-bit custom index, 8-bit mask in the high byte
+    uint sbt_offset_flags;    // 24-bit shader binding table offset (0), 8-bit VkGeometryInstanceFlagsKHR
     Address geometry;         // address of the accelerator's block for the geometry; 0 = inactive
 };
 BUFFER_OF(InstanceRecord, 16);
 
 // What the block of every geometry begins with: a box around its active triangles in object space. lo > hi: it has
 // none.
-struct GeometryBox
-{
+struct GeometryBox {
     vec3 lo;
     vec3 hi;
 };
@@ -26,9 +24,8 @@ BUFFER_OF(GeometryBox, 8);
 // What follows in the block of every geometry, at GEOMETRY_SOURCE_OFFSET, whichever accelerator it belongs to. Meshes
 // are built in units of `scale`, a power of two near their size, so that neither tiny nor huge ones leave the range of
 // float32; the unit is put back into the map to world space.
-struct GeometrySource
-{
-    Floats positions; // of the mesh, in units of scale; null unless level refined needs them
+struct GeometrySource {
+    Floats positions;  // of the mesh, in units of scale; null unless level refined needs them
     Uints indices;
     float scale;
     uint reserved;
@@ -40,7 +37,7 @@ const uint GEOMETRY_SOURCE_OFFSET = 64u;
 // that (v1 - v0) x (v2 - v0) points to, in object space; TURNED exchanges front and back.
 const uint INSTANCE_DISABLE_CULLING = 1u;
 const uint INSTANCE_FLIP_FACING = 2u;
-const uint INSTANCE_NON_OPAQUE = 8u; // not opaque: the trace program decides about each hit
+const uint INSTANCE_NON_OPAQUE = 8u;  // not opaque: the trace program decides about each hit
 
 // What a geometry is made of.
 const uint GEOMETRY_TRIANGLES = 0u;
@@ -50,8 +47,7 @@ FUNC uint flags_of(InstanceRecord instance) { return instance.sbt_offset_flags >
 FUNC uint custom_index_of(InstanceRecord instance) { return instance.custom_index_mask & 0xffffffu; }
 FUNC uint mask_of(InstanceRecord instance) { return instance.custom_index_mask >> 24u; }
 
-FUNC Rows to_world_of(InstanceRecord instance)
-{
+FUNC Rows to_world_of(InstanceRecord instance) {
     Rows rows;
     rows.r0 = instance.object_to_world[0];
     rows.r1 = instance.object_to_world[1];
@@ -60,12 +56,10 @@ FUNC Rows to_world_of(InstanceRecord instance)
 }
 
 // The instance of what was built, not of what was given.
-FUNC InstanceRecord in_built_units(InstanceRecord instance)
-{
+FUNC InstanceRecord in_built_units(InstanceRecord instance) {
     if (is_null(instance.geometry)) return instance;
     float scale = AT(REF(GeometrySource)(address_after(instance.geometry, GEOMETRY_SOURCE_OFFSET)), 0).scale;
-    for (uint row = 0u; row < 3u; row = row + 1u)
-    {
+    for (uint row = 0u; row < 3u; row = row + 1u) {
         vec4 r = instance.object_to_world[row];
         instance.object_to_world[row] = vec4(r.x * scale, r.y * scale, r.z * scale, r.w);
     }
@@ -74,8 +68,7 @@ FUNC InstanceRecord in_built_units(InstanceRecord instance)
 
 // Whether a map has no entry that is infinite or NaN. An instance whose transform or its inverse has one is inactive:
 // kernels write transforms, too, and nobody can throw there.
-FUNC bool is_finite_map(Rows m)
-{
+FUNC bool is_finite_map(Rows m) {
     return is_finite(vec3(m.r0.x, m.r0.y, m.r0.z)) && is_finite(vec3(m.r1.x, m.r1.y, m.r1.z)) &&
            is_finite(vec3(m.r2.x, m.r2.y, m.r2.z)) && is_finite(vec3(m.r0.w, m.r1.w, m.r2.w));
 }

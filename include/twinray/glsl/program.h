@@ -2,16 +2,15 @@
 // The two functions by which a trace program takes part in a traversal. One GLSL text serves the software traversal,
 // ray queries and ray tracing pipelines. They may be called in any order, more than once, and for hits that do not
 // count in the end, so they must depend on their arguments alone and write nothing.
-#ifndef TWINRAY_SHARED_PROGRAM_H
-#define TWINRAY_SHARED_PROGRAM_H
-#include "shaders/shared/ray.h"
+#ifndef TWINRAY_PROGRAM_H
+#define TWINRAY_PROGRAM_H
+#include "twinray/glsl/rays.h"
 
-struct Candidate
-{
-    uint primitive_index; // box or triangle of the geometry, in the user's numbering
+struct Candidate {
+    uint primitive_index;  // box or triangle of the geometry, in the user's numbering
     uint instance_index;
     uint custom_index;
-    Address user_data; // TraceDesc::user_data; 0 in kernels that call closest_hit or any_hit
+    Address user_data;  // TraceDesc::user_data; 0 in kernels that call closest_hit or any_hit
 };
 
 #ifdef TWINRAY_PROGRAM

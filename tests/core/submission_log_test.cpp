@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What the error of a lost device says.
-#include "engine/core/in_flight.h"
+#include "engine/core/submission_log.h"
 
 namespace twinray {
 namespace {
 
-TEST(InFlight, WhatIsDoneIsNotTold) {
-    InFlight work;
+TEST(SubmissionLog, WhatIsDoneIsNotTold) {
+    SubmissionLog work;
     EXPECT_EQ(work.sentence(), "");
     work.submitted(1, "sync", {{"swtlas_morton", 7}, {"sort_scan", 1}});
     work.submitted(2, "trace", {{"swtlas_trace closest", 625}});
@@ -19,8 +19,8 @@ TEST(InFlight, WhatIsDoneIsNotTold) {
     EXPECT_EQ(work.sentence(), "");
 }
 
-TEST(InFlight, LargePassesComeFirstAndTheRestIsCounted) {
-    InFlight work;
+TEST(SubmissionLog, LargePassesComeFirstAndTheRestIsCounted) {
+    SubmissionLog work;
     work.submitted(1, "a", {{"copy", 0}, {"small", 1}, {"large", 9}, {"middle", 5}});
     for (std::uint64_t value = 2; value < 6; ++value) work.submitted(value, "b", {{"copy", 0}});
     EXPECT_EQ(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/core/in_flight.h"
+#include "engine/core/submission_log.h"
 
 #include <algorithm>
 #include <utility>
@@ -26,15 +26,15 @@ std::string told(const std::string& commands, std::vector<PassWork> passes) {
 
 }  // namespace
 
-void InFlight::submitted(std::uint64_t value, std::string commands, std::vector<PassWork> passes) {
+void SubmissionLog::submitted(std::uint64_t value, std::string commands, std::vector<PassWork> passes) {
     submissions_.push_back({value, std::move(commands), std::move(passes)});
 }
 
-void InFlight::reached(std::uint64_t value) {
+void SubmissionLog::reached(std::uint64_t value) {
     while (!submissions_.empty() && submissions_.front().value <= value) submissions_.pop_front();
 }
 
-std::string InFlight::sentence() const {
+std::string SubmissionLog::sentence() const {
     if (submissions_.empty()) return "";
     std::vector<std::string> first;
     for (std::size_t i = 0; i < std::min(submissions_.size(), most_told); ++i)

@@ -10,8 +10,8 @@ namespace twinray {
 using glm::bitfieldReverse;
 
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/sampling/random.h"
-#include "shaders/sampling/sampling.h"
-#include "shaders/sampling/sobol.h"
+#include "twinray/glsl/random.h"
+#include "twinray/glsl/sampling.h"
+#include "twinray/glsl/sobol.h"
 #include "twinray/glsl/cpp_end.h"
 }  // namespace twinray

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Affine 3x4 row-major maps: rows r with point' = (dot(r0, (p,1)), dot(r1, (p,1)), dot(r2, (p,1))).
-#ifndef TWINRAY_SHARED_TRANSFORM_H
-#define TWINRAY_SHARED_TRANSFORM_H
-#include "shaders/shared/exact.h"
+#ifndef TWINRAY_TRANSFORM_H
+#define TWINRAY_TRANSFORM_H
+#include "twinray/glsl/exact.h"
 
-struct Rows
-{
+struct Rows {
     vec4 r0;
     vec4 r1;
     vec4 r2;
 };
 
-FUNC float row_vector(vec4 row, vec3 v)
-{
+FUNC float row_vector(vec4 row, vec3 v) {
     PRECISE float x = row.x * v.x;
     PRECISE float y = row.y * v.y;
     PRECISE float z = row.z * v.z;
@@ -21,27 +19,21 @@ FUNC float row_vector(vec4 row, vec3 v)
     return sum;
 }
 
-FUNC float row_point(vec4 row, vec3 p)
-{
+FUNC float row_point(vec4 row, vec3 p) {
     PRECISE float sum = row_vector(row, p);
     sum = sum + row.w;
     return sum;
 }
 
-FUNC vec3 transform_vector(Rows m, vec3 v)
-{
+FUNC vec3 transform_vector(Rows m, vec3 v) {
     return vec3(row_vector(m.r0, v), row_vector(m.r1, v), row_vector(m.r2, v));
 }
 FUNC vec3 transform_point(Rows m, vec3 p) { return vec3(row_point(m.r0, p), row_point(m.r1, p), row_point(m.r2, p)); }
 
 // The largest power of two that is not above a positive float (0 for denormals).
-FUNC float power_of_two_below(float largest)
-{
-    return uintBitsToFloat(floatBitsToUint(largest) & 0x7f800000u);
-}
+FUNC float power_of_two_below(float largest) { return uintBitsToFloat(floatBitsToUint(largest) & 0x7f800000u); }
 
-FUNC vec3 cross_precise(vec3 a, vec3 b)
-{
+FUNC vec3 cross_precise(vec3 a, vec3 b) {
     PRECISE float xp = a.y * b.z;
     PRECISE float xq = a.z * b.y;
     PRECISE float yp = a.z * b.x;
@@ -53,8 +45,7 @@ FUNC vec3 cross_precise(vec3 a, vec3 b)
 }
 
 // a x b in doubled precision.
-FUNC vec3 doubled_cross(vec3 a, vec3 b, INOUT(vec3) missing)
-{
+FUNC vec3 doubled_cross(vec3 a, vec3 b, INOUT(vec3) missing) {
     float x_low = 0.0f;
     float y_low = 0.0f;
     float z_low = 0.0f;
@@ -73,8 +64,7 @@ FUNC float largest_coordinate(vec3 lo, vec3 hi) { return max_by_comparison(large
 // The inverse of an invertible map: cofactors over the determinant, both in doubled precision, so that each entry of
 // the linear part is right to a few roundings of itself for condition numbers up to about 10^7. Rows are scaled by
 // powers of two before, which is exact, so that products neither overflow nor vanish.
-FUNC Rows inverse_of(Rows m)
-{
+FUNC Rows inverse_of(Rows m) {
     vec3 a0 = vec3(m.r0.x, m.r0.y, m.r0.z);
     vec3 a1 = vec3(m.r1.x, m.r1.y, m.r1.z);
     vec3 a2 = vec3(m.r2.x, m.r2.y, m.r2.z);
