@@ -76,11 +76,65 @@ nlohmann::json json_of(const ViewFactorResiduals& residuals) {
             {"closure", residuals.closure}};
 }
 
-void run(const Options& options) {
+// What a run tells, whether it is printed or recorded.
+struct Summary {
+    AccelChoice choice;
+    MatrixTotals totals;
+    std::size_t rows = 0;
+    std::uint64_t rays = 0, rays_between_faces = 0;  // of this run, and of pairs
+    double seconds = 0, seconds_of_pairs = 0;
+    ViewFactorResiduals counted;
+    std::optional<ViewFactorResiduals> projected;
+};
+
+void print(const Summary& run, const Options& options) {
+    const MatrixTotals& totals = run.totals;
+    std::cout << run.rows << ' ' << name_of(options.factors.grouping) << " rows, " << totals.entries << " entries, "
+              << totals.rays << " rays in " << run.seconds << " s ("
+              << static_cast<double>(run.rays) / run.seconds / 1e6 << " million a second) " << text_of(run.choice)
+              << ", " << totals.hits << " met a face\nentries by estimator: " << totals.entries_by.at("contour")
+              << " contour, " << totals.entries_by.at("area") << " area, " << totals.entries_by.at("hits") << " hits; "
+              << run.rays_between_faces << " rays between points of faces, " << run.seconds_of_pairs
+              << " s\nwidest 95 % interval: +- " << totals.widest << '\n';
+    print_residuals("as counted", run.counted);
+    if (run.projected) print_residuals("projected", *run.projected);
+}
+
+nlohmann::json fields_of(const Summary& run, const Options& options) {
+    return {{"by", name_of(options.factors.grouping)},
+            {"sequence", name_of(options.factors.sequence)},
+            {"sides", name_of(options.factors.sides)},
+            {"estimator", name_of(options.estimator)},
+            {"entries_by_estimator", run.totals.entries_by},
+            {"rays_between_faces", run.rays_between_faces},
+            {"seconds_of_pairs", run.seconds_of_pairs},
+            {"seed", options.factors.seed},
+            {"rows", run.rows},
+            {"entries", run.totals.entries},
+            {"rays", run.totals.rays},
+            {"hits", run.totals.hits},
+            {"seconds", run.seconds},
+            {"widest_half_interval", run.totals.widest},
+            {"as_counted", json_of(run.counted)},
+            {"projected", run.projected ? json_of(*run.projected) : nlohmann::json()}};
+}
+
+void write_matrices(const Options& options, const std::vector<double>& areas, const std::vector<ViewFactorRow>& rows) {
     const std::string suffix = lower_suffix(options.output);
+    if (suffix == ".csv") write_matrix_csv(options.output, rows);
+    if (suffix == ".npz") write_matrix_npz(options.output, rows, areas);
+    if (!options.shown.matrix.empty())
+        write_matrix(options.shown.matrix, options.scene.filename().string(), options.factors.grouping, rows);
+}
+
+void check_outputs(const Options& options) {
     check_writable(options.output);
     check_pictures(options.pictures);
     check_writable(options.shown.matrix);
+}
+
+void run(const Options& options) {
+    check_outputs(options);
     const Scene scene = load_scene(options.scene, options.common);
     const std::unique_ptr<Context> context = make_context(options.common);
     const AccelChoice choice = choose_accel(context->properties(), options.accel);
@@ -88,59 +142,36 @@ void run(const Options& options) {
     Faces faces(*context, scene);
     options.groups.set_groups(faces);
     check_shown(options.shown, faces.group_count(options.factors.grouping));
+
+    Summary summary;
+    summary.choice = choice;
     const auto start = std::chrono::steady_clock::now();
     const PairExchanges pairs = compute_pairs(options, *accel, scene, faces);
-    const double seconds_of_pairs = seconds_since(start);
+    summary.rays_between_faces = pairs.rays;
+    summary.seconds_of_pairs = seconds_since(start);
     ViewFactors factors(*accel, faces, options.factors, pairs.known);
     ComputedRows computed =
         compute(options, factors, configuration_of(options.factors, options.estimator, choice.name(), scene, faces));
-    const double seconds = seconds_since(start), rate = static_cast<double>(computed.rays()) / seconds;
+    summary.seconds = seconds_since(start);
+    summary.rays = computed.rays();
     std::vector<ViewFactorRow>& rows = computed.rows;
-    const MatrixTotals totals = totals_of(rows);
-    const ViewFactorResiduals before = residuals_of(rows, factors.areas());
-    std::optional<ViewFactorResiduals> after;
+    summary.rows = rows.size();
+    summary.totals = totals_of(rows);
+    summary.counted = residuals_of(rows, factors.areas());
     if (options.projects) {
         project(rows, factors.areas());
-        after = residuals_of(rows, factors.areas());
+        summary.projected = residuals_of(rows, factors.areas());
     }
-    if (suffix == ".csv") write_matrix_csv(options.output, rows);
-    if (suffix == ".npz") write_matrix_npz(options.output, rows, factors.areas());
-    const std::string name = options.scene.filename().string();
-    if (!options.shown.matrix.empty()) write_matrix(options.shown.matrix, name, options.factors.grouping, rows);
+    write_matrices(options, factors.areas(), rows);
     if (!options.pictures.files.empty())
         write_pictures(options.pictures, *accel, scene,
-                       picture_of_view_factors(options.pictures, options.shown, name,
+                       picture_of_view_factors(options.pictures, options.shown, options.scene.filename().string(),
                                                faces.groups(options.factors.grouping), rows));
     if (!options.output.empty()) RowFile(rows_file(options.output), {}).remove();
-    if (!options.common.quiet) {
-        std::cout << rows.size() << ' ' << name_of(options.factors.grouping) << " rows, " << totals.entries
-                  << " entries, " << totals.rays << " rays in " << seconds << " s (" << rate / 1e6
-                  << " million a second) " << text_of(choice) << ", " << totals.hits
-                  << " met a face\nentries by estimator: " << totals.entries_by.at("contour") << " contour, "
-                  << totals.entries_by.at("area") << " area, " << totals.entries_by.at("hits") << " hits; "
-                  << pairs.rays << " rays between points of faces, " << seconds_of_pairs
-                  << " s\nwidest 95 % interval: +- " << totals.widest << '\n';
-        print_residuals("as counted", before);
-        if (after) print_residuals("projected", *after);
-    }
+    if (!options.common.quiet) print(summary, options);
     nlohmann::json record = base_record("twinray-viewfactors/1", *context, options.scene, scene);
     record.update(describe(choice));
-    record.update({{"by", name_of(options.factors.grouping)},
-                   {"sequence", name_of(options.factors.sequence)},
-                   {"sides", name_of(options.factors.sides)},
-                   {"estimator", name_of(options.estimator)},
-                   {"entries_by_estimator", totals.entries_by},
-                   {"rays_between_faces", pairs.rays},
-                   {"seconds_of_pairs", seconds_of_pairs},
-                   {"seed", options.factors.seed},
-                   {"rows", rows.size()},
-                   {"entries", totals.entries},
-                   {"rays", totals.rays},
-                   {"hits", totals.hits},
-                   {"seconds", seconds},
-                   {"widest_half_interval", totals.widest},
-                   {"as_counted", json_of(before)},
-                   {"projected", after ? json_of(*after) : nlohmann::json()}});
+    record.update(fields_of(summary, options));
     append_json(options.common.json, record);
 }
 

@@ -26,7 +26,7 @@ struct HitsOfRays {
 
 // Finds every triangle that rays meet, each once, at level watertight: a closed surface is met as often from outside as
 // from inside, and of the triangles around an edge or a corner SwTlas names exactly one a crossing. Filters of
-// instances are not asked: what is filtered counts. Uses mask and cull of TraceDesc.
+// instances are not asked: what is non-opaque counts. Uses mask and cull of TraceDesc.
 //
 // Each call syncs, submits and waits. Memory is kept for the next one.
 class AllHits {

@@ -11,7 +11,7 @@ namespace {
 // The first of the features, for messages.
 const char* words_for(uint features) {
     if (features & FEATURE_BOXES) return "boxes";
-    if (features & FEATURE_FILTERS) return "filtered instances";
+    if (features & FEATURE_FILTERS) return "non-opaque instances";
     if (features & FEATURE_INSTANCES) return "several instances";
     if (features & FEATURE_TRANSFORMS) return "instances with transforms";
     if (features & FEATURE_MASKS) return "instances that the mask may hide";
@@ -124,7 +124,7 @@ void AccelBackend::wait_for_programs() const {
     if (pipeline_variants_) pipeline_variants_->wait();
 }
 
-// Boxes that nothing can meet, and hits that nobody judges, are no answer.
+// Boxes that nothing can meet, and hits that nobody decides about, are no answer.
 const TraceProgram& AccelBackend::program_for(const TraceDesc& desc) const {
     const uint needed = features_of(accel_traits(), traits_, TraceTraits::of(desc));
     if (const uint of_user = needed & (FEATURE_BOXES | FEATURE_FILTERS); !desc.program && of_user)

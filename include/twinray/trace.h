@@ -101,7 +101,7 @@ struct TraceDesc {
     // Of any hits: of each Hit only `hit` is written for sure; the rest is undefined.
     bool occlusion_only = false;
     RayOrder order = RayOrder::given;
-    // Needed where the scene has boxes or filtered instances; made by AbstractAccel::make_program of the same
+    // Needed where the scene has boxes or non-opaque instances; made by AbstractAccel::make_program of the same
     // accelerator, and kept alive until the GPU is done.
     const TraceProgram* program = nullptr;
     std::uint64_t user_data = 0;  // for the program: most often the device address of what its primitives are

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every triangle is offered as if its instance were filtered, listed and refused, so that nothing ends the ray.
+// Every triangle is offered as if its instance were non-opaque, listed and refused, so that nothing ends the ray.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define TWINRAY_PROGRAM

@@ -10,7 +10,7 @@
 #include "shaders/shared/refine_scene.h"
 #endif
 
-// Every instance is treated as filtered, in kernels that have FEATURE_FILTERS. The value is that of SPIR-V's ray flag
+// Every instance is treated as non-opaque, in kernels that have FEATURE_FILTERS. The value is that of SPIR-V's ray flag
 // NoOpaque.
 const uint ALL_NON_OPAQUE = 2u;
 

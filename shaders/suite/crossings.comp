@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How often each ray crosses the triangles of a scene whose instances are all filtered: every hit is offered, counted
+// How often each ray crosses the triangles of a scene whose instances are all non-opaque: every hit is offered, counted
 // and refused, so that nothing ends the ray. A closest hit would hide that an edge is hit twice.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -146,7 +146,7 @@ TEST_F(SwSave, WhatIsLoadedTakesEditsLikeAnyOther) {
     EXPECT_EQ(loaded.accel->n_geometries(), accel.n_geometries());
 }
 
-TEST_F(SwSave, BoxesAndFilteredInstancesComeBackToo) {
+TEST_F(SwSave, BoxesAndNonOpaqueInstancesComeBackToo) {
     const std::vector<vec4> spheres = {vec4(0, 0, 0, 0.5f), vec4(1, 0, 0, 0.25f), vec4(0, 1, 1, 0.75f)};
     std::vector<Bounds> boxes;
     for (const vec4& sphere : spheres) boxes.push_back({vec3(sphere) - sphere.w, vec3(sphere) + sphere.w});

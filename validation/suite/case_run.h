@@ -45,7 +45,7 @@ class CaseRun {
     // with 0 SW_LEAK, SW_FALSE, T_ERR and 0 hits of invalid rays; a fault of hardware is the driver's.
     Measured measure(const World& world, std::span<const Ray> rays, const Measurement& measurement = {});
 
-    // Counts how often each ray crosses `world`, all of whose instances are filtered, on the configurations that can
+    // Counts how often each ray crosses `world`, all of whose instances are non-opaque, on the configurations that can
     // (see CrossingCounter: not the pipeline), and records the counts that are not `right`: those of ours are faults,
     // of hardware the driver's. Record::counts has them by number: CROSSED_0, CROSSED_2, ..., CROSSED_OFTEN from 8 on.
     using RightCount = std::function<bool(const Ray&, uint)>;

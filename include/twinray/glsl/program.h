@@ -19,7 +19,7 @@ struct Candidate {
 // (t_min, t_max) does not count. A point outside the box may or may not be found.
 FUNC bool intersect_primitive(Candidate candidate, Ray ray_local, INOUT(float) t, INOUT(vec2) uv);
 
-// Whether a hit of an instance that is filtered counts (alpha test): its t and u, v.
+// Whether a hit of an instance that is non-opaque counts (alpha test): its t and u, v.
 FUNC bool accept_hit(Candidate candidate, float t, vec2 uv);
 #else
 FUNC bool intersect_primitive(Candidate, Ray, INOUT(float), INOUT(vec2)) { return false; }
