@@ -5,6 +5,7 @@
 
 #include "engine/core/statistics.h"
 #include <twinray/geometry.h>
+#include "twinray/glsl/cpp.h"
 
 namespace twinray::bench {
 namespace {

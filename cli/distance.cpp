@@ -16,6 +16,7 @@
 #include "cli/query_points.h"
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray::cli {
 namespace {

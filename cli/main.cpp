@@ -10,6 +10,7 @@
 #include "cli/commands.h"
 #include "engine/core/cpu_vectors.h"
 #include "twinray_version.h"
+#include <twinray/context.h>
 
 namespace twinray::cli {
 namespace {

@@ -6,6 +6,8 @@
 
 #include "all_hits_hw.spv.h"
 #include "all_hits_sw.spv.h"
+#include "engine/accel/features_of.h"
+#include "engine/accel/instance_record.h"
 #include "engine/core/error.h"
 
 namespace twinray {

@@ -7,6 +7,7 @@
 
 #include <twinray/abstract_accel.h>
 #include "engine/core/device_list.h"
+#include "engine/core/ray.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 
+#include <twinray/context.h>
 #include "engine/core/pipeline_store.h"
 
 namespace twinray {

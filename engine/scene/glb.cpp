@@ -10,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 namespace {

@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
 #include "engine/scene/image_exr.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 namespace {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "engine/scene/rig.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 

@@ -4,6 +4,7 @@
 
 #include <twinray/geometry.h>
 #include <twinray/scene.h>
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 namespace {

@@ -7,6 +7,7 @@
 #include <twinray/scene.h>
 
 #include "samples/support/text.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray::embed_renderer {
 using samples::fail;

@@ -12,6 +12,7 @@
 #include <twinray/scene.h>
 
 #include "samples/support/text.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray::path_tracer {
 using samples::fail;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include "twinray/glsl/cpp.h"
 
 namespace twinray::suite {
 namespace {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twinray/glsl/cpp.h"
+
 namespace twinray {
 namespace {
 

@@ -5,6 +5,7 @@
 
 #include "engine/scene/importers/gltf_nodes.h"
 #include "engine/scene/rig.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 namespace {

@@ -14,6 +14,7 @@
 #include "engine/scene/importers/polygon.h"
 #include "engine/scene/importers/words.h"
 #include "engine/scene/local_origin.h"
+#include "engine/scene/mesh.h"
 
 namespace twinray {
 namespace {
