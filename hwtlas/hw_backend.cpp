@@ -150,7 +150,7 @@ std::unique_ptr<AccelBackend::BuiltTlas> HwBackend::build_tlas(Commands& command
     std::unique_ptr<HwTopLevel> made;
     const std::size_t capacity = capacity_for(input.count, level ? level->tlas.capacity : 0);
     if (!level || capacity != level->tlas.capacity) {
-        made = std::make_unique<HwTopLevel>(tlas_builder_.make(commands, capacity, input.refinement));
+        made = std::make_unique<HwTopLevel>(tlas_builder_.make(commands, capacity, input.header));
         level = made.get();
     }
     tlas_builder_.record_build(commands, level->tlas, {input.records, input.count, input.bound, input.cost},

@@ -12,6 +12,6 @@ using std::uint64_t;
 #include "shaders/shared/hw_build.h"
 #include "twinray/glsl/cpp_end.h"
 
-static_assert(sizeof(HwGeometry) == 48 && sizeof(HwInstance) == 16 && sizeof(HwTlasHeader) == 24 &&
+static_assert(sizeof(HwGeometry) == 48 && sizeof(HwInstance) == 16 && sizeof(HwTlasHeader) == 32 &&
               sizeof(HwTrianglesArgs) == 80 && sizeof(HwGatherArgs) == 48);
 }  // namespace twinray

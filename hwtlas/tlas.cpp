@@ -65,7 +65,7 @@ BuildBytes TlasBuilder::bytes(std::size_t count, std::size_t capacity) const {
             sizes.scratch + capacity * sizeof(InstanceRecord) + sort + areas.bytes()};
 }
 
-Tlas TlasBuilder::make(Commands& commands, std::size_t capacity, Ref<RefineScene> refinement) const {
+Tlas TlasBuilder::make(Commands& commands, std::size_t capacity, const AccelHeader& header) const {
     Tlas tlas;
     tlas.capacity = capacity;
     tlas.driver_records = Buffer(
@@ -78,8 +78,7 @@ Tlas TlasBuilder::make(Commands& commands, std::size_t capacity, Ref<RefineScene
         AccelerationStructure(context_, "tlas", VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, sizes.structure);
     tlas.scratch = make_build_scratch(context_, "tlas scratch", sizes.scratch);
     const auto pass = commands.pass("hwtlas scene");
-    commands.write(tlas.scene,
-                   HwTlasHeader{tlas.structure.address(), tlas.instances.ref<HwInstance>(), refinement.address});
+    commands.write(tlas.scene, HwTlasHeader{header, tlas.structure.address(), tlas.instances.ref<HwInstance>()});
     return tlas;
 }
 

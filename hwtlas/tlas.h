@@ -38,7 +38,7 @@ class TlasBuilder {
     TlasBuilder(Context& context, bool reorder);
 
     BuildBytes bytes(std::size_t count, std::size_t capacity) const;
-    Tlas make(Commands& commands, std::size_t capacity, Ref<RefineScene> refinement) const;
+    Tlas make(Commands& commands, std::size_t capacity, const AccelHeader& header) const;
     // can_update: record_update() may follow.
     void record_build(Commands& commands, const Tlas& tlas, const TlasInput& input, bool can_update) const;
     // The instances only moved since the last build.

@@ -52,5 +52,5 @@ inline TraversalSteps& traversal_steps() {
 
 static_assert(sizeof(BvhNode) == 64 && sizeof(BvhChild) == 32 && sizeof(BvhTriangle) == 40 &&
               sizeof(SwInstance) == 96 && sizeof(CompressedRecord) == 40);
-static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 64 && sizeof(SwTlasHeader) == 72);
+static_assert(sizeof(Bvh) == 40 && sizeof(SwGeometry) == 64 && sizeof(SwTlasHeader) == 80);
 }  // namespace twinray

@@ -49,11 +49,12 @@ struct SwBackend::SwBuiltTlas : BuiltTlas {
     BuildTree tree(uint count) const {
         BuildTree tree{};
         tree.count = count;
-        tree.bvh = {address};
+        tree.bvh = bvh();
         tree.nodes = nodes();
         tree.records = records();
         return tree;
     }
+    Ref<Bvh> bvh() const { return {address + offsetof(SwTlasHeader, bvh)}; }
     Ref<BvhNode> nodes() const { return {layout.node_count ? address + layout.nodes : 0}; }
     Ref<SwInstance> instances() const { return {address + layout.instances}; }
     Ref<CompressedRecord> records() const { return {layout.record_count ? address + layout.records : 0}; }
@@ -181,8 +182,8 @@ std::unique_ptr<AccelBackend::BuiltTlas> SwBackend::build_tlas(Commands& command
         made->bytes = made->buffer.bytes();
         scene = made.get();
     }
-    const SwTlasHeader header{empty_bvh(scene->nodes().address), scene->records(), scene->instances(), input.count,
-                              input.refinement.address};
+    const SwTlasHeader header{input.header, empty_bvh(scene->nodes().address), scene->records(), scene->instances(),
+                              input.count};
     {
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);
@@ -190,7 +191,7 @@ std::unique_ptr<AccelBackend::BuiltTlas> SwBackend::build_tlas(Commands& command
     builder_.record_instances(commands,
                               plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
                               {scene->tree(input.count), input.records, scene->instances()});
-    const Builder::Measured measured{{scene->address}, scene->records(), input.count, input.cost};
+    const Builder::Measured measured{scene->bvh(), scene->records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), true);
     return made;
 }
@@ -220,7 +221,7 @@ void SwBackend::refit_tlas(Commands& commands, const TlasInput& input, const Bui
     builder_.record_refit(commands,
                           plan_build(std::span(&input.count, 1), options().layout, context().state().tuning()),
                           {scene.tree(input.count), input.records, scene.instances()});
-    const Builder::Measured measured{{scene.address}, scene.records(), input.count, input.cost};
+    const Builder::Measured measured{scene.bvh(), scene.records(), input.count, input.cost};
     builder_.record_costs(commands, std::span(&measured, 1), false);
 }
 

@@ -56,7 +56,7 @@ void main()
     if (!closest_hit(args.scene, ray, hit)) return;
     Placement placement = placement_of(AT(REF(InstanceRecord)(args.scene), 0));
     TriangleVertices vertices = TriangleVertices(vec3(0.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0));
-    SurfacePoint point = surface_point(placement, vertices, crossing_of(ray, placement, vertices).xy);
+    SurfacePoint point = surface_point(placement, vertices, crossing_of(ray, placement, vertices).uv);
     ray.origin = spawn_position(point, true);
     ray.direction = sample_cosine_hemisphere(unit_floats(sobol_point(uvec4(0u), 1u).xy));
     if (!any_hit(args.scene, ray)) AT(args.hits, 0) = hit;

@@ -43,6 +43,9 @@ void AbstractAccel::update_transform_at(AccelHandle handle, std::size_t index, c
 void AbstractAccel::update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count) {
     backend_->update_transforms(handle, transforms, count);
 }
+void AbstractAccel::update_options(AccelHandle handle, std::size_t index, const InstanceOptions& options) {
+    backend_->update_options(handle, index, options);
+}
 InstanceRange AbstractAccel::instance_buffer(AccelHandle handle) const { return backend_->instance_buffer(handle); }
 void AbstractAccel::mark_transforms_dirty(AccelHandle handle) { backend_->mark_transforms_dirty(handle); }
 bool AbstractAccel::is_valid(AccelHandle handle) const { return backend_->is_valid(handle); }
@@ -85,6 +88,16 @@ std::vector<Hit> AbstractAccel::closest_hits(std::span<const Ray> rays, const Tr
 std::vector<Hit> AbstractAccel::any_hits(std::span<const Ray> rays, const TraceDesc& desc) {
     return backend_->any_hits(rays, desc);
 }
+std::vector<Surface> AbstractAccel::surfaces(std::span<const Ray> rays, std::span<const Hit> hits) const {
+    return backend_->surfaces(rays, hits);
+}
+std::vector<vec4> AbstractAccel::attributes(std::string_view name, std::span<const Ray> rays, std::span<const Hit> hits,
+                                            vec4 missing) const {
+    return backend_->attributes(name, rays, hits, missing);
+}
+uint AbstractAccel::attribute_number(std::string_view name) const { return backend_->attribute_number(name); }
+AccelHandle AbstractAccel::handle_of(const Hit& hit) const { return backend_->handle_of(hit); }
+std::size_t AbstractAccel::index_in_handle(const Hit& hit) const { return backend_->index_in_handle(hit); }
 uint AbstractAccel::features_for(const TraceDesc& desc) const { return backend_->features_for(desc); }
 void AbstractAccel::wait_for_programs() const { backend_->wait_for_programs(); }
 std::unique_ptr<TraceProgram> AbstractAccel::make_program(const TraceProgramCode& code, uint features) const {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/accel/ray_sort.h"
+#include "engine/accel/surface_kernels.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -33,6 +34,7 @@ AccelBackend::AccelBackend(Context& context, std::string name, const AccelOption
       instances_(context),
       bound_(context),
       scene_costs_(context) {
+    if (options.keeps_surfaces) surfaces_ = std::make_unique<SurfaceTables>(context);
     if (options.level < Level::refined) return;
     if (!context.properties().shader_float64)
         fail(name_, ": ", name_of(feature_of(options.level)), " needs float64, which device '",
@@ -43,21 +45,21 @@ AccelBackend::AccelBackend(Context& context, std::string name, const AccelOption
 AccelBackend::~AccelBackend() = default;
 
 AccelHandle AccelBackend::push(const MeshView& mesh, const Transform& transform, const InstanceOptions& options) {
-    return place(Geometry(mesh, unit_of(mesh.positions)), std::span(&transform, 1), std::span(&options, 1));
+    return place(Geometry(mesh, unit_of(mesh.positions)), &mesh, std::span(&transform, 1), std::span(&options, 1));
 }
 AccelHandle AccelBackend::push(const MeshView& mesh, std::span<const Transform> transforms,
                                std::span<const InstanceOptions> options) {
-    return place(Geometry(mesh, unit_of(mesh.positions)), transforms, options);
+    return place(Geometry(mesh, unit_of(mesh.positions)), &mesh, transforms, options);
 }
 AccelHandle AccelBackend::push(const BoxesView& boxes, const Transform& transform, const InstanceOptions& options) {
-    return place(Geometry(boxes), std::span(&transform, 1), std::span(&options, 1));
+    return place(Geometry(boxes), nullptr, std::span(&transform, 1), std::span(&options, 1));
 }
 AccelHandle AccelBackend::push(const BoxesView& boxes, std::span<const Transform> transforms,
                                std::span<const InstanceOptions> options) {
-    return place(Geometry(boxes), transforms, options);
+    return place(Geometry(boxes), nullptr, transforms, options);
 }
 
-AccelHandle AccelBackend::place(Geometry&& geometry, std::span<const Transform> transforms,
+AccelHandle AccelBackend::place(Geometry&& geometry, const MeshView* mesh, std::span<const Transform> transforms,
                                 std::span<const InstanceOptions> options) {
     if (!options.empty() && options.size() != transforms.size())
         fail(name_, ": mesh '", geometry.name, "': ", options.size(), " instance options for ", transforms.size(),
@@ -67,10 +69,12 @@ AccelHandle AccelBackend::place(Geometry&& geometry, std::span<const Transform> 
                           nullptr,
                           {},
                           {},
+                          {},
                           {}};
     for (std::size_t i = 0; i < transforms.size(); ++i)
         pushed.instances.records.push_back(
             checked_record(pushed, i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
+    if (surfaces_ && mesh) pushed.surface = surfaces_->slice_of(*mesh);
     warn_of_inactive_triangles(pushed.geometry);
     const AccelHandle handle{next_handle()};
     pushed_.emplace(handle.id, std::move(pushed));
@@ -80,7 +84,7 @@ AccelHandle AccelBackend::place(Geometry&& geometry, std::span<const Transform> 
 
 AccelHandle AccelBackend::push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
                                      std::span<const InstanceRecord> records) {
-    PushedGeometry pushed{std::move(geometry), std::move(block), std::move(built), {}, {}, {}};
+    PushedGeometry pushed{std::move(geometry), std::move(block), std::move(built), {}, {}, {}, {}};
     for (const InstanceRecord& record : records) {
         pushed.instances.records.push_back(make_instance_record(transform_of(record), options_of(record)));
         pushed.instances.records.back().geometry = pushed.block.address();
@@ -102,21 +106,28 @@ bool AccelBackend::erase(AccelHandle handle) {
 
 void AccelBackend::update(AccelHandle handle, const MeshView& mesh) {
     live(handle, "update");
-    replace(handle, Geometry(mesh, unit_of(mesh.positions)));
+    replace(handle, Geometry(mesh, unit_of(mesh.positions)), &mesh);
 }
 void AccelBackend::update(AccelHandle handle, const BoxesView& boxes) {
     live(handle, "update");
-    replace(handle, Geometry(boxes));
+    replace(handle, Geometry(boxes), nullptr);
 }
 
-void AccelBackend::replace(AccelHandle handle, Geometry&& geometry) {
+void AccelBackend::replace(AccelHandle handle, Geometry&& geometry, const MeshView* mesh) {
     PushedGeometry& pushed = live(handle, "update");
+    SurfaceSlice surface = surfaces_ && mesh ? surfaces_->slice_of(*mesh) : SurfaceSlice{};
     warn_of_inactive_triangles(geometry);
     if (pushed.built)
-        outdated_.push_back(
-            {std::move(pushed.geometry), {}, std::move(pushed.built), {}, std::move(pushed.vertices), {}});
+        outdated_.push_back({std::move(pushed.geometry),
+                             {},
+                             std::move(pushed.built),
+                             {},
+                             std::move(pushed.vertices),
+                             std::move(pushed.surface),
+                             {}});
     pushed.geometry = std::move(geometry);
     pushed.vertices = {};
+    pushed.surface = std::move(surface);
     pushed.has_source = false;
     mark(Dirty::structure);
 }

@@ -16,6 +16,7 @@
 #include "engine/accel/instance_array.h"
 #include "engine/accel/pipeline_variants.h"
 #include "engine/accel/refinement.h"
+#include "engine/accel/surface_tables.h"
 #include "engine/accel/trace_program.h"
 #include "engine/accel/vertices.h"
 #include "engine/accel/world_bound.h"
@@ -24,6 +25,7 @@
 namespace twinray {
 
 class RaySort;
+struct SurfaceKernels;
 
 // Its public functions are those of AbstractAccel, which says what they do.
 class AccelBackend {
@@ -46,6 +48,7 @@ class AccelBackend {
     void update_transforms(AccelHandle handle, std::span<const Transform> transforms);
     void update_transform_at(AccelHandle handle, std::size_t index, const Transform& transform);
     void update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count);
+    void update_options(AccelHandle handle, std::size_t index, const InstanceOptions& options);
     InstanceRange instance_buffer(AccelHandle handle) const;
     void mark_transforms_dirty(AccelHandle handle);
     bool is_valid(AccelHandle handle) const { return pushed_.contains(handle.id); }
@@ -76,6 +79,12 @@ class AccelBackend {
     void trace(Commands& commands, const AccelView& view, const TraceDesc& desc, Pace& pace) const;
     std::vector<Hit> closest_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
     std::vector<Hit> any_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
+    std::vector<Surface> surfaces(std::span<const Ray> rays, std::span<const Hit> hits) const;
+    std::vector<vec4> attributes(std::string_view name, std::span<const Ray> rays, std::span<const Hit> hits,
+                                 vec4 missing) const;
+    uint attribute_number(std::string_view name) const;
+    AccelHandle handle_of(const Hit& hit) const;
+    std::size_t index_in_handle(const Hit& hit) const;
     uint features_for(const TraceDesc& desc) const;
     void wait_for_programs() const;
     std::unique_ptr<TraceProgram> make_program(const TraceProgramCode& code, uint features = FEATURES_ALL) const;
@@ -90,6 +99,9 @@ class AccelBackend {
     MemoryUsage memory_usage() const;
     BuildBytes memory_requirements() const;
     BuildBytes memory_requirements(std::span<const GeometrySize> geometries, std::size_t instance_count) const;
+    // As it is now, on the device too, for which it waits; with its face metadata as materials.
+    Mesh held_mesh(AccelHandle handle) const;
+    SyncPoint last_sync() const { return synced_; }
     const AccelOptions& options() const { return options_; }
     Context& context() const { return context_; }
     const std::string& name() const { return name_; }
@@ -130,9 +142,9 @@ class AccelBackend {
         Ref<InstanceRecord> records;
         uint count = 0;
         Ref<WorldBound> bound;
-        bool will_move = false;            // refits may follow
-        CostTarget cost;                   // as in GeometryInput
-        Ref<RefineScene> refinement = {};  // for its header; null below Level::refined
+        bool will_move = false;   // refits may follow
+        CostTarget cost;          // as in GeometryInput
+        AccelHeader header = {};  // what the top level begins with
     };
     static constexpr std::uint64_t geometry_block_bytes = GEOMETRY_SOURCE_OFFSET + sizeof(GeometrySource);
     static constexpr double default_rebuild_ratio = 1.5;
@@ -183,6 +195,7 @@ class AccelBackend {
         std::unique_ptr<BuiltGeometry> built;  // null: `geometry` is not built yet
         SyncPoint built_at;
         VertexSlice vertices;
+        SurfaceSlice surface;
         InstanceSlice instances;
         bool has_source = false;  // the block's GeometrySource is that of `geometry`
 
@@ -197,6 +210,7 @@ class AccelBackend {
         std::vector<PushedGeometry*> sources;  // whose GeometrySource was written
         std::vector<bool> is_rebuilt;          // by moved item of `vertices`, which come first
         std::optional<Buffer> refinement;
+        SurfaceTables::Staged surfaces;
         std::vector<PushedGeometry*> building;
         std::vector<std::unique_ptr<BuiltGeometry>> built;  // by `building`
         std::vector<InstanceSlice*> slices;
@@ -207,24 +221,44 @@ class AccelBackend {
 
         void add(const Work& work, std::vector<std::unique_ptr<BuiltGeometry>>&& done);
     };
+    // Whose instances the last sync placed, made by the first question after it.
+    struct InstanceOwners {
+        struct Owner {
+            AccelHandle handle;
+            std::size_t first_instance, primitive_count;
+            bool has_faces;
+        };
+        std::uint64_t revision = 0;
+        std::vector<uint> of_instance;  // index into `all`
+        std::vector<Owner> all;
+    };
     enum class Dirty : std::uint8_t { no, compaction, moves, structure };  // moves: of instances and of vertices
 
     void mark(Dirty what) { dirty_ = std::max(dirty_, what); }
-    AccelHandle place(Geometry&& geometry, std::span<const Transform> transforms,
+    AccelHandle place(Geometry&& geometry, const MeshView* mesh, std::span<const Transform> transforms,
                       std::span<const InstanceOptions> options);
-    void replace(AccelHandle handle, Geometry&& geometry);
+    void replace(AccelHandle handle, Geometry&& geometry, const MeshView* mesh);
     InstanceRecord checked_record(const PushedGeometry& pushed, std::size_t index, const Transform& transform,
                                   const InstanceOptions& options) const;
     PushedGeometry& live(AccelHandle handle, const char* action);
     const PushedGeometry& live(AccelHandle handle, const char* action) const;
     void warn_of_inactive_triangles(const Geometry& geometry) const;
+    const InstanceOwners& instance_owners(const char* action) const;
+    const InstanceOwners::Owner& owner_of(const Hit& hit, const char* action) const;
+    void check_keeps_surfaces(const char* action) const;
+    void check_hits(std::span<const Ray> rays, std::span<const Hit> hits, const char* action) const;
+    template <class Out, class Record>
+    std::vector<Out> of_hits(std::span<const Ray> rays, std::span<const Hit> hits, const Record& record) const;
     PushedGeometry& checked_for_vertices(AccelHandle handle, std::size_t count);
     void check_count(AccelHandle handle, const PushedGeometry& pushed, std::size_t count) const;
     void check_index(AccelHandle handle, const PushedGeometry& pushed, std::size_t index, const char* action) const;
     Staged stage(Commands& commands);
     void stage_vertices(Commands& commands, Staged& staged);
+    void stage_surfaces(Commands& commands, Staged& staged);
+    // On the device, whether their vertices move or not.
+    bool keeps_meshes() const { return refinement_ || surfaces_; }
     void stage_sources(Commands& commands, Staged& staged);
-    bool lacks_refinement(const PushedGeometry& pushed) const;
+    bool lacks_mesh(const PushedGeometry& pushed) const;
     void stage_geometries(Commands& commands, Staged& staged);
     void stage_scene(Commands& commands, Staged& staged);
     void commit(Staged&& staged, SyncPoint done);
@@ -249,7 +283,10 @@ class AccelBackend {
     AccelOptions options_;
     VertexArrays vertices_;
     InstanceArray instances_;
-    std::unique_ptr<Refinement> refinement_;  // null below Level::refined
+    std::unique_ptr<Refinement> refinement_;                   // null below Level::refined
+    std::unique_ptr<SurfaceTables> surfaces_;                  // null without AccelOptions::keeps_surfaces
+    mutable std::unique_ptr<SurfaceKernels> surface_kernels_;  // made by the first host that asks for surfaces
+    mutable InstanceOwners owners_;
     WorldBoundKernel bound_;
     CostLog scene_costs_;
     double rebuild_ratio_ = default_rebuild_ratio;

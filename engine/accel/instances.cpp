@@ -62,6 +62,13 @@ void AccelBackend::update_transform_at(AccelHandle handle, std::size_t index, co
     mark(Dirty::moves);
 }
 
+void AccelBackend::update_options(AccelHandle handle, std::size_t index, const InstanceOptions& options) {
+    const Transform transform = get_instance(handle, index).transform;
+    PushedGeometry& pushed = live(handle, "update_options");
+    pushed.instances.edit(index, checked_record(pushed, index, transform, options));
+    mark(Dirty::structure);
+}
+
 InstanceRange AccelBackend::instance_buffer(AccelHandle handle) const {
     const PushedGeometry& pushed = live(handle, "instance_buffer");
     if (dirty_ == Dirty::structure || !pushed.instances.first)

@@ -10,9 +10,11 @@ MemoryUsage AccelBackend::memory_usage() const {
     if (scene_) usage.scene = scene_->bytes;
     if (scene_) usage.scratch = scene_->scratch_bytes;
     usage.instances = instances_.buffer().bytes() + (refinement_ ? refinement_->bytes() : 0);
+    if (surfaces_) usage.surfaces = surfaces_->bytes();
     for (const auto& [id, pushed] : pushed_) {
         usage.blocks += pushed.block.bytes();
         usage.vertices += pushed.vertices.bytes();
+        usage.surfaces += pushed.surface.bytes();
         if (pushed.built) usage.geometries += pushed.built->bytes;
     }
     return usage;

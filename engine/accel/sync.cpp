@@ -60,14 +60,14 @@ void AccelBackend::stage_vertices(Commands& commands, Staged& staged) {
     for (auto& [id, pushed] : pushed_)
         if (pushed.vertices.edited) items.push_back({&pushed.geometry, &pushed.vertices});
     for (auto& [id, pushed] : pushed_)
-        if (lacks_refinement(pushed)) items.push_back({&pushed.geometry, &pushed.vertices});
+        if (lacks_mesh(pushed)) items.push_back({&pushed.geometry, &pushed.vertices});
     staged.vertices = vertices_.stage(commands, std::move(items));
     stage_sources(commands, staged);
 }
 
-// Whether refining lacks its mesh on the device, which no edit brings there.
-bool AccelBackend::lacks_refinement(const PushedGeometry& pushed) const {
-    return refinement_ && !pushed.vertices.edited && !pushed.vertices.on_device() &&
+// Whether refining or surfaces lack its mesh on the device, which no edit brings there.
+bool AccelBackend::lacks_mesh(const PushedGeometry& pushed) const {
+    return keeps_meshes() && !pushed.vertices.edited && !pushed.vertices.on_device() &&
            pushed.geometry.kind == GEOMETRY_TRIANGLES;
 }
 
@@ -77,7 +77,7 @@ void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
     if (staged.sources.empty()) return;
     const auto pass = commands.pass("geometry sources");
     for (const PushedGeometry* pushed : staged.sources) {
-        const DeviceMesh mesh = refinement_ ? staged.vertices.mesh_of(pushed->vertices) : DeviceMesh{};
+        const DeviceMesh mesh = keeps_meshes() ? staged.vertices.mesh_of(pushed->vertices) : DeviceMesh{};
         commands.write(pushed->block, GeometrySource{mesh.positions, mesh.indices, pushed->geometry.scale, 0},
                        GEOMETRY_SOURCE_OFFSET);
     }
@@ -108,10 +108,14 @@ void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
 
 void AccelBackend::stage_scene(Commands& commands, Staged& staged) {
     staged.has_moved = has_moved_ || (scene_ && dirty_ == Dirty::moves);
-    const TlasInput input{staged.instances.records, static_cast<uint>(staged.instances.count),
-                          bound_.result(),          staged.has_moved,
-                          scene_costs_.target(),    refinement_ ? refinement_->scene() : Ref<RefineScene>{}};
+    const TlasInput input{staged.instances.records,
+                          static_cast<uint>(staged.instances.count),
+                          bound_.result(),
+                          staged.has_moved,
+                          scene_costs_.target(),
+                          {surfaces_ ? surfaces_->table().address : 0, refinement_ ? refinement_->scene().address : 0}};
     if (refinement_) staged.refinement = refinement_->stage(commands, input.records, input.count, input.bound);
+    if (surfaces_ && dirty_ == Dirty::structure) stage_surfaces(commands, staged);
     staged.is_scene_built = must_build({.is_built = scene_ != nullptr,
                                         .was_moved = has_moved_,
                                         .has_structure = dirty_ != Dirty::moves,
@@ -125,6 +129,13 @@ void AccelBackend::stage_scene(Commands& commands, Staged& staged) {
         refit_tlas(commands, input, *scene_);
 }
 
+void AccelBackend::stage_surfaces(Commands& commands, Staged& staged) {
+    std::vector<SurfaceTables::Item> items;
+    for (auto& [id, pushed] : pushed_)
+        items.push_back({id, pushed.geometry.triangles.size(), pushed.instances.records.size(), &pushed.surface});
+    staged.surfaces = surfaces_->stage(commands, items, staged.instances.records);
+}
+
 void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     for (std::size_t i = 0; i < staged.building.size(); ++i) {
         staged.building[i]->built = std::move(staged.built[i]);
@@ -134,6 +145,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     for (std::size_t i = 0; i < staged.is_rebuilt.size(); ++i) moved[i]->costs.commit(staged.is_rebuilt[i], done);
     for (PushedGeometry* pushed : staged.sources) pushed->has_source = true;
     if (refinement_) refinement_->commit(std::move(staged.refinement));
+    if (surfaces_) surfaces_->commit(std::move(staged.surfaces));
     scene_costs_.commit(staged.is_scene_built, done);
     scene_count_ = staged.instances.count;
     has_moved_ = staged.has_moved;

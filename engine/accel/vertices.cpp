@@ -30,6 +30,7 @@ VertexArrays::Staged VertexArrays::stage(Commands& commands, std::vector<Item> i
     const auto pass = commands.pass("vertices");
     for (std::size_t i = 0; i < staged.items.size(); ++i) {
         const auto& [geometry, slice] = staged.items[i];
+        staged.item_of.emplace(slice, i);
         staged.made.push_back(slice->on_device() ? VertexSlice{} : make_buffers(context_, *geometry));
         if (!slice->on_device()) commands.upload(staged.made[i].indices, std::span(geometry->triangles));
         const auto count = static_cast<uint>(3 * geometry->positions.size());
@@ -44,9 +45,8 @@ VertexArrays::Staged VertexArrays::stage(Commands& commands, std::vector<Item> i
 }
 
 DeviceMesh VertexArrays::Staged::mesh_of(const VertexSlice& slice) const {
-    for (std::size_t i = 0; i < items.size(); ++i)
-        if (items[i].slice == &slice) return mesh(i);
-    return slice.mesh();
+    const auto found = item_of.find(&slice);
+    return found == item_of.end() ? slice.mesh() : mesh(found->second);
 }
 
 std::vector<VertexSlice*> VertexArrays::commit(Staged&& staged) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "engine/accel/geometry.h"
@@ -48,6 +49,7 @@ class VertexArrays {
     struct Staged {
         std::vector<Item> items;
         std::vector<VertexSlice> made;  // by item: buffers for a slice that had none
+        std::unordered_map<const VertexSlice*, std::size_t> item_of;
         DeviceMesh mesh(std::size_t item) const { return slice(item).mesh(); }
         // Null for a slice that is neither staged nor on the device.
         DeviceMesh mesh_of(const VertexSlice& slice) const;

@@ -105,4 +105,6 @@ Centroid centroid(AbstractAccel& accel, const Scene& scene, const CentroidDesc& 
     return result;
 }
 
+Centroid centroid(AbstractAccel& accel, const CentroidDesc& desc) { return centroid(accel, scene_of(accel), desc); }
+
 }  // namespace twinray

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
@@ -127,6 +128,61 @@ void check_faces(const Scene& scene, const Faces& faces) {
     if (count_triangles(scene) != faces.count() || faces.group_count(FaceGrouping::instance) != scene.instances.size())
         fail("the scene has ", count_triangles(scene), " faces in ", scene.instances.size(), " instances, and Faces ",
              faces.count(), " in ", faces.group_count(FaceGrouping::instance));
+}
+
+namespace {
+
+// Their metadata in place of materials by their rank, so that groups are numbered without gaps.
+std::vector<uint> rank_metadata(Scene& scene) {
+    std::set<uint> values;
+    for (const Mesh& mesh : scene.meshes) {
+        if (mesh.materials.empty() && !mesh.triangles.empty()) values.insert(0);
+        values.insert(mesh.materials.begin(), mesh.materials.end());
+    }
+    const std::vector<uint> ascending(values.begin(), values.end());
+    const auto rank = [&](uint value) {
+        return static_cast<uint>(std::ranges::lower_bound(ascending, value) - ascending.begin());
+    };
+    for (Mesh& mesh : scene.meshes) {
+        mesh.materials.resize(mesh.triangles.size());
+        for (uint& value : mesh.materials) value = rank(value);
+    }
+    scene.materials.resize(ascending.size());
+    return ascending;
+}
+
+Faces::State::Held hold(AbstractAccel& accel) {
+    Faces::State::Held held{.scene = scene_of(accel), .metadata = {}, .accel = accel.view().accel, .at = accel.sync()};
+    held.metadata = rank_metadata(held.scene);
+    return held;
+}
+
+const Faces::State::Held& held_by(const Faces& faces) {
+    if (!faces.state().held) fail("faces: made of a scene, not of an accelerator");
+    return *faces.state().held;
+}
+
+}  // namespace
+
+Faces::Faces(AbstractAccel& accel) {
+    State::Held held = hold(accel);
+    *this = Faces(accel.context(), held.scene);
+    state_->held = std::move(held);
+}
+
+const Scene& Faces::scene() const { return held_by(*this).scene; }
+const std::vector<uint>& Faces::metadata() const { return held_by(*this).metadata; }
+
+bool Faces::is_current(AbstractAccel& accel) const {
+    const State::Held& held = held_by(*this);
+    return accel.sync().value == held.at.value && accel.view().accel == held.accel;
+}
+
+void check_current(AbstractAccel& accel, const Faces& faces, const char* action) {
+    if (!faces.is_current(accel))
+        fail(accel.name(), ": ", action, ": the faces are of ",
+             accel.view().accel == held_by(faces).accel ? "before its last sync; make them anew"
+                                                        : "another accelerator");
 }
 
 Faces::Faces(Context& context, const Scene& scene) : state_(std::make_unique<State>()) {

@@ -27,6 +27,9 @@ std::vector<std::size_t> triangle_counts(const Scene& scene);
 // reads of a hit's face is then within its tables.
 void check_filled(const AbstractAccel& accel, std::span<const std::size_t> triangle_counts, const char* action);
 
+// Throws Error, beginning with `action`, unless the faces are of what this accelerator holds now.
+void check_current(AbstractAccel& accel, const Faces& faces, const char* action);
+
 // Throws Error where the numbers of faces and instances are not the same.
 void check_faces(const Scene& scene, const Faces& faces);
 
@@ -41,6 +44,14 @@ struct Faces::State {
     std::vector<std::vector<uint>> materials;  // by mesh; empty: all 0
     std::vector<uint> custom_groups;           // of faces
     std::size_t mesh_count = 0, material_count = 0;
+    // Of an accelerator.
+    struct Held {
+        Scene scene;
+        std::vector<uint> metadata;
+        std::uint64_t accel = 0;  // AccelView::accel
+        SyncPoint at;
+    };
+    std::optional<Held> held;
     std::vector<Buffer> meshes;
     Buffer instance_buffer, face_buffer;
 

@@ -129,4 +129,9 @@ Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& f
     return result;
 }
 
+Illumination illuminate(AbstractAccel& accel, const Faces& faces, const IlluminationDesc& desc) {
+    check_current(accel, faces, "illumination");
+    return illuminate(accel, faces.scene(), faces, desc);
+}
+
 }  // namespace twinray

@@ -127,4 +127,10 @@ PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Scene& scene, const
     return result;
 }
 
+PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
+                                 PairEstimator estimator, const ProgressCallback& progress) {
+    check_current(accel, faces, "exchanges of pairs");
+    return exchanges_of_pairs(accel, faces.scene(), faces, options, estimator, progress);
+}
+
 }  // namespace twinray

@@ -97,4 +97,15 @@ SkyLight sun_hours(AbstractAccel& accel, const Scene& scene, const Faces& faces,
     return light;
 }
 
+SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc) {
+    check_current(accel, faces, "sky light");
+    return sky_light(accel, faces.scene(), faces, zenith, desc);
+}
+
+SkyLight sun_hours(AbstractAccel& accel, const Faces& faces, std::span<const SunPosition> positions,
+                   const SkyRaysDesc& desc) {
+    check_current(accel, faces, "sun hours");
+    return sun_hours(accel, faces.scene(), faces, positions, desc);
+}
+
 }  // namespace twinray

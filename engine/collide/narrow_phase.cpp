@@ -54,6 +54,10 @@ Contacts NarrowPhase::find(const Scene& scene, const ContactOptions& options) {
     return find(meshes, instances, options);
 }
 
+Contacts NarrowPhase::find(AbstractAccel& accel, const ContactOptions& options) {
+    return find(scene_of(accel), options);
+}
+
 Contacts NarrowPhase::find(std::span<const MeshView> meshes, std::span<const MeshInstance> instances,
                            const ContactOptions& options) {
     check_instances(meshes, instances, "collide");

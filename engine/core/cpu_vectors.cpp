@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/cpu_vectors.h"
 
+#include <twinray/context.h>
+
 #include <cstdlib>
 
-#include <twinray/context.h>
 #include "engine/core/pipeline_store.h"
 
 namespace twinray {

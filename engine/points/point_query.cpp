@@ -63,6 +63,8 @@ void dispatch(Commands& commands, const Kernel<PointSearchArgs>& kernel, PointSe
 }  // namespace
 
 struct PointQuery::State {
+    std::optional<Scene> held;  // of an accelerator, which the spans refer to
+
     explicit State(Context& device)
         : context(with_float64(device, "points: distances")),
           boxes_of_points(device, {.name = "points_boxes", .spirv = points_boxes_spirv}),
@@ -112,6 +114,12 @@ void PointQuery::set(const Scene& scene) {
     std::vector<MeshInstance> instances;
     for (const Instance& instance : scene.instances) instances.push_back({instance.mesh, instance.transform});
     set(meshes, instances);
+}
+
+void PointQuery::set(AbstractAccel& accel) {
+    Scene held = scene_of(accel);
+    set(held);
+    state_->held = std::move(held);
 }
 
 void PointQuery::set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances) {

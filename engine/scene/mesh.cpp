@@ -50,6 +50,26 @@ dvec3 unit_or_zero(dvec3 v) {
     return size > 0 && std::isfinite(size) ? v / size : dvec3(0);
 }
 
+std::vector<vec3> smooth_normals(const MeshView& mesh) {
+    check_indices(mesh);
+    std::vector<dvec3> sums(mesh.positions.size(), dvec3(0));
+    for (const uvec3& triangle : mesh.triangles) {
+        const uint vertices[] = {triangle.x, triangle.y, triangle.z};
+        dvec3 p[3];
+        for (std::size_t k = 0; k < 3; ++k) p[k] = dvec3(mesh.positions[vertices[k]]);
+        const dvec3 normal = unit_or_zero(cross(p[1] - p[0], p[2] - p[0]));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const dvec3 to_next = p[(k + 1) % 3] - p[k], to_last = p[(k + 2) % 3] - p[k];
+            if (normal != dvec3(0))
+                sums[vertices[k]] += normal * std::atan2(length(cross(to_next, to_last)), dot(to_next, to_last));
+        }
+    }
+    std::vector<vec3> normals;
+    normals.reserve(sums.size());
+    for (const dvec3& sum : sums) normals.push_back(vec3(unit_or_zero(sum)));
+    return normals;
+}
+
 std::size_t count_undirected_normals(const Mesh& mesh) {
     return static_cast<std::size_t>(
         std::ranges::count_if(mesh.normals, [](vec3 normal) { return unit_or_zero(dvec3(normal)) == dvec3(0); }));

@@ -13,19 +13,6 @@ class AccelBackend;
 struct InstanceRecord;
 struct WorldBound;
 
-// Names what one push placed. Never reused; a handle of another accelerator or of something erased is dead.
-struct AccelHandle {
-    std::uint64_t id = 0;  // 0 = invalid
-
-    bool operator==(const AccelHandle&) const = default;
-};
-
-// An instance as the accelerator holds it.
-struct InstanceState {
-    Transform transform;
-    InstanceOptions options;
-};
-
 // The records of one handle's instances on the device, for kernels that move them. They may write object_to_world (12
 // floats at offset 0 of each record) and must leave the rest. Valid as long as revision() does not change.
 struct InstanceRange {
@@ -33,17 +20,6 @@ struct InstanceRange {
     std::uint64_t offset = 0;     // of the first record, in bytes
     Ref<InstanceRecord> records;  // its device address
     std::size_t count = 0;
-};
-
-// What kernels need to trace: valid until the next sync() after which revision() has grown.
-struct AccelView {
-    std::uint64_t scene = 0;     // device address of the accelerator's header (SwTlasHeader or HwTlasHeader)
-    std::uint64_t accel = 0;     // which accelerator made it
-    std::uint64_t revision = 0;  // its revision() then
-    uint features = 0;           // of whatever traces of it may need: what kernels may be specialised for
-
-    // That of a kernel with twinray/glsl/query.glsl, for its KernelDesc::constants.
-    SpecializationConstant features_constant() const;
 };
 
 // The contract that both accelerators fulfil. Edits only note what changes; sync() is the only place that builds, and
@@ -88,6 +64,9 @@ class AbstractAccel {
     // The caller's kernels write into instance_buffer(), then mark_transforms_dirty() lets the next sync take it over.
     InstanceRange instance_buffer(AccelHandle handle) const;
     void mark_transforms_dirty(AccelHandle handle);
+    // Another custom index, mask or flags for an instance, which stays where it is. Waits for the GPU if kernels may
+    // have moved the handle's instances.
+    void update_options(AccelHandle handle, std::size_t index, const InstanceOptions& options);
 
     bool is_valid(AccelHandle handle) const;
     // Waits for the GPU if kernels may have moved the instances.
@@ -156,6 +135,18 @@ class AbstractAccel {
     // and occlusion_only.
     std::vector<Hit> closest_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
     std::vector<Hit> any_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
+    // What lies where each ray met what its hit names, as twinray/glsl/surface.glsl finds it; of a miss all is 0.
+    // Waits. Wants AccelOptions::keeps_surfaces. Throws Error for a hit that names nothing, and if edits are pending.
+    std::vector<Surface> surfaces(std::span<const Ray> rays, std::span<const Hit> hits) const;
+    // An attribute of the meshes there, interpolated, with 0, 0, 1 for components that it lacks; `missing` where a mesh
+    // has none, and for a miss. By name: "normals", ..., or of MeshView::attributes.
+    std::vector<vec4> attributes(std::string_view name, std::span<const Ray> rays, std::span<const Hit> hits,
+                                 vec4 missing = {}) const;
+    // For kernels. Throws Error naming it where no mesh that was pushed has had it.
+    uint attribute_number(std::string_view name) const;
+    // Whose instance was hit, and which of its instances. Throws Error for a miss and if edits are pending.
+    AccelHandle handle_of(const Hit& hit) const;
+    std::size_t index_in_handle(const Hit& hit) const;
     // AccelView::features without what traces with this mask, cull and occlusion_only do not need: as long as
     // revision() does not change, kernels that ask for nothing else may be specialised for it. Throws Error if edits
     // are pending.

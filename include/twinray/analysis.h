@@ -5,8 +5,9 @@
 //   triangle; those that no ray can meet keep their number and have the area 0.
 // - Lengths and areas are the scene's own, in world space, in float64 from float32 vertices and transforms.
 // - Intervals are confidence intervals of 95 % and hold whatever the scene.
-// - An analysis that traces takes an accelerator that push_scene() has filled from its scene, and syncs it. The same
-//   scene and options give the same result on one device.
+// - An analysis takes an accelerator as it is, wherever its instances and vertices were moved, and Faces made of it, or
+//   an accelerator that push_scene() has filled and the scene. It syncs the accelerator. The same scene and options
+//   give the same result on one device.
 // - Options out of range, an accelerator or faces of another scene and failures of the device throw Error, which names
 //   what, the value and the limit.
 // - Contexts, accelerators and Faces must outlive what was made with them; an object is used by one thread at a time.
@@ -60,11 +61,11 @@ constexpr std::string_view name_of(Sides sides) { return sides == Sides::front ?
 // By what faces are put together to groups.
 enum class FaceGrouping : std::uint8_t {
     face,
-    mesh,
-    instance,
-    material,
-    custom
-};  // custom: Faces::set_custom_groups()
+    mesh,      // of an accelerator the handle, by its place in AbstractAccel::handles()
+    instance,  // by Hit::instance_index
+    material,  // by its index in the scene; of an accelerator by Faces::metadata()
+    custom,    // Faces::set_custom_groups()
+};
 std::string_view name_of(FaceGrouping grouping);
 
 // As long as the face's area in world space, perpendicular to its front; 0 of faces that no ray can meet.
@@ -77,6 +78,8 @@ class Faces {
   public:
     // Throws Error above 2^32 - 16 faces, and for a coordinate above 2^124 in world space: distances would overflow.
     Faces(Context& context, const Scene& scene);
+    // Of what an accelerator holds after a sync: see scene_of().
+    explicit Faces(AbstractAccel& accel);
     Faces(Faces&&) noexcept;
     Faces& operator=(Faces&&) noexcept;
     ~Faces();
@@ -85,6 +88,11 @@ class Faces {
     const std::vector<double>& areas() const;                 // by face
     const std::vector<std::size_t>& triangle_counts() const;  // by instance
     std::uint64_t bytes() const;                              // of device memory
+    // Of Faces of an accelerator, else Error: what it held then, whether it has been synced with edits since, and the
+    // face_metadata of its meshes, ascending, each once (0 for those without), which number groups by material.
+    const Scene& scene() const;
+    bool is_current(AbstractAccel& accel) const;
+    const std::vector<uint>& metadata() const;
 
     // One for each face, below their count. Throws Error, and changes nothing, for any other count or number.
     void set_custom_groups(std::vector<uint> groups);
@@ -174,6 +182,10 @@ inline constexpr std::size_t most_paired_faces = 1024;  // with an area: their p
 PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Scene& scene, const Faces& faces,
                                  const ViewFactorOptions& options, PairEstimator estimator,
                                  const ProgressCallback& progress = {});
+
+// Of an accelerator and its Faces.
+PairExchanges exchanges_of_pairs(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
+                                 PairEstimator estimator, const ProgressCallback& progress = {});
 
 // The matrix of view factors, row by row, by rays that leave each face uniformly by area and by cosine.
 class ViewFactors {
@@ -294,6 +306,7 @@ struct Illumination {
 // What parallel light reaches of a scene. Intervals: hits of random points are independent, and how often neighbours
 // differ bounds their variance. Throws Error for scenes too large for float32 rays to start in front of, too.
 Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& faces, const IlluminationDesc& desc);
+Illumination illuminate(AbstractAccel& accel, const Faces& faces, const IlluminationDesc& desc);
 
 struct SkyRaysDesc {
     uint samples = 256;  // rays of each face; 1 to 2^20
@@ -318,6 +331,7 @@ struct SkyLight {
 // for an unobstructed face tilted by an angle, and never more; of both sides together 1 for any such face. `zenith`:
 // finite, of any length but 0.
 SkyLight sky_light(AbstractAccel& accel, const Scene& scene, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc);
+SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc);
 
 struct SunPosition {
     dvec3 direction;   // in which its rays go; finite, of any length but 0
@@ -326,6 +340,8 @@ struct SunPosition {
 // Hours for which a point of a face is lit, mean over the face: for each position `desc.samples` rays a face, from
 // stratified points. A side lit at a grazing angle counts like any other.
 SkyLight sun_hours(AbstractAccel& accel, const Scene& scene, const Faces& faces, std::span<const SunPosition> positions,
+                   const SkyRaysDesc& desc);
+SkyLight sun_hours(AbstractAccel& accel, const Faces& faces, std::span<const SunPosition> positions,
                    const SkyRaysDesc& desc);
 
 struct CentroidDesc {
@@ -344,5 +360,6 @@ struct Centroid {
 };
 // The mean of what is seen of a scene along a direction. Throws Error as illuminate() does.
 Centroid centroid(AbstractAccel& accel, const Scene& scene, const CentroidDesc& desc);
+Centroid centroid(AbstractAccel& accel, const CentroidDesc& desc);
 
 }  // namespace twinray

@@ -244,15 +244,40 @@ struct Mesh {
     uint material(std::size_t triangle) const { return materials.empty() ? 0 : materials[triangle]; }
 };
 
-// What an accelerator needs of a mesh, not owned.
+// An array of a mesh that surfaces interpolate, not owned: so many float32 numbers a vertex, or a triangle.
+struct AttributeView {
+    std::string_view name;
+    uint components = 1;  // 1 to 4
+    bool is_per_face = false;
+    std::span<const float> values;
+};
+
+// What an accelerator takes of a mesh, not owned. It keeps what follows the triangles with
+// AccelOptions::keeps_surfaces alone; each of these is empty or has one entry a vertex, face_metadata one a triangle.
 struct MeshView {
     std::string_view name;
     std::span<const vec3> positions;
     std::span<const uvec3> triangles;
+    std::span<const vec3> normals = {};
+    std::span<const vec4> tangents = {};
+    std::span<const vec2> uv0 = {}, uv1 = {};
+    std::span<const vec4> colors = {};
+    std::span<const uint> face_metadata = {};        // what kernels may tell triangles by, as a material
+    std::span<const AttributeView> attributes = {};  // further ones, by names that others of the accelerator may share
+    std::span<const std::byte> metadata = {};        // of the mesh as a whole: any struct that is copied as bytes
 
     MeshView(std::string_view mesh_name, std::span<const vec3> points, std::span<const uvec3> vertex_indices)
         : name(mesh_name), positions(points), triangles(vertex_indices) {}
-    MeshView(const Mesh& mesh) : MeshView(mesh.name, mesh.positions, mesh.triangles) {}
+    MeshView(const Mesh& mesh)
+        : name(mesh.name),
+          positions(mesh.positions),
+          triangles(mesh.triangles),
+          normals(mesh.normals),
+          tangents(mesh.tangents),
+          uv0(mesh.uvs),
+          uv1(mesh.second_uvs),
+          colors(mesh.colors),
+          face_metadata(mesh.materials) {}
 };
 
 // Box of the finite vertices that triangles use.
@@ -260,6 +285,11 @@ Bounds bounds_of(const MeshView& mesh);
 
 // Throws Error naming the mesh, the triangle, the index and the vertex count if an index is out of range.
 void check_indices(const MeshView& mesh);
+
+// A unit normal for each vertex: those of the triangles around it, weighted by their angles there, so that they do not
+// depend on how faces were cut into triangles (Thuermer, Wuethrich 1998); in float64, rounded once. 0 where no triangle
+// with an area is.
+std::vector<vec3> smooth_normals(const MeshView& mesh);
 
 // Meshes by formula. The same arguments give the same bits everywhere.
 

@@ -175,6 +175,7 @@ class NarrowPhase {
     // Throws Error naming what is wrong with a mesh or an instance, or the number of pairs of boxes that overlap where
     // that exceeds max_pairs().
     Contacts find(const Scene& scene, const ContactOptions& options = {});
+    Contacts find(AbstractAccel& accel, const ContactOptions& options = {});  // of what it holds: see scene_of()
     Contacts find(std::span<const MeshView> meshes, std::span<const MeshInstance> instances,
                   const ContactOptions& options = {});
     // The class of each pair given. Throws Error for a coordinate that is neither 0 nor of a magnitude from 2^-245 to
@@ -220,6 +221,8 @@ class PointQuery {
     // What is searched from now on: builds a tree. What the spans refer to must outlive the use of this. Throws Error
     // naming what is wrong with a mesh or an instance.
     void set(const Scene& scene);
+    // What the accelerator holds now: see scene_of(). It may change or end.
+    void set(AbstractAccel& accel);
     void set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances);
     std::size_t triangle_count() const;
 

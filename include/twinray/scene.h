@@ -185,6 +185,12 @@ void apply_variant(Scene& scene, const std::string& name);
 // Throws Error unless scene.instances is grouped by mesh, as load_scene leaves it.
 std::vector<AccelHandle> push_scene(AbstractAccel& accel, const Scene& scene);
 
+// What an accelerator holds after a sync, with vertices and transforms as kernels have left them: a mesh for each
+// handle, in the order of AbstractAccel::handles(), with face_metadata as materials; instances in the order of
+// Hit::instance_index. Boxes become meshes without triangles. Waits. Throws Error for an instance whose transform is
+// unusable.
+Scene scene_of(AbstractAccel& accel);
+
 // ---- Views of a scene -----------------------------------------------------------------------------------------------
 
 // A perspective camera. fov: vertical, in degrees. Throws Error unless `at` lies elsewhere, in another direction than

@@ -13,6 +13,11 @@
 
 namespace twinray {
 
+#include "twinray/glsl/cpp_begin.h"
+#include "twinray/glsl/surface.h"
+#include "twinray/glsl/cpp_end.h"
+
+struct SpecializationConstant;
 struct TraceArgs;
 class Commands;
 class TraceProgram;
@@ -76,6 +81,9 @@ struct AccelOptions {
     Level level = Level::watertight;
     Layout layout = Layout::compressed4;              // of software
     BuildQuality build_quality = BuildQuality::fast;  // of software
+    // Meshes stay on the device with all that MeshView has of them, for AbstractAccel::surfaces() and
+    // twinray/glsl/surface.glsl.
+    bool keeps_surfaces = false;
     // False: instances stay where push() puts them, and whatever would move them throws. Where they stand as their
     // meshes were given, rays of software are then not transformed.
     bool can_move = true;
@@ -144,6 +152,40 @@ class TraceProgram {
     std::string name_;
 };
 
+struct InstanceOptions {
+    uint custom_index = 0;         // returned in Hit::custom_index; at most 2^24 - 1
+    std::uint8_t mask = 0xff;      // an instance is seen by rays whose mask shares a bit
+    bool disable_culling = false;  // both sides are hit by rays that cull, too
+    bool flip_facing = false;      // front and back exchanged
+    bool non_opaque = false;       // not opaque: a trace program decides about each hit
+
+    bool operator==(const InstanceOptions&) const = default;
+};
+
+// Names what one push placed. Never reused; a handle of another accelerator or of something erased is dead.
+struct AccelHandle {
+    std::uint64_t id = 0;  // 0 = invalid
+
+    bool operator==(const AccelHandle&) const = default;
+};
+
+// An instance as the accelerator holds it.
+struct InstanceState {
+    Transform transform;
+    InstanceOptions options;
+};
+
+// What kernels need to trace: valid until the next sync() after which revision() has grown.
+struct AccelView {
+    std::uint64_t scene = 0;     // device address of the accelerator's header (SwTlasHeader or HwTlasHeader)
+    std::uint64_t accel = 0;     // which accelerator made it
+    std::uint64_t revision = 0;  // its revision() then
+    uint features = 0;           // of whatever traces of it may need: what kernels may be specialised for
+
+    // That of a kernel with twinray/glsl/query.glsl, for its KernelDesc::constants.
+    SpecializationConstant features_constant() const;
+};
+
 enum class Feature : std::uint8_t {
     closest_hit,
     any_hit,
@@ -186,11 +228,12 @@ struct MemoryUsage {
     std::uint64_t scene = 0;       // the top level
     std::uint64_t instances = 0;   // the records of all instances, and what refining needs of them
     std::uint64_t blocks = 0;      // what the records point at, one a geometry
-    std::uint64_t vertices = 0;    // copies of the meshes whose vertices move, or that are refined
+    std::uint64_t vertices = 0;    // copies of the meshes whose vertices move, or that are refined or have surfaces
+    std::uint64_t surfaces = 0;    // what else AccelOptions::keeps_surfaces keeps
     std::uint64_t scratch = 0;     // kept from one sync to the next
 
     std::uint64_t structures() const { return geometries + scene; }
-    std::uint64_t total() const { return structures() + instances + blocks + vertices + scratch; }
+    std::uint64_t total() const { return structures() + instances + blocks + vertices + surfaces + scratch; }
 };
 
 // What a build takes, in bytes.
@@ -214,15 +257,5 @@ struct BoxesView {
 // Of an accelerator.
 constexpr std::size_t max_instances = (1u << 24) - 1;  // what Vulkan guarantees at least
 constexpr uint max_custom_index = (1u << 24) - 1;
-
-struct InstanceOptions {
-    uint custom_index = 0;         // returned in Hit::custom_index; at most 2^24 - 1
-    std::uint8_t mask = 0xff;      // an instance is seen by rays whose mask shares a bit
-    bool disable_culling = false;  // both sides are hit by rays that cull, too
-    bool flip_facing = false;      // front and back exchanged
-    bool non_opaque = false;       // not opaque: a trace program decides about each hit
-
-    bool operator==(const InstanceOptions&) const = default;
-};
 
 }  // namespace twinray

@@ -43,7 +43,6 @@ void consider_box(HwTlasHeader scene, rayQueryEXT query, Ray ray, TraceOptions o
     uv = at;
 }
 
-Address refinement_of(Address accel) { return AT(REF(HwTlasHeader)(accel), 0).refinement; }
 
 Hit trace_float32(Address accel, Ray ray, TraceOptions options)
 {

@@ -159,12 +159,12 @@ Surface surface_of(SceneData scene, Ray ray, Hit hit)
 {
     Placement placement = load_placement(scene.instances, hit.instance_index);
     TriangleData data = load_triangle_data(scene, hit.instance_index, hit.primitive_index);
-    vec3 at = crossing_of(ray, placement, vertices_of(data));
-    Surface surface = surface_at(data, placement, at.xy);
+    Crossing crossing = crossing_of(ray, placement, vertices_of(data));
+    Surface surface = surface_at(data, placement, crossing.uv);
     surface.material = material_of(hit.custom_index, data.material);
-    surface.t = at.z;
+    surface.t = crossing.t;
     if (HAS_TEXTURES || (LAYERS & LAYER_ANISOTROPY) != 0u)
-        set_tangents(surface, data, AT(scene.materials, surface.material).flags, at.xy);
+        set_tangents(surface, data, AT(scene.materials, surface.material).flags, crossing.uv);
     return surface;
 }
 

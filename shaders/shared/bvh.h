@@ -11,6 +11,7 @@
 #ifndef TWINRAY_SHARED_BVH_H
 #define TWINRAY_SHARED_BVH_H
 #include "twinray/glsl/instance.h"
+#include "twinray/glsl/accel_header.h"
 
 const uint LEAF_BIT = 0x80000000u;
 const uint INSTANCE_BIT = 0x40000000u; // in records of leaves
@@ -147,11 +148,11 @@ BUFFER_OF(SwInstance, 8);
 
 struct SwTlasHeader
 {
+    AccelHeader accel;
     Bvh bvh;
     REF(CompressedRecord) records; // as in SwGeometry
     REF(SwInstance) instances;
     Uint64 instance_count;
-    Address refinement; // address of a RefineScene, or 0
 };
 BUFFER_OF(SwTlasHeader, 8);
 

@@ -2,6 +2,7 @@
 // What the hardware accelerator leaves on the device. Needs ray.h and world_bound.h before it.
 #ifndef TWINRAY_SHARED_HW_TLAS_HEADER_H
 #define TWINRAY_SHARED_HW_TLAS_HEADER_H
+#include "twinray/glsl/accel_header.h"
 
 // What InstanceRecord::geometry points at for the hardware accelerator. Begins with a GeometryBox.
 struct HwGeometry
@@ -26,9 +27,9 @@ BUFFER_OF(HwInstance, 8);
 
 struct HwTlasHeader
 {
+    AccelHeader accel;
     Address tlas;              // device address of the top-level acceleration structure
     REF(HwInstance) instances;  // by InstanceId; null without FEATURE_REMAP
-    Address refinement;        // address of a RefineScene, or 0
 };
 BUFFER_OF(HwTlasHeader, 8);
 

@@ -563,6 +563,32 @@ TEST_P(Accel, InstancesTellTheirState) {
 }
 
 // The square faces up: a ray down sees its front, the ray up its back.
+TEST_P(Accel, OptionsOfAnInstanceChangeWhereItStands) {
+    const std::vector<Transform> places = {Transform::translation({0, 0, 1}), Transform::translation({5, 0, 2})};
+    const AccelHandle handle = accel().push(square(0), places);
+    accel().sync();
+    accel().update_options(handle, 1, {.custom_index = 77, .mask = 2});
+    EXPECT_EQ(closest(down(5.5f, 0.25f)).custom_index, 77u);
+    EXPECT_EQ(closest(down(5.5f, 0.25f)).t, 8.0f);
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).custom_index, 0u);
+    const Ray ray = down(5.5f, 0.25f);
+    EXPECT_EQ(accel().closest_hits(std::span(&ray, 1), {.mask = 4}).front().hit, 0u);
+    EXPECT_EQ(accel().closest_hits(std::span(&ray, 1), {.mask = 2}).front().hit, 1u);
+    if (GetParam() != test::Kind::reference) {  // moved by the device, it stays there
+        const Buffer moved = device_copy(std::vector{places[0], Transform::translation({5, 0, 4})});
+        accel().update_transforms(handle, moved.ref<Transform>(), 2);
+        accel().sync();
+        accel().update_options(handle, 1, {.custom_index = 78});
+        EXPECT_EQ(closest(ray).t, 6.0f);
+        EXPECT_EQ(closest(ray).custom_index, 78u);
+    }
+    EXPECT_NE(error_of([&] { accel().update_options(handle, 2, {}); }).find("index 2 of the 2"), std::string::npos);
+    EXPECT_NE(error_of([&] { accel().update_options(handle, 0, {.custom_index = 1u << 24}); }).find("24 bits"),
+              std::string::npos);
+    accel().erase(handle);
+    EXPECT_THROW(accel().update_options(handle, 0, {}), Error);
+}
+
 TEST_P(Accel, CullingHidesOneSideAndInstancesMayTurnOrRefuseIt) {
     const InstanceOptions options[] = {
         {}, {.flip_facing = true}, {.disable_culling = true}, {.disable_culling = true, .flip_facing = true}};

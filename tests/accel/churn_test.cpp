@@ -145,6 +145,14 @@ void Churn::expect_exact_counts() {
         instances += placed.transforms.size();
         ASSERT_EQ(accel().n_instances(placed.handle), placed.transforms.size());
     }
+    accel().sync();
+    uint instance = 0;
+    for (const Placed& placed : placed_)
+        for (std::size_t i = 0; i < placed.transforms.size(); ++i, ++instance) {
+            const Hit hit{1, 1, 0, 0, 0, 0, instance, 0};
+            ASSERT_EQ(accel().handle_of(hit), placed.handle);
+            ASSERT_EQ(accel().index_in_handle(hit), i);
+        }
     ASSERT_EQ(accel().n_instances(), instances);
     ASSERT_EQ(accel().n_geometries(), placed_.size());
 }

@@ -36,6 +36,38 @@ TEST(Mesh, BoundsOfNothingAreEmpty) {
     EXPECT_EQ(Bounds().size(), vec3(0));
 }
 
+// Of a cube whose vertices are shared the diagonals, whichever way its squares are cut.
+TEST(Mesh, SmoothNormalsAreWeightedByAngles) {
+    const auto cube = [](bool is_cut_otherwise) {
+        std::vector<vec3> positions;
+        for (int i = 0; i < 8; ++i) positions.push_back({i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1});
+        std::vector<uvec3> triangles;
+        for (const auto& f :
+             {std::array<uint, 4>{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}}) {
+            const std::size_t k = is_cut_otherwise ? 1 : 0;
+            triangles.push_back({f[k], f[k + 1], f[k + 2]});
+            triangles.push_back({f[k], f[k + 2], f[(k + 3) % 4]});
+        }
+        return mesh_of(std::move(positions), std::move(triangles));
+    };
+    for (const bool is_cut_otherwise : {false, true}) {
+        const Mesh mesh = cube(is_cut_otherwise);
+        const std::vector<vec3> normals = smooth_normals(mesh);
+        for (std::size_t i = 0; i < 8; ++i)
+            for (std::size_t k = 0; k < 3; ++k)
+                EXPECT_NEAR(normals[i][k], mesh.positions[i][k] / std::sqrt(3.0f), 1e-7f);
+    }
+}
+
+TEST(Mesh, SmoothNormalsOfTinyMeshesHaveADirectionAndOfNothingNone) {
+    const float s = 1e-30f;
+    const std::vector<vec3> normals = smooth_normals(
+        mesh_of({{0, 0, 0}, {s, 0, 0}, {0, s, 0}, {9, 9, 9}, {NAN, 0, 0}}, {{0, 1, 2}, {0, 0, 1}, {0, 1, 4}}));
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(normals[static_cast<std::size_t>(i)], vec3(0, 0, 1));
+    EXPECT_EQ(normals[3], vec3(0));
+    EXPECT_EQ(normals[4], vec3(0));
+}
+
 TEST(Mesh, AnIndexOutOfRangeIsNamed) {
     const Mesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 3}});
     expect_contains(error_of([&] { check_indices(mesh); }),

@@ -62,11 +62,11 @@ void Scene::build() {
         top_records_ = records_of_instances(top_, count, width_of(layout_));
     else
         top_ = linked(std::move(top_));
-    header_ = {{top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), root_of(top_), count},
+    header_ = {{},
+               {top_.box.lo, top_.box.hi, Ref<BvhNode>::to(top_.nodes.data()), root_of(top_), count},
                Ref<CompressedRecord>::to(top_records_.data()),
                Ref<SwInstance>::to(instances_.data()),
-               instances_.size(),
-               0};
+               instances_.size()};
     build_refinement(records);
 }
 

@@ -6,6 +6,7 @@
 #include "validation/kernels/kernel_list.h"
 #include "engine/accel/all_hits.h"
 #include "engine/accel/ray_sort.h"
+#include "engine/accel/surface_kernels.h"
 #include <twinray/scene.h>
 #include "engine/analysis/pair_sampler.h"
 #include "engine/analysis/sky_rays.h"
@@ -37,6 +38,7 @@ void make_builds(Context& context) {
         }
     const RaySort sort(context);
     const ReferenceAccel reference(context);
+    const SurfaceKernels surfaces(context);
     if (missing_for_hardware(context.properties()).empty()) {
         const AccelOptions options = options_for(context.properties(), Layout::compressed4, BuildQuality::fast);
         const HwTlas accel(context, BuildOrder::morton, options);

@@ -27,7 +27,6 @@ Hit trace_float32(Address accel, Ray ray, TraceOptions options)
 {
     return traverse(AT(REF(SwTlasHeader)(accel), 0), ray, options);
 }
-Address refinement_of(Address accel) { return AT(REF(SwTlasHeader)(accel), 0).refinement; }
 #elif defined(TWINRAY_HW)
 #extension GL_EXT_ray_query : require
 #include "shaders/hwtlas/ray_query.glsl"
@@ -40,7 +39,7 @@ Address refinement_of(Address accel) { return AT(REF(SwTlasHeader)(accel), 0).re
 Hit trace(Address accel, Ray ray, TraceOptions options)
 {
     if (options.level < LEVEL_REFINED) return trace_float32(accel, ray, options);
-    RefineScene scene = AT(REF(RefineScene)(refinement_of(accel)), 0);
+    RefineScene scene = AT(REF(RefineScene)(AT(REF(AccelHeader)(accel), 0).refinement), 0);
     WorldBound bound = AT(scene.bound, 0);
     double advance = 0.0;
     Ray near = advanced(ray, bound.lo, bound.hi, options.level, advance);
@@ -74,6 +73,13 @@ bool closest_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
     return hit.hit != 0u;
 }
 bool closest_hit(Address accel, Ray ray, out Hit hit) { return closest_hit(accel, ray, 0xffu, 0u, hit); }
+
+// Any hit of them, whichever is found first. False: hit is a miss.
+bool any_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
+{
+    hit = trace(accel, ray, trace_options(mask, flags, QUERY_ANY));
+    return hit.hit != 0u;
+}
 
 // Whether anything lies on the ray.
 bool any_hit(Address accel, Ray ray, uint mask, uint flags)

@@ -20,6 +20,7 @@
 #ifndef TWINRAY_SPAWN_H
 #define TWINRAY_SPAWN_H
 #include "twinray/glsl/instance.h"
+#include "twinray/glsl/surface_point.h"
 #include "twinray/glsl/transform.h"
 #include "twinray/glsl/triangle.h"
 
@@ -37,17 +38,6 @@ struct TriangleVertices {
     vec3 a;
     vec3 b;
     vec3 c;
-};
-
-struct SurfacePoint {
-    vec3 position;  // world; up to `offset` beside the triangle, as an accelerator sees it
-    // geometric, unit, world; of the side on which the vertices turn counter-clockwise in object space
-    vec3 normal;
-    float offset;        // world: how far along the normal a ray must start to be clear of the triangle
-    float feature;       // world: the least height of the triangle. offset / feature is the price: what lies within
-                         // `offset` of the triangle is skipped, and near 1 float32 cannot resolve the triangle
-    vec3 normal_object;  // unit
-    vec3 error_object;   // bound of how far the point is from the triangle, as an accelerator sees it; by component
 };
 
 FUNC Placement placement_of(Rows to_world) {

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include <twinray/scene.h>
+
+#include <twinray/abstract_accel.h>
+#include "engine/accel/accel_backend.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+
+Scene scene_of(AbstractAccel& accel) {
+    accel.sync();
+    const AccelBackend& backend = accel.backend();
+    Scene scene;
+    for (const AccelHandle handle : accel.handles()) {
+        const auto mesh = static_cast<uint>(scene.meshes.size());
+        scene.meshes.push_back(backend.held_mesh(handle));
+        for (const InstanceState& state : accel.get_instances(handle)) {
+            if (const std::string fault = fault_of(state.transform); !fault.empty())
+                fail(accel.name(), ": scene_of: instance ", scene.instances.size(), ": ", fault);
+            scene.instances.push_back({"", mesh, state.transform, {}});
+        }
+    }
+    return scene;
+}
+
+Mesh AccelBackend::held_mesh(AccelHandle handle) const {
+    const Geometry held = geometry(handle);
+    Mesh mesh;
+    mesh.name = held.name;
+    mesh.positions = held.given_positions();
+    mesh.triangles = held.triangles;
+    const SurfaceSlice& surface = live(handle, "mesh").surface;
+    if (surface.face_metadata)
+        mesh.materials = download<uint>(context_, surface.data, mesh.triangles.size(), *surface.face_metadata);
+    return mesh;
+}
+
+}  // namespace twinray

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// From hits to surfaces and handles, for hosts.
+#include "engine/accel/surface_kernels.h"
+
+#include "engine/accel/accel_backend.h"
+#include "engine/core/device_list.h"
+#include "engine/core/error.h"
+#include "engine_interpolate.spv.h"
+#include "engine_surfaces.spv.h"
+
+namespace twinray {
+
+SurfaceKernels::SurfaceKernels(Context& context)
+    : surfaces(context, {.name = "engine_surfaces", .spirv = engine_surfaces_spirv}),
+      interpolate(context, {.name = "engine_interpolate", .spirv = engine_interpolate_spirv}) {}
+
+const AccelBackend::InstanceOwners& AccelBackend::instance_owners(const char* action) const {
+    check_synced(action);
+    if (owners_.revision == revision_) return owners_;
+    InstanceOwners owners{.revision = revision_, .of_instance = {}, .all = {}};
+    for (const auto& [id, pushed] : pushed_) {
+        const std::size_t first = owners.of_instance.size(), count = pushed.instances.records.size();
+        owners.of_instance.insert(owners.of_instance.end(), count, static_cast<uint>(owners.all.size()));
+        const bool has_faces = pushed.geometry.kind == GEOMETRY_TRIANGLES;
+        owners.all.push_back({{id}, first, pushed.geometry.primitive_count(), has_faces});
+    }
+    return owners_ = std::move(owners);
+}
+
+const AccelBackend::InstanceOwners::Owner& AccelBackend::owner_of(const Hit& hit, const char* action) const {
+    const InstanceOwners& owners = instance_owners(action);
+    if (hit.hit == 0) fail(name_, ": ", action, ": a miss names no instance");
+    if (hit.instance_index >= owners.of_instance.size())
+        fail(name_, ": ", action, ": the hit names instance ", hit.instance_index, " of ", owners.of_instance.size());
+    return owners.all[owners.of_instance[hit.instance_index]];
+}
+
+AccelHandle AccelBackend::handle_of(const Hit& hit) const { return owner_of(hit, "handle_of").handle; }
+
+std::size_t AccelBackend::index_in_handle(const Hit& hit) const {
+    return hit.instance_index - owner_of(hit, "index_in_handle").first_instance;
+}
+
+void AccelBackend::check_keeps_surfaces(const char* action) const {
+    if (!surfaces_) fail(name_, ": ", action, ": made without AccelOptions::keeps_surfaces");
+}
+
+void AccelBackend::check_hits(std::span<const Ray> rays, std::span<const Hit> hits, const char* action) const {
+    check_keeps_surfaces(action);
+    check_synced(action);
+    if (rays.size() != hits.size())
+        fail(name_, ": ", action, ": ", rays.size(), " rays for ", hits.size(), " hits; the lengths must match");
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        if (hits[i].hit == 0) continue;
+        const InstanceOwners::Owner& owner = owner_of(hits[i], action);
+        if (hits[i].primitive_index >= owner.primitive_count)
+            fail(name_, ": ", action, ": hit ", i, " names primitive ", hits[i].primitive_index, " of ",
+                 owner.primitive_count);
+        if (!owner.has_faces) fail(name_, ": ", action, ": hit ", i, " is of a box, which has no surface");
+    }
+}
+
+template <class Out, class Record>
+std::vector<Out> AccelBackend::of_hits(std::span<const Ray> rays, std::span<const Hit> hits,
+                                       const Record& record) const {
+    if (hits.empty()) return {};
+    if (!surface_kernels_) surface_kernels_ = std::make_unique<SurfaceKernels>(context_);
+    const Buffer ray_buffer(context_, {.name = "rays", .bytes = rays.size_bytes()});
+    const Buffer hit_buffer(context_, {.name = "hits", .bytes = hits.size_bytes()});
+    const Buffer out(context_, {.name = "surfaces", .bytes = hits.size() * sizeof(Out)});
+    Commands commands(context_, name_ + " surfaces");
+    {
+        const auto pass = commands.pass("upload hits");
+        commands.upload(ray_buffer, rays);
+        commands.upload(hit_buffer, hits);
+    }
+    record(commands, SurfaceArgs{surfaces_->table(), ray_buffer.ref<Ray>(), hit_buffer.ref<Hit>(), out.address(),
+                                 static_cast<uint>(hits.size()), 0});
+    commands.submit();
+    return download<Out>(context_, out, hits.size());
+}
+
+std::vector<Surface> AccelBackend::surfaces(std::span<const Ray> rays, std::span<const Hit> hits) const {
+    check_hits(rays, hits, "surfaces");
+    return of_hits<Surface>(rays, hits, [&](Commands& commands, const SurfaceArgs& args) {
+        surface_kernels_->surfaces.dispatch(commands, args, args.count);
+    });
+}
+
+uint AccelBackend::attribute_number(std::string_view name) const {
+    check_keeps_surfaces("attribute_number");
+    const std::optional<uint> number = surfaces_->number_of(name);
+    if (!number) fail(name_, ": attribute_number: no mesh that was pushed has an attribute '", name, "'");
+    return *number;
+}
+
+std::vector<vec4> AccelBackend::attributes(std::string_view name, std::span<const Ray> rays, std::span<const Hit> hits,
+                                           vec4 missing) const {
+    check_hits(rays, hits, "attributes");
+    const uint number = attribute_number(name);
+    return of_hits<vec4>(rays, hits, [&](Commands& commands, const SurfaceArgs& args) {
+        surface_kernels_->interpolate.dispatch(commands, {args, missing, number, 0}, args.count);
+    });
+}
+
+}  // namespace twinray

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// What AccelView::scene is the address of, of either accelerator.
+#ifndef TWINRAY_ACCEL_HEADER_H
+#define TWINRAY_ACCEL_HEADER_H
+
+struct AccelHeader {
+    Address surfaces;    // of a SurfaceTable, or 0 without AccelOptions::keeps_surfaces
+    Address refinement;  // of a RefineScene, or 0 below Level::refined
+};
+BUFFER_OF(AccelHeader, 8);
+#endif

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// An attribute at each hit, for hosts.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "twinray/glsl/common.glsl"
+#include "shaders/shared/surface_args.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { InterpolateArgs args; };
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.of.count) return;
+    Hit hit = AT(args.of.hits, i);
+    vec4 value = args.missing;
+    if (hit.hit != 0u)
+        value = attribute_at(surface_place(AT(args.of.table, 0), AT(args.of.rays, i), hit), args.number, value);
+    AT(Vec4s(args.of.results), i) = value;
+}

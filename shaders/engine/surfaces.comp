@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// The surface of each hit, for hosts.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "twinray/glsl/common.glsl"
+#include "shaders/shared/surface_args.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { SurfaceArgs args; };
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.count) return;
+    Hit hit = AT(args.hits, i);
+    Surface surface = no_surface();
+    if (hit.hit != 0u)
+        surface = surface_at(surface_place(AT(args.table, 0), AT(args.rays, i), hit), hit.instance_index);
+    AT(REF(Surface)(args.results), i) = surface;
+}
