@@ -99,9 +99,11 @@ class AccelBackend {
     MemoryUsage memory_usage() const;
     BuildBytes memory_requirements() const;
     BuildBytes memory_requirements(std::span<const GeometrySize> geometries, std::size_t instance_count) const;
-    // As it is now, on the device too, for which it waits; with its face metadata as materials.
+    // As it is now, on the device too, for which it waits.
     Mesh held_mesh(AccelHandle handle) const;
-    SyncPoint last_sync() const { return synced_; }
+    std::vector<uint> face_metadata(AccelHandle handle) const;  // of each triangle; 0 where none was kept. Waits
+    // Counts the syncs that moved or changed something.
+    std::uint64_t edit_count() const { return edit_count_; }
     const AccelOptions& options() const { return options_; }
     Context& context() const { return context_; }
     const std::string& name() const { return name_; }
@@ -226,7 +228,6 @@ class AccelBackend {
         struct Owner {
             AccelHandle handle;
             std::size_t first_instance, primitive_count;
-            bool has_faces;
         };
         std::uint64_t revision = 0;
         std::vector<uint> of_instance;  // index into `all`
@@ -295,6 +296,7 @@ class AccelBackend {
     Dirty dirty_ = Dirty::structure;
     bool has_moved_ = false;  // something has moved after a build, so that builds allow refits
     std::uint64_t revision_ = 0;
+    std::uint64_t edit_count_ = 0;
     SceneTraits traits_;                                           // of the scene that was built
     mutable std::unique_ptr<PipelineVariants> pipeline_variants_;  // made by the first trace
     mutable std::unique_ptr<RaySort> ray_sort_;                    // made by the first that sorts

@@ -2,6 +2,7 @@
 #include "engine/accel/instance_array.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "engine_copy_transforms.spv.h"
@@ -10,6 +11,8 @@ namespace twinray {
 namespace {
 
 constexpr std::uint64_t stride = sizeof(InstanceRecord);
+constexpr std::uint64_t options_offset = offsetof(InstanceRecord, custom_index_mask);
+static_assert(offsetof(InstanceRecord, sbt_offset_flags) == options_offset + sizeof(uint));
 
 bool lies_on_device(const InstanceSlice& slice) { return slice.first && slice.device_wrote; }
 
@@ -29,6 +32,12 @@ std::size_t capacity_for(std::size_t count, std::size_t capacity) {
 void InstanceSlice::edit(std::size_t index, const InstanceRecord& record) {
     records[index] = record;
     if (!all_edited) edited.insert(index);
+}
+
+void InstanceSlice::edit_options(std::size_t index, const InstanceRecord& record) {
+    records[index].custom_index_mask = record.custom_index_mask;
+    records[index].sbt_offset_flags = record.sbt_offset_flags;
+    options_edited.insert(index);
 }
 
 void InstanceSlice::edit_all(std::vector<InstanceRecord>&& all) {
@@ -120,6 +129,10 @@ void InstanceArray::record_edits(Commands& commands, const Staged& staged,
         if (slice.all_edited) regions.push_back({staged.firsts[i] * stride, bytes_of(slice, 0, slice.records.size())});
         for (const std::size_t index : slice.edited)
             regions.push_back({(staged.firsts[i] + index) * stride, bytes_of(slice, index, index + 1)});
+        for (const std::size_t index : slice.options_edited)
+            if (!slice.all_edited && !slice.edited.contains(index))
+                regions.push_back({(staged.firsts[i] + index) * stride + options_offset,
+                                   bytes_of(slice, index, index + 1).subspan(options_offset, 2 * sizeof(uint))});
     }
     if (regions.empty()) return;
     const auto pass = commands.pass("instance edits");
@@ -133,6 +146,7 @@ void InstanceArray::commit(Staged&& staged, std::span<InstanceSlice* const> slic
         slices[i]->incoming = {};
         slices[i]->edited.clear();
         slices[i]->all_edited = false;
+        slices[i]->options_edited.clear();
     }
 }
 

@@ -29,8 +29,11 @@ struct InstanceSlice {
     // two of them may be newer on the device.
     std::set<std::size_t> edited;
     bool all_edited = false;
+    // Records of which the host changed all but the transform, which may be newer on the device.
+    std::set<std::size_t> options_edited;
 
     void edit(std::size_t index, const InstanceRecord& record);
+    void edit_options(std::size_t index, const InstanceRecord& record);
     void edit_all(std::vector<InstanceRecord>&& all);
     void replace_transforms(Ref<Transform> transforms);
 };

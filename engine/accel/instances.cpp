@@ -63,9 +63,9 @@ void AccelBackend::update_transform_at(AccelHandle handle, std::size_t index, co
 }
 
 void AccelBackend::update_options(AccelHandle handle, std::size_t index, const InstanceOptions& options) {
-    const Transform transform = get_instance(handle, index).transform;
     PushedGeometry& pushed = live(handle, "update_options");
-    pushed.instances.edit(index, checked_record(pushed, index, transform, options));
+    check_index(handle, pushed, index, "update_options");
+    pushed.instances.edit_options(index, checked_record(pushed, index, Transform{}, options));
     mark(Dirty::structure);
 }
 
@@ -99,6 +99,10 @@ std::vector<InstanceState> AccelBackend::get_instances(AccelHandle handle) const
         records = download<InstanceRecord>(context_, instances_.buffer(), records.size(),
                                            *slice.first * sizeof(InstanceRecord));
     for (const std::size_t i : slice.edited) records[i] = slice.records[i];
+    for (const std::size_t i : slice.options_edited) {
+        records[i].custom_index_mask = slice.records[i].custom_index_mask;
+        records[i].sbt_offset_flags = slice.records[i].sbt_offset_flags;
+    }
     std::vector<InstanceState> states;
     for (const InstanceRecord& record : records) states.push_back(state_of(record));
     return states;

@@ -11,6 +11,7 @@ Scene scene_of(AbstractAccel& accel) {
     accel.sync();
     const AccelBackend& backend = accel.backend();
     Scene scene;
+    scene.materials.resize(1);
     for (const AccelHandle handle : accel.handles()) {
         const auto mesh = static_cast<uint>(scene.meshes.size());
         scene.meshes.push_back(backend.held_mesh(handle));
@@ -29,10 +30,15 @@ Mesh AccelBackend::held_mesh(AccelHandle handle) const {
     mesh.name = held.name;
     mesh.positions = held.given_positions();
     mesh.triangles = held.triangles;
-    const SurfaceSlice& surface = live(handle, "mesh").surface;
-    if (surface.face_metadata)
-        mesh.materials = download<uint>(context_, surface.data, mesh.triangles.size(), *surface.face_metadata);
     return mesh;
+}
+
+std::vector<uint> AccelBackend::face_metadata(AccelHandle handle) const {
+    const PushedGeometry& pushed = live(handle, "face_metadata");
+    const SurfaceSlice& surface = pushed.surface;
+    const std::size_t count = pushed.geometry.triangles.size();
+    if (!surface.face_metadata) return std::vector<uint>(count);
+    return download<uint>(context_, surface.data, count, *surface.face_metadata);
 }
 
 }  // namespace twinray

@@ -142,7 +142,7 @@ SurfaceTables::Staged SurfaceTables::stage(Commands& commands, std::span<const I
 void SurfaceTables::commit(Staged&& staged) {
     for (auto& [slice, data] : staged.data) {
         slice->data = std::move(data);
-        slice->packed = {};
+        slice->packed = std::vector<std::byte>();  // without its memory
     }
     if (staged.rows) rows_ = std::move(*staged.rows);
 }

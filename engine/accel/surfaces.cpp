@@ -21,8 +21,7 @@ const AccelBackend::InstanceOwners& AccelBackend::instance_owners(const char* ac
     for (const auto& [id, pushed] : pushed_) {
         const std::size_t first = owners.of_instance.size(), count = pushed.instances.records.size();
         owners.of_instance.insert(owners.of_instance.end(), count, static_cast<uint>(owners.all.size()));
-        const bool has_faces = pushed.geometry.kind == GEOMETRY_TRIANGLES;
-        owners.all.push_back({{id}, first, pushed.geometry.primitive_count(), has_faces});
+        owners.all.push_back({{id}, first, pushed.geometry.primitive_count()});
     }
     return owners_ = std::move(owners);
 }
@@ -56,7 +55,6 @@ void AccelBackend::check_hits(std::span<const Ray> rays, std::span<const Hit> hi
         if (hits[i].primitive_index >= owner.primitive_count)
             fail(name_, ": ", action, ": hit ", i, " names primitive ", hits[i].primitive_index, " of ",
                  owner.primitive_count);
-        if (!owner.has_faces) fail(name_, ": ", action, ": hit ", i, " is of a box, which has no surface");
     }
 }
 

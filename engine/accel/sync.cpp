@@ -150,6 +150,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     scene_count_ = staged.instances.count;
     has_moved_ = staged.has_moved;
     revision_ += dirty_ == Dirty::structure;
+    edit_count_ += dirty_ >= Dirty::moves;
     if (dirty_ == Dirty::structure) traits_ = scene_traits();
     if (staged.scene) scene_ = std::move(staged.scene);
     instances_.commit(std::move(staged.instances), staged.slices);

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include "engine/accel/accel_backend.h"
 #include "engine/core/commands.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
@@ -132,28 +133,23 @@ void check_faces(const Scene& scene, const Faces& faces) {
 
 namespace {
 
-// Their metadata in place of materials by their rank, so that groups are numbered without gaps.
-std::vector<uint> rank_metadata(Scene& scene) {
-    std::set<uint> values;
-    for (const Mesh& mesh : scene.meshes) {
-        if (mesh.materials.empty() && !mesh.triangles.empty()) values.insert(0);
-        values.insert(mesh.materials.begin(), mesh.materials.end());
-    }
-    const std::vector<uint> ascending(values.begin(), values.end());
-    const auto rank = [&](uint value) {
-        return static_cast<uint>(std::ranges::lower_bound(ascending, value) - ascending.begin());
-    };
-    for (Mesh& mesh : scene.meshes) {
-        mesh.materials.resize(mesh.triangles.size());
-        for (uint& value : mesh.materials) value = rank(value);
-    }
-    scene.materials.resize(ascending.size());
-    return ascending;
-}
-
+// With ranks of the metadata of faces as materials, so that groups are numbered without gaps.
 Faces::State::Held hold(AbstractAccel& accel) {
-    Faces::State::Held held{.scene = scene_of(accel), .metadata = {}, .accel = accel.view().accel, .at = accel.sync()};
-    held.metadata = rank_metadata(held.scene);
+    Faces::State::Held held{
+        .scene = scene_of(accel), .metadata = {}, .accel = accel.view().accel, .at = accel.backend().edit_count()};
+    std::set<uint> values;
+    const std::vector<AccelHandle> handles = accel.handles();
+    for (std::size_t i = 0; i < handles.size(); ++i) {
+        std::vector<uint>& materials = held.scene.meshes[i].materials;
+        materials = accel.backend().face_metadata(handles[i]);
+        materials.resize(held.scene.meshes[i].triangles.size());
+        values.insert(materials.begin(), materials.end());
+    }
+    held.metadata.assign(values.begin(), values.end());
+    for (Mesh& mesh : held.scene.meshes)
+        for (uint& value : mesh.materials)
+            value = static_cast<uint>(std::ranges::lower_bound(held.metadata, value) - held.metadata.begin());
+    held.scene.materials.resize(held.metadata.size());
     return held;
 }
 
@@ -175,7 +171,8 @@ const std::vector<uint>& Faces::metadata() const { return held_by(*this).metadat
 
 bool Faces::is_current(AbstractAccel& accel) const {
     const State::Held& held = held_by(*this);
-    return accel.sync().value == held.at.value && accel.view().accel == held.accel;
+    accel.sync();
+    return accel.view().accel == held.accel && accel.backend().edit_count() == held.at;
 }
 
 void check_current(AbstractAccel& accel, const Faces& faces, const char* action) {

@@ -49,7 +49,7 @@ struct Faces::State {
         Scene scene;
         std::vector<uint> metadata;
         std::uint64_t accel = 0;  // AccelView::accel
-        SyncPoint at;
+        std::uint64_t at = 0;     // AccelBackend::edit_count()
     };
     std::optional<Held> held;
     std::vector<Buffer> meshes;

@@ -63,7 +63,7 @@ void dispatch(Commands& commands, const Kernel<PointSearchArgs>& kernel, PointSe
 }  // namespace
 
 struct PointQuery::State {
-    std::optional<Scene> held;  // of an accelerator, which the spans refer to
+    std::vector<std::unique_ptr<const Scene>> held;  // of accelerators: what the spans refer to
 
     explicit State(Context& device)
         : context(with_float64(device, "points: distances")),
@@ -117,9 +117,10 @@ void PointQuery::set(const Scene& scene) {
 }
 
 void PointQuery::set(AbstractAccel& accel) {
-    Scene held = scene_of(accel);
-    set(held);
-    state_->held = std::move(held);
+    // What was held before may still be referred to if this throws.
+    state_->held.push_back(std::make_unique<const Scene>(scene_of(accel)));
+    set(*state_->held.back());
+    state_->held.erase(state_->held.begin(), state_->held.end() - 1);
 }
 
 void PointQuery::set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances) {

@@ -64,8 +64,8 @@ class AbstractAccel {
     // The caller's kernels write into instance_buffer(), then mark_transforms_dirty() lets the next sync take it over.
     InstanceRange instance_buffer(AccelHandle handle) const;
     void mark_transforms_dirty(AccelHandle handle);
-    // Another custom index, mask or flags for an instance, which stays where it is. Waits for the GPU if kernels may
-    // have moved the handle's instances.
+    // Another custom index, mask or flags for an instance, wherever it stands or is about to. Ends all views and what
+    // instance_buffer() has given, as a push does.
     void update_options(AccelHandle handle, std::size_t index, const InstanceOptions& options);
 
     bool is_valid(AccelHandle handle) const;
@@ -135,8 +135,9 @@ class AbstractAccel {
     // and occlusion_only.
     std::vector<Hit> closest_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
     std::vector<Hit> any_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
-    // What lies where each ray met what its hit names, as twinray/glsl/surface.glsl finds it; of a miss all is 0.
-    // Waits. Wants AccelOptions::keeps_surfaces. Throws Error for a hit that names nothing, and if edits are pending.
+    // What lies where each ray met what its hit names, as twinray/glsl/surface.glsl finds it; of misses and boxes
+    // all is 0. Waits, for what sync(Commands&) has recorded too, which must be submitted. Wants
+    // AccelOptions::keeps_surfaces. Throws Error for a hit that names nothing, and if edits are pending.
     std::vector<Surface> surfaces(std::span<const Ray> rays, std::span<const Hit> hits) const;
     // An attribute of the meshes there, interpolated, with 0, 0, 1 for components that it lacks; `missing` where a mesh
     // has none, and for a miss. By name: "normals", ..., or of MeshView::attributes.

@@ -186,9 +186,9 @@ void apply_variant(Scene& scene, const std::string& name);
 std::vector<AccelHandle> push_scene(AbstractAccel& accel, const Scene& scene);
 
 // What an accelerator holds after a sync, with vertices and transforms as kernels have left them: a mesh for each
-// handle, in the order of AbstractAccel::handles(), with face_metadata as materials; instances in the order of
-// Hit::instance_index. Boxes become meshes without triangles. Waits. Throws Error for an instance whose transform is
-// unusable.
+// handle, in the order of AbstractAccel::handles(), and instances in the order of Hit::instance_index. Positions and
+// triangles alone; boxes become meshes without triangles. Waits, for what sync(Commands&) has recorded too, which must
+// be submitted. Throws Error for an instance whose transform is unusable.
 Scene scene_of(AbstractAccel& accel);
 
 // ---- Views of a scene -----------------------------------------------------------------------------------------------

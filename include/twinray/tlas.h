@@ -21,8 +21,8 @@ class SwTlas final : public AbstractAccel {
     // What the software accelerator can do on a device that it runs on.
     static Capability capability_on(const DeviceProperties& device, Feature feature);
 
-    // Writes the built geometries and their instances. Throws Error when edits are pending and when the file cannot be
-    // written, which is then as it was before.
+    // Writes the built geometries and their instances, without what AccelOptions::keeps_surfaces keeps. Throws Error
+    // when edits are pending and when the file cannot be written, which is then as it was before.
     void save(const std::filesystem::path& file) const;
     struct Loaded {
         std::unique_ptr<SwTlas> accel;

@@ -13,7 +13,7 @@ void main()
     if (i >= args.of.count) return;
     Hit hit = AT(args.of.hits, i);
     vec4 value = args.missing;
-    if (hit.hit != 0u)
+    if (hit.hit != 0u && surface_geometry(AT(args.of.table, 0), hit.instance_index).face_count != 0u)
         value = attribute_at(surface_place(AT(args.of.table, 0), AT(args.of.rays, i), hit), args.number, value);
     AT(Vec4s(args.of.results), i) = value;
 }

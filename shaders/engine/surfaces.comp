@@ -13,7 +13,7 @@ void main()
     if (i >= args.count) return;
     Hit hit = AT(args.hits, i);
     Surface surface = no_surface();
-    if (hit.hit != 0u)
+    if (hit.hit != 0u && surface_geometry(AT(args.table, 0), hit.instance_index).face_count != 0u)
         surface = surface_at(surface_place(AT(args.table, 0), AT(args.rays, i), hit), hit.instance_index);
     AT(REF(Surface)(args.results), i) = surface;
 }

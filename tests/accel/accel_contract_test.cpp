@@ -579,8 +579,18 @@ TEST_P(Accel, OptionsOfAnInstanceChangeWhereItStands) {
         accel().update_transforms(handle, moved.ref<Transform>(), 2);
         accel().sync();
         accel().update_options(handle, 1, {.custom_index = 78});
+        EXPECT_EQ(accel().get_instance(handle, 1).options.custom_index, 78u);
         EXPECT_EQ(closest(ray).t, 6.0f);
         EXPECT_EQ(closest(ray).custom_index, 78u);
+        const Buffer again = device_copy(std::vector{places[0], Transform::translation({5, 0, 3})});
+        accel().update_transforms(handle, again.ref<Transform>(), 2);
+        accel().update_options(handle, 1, {.custom_index = 79});  // before the sync that moves it
+        EXPECT_EQ(closest(ray).t, 7.0f);
+        EXPECT_EQ(closest(ray).custom_index, 79u);
+        accel().update_options(handle, 1, {.custom_index = 80});
+        accel().update_transform_at(handle, 1, Transform::translation({5, 0, 5}));
+        EXPECT_EQ(closest(ray).t, 5.0f);
+        EXPECT_EQ(closest(ray).custom_index, 80u);
     }
     EXPECT_NE(error_of([&] { accel().update_options(handle, 2, {}); }).find("index 2 of the 2"), std::string::npos);
     EXPECT_NE(error_of([&] { accel().update_options(handle, 0, {.custom_index = 1u << 24}); }).find("24 bits"),

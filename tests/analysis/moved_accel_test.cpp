@@ -11,9 +11,7 @@ namespace {
 
 class AnalysesOfMovedAccels : public AnalysisTest {
   protected:
-    AccelOptions accel_options() const override {
-        return {.keeps_surfaces = true, .compiles_in_background = false};
-    }
+    AccelOptions accel_options() const override { return {.keeps_surfaces = true, .compiles_in_background = false}; }
 
     // A floor, a dented sphere three times and a box, with materials; where they are pushed, and where they end.
     Scene before() {
@@ -79,7 +77,6 @@ TEST_P(AnalysesOfMovedAccels, TheSceneIsThatWhichTheyHold) {
     for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(held.meshes[i].positions, expected.meshes[i].positions);
         EXPECT_EQ(held.meshes[i].triangles, expected.meshes[i].triangles);
-        EXPECT_EQ(held.meshes[i].materials, expected.meshes[i].materials);
         EXPECT_EQ(held.meshes[i].name, expected.meshes[i].name);
     }
 }
@@ -160,6 +157,8 @@ TEST_P(AnalysesOfMovedAccels, FacesOfBeforeAndOfOthersAreRefused) {
     const Faces faces(accel());
     EXPECT_TRUE(faces.is_current(accel()));
     ViewFactors factors(accel(), faces, {});
+    accel().compact();
+    EXPECT_TRUE(faces.is_current(accel())) << "nothing was moved";
     accel().update_transform(handles[2], Transform{});
     EXPECT_FALSE(faces.is_current(accel()));
     const auto expect_refused = [](const std::function<void()>& action, const char* why) {

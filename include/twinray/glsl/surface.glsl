@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From a hit to the surface, in kernels, on either accelerator with the same bits: for accelerators with
+// From a hit to the surface, in kernels, on either accelerator alike: for accelerators with
 // AccelOptions::keeps_surfaces.
 //
 //     if (!closest_hit(accel, ray, hit)) ...
@@ -25,9 +25,16 @@ SurfaceTable surfaces_of(Address accel)
 
 SurfacePlace surface_place(Address accel, Ray ray, Hit hit) { return surface_place(surfaces_of(accel), ray, hit); }
 
-// `hit` is one: of a miss nothing is defined.
+// Whether the hit is of a triangle: functions below, and surface_place(), want that. Misses and boxes have no surface.
+bool has_surface(Address accel, Hit hit)
+{
+    return hit.hit != 0u && surface_geometry(surfaces_of(accel), hit.instance_index).face_count != 0u;
+}
+
+// All is 0 where there is none.
 Surface surface_at(Address accel, Ray ray, Hit hit)
 {
+    if (!has_surface(accel, hit)) return no_surface();
     return surface_at(surface_place(accel, ray, hit), hit.instance_index);
 }
 

@@ -11,7 +11,9 @@ struct Surface {
     float t;         // of the ray, rebuilt: the same bits on both accelerators
     vec2 uv;         // barycentrics: the point is (1-u-v) v0 + u v1 + v v2
     uvec3 vertices;  // indices into the mesh
-    uint is_front;   // 1: its front is seen, as culling has it
+    // 1: its front is seen, as culling has it. point.normal is of the side on which vertices turn counter-clockwise in
+    // object space, whatever flip_facing says.
+    uint is_front;
     // Shading normal, unit, on the side of point.normal whatever side the mesh's normals are on: by the inverse
     // transpose of the normals that were pushed; point.normal where there are none.
     vec3 normal;
@@ -19,7 +21,8 @@ struct Surface {
     vec2 uv0;      // texture coordinates; 0 where none were pushed
     vec2 uv1;
     vec4 color;           // 1 where none were pushed
-    uint face_metadata;   // the instance's custom index if that is not 0, else the face's own; 0 where none was pushed
+    uint custom_index;    // of the instance
+    uint face_metadata;   // custom_index if that is not 0, else the face's own; 0 where none was pushed
     uint instance_index;  // as in Hit
     uint primitive_index;
     uint is_hit;  // 0: a miss, and all is 0

@@ -168,22 +168,27 @@ FUNC vec3 unit_or(vec3 v, vec3 otherwise) {
     return scaled / length(scaled);
 }
 
-FUNC vec3 vertex_normal(SurfaceAttribute normals, uint vertex, vec3 of_triangle) {
-    vec3 normal = xyz(load_attribute(normals, 3u, vertex));
-    return normal == vec3(0.0f, 0.0f, 0.0f) ? of_triangle : normal;
+// Interpolated, in object space, of length 1; the triangle's where there is none. A vertex whose normal is 0 takes the
+// triangle's, on the side of the others.
+FUNC vec3 object_normal(SurfacePlace place, vec3 of_triangle) {
+    vec3 zero = vec3(0.0f, 0.0f, 0.0f);
+    SurfaceAttribute normals = attribute_of(place, ATTRIBUTE_NORMALS);
+    if (is_null(normals.values)) return of_triangle;
+    vec3 a = xyz(load_attribute(normals, 3u, place.indices.x));
+    vec3 b = xyz(load_attribute(normals, 3u, place.indices.y));
+    vec3 c = xyz(load_attribute(normals, 3u, place.indices.z));
+    vec3 own = dot(a + b + c, of_triangle) < 0.0f ? -of_triangle : of_triangle;
+    a = a == zero ? own : a;
+    b = b == zero ? own : b;
+    c = c == zero ? own : c;
+    return unit_or(xyz(interpolated(vec4(a, 0.0f), vec4(b, 0.0f), vec4(c, 0.0f), place.crossing.uv)), of_triangle);
 }
 
-// Unit, world space: interpolated vertex normals by the inverse transpose, on the side of point.normal. A vertex whose
-// normal is 0 takes the triangle's.
+// Unit, world space: interpolated vertex normals by the inverse transpose, on the side of point.normal.
 FUNC vec3 normal_at(SurfacePlace place, SurfacePoint point) {
-    SurfaceAttribute normals = attribute_of(place, ATTRIBUTE_NORMALS);
-    if (is_null(normals.values)) return point.normal;
-    vec4 normal =
-        interpolated(vec4(vertex_normal(normals, place.indices.x, point.normal_object), 0.0f),
-                     vec4(vertex_normal(normals, place.indices.y, point.normal_object), 0.0f),
-                     vec4(vertex_normal(normals, place.indices.z, point.normal_object), 0.0f), place.crossing.uv);
-    vec3 world = unit_or(transposed_times(place.placement.to_object, unit_or(xyz(normal), vec3(0.0f, 0.0f, 0.0f))),
-                         point.normal);
+    if (is_null(attribute_of(place, ATTRIBUTE_NORMALS).values)) return point.normal;
+    vec3 normal = object_normal(place, point.normal_object);
+    vec3 world = unit_or(transposed_times(place.placement.to_object, normal), point.normal);
     return dot(world, point.normal) < 0.0f ? -world : world;
 }
 
@@ -197,9 +202,7 @@ FUNC vec4 tangent_at(SurfacePlace place, SurfacePoint point, vec3 normal) {
     vec3 world = unit_or(transform_vector(place.placement.to_world, xyz(tangent)), xyz(none));
     if (world == xyz(none)) return none;
     // Whether the map, or the choice of the normal's side, has turned the frame over.
-    SurfaceAttribute normals = attribute_of(place, ATTRIBUTE_NORMALS);
-    vec3 given = point.normal_object;
-    if (!is_null(normals.values)) given = xyz(interpolated_attribute(normals, 3u, place));
+    vec3 given = object_normal(place, point.normal_object);
     vec3 bitangent = transform_vector(place.placement.to_world, cross(given, xyz(tangent)));
     bool is_same = dot(cross(normal, world), bitangent) >= 0.0f;
     return vec4(world, is_same == (tangent.w >= 0.0f) ? 1.0f : -1.0f);
@@ -231,6 +234,7 @@ FUNC Surface no_surface() {
     surface.uv0 = vec2(0.0f, 0.0f);
     surface.uv1 = vec2(0.0f, 0.0f);
     surface.color = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+    surface.custom_index = 0u;
     surface.face_metadata = 0u;
     surface.instance_index = 0u;
     surface.primitive_index = 0u;
@@ -252,6 +256,7 @@ FUNC Surface surface_at(SurfacePlace place, uint instance_index) {
     surface.uv0 = uv0_at(place);
     surface.uv1 = uv1_at(place);
     surface.color = color_at(place);
+    surface.custom_index = place.custom_index;
     surface.face_metadata = face_metadata_at(place);
     surface.instance_index = instance_index;
     surface.primitive_index = place.primitive_index;
