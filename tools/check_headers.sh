@@ -22,7 +22,8 @@ done
 
 # With GLM, of the application's choice: structs and functions of kernels as C++.
 for header in cpp cpp_spawn cpp_sampling; do
-    echo "#include <twinray/glsl/$header.h>" | "$cxx" -std=c++20 -I"$folder" -fsyntax-only -Wall -Wextra -Werror -x c++ -
+    echo "#include <twinray/glsl/$header.h>" |
+        "$cxx" -std=c++20 -I"$folder" -fsyntax-only -Wall -Wextra -Werror -x c++ -
 done
 
 # What is neither ours, Vulkan's, the compiler's nor the C library's.

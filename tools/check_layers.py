@@ -31,7 +31,8 @@ SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "bench": PRODUCT + VALIDATION, "tests": PRODUCT + CHECKS + ["shaders/scene", "cli", "samples", "bench"],
     "shaders/path_tracer": [], "shaders/particles": [], "shaders/embed_renderer": ["shaders/path_tracer"],
     "shaders/points": ["shaders/collide", "shaders/engine"],
-    "shaders": ["shaders/engine", "shaders/scene"],  # each other folder of shaders, but shaders/shared, which sees nothing else
+    # Each other folder of shaders, but shaders/shared, which sees nothing else.
+    "shaders": ["shaders/engine", "shaders/scene"],
 }
 MOST_HEADERS = {  # of this project behind a header, directly or not; lower them whenever they fall
     "include/twinray/tlas.h": 12, "engine/accel/accel_backend.h": 70,

@@ -68,7 +68,8 @@ for number, line in numbered_lines(page):
         if name not in files and not ("/" not in name and name in last_names):
             found.append(f"{page}:{number}: no such file: {name}")
 
-tops = "|".join(sorted({name.split("/")[0] for name in files if "/" in name and not name.startswith(".")}) + ["twinray/glsl"])
+folders_on_top = {name.split("/")[0] for name in files if "/" in name and not name.startswith(".")}
+tops = "|".join([*sorted(folders_on_top), "twinray/glsl"])
 for name in files:
     if not (SOURCE.search(name) or name.endswith(".md")) or name == "CHANGELOG.md":
         continue
