@@ -107,7 +107,7 @@ BuildBytes blas_bytes(const Context& context, std::span<const GeometrySize> mesh
     BuildBytes bytes;
     std::vector<std::uint64_t> scratch;
     for (const GeometrySize& mesh : meshes) {
-        if (mesh.triangles == 0) continue;
+        if (mesh.triangles == 0 || mesh.in_device_memory) continue;
         StructureBuild build = triangle_build("", 0, mesh.vertices, mesh.triangles);
         build.flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
         bytes.structures +=

@@ -39,7 +39,7 @@ struct BlasOptions {
 std::vector<Blas> build_blases(Commands& commands, std::span<const Geometry* const> geometries,
                                const BlasOptions& options);
 
-// What that takes for meshes of triangles.
+// What that takes for meshes of triangles that the host has.
 BuildBytes blas_bytes(const Context& context, std::span<const GeometrySize> meshes, const BlasOptions& options);
 
 }  // namespace twinray

@@ -80,7 +80,7 @@ void HwBackend::build_still(Commands& commands, std::span<const GeometryInput> i
 
 // Into the memory of `current` where it was made for meshes that move.
 MovingMesh HwBackend::prepare_moving(const GeometryInput& input, std::unique_ptr<BuiltGeometry>& built) const {
-    const auto count = static_cast<uint>(input.geometry->triangles.size());
+    const auto count = static_cast<uint>(input.geometry->triangle_count());
     const Blas* blas = HwBuiltGeometry::of(input.current);
     if (!blas || !blas->can_update) {
         built = std::make_unique<HwBuiltGeometry>(moving_->make(input.geometry->name, count));
@@ -113,7 +113,9 @@ HwBackend::Built HwBackend::refit_geometries(Commands& commands, std::span<const
 }
 
 BuildBytes HwBackend::geometry_bytes(std::span<const GeometrySize> geometries) const {
-    return blas_bytes(context(), geometries, {reorder_, scratch_budget()});
+    const BuildBytes still = blas_bytes(context(), geometries, {reorder_, scratch_budget()});
+    const BuildBytes moving = moving_->bytes(geometries, scratch_budget());
+    return {still.structures + moving.structures, still.scratch + moving.scratch};
 }
 
 BuildBytes HwBackend::scene_bytes(std::size_t count, std::size_t capacity) const {

@@ -84,11 +84,24 @@ Blas MovingBlasBuilder::make(const std::string& name, uint triangle_count) const
     return blas;
 }
 
+BuildBytes MovingBlasBuilder::bytes(std::span<const GeometrySize> meshes, std::uint64_t scratch_budget) const {
+    BuildBytes bytes;
+    std::vector<std::uint64_t> scratch;
+    for (const GeometrySize& mesh : meshes) {
+        if (mesh.triangles == 0 || !mesh.in_device_memory) continue;
+        const auto count = static_cast<uint>(mesh.triangles);
+        bytes.structures += sizes_of(context_, build_of("", 0, count)).accelerationStructureSize +
+                            (reorder_ ? mesh.triangles * sizeof(uint) : 0);
+        scratch.push_back(scratch_bytes(count, BuildMode::build));
+    }
+    bytes.scratch = cut_into_batches(scratch, scratch_budget).scratch_bytes;
+    return bytes;
+}
+
 // In front of it all, with the alignment that the driver wants: its own.
-std::uint64_t MovingBlasBuilder::scratch_bytes(const MovingMesh& mesh, BuildMode mode) const {
-    const uint n = mesh.triangle_count;
-    return scratch_bytes_of(context_, work_of(mesh, mode, {})) + vertex_bytes(n) + sizeof(WorldBoundBits) +
-           aligned(area_of(mesh, mode).bytes()) +
+std::uint64_t MovingBlasBuilder::scratch_bytes(uint n, BuildMode mode) const {
+    return scratch_bytes_of(context_, {build_of("", 0, n), mode, nullptr}) + vertex_bytes(n) + sizeof(WorldBoundBits) +
+           aligned(AreaWork{n, {}, {}, mode == BuildMode::build}.bytes()) +
            (reorder_ && mode == BuildMode::build ? SortScratch{0, n, context_.state().tuning()}.bytes() : 0);
 }
 
@@ -160,7 +173,7 @@ void MovingBlasBuilder::record(Commands& commands, std::span<const MovingMesh> m
         for (const MovingMesh& mesh : meshes) commands.write(*mesh.block, mesh.blas->block());
     }
     std::vector<std::uint64_t> bytes;
-    for (const MovingMesh& mesh : meshes) bytes.push_back(scratch_bytes(mesh, mode));
+    for (const MovingMesh& mesh : meshes) bytes.push_back(scratch_bytes(mesh.triangle_count, mode));
     const Batches batches = cut_into_batches(bytes, scratch_budget);
     Buffer scratch = make_build_scratch(context_, "moving blas scratch", batches.scratch_bytes);
     for (const Batches::Run& run : batches.runs) {

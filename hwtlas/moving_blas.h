@@ -10,7 +10,7 @@ namespace twinray {
 
 // A mesh whose vertices move, all on the device, with triangles.
 struct MovingMesh {
-    DeviceMesh mesh;
+    PackedMesh mesh;
     uint triangle_count;
     const Buffer* block;  // HwGeometry; gets the mesh's box, and by a build the addresses of `blas`
     const Blas* blas;     // can_update
@@ -25,13 +25,15 @@ class MovingBlasBuilder {
 
     // With room for a mesh of so many triangles, not built yet.
     Blas make(const std::string& name, uint triangle_count) const;
+    // What building takes of meshes that the device has.
+    BuildBytes bytes(std::span<const GeometrySize> meshes, std::uint64_t scratch_budget) const;
     // In batches whose scratch fits into `scratch_budget`. update: every mesh was built before.
     void record(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode,
                 std::uint64_t scratch_budget) const;
 
   private:
     struct Batch;
-    std::uint64_t scratch_bytes(const MovingMesh& mesh, BuildMode mode) const;
+    std::uint64_t scratch_bytes(uint triangle_count, BuildMode mode) const;
     Batch begin(Commands& commands, std::span<const MovingMesh> meshes, BuildMode mode, const Buffer& scratch) const;
     void record_batch(Commands& commands, Batch& batch) const;
     void record_order(Commands& commands, Batch& batch) const;

@@ -36,7 +36,7 @@ struct SwBackend::Batch {
     BuildPlan plan = {};
 
     // Of input i, over a mesh on the device.
-    BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const DeviceMesh& mesh) const {
+    BuildTree tree(std::size_t i, const SwBuiltGeometry& target, const PackedMesh& mesh) const {
         return {plan.first[i],  counts[i],          mesh.positions,  mesh.indices, {inputs[i].block->address()},
                 target.nodes(), target.triangles(), target.records()};
     }
@@ -100,7 +100,7 @@ std::vector<Builder::Measured> SwBackend::measured(const Batch& batch, std::span
 }
 
 // Where the meshes lie on the device; those that are not there yet are uploaded.
-std::vector<DeviceMesh> SwBackend::record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch) {
+std::vector<PackedMesh> SwBackend::record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch) {
     std::vector<Commands::Region> regions;
     std::uint64_t next = batch.plan.scratch.bytes;
     const auto stage = [&](std::span<const std::byte> data) {
@@ -108,7 +108,7 @@ std::vector<DeviceMesh> SwBackend::record_meshes(Commands& commands, const Batch
         next += data.size();
         return scratch.address() + regions.back().offset;
     };
-    std::vector<DeviceMesh> meshes;
+    std::vector<PackedMesh> meshes;
     for (const GeometryInput& input : batch.inputs) {
         meshes.push_back(input.mesh);
         if (input.mesh.indices.address) continue;
@@ -128,7 +128,7 @@ void SwBackend::record_build(Commands& commands, const Batch& batch, const Buffe
     std::vector<BuildTree> trees;
     {
         const auto pass = commands.pass("swtlas geometry input");
-        const std::vector<DeviceMesh> meshes = record_meshes(commands, batch, scratch);
+        const std::vector<PackedMesh> meshes = record_meshes(commands, batch, scratch);
         for (std::size_t i = 0; i < batch.inputs.size(); ++i) {
             const GeometryInput& input = batch.inputs[i];
             std::unique_ptr<SwBuiltGeometry> made;
@@ -203,7 +203,7 @@ BuildBytes SwBackend::geometry_bytes(std::span<const GeometrySize> geometries) c
         const auto count = static_cast<uint>(size.triangles);
         bytes.structures += layout_geometry(count, options().layout).bytes;
         shares.push_back(scratch_share(count, options().layout, context().state().tuning()) +
-                         size.vertices * sizeof(vec3) + size.triangles * sizeof(uvec3));
+                         (size.in_device_memory ? 0 : size.vertices * sizeof(vec3) + size.triangles * sizeof(uvec3)));
     }
     bytes.scratch = cut_into_batches(shares, scratch_budget()).scratch_bytes;
     return bytes;

@@ -44,7 +44,7 @@ class SwBackend final : public AccelBackend {
     void record_batches(Commands& commands, std::span<const GeometryInput> inputs,
                         const std::function<void(const Batch&, const Buffer& scratch)>& record);
     void record_build(Commands& commands, const Batch& batch, const Buffer& scratch, Built& built);
-    static std::vector<DeviceMesh> record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch);
+    static std::vector<PackedMesh> record_meshes(Commands& commands, const Batch& batch, const Buffer& scratch);
     std::unique_ptr<BuiltTlas> build_tlas(Commands& commands, const TlasInput& input,
                                           const BuiltTlas* current) override;
     void refit_tlas(Commands& commands, const TlasInput& input, const BuiltTlas& current) override;

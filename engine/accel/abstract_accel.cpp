@@ -22,6 +22,15 @@ AccelHandle AbstractAccel::push(const BoxesView& boxes, std::span<const Transfor
                                 std::span<const InstanceOptions> options) {
     return backend_->push(boxes, transforms, options);
 }
+AccelHandle AbstractAccel::push(const DeviceMesh& mesh, const Transform& transform, const InstanceOptions& options) {
+    return backend_->push(mesh, transform, options);
+}
+AccelHandle AbstractAccel::push(const DeviceMesh& mesh, std::span<const Transform> transforms,
+                                std::span<const InstanceOptions> options) {
+    return backend_->push(mesh, transforms, options);
+}
+void AbstractAccel::update(AccelHandle handle, const DeviceMesh& mesh) { backend_->update(handle, mesh); }
+void AbstractAccel::mark_vertices_dirty(AccelHandle handle) { backend_->mark_vertices_dirty(handle); }
 bool AbstractAccel::erase(AccelHandle handle) { return backend_->erase(handle); }
 void AbstractAccel::update(AccelHandle handle, const MeshView& mesh) { backend_->update(handle, mesh); }
 void AbstractAccel::update(AccelHandle handle, const BoxesView& boxes) { backend_->update(handle, boxes); }

@@ -45,21 +45,45 @@ AccelBackend::AccelBackend(Context& context, std::string name, const AccelOption
 AccelBackend::~AccelBackend() = default;
 
 AccelHandle AccelBackend::push(const MeshView& mesh, const Transform& transform, const InstanceOptions& options) {
-    return place(Geometry(mesh, unit_of(mesh.positions)), &mesh, std::span(&transform, 1), std::span(&options, 1));
+    return push(mesh, std::span(&transform, 1), std::span(&options, 1));
 }
 AccelHandle AccelBackend::push(const MeshView& mesh, std::span<const Transform> transforms,
                                std::span<const InstanceOptions> options) {
-    return place(Geometry(mesh, unit_of(mesh.positions)), &mesh, transforms, options);
+    return place(Geometry(mesh, unit_of(mesh.positions)), surface_of(mesh), transforms, options);
 }
 AccelHandle AccelBackend::push(const BoxesView& boxes, const Transform& transform, const InstanceOptions& options) {
-    return place(Geometry(boxes), nullptr, std::span(&transform, 1), std::span(&options, 1));
+    return push(boxes, std::span(&transform, 1), std::span(&options, 1));
 }
 AccelHandle AccelBackend::push(const BoxesView& boxes, std::span<const Transform> transforms,
                                std::span<const InstanceOptions> options) {
-    return place(Geometry(boxes), nullptr, transforms, options);
+    return place(Geometry(boxes), {}, transforms, options);
+}
+AccelHandle AccelBackend::push(const DeviceMesh& mesh, const Transform& transform, const InstanceOptions& options) {
+    return push(mesh, std::span(&transform, 1), std::span(&options, 1));
+}
+AccelHandle AccelBackend::push(const DeviceMesh& mesh, std::span<const Transform> transforms,
+                               std::span<const InstanceOptions> options) {
+    Geometry geometry = geometry_of(mesh, "push");
+    return place(std::move(geometry), surface_of(mesh), transforms, options);
 }
 
-AccelHandle AccelBackend::place(Geometry&& geometry, const MeshView* mesh, std::span<const Transform> transforms,
+template <class Mesh>
+SurfaceSlice AccelBackend::surface_of(const Mesh& mesh) {
+    return surfaces_ ? surface_slice(mesh, surfaces_->names()) : SurfaceSlice{};
+}
+
+Geometry AccelBackend::geometry_of(const DeviceMesh& mesh, const char* action) const {
+    if (!works_on_device()) fail(name_, ": ", action, ": meshes in device memory are unsupported");
+    const vec3 corners[] = {mesh.bounds ? mesh.bounds->lo : vec3(1), mesh.bounds ? mesh.bounds->hi : vec3(1)};
+    const float unit = mesh.in_place ? 1 : unit_of(corners);
+    if (mesh.in_place && keeps_meshes() && !is_packed(mesh))
+        fail(name_, ": ", action, ": mesh '", mesh.name,
+             "' in place: surfaces and refining read float32 positions of stride 12 and 32-bit indices; pack it, or "
+             "have it copied");
+    return Geometry(mesh, unit);
+}
+
+AccelHandle AccelBackend::place(Geometry&& geometry, SurfaceSlice&& surface, std::span<const Transform> transforms,
                                 std::span<const InstanceOptions> options) {
     if (!options.empty() && options.size() != transforms.size())
         fail(name_, ": mesh '", geometry.name, "': ", options.size(), " instance options for ", transforms.size(),
@@ -69,12 +93,12 @@ AccelHandle AccelBackend::place(Geometry&& geometry, const MeshView* mesh, std::
                           nullptr,
                           {},
                           {},
-                          {},
+                          std::move(surface),
                           {}};
     for (std::size_t i = 0; i < transforms.size(); ++i)
         pushed.instances.records.push_back(
             checked_record(pushed, i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
-    if (surfaces_ && mesh) pushed.surface = surfaces_->slice_of(*mesh);
+    if (pushed.geometry.device) pushed.vertices.read_again();
     warn_of_inactive_triangles(pushed.geometry);
     const AccelHandle handle{next_handle()};
     pushed_.emplace(handle.id, std::move(pushed));
@@ -106,16 +130,38 @@ bool AccelBackend::erase(AccelHandle handle) {
 
 void AccelBackend::update(AccelHandle handle, const MeshView& mesh) {
     live(handle, "update");
-    replace(handle, Geometry(mesh, unit_of(mesh.positions)), &mesh);
+    Geometry geometry(mesh, unit_of(mesh.positions));
+    replace(handle, std::move(geometry), surface_of(mesh));
 }
 void AccelBackend::update(AccelHandle handle, const BoxesView& boxes) {
     live(handle, "update");
-    replace(handle, Geometry(boxes), nullptr);
+    replace(handle, Geometry(boxes), {});
 }
 
-void AccelBackend::replace(AccelHandle handle, Geometry&& geometry, const MeshView* mesh) {
+void AccelBackend::update(AccelHandle handle, const DeviceMesh& mesh) {
     PushedGeometry& pushed = live(handle, "update");
-    SurfaceSlice surface = surfaces_ && mesh ? surfaces_->slice_of(*mesh) : SurfaceSlice{};
+    Geometry geometry = geometry_of(mesh, "update");
+    SurfaceSlice surface = surface_of(mesh);
+    if (!pushed.geometry.fits_in_place_of(geometry) || !pushed.surface.is_empty() || !surface.is_empty())
+        return replace(handle, std::move(geometry), std::move(surface));
+    pushed.geometry = std::move(geometry);
+    pushed.vertices.read_again();
+    pushed.vertices.rebuilds = true;
+    pushed.has_source = false;
+    mark(Dirty::moves);
+}
+
+void AccelBackend::mark_vertices_dirty(AccelHandle handle) {
+    PushedGeometry& pushed = live(handle, "mark_vertices_dirty");
+    if (!pushed.geometry.is_in_place())
+        fail(name_, ": mark_vertices_dirty: mesh '", pushed.geometry.name,
+             "' is not in place in memory of the caller's");
+    pushed.vertices.read_again();
+    mark(Dirty::moves);
+}
+
+void AccelBackend::replace(AccelHandle handle, Geometry&& geometry, SurfaceSlice&& surface) {
+    PushedGeometry& pushed = live(handle, "update");
     warn_of_inactive_triangles(geometry);
     if (pushed.built)
         outdated_.push_back({std::move(pushed.geometry),
@@ -127,6 +173,7 @@ void AccelBackend::replace(AccelHandle handle, Geometry&& geometry, const MeshVi
                              {}});
     pushed.geometry = std::move(geometry);
     pushed.vertices = {};
+    if (pushed.geometry.device) pushed.vertices.read_again();
     pushed.surface = std::move(surface);
     pushed.has_source = false;
     mark(Dirty::structure);
@@ -137,7 +184,10 @@ AccelBackend::PushedGeometry& AccelBackend::checked_for_vertices(AccelHandle han
     const Geometry& geometry = pushed.geometry;
     if (geometry.kind == GEOMETRY_BOXES)
         fail(name_, ": update_vertices: handle ", handle.id, " holds boxes, '", geometry.name, "', not triangles");
-    if (const std::size_t n = geometry.positions.size(); count != n)
+    if (geometry.is_in_place())
+        fail(name_, ": update_vertices: mesh '", geometry.name,
+             "' is in place in memory of the caller's: write there, then mark_vertices_dirty()");
+    if (const std::size_t n = geometry.vertex_count(); count != n)
         fail(name_, ": update_vertices: mesh '", geometry.name, "': ", count, " positions for its ", n,
              " vertices; update() changes their number");
     return pushed;
@@ -150,10 +200,10 @@ void AccelBackend::update_vertices(AccelHandle handle, std::span<const vec3> pos
     geometry.move_to(positions);
     geometry.non_finite_triangles = inactive;
     warn_of_inactive_triangles(geometry);
-    if (geometry.triangles.empty()) return;
+    if (geometry.triangle_count() == 0) return;
     pushed.vertices.incoming = {};
     pushed.vertices.device_wrote = false;
-    pushed.vertices.edited = pushed.built || pushed.vertices.on_device();
+    pushed.vertices.edited = pushed.built || pushed.vertices.on_device() || pushed.vertices.gathers;
     mark(Dirty::moves);
 }
 
@@ -162,7 +212,7 @@ void AccelBackend::update_vertices(AccelHandle handle, Floats positions, std::si
     if (!works_on_device()) fail(name_, ": update_vertices: vertices in device memory are unsupported");
     if (!positions.address || positions.address % 4)
         fail(name_, ": update_vertices: device address ", positions.address, " must be a multiple of 4 and not 0");
-    if (pushed.geometry.triangles.empty()) return;
+    if (pushed.geometry.triangle_count() == 0) return;
     pushed.vertices.incoming = positions;
     pushed.vertices.edited = true;
     mark(Dirty::moves);
@@ -246,9 +296,7 @@ const Buffer& AccelBackend::geometry_block(AccelHandle handle) const { return li
 Geometry AccelBackend::geometry(AccelHandle handle) const {
     const PushedGeometry& pushed = live(handle, "geometry");
     Geometry geometry = pushed.geometry;
-    if (!pushed.vertices.device_wrote) return geometry;
-    geometry.positions = download<vec3>(context_, pushed.vertices.positions, geometry.positions.size());
-    geometry.non_finite_triangles = count_non_finite_triangles({geometry.name, geometry.positions, geometry.triangles});
+    vertices_.download(geometry, pushed.vertices);
     return geometry;
 }
 

@@ -39,7 +39,12 @@ class AccelBackend {
     AccelHandle push(const BoxesView& boxes, const Transform& transform = {}, const InstanceOptions& options = {});
     AccelHandle push(const BoxesView& boxes, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
+    AccelHandle push(const DeviceMesh& mesh, const Transform& transform = {}, const InstanceOptions& options = {});
+    AccelHandle push(const DeviceMesh& mesh, std::span<const Transform> transforms,
+                     std::span<const InstanceOptions> options = {});
     bool erase(AccelHandle handle);
+    void update(AccelHandle handle, const DeviceMesh& mesh);
+    void mark_vertices_dirty(AccelHandle handle);
     void update(AccelHandle handle, const MeshView& mesh);
     void update(AccelHandle handle, const BoxesView& boxes);
     void update_vertices(AccelHandle handle, std::span<const vec3> positions);
@@ -122,7 +127,7 @@ class AccelBackend {
     struct GeometryInput {
         const Geometry* geometry;
         const Buffer* block;
-        DeviceMesh mesh;               // where it is not null, this is built from, not the host's copy
+        PackedMesh mesh;               // where it is not null, this is built from, not the host's copy
         const BuiltGeometry* current;  // of an earlier sync and the same triangles, or null
         CostTarget cost;               // wants the cost measured that sah() tells, unless null
     };
@@ -236,9 +241,12 @@ class AccelBackend {
     enum class Dirty : std::uint8_t { no, compaction, moves, structure };  // moves: of instances and of vertices
 
     void mark(Dirty what) { dirty_ = std::max(dirty_, what); }
-    AccelHandle place(Geometry&& geometry, const MeshView* mesh, std::span<const Transform> transforms,
+    AccelHandle place(Geometry&& geometry, SurfaceSlice&& surface, std::span<const Transform> transforms,
                       std::span<const InstanceOptions> options);
-    void replace(AccelHandle handle, Geometry&& geometry, const MeshView* mesh);
+    void replace(AccelHandle handle, Geometry&& geometry, SurfaceSlice&& surface);
+    template <class Mesh>
+    SurfaceSlice surface_of(const Mesh& mesh);
+    Geometry geometry_of(const DeviceMesh& mesh, const char* action) const;
     InstanceRecord checked_record(const PushedGeometry& pushed, std::size_t index, const Transform& transform,
                                   const InstanceOptions& options) const;
     PushedGeometry& live(AccelHandle handle, const char* action);
@@ -259,6 +267,7 @@ class AccelBackend {
     // On the device, whether their vertices move or not.
     bool keeps_meshes() const { return refinement_ || surfaces_; }
     void stage_sources(Commands& commands, Staged& staged);
+    static PackedMesh kept_mesh(const PushedGeometry& pushed, const Staged& staged);
     bool lacks_mesh(const PushedGeometry& pushed) const;
     void stage_geometries(Commands& commands, Staged& staged);
     void stage_scene(Commands& commands, Staged& staged);
@@ -270,7 +279,7 @@ class AccelBackend {
     AccelTraits accel_traits() const { return {is_software(), options_.layout, reorders()}; }
     SceneTraits scene_traits() const;
     void check_movable(const char* action) const;
-    void warn_of_unusable_instances();
+    void warn_of_faults();
     const TraceProgram& variant_for(uint features, const TraceDesc& desc) const;
     const TraceProgram& program_for(const TraceDesc& desc) const;
     void check_desc(const AccelView& view, const TraceDesc& desc) const;

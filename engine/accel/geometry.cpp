@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/accel/mesh_gather.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -42,8 +43,18 @@ Geometry::Geometry(const MeshView& mesh, float unit)
     move_to(mesh.positions);
 }
 
+Geometry::Geometry(const DeviceMesh& mesh, float unit) : name(mesh.name), scale(unit) {
+    if (mesh.triangle_count == 0) return;
+    check(mesh);
+    device = mesh;
+    device->name = {};
+    device->attributes = {};
+    device->metadata = {};
+}
+
 void Geometry::move_to(std::span<const vec3> others) {
     const float factor = 1 / scale;
+    positions.resize(others.size());
     std::transform(others.begin(), others.end(), positions.begin(), [&](vec3 p) { return p * factor; });
 }
 

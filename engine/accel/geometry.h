@@ -2,9 +2,11 @@
 // Meshes and boxes as accelerators keep them, and the records of instances.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <twinray/device_mesh.h>
 #include <twinray/trace.h>
 
 #include "engine/accel/instance_record.h"
@@ -21,10 +23,15 @@ struct Geometry {
     std::vector<uvec3> triangles;
     std::size_t non_finite_triangles = 0;  // inactive: never hit, still counted
     std::vector<Bounds> boxes;             // of GEOMETRY_BOXES
+    // Instead of `triangles`, and of `positions` until the host gives some: what the caller has in device memory,
+    // without its name and attributes.
+    std::optional<DeviceMesh> device;
 
     // Throws Error naming the mesh and the limit: an index out of range, more than max_primitives.
     explicit Geometry(const MeshView& mesh) : Geometry(mesh, near_unit(mesh.positions)) {}
     Geometry(const MeshView& mesh, float unit);
+    // Throws Error as check() does.
+    Geometry(const DeviceMesh& mesh, float unit);
     // Throws Error naming the box: one that is empty or not finite, or more than max_primitives.
     explicit Geometry(const BoxesView& boxes);
 
@@ -35,7 +42,16 @@ struct Geometry {
     // The power of two just below the largest finite coordinate, so that coordinates in units of it are near 1.
     static float near_unit(std::span<const vec3> positions);
 
-    std::size_t primitive_count() const { return kind == GEOMETRY_BOXES ? boxes.size() : triangles.size(); }
+    std::size_t vertex_count() const { return device ? device->vertex_count : positions.size(); }
+    std::size_t triangle_count() const { return device ? device->triangle_count : triangles.size(); }
+    std::size_t primitive_count() const { return kind == GEOMETRY_BOXES ? boxes.size() : triangle_count(); }
+    // Whether what was built of that one has room for this.
+    bool fits_in_place_of(const Geometry& other) const {
+        return device && other.device && vertex_count() == other.vertex_count() &&
+               triangle_count() == other.triangle_count() && scale == other.scale &&
+               is_in_place() == other.is_in_place();
+    }
+    bool is_in_place() const { return device && device->in_place; }
 
     // Leaf positions have 25 bits in the bound on the tree's depth, and records of a tree 26 (see compressed.h).
     static constexpr std::size_t max_primitives = (1u << 25) - 1;

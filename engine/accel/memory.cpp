@@ -14,7 +14,7 @@ MemoryUsage AccelBackend::memory_usage() const {
     for (const auto& [id, pushed] : pushed_) {
         usage.blocks += pushed.block.bytes();
         usage.vertices += pushed.vertices.bytes();
-        usage.surfaces += pushed.surface.bytes();
+        usage.surfaces += pushed.surface.data.bytes();
         if (pushed.built) usage.geometries += pushed.built->bytes;
     }
     return usage;
@@ -23,7 +23,9 @@ MemoryUsage AccelBackend::memory_usage() const {
 BuildBytes AccelBackend::memory_requirements() const {
     std::vector<GeometrySize> sizes;
     for (const auto& [id, pushed] : pushed_)
-        if (!pushed.built) sizes.push_back({pushed.geometry.positions.size(), pushed.geometry.primitive_count()});
+        if (!pushed.built)
+            sizes.push_back({pushed.geometry.vertex_count(), pushed.geometry.primitive_count(),
+                             pushed.geometry.device.has_value()});
     BuildBytes bytes = geometry_bytes(sizes);
     if (dirty_ == Dirty::no) return bytes;
     const std::size_t count = n_instances(), room = scene_ ? scene_->capacity : 0;

@@ -2,92 +2,30 @@
 #include "engine/accel/surface_tables.h"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
-#include "engine/core/error.h"
+#include "engine/core/device_list.h"
+#include "engine_copy_words.spv.h"
 
 namespace twinray {
-namespace {
-
-constexpr std::size_t most_names = 256;
-constexpr std::uint64_t alignment = 16;
-
-std::uint64_t aligned(std::uint64_t offset) { return (offset + alignment - 1) / alignment * alignment; }
-
-std::uint64_t append(std::vector<std::byte>& packed, std::span<const std::byte> bytes) {
-    const std::uint64_t offset = aligned(packed.size());
-    packed.resize(offset + bytes.size());
-    std::copy(bytes.begin(), bytes.end(), packed.begin() + static_cast<std::ptrdiff_t>(offset));
-    return offset;
-}
-
-// Throws Error unless it is empty or has one entry for each of `count`.
-void check_length(const MeshView& mesh, std::string_view name, std::size_t length, std::size_t count,
-                  const char* of_what) {
-    if (length != 0 && length != count)
-        fail("mesh '", mesh.name, "': ", length, " entries of '", name, "' for ", count, " ", of_what);
-}
-
-template <class V>
-void add(SurfaceSlice& slice, const MeshView& mesh, std::string_view name, uint number, std::span<const V> values) {
-    check_length(mesh, name, values.size(), mesh.positions.size(), "vertices");
-    if (values.empty()) return;
-    slice.arrays.push_back({number, sizeof(V) / sizeof(float), false, append(slice.packed, std::as_bytes(values))});
-}
-
-void add(SurfaceSlice& slice, const MeshView& mesh, const AttributeView& attribute, uint number) {
-    if (attribute.components < 1 || attribute.components > 4)
-        fail("mesh '", mesh.name, "': attribute '", attribute.name, "' has ", attribute.components,
-             " components; 1 to 4 fit");
-    const std::size_t count = attribute.is_per_face ? mesh.triangles.size() : mesh.positions.size();
-    check_length(mesh, attribute.name, attribute.values.size(), count * attribute.components,
-                 attribute.is_per_face ? "triangles, times its components" : "vertices, times its components");
-    if (attribute.values.empty()) return;
-    slice.arrays.push_back(
-        {number, attribute.components, attribute.is_per_face, append(slice.packed, std::as_bytes(attribute.values))});
-}
-
-}  // namespace
 
 SurfaceTables::SurfaceTables(Context& context)
     : context_(context),
-      names_{"normals", "tangents", "uv0", "uv1", "colors"},
+      copy_words_(context, {.name = "engine_copy_words", .spirv = engine_copy_words_spirv, .compiles_when_used = true}),
       table_(context, {.name = "surface table", .bytes = sizeof(SurfaceTable)}) {}
 
-std::optional<uint> SurfaceTables::number_of(std::string_view name) const {
-    const auto found = std::ranges::find(names_, name);
-    if (found == names_.end()) return std::nullopt;
-    return static_cast<uint>(found - names_.begin());
-}
-
-SurfaceSlice SurfaceTables::slice_of(const MeshView& mesh) {
-    SurfaceSlice slice;
-    add(slice, mesh, "normals", ATTRIBUTE_NORMALS, mesh.normals);
-    add(slice, mesh, "tangents", ATTRIBUTE_TANGENTS, mesh.tangents);
-    add(slice, mesh, "uv0", ATTRIBUTE_UV0, mesh.uv0);
-    add(slice, mesh, "uv1", ATTRIBUTE_UV1, mesh.uv1);
-    add(slice, mesh, "colors", ATTRIBUTE_COLORS, mesh.colors);
-    std::vector<std::string> names = names_;
-    for (const AttributeView& attribute : mesh.attributes) {
-        const auto known = std::ranges::find(names, attribute.name);
-        const auto number = static_cast<uint>(known - names.begin());
-        const bool is_taken =
-            number < ATTRIBUTES_NAMED || std::ranges::count(mesh.attributes, attribute.name, &AttributeView::name) > 1;
-        if (attribute.name.empty() || is_taken)
-            fail("mesh '", mesh.name, "': an attribute's name, '", attribute.name, "', is ",
-                 attribute.name.empty() ? "empty" : "taken");
-        if (known == names.end()) names.emplace_back(attribute.name);
-        if (names.size() > most_names)
-            fail("mesh '", mesh.name, "': attribute '", attribute.name, "' is one too many: an accelerator has ",
-                 most_names - ATTRIBUTES_NAMED);
-        add(slice, mesh, attribute, number);
-    }
-    check_length(mesh, "face_metadata", mesh.face_metadata.size(), mesh.triangles.size(), "triangles");
-    if (!mesh.face_metadata.empty()) slice.face_metadata = append(slice.packed, std::as_bytes(mesh.face_metadata));
-    if (!mesh.metadata.empty()) slice.metadata = append(slice.packed, mesh.metadata);
-    names_ = std::move(names);
-    return slice;
+// Returns where its arrays are.
+std::uint64_t SurfaceTables::stage_data(Commands& commands, SurfaceSlice& slice, Staged& staged) const {
+    const std::uint64_t bytes = slice.pending_bytes();
+    if (bytes == 0) return slice.data.bytes() ? slice.data.address() : 0;
+    Buffer data(context_, {.name = "surface data", .bytes = bytes});
+    if (!slice.packed.empty()) commands.upload(data, std::span<const std::byte>(slice.packed));
+    for (const SurfaceSlice::Copy& copy : slice.copies)
+        copy_words_.dispatch(commands, {copy.from, data.ref<uint>(copy.offset), static_cast<uint>(copy.words), 0},
+                             copy.words);
+    const std::uint64_t address = data.address();
+    staged.data.emplace_back(&slice, std::move(data));
+    return address;
 }
 
 SurfaceTables::Staged SurfaceTables::stage(Commands& commands, std::span<const Item> items,
@@ -104,14 +42,10 @@ SurfaceTables::Staged SurfaceTables::stage(Commands& commands, std::span<const I
     std::vector<uint> geometry_of_instance;
     for (std::size_t i = 0; i < items.size(); ++i) {
         SurfaceSlice& slice = *items[i].slice;
-        std::uint64_t address = slice.data.bytes() ? slice.data.address() : 0;
-        if (!slice.packed.empty()) {
-            Buffer data(context_, {.name = "surface data", .bytes = slice.packed.size()});
-            commands.upload(data, std::span<const std::byte>(slice.packed));
-            address = data.address();
-            staged.data.emplace_back(&slice, std::move(data));
-        }
-        const auto at = [&](std::optional<std::uint64_t> offset) { return offset ? address + *offset : 0; };
+        const std::uint64_t base = stage_data(commands, slice, staged);
+        const auto at = [&](const std::optional<SurfaceSlice::Place>& place) {
+            return place ? place->address(base) : 0;
+        };
         geometries.push_back({items[i].handle,
                               {at(slice.face_metadata)},
                               at(slice.metadata),
@@ -119,14 +53,14 @@ SurfaceTables::Staged SurfaceTables::stage(Commands& commands, std::span<const I
                               static_cast<uint>(items[i].faces)});
         for (const SurfaceSlice::Array& array : slice.arrays)
             attributes[i * attribute_count + array.number] = {
-                {address + array.offset}, array.components, array.is_per_face ? 1u : 0u};
+                {array.place.address(base)}, array.components, array.is_per_face ? 1u : 0u};
         geometry_of_instance.insert(geometry_of_instance.end(), items[i].instances, static_cast<uint>(i));
     }
 
     std::vector<std::byte> rows;
-    const std::uint64_t of_geometries = append(rows, std::as_bytes(std::span(geometries)));
-    const std::uint64_t of_attributes = append(rows, std::as_bytes(std::span(attributes)));
-    const std::uint64_t of_instances = append(rows, std::as_bytes(std::span(geometry_of_instance)));
+    const std::uint64_t of_geometries = append_aligned(rows, std::as_bytes(std::span(geometries)));
+    const std::uint64_t of_attributes = append_aligned(rows, std::as_bytes(std::span(attributes)));
+    const std::uint64_t of_instances = append_aligned(rows, std::as_bytes(std::span(geometry_of_instance)));
     staged.rows.emplace(context_, BufferDesc{.name = "surface rows", .bytes = rows.size()});
     const std::uint64_t address = rows.empty() ? 0 : staged.rows->address();
     if (!rows.empty()) commands.upload(*staged.rows, std::span<const std::byte>(rows));
@@ -143,8 +77,19 @@ void SurfaceTables::commit(Staged&& staged) {
     for (auto& [slice, data] : staged.data) {
         slice->data = std::move(data);
         slice->packed = std::vector<std::byte>();  // without its memory
+        slice->copies = {};
     }
     if (staged.rows) rows_ = std::move(*staged.rows);
+}
+
+std::vector<uint> SurfaceTables::read(const SurfaceSlice& slice, const SurfaceSlice::Place& place,
+                                      std::size_t count) const {
+    if (!place.in_place) return download<uint>(context_, slice.data, count, place.offset);
+    const Buffer copy(context_, {.name = "surface data", .bytes = count * sizeof(uint)});
+    Commands commands(context_, "read surface data");
+    copy_words_.dispatch(commands, {{place.in_place}, copy.ref<uint>(), static_cast<uint>(count), 0}, count);
+    commands.submit();
+    return download<uint>(context_, copy, count);
 }
 
 }  // namespace twinray

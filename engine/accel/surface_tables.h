@@ -2,51 +2,25 @@
 // What AccelOptions::keeps_surfaces keeps on the device: arrays of meshes, and the table that leads from a hit to them.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <twinray/geometry.h>
-
-#include "engine/core/commands.h"
+#include "engine/accel/surface_slice.h"
+#include "engine/core/kernel.h"
 #include "twinray/glsl/cpp_spawn.h"
 
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
 #include "twinray/glsl/accel_header.h"
+#include "shaders/shared/copy_words.h"
 #include "shaders/shared/intersect.h"
 #include "twinray/glsl/surface_at.h"
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(SurfaceAttribute) == 16 && sizeof(SurfaceGeometry) == 32 && sizeof(SurfaceTable) == 40);
 
-// The arrays of one geometry, in one buffer.
-struct SurfaceSlice {
-    struct Array {
-        uint number = 0, components = 0;
-        bool is_per_face = false;
-        std::uint64_t offset = 0;
-    };
-    std::vector<Array> arrays;
-    std::optional<std::uint64_t> face_metadata, metadata;  // where they lie
-    std::vector<std::byte> packed;                         // until it is on the device
-    Buffer data;
-
-    std::uint64_t bytes() const { return data.bytes(); }
-};
-
 class SurfaceTables {
   public:
     explicit SurfaceTables(Context& context);
 
-    // Copies what the mesh has. Throws Error naming the mesh and the array whose length does not fit, or whose name is
-    // empty, taken or one too many.
-    SurfaceSlice slice_of(const MeshView& mesh);
-    // By its name, "normals", "tangents", "uv0", "uv1", "colors" or one of MeshView::attributes; none: no mesh had it.
-    std::optional<uint> number_of(std::string_view name) const;
+    AttributeNames& names() { return names_; }
 
     struct Item {
         std::uint64_t handle = 0;
@@ -63,12 +37,18 @@ class SurfaceTables {
     Staged stage(Commands& commands, std::span<const Item> items, Ref<InstanceRecord> instances) const;
     void commit(Staged&& staged);
 
+    // Waits. Words of a slice that is on the device.
+    std::vector<uint> read(const SurfaceSlice& slice, const SurfaceSlice::Place& place, std::size_t count) const;
+
     Ref<SurfaceTable> table() const { return table_.ref<SurfaceTable>(); }
     std::uint64_t bytes() const { return table_.bytes() + rows_.bytes(); }
 
   private:
+    std::uint64_t stage_data(Commands& commands, SurfaceSlice& slice, Staged& staged) const;
+
     Context& context_;
-    std::vector<std::string> names_;
+    Kernel<CopyWordsArgs> copy_words_;
+    AttributeNames names_;
     Buffer table_, rows_;
 };
 

@@ -87,7 +87,7 @@ std::vector<Surface> AccelBackend::surfaces(std::span<const Ray> rays, std::span
 
 uint AccelBackend::attribute_number(std::string_view name) const {
     check_keeps_surfaces("attribute_number");
-    const std::optional<uint> number = surfaces_->number_of(name);
+    const std::optional<uint> number = surfaces_->names().number_of(name);
     if (!number) fail(name_, ": attribute_number: no mesh that was pushed has an attribute '", name, "'");
     return *number;
 }

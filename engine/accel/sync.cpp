@@ -29,6 +29,7 @@ void AccelBackend::Staged::add(const Work& work, std::vector<std::unique_ptr<Bui
 }
 
 SyncPoint AccelBackend::sync() {
+    warn_of_faults();
     if (dirty_ == Dirty::no) return synced_;
     auto commands = std::make_unique<Commands>(context_, name_ + " sync");
     Staged staged = stage(*commands);
@@ -39,13 +40,13 @@ SyncPoint AccelBackend::sync() {
 
 void AccelBackend::sync(Commands& commands) {
     if (!commands.is_of_caller()) fail(name_, ": sync: own commands are not for recording into; call sync()");
+    warn_of_faults();
     if (dirty_ != Dirty::no) commit(stage(commands), commands.done());
 }
 
 AccelBackend::Staged AccelBackend::stage(Commands& commands) {
     if (const std::size_t n = n_instances(); n > max_instances)
         fail(name_, ": sync: ", n, " instances; at most ", max_instances, " fit");
-    warn_of_unusable_instances();
     Staged staged;
     for (auto& [id, pushed] : pushed_) staged.slices.push_back(&pushed.instances);
     stage_geometries(commands, staged);
@@ -68,7 +69,7 @@ void AccelBackend::stage_vertices(Commands& commands, Staged& staged) {
 // Whether refining or surfaces lack its mesh on the device, which no edit brings there.
 bool AccelBackend::lacks_mesh(const PushedGeometry& pushed) const {
     return keeps_meshes() && !pushed.vertices.edited && !pushed.vertices.on_device() &&
-           pushed.geometry.kind == GEOMETRY_TRIANGLES;
+           pushed.geometry.kind == GEOMETRY_TRIANGLES && !pushed.geometry.is_in_place();
 }
 
 void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
@@ -77,10 +78,17 @@ void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
     if (staged.sources.empty()) return;
     const auto pass = commands.pass("geometry sources");
     for (const PushedGeometry* pushed : staged.sources) {
-        const DeviceMesh mesh = keeps_meshes() ? staged.vertices.mesh_of(pushed->vertices) : DeviceMesh{};
+        const PackedMesh mesh = keeps_meshes() ? kept_mesh(*pushed, staged) : PackedMesh{};
         commands.write(pushed->block, GeometrySource{mesh.positions, mesh.indices, pushed->geometry.scale, 0},
                        GEOMETRY_SOURCE_OFFSET);
     }
+}
+
+// Where it lies on the device after this sync.
+PackedMesh AccelBackend::kept_mesh(const PushedGeometry& pushed, const Staged& staged) {
+    const Geometry& geometry = pushed.geometry;
+    if (geometry.is_in_place()) return {{geometry.device->positions}, {geometry.device->indices}};
+    return staged.vertices.mesh_of(pushed.vertices);
 }
 
 void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
@@ -88,7 +96,8 @@ void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
     Work builds, refits, compactions;
     for (auto& [id, pushed] : pushed_) {
         GeometryInput input{&pushed.geometry, &pushed.block, {}, pushed.built.get(), {}};
-        const bool is_refit = pushed.vertices.edited && pushed.built && !has_degraded(pushed.vertices.costs);
+        const bool is_refit =
+            pushed.vertices.edited && pushed.built && !pushed.vertices.rebuilds && !has_degraded(pushed.vertices.costs);
         if (pushed.vertices.edited) {
             input.mesh = staged.vertices.mesh(staged.is_rebuilt.size());
             input.cost = staged.vertices.cost_target(staged.is_rebuilt.size());
@@ -104,6 +113,7 @@ void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
     staged.add(builds, build_geometries(commands, builds.inputs));
     staged.add(refits, refit_geometries(commands, refits.inputs));
     staged.add(compactions, compact_geometries(commands, compactions.inputs));
+    staged.vertices.retain_temporaries(commands);
 }
 
 void AccelBackend::stage_scene(Commands& commands, Staged& staged) {
@@ -132,7 +142,7 @@ void AccelBackend::stage_scene(Commands& commands, Staged& staged) {
 void AccelBackend::stage_surfaces(Commands& commands, Staged& staged) {
     std::vector<SurfaceTables::Item> items;
     for (auto& [id, pushed] : pushed_)
-        items.push_back({id, pushed.geometry.triangles.size(), pushed.instances.records.size(), &pushed.surface});
+        items.push_back({id, pushed.geometry.triangle_count(), pushed.instances.records.size(), &pushed.surface});
     staged.surfaces = surfaces_->stage(commands, items, staged.instances.records);
 }
 
@@ -141,7 +151,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
         staged.building[i]->built = std::move(staged.built[i]);
         staged.building[i]->built_at = done;
     }
-    const std::vector<VertexSlice*> moved = VertexArrays::commit(std::move(staged.vertices));
+    const std::vector<VertexSlice*> moved = vertices_.commit(std::move(staged.vertices), done);
     for (std::size_t i = 0; i < staged.is_rebuilt.size(); ++i) moved[i]->costs.commit(staged.is_rebuilt[i], done);
     for (PushedGeometry* pushed : staged.sources) pushed->has_source = true;
     if (refinement_) refinement_->commit(std::move(staged.refinement));
@@ -159,7 +169,9 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     synced_ = done;
 }
 
-void AccelBackend::warn_of_unusable_instances() {
+// Of what kernels have made, in the last sync that the GPU is done with.
+void AccelBackend::warn_of_faults() {
+    vertices_.warn_of_faults(name_);
     if (!synced_.value || !context_.is_reached(synced_)) return;
     const uint count = bound_.read().unusable_count;
     if (count && count != warned_unusable_)

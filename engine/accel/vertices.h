@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes in device memory whose vertices move.
+// Meshes in device memory: whose vertices move, or that callers have there.
 #pragma once
 
 #include <optional>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/accel/geometry.h"
+#include "engine/accel/mesh_gather.h"
 #include "engine/accel/surface_area.h"
 #include "engine/core/kernel.h"
 
@@ -15,25 +16,23 @@ namespace twinray {
 #include "shaders/shared/copy_floats.h"
 #include "twinray/glsl/cpp_end.h"
 
-// A mesh in device memory: 3 floats a vertex, 3 indices a triangle. Null: it is on the host alone.
-struct DeviceMesh {
-    Floats positions;
-    Uints indices;
-};
-
 // What the device has of one geometry's mesh and lacks. Nothing until a vertex is first moved, so that meshes that keep
-// their shape do not pay; from then on the device's copy is what everything is built from.
+// their shape do not pay; from then on the device's copy is what everything is built from. Of a DeviceMesh in place
+// nothing but costs: its copy is made anew by each sync that builds or refits it.
 struct VertexSlice {
     Buffer positions, indices;
     CostLog costs;              // of the geometry's tree
-    bool edited = false;        // moved since the last sync, by the host, or by `incoming`
+    bool edited = false;        // moved since the last sync, by the host, by `incoming` or in Geometry::device
     bool device_wrote = false;  // positions that Geometry::positions lacks
+    bool gathers = false;       // the next sync reads Geometry::device
+    bool rebuilds = false;      // it is another mesh of the same size
     Floats incoming;            // device memory in the user's units that the next sync copies the positions from; 0 =
                                 // Geometry::positions
 
     bool on_device() const { return indices.bytes() != 0; }
     std::uint64_t bytes() const { return positions.bytes() + indices.bytes() + costs.bytes(); }
-    DeviceMesh mesh() const { return {positions.ref<float>(), indices.ref<uint>()}; }
+    PackedMesh mesh() const { return {positions.ref<float>(), indices.ref<uint>()}; }
+    void read_again() { edited = gathers = device_wrote = true, incoming = {}; }
 };
 
 // Brings moved vertices to the device.
@@ -48,24 +47,32 @@ class VertexArrays {
     // What stage() recorded, to be committed once it is certain to run.
     struct Staged {
         std::vector<Item> items;
-        std::vector<VertexSlice> made;  // by item: buffers for a slice that had none
+        std::vector<VertexSlice> made;  // by item: what its slice lacks
         std::unordered_map<const VertexSlice*, std::size_t> item_of;
-        DeviceMesh mesh(std::size_t item) const { return slice(item).mesh(); }
-        // Null for a slice that is neither staged nor on the device.
-        DeviceMesh mesh_of(const VertexSlice& slice) const;
-        CostTarget cost_target(std::size_t item) const { return slice(item).costs.target(); }
+        MeshGather::Faults faults;
 
-      private:
-        const VertexSlice& slice(std::size_t item) const {
-            return items[item].slice->on_device() ? *items[item].slice : made[item];
+        PackedMesh mesh(std::size_t item) const {
+            return made[item].on_device() ? made[item].mesh() : items[item].slice->mesh();
         }
+        // Null for a slice that is neither staged nor on the device.
+        PackedMesh mesh_of(const VertexSlice& slice) const;
+        CostTarget cost_target(std::size_t item) const;
+        // Copies of meshes in place, once all that reads them is recorded.
+        void retain_temporaries(Commands& commands);
     };
     Staged stage(Commands& commands, std::vector<Item> items) const;
     // Returns the slices, by item.
-    static std::vector<VertexSlice*> commit(Staged&& staged);
+    std::vector<VertexSlice*> commit(Staged&& staged, SyncPoint done);
+
+    // Waits. What the device has of the mesh and the host lacks, in units of the geometry's scale.
+    void download(Geometry& geometry, const VertexSlice& slice) const;
+    void warn_of_faults(const std::string& accel) { gather_.warn_of_faults(accel); }
 
   private:
+    void record_positions(Commands& commands, const Staged& staged) const;
+
     Context& context_;
+    MeshGather gather_;
     Kernel<CopyFloatsArgs> copy_floats_;
 };
 

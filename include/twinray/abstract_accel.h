@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <twinray/commands.h>
+#include <twinray/device_mesh.h>
 #include <twinray/trace.h>
 
 namespace twinray {
@@ -40,11 +41,19 @@ class AbstractAccel {
     AccelHandle push(const BoxesView& boxes, const Transform& transform = {}, const InstanceOptions& options = {});
     AccelHandle push(const BoxesView& boxes, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
+    // The same for a mesh in device memory, which the next sync reads there. What device memory holds nobody checks but
+    // indices: a triangle with one out of range is inactive, and the accelerator warns how many.
+    AccelHandle push(const DeviceMesh& mesh, const Transform& transform = {}, const InstanceOptions& options = {});
+    AccelHandle push(const DeviceMesh& mesh, std::span<const Transform> transforms,
+                     std::span<const InstanceOptions> options = {});
     // False if the handle is dead already.
     bool erase(AccelHandle handle);
     // Another mesh, or other boxes, for all instances of the handle.
     void update(AccelHandle handle, const MeshView& mesh);
     void update(AccelHandle handle, const BoxesView& boxes);
+    // Where the handle had a DeviceMesh of the same counts, both without attributes, the next sync rebuilds in the same
+    // memory and views stay valid: kernels can make a mesh anew for each frame.
+    void update(AccelHandle handle, const DeviceMesh& mesh);
     // New positions for the vertices of the handle's mesh, as many as it has; the triangles stay. The next sync refits
     // the geometry in place: views stay valid. A triangle with a corner that is not finite, or without an area, is
     // inactive until it is moved back.
@@ -52,6 +61,8 @@ class AbstractAccel {
     // The same from device memory, count times 3 tightly packed floats, read by the next sync. Nobody checks what lies
     // there.
     void update_vertices(AccelHandle handle, Floats positions, std::size_t count);
+    // The caller's kernels have moved vertices of a DeviceMesh in place: the next sync reads it again and refits.
+    void mark_vertices_dirty(AccelHandle handle);
 
     // Transforms; custom indices, masks and flags stay. update_transform wants a handle with exactly one instance,
     // update_transforms one transform per instance. AccelOptions::can_move = false forbids all that moves instances.

@@ -246,6 +246,7 @@ struct BuildBytes {
 struct GeometrySize {
     std::uint64_t vertices = 0;
     std::uint64_t triangles = 0;
+    bool in_device_memory = false;  // a DeviceMesh
 };
 
 // Boxes in object space that stand for primitives of the user's, not owned. A trace program says how rays meet them.

@@ -29,6 +29,20 @@ AccelOptions options_for(const DeviceProperties& device, Layout layout, BuildQua
             .build_quality = quality};
 }
 
+// Kernels that the first such mesh compiles.
+void make_device_mesh(Context& context) {
+    SwTlas accel(context, {.keeps_surfaces = true, .compiles_in_background = false});
+    const Buffer zeros(context, {.name = "zeros", .bytes = 64});
+    const DeviceAttribute heat{"heat", 1, false, zeros.ref<float>()};
+    accel.push(DeviceMesh{.name = "point",
+                          .positions = zeros.address(),
+                          .vertex_count = 1,
+                          .indices = zeros.address(),
+                          .triangle_count = 1,
+                          .attributes = {&heat, 1}});
+    accel.sync();
+}
+
 void make_builds(Context& context) {
     for (const BuildQuality quality : all_build_qualities)
         for (const Layout layout : all_layouts) {
@@ -39,6 +53,7 @@ void make_builds(Context& context) {
     const RaySort sort(context);
     const ReferenceAccel reference(context);
     const SurfaceKernels surfaces(context);
+    make_device_mesh(context);
     if (missing_for_hardware(context.properties()).empty()) {
         const AccelOptions options = options_for(context.properties(), Layout::compressed4, BuildQuality::fast);
         const HwTlas accel(context, BuildOrder::morton, options);

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Reads meshes that callers have in device memory into the form that accelerators build from.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <twinray/device_mesh.h>
+
+#include "engine/core/kernel.h"
+
+namespace twinray {
+#include "twinray/glsl/cpp_begin.h"
+#include "shaders/shared/gather_mesh.h"
+#include "twinray/glsl/cpp_end.h"
+
+// A mesh in device memory: 3 floats a vertex, 3 indices a triangle. Null: it is on the host alone.
+struct PackedMesh {
+    Floats positions;
+    Uints indices;
+};
+
+// Throws Error naming the mesh and what of it cannot be: an address, a stride, a count.
+void check(const DeviceMesh& mesh);
+// Whether it is packed already.
+bool is_packed(const DeviceMesh& mesh);
+
+class MeshGather {
+  public:
+    explicit MeshGather(Context& context);
+
+    struct Item {
+        const DeviceMesh* mesh;
+        std::string name;
+        float scale;  // what positions become units of
+        PackedMesh target;
+    };
+    // What was counted of the meshes of one sync.
+    struct Faults {
+        std::vector<std::string> names;
+        Buffer counts;
+    };
+    Faults record(Commands& commands, std::span<const Item> items) const;
+    void commit(Faults&& faults, SyncPoint done);
+    // Of triangles with an index out of range, of syncs that the GPU is done with.
+    void warn_of_faults(const std::string& accel);
+
+  private:
+    Context& context_;
+    Kernel<GatherMeshArgs> kernel_;
+    std::vector<std::pair<SyncPoint, Faults>> untold_;
+    std::map<std::string, uint> told_;  // by mesh: how many faults the last warning named
+};
+
+}  // namespace twinray

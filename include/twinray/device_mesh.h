@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Meshes that are in device memory already, made by kernels or by other programs: for AbstractAccel::push and update.
+//
+//     DeviceMesh mesh{.name = "water", .positions = vertices.address(), .vertex_count = n,
+//                     .indices = indices.address(), .triangle_count = most, .count_on_device = counter.ref<uint>()};
+//     AccelHandle water = accel.push(mesh);  // read by the next sync, on the device
+#pragma once
+
+#include <optional>
+
+#include <twinray/geometry.h>
+
+namespace twinray {
+
+// Numbers of a position, three of them from the start of each vertex. With 16 bits as IEEE's half, or as -32767 to
+// 32767 standing for -1 to 1.
+enum class VertexFormat : std::uint8_t { float32, float16, snorm16 };
+constexpr std::uint32_t component_bytes(VertexFormat format) { return format == VertexFormat::float32 ? 4 : 2; }
+
+enum class IndexFormat : std::uint8_t {
+    none,  // triangle i has the vertices 3i, 3i + 1, 3i + 2
+    uint16,
+    uint32,
+};
+
+// Another array of such a mesh (see AttributeView): float32, tightly packed.
+struct DeviceAttribute {
+    std::string_view name;  // "normals", "tangents", "uv0", "uv1" and "colors" are MeshView's, with their components
+    uint components = 1;    // 1 to 4
+    bool is_per_face = false;
+    Floats values;
+};
+
+// A mesh of which all that may be large is in device memory. The host reads none of it: what a kernel must have written
+// before is written by work submitted before the sync, or recorded before it into the same commands.
+struct DeviceMesh {
+    std::string_view name;
+    std::uint64_t positions = 0;  // device address of the first vertex, a multiple of a component's size
+    std::uint32_t stride = 12;    // bytes from a vertex to the next, such a multiple too
+    VertexFormat format = VertexFormat::float32;
+    std::size_t vertex_count = 0;
+    std::uint64_t indices = 0;  // device address of 3 indices a triangle, a multiple of their size; 0 with none
+    IndexFormat index_format = IndexFormat::uint32;
+    std::size_t triangle_count = 0;
+    // Device address of a uint, or 0. The mesh has min(triangle_count, that many) triangles; the tree has room for, and
+    // costs the time of, all triangle_count. Those beyond are inactive.
+    Uints count_on_device = {};
+    // A box around the positions. Where its largest coordinate is below 2^-20 or above 2^60 (2 for drivers' own
+    // structures: anything but near 1), the mesh is built in units near its size; without it, in its own.
+    std::optional<Bounds> bounds = {};
+    // False: each sync that sees a change copies the mesh, and the caller's memory is free once that sync is done. True:
+    // no copy is kept; the arrays must stay, and be written by kernels alone that run before a sync told of it by
+    // mark_vertices_dirty(). With AccelOptions::keeps_surfaces or Level::refined then only float32, stride 12, and
+    // 32-bit indices, in units of 1.
+    bool in_place = false;
+
+    // What surfaces are made of, with AccelOptions::keeps_surfaces, copied and kept as the mesh is.
+    std::span<const DeviceAttribute> attributes = {};
+    Uints face_metadata = {};
+    std::span<const std::byte> metadata = {};
+};
+
+}  // namespace twinray

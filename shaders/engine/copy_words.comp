@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// Words as they are, from the caller's device memory, of which only the address is known.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "twinray/glsl/common.glsl"
+#include "shaders/shared/copy_words.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { CopyWordsArgs args; };
+
+void main()
+{
+    uint index = global_index();
+    if (index < args.count) AT(args.to, index) = AT(args.from, index);
+}
