@@ -279,7 +279,7 @@ class AccelBackend {
     AccelTraits accel_traits() const { return {is_software(), options_.layout, reorders()}; }
     SceneTraits scene_traits() const;
     void check_movable(const char* action) const;
-    void warn_of_faults();
+    void warn_of_unusable_instances();
     const TraceProgram& variant_for(uint features, const TraceDesc& desc) const;
     const TraceProgram& program_for(const TraceDesc& desc) const;
     void check_desc(const AccelView& view, const TraceDesc& desc) const;

@@ -23,7 +23,8 @@ void check_address(const DeviceMesh& mesh, const char* what, std::uint64_t addre
 }
 
 void check_indices_of(const DeviceMesh& mesh) {
-    if (mesh.index_format != IndexFormat::none) return check_address(mesh, "indices", mesh.indices, index_bytes(mesh.index_format));
+    if (mesh.index_format != IndexFormat::none)
+        return check_address(mesh, "indices", mesh.indices, index_bytes(mesh.index_format));
     if (mesh.indices != 0) fail("mesh '", mesh.name, "': indices without an index format");
     if (mesh.vertex_count / 3 < mesh.triangle_count)
         fail("mesh '", mesh.name, "': ", mesh.vertex_count, " vertices for ", mesh.triangle_count,
@@ -57,8 +58,7 @@ bool is_packed(const DeviceMesh& mesh) {
 
 MeshGather::MeshGather(Context& context)
     : context_(context),
-      kernel_(context,
-              {.name = "engine_gather_mesh", .spirv = engine_gather_mesh_spirv, .compiles_when_used = true}) {}
+      kernel_(context, {.name = "engine_gather_mesh", .spirv = engine_gather_mesh_spirv, .compiles_when_used = true}) {}
 
 MeshGather::Faults MeshGather::record(Commands& commands, std::span<const Item> items) const {
     Faults faults;
@@ -76,18 +76,10 @@ MeshGather::Faults MeshGather::record(Commands& commands, std::span<const Item> 
             const DeviceMesh& mesh = *items[i].mesh;
             faults.names.push_back(items[i].name);
             kernel_.dispatch(commands,
-                             {mesh.positions,
-                              mesh.indices,
-                              mesh.count_on_device,
-                              items[i].target.positions,
-                              items[i].target.indices,
-                              counting.ref<uint>(i * sizeof(uint)),
-                              static_cast<uint>(mesh.vertex_count),
-                              static_cast<uint>(mesh.triangle_count),
-                              mesh.stride,
-                              static_cast<uint>(mesh.format),
-                              static_cast<uint>(mesh.index_format),
-                              1 / items[i].scale},
+                             {mesh.positions, mesh.indices, mesh.count_on_device, items[i].target.positions,
+                              items[i].target.indices, counting.ref<uint>(i * sizeof(uint)),
+                              static_cast<uint>(mesh.vertex_count), static_cast<uint>(mesh.triangle_count), mesh.stride,
+                              static_cast<uint>(mesh.format), static_cast<uint>(mesh.index_format), 1 / items[i].scale},
                              std::max(mesh.vertex_count, mesh.triangle_count));
         }
     }

@@ -60,7 +60,8 @@ void add(SurfaceSlice& slice, const MeshView& mesh, const AttributeView& attribu
 SurfaceSlice::Place place(SurfaceSlice& slice, const DeviceMesh& mesh, std::string_view name, std::uint64_t address,
                           std::uint64_t words) {
     if (address == 0 || address % 4 != 0)
-        fail("mesh '", mesh.name, "': device address ", address, " of its '", name, "' must be a multiple of 4 and not 0");
+        fail("mesh '", mesh.name, "': device address ", address, " of its '", name,
+             "' must be a multiple of 4 and not 0");
     if (mesh.in_place) return {.in_place = address};
     slice.copies.push_back({{address}, aligned(slice.pending_bytes()), words});
     return {.offset = slice.copies.back().offset};

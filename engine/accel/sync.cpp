@@ -29,7 +29,8 @@ void AccelBackend::Staged::add(const Work& work, std::vector<std::unique_ptr<Bui
 }
 
 SyncPoint AccelBackend::sync() {
-    warn_of_faults();
+    vertices_.warn_of_faults(name_);
+    context_.state().check_submitted(synced_);
     if (dirty_ == Dirty::no) return synced_;
     auto commands = std::make_unique<Commands>(context_, name_ + " sync");
     Staged staged = stage(*commands);
@@ -39,14 +40,14 @@ SyncPoint AccelBackend::sync() {
 }
 
 void AccelBackend::sync(Commands& commands) {
-    if (!commands.is_of_caller()) fail(name_, ": sync: own commands are not for recording into; call sync()");
-    warn_of_faults();
-    if (dirty_ != Dirty::no) commit(stage(commands), commands.done());
+    vertices_.warn_of_faults(name_);
+    if (dirty_ != Dirty::no) commit(stage(commands), commands.promise());
 }
 
 AccelBackend::Staged AccelBackend::stage(Commands& commands) {
     if (const std::size_t n = n_instances(); n > max_instances)
         fail(name_, ": sync: ", n, " instances; at most ", max_instances, " fit");
+    warn_of_unusable_instances();
     Staged staged;
     for (auto& [id, pushed] : pushed_) staged.slices.push_back(&pushed.instances);
     stage_geometries(commands, staged);
@@ -169,9 +170,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     synced_ = done;
 }
 
-// Of what kernels have made, in the last sync that the GPU is done with.
-void AccelBackend::warn_of_faults() {
-    vertices_.warn_of_faults(name_);
+void AccelBackend::warn_of_unusable_instances() {
     if (!synced_.value || !context_.is_reached(synced_)) return;
     const uint count = bound_.read().unusable_count;
     if (count && count != warned_unusable_)

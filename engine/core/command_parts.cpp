@@ -90,7 +90,17 @@ Commands::Commands(Context& context, const std::string& name, const CallerComman
                                               context.state().stages(), 0, 1, &barrier, 0, nullptr, 0, nullptr);
 }
 
-Commands::~Commands() { state_->retire_parts(); }
+Commands::~Commands() {
+    if (state_->promised.value) state_->context.state().give_up(state_->promised.value);
+    state_->retire_parts();
+}
+
+SyncPoint Commands::promise() {
+    if (state_->is_of_caller) return state_->done;
+    if (state_->is_ended) fail("commands '", state_->name, "': they are submitted; nothing more can count on them");
+    if (!state_->promised.value) state_->promised = state_->context.state().promise();
+    return state_->promised;
+}
 
 void Commands::State::begin_part() {
     const VkCommandPool pool = new_pool(context);
@@ -130,7 +140,8 @@ SyncPoint Commands::submit() {
         vk_check(state_->context.state().vk().vkEndCommandBuffer(part.handle), "end a command buffer");
         submissions.push_back({part.handle, part.passes});
     }
-    state_->done = state_->context.state().submit(state_->name, std::move(submissions));
+    state_->done = state_->context.state().submit(state_->name, std::move(submissions), state_->promised.value);
+    state_->promised = {};
     state_->retained.clear();  // retired behind the submission just made
     return state_->done;
 }

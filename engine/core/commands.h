@@ -32,6 +32,7 @@ struct Commands::State {
     VkPipelineStageFlags consumer_stages = VK_PIPELINE_STAGE_HOST_BIT;
     VkAccessFlags consumer_access = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
     SyncPoint done = {};
+    SyncPoint promised = {};               // what own commands will reach besides, where something counts on them
     std::vector<Part> parts = {};          // of which the last is recorded into; none where beginning another failed
     std::vector<PassTiming> earlier = {};  // of parts that were submitted before these
     std::uint64_t groups = 0;              // of the last part

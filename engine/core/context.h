@@ -11,6 +11,7 @@
 #include "engine/core/kernel_tuning.h"
 #include "engine/core/pipeline_store.h"
 #include "engine/core/pipeline_table.h"
+#include "engine/core/promised_points.h"
 
 namespace twinray {
 
@@ -49,7 +50,14 @@ struct Context::State {
 
     // Submits them one after the other, all or none; returns the point at which the last is done. Frees what has been
     // passed.
-    SyncPoint submit(const std::string& name, std::vector<Submission> submissions);
+    // `promised`: of promise(), or 0.
+    SyncPoint submit(const std::string& name, std::vector<Submission> submissions, std::uint64_t promised = 0);
+    // A point that commands will reach which are not submitted yet. They must be submitted with it, in the order in
+    // which points were promised, or given up.
+    SyncPoint promise();
+    void give_up(std::uint64_t promised) noexcept;
+    // Throws Error for such a point whose commands are not submitted yet.
+    void check_submitted(SyncPoint point) const;
     // Context says what these do.
     void wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
     SyncPoint last_submission() const { return {timeline_, submitted_}; }
@@ -90,7 +98,9 @@ struct Context::State {
     void create_timeline();
     void create_pipeline_cache(const PipelineStore& store);
     void keep_pipelines() noexcept;
-    VkResult enqueue(std::span<const Submission> submissions) const;
+    VkSemaphore new_timeline(const char* name);
+    VkResult enqueue(std::span<const Submission> submissions, std::uint64_t promised) const;
+    VkResult enqueue(std::span<const VkSubmitInfo> infos) const;
     std::string words_of_loss() const;
     void finish() noexcept;
     std::uint64_t reached(VkSemaphore semaphore) const noexcept;  // 0 when it cannot be read
@@ -122,6 +132,8 @@ struct Context::State {
     VkSemaphore timeline_ = VK_NULL_HANDLE;
     std::uint64_t submitted_ = 0;
     mutable SubmissionLog submission_log_;
+    VkSemaphore promised_timeline_ = VK_NULL_HANDLE;  // made by the first promise
+    PromisedPoints promised_;
     // What the driver says of a lost device, once it was asked.
     mutable std::optional<std::string> fault_;
     std::vector<Wait> awaited_;  // by the next submission

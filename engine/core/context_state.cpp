@@ -234,7 +234,8 @@ void Context::State::destroy_everything() noexcept {
     pipelines_.clear();
     if (image_array_layout_) vk_.vkDestroyDescriptorSetLayout(device_, image_array_layout_, nullptr);
     if (owns_pipeline_cache_) vk_.vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
-    if (timeline_) vk_.vkDestroySemaphore(device_, timeline_, nullptr);
+    for (const VkSemaphore timeline : {timeline_, promised_timeline_})
+        if (timeline) vk_.vkDestroySemaphore(device_, timeline, nullptr);
     allocator_.reset();
     if (!owns_device_) return;
     if (device_) vk_.vkDestroyDevice(device_, nullptr);

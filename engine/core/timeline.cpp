@@ -10,15 +10,45 @@
 
 namespace twinray {
 
-void Context::State::create_timeline() {
+VkSemaphore Context::State::new_timeline(const char* name) {
     VkSemaphoreTypeCreateInfo type{};
     type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
     type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
     VkSemaphoreCreateInfo semaphore{};
     semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
     semaphore.pNext = &type;
-    vk_check(vk_.vkCreateSemaphore(device_, &semaphore, nullptr, &timeline_), "create the timeline semaphore");
-    set_name(VK_OBJECT_TYPE_SEMAPHORE, reinterpret_cast<std::uint64_t>(timeline_), "twinray timeline");
+    VkSemaphore made = VK_NULL_HANDLE;
+    vk_check(vk_.vkCreateSemaphore(device_, &semaphore, nullptr, &made), "create a timeline semaphore");
+    set_name(VK_OBJECT_TYPE_SEMAPHORE, reinterpret_cast<std::uint64_t>(made), name);
+    return made;
+}
+
+void Context::State::create_timeline() { timeline_ = new_timeline("twinray timeline"); }
+
+SyncPoint Context::State::promise() {
+    if (!promised_timeline_) promised_timeline_ = new_timeline("twinray promises");
+    const SyncPoint point{promised_timeline_, promised_.promise()};
+    announce(point);
+    return point;
+}
+
+void Context::State::give_up(std::uint64_t promised) noexcept {
+    if (is_lost_) return;
+    if (!promised_.is_due(promised)) return promised_.give_up(promised);
+    const std::uint64_t value = promised_.value_of(promised);
+    VkTimelineSemaphoreSubmitInfo timeline{};
+    timeline.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
+    timeline.signalSemaphoreValueCount = 1;
+    timeline.pSignalSemaphoreValues = &value;
+    VkSubmitInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    info.pNext = &timeline;
+    info.signalSemaphoreCount = 1;
+    info.pSignalSemaphores = &promised_timeline_;
+    if (enqueue(std::span(&info, 1)) == VK_SUCCESS)
+        promised_.pass(promised);
+    else
+        warn("commands that were given up count as still to come: the device took no word of it");
 }
 
 void Context::State::wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages) {
@@ -28,7 +58,7 @@ void Context::State::wait_before_next_submission(SyncPoint point, VkPipelineStag
 }
 
 // Each submission is the driver's own, since each signals: what is merged would count as one that takes longer.
-VkResult Context::State::enqueue(std::span<const Submission> submissions) const {
+VkResult Context::State::enqueue(std::span<const Submission> submissions, std::uint64_t promised) const {
     std::vector<VkSemaphore> semaphores;
     std::vector<std::uint64_t> awaited, signalled(submissions.size());
     std::vector<VkPipelineStageFlags> stages;
@@ -56,6 +86,17 @@ VkResult Context::State::enqueue(std::span<const Submission> submissions) const 
     infos.front().waitSemaphoreCount = static_cast<std::uint32_t>(semaphores.size());
     infos.front().pWaitSemaphores = semaphores.data();
     infos.front().pWaitDstStageMask = stages.data();
+    const VkSemaphore both[] = {timeline_, promised_timeline_};
+    const std::uint64_t both_values[] = {signalled.back(), promised ? promised_.value_of(promised) : 0};
+    if (promised) {
+        timelines.back().signalSemaphoreValueCount = infos.back().signalSemaphoreCount = 2;
+        timelines.back().pSignalSemaphoreValues = both_values;
+        infos.back().pSignalSemaphores = both;
+    }
+    return enqueue(infos);
+}
+
+VkResult Context::State::enqueue(std::span<const VkSubmitInfo> infos) const {
     if (lock_queue_) lock_queue_();
     const VkResult result =
         vk_.vkQueueSubmit(queue_, static_cast<std::uint32_t>(infos.size()), infos.data(), VK_NULL_HANDLE);
@@ -63,10 +104,13 @@ VkResult Context::State::enqueue(std::span<const Submission> submissions) const 
     return result;
 }
 
-SyncPoint Context::State::submit(const std::string& name, std::vector<Submission> submissions) {
+SyncPoint Context::State::submit(const std::string& name, std::vector<Submission> submissions, std::uint64_t promised) {
     check_alive();
     if (submissions.empty()) return last_submission();
-    check(enqueue(submissions), "submit to the queue");
+    if (promised && !promised_.is_due(promised))
+        fail("commands '", name, "': others, into which a sync was recorded before, must be submitted first");
+    check(enqueue(submissions, promised), "submit to the queue");
+    if (promised) promised_.pass(promised);
     for (Submission& submission : submissions)
         submission_log_.submitted(++submitted_, name, std::move(submission.passes));
     awaited_.clear();
@@ -81,9 +125,15 @@ bool Context::State::is_reached(SyncPoint point) const {
     return value >= point.value;
 }
 
+void Context::State::check_submitted(SyncPoint point) const {
+    if (point.semaphore && point.semaphore == promised_timeline_ && !promised_.is_passed(point.value))
+        fail("the commands into which a sync was recorded must be submitted first");
+}
+
 void Context::State::wait(SyncPoint point) const {
     check_alive();
     if (!point.semaphore || !point.value) return;
+    check_submitted(point);
     VkSemaphoreWaitInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
     info.semaphoreCount = 1;
@@ -137,6 +187,7 @@ void Context::State::collect() noexcept {
 void Context::State::finish() noexcept {
     try {
         wait(last_submission());
+        wait({promised_timeline_, promised_.last_passed()});
     } catch (const Error& error) {
         warn(error.what());
         while (!is_lost_ && reached(timeline_) < submitted_) std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -45,8 +45,7 @@ SyncPoint SetUploads::sync(Elements elements) {
 }
 
 void SetUploads::sync(Commands& commands, Elements elements) {
-    if (!commands.is_of_caller()) fail(name_, ": sync: own commands are not for recording into; call sync()");
-    if (!is_clean_) commit(stage(commands, elements), commands.done());
+    if (!is_clean_) commit(stage(commands, elements), commands.promise());
 }
 
 SetUploads::Staged SetUploads::stage(Commands& commands, Elements elements) const {

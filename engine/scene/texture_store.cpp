@@ -159,8 +159,7 @@ SyncPoint TextureStore::State::sync() {
 }
 
 void TextureStore::State::sync(Commands& commands) {
-    if (!commands.is_of_caller()) fail(name_, ": sync: own commands are not for recording into; call sync()");
-    if (!pending_.empty()) commit(stage(commands), commands.done());
+    if (!pending_.empty()) commit(stage(commands), commands.promise());
 }
 
 TextureStore::State::Staged TextureStore::State::stage(Commands& commands) {

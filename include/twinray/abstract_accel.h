@@ -42,7 +42,7 @@ class AbstractAccel {
     AccelHandle push(const BoxesView& boxes, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
     // The same for a mesh in device memory, which the next sync reads there. What device memory holds nobody checks but
-    // indices: a triangle with one out of range is inactive, and the accelerator warns how many.
+    // indices: a triangle with one out of range is inactive, and a later sync warns how many.
     AccelHandle push(const DeviceMesh& mesh, const Transform& transform = {}, const InstanceOptions& options = {});
     AccelHandle push(const DeviceMesh& mesh, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
@@ -94,9 +94,9 @@ class AbstractAccel {
     // stay valid.
     // It never waits for the GPU: what in-flight work may still read is freed when the timeline has passed it.
     SyncPoint sync();
-    // The same into the caller's command buffer, which must then be submitted: from here on the accelerator counts on
-    // it. Whatever uses the result must run after it; closest_hits() wants it submitted before. If this throws, the
-    // command buffer must not be submitted (and CallerCommands::done be reached without it).
+    // The same into commands that hold other work, too, which must then be submitted: from here on the accelerator
+    // counts on them. Whatever uses the result must run after it; closest_hits() wants them submitted before. If this
+    // throws, they must not be submitted (and CallerCommands::done be reached without it).
     void sync(Commands& commands);
     // Whether geometries could go into less memory now (bottom levels of drivers can, once the GPU has built them,
     // until their vertices move). If so the next sync moves them, as every sync does that has other work, too; views

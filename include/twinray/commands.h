@@ -147,6 +147,9 @@ class Commands {
     bool is_of_caller() const;
     // When these commands are done: CallerCommands::done, or what submit() returned.
     SyncPoint done() const;
+    // A point that they will reach, for what counts on them before they are submitted, as a sync that is recorded into
+    // them does. Own commands of which it was asked are submitted in the order in which it was.
+    SyncPoint promise();
 
     // After the submission: waits for the GPU; one entry per pass in recording order, none where the queue has no
     // timestamps.

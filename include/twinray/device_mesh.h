@@ -48,8 +48,8 @@ struct DeviceMesh {
     // A box around the positions. Where its largest coordinate is below 2^-20 or above 2^60 (2 for drivers' own
     // structures: anything but near 1), the mesh is built in units near its size; without it, in its own.
     std::optional<Bounds> bounds = {};
-    // False: each sync that sees a change copies the mesh, and the caller's memory is free once that sync is done. True:
-    // no copy is kept; the arrays must stay, and be written by kernels alone that run before a sync told of it by
+    // False: each sync that sees a change copies the mesh, and the caller's memory is free once that sync is done.
+    // True: no copy is kept; the arrays must stay, and be written by kernels alone that run before a sync told of it by
     // mark_vertices_dirty(). With AccelOptions::keeps_surfaces or Level::refined then only float32, stride 12, and
     // 32-bit indices, in units of 1.
     bool in_place = false;

@@ -397,7 +397,7 @@ class TextureStore {
 
     // Uploads what changed since the last sync; a clean store does nothing and returns the last sync point.
     SyncPoint sync();
-    // The same into the caller's command buffer, as AbstractAccel::sync does.
+    // The same into commands that hold other work, as AbstractAccel::sync does.
     void sync(Commands& commands);
 
     // What kernels take, by value, until the next sync() after which revision() has grown. Throws Error if edits are

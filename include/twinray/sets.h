@@ -249,7 +249,7 @@ class MultiTypeSet {
 
     // Uploads the elements that changed since the last sync; a clean set does nothing and returns the last sync point.
     SyncPoint sync() { return storage_.sync(bytes()); }
-    // The same into the caller's command buffer, as AbstractAccel::sync does.
+    // The same into commands that hold other work, as AbstractAccel::sync does.
     void sync(Commands& commands) { storage_.sync(commands, bytes()); }
 
     // What kernels take, by value: addresses and counts, until the next sync() after which revision() has grown.

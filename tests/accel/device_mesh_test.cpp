@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Meshes that are in device memory already: the same trees and hits as from the host, in each format, copied or in place.
+// Meshes that are in device memory already: the same trees and hits as from the host, in each format, copied or in
+// place.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -216,8 +217,9 @@ TEST_P(DeviceMeshTest, InPlaceItFollowsWhatKernelsWrite) {
         expect_hits_of(moved, "moved in place");
         EXPECT_EQ(accel().revision(), view.revision);
     }
-    EXPECT_NE(error_of([&] { accel().update_vertices(handle, device.vertices.ref<float>(), mesh.positions.size()); })
-                  .find("mark_vertices_dirty"),
+    EXPECT_NE(error_of([&] {
+                  accel().update_vertices(handle, device.vertices.ref<float>(), mesh.positions.size());
+              }).find("mark_vertices_dirty"),
               std::string::npos);
 }
 

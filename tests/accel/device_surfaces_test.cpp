@@ -14,7 +14,8 @@ class DeviceSurfaces : public test::SurfacesTest {
   protected:
     AccelOptions accel_options() const override {
         AccelOptions options = SurfacesTest::accel_options();
-        if (GetParam() != test::Kind::reference && context().properties().shader_float64) options.level = Level::refined;
+        if (GetParam() != test::Kind::reference && context().properties().shader_float64)
+            options.level = Level::refined;
         return options;
     }
     // A full mesh's arrays on the device.
@@ -60,7 +61,8 @@ TEST_P(DeviceSurfaces, AreThoseOfTheHostsMesh) {
     const TraceDesc refined{.level = accel_options().level};
     const std::vector<Hit> hits = host->closest_hits(rays, refined);
     const std::vector<Surface> expected = host->surfaces(rays, hits);
-    const std::vector<vec4> heat = host->attributes("heat", rays, hits), weights = host->attributes("weights", rays, hits);
+    const std::vector<vec4> heat = host->attributes("heat", rays, hits),
+                            weights = host->attributes("weights", rays, hits);
     for (const bool in_place : {false, true}) {
         const auto given = make_accel();
         std::vector<Arrays> kept;
@@ -128,7 +130,8 @@ TEST_P(HostWork, AMeshInDeviceMemoryIsNeitherWaitedForNorSeenByTheHost) {
         TWINRAY_LACKS("ray_tracing", "no such ray tracing");
     std::unique_ptr<AbstractAccel> accel;
     if (GetParam() == test::Kind::software)
-        accel = std::make_unique<SwTlas>(*context, AccelOptions{.keeps_surfaces = true, .compiles_in_background = false});
+        accel =
+            std::make_unique<SwTlas>(*context, AccelOptions{.keeps_surfaces = true, .compiles_in_background = false});
     else
         accel = std::make_unique<HwTlas>(*context, BuildOrder::automatic, AccelOptions{.keeps_surfaces = true});
 
@@ -136,7 +139,8 @@ TEST_P(HostWork, AMeshInDeviceMemoryIsNeitherWaitedForNorSeenByTheHost) {
     const Buffer positions(*context, {.name = "positions", .bytes = mesh.positions.size() * sizeof(vec3)});
     const Buffer indices(*context, {.name = "indices", .bytes = mesh.triangles.size() * sizeof(uvec3)});
     const Ray ray{vec3(0.1f, 0.2f, 5), 0, vec3(0, 0, -1), INFINITY};
-    const Buffer rays(*context, {.name = "rays", .bytes = sizeof ray}), hits(*context, {.name = "hits", .bytes = sizeof(Hit)});
+    const Buffer rays(*context, {.name = "rays", .bytes = sizeof ray}),
+        hits(*context, {.name = "hits", .bytes = sizeof(Hit)});
     Commands fill(*context, "fill");
     {
         const auto pass = fill.pass("fill");

@@ -214,9 +214,55 @@ TEST_P(Sync, CallersCommandsMustBeComplete) {
               std::string::npos);
 }
 
-TEST_P(Sync, OwnCommandsAreNotForRecordingInto) {
-    Commands commands(context(), "own");
-    EXPECT_NE(error_of([&] { accel().sync(commands); }).find("call sync()"), std::string::npos);
+TEST_P(Sync, OwnCommandsBuildAndTraceInOneSubmission) {
+    const AccelHandle handle = accel().push(square(0));
+    const Buffer rays = device_copy(std::vector<Ray>{down(0.5f, 0.25f)});
+    const Buffer hits(context(), {.name = "hits", .bytes = sizeof(Hit)});
+    for (int frame = 0; frame < 5; ++frame) {
+        accel().update_transform(handle, Transform::translation({0, 0, static_cast<float>(frame)}));
+        if (frame == 3) accel().push(square(5));
+        Commands commands(context(), "frame");
+        accel().sync(commands);
+        accel().trace(commands, accel().view(), {.rays = rays.ref<Ray>(), .hits = hits.ref<Hit>(), .count = 1});
+        EXPECT_EQ(accel().world_bound_if_ready(), std::nullopt);
+        EXPECT_NE(error_of([&] { accel().world_bound(); }).find("must be submitted first"), std::string::npos);
+        EXPECT_NE(error_of([&] { accel().sync(); }).find("must be submitted first"), std::string::npos);
+        commands.submit();
+        EXPECT_EQ(accel().world_bound().lo.z, static_cast<float>(frame));
+        EXPECT_EQ(download<Hit>(context(), hits, 1).front().t, frame < 3 ? 10.0f - static_cast<float>(frame) : 5.0f);
+    }
+}
+
+TEST_P(Sync, OwnCommandsAreSubmittedInTheOrderOfTheirSyncs) {
+    const auto other = make_accel();
+    const AccelHandle handle = accel().push(square(0));
+    other->push(square(1));
+    std::optional<Commands> first, second, third;
+    first.emplace(context(), "first");
+    second.emplace(context(), "second");
+    third.emplace(context(), "third");
+    accel().sync(*first);
+    other->sync(*second);
+    accel().update_transform(handle, Transform::translation({0, 0, 2}));
+    accel().sync(*third);
+    EXPECT_NE(error_of([&] { third->submit(); }).find("commands 'third': others"), std::string::npos);
+    third.reset();
+    accel().update_transform(handle, Transform::translation({0, 0, 3}));
+    Commands fourth(context(), "fourth");
+    accel().sync(fourth);
+    first->submit();
+    second.reset();  // given up
+    fourth.submit();
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 7.0f);
+    context().wait_for_gpu();
+    context().wait_for_gpu();
+    // A submission of nothing but the word that they were given up.
+    std::optional<Commands> last;
+    last.emplace(context(), "last");
+    accel().update_transform(handle, Transform::translation({0, 0, 4}));
+    accel().sync(*last);
+    last.reset();
+    context().wait_for_gpu();
 }
 
 }  // namespace
