@@ -136,6 +136,7 @@ DeviceRequirements::DeviceRequirements(const DeviceProperties& supported) : stat
     if (supported.ray_query) extensions.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
     if (supported.ray_tracing_pipeline) extensions.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
     if (supported.device_fault) extensions.push_back(VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
+    if (supported.external_memory_fd) extensions.push_back(VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
     state_->switch_on(state_->alone, state_->alone_structs);
 }
 

@@ -128,6 +128,7 @@ void state_features(const VkDeviceCreateInfo& info, DeviceProperties& properties
     properties.ray_tracing_pipeline &=
         properties.acceleration_structure && has_extension(info, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
     properties.device_fault &= has_extension(info, VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
+    properties.external_memory_fd = has_extension(info, VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
 }
 
 const char* feature_beyond(const DeviceProperties& told, const DeviceProperties& supported) {

@@ -31,60 +31,69 @@
     F(vkCmdBeginDebugUtilsLabelEXT)    \
     F(vkCmdEndDebugUtilsLabelEXT)
 
-#define TWINRAY_DEVICE_FUNCTIONS(F) \
-    F(vkDestroyDevice)              \
-    F(vkGetDeviceQueue)             \
-    F(vkQueueSubmit)                \
-    F(vkCreateCommandPool)          \
-    F(vkDestroyCommandPool)         \
-    F(vkAllocateCommandBuffers)     \
-    F(vkBeginCommandBuffer)         \
-    F(vkEndCommandBuffer)           \
-    F(vkCreateSemaphore)            \
-    F(vkDestroySemaphore)           \
-    F(vkWaitSemaphores)             \
-    F(vkGetSemaphoreCounterValue)   \
-    F(vkCreateQueryPool)            \
-    F(vkDestroyQueryPool)           \
-    F(vkGetQueryPoolResults)        \
-    F(vkCmdResetQueryPool)          \
-    F(vkCmdCopyQueryPoolResults)    \
-    F(vkCmdWriteTimestamp)          \
-    F(vkCreateShaderModule)         \
-    F(vkDestroyShaderModule)        \
-    F(vkCreatePipelineCache)        \
-    F(vkGetPipelineCacheData)       \
-    F(vkDestroyPipelineCache)       \
-    F(vkCreatePipelineLayout)       \
-    F(vkDestroyPipelineLayout)      \
-    F(vkCreateComputePipelines)     \
-    F(vkDestroyPipeline)            \
-    F(vkCmdBindPipeline)            \
-    F(vkCmdPushConstants)           \
-    F(vkCmdDispatch)                \
-    F(vkCmdDispatchIndirect)        \
-    F(vkCmdPipelineBarrier)         \
-    F(vkCmdCopyBuffer)              \
-    F(vkCmdFillBuffer)              \
-    F(vkCmdUpdateBuffer)            \
-    F(vkGetBufferDeviceAddress)     \
-    F(vkCreateImageView)            \
-    F(vkDestroyImageView)           \
-    F(vkCreateSampler)              \
-    F(vkDestroySampler)             \
-    F(vkCreateDescriptorSetLayout)  \
-    F(vkDestroyDescriptorSetLayout) \
-    F(vkCreateDescriptorPool)       \
-    F(vkDestroyDescriptorPool)      \
-    F(vkAllocateDescriptorSets)     \
-    F(vkUpdateDescriptorSets)       \
-    F(vkCmdBindDescriptorSets)      \
+#define TWINRAY_DEVICE_FUNCTIONS(F)  \
+    F(vkDestroyDevice)               \
+    F(vkGetDeviceQueue)              \
+    F(vkQueueSubmit)                 \
+    F(vkCreateCommandPool)           \
+    F(vkDestroyCommandPool)          \
+    F(vkAllocateCommandBuffers)      \
+    F(vkBeginCommandBuffer)          \
+    F(vkEndCommandBuffer)            \
+    F(vkCreateSemaphore)             \
+    F(vkDestroySemaphore)            \
+    F(vkWaitSemaphores)              \
+    F(vkGetSemaphoreCounterValue)    \
+    F(vkCreateQueryPool)             \
+    F(vkDestroyQueryPool)            \
+    F(vkGetQueryPoolResults)         \
+    F(vkCmdResetQueryPool)           \
+    F(vkCmdCopyQueryPoolResults)     \
+    F(vkCmdWriteTimestamp)           \
+    F(vkCreateShaderModule)          \
+    F(vkDestroyShaderModule)         \
+    F(vkCreatePipelineCache)         \
+    F(vkGetPipelineCacheData)        \
+    F(vkDestroyPipelineCache)        \
+    F(vkCreatePipelineLayout)        \
+    F(vkDestroyPipelineLayout)       \
+    F(vkCreateComputePipelines)      \
+    F(vkDestroyPipeline)             \
+    F(vkCmdBindPipeline)             \
+    F(vkCmdPushConstants)            \
+    F(vkCmdDispatch)                 \
+    F(vkCmdDispatchIndirect)         \
+    F(vkCmdPipelineBarrier)          \
+    F(vkCmdCopyBuffer)               \
+    F(vkCmdFillBuffer)               \
+    F(vkCmdUpdateBuffer)             \
+    F(vkGetBufferDeviceAddress)      \
+    F(vkCreateBuffer)                \
+    F(vkDestroyBuffer)               \
+    F(vkGetBufferMemoryRequirements) \
+    F(vkAllocateMemory)              \
+    F(vkFreeMemory)                  \
+    F(vkBindBufferMemory)            \
+    F(vkCreateImageView)             \
+    F(vkDestroyImageView)            \
+    F(vkCreateSampler)               \
+    F(vkDestroySampler)              \
+    F(vkCreateDescriptorSetLayout)   \
+    F(vkDestroyDescriptorSetLayout)  \
+    F(vkCreateDescriptorPool)        \
+    F(vkDestroyDescriptorPool)       \
+    F(vkAllocateDescriptorSets)      \
+    F(vkUpdateDescriptorSets)        \
+    F(vkCmdBindDescriptorSets)       \
     F(vkCmdCopyBufferToImage)
 
 // Present only with VK_KHR_pipeline_executable_properties.
 #define TWINRAY_STATISTICS_FUNCTIONS(F)     \
     F(vkGetPipelineExecutablePropertiesKHR) \
     F(vkGetPipelineExecutableStatisticsKHR)
+
+// Present only with VK_KHR_external_memory_fd.
+#define TWINRAY_EXTERNAL_FUNCTIONS(F) F(vkGetMemoryFdKHR)
 
 // Present only with VK_EXT_device_fault.
 #define TWINRAY_FAULT_FUNCTIONS(F) F(vkGetDeviceFaultInfoEXT)
@@ -113,6 +122,7 @@ struct VulkanFunctions {
     TWINRAY_DEBUG_FUNCTIONS(TWINRAY_MEMBER)
     TWINRAY_DEVICE_FUNCTIONS(TWINRAY_MEMBER)
     TWINRAY_STATISTICS_FUNCTIONS(TWINRAY_MEMBER)
+    TWINRAY_EXTERNAL_FUNCTIONS(TWINRAY_MEMBER)
     TWINRAY_FAULT_FUNCTIONS(TWINRAY_MEMBER)
     TWINRAY_RAY_TRACING_FUNCTIONS(TWINRAY_MEMBER)
 #undef TWINRAY_MEMBER

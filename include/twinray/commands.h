@@ -20,6 +20,12 @@ namespace twinray {
 
 struct CompiledKernel;
 
+// Memory of a buffer of its own, shared with others.
+struct ExternalMemory {
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    std::uint64_t bytes = 0;
+};
+
 struct BufferDesc {
     std::string name;         // required: shows in errors, debuggers and validation messages
     std::uint64_t bytes = 0;  // 0 is allowed and gives an empty buffer with address 0
@@ -28,12 +34,26 @@ struct BufferDesc {
     std::uint64_t alignment = 16;  // of the device address; a power of two
 };
 
+// Memory as others take it: an opaque file descriptor, as CUDA, HIP and Vulkan import it, and the size of all of it,
+// which they must be told.
+struct ExportedMemory {
+    int fd = -1;
+    std::uint64_t bytes = 0;
+};
+
 // A named range of device memory. Move-only; when destroyed it is freed after all work submitted so far.
 class Buffer {
   public:
     Buffer() = default;
     // Throws Error naming the buffer and its size when memory is out.
     Buffer(Context& context, const BufferDesc& desc);
+    // Device memory that other programs and APIs can share (VK_KHR_external_memory_fd). Throws Error naming the buffer
+    // where the device has no such, or for another Memory than device.
+    static Buffer exportable(Context& context, const BufferDesc& desc);
+    // Memory of the same device, or driver, that another has exported. The file descriptor becomes the buffer's; if
+    // this throws it stays the caller's. Whoever writes, the other must wait for it: nothing here orders work of two
+    // APIs.
+    static Buffer imported(Context& context, const BufferDesc& desc, const ExportedMemory& memory);
     ~Buffer();
     Buffer(Buffer&& other) noexcept;
     Buffer& operator=(Buffer&& other) noexcept;
@@ -42,6 +62,9 @@ class Buffer {
     std::uint64_t address() const { return address_; }
     std::uint64_t bytes() const { return bytes_; }
     const std::string& name() const { return name_; }
+    // With a file descriptor of the caller's, who closes it or gives it to an import that takes it. Throws Error unless
+    // the buffer is exportable.
+    ExportedMemory exported() const;
     std::byte* mapped() const { return static_cast<std::byte*>(made_.mapped); }  // for upload and readback
 
     // The typed address of what lies at an offset, as kernels take it.
@@ -51,8 +74,12 @@ class Buffer {
     }
 
   private:
+    Buffer(Context& context, const BufferDesc& desc, const ExportedMemory& memory);
+    void take_address(std::uint64_t alignment);
+
     Context* context_ = nullptr;
     AllocatedBuffer made_;
+    ExternalMemory external_;  // whose it is, if not the allocator's
     std::uint64_t address_ = 0;
     std::uint64_t bytes_ = 0;
     std::string name_;

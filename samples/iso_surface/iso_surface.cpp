@@ -28,9 +28,10 @@ int main(int argc, char** argv) try {
     const uint cells = 96, most = 1'500'000, width = 960, height = 640;
     Context context;
     const AccelOptions options{.keeps_surfaces = true};
-    const std::unique_ptr<AbstractAccel> accel = argc > 2 && std::string_view(argv[2]) == "hw"
-                                                     ? std::unique_ptr<AbstractAccel>(std::make_unique<HwTlas>(context, BuildOrder::automatic, options))
-                                                     : std::make_unique<SwTlas>(context, options);
+    const std::unique_ptr<AbstractAccel> accel =
+        argc > 2 && std::string_view(argv[2]) == "hw"
+            ? std::unique_ptr<AbstractAccel>(std::make_unique<HwTlas>(context, BuildOrder::automatic, options))
+            : std::make_unique<SwTlas>(context, options);
     const Buffer positions(context, {.name = "positions", .bytes = most * 3 * sizeof(vec3)});
     const Buffer normals(context, {.name = "normals", .bytes = most * 3 * sizeof(vec3)});
     const Buffer count(context, {.name = "triangles", .bytes = sizeof(uint)});
@@ -49,11 +50,13 @@ int main(int argc, char** argv) try {
         commands.fill(count, 0, sizeof(uint), 0);
     }
     const Kernel<MarchArgs> march(context, {.name = "march", .spirv = iso_surface_march_spirv});
-    march.dispatch(commands, {positions.ref<float>(), normals.ref<float>(), count.ref<uint>(), cells, most}, cells * cells * cells);
+    march.dispatch(commands, {positions.ref<float>(), normals.ref<float>(), count.ref<uint>(), cells, most},
+                   cells * cells * cells);
     accel->sync(commands);
     const AccelView view = accel->view();
     const std::span<const uint> modules[] = {iso_surface_shade_hw_spirv, iso_surface_shade_sw_spirv};
-    const Kernel<ShadeArgs> shade(context, {.name = "shade", .spirv = modules[accel->is_software()], .constants = {view.features_constant()}});
+    const Kernel<ShadeArgs> shade(
+        context, {.name = "shade", .spirv = modules[accel->is_software()], .constants = {view.features_constant()}});
     shade.dispatch(commands, {view.scene, pixels.ref<uint>(), width, height}, width * height);
     commands.submit();
     std::vector<Rgb> picture;
