@@ -58,9 +58,9 @@ ScenePicture picture_of(const CentroidOptions& options, const Analysed& analysed
         picture.dots.push_back(
             {.position = result.points[i * result.points.size() / count], .radius = 1.2f, .color = categorical::blue});
     if (result.mean) {
-        picture.dots.push_back({.position = *result.mean, .radius = radius + 2, .color = paper, .is_on_top = true});
+        picture.dots.push_back({.position = *result.mean, .radius = radius + 2, .color = paper, .behind = 1});
         picture.dots.push_back(
-            {.position = *result.mean, .radius = radius, .color = categorical::vermilion, .is_on_top = true});
+            {.position = *result.mean, .radius = radius, .color = categorical::vermilion, .behind = 1});
     }
     return picture;
 }

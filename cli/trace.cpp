@@ -10,10 +10,12 @@
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "cli/picture_options.h"
 #include "engine/scene/ray_file.h"
 #include "engine/accel/all_hits.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "validation/picture/ray_picture.h"
 #include "validation/records/progress.h"
 
 namespace twinray::cli {
@@ -25,6 +27,9 @@ struct TraceOptions {
     std::string accel = "auto";
     std::string query = "closest";
     Level level = Level::watertight;
+    Cull cull = Cull::none;
+    PictureOptions pictures;
+    RayPictureDesc rays_shown;
 };
 
 // The hits of all rays, one after the other; writes how many each has.
@@ -45,7 +50,7 @@ std::vector<Hit> trace_in_batches(AbstractAccel& accel, std::span<const Ray> ray
     Progress progress("trace", rays.size(), options.common.quiet);
     for (std::size_t first = 0; first < rays.size(); first += batch_size) {
         const auto batch = rays.subspan(first, std::min(batch_size, rays.size() - first));
-        const TraceDesc desc{.level = options.level};
+        const TraceDesc desc{.cull = options.cull, .level = options.level};
         const std::vector<Hit> some =
             options.query == "any" ? accel.any_hits(batch, desc) : accel.closest_hits(batch, desc);
         hits.insert(hits.end(), some.begin(), some.end());
@@ -54,14 +59,28 @@ std::vector<Hit> trace_in_batches(AbstractAccel& accel, std::span<const Ray> ray
     return hits;
 }
 
+ScenePicture picture_of(const TraceOptions& options, const Scene& scene, std::span<const Ray> rays,
+                        std::span<const Hit> hits) {
+    ScenePicture picture = picture_of_rays(options.pictures, scene, rays, hits, options.rays_shown);
+    picture.page.title = options.scene.filename().string() + ": rays";
+    const auto found = std::ranges::count_if(hits, [](const Hit& hit) { return hit.hit != 0; });
+    picture.page.subtitle = text(rays.size(), " rays, ", found, " hits");
+    if (rays.size() > options.rays_shown.most_rays)
+        picture.page.subtitle += text("; ", options.rays_shown.most_rays, " of them drawn");
+    return picture;
+}
+
 void run(const TraceOptions& options) {
     const bool is_all = options.query == "all";
     if (is_all == options.counts.empty())
         throw UsageError(is_all ? "--query all needs --counts: which hits are of which ray"
                                 : "--counts is for --query all");
+    if (is_all && options.cull != Cull::none) throw UsageError("--query all finds hits of both sides: not with --cull");
     if (is_all && options.level != Level::watertight)
         throw UsageError("--query all finds hits at --level watertight alone");
+    if (is_all && !options.pictures.files.empty()) throw UsageError("--picture shows one hit a ray: not --query all");
     check_writable(options.hits);
+    check_pictures(options.pictures);
     if (is_all) check_writable(options.counts);
     const Scene scene = load_scene(options.scene, options.common);
     const std::vector<Ray> rays = read_rays(options.rays, scene.origin);
@@ -73,6 +92,8 @@ void run(const TraceOptions& options) {
     const std::vector<Hit> hits = is_all ? trace_all(*accel, rays, options) : trace_in_batches(*accel, rays, options);
     const double seconds = seconds_since(start);
     write_hits(options.hits, hits);
+    if (!options.pictures.files.empty())
+        write_pictures(options.pictures, *accel, scene, picture_of(options, scene, rays, hits));
     const auto found = std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.hit != 0; });
     if (!options.common.quiet)
         std::cout << rays.size() << " rays, " << found << " hits, " << seconds << " s with copies, " << text_of(choice)
@@ -96,12 +117,13 @@ Command trace_command() {
         {{.name = "--rays",
           .value = file(options->rays),
           .help = "the rays: 32 bytes each, little endian: float32 origin (3), t_min, direction (3), t_max; or .npy: "
-                  "N x 8 numbers in that order, float64 too",
+                  "N x 8 numbers in that order, float64 too; or .csv or .txt: x y z dx dy dz a line",
           .is_required = true},
          {.name = "--hits",
           .value = file(options->hits),
           .help = "written: a hit for each ray, 32 bytes: uint32 hit, float32 t, uint32 primitive, custom index, "
-                  "float32 u, v, uint32 instance, 0; a miss has t = -1",
+                  "float32 u, v, uint32 instance, 0; a miss has t = -1; .npy: the same as a NumPy array of records; "
+                  ".csv: a line each",
           .is_required = true},
          {.name = "--query",
           .value = choice(options->query, {"closest", "any", "all"}),
@@ -109,7 +131,31 @@ Command trace_command() {
          {.name = "--counts",
           .value = file(options->counts),
           .help = "written with --query all: how many hits each ray has, uint32"}}};
-    Section tracing = {"Tracing", {accel_option(options->accel), level_option(options->level)}};
+    const Names<Cull> sides = {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}};
+    Section tracing = {"Tracing",
+                       {accel_option(options->accel),
+                        level_option(options->level),
+                        {.name = "--cull",
+                         .value = choice(options->cull, sides),
+                         .help = "triangles that are not hit: those seen from the back, or from the front"}}};
+    const Names<HitColor> colors = {{"distance", HitColor::distance},
+                                    {"instance", HitColor::instance},
+                                    {"facing", HitColor::facing},
+                                    {"normal", HitColor::normal}};
+    Section pictures = picture_options(options->pictures, "the hits of rays");
+    pictures.options.push_back({.name = "--hit-color",
+                                .value = choice(options->rays_shown.color, colors),
+                                .help = "what the colour of a hit tells",
+                                .needs = {"--picture"}});
+    pictures.options.push_back(color_scale_option(options->pictures));
+    pictures.options.push_back({.name = "--labels",
+                                .value = flag(options->rays_shown.has_labels),
+                                .help = "number and distance beside each hit",
+                                .needs = {"--picture"}});
+    pictures.options.push_back({.name = "--most-rays",
+                                .value = number(options->rays_shown.most_rays, {1, 1'000'000}),
+                                .help = "that are drawn, evenly chosen",
+                                .needs = {"--picture"}});
     return {.name = "trace",
             .group = "Tracing",
             .summary = "trace a file of rays",
@@ -118,7 +164,7 @@ Command trace_command() {
                 "in units of a ray's direction, which need not be normalised; indices begin at 0 and count "
                 "the triangles of the scene as they are in its file.",
             .positionals = {scene_argument(options->scene)},
-            .sections = {rays, tracing, common_options(options->common)},
+            .sections = {rays, tracing, pictures, common_options(options->common)},
             .examples = {{"twinray trace bunny.ply --rays rays.bin --hits hits.bin",
                           "closest hits of all rays, with float32 arithmetic that loses no ray at an edge"}},
             .run = [options] {

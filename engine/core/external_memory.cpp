@@ -64,15 +64,14 @@ ExternalBuffer make_external(Context& context, const BufferDesc& desc, VkBufferU
         fail("device '", state.properties().name, "' has not enabled VK_KHR_external_memory_fd");
     if (desc.memory != Memory::device) fail("only memory of the device can be shared");
     if (desc.bytes == 0) fail("0 bytes cannot be shared");
-    if (imported.fd >= 0 && imported.bytes < desc.bytes)
-        fail(imported.bytes, " bytes were exported, for ", desc.bytes);
+    if (imported.fd >= 0 && imported.bytes < desc.bytes) fail(imported.bytes, " bytes were exported, for ", desc.bytes);
     ExternalBuffer made{new_buffer(state.vk(), state.device(), desc.bytes, usage), {}};
     try {
         VkMemoryRequirements needs{};
         state.vk().vkGetBufferMemoryRequirements(state.device(), made.buffer, &needs);
         made.memory.bytes = imported.fd >= 0 ? imported.bytes : needs.size;
-        made.memory.memory = new_memory(state, memory_type(state, needs.memoryTypeBits), made.memory.bytes,
-                                        imported.fd);
+        made.memory.memory =
+            new_memory(state, memory_type(state, needs.memoryTypeBits), made.memory.bytes, imported.fd);
         vk_check(state.vk().vkBindBufferMemory(state.device(), made.buffer, made.memory.memory, 0), "bind memory");
     } catch (...) {
         free_external(state, made);

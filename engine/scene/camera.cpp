@@ -109,7 +109,8 @@ Camera look_camera(vec3 from, vec3 at, vec3 up, float fov) {
     return camera;
 }
 
-Camera frame_scene(const Scene& scene, float aspect, const std::optional<vec3>& direction) {
+Camera frame_scene(const Scene& scene, float aspect, const std::optional<vec3>& direction,
+                   std::span<const dvec3> also) {
     const float vertical_fov = glm::radians(40.0f), margin = 1.04f;
     const vec3 backward = direction ? backward_of(*direction) : usual_backward(scene);
     const bool is_vertical = backward.x == 0 && backward.z == 0;
@@ -120,6 +121,7 @@ Camera frame_scene(const Scene& scene, float aspect, const std::optional<vec3>& 
     for_each_triangle(scene, [&](const dvec3& a, const dvec3& b, const dvec3& c, double) {
         for (const dvec3& point : {a, b, c}) across.include(point), upright.include(point);
     });
+    for (const dvec3& point : also) across.include(point), upright.include(point);
     Camera camera;
     camera.name = "framing the scene";
     const dvec3 position = dvec3(right) * across.middle() + dvec3(up) * upright.middle() +

@@ -15,6 +15,7 @@
 namespace twinray {
 namespace {
 
+using Channels = std::array<std::uint16_t, 4>;
 using ChannelTable = std::array<std::uint16_t, 256>;
 
 // sRGB to linear light in 16 bits.
@@ -67,6 +68,22 @@ class GlbModel {
         add_root(std::move(node));
     }
 
+    // Unlit, in coordinates about the scene's origin.
+    void add(std::span<const GlbMarks::Vertex> marks, int mode, const char* name) {
+        std::vector<vec3> positions;
+        std::vector<Channels> channels;
+        for (const GlbMarks::Vertex& mark : marks) {
+            positions.emplace_back(mark.position);
+            channels.push_back(channels_of(mark.color));
+        }
+        if (positions.empty()) return;
+        if (unlit_ < 0) unlit_ = add_unlit();
+        tinygltf::Node node;
+        node.name = name;
+        node.mesh = add_mesh(name, {mode, unlit_, positions, channels});
+        add_root(std::move(node));
+    }
+
     std::size_t bytes() const { return model_.buffers[0].data.size(); }
     // glTF knows neither buffers nor scenes with nothing in them.
     tinygltf::Model finished() && {
@@ -101,25 +118,45 @@ class GlbModel {
 
     int make_mesh(const Mesh& mesh, const Transform& to_world, std::span<const Rgb> colors) {
         std::vector<vec3> positions;
-        std::vector<std::array<std::uint16_t, 4>> channels;
+        std::vector<Channels> channels;
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
             std::array<vec3, 3> vertices;
             for (int k = 0; k < 3; ++k)
                 vertices[static_cast<std::size_t>(k)] = transform_point(to_world, mesh.positions[mesh.triangles[i][k]]);
             if (!std::all_of(vertices.begin(), vertices.end(), is_finite)) continue;
             positions.insert(positions.end(), vertices.begin(), vertices.end());
-            channels.insert(channels.end(), 3, {table_[colors[i].r], table_[colors[i].g], table_[colors[i].b], 65535});
+            channels.insert(channels.end(), 3, channels_of(colors[i]));
         }
-        if (positions.empty()) return -1;
+        return positions.empty() ? -1 : add_mesh(mesh.name, {TINYGLTF_MODE_TRIANGLES, 0, positions, channels});
+    }
+
+    Channels channels_of(Rgb color) const { return {table_[color.r], table_[color.g], table_[color.b], 65535}; }
+
+    int add_unlit() {
+        const char* unlit = "KHR_materials_unlit";
+        tinygltf::Material material;
+        material.extensions[unlit] = tinygltf::Value(tinygltf::Value::Object{});
+        model_.extensionsUsed.emplace_back(unlit);
+        model_.materials.push_back(std::move(material));
+        return static_cast<int>(model_.materials.size()) - 1;
+    }
+
+    struct Vertices {
+        int mode, material;
+        const std::vector<vec3>& positions;
+        const std::vector<Channels>& channels;
+    };
+    int add_mesh(const std::string& name, const Vertices& vertices) {
         tinygltf::Primitive primitive;
-        primitive.mode = TINYGLTF_MODE_TRIANGLES;
-        primitive.material = 0;
-        primitive.attributes["POSITION"] = add_positions(positions);
-        primitive.attributes["COLOR_0"] = add_accessor(std::as_bytes(std::span(channels)), channels.size(),
-                                                       TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4);
+        primitive.mode = vertices.mode;
+        primitive.material = vertices.material;
+        primitive.attributes["POSITION"] = add_positions(vertices.positions);
+        primitive.attributes["COLOR_0"] =
+            add_accessor(std::as_bytes(std::span(vertices.channels)), vertices.channels.size(),
+                         TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4);
         model_.accessors.back().normalized = true;
         tinygltf::Mesh written;
-        written.name = mesh.name;
+        written.name = name;
         written.primitives.push_back(std::move(primitive));
         model_.meshes.push_back(std::move(written));
         return static_cast<int>(model_.meshes.size()) - 1;
@@ -159,12 +196,14 @@ class GlbModel {
     const Scene& scene_;
     const ChannelTable table_ = linear_table();
     tinygltf::Model model_;
+    int unlit_ = -1;
     std::map<std::pair<uint, std::vector<Rgb>>, int> meshes_;  // by mesh and colours
 };
 
 }  // namespace
 
-void write_glb(const std::filesystem::path& file, const Scene& scene, std::span<const Rgb> colors) {
+void write_glb(const std::filesystem::path& file, const Scene& scene, std::span<const Rgb> colors,
+               const GlbMarks& marks) {
     constexpr std::size_t most_bytes = UINT32_MAX, bytes_a_face = 3 * (sizeof(vec3) + 8), bytes_for_json = 1 << 28;
     const std::size_t count = count_triangles(scene);
     if (colors.size() != count) fail("'", file.string(), "': ", colors.size(), " colours for ", count, " faces");
@@ -175,6 +214,8 @@ void write_glb(const std::filesystem::path& file, const Scene& scene, std::span<
         maker.add(instance, colors.subspan(first, faces));
         first += faces;
     }
+    maker.add(marks.lines, TINYGLTF_MODE_LINE, "lines");
+    maker.add(marks.points, TINYGLTF_MODE_POINTS, "points");
     if (maker.bytes() > most_bytes - bytes_for_json)
         fail("'", file.string(), "': ", count, " faces of ", bytes_a_face, " bytes are more than the 4 GiB of a .glb");
     const tinygltf::Model model = std::move(maker).finished();

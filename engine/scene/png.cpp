@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <twinray/scene.h>
+#include "engine/scene/png.h"
 
 #include <vector>
 
@@ -13,7 +13,7 @@
 
 namespace twinray {
 
-void write_png(const std::filesystem::path& file, uint width, uint height, std::span<const Rgb> pixels) {
+std::vector<std::byte> encode_png(uint width, uint height, std::span<const Rgb> pixels) {
     const auto take = [](void* bytes, void* data, int size) {  // must not throw: stb would leak what it has encoded
         const auto* begin = static_cast<const std::byte*>(data);
         static_cast<std::vector<std::byte>*>(bytes)->assign(begin, begin + size);
@@ -21,7 +21,12 @@ void write_png(const std::filesystem::path& file, uint width, uint height, std::
     const int w = static_cast<int>(width), h = static_cast<int>(height);
     std::vector<std::byte> encoded;
     if (stbi_write_png_to_func(take, &encoded, w, h, 3, pixels.data(), 3 * w) == 0)
-        fail("'", file.string(), "': a picture of ", width, " x ", height, " pixels cannot be encoded");
+        fail("a picture of ", width, " x ", height, " pixels cannot be encoded");
+    return encoded;
+}
+
+void write_png(const std::filesystem::path& file, uint width, uint height, std::span<const Rgb> pixels) {
+    const std::vector<std::byte> encoded = encode_png(width, height, pixels);
     const std::span<const std::byte> whole = encoded;
     write_file(file, std::span(&whole, 1));
 }

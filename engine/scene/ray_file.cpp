@@ -5,13 +5,16 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
+#include "engine/scene/number_lines.h"
 
 namespace twinray {
 namespace {
@@ -90,10 +93,41 @@ class Npy {
     std::string_view header_, data_;
 };
 
+std::vector<Ray> read_lines(const std::filesystem::path& file, const dvec3& origin) {
+    std::vector<Ray> rays;
+    read_number_lines(file, "rays file", "x,y,z,dx,dy,dz", [&](std::span<const double> v, std::size_t) {
+        rays.push_back({vec3(dvec3(v[0], v[1], v[2]) - origin), 0, vec3(v[3], v[4], v[5]), INFINITY});
+    });
+    return rays;
+}
+
+// numpy.lib.format, version 1.0: the header ends at a multiple of 64 bytes.
+std::string npy_header_of_hits(std::size_t count) {
+    std::string header = text(
+        "{'descr': [('hit', '<u4'), ('t', '<f4'), ('primitive_index', '<u4'), ('custom_index', '<u4'), ('u', '<f4'), "
+        "('v', '<f4'), ('instance_index', '<u4'), ('flags', '<u4')], 'fortran_order': False, 'shape': (",
+        count, ",), }");
+    constexpr std::size_t before = 10, alignment = 64;
+    header.append(alignment - (before + header.size() + 1) % alignment, ' ');
+    header += '\n';
+    const auto length = static_cast<std::uint16_t>(header.size());
+    return std::string("\x93NUMPY\x01\0", 8) + static_cast<char>(length & 255) + static_cast<char>(length >> 8) +
+           header;
+}
+
+void write_lines(std::ostream& out, const std::vector<Hit>& hits) {
+    out << "hit,t,primitive_index,custom_index,u,v,instance_index\n" << std::setprecision(9);
+    for (const Hit& hit : hits)
+        out << hit.hit << ',' << hit.t << ',' << hit.primitive_index << ',' << hit.custom_index << ',' << hit.u << ','
+            << hit.v << ',' << hit.instance_index << '\n';
+}
+
 }  // namespace
 
 std::vector<Ray> read_rays(const std::filesystem::path& file, const dvec3& origin) {
     if (lower_suffix(file) == ".npy") return Npy(file).rays(origin);
+    if (const std::string suffix = lower_suffix(file); suffix == ".csv" || suffix == ".txt")
+        return read_lines(file, origin);
     std::vector<Ray> rays = read_all<Ray>(file);
     for (Ray& ray : rays) ray.origin = vec3(dvec3(ray.origin) - origin);
     return rays;
@@ -101,7 +135,12 @@ std::vector<Ray> read_rays(const std::filesystem::path& file, const dvec3& origi
 
 void write_hits(const std::filesystem::path& file, const std::vector<Hit>& hits) {
     std::ofstream out(file, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(hits.data()), static_cast<std::streamsize>(hits.size() * sizeof(Hit)));
+    const std::string suffix = lower_suffix(file);
+    if (suffix == ".npy") out << npy_header_of_hits(hits.size());
+    if (suffix == ".csv")
+        write_lines(out, hits);
+    else
+        out.write(reinterpret_cast<const char*>(hits.data()), static_cast<std::streamsize>(hits.size() * sizeof(Hit)));
     if (!out.flush()) fail("hits file '", file.string(), "' cannot be written");
 }
 

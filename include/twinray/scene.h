@@ -200,8 +200,10 @@ Camera look_camera(vec3 from, vec3 at, vec3 up, float fov);
 // The whole scene with a vertical field of view of 40 degrees; aspect: width / height of the picture. `direction`: in
 // which it looks, in world space; without, from the front right and above, but turned to where surfaces face if they
 // face one way, so that rooms are seen through their open side and pictures from the front. Up is +y, or -z in pictures
-// that look straight up or down. Throws Error for a direction that is 0 or not finite.
-Camera frame_scene(const Scene& scene, float aspect, const std::optional<vec3>& direction = {});
+// that look straight up or down. `also`: points in world space that are seen, too. Throws Error for a direction that is
+// 0 or not finite.
+Camera frame_scene(const Scene& scene, float aspect, const std::optional<vec3>& direction = {},
+                   std::span<const dvec3> also = {});
 
 // What a camera sees. The point (x, y) of its picture, from -1 to 1 to the right and upwards, shows what lies from
 // `origin` along forward + right * x + up * y; in orthographic pictures from origin + right * x + up * y along forward.

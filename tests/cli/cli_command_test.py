@@ -105,7 +105,7 @@ def bash(*words):
 if shutil.which("bash"):
     assert bash("twinray", "") == [*commands, "--help", "--version"]
     assert bash("twinray", "tr") == ["trace"]
-    assert bash("twinray", "trace", "--l") == ["--level"]
+    assert bash("twinray", "trace", "--l") == ["--level", "--labels"]
     assert bash("twinray", "trace", "--accel", "") == ["auto", "sw", "hw"]
     assert bash("twinray", "trace", "--accel", "=", "a") == ["auto"]
     assert bash("twinray", "trace", "man") == ["man1"], "a file"

@@ -33,8 +33,7 @@ TEST_P(SharedMemory, AMeshOfAnotherDeviceIsTracedAndFollowsIt) {
     Mesh mesh = square(0);
     const Buffer theirs = Buffer::exportable(*other, {.name = "theirs", .bytes = mesh.positions.size() * sizeof(vec3)});
     write(*other, theirs, mesh.positions);
-    const Buffer ours =
-        Buffer::imported(context(), {.name = "ours", .bytes = theirs.bytes()}, theirs.exported());
+    const Buffer ours = Buffer::imported(context(), {.name = "ours", .bytes = theirs.bytes()}, theirs.exported());
     EXPECT_EQ(download<vec3>(context(), ours, mesh.positions.size()), mesh.positions);
     const Buffer indices = device_copy(mesh.triangles);
     const AccelHandle handle = accel().push(DeviceMesh{.name = "shared",
@@ -62,8 +61,9 @@ TEST_P(SharedMemory, WhatCannotBeSharedIsRefused) {
               std::string::npos);
     const Buffer small = Buffer::exportable(context(), {.name = "small", .bytes = 64});
     const ExportedMemory exported = small.exported();
-    EXPECT_NE(error_of([&] { Buffer::imported(context(), {.name = "large", .bytes = 1 << 20}, exported); })
-                  .find("bytes were exported, for 1048576"),
+    EXPECT_NE(error_of([&] {
+                  Buffer::imported(context(), {.name = "large", .bytes = 1 << 20}, exported);
+              }).find("bytes were exported, for 1048576"),
               std::string::npos);
     EXPECT_EQ(close(exported.fd), 0) << "the descriptor is no longer the caller's";
 }

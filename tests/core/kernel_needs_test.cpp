@@ -42,6 +42,7 @@ const Family families[] = {
     {"hwtlas_", {Of::hardware}},
     // Samples, the suite of `twinray report` and its negative controls, one of which runs where there is float64.
     {"path_tracer_"},
+    {"iso_surface_"},
     {"particles_"},
     {"embed_renderer_"},
     {"suite_"},

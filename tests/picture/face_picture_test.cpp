@@ -77,9 +77,9 @@ TEST_P(FacePictureTest, CutsAwayWhatIsSeenFromBehind) {
 
 TEST_P(FacePictureTest, DotsAreHiddenByWhatIsInFrontOfThem) {
     FacePicture picture = drawn();
-    const auto dot_at = [](dvec3 at, bool is_on_top = false) { return Dot{at, 0.5f, mark_color, is_on_top}; };
+    const auto dot_at = [](dvec3 at, float behind = 0) { return Dot{at, 0.5f, mark_color, behind}; };
     const std::vector<Dot> dots = {dot_at({-1.75, -1.25, 1}), dot_at({1.75, -1.25, -1}), dot_at({-2.25, 1.75, -4}),
-                                   dot_at({2.75, 2.75, -4}, true), dot_at({0, 0, 20})};
+                                   dot_at({2.75, 2.75, -4}, 1), dot_at({0, 0, 20})};
     draw_dots(picture, dots);
     EXPECT_EQ(picture.raster.at(4, 10), mark_color);   // in the surface
     EXPECT_NE(picture.raster.at(11, 10), mark_color);  // behind one

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "validation/picture/marks.h"
 #include "twinray/glsl/vector_math.h"
+#include "validation/picture/font.h"
 
 #include <algorithm>
 
@@ -31,7 +32,7 @@ struct Stretch {
     Placed from, to;
     float radius;
     Rgb color;
-    bool is_on_top;
+    float behind;
 };
 
 // Where the stretch is nearest to `at`, from 0 to 1.
@@ -62,23 +63,42 @@ void draw(FacePicture& picture, const Stretch& stretch) {
             const float depth = depth_at(picture, stretch, place), thickness = 2 * std::max(stretch.radius, 1.0f);
             const float bulge = std::sqrt(std::max(thickness * thickness - distance * distance, 0.0f));
             const float front = depth - bulge * pixel_size(picture, depth);
-            if (stretch.is_on_top || front <= picture.depths[std::size_t{y} * picture.raster.width + x])
-                blend(picture.raster.at(x, y), stretch.color, coverage);
+            const bool is_seen = front <= picture.depths[std::size_t{y} * picture.raster.width + x];
+            const float share = is_seen ? 1 : stretch.behind;
+            if (share > 0) blend(picture.raster.at(x, y), stretch.color, coverage * share);
         }
 }
 
 }  // namespace
 
+std::optional<vec2> place_of(const FacePicture& picture, dvec3 position) {
+    const std::optional<Placed> at = place(picture, position);
+    return at ? std::optional(at->at) : std::nullopt;
+}
+
 void draw_dots(FacePicture& picture, std::span<const Dot> dots) {
     for (const Dot& dot : dots)
         if (const std::optional<Placed> at = place(picture, dot.position))
-            draw(picture, {*at, *at, dot.radius, dot.color, dot.is_on_top});
+            draw(picture, {*at, *at, dot.radius, dot.color, dot.behind});
 }
 
 void draw_strokes(FacePicture& picture, std::span<const Stroke> strokes) {
     for (const Stroke& stroke : strokes) {
         const std::optional<Placed> from = place(picture, stroke.from), to = place(picture, stroke.to);
-        if (from && to) draw(picture, {*from, *to, stroke.radius, stroke.color, false});
+        if (from && to) draw(picture, {*from, *to, stroke.radius, stroke.color, stroke.behind});
+    }
+}
+
+void draw_labels(FacePicture& picture, std::span<const Note> notes) {
+    constexpr int border = 3, away = 8;
+    for (const Note& note : notes) {
+        const std::optional<Placed> at = place(picture, note.position);
+        if (!at || note.label.empty()) continue;
+        const int dot = static_cast<int>(at->at.x), width = text_width(note.label);
+        const bool has_room = dot + away + width + border <= static_cast<int>(picture.raster.width);
+        const int x = has_room ? dot + away : dot - away - width, y = static_cast<int>(at->at.y) - text_height / 2;
+        fill(picture.raster, {x - border, y - border, width + 2 * border, text_height + border}, paper);
+        draw_text(picture.raster, x, y, note.label);
     }
 }
 

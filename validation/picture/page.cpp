@@ -72,10 +72,14 @@ void draw_legend(Raster& raster, const Legend& legend, int x, int y, int height)
 
 }  // namespace
 
+PagePlace place_in(const Page& page) {
+    return {margin, margin + (page.title.empty() ? 0 : line) + (page.subtitle.empty() ? 0 : line)};
+}
+
 Raster compose(const Raster& picture, const Page& page) {
     const int width = static_cast<int>(picture.width), height = static_cast<int>(picture.height);
     const int beside = legend_width(page.legend, height);
-    const int top = margin + (page.title.empty() ? 0 : line) + (page.subtitle.empty() ? 0 : line);
+    const int top = place_in(page).y;
     Raster raster(static_cast<uint>(width + 3 * margin + beside),
                   static_cast<uint>(top + std::max(height, legend_height(page.legend, height)) + margin));
     int y = margin - 4;

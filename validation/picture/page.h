@@ -26,6 +26,11 @@ struct Page {
     Legend legend;
 };
 
+// Where the picture's upper left pixel lies in compose()'s.
+struct PagePlace {
+    int x = 0, y = 0;
+};
+PagePlace place_in(const Page& page);
 // The picture with its title and its legend, on white.
 Raster compose(const Raster& picture, const Page& page);
 

@@ -5,27 +5,55 @@
 
 #include "engine/scene/bytes.h"
 #include "engine/scene/glb.h"
+#include "validation/picture/html_page.h"
 #include <twinray/scene.h>
 
 namespace twinray {
 namespace {
 
-Camera camera_of(const PictureOptions& options, const Scene& scene) {
-    const float aspect = static_cast<float>(options.size[0]) / static_cast<float>(options.size[1]);
-    if (!options.view.empty())
-        return frame_scene(scene, aspect, vec3(options.view[0], options.view[1], options.view[2]));
-    return scene.cameras.empty() ? frame_scene(scene, aspect) : scene.cameras[0];
+// What is to be seen beside the scene.
+std::vector<dvec3> points_of(const ScenePicture& picture) {
+    std::vector<dvec3> points;
+    for (const Dot& dot : picture.dots) points.push_back(dot.position);
+    for (const Stroke& stroke : picture.strokes) points.insert(points.end(), {stroke.from, stroke.to});
+    return points;
 }
 
-Raster draw(const PictureOptions& options, AbstractAccel& accel, const Scene& scene, const ScenePicture& picture) {
+// Straight up or down, up is -z in the picture, as in frame_scene().
+vec3 up_of(vec3 way) { return way.x == 0 && way.z == 0 ? vec3(0, 0, -1) : vec3(0, 1, 0); }
+
+Camera camera_of(const PictureOptions& options, const Scene& scene, const ScenePicture& picture) {
+    if (const auto& c = options.camera; !c.empty()) {
+        const vec3 from(dvec3(c[0], c[1], c[2]) - scene.origin), at(dvec3(c[3], c[4], c[5]) - scene.origin);
+        return look_camera(from, at, up_of(at - from), 40);
+    }
+    const std::vector<dvec3> points = picture.frames_marks ? points_of(picture) : std::vector<dvec3>();
+    const float aspect = static_cast<float>(options.size[0]) / static_cast<float>(options.size[1]);
+    if (!options.view.empty())
+        return frame_scene(scene, aspect, vec3(options.view[0], options.view[1], options.view[2]), points);
+    return scene.cameras.empty() || picture.frames_marks ? frame_scene(scene, aspect, {}, points) : scene.cameras[0];
+}
+
+GlbMarks glb_marks(const ScenePicture& picture) {
+    GlbMarks marks;
+    for (const Dot& dot : picture.dots) marks.points.push_back({dot.position, dot.color});
+    for (const Stroke& stroke : picture.strokes) {
+        marks.lines.push_back({stroke.from, stroke.color});
+        marks.lines.push_back({stroke.to, stroke.color});
+    }
+    return marks;
+}
+
+FacePicture draw(const PictureOptions& options, AbstractAccel& accel, const Scene& scene, const ScenePicture& picture) {
     FacePicture faces = draw_faces(accel, scene, picture.colors,
                                    {.width = options.size[0],
                                     .height = options.size[1],
-                                    .camera = camera_of(options, scene),
+                                    .camera = camera_of(options, scene, picture),
                                     .cull = options.is_cutaway ? Cull::back : Cull::none});
     draw_strokes(faces, picture.strokes);
     draw_dots(faces, picture.dots);
-    return compose(faces.raster, picture.page);
+    draw_labels(faces, picture.notes);
+    return faces;
 }
 
 }  // namespace
@@ -46,11 +74,15 @@ void write_pictures(const PictureOptions& options, AbstractAccel& accel, const S
                     const ScenePicture& picture) {
     for (const std::filesystem::path& file : options.files) {
         if (lower_suffix(file) == ".glb") {
-            write_glb(file, scene, picture.colors);
+            write_glb(file, scene, picture.colors, glb_marks(picture));
             continue;
         }
-        const Raster raster = draw(options, accel, scene, picture);
-        write_png(file, raster.width, raster.height, raster.pixels);
+        const FacePicture faces = draw(options, accel, scene, picture);
+        const Raster raster = compose(faces.raster, picture.page);
+        if (lower_suffix(file) == ".html")
+            write_html(file, raster, picture.page, faces, picture.notes);
+        else
+            write_png(file, raster.width, raster.height, raster.pixels);
     }
 }
 

@@ -14,19 +14,23 @@ enum class ColorScale : std::uint8_t { linear, log };
 
 // How it is shown.
 struct PictureOptions {
-    std::vector<std::filesystem::path> files;  // .png or .glb
+    std::vector<std::filesystem::path> files;  // .png, .html or .glb
     std::vector<float> view;                   // empty: the scene's first camera, else one that shows the whole scene
-    std::vector<uint> size = {1000, 800};      // width and height in pixels, without title and legend
-    std::optional<ColorScale> color_scale;     // of values; none: as fits them
-    bool is_cutaway = false;                   // faces seen from their back are left out of .png
+    // Where the camera stands, then what it looks at, in the file's coordinates; instead of `view`.
+    std::vector<double> camera;
+    std::vector<uint> size = {1000, 800};   // width and height in pixels, without title and legend
+    std::optional<ColorScale> color_scale;  // of values; none: as fits them
+    bool is_cutaway = false;                // faces seen from their back are left out of .png
 };
 
-// Marks are in .png only.
+// Dots and strokes are in all files, labels in .png and .html, details in .html.
 struct ScenePicture {
     Page page;
     std::vector<Rgb> colors;  // of faces
     std::vector<Dot> dots;
     std::vector<Stroke> strokes;
+    std::vector<Note> notes;
+    bool frames_marks = false;  // the camera that is chosen sees all marks, whatever camera the scene has
 };
 // Colours of values, NaN: there is none; the scale goes into the legend, which is called `what`.
 ScenePicture picture_of_values(const PictureOptions& options, std::span<const double> values, const std::string& what,
