@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/image_array.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -8,13 +9,13 @@
 namespace twinray {
 namespace {
 
-VkImageView create_view(Context& context, VkImage image, VkFormat format) {
+VkImageView create_view(Context& context, VkImage image, VkFormat format, std::uint32_t levels) {
     VkImageViewCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
     info.image = image;
     info.viewType = VK_IMAGE_VIEW_TYPE_2D;
     info.format = format;
-    info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, levels, 0, 1};
     VkImageView view = VK_NULL_HANDLE;
     vk_check(context.state().vk().vkCreateImageView(context.device(), &info, nullptr, &view), "create an image view");
     return view;
@@ -29,16 +30,18 @@ Samplers::~Samplers() {
         });
 }
 
-VkSampler Samplers::get(VkSamplerAddressMode wrap_u, VkSamplerAddressMode wrap_v, VkFilter filter) {
-    if (const auto found = samplers_.find({wrap_u, wrap_v, filter}); found != samplers_.end()) return found->second;
+VkSampler Samplers::get(const Kind& kind) {
+    if (const auto found = samplers_.find(kind); found != samplers_.end()) return found->second;
     VkSamplerCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
-    info.magFilter = info.minFilter = filter;
-    info.addressModeU = wrap_u;
-    info.addressModeV = wrap_v;
+    info.magFilter = info.minFilter = kind.filter;
+    info.mipmapMode = kind.between_levels;
+    info.maxLod = VK_LOD_CLAMP_NONE;
+    info.addressModeU = kind.wrap_u;
+    info.addressModeV = kind.wrap_v;
     VkSampler sampler = VK_NULL_HANDLE;
     vk_check(context_.state().vk().vkCreateSampler(context_.device(), &info, nullptr, &sampler), "create a sampler");
-    return samplers_[{wrap_u, wrap_v, filter}] = sampler;
+    return samplers_[kind] = sampler;
 }
 
 // A variable count takes no more than it has; the limit is for update-after-bind descriptors, of which devices have at
@@ -73,12 +76,13 @@ SampledImage::SampledImage(Context& context, const SampledImageDesc& desc) : con
     info.imageType = VK_IMAGE_TYPE_2D;
     info.format = desc.format;
     info.extent = {desc.width, desc.height, 1};
-    info.mipLevels = info.arrayLayers = 1;
+    info.mipLevels = desc.levels;
+    info.arrayLayers = 1;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
     info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     made_ = context.state().allocator().allocate(ImageRequest{desc_.name.c_str(), &info});
     try {
-        view_ = create_view(context, made_.image, desc.format);
+        view_ = create_view(context, made_.image, desc.format, desc.levels);
     } catch (...) {
         retire();
         throw;
@@ -115,21 +119,30 @@ void SampledImage::change_layout(Commands& commands, VkImageLayout from, VkImage
     barrier.newLayout = to;
     barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.image = made_.image;
-    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, desc_.levels, 0, 1};
     context_->state().vk().vkCmdPipelineBarrier(commands.handle(), context_->state().stages(),
                                                 context_->state().stages(), 0, 0, nullptr, 0, nullptr, 1, &barrier);
 }
 
-void SampledImage::upload(Commands& commands, std::span<const std::byte> texels) {
-    Buffer staging(*context_, {.name = "staging for " + desc_.name, .bytes = texels.size(), .memory = Memory::upload});
-    std::memcpy(staging.mapped(), texels.data(), texels.size());
-    VkBufferImageCopy region{};
-    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    region.imageExtent = {desc_.width, desc_.height, 1};
+void SampledImage::upload(Commands& commands, std::span<const std::vector<std::byte>> levels) {
+    constexpr std::uint64_t alignment = 16;  // of any texel's size
+    std::vector<VkBufferImageCopy> regions;
+    std::uint64_t bytes = 0;
+    for (std::uint32_t level = 0; level < levels.size(); ++level) {
+        VkBufferImageCopy& region = regions.emplace_back();
+        region.bufferOffset = bytes;
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 1};
+        region.imageExtent = {std::max(desc_.width >> level, 1u), std::max(desc_.height >> level, 1u), 1};
+        bytes += (levels[level].size() + alignment - 1) / alignment * alignment;
+    }
+    Buffer staging(*context_, {.name = "staging for " + desc_.name, .bytes = bytes, .memory = Memory::upload});
+    for (std::size_t level = 0; level < levels.size(); ++level)
+        std::memcpy(staging.mapped() + regions[level].bufferOffset, levels[level].data(), levels[level].size());
     // What it held is overwritten: its old layout does not matter.
     change_layout(commands, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     context_->state().vk().vkCmdCopyBufferToImage(commands.handle(), staging.handle(), made_.image,
-                                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+                                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                                  static_cast<std::uint32_t>(regions.size()), regions.data());
     change_layout(commands, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     commands.retain(std::move(staging));
 }

@@ -5,13 +5,13 @@
 #include <map>
 #include <span>
 #include <string>
-#include <tuple>
+#include <vector>
 
 #include "engine/core/commands.h"
 
 namespace twinray {
 
-// Samplers of one level, one for each kind that is asked for: devices have few (4000 at least).
+// Samplers, one for each kind that is asked for: devices have few (4000 at least).
 class Samplers {
   public:
     explicit Samplers(Context& context) : context_(context) {}
@@ -19,21 +19,27 @@ class Samplers {
     Samplers(const Samplers&) = delete;
     Samplers& operator=(const Samplers&) = delete;
 
-    VkSampler get(VkSamplerAddressMode wrap_u, VkSamplerAddressMode wrap_v, VkFilter filter);
+    struct Kind {
+        VkSamplerAddressMode wrap_u, wrap_v;
+        VkFilter filter;
+        VkSamplerMipmapMode between_levels;
+        auto operator<=>(const Kind&) const = default;
+    };
+    VkSampler get(const Kind& kind);
 
   private:
     Context& context_;
-    std::map<std::tuple<VkSamplerAddressMode, VkSamplerAddressMode, VkFilter>, VkSampler> samplers_;
+    std::map<Kind, VkSampler> samplers_;
 };
 
 struct SampledImageDesc {
     std::string name;
-    std::uint32_t width = 0, height = 0;
+    std::uint32_t width = 0, height = 0, levels = 1;
     VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
     VkSampler sampler = VK_NULL_HANDLE;
 };
 
-// One image of one level, with the sampler that it is read by. Move-only; destroyed after all work submitted so far.
+// One image with its mipmaps and the sampler that it is read by. Move-only; destroyed after all work submitted so far.
 class SampledImage {
   public:
     SampledImage() = default;
@@ -43,8 +49,8 @@ class SampledImage {
     SampledImage(SampledImage&& other) noexcept;
     SampledImage& operator=(SampledImage&& other) noexcept;
 
-    // Within a pass: replaces all texels, which are tightly packed in `texels`. What follows the pass sees them.
-    void upload(Commands& commands, std::span<const std::byte> texels);
+    // Within a pass: replaces the texels of all levels, tightly packed each. What follows the pass sees them.
+    void upload(Commands& commands, std::span<const std::vector<std::byte>> levels);
 
     VkDescriptorImageInfo descriptor() const {
         return {desc_.sampler, view_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};

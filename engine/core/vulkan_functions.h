@@ -20,6 +20,7 @@
     F(vkGetPhysicalDeviceFeatures2)             \
     F(vkGetPhysicalDeviceQueueFamilyProperties) \
     F(vkGetPhysicalDeviceMemoryProperties)      \
+    F(vkGetPhysicalDeviceFormatProperties)      \
     F(vkCreateDevice)                           \
     F(vkGetDeviceProcAddr)
 

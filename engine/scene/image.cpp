@@ -53,6 +53,20 @@ int checked_size(std::span<const std::uint8_t> bytes, const std::string& object)
     return static_cast<int>(bytes.size());
 }
 
+// Into four channels, by stb's function for numbers of T.
+template <class T>
+void decode(std::span<const std::uint8_t> bytes, Image& image, std::vector<T>& rgba,
+            T* (*load)(const stbi_uc*, int, int*, int*, int*, int)) {
+    int width = 0, height = 0, channels = 0;
+    const std::unique_ptr<T, FreePixels> pixels(
+        load(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 4));
+    if (!pixels) fail(image.name, " is ", description_of(bytes));
+    check_image_size(width, height, image.name);
+    image.width = static_cast<uint>(width);
+    image.height = static_cast<uint>(height);
+    rgba.assign(pixels.get(), pixels.get() + std::size_t{4} * image.width * image.height);
+}
+
 HdrImage load_radiance_image(const std::filesystem::path& file) {
     const Bytes bytes = read_file(file);
     const std::string object = file.string();
@@ -88,16 +102,13 @@ void check_image_size(std::int64_t width, std::int64_t height, const std::string
 Image decode_image(std::span<const std::uint8_t> bytes, const std::string& object) {
     const int size = checked_size(bytes, object);
     if (size == 0 || stbi_is_hdr_from_memory(bytes.data(), size)) fail(object, " is ", description_of(bytes));
-    int width = 0, height = 0, channels = 0;
-    const std::unique_ptr<stbi_uc, FreePixels> pixels(
-        stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4));
-    if (!pixels) fail(object, " is ", description_of(bytes));
-    check_image_size(width, height, object);
-    const std::size_t byte_count = std::size_t(4) * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-    return {.name = object,
-            .width = static_cast<uint>(width),
-            .height = static_cast<uint>(height),
-            .rgba = {pixels.get(), pixels.get() + byte_count}};
+    Image image;
+    image.name = object;
+    if (stbi_is_16_bit_from_memory(bytes.data(), size))
+        decode(bytes, image, image.rgba16, stbi_load_16_from_memory);
+    else
+        decode(bytes, image, image.rgba, stbi_load_from_memory);
+    return image;
 }
 
 HdrImage load_hdr_image(const std::filesystem::path& file) {

@@ -8,6 +8,7 @@
 #include "engine/core/fault_log.h"
 #include "engine/core/image_array.h"
 #include "engine/scene/set_uploads.h"
+#include "engine/scene/texels.h"
 
 namespace twinray {
 
@@ -40,13 +41,51 @@ uint wrap_word(Wrap wrap) {
     return TEXTURE_REPEAT;
 }
 
+// Whether what reads the texels decodes them; those in 16 bits are decoded already.
+bool is_decoded(const TextureOptions& options, const Texels& texels) {
+    return options.is_srgb && texels.format == TexelFormat::unorm8;
+}
+
+uint options_word(const TextureOptions& options, const Texels& texels) {
+    return (is_decoded(options, texels) ? 1u : 0u) | (options.filter == Filter::nearest ? 2u : 0u) |
+           (options.between_levels == Filter::nearest ? 4u : 0u);
+}
+
+// Of one, two or four channels.
+VkFormat format_of(const Texels& texels, bool is_srgb) {
+    constexpr VkFormat formats[4][3] = {{VK_FORMAT_R8_UNORM, VK_FORMAT_R8G8_UNORM, VK_FORMAT_R8G8B8A8_UNORM},
+                                        {VK_FORMAT_R16_UNORM, VK_FORMAT_R16G16_UNORM, VK_FORMAT_R16G16B16A16_UNORM},
+                                        {VK_FORMAT_R16_SFLOAT, VK_FORMAT_R16G16_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT},
+                                        {VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT}};
+    if (is_srgb) return VK_FORMAT_R8G8B8A8_SRGB;
+    return formats[static_cast<std::size_t>(texels.format)][texels.channels / 2];
+}
+
+// In a buffer each level begins at a multiple of 4 bytes.
+std::uint64_t aligned(std::uint64_t bytes) { return (bytes + 3) / 4 * 4; }
+std::uint64_t bytes_of_levels(const Texels& texels) {
+    std::uint64_t bytes = 0;
+    for (const std::vector<std::byte>& level : texels.levels) bytes += aligned(level.size());
+    return bytes;
+}
+
+// What is_alike() asks of texels, without their numbers.
+Texels form_of(const Texels& texels) {
+    return {{},
+            texels.width,
+            texels.height,
+            texels.channels,
+            texels.format,
+            std::vector<std::vector<std::byte>>(texels.levels.size())};
+}
+
 }  // namespace
 
 // The store behind its pointer: each method as TextureStore declares it.
 struct TextureStore::State {
     State(Context& context, std::string name, TextureStorage storage);
-    TextureRef push(const Image& image, const TextureOptions& options);
-    void update(TextureRef ref, const Image& image);
+    TextureRef push(Texels&& texels, TextureOptions options);
+    void update(TextureRef ref, Texels&& texels);
     bool contains(TextureRef ref) const { return ref.number - 1u < textures_.size(); }
     std::size_t size() const { return textures_.size(); }
     SyncPoint sync();
@@ -60,14 +99,14 @@ struct TextureStore::State {
     struct Texture {
         std::string name;  // of the image that it was pushed as
         TextureOptions options;
-        uint width = 0, height = 0;  // on the device; 0: not there yet
-        SampledImage image;          // one of the two
+        Texels form;         // on the device, without numbers; of width 0: not there yet
+        SampledImage image;  // one of the two
         Buffer texels;
     };
     // What the next sync has recorded of a texture that it makes or replaces.
     struct Made {
         std::size_t index;
-        uint width, height;
+        Texels form;
         SampledImage image;
         Buffer texels;
     };
@@ -77,12 +116,13 @@ struct TextureStore::State {
         std::optional<SetUploads::Staged> records;
     };
     const Texture& checked(TextureRef ref, const char* action) const;
-    void check_image(const Image& image, const char* action) const;
+    Texels checked(Texels&& texels, const TextureOptions& options, const char* action) const;
     Staged stage(Commands& commands);
-    void record_upload(Commands& commands, std::size_t index, const Image& image, std::vector<Made>& made);
+    void record_upload(Commands& commands, std::size_t index, const Texels& texels, std::vector<Made>& made);
     VkSampler sampler_of(const TextureOptions& options);
-    Made make(std::size_t index, const Image& image);
+    Made make(std::size_t index, const Texels& texels);
     ImageArray array_with(const std::vector<Made>& made) const;
+    void check_format(const Texels& texels, const TextureOptions& options, const char* action) const;
     SetUploads::Staged stage_records(Commands& commands, const std::vector<Made>& made);
     void commit(Staged&& staged, SyncPoint done);
 
@@ -92,7 +132,7 @@ struct TextureStore::State {
     uint longest_side_;  // that an image may have
     std::vector<Texture> textures_;
     Samplers samplers_;
-    std::map<std::size_t, Image> pending_;  // by index of the texture: what the next sync uploads
+    std::map<std::size_t, Texels> pending_;  // by index of the texture: what the next sync uploads
     ImageArray array_;
     std::vector<TextureRecord> record_values_;  // of textures in buffers; those of pending ones do not count
     SetUploads records_;
@@ -119,22 +159,44 @@ TextureStore::State::State(Context& context, std::string name, TextureStorage st
              context.properties().name, "' does not have enabled; use buffers");
 }
 
-void TextureStore::State::check_image(const Image& image, const char* action) const {
-    const std::uint64_t bytes = std::uint64_t{4} * image.width * image.height;
-    if (bytes == 0 || image.rgba.size() != bytes)
-        fail(name_, ": ", action, ": image '", image.name, "' of ", image.width, " x ", image.height, " has ",
-             image.rgba.size(), " bytes; it needs ", bytes, ", and one texel at least");
-    if (has_images() && std::max(image.width, image.height) > longest_side_)
-        fail(name_, ": ", action, ": image '", image.name, "' of ", image.width, " x ", image.height,
+// As it is kept: what Vulkan has no format for is brought into one that it has.
+Texels TextureStore::State::checked(Texels&& texels, const TextureOptions& options, const char* action) const {
+    check(texels, name_ + ": " + action);
+    const bool is_float = texels.format == TexelFormat::float16 || texels.format == TexelFormat::float32;
+    if (options.is_srgb && is_float)
+        fail(name_, ": ", action, ": image '", texels.name, "' is sRGB in floats; only unorm8 and unorm16 can be");
+    if (has_images() && std::max(texels.width, texels.height) > longest_side_)
+        fail(name_, ": ", action, ": image '", texels.name, "' of ", texels.width, " x ", texels.height,
              "; the device's images have at most ", longest_side_, " a side");
+    if (options.is_srgb && texels.format == TexelFormat::unorm16) texels = decoded_srgb16(std::move(texels));
+    const bool is_srgb = is_decoded(options, texels);
+    if (has_images() && (texels.channels == 3 || (is_srgb && texels.channels != 4)))
+        texels = widened(std::move(texels));
+    if (has_images()) check_format(texels, options, action);
+    return std::move(texels);
 }
 
-TextureRef TextureStore::State::push(const Image& image, const TextureOptions& options) {
-    check_image(image, "push");
+// Images in 32-bit floats are optional in Vulkan, and their filtering is.
+void TextureStore::State::check_format(const Texels& texels, const TextureOptions& options, const char* action) const {
+    VkFormatProperties properties{};
+    context_.state().vk().vkGetPhysicalDeviceFormatProperties(
+        context_.physical_device(), format_of(texels, is_decoded(options, texels)), &properties);
+    const VkFormatFeatureFlags filtered = options.filter == Filter::nearest
+                                              ? 0u
+                                              : VkFormatFeatureFlags{VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT};
+    const VkFormatFeatureFlags needed = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | filtered;
+    if ((properties.optimalTilingFeatures & needed) != needed)
+        fail(name_, ": ", action, ": image '", texels.name, "': the device cannot ", filtered ? "filter" : "sample",
+             " its format; keep textures in buffers");
+}
+
+TextureRef TextureStore::State::push(Texels&& texels, TextureOptions options) {
     if (has_images() && size() == ImageArray::max_images)
-        fail(name_, ": push: image '", image.name, "'; ", size(), " images fit, and are there");
-    textures_.push_back({.name = image.name, .options = options, .image = {}, .texels = {}});
-    pending_[size() - 1] = image;
+        fail(name_, ": push: image '", texels.name, "'; ", size(), " images fit, and are there");
+    const std::string name = texels.name;
+    Texels kept = checked(std::move(texels), options, "push");
+    textures_.push_back({.name = name, .options = options, .form = {}, .image = {}, .texels = {}});
+    pending_[size() - 1] = std::move(kept);
     return {static_cast<uint>(size())};
 }
 
@@ -144,10 +206,9 @@ const TextureStore::State::Texture& TextureStore::State::checked(TextureRef ref,
     return textures_[ref.number - 1];
 }
 
-void TextureStore::State::update(TextureRef ref, const Image& image) {
-    checked(ref, "update");
-    check_image(image, "update");
-    pending_[ref.number - 1] = image;
+void TextureStore::State::update(TextureRef ref, Texels&& texels) {
+    const Texture& texture = checked(ref, "update");
+    pending_[ref.number - 1] = checked(std::move(texels), texture.options, "update");
 }
 
 SyncPoint TextureStore::State::sync() {
@@ -166,7 +227,7 @@ TextureStore::State::Staged TextureStore::State::stage(Commands& commands) {
     Staged staged;
     {
         const auto pass = commands.pass(name_ + " upload");
-        for (const auto& [index, image] : pending_) record_upload(commands, index, image, staged.made);
+        for (const auto& [index, texels] : pending_) record_upload(commands, index, texels, staged.made);
     }
     if (staged.made.empty()) return staged;
     if (has_images())
@@ -176,35 +237,42 @@ TextureStore::State::Staged TextureStore::State::stage(Commands& commands) {
     return staged;
 }
 
-void TextureStore::State::record_upload(Commands& commands, std::size_t index, const Image& image,
+void TextureStore::State::record_upload(Commands& commands, std::size_t index, const Texels& texels,
                                         std::vector<Made>& made) {
     Texture& texture = textures_[index];
-    const bool is_reused = texture.width == image.width && texture.height == image.height;
-    if (!is_reused) made.push_back(make(index, image));
-    if (has_images())
-        (is_reused ? texture.image : made.back().image).upload(commands, std::as_bytes(std::span(image.rgba)));
-    else
-        commands.upload(is_reused ? texture.texels : made.back().texels, std::span(image.rgba));
+    const bool is_reused = is_alike(texture.form, texels);
+    if (!is_reused) made.push_back(make(index, texels));
+    if (has_images()) return (is_reused ? texture.image : made.back().image).upload(commands, texels.levels);
+    std::vector<Commands::Region> regions;
+    std::uint64_t next = 0;
+    for (const std::vector<std::byte>& level : texels.levels) {
+        regions.push_back({next, level});
+        next += aligned(level.size());
+    }
+    commands.upload_regions(is_reused ? texture.texels : made.back().texels, regions);
 }
 
 VkSampler TextureStore::State::sampler_of(const TextureOptions& options) {
-    return samplers_.get(address_mode(options.wrap_u), address_mode(options.wrap_v),
-                         options.filter == Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
+    return samplers_.get({.wrap_u = address_mode(options.wrap_u),
+                          .wrap_v = address_mode(options.wrap_v),
+                          .filter = options.filter == Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR,
+                          .between_levels = options.between_levels == Filter::nearest ? VK_SAMPLER_MIPMAP_MODE_NEAREST
+                                                                                      : VK_SAMPLER_MIPMAP_MODE_LINEAR});
 }
 
-TextureStore::State::Made TextureStore::State::make(std::size_t index, const Image& image) {
-    Made made{index, image.width, image.height, {}, {}};
+TextureStore::State::Made TextureStore::State::make(std::size_t index, const Texels& texels) {
+    Made made{index, form_of(texels), {}, {}};
     const Texture& texture = textures_[index];
     const std::string name = name_ + ": " + texture.name;
     if (has_images())
-        made.image = SampledImage(
-            context_, {.name = name,
-                       .width = image.width,
-                       .height = image.height,
-                       .format = texture.options.is_srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
-                       .sampler = sampler_of(texture.options)});
+        made.image = SampledImage(context_, {.name = name,
+                                             .width = texels.width,
+                                             .height = texels.height,
+                                             .levels = static_cast<uint>(texels.levels.size()),
+                                             .format = format_of(texels, is_decoded(texture.options, texels)),
+                                             .sampler = sampler_of(texture.options)});
     else
-        made.texels = Buffer(context_, {.name = name, .bytes = image.rgba.size()});
+        made.texels = Buffer(context_, {.name = name, .bytes = bytes_of_levels(texels)});
     return made;
 }
 
@@ -221,12 +289,12 @@ SetUploads::Staged TextureStore::State::stage_records(Commands& commands, const 
     for (const Made& one : made) {
         const TextureOptions& options = textures_[one.index].options;
         record_values_[one.index] = {one.texels.ref<uint>(),
-                                     one.width,
-                                     one.height,
-                                     wrap_word(options.wrap_u),
-                                     wrap_word(options.wrap_v),
-                                     options.is_srgb,
-                                     options.filter == Filter::nearest};
+                                     one.form.width,
+                                     one.form.height,
+                                     wrap_word(options.wrap_u) | wrap_word(options.wrap_v) << 2u,
+                                     options_word(options, one.form),
+                                     static_cast<uint>(one.form.format) | one.form.channels << 2u,
+                                     static_cast<uint>(one.form.levels.size())};
         records_.note_update(0, static_cast<uint>(one.index));
     }
     const std::span<const std::byte> bytes[] = {std::as_bytes(std::span(record_values_))};
@@ -236,8 +304,7 @@ SetUploads::Staged TextureStore::State::stage_records(Commands& commands, const 
 void TextureStore::State::commit(Staged&& staged, SyncPoint done) {
     for (Made& one : staged.made) {
         Texture& texture = textures_[one.index];
-        texture.width = one.width;
-        texture.height = one.height;
+        texture.form = std::move(one.form);
         texture.image = std::move(one.image);
         texture.texels = std::move(one.texels);
     }
@@ -278,10 +345,14 @@ TextureStore::TextureStore(Context& context, std::string name)
     : TextureStore(context, std::move(name), best_storage(context)) {}
 TextureStore::~TextureStore() = default;
 
-TextureRef TextureStore::push(const Image& image, const TextureOptions& options) {
-    return state_->push(image, options);
+TextureRef TextureStore::push(const Texels& texels, const TextureOptions& options) {
+    return state_->push(Texels(texels), options);
 }
-void TextureStore::update(TextureRef ref, const Image& image) { state_->update(ref, image); }
+TextureRef TextureStore::push(const Image& image, const TextureOptions& options) {
+    return state_->push(Texels::of(image), options);
+}
+void TextureStore::update(TextureRef ref, const Texels& texels) { state_->update(ref, Texels(texels)); }
+void TextureStore::update(TextureRef ref, const Image& image) { state_->update(ref, Texels::of(image)); }
 bool TextureStore::contains(TextureRef ref) const { return state_->contains(ref); }
 std::size_t TextureStore::size() const { return state_->size(); }
 SyncPoint TextureStore::sync() { return state_->sync(); }

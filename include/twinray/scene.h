@@ -29,13 +29,15 @@ struct AccelHandle;
 
 // ---- What a scene holds ---------------------------------------------------------------------------------------------
 
-// 8-bit RGBA, row 0 first (glTF's v = 0). sRGB or linear is decided by the use (base colour and emission: sRGB).
+// RGBA in 8 or 16 bits, row 0 first (glTF's v = 0). sRGB or linear is decided by the use (base colour and emission:
+// sRGB).
 struct Image {
     std::string name;
     uint width = 0;
     uint height = 0;
     std::vector<std::uint8_t> rgba;
-    bool is_placeholder = false;  // a checkerboard in place of an image that could not be decoded
+    std::vector<std::uint16_t> rgba16 = {};  // instead, of files with 16 bits a channel
+    bool is_placeholder = false;             // a checkerboard in place of an image that could not be decoded
 };
 
 enum class Wrap : std::uint8_t { repeat, clamp_to_edge, mirrored_repeat };
@@ -226,7 +228,7 @@ std::optional<Projected> project(const ImagePlane& plane, dvec3 position);
 
 // ---- Images ---------------------------------------------------------------------------------------------------------
 
-// Decodes PNG or JPEG; 16-bit channels are cut to 8, grey and RGB are widened to RGBA.
+// Decodes PNG or JPEG; grey and RGB are widened to RGBA.
 // Throws Error naming `object` and what the bytes seem to be when they are neither, damaged, or over 2^28 pixels.
 Image decode_image(std::span<const std::uint8_t> bytes, const std::string& object);
 
@@ -362,6 +364,36 @@ class Deformer {
 
 // ---- Textures in kernels: docs/multi-type-set.md --------------------------------------------------------------------
 
+// What a number of a texel is.
+enum class TexelFormat : std::uint8_t { unorm8, unorm16, float16, float32 };
+constexpr uint bytes_of(TexelFormat format) {
+    return format == TexelFormat::unorm8 ? 1 : format == TexelFormat::float32 ? 4 : 2;
+}
+
+// Texels as a TextureStore takes them, tightly packed, row 0 (v = 0) first.
+struct Texels {
+    std::string name;
+    uint width = 0, height = 0;
+    uint channels = 4;  // 1 to 4, red first; of those that lack colours are 0 and alpha is 1, as Vulkan has it
+    TexelFormat format = TexelFormat::unorm8;
+    // The image, then its mipmaps: each half as wide and as high as the one before, rounded down, 1 at least. Any
+    // number of them.
+    std::vector<std::vector<std::byte>> levels;
+
+    // Of numbers as they are.
+    template <class T>
+    static Texels of(std::string name, uint width, uint height, uint channels, TexelFormat format,
+                     std::span<const T> numbers) {
+        const std::span<const std::byte> bytes = std::as_bytes(numbers);
+        return {std::move(name), width, height, channels, format, {{bytes.begin(), bytes.end()}}};
+    }
+    static Texels of(const Image& image);
+};
+
+// With mipmaps down to one texel: the mean of what each texel covers, in float64; is_srgb: of linear light. Throws
+// Error for texels that are not as many as width and height say.
+Texels with_mipmaps(Texels texels, bool is_srgb = false);
+
 // How kernels reach textures.
 enum class TextureStorage : std::uint8_t {
     images,   // through an array of descriptors, by the device's samplers: kernels compiled with TWINRAY_BINDLESS
@@ -371,8 +403,9 @@ enum class TextureStorage : std::uint8_t {
 struct TextureOptions {
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
-    bool is_srgb = false;
+    bool is_srgb = false;  // of unorm8
     Filter filter = Filter::linear;
+    Filter between_levels = Filter::linear;  // of sample_texture_lod()
     bool operator==(const TextureOptions&) const = default;
 };
 
@@ -391,8 +424,10 @@ class TextureStore {
 
     // Copies the texels until the next sync. Throws Error for an image without texels, or with more or fewer than it
     // says.
+    TextureRef push(const Texels& texels, const TextureOptions& options = {});
     TextureRef push(const Image& image, const TextureOptions& options = {});
     // Other texels, sampled as before. Where the size is the same they go into the same memory and views stay valid.
+    void update(TextureRef ref, const Texels& texels);
     void update(TextureRef ref, const Image& image);
     bool contains(TextureRef ref) const;
     std::size_t size() const;

@@ -54,7 +54,8 @@ std::string image_sum(const Scene& scene, const TextureList& list) {
         sampled.insert(sampled.end(), {image, static_cast<uint>(options.wrap_u), static_cast<uint>(options.wrap_v),
                                        static_cast<uint>(options.is_srgb), static_cast<uint>(options.filter)});
     sum.add(sampled);
-    for (const Image& image : scene.images) sum.add(std::vector<uint>{image.width, image.height}).add(image.rgba);
+    for (const Image& image : scene.images)
+        sum.add(std::vector<uint>{image.width, image.height}).add(image.rgba).add(image.rgba16);
     return sum.hex();
 }
 

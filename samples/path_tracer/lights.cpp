@@ -19,8 +19,13 @@ float texel_luminance(const Image& image, vec2 uv) {
     const vec2 at = uv - floor(uv);
     const uint x = std::min(static_cast<uint>(at.x * static_cast<float>(image.width)), image.width - 1);
     const uint y = std::min(static_cast<uint>(at.y * static_cast<float>(image.height)), image.height - 1);
-    const std::uint8_t* texel = &image.rgba[(std::size_t{y} * image.width + x) * 4];
-    return luminance(linear_of(Rgb{texel[0], texel[1], texel[2]}));
+    const std::size_t texel = (std::size_t{y} * image.width + x) * 4;
+    const auto channel = [&](std::size_t i) {
+        const float encoded = image.rgba16.empty() ? static_cast<float>(image.rgba[texel + i]) / 255.0f
+                                                   : static_cast<float>(image.rgba16[texel + i]) / 65535.0f;
+        return linear_of_srgb(encoded);
+    };
+    return luminance(vec3(channel(0), channel(1), channel(2)));
 }
 
 // Mean of the emission texture over a triangle, estimated; never 0, so that every emissive triangle can be chosen.

@@ -28,6 +28,7 @@ std::vector<SpecializationConstant> constants_of(const SceneFeatures& features, 
                                                      {PT_HAS_AOVS, has_aovs},
                                                      {PT_HAS_MEDIA, features.some(PT_HAS_VOLUME)},
                                                      {PT_HAS_PANES, features.panes},
+                                                     {TEXEL_FORMATS_CONSTANT, features.deep_textures},
                                                      {PT_HAS_QUEUES, features.kinds.needs.size() > 1}};
     for (const uint need : material_needs) constants.push_back({need, needs >> need & 1});
     return constants;

@@ -129,6 +129,7 @@ std::string features_text(const SceneFeatures& features) {
     note(features.environment, "environment");
     note(features.local_lights, "local lights");
     note(features.panes, "panes");
+    note(features.deep_textures, "deep textures");
     note(features.kinds.needs.size() > 1, "queues by kind");
     return "shaded as: " + kinds + "; left out: " + (absent.empty() ? "nothing" : absent);
 }

@@ -12,6 +12,8 @@ SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const E
     SceneFeatures features;
     features.kinds = kinds_of(scene);
     features.environment = environment && !environment->is_black();
+    features.deep_textures =
+        std::ranges::any_of(scene.images, [](const Image& image) { return !image.rgba16.empty(); });
     features.local_lights = !lights.empty();
     const std::vector<bool> used = used_materials(scene);
     for (std::size_t i = 0; i < scene.materials.size(); ++i)
@@ -24,7 +26,7 @@ SceneFeatures all_features(const Scene& scene) {
     features.kinds.needs = {0};
     for (const uint need : material_needs) features.kinds.needs[0] |= 1u << need;
     features.kinds.of.resize(scene.materials.size());
-    features.environment = features.local_lights = features.panes = true;
+    features.environment = features.local_lights = features.panes = features.deep_textures = true;
     return features;
 }
 

@@ -22,6 +22,7 @@ struct SceneFeatures {
     bool environment = false;
     bool local_lights = false;
     bool panes = false;
+    bool deep_textures = false;  // of 16 bits a channel
 
     // Whether some material needs it; need: PT_HAS_ALPHA and the like.
     bool some(uint need) const { return kinds.all_needs() >> need & 1; }

@@ -2,6 +2,7 @@
 // From a mesh as its caller has it in device memory to 3 floats a vertex and 3 indices a triangle.
 #ifndef TWINRAY_SHARED_GATHER_MESH_H
 #define TWINRAY_SHARED_GATHER_MESH_H
+#include "twinray/glsl/half.h"
 
 // As VertexFormat and IndexFormat.
 const uint VERTEX_FLOAT32 = 0u;
@@ -24,21 +25,6 @@ struct GatherMeshArgs
     uint index_format;
     float factor; // of positions
 };
-
-// The value of an IEEE half.
-FUNC float float_of_half(uint bits)
-{
-    uint sign = (bits & 0x8000u) << 16u;
-    uint exponent = (bits >> 10u) & 31u;
-    uint fraction = bits & 1023u;
-    if (exponent == 0u)
-    {
-        float tiny = float(fraction) * 5.9604644775390625e-8f; // 2^-24
-        return sign == 0u ? tiny : -tiny;
-    }
-    uint wide = exponent == 31u ? 255u : exponent + 112u;
-    return uintBitsToFloat(sign | (wide << 23u) | (fraction << 13u));
-}
 
 // bits / 32767 as a signed number, at least -1, rounded once: 1 / 32767 is 2^-15 + 2^-30 + 2^-45 and less.
 FUNC float float_of_snorm16(uint bits)

@@ -66,6 +66,27 @@ TEST_F(VertexAttributes, ColoursMultiplyTheBaseColourAndAreLinearBetweenCorners)
     }
 }
 
+// Base colour in 16 bits: what 8 bits cannot tell apart, and the same picture where they can.
+TEST_F(VertexAttributes, TexturesKeepSixteenBits) {
+    Mesh mesh = floor_quad();
+    mesh.uvs.assign(4, vec2(0.5f));
+    Scene scene = scene_of(mesh, unlit());
+    scene.materials.back().base_color_texture.image = 0;
+    scene.images.resize(1);
+    const auto shown = [&](std::uint16_t red) {
+        scene.images[0] = {.name = "deep", .width = 1, .height = 1, .rgba = {}, .rgba16 = {red, 30000, 60000, 65535}};
+        return seen(scene, {0, 0});
+    };
+    const auto linear = [](double c) { return static_cast<float>(std::pow((c / 65535 + 0.055) / 1.055, 2.4)); };
+    expect_near(shown(20000), vec3(linear(20000), linear(30000), linear(60000)), 1.0f / 65535, "as they are");
+    EXPECT_GT(shown(20040).x, shown(20000).x + 5.0f / 65535) << "a sixth of a step of 8 bits";
+    scene.images[0] = {.name = "flat", .width = 1, .height = 1, .rgba = {78, 117, 233, 255}};
+    const vec3 flat = seen(scene, {0, 0});
+    scene.images[0] = {
+        .name = "deep", .width = 1, .height = 1, .rgba = {}, .rgba16 = {78 * 257, 117 * 257, 233 * 257, 65535}};
+    expect_near(seen(scene, {0, 0}), flat, 1.0f / 65535, "of 8 bits");
+}
+
 // A mesh with colours beside one without, and one material for both: kernels have the code, the mesh has no buffer.
 TEST_F(VertexAttributes, MeshesWithoutColoursAreAsTheirMaterial) {
     Mesh colored = floor_quad();

@@ -31,7 +31,11 @@ TEST(Image, GreyAndRgbAreWidened) {
     EXPECT_EQ(decode(png_bytes(1, 1, 8, 2, "rgb")).rgba, bytes_of("rgb\xff"));
 }
 
-TEST(Image, SixteenBitsAreCutToEight) { EXPECT_EQ(decode(png_bytes(1, 1, 16, 2, "r?g?b?")).rgba, bytes_of("rgb\xff")); }
+TEST(Image, SixteenBitsStay) {
+    const Image image = decode(png_bytes(1, 1, 16, 2, "rsgtbu"));
+    EXPECT_TRUE(image.rgba.empty());
+    EXPECT_EQ(image.rgba16, (std::vector<std::uint16_t>{0x7273, 0x6774, 0x6275, 0xffff}));
+}
 
 TEST(Image, WhatCannotBeDecodedIsNamed) {
     const std::string png = png_bytes(4, 4, 8, 6, std::string(64, 'x'));

@@ -14,4 +14,6 @@ void main()
     AT(args.answers, i).size = texture_size(args.textures, question.texture);
     AT(args.answers, i).texel = fetch_texel(args.textures, question.texture, ivec2(question.x, question.y));
     AT(args.answers, i).color = sample_texture(args.textures, question.texture, question.uv);
+    AT(args.answers, i).lod_color = sample_texture_lod(args.textures, question.texture, question.uv, question.lod);
+    AT(args.answers, i).levels = texture_levels(args.textures, question.texture);
 }

@@ -10,6 +10,7 @@ struct TextureQuestion {
     int x;
     int y;
     vec2 uv;
+    float lod;
 };
 BUFFER_OF(TextureQuestion, 4);
 
@@ -17,6 +18,8 @@ struct TextureAnswer {
     uvec2 size;
     vec4 texel;
     vec4 color;
+    vec4 lod_color;
+    uint levels;
 };
 BUFFER_OF(TextureAnswer, 4);
 

@@ -6,23 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "engine/core/kernel.h"
-#include "test_texture_buffers.spv.h"
-#include "test_texture_buffers_debug.spv.h"
-#include "test_texture_images.spv.h"
-#include "test_texture_images_debug.spv.h"
+#include "tests/scene/texture_fixture.h"
 #include "tests/support/caller.h"
-#include "tests/support/device.h"
-#include "tests/support/fault_injection.h"
 
 namespace twinray {
-namespace test {
-#include "twinray/glsl/cpp_begin.h"
-#include "tests/scene/texture_kernel.h"
-#include "twinray/glsl/cpp_end.h"
-static_assert(sizeof(TextureQuestion) == 20 && sizeof(TextureAnswer) == 40);
-}  // namespace test
-
 namespace {
 
 using test::TextureAnswer;
@@ -42,68 +29,9 @@ Image gray_image(uint width, uint height, std::uint8_t value) {
             .rgba = std::vector<std::uint8_t>(std::size_t{4} * width * height, value)};
 }
 
-class Textures : public test::VulkanTest, public ::testing::WithParamInterface<TextureStorage> {
-  protected:
-    ContextDesc context_desc() const override {
-        ContextDesc desc;
-        desc.get_instance_proc_addr = injector_.entry();
-        return desc;
-    }
-    void SetUp() override {
-        test::VulkanTest::SetUp();
-        if (IsSkipped() || HasFatalFailure()) return;
-        if (GetParam() == TextureStorage::images && !context().properties().has_image_arrays())
-            TWINRAY_LACKS("descriptor_indexing", "no descriptor indexing");
-        store_ = std::make_unique<TextureStore>(context(), "textures", GetParam());
-    }
-    void TearDown() override {
-        store_.reset();
-        test::VulkanTest::TearDown();
-    }
-    TextureStore& store() { return *store_; }
-
-    // The answers are there when the commands are done.
-    Buffer record_questions(Commands& commands, const std::vector<TextureQuestion>& questions, bool is_debug = false) {
-        const std::span<const uint> modules[] = {test_texture_buffers_spirv, test_texture_buffers_debug_spirv,
-                                                 test_texture_images_spirv, test_texture_images_debug_spirv};
-        const Kernel<test::TextureTestArgs> kernel(context(), {.name = "test_texture",
-                                                               .spirv = modules[2 * store().has_images() + is_debug],
-                                                               .has_images = store().has_images()});
-        Buffer answers(context(), {.name = "answers", .bytes = questions.size() * sizeof(TextureAnswer)});
-        Buffer asked(context(), {.name = "questions", .bytes = questions.size() * sizeof(TextureQuestion)});
-        {
-            const auto pass = commands.pass("questions");
-            commands.upload(asked, std::span(questions));
-        }
-        const auto count = static_cast<uint>(questions.size());
-        kernel.dispatch(commands, {store().view(), asked.ref<TextureQuestion>(), answers.ref<TextureAnswer>(), count},
-                        count, store().images());
-        commands.retain(std::move(asked));
-        return answers;
-    }
-    Buffer ask(const std::vector<TextureQuestion>& questions, bool is_debug = false) {
-        Commands commands(context(), "test textures");
-        Buffer answers = record_questions(commands, questions, is_debug);
-        commands.submit();
-        return answers;
-    }
-    std::vector<TextureAnswer> answers_to(const std::vector<TextureQuestion>& questions, bool is_debug = false) {
-        return download<TextureAnswer>(context(), ask(questions, is_debug), questions.size());
-    }
-    long red_of(TextureRef texture) {
-        return std::lround(255 * answers_to({{texture, 0, 0, vec2(0.5f)}}).front().texel.x);
-    }
-    std::uint64_t live_bytes() { return context().allocated_bytes(); }
-
-    test::FaultInjector injector_;
-
-  private:
-    std::unique_ptr<TextureStore> store_;
-};
+using test::Textures;
 INSTANTIATE_TEST_SUITE_P(As, Textures, ::testing::Values(TextureStorage::images, TextureStorage::buffers),
-                         [](const auto& which) {
-                             return std::string(which.param == TextureStorage::images ? "Images" : "Buffers");
-                         });
+                         test::name_of_storage);
 
 float to_linear(float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); }
 
@@ -158,7 +86,7 @@ TEST_P(Textures, KernelsFindSizesTexelsAndFilteredColours) {
         for (int k = 0; k < 40; ++k) {
             const auto spread = [&] { return static_cast<float>(random() % 4096) / 1024 - 1.5f; };
             questions.push_back({texture, static_cast<int>(random() % 14) - 3, static_cast<int>(random() % 14) - 3,
-                                 vec2(spread(), spread())});
+                                 vec2(spread(), spread()), 0});
         }
     }
     store().sync();
@@ -184,7 +112,7 @@ TEST_P(Textures, ReferencesThatNameNothingAreWhite) {
     const TextureRef black = store().push(gray_image(2, 2, 0));
     store().sync();
     const std::vector<TextureQuestion> questions{
-        {{}, 0, 0, vec2(0)}, {{2}, 0, 0, vec2(0)}, {{~0u}, 0, 0, vec2(0)}, {black, 0, 0, vec2(0)}};
+        {{}, 0, 0, vec2(0), 0}, {{2}, 0, 0, vec2(0), 0}, {{~0u}, 0, 0, vec2(0), 0}, {black, 0, 0, vec2(0), 0}};
     for (const bool is_debug : {false, true}) {
         const std::vector<TextureAnswer> answers = answers_to(questions, is_debug);
         for (std::size_t i = 0; i < 3; ++i) {
@@ -196,7 +124,7 @@ TEST_P(Textures, ReferencesThatNameNothingAreWhite) {
         if (!is_debug) store().check_faults();
     }
     const std::string told = test::what_is_thrown_by([&] { store().check_faults(); });
-    EXPECT_NE(told.find("textures: kernels met 6 references that name nothing, the first is number "),
+    EXPECT_NE(told.find("textures: kernels met 10 references that name nothing, the first is number "),
               std::string::npos)
         << told;
 }
@@ -210,7 +138,7 @@ TEST_P(Textures, WrongUseIsRefused) {
     Image broken = gray_image(3, 2, 9);
     broken.width = 4;
     EXPECT_EQ(test::what_is_thrown_by([&] { store().push(broken); }),
-              "textures: push: image 'gray' of 4 x 2 has 24 bytes; it needs 32, and one texel at least");
+              "textures: push: image 'gray' of 4 x 2 has 24 bytes in level 0; it needs 32");
     EXPECT_NE(test::what_is_thrown_by([&] { store().update(texture, gray_image(0, 0, 9)); }), "");
     EXPECT_EQ(test::what_is_thrown_by([&] { store().view(); }), "textures: view: edits are pending; call sync() first");
     EXPECT_EQ(store().size(), 1u);
@@ -242,7 +170,7 @@ TEST_P(Textures, TheSameSizeIsUpdatedInPlaceAndAnotherIsReplaced) {
     EXPECT_EQ(store().revision(), 2u);
     EXPECT_EQ(red_of(first), 40);
     EXPECT_EQ(red_of(second), 20);
-    EXPECT_EQ(answers_to({{first, 0, 0, vec2(0)}}).front().size, uvec2(4, 8));
+    EXPECT_EQ(answers_to({{first, 0, 0, vec2(0), 0}}).front().size, uvec2(4, 8));
 }
 
 TEST_P(Textures, AThousandUpdatesLeakNothing) {
@@ -271,7 +199,7 @@ TEST_P(Textures, WorkInFlightKeepsWhatItWasGiven) {
     for (uint i = 1; i <= 20; ++i) {
         store().update(texture, gray_image(16 + i % 3, 16, static_cast<std::uint8_t>(i)));
         store().sync();
-        answers.push_back(ask(std::vector<TextureQuestion>(500, {texture, 0, 0, vec2(0.5f)})));
+        answers.push_back(ask(std::vector<TextureQuestion>(500, {texture, 0, 0, vec2(0.5f), 0})));
     }
     for (std::size_t i = 0; i < answers.size(); ++i)
         for (const TextureAnswer& answer : download<TextureAnswer>(context(), answers[i], 500))
@@ -286,7 +214,7 @@ TEST_P(Textures, WhatRecordedCommandsUseOutlivesAnUpdate) {
     const CallerCommands late = caller.begin();
     const Buffer answers = [&] {
         Commands commands(context(), "late", late);
-        return record_questions(commands, {{texture, 3, 3, vec2(0.5f)}});
+        return record_questions(commands, {{texture, 3, 3, vec2(0.5f), 0}});
     }();
     store().update(texture, gray_image(9, 9, 60));
     store().sync();

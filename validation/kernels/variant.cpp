@@ -74,11 +74,15 @@ void add_of_path_tracer(Words& words, const KernelDesc& desc) {
     };
     uint chosen = 0;
     for (const SpecializationConstant& constant : desc.constants)
-        if (constant.value == 1) chosen |= 1u << constant.id;
+        if (constant.value == 1 && constant.id < 32) chosen |= 1u << constant.id;
     const bool is_all = std::ranges::all_of(bits, [&](const Bit& bit) { return chosen >> bit.bit & 1; });
     if (is_all) words.add("everything");
     for (const Bit& bit : bits)
         if (!is_all && chosen >> bit.bit & 1) words.add(bit.word);
+    if (std::ranges::any_of(desc.constants, [](const SpecializationConstant& constant) {
+            return constant.id == TEXEL_FORMATS_CONSTANT && constant.value == 1;
+        }))
+        words.add("deep-textures");
     if (chosen >> PT_HAS_AOVS & 1) words.add("aovs");
     if (chosen >> PT_HAS_QUEUES & 1) words.add("queues");
 }

@@ -17,8 +17,7 @@ std::string base64_of(std::span<const std::byte> bytes) {
         uint group = 0;
         for (std::size_t k = 0; k < 3; ++k)
             group = group << 8 | (i + k < bytes.size() ? std::to_integer<uint>(bytes[i + k]) : 0);
-        for (std::size_t k = 0; k < 4; ++k)
-            encoded += i + k > bytes.size() ? '=' : letters[group >> (18 - 6 * k) & 63];
+        for (std::size_t k = 0; k < 4; ++k) encoded += i + k > bytes.size() ? '=' : letters[group >> (18 - 6 * k) & 63];
     }
     return encoded;
 }
@@ -26,10 +25,14 @@ std::string base64_of(std::span<const std::byte> bytes) {
 std::string escaped(const std::string& words) {
     std::string safe;
     for (const char c : words) {
-        if (c == '&') safe += "&amp;";
-        else if (c == '<') safe += "&lt;";
-        else if (c == '"') safe += "&quot;";
-        else safe += c;
+        if (c == '&')
+            safe += "&amp;";
+        else if (c == '<')
+            safe += "&lt;";
+        else if (c == '"')
+            safe += "&quot;";
+        else
+            safe += c;
     }
     return safe;
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr float seen_behind = 0.35f;
 constexpr Rgb miss_color = {150, 150, 150}, front_color = categorical::blue, back_color = categorical::vermilion;
-constexpr std::array instance_colors = {categorical::blue,  categorical::vermilion, categorical::green,
+constexpr std::array instance_colors = {categorical::blue,   categorical::vermilion, categorical::green,
                                         categorical::orange, categorical::purple,    categorical::sky_blue,
                                         categorical::yellow};
 
@@ -89,9 +89,11 @@ class HitColors {
             case HitColor::facing:
                 return {.title = "seen", .scale = {}, .entries = {{front_color, "front"}, {back_color, "back"}}};
             case HitColor::normal:
-                return {.title = "normal", .scale = {}, .entries = {{color_of_normal({1, 0, 0}), "+x"},
-                                                                    {color_of_normal({0, 1, 0}), "+y"},
-                                                                    {color_of_normal({0, 0, 1}), "+z"}}};
+                return {.title = "normal",
+                        .scale = {},
+                        .entries = {{color_of_normal({1, 0, 0}), "+x"},
+                                    {color_of_normal({0, 1, 0}), "+y"},
+                                    {color_of_normal({0, 0, 1}), "+z"}}};
             case HitColor::instance: break;
         }
         Legend legend{.title = "instance", .scale = {}, .entries = {}};
@@ -101,8 +103,8 @@ class HitColors {
         for (const uint index : hit_instances) {
             if (legend.entries.size() == instance_colors.size()) break;  // from there on they repeat
             const std::string& name = scene_.instances[index].name;
-            legend.entries.push_back({instance_colors[index % instance_colors.size()],
-                                      name.empty() ? text("number ", index) : name});
+            legend.entries.push_back(
+                {instance_colors[index % instance_colors.size()], name.empty() ? text("number ", index) : name});
         }
         return legend;
     }

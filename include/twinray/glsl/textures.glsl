@@ -6,6 +6,8 @@
 // Compiled with TWINRAY_BINDLESS for stores whose textures are images (TextureStore::has_images()), and without for
 // those whose textures lie in buffers. With it set 0, binding 0 is the store's array of images.
 //
+// sample_texture() is of the whole image, sample_texture_lod() of its mipmaps, which blurs over 2^lod texels.
+//
 // A reference that names nothing, TextureRef(0) too, is white, so that it changes no factor. Kernels compiled with
 // TWINRAY_DEBUG note those that are not TextureRef(0), for TextureStore::check_faults().
 #ifndef TWINRAY_TEXTURES_GLSL
@@ -14,7 +16,9 @@
 #extension GL_EXT_nonuniform_qualifier : require
 #endif
 #include "twinray/glsl/faults.glsl"
+#include "twinray/glsl/half.h"
 #include "twinray/glsl/textures.h"
+layout(constant_id = TEXEL_FORMATS_CONSTANT) const bool TEXEL_FORMATS = true;
 
 bool has_texture(TextureTable table, TextureRef ref)
 {
@@ -50,6 +54,19 @@ vec4 sample_texture(TextureTable table, TextureRef ref, vec2 uv)
 
 // The same of a texture that was not pushed as sRGB: kernels then lack the decoding, where that is theirs to do.
 vec4 sample_linear_texture(TextureTable table, TextureRef ref, vec2 uv) { return sample_texture(table, ref, uv); }
+
+vec4 sample_texture_lod(TextureTable table, TextureRef ref, vec2 uv, float lod)
+{
+    if (!has_texture(table, ref)) return vec4(1.0);
+    return textureLod(TWINRAY_IMAGE(ref), uv, lod);
+}
+
+// 0 where there is none.
+uint texture_levels(TextureTable table, TextureRef ref)
+{
+    if (!has_texture(table, ref)) return 0u;
+    return uint(textureQueryLevels(TWINRAY_IMAGE(ref)));
+}
 #else
 vec3 texture_srgb_to_linear(vec3 c)
 {
@@ -71,10 +88,51 @@ uint texture_neighbour(int i, uint size, uint mode)
     return min(uint(max(i, 0)), size - 1u);
 }
 
+// Number `index` from the start of a level.
+float texel_number(TextureRecord record, uint format, uint index)
+{
+    if (format == TEXEL_FLOAT32) return uintBitsToFloat(AT(record.texels, index));
+    if (format == TEXEL_UNORM8) return float((AT(record.texels, index >> 2u) >> (8u * (index & 3u))) & 255u) / 255.0;
+    uint bits = (AT(record.texels, index >> 1u) >> (16u * (index & 1u))) & 0xffffu;
+    return format == TEXEL_FLOAT16 ? float_of_half(bits) : float(bits) / 65535.0;
+}
+
 vec4 texture_texel(TextureRecord record, uint x, uint y, bool is_srgb)
 {
-    vec4 color = unpackUnorm4x8(AT(record.texels, y * record.width + x));
+    uint texel = y * record.width + x, format = record.format & 3u, channels = record.format >> 2u;
+    vec4 color = vec4(0.0, 0.0, 0.0, 1.0);
+    if (!TEXEL_FORMATS || (format == TEXEL_UNORM8 && channels == 4u))
+        color = unpackUnorm4x8(AT(record.texels, texel));
+    else
+    {
+        uint first = texel * channels;
+        color.r = texel_number(record, format, first);
+        if (channels > 1u) color.g = texel_number(record, format, first + 1u);
+        if (channels > 2u) color.b = texel_number(record, format, first + 2u);
+        if (channels > 3u) color.a = texel_number(record, format, first + 3u);
+    }
     return is_srgb ? vec4(texture_srgb_to_linear(color.rgb), color.a) : color;
+}
+
+// A level as a texture of its own.
+TextureRecord texture_level(TextureRecord record, uint level)
+{
+    uint channels = record.format >> 2u, format = record.format & 3u;
+    uint bytes = format == TEXEL_UNORM8 ? 1u : (format == TEXEL_FLOAT32 ? 4u : 2u);
+    for (uint i = 0u; i < level; i = i + 1u)
+    {
+        record.texels = Uints(address_after(record.texels.address, (record.width * record.height * channels * bytes + 3u) & ~3u));
+        record.width = max(record.width >> 1u, 1u);
+        record.height = max(record.height >> 1u, 1u);
+    }
+    return record;
+}
+
+// 0 where there is none.
+uint texture_levels(TextureTable table, TextureRef ref)
+{
+    if (!has_texture(table, ref)) return 0u;
+    return AT(table.records, ref.number - 1u).levels;
 }
 
 // (0, 0) where there is none.
@@ -91,20 +149,31 @@ vec4 fetch_texel(TextureTable table, TextureRef ref, ivec2 at)
     if (!has_texture(table, ref)) return vec4(1.0);
     TextureRecord record = AT(table.records, ref.number - 1u);
     ivec2 inside = clamp(at, ivec2(0), ivec2(record.width, record.height) - 1);
-    return texture_texel(record, uint(inside.x), uint(inside.y), record.is_srgb != 0u);
+    return texture_texel(record, uint(inside.x), uint(inside.y), (record.options & 1u) != 0u);
 }
 
 // Bilinear in float32, after decoding; the nearest texel by weights of 0 and 1.
 vec4 texture_filtered(TextureRecord record, vec2 uv, bool is_srgb)
 {
-    vec2 at = vec2(texture_wrapped(uv.x, record.wrap_u) * float(record.width),
-                   texture_wrapped(uv.y, record.wrap_v) * float(record.height)) - 0.5;
+    uint wrap_u = record.wraps & 3u, wrap_v = record.wraps >> 2u;
+    vec2 at = vec2(texture_wrapped(uv.x, wrap_u) * float(record.width), texture_wrapped(uv.y, wrap_v) * float(record.height)) - 0.5;
     vec2 low = floor(at);
-    vec2 weight = record.is_nearest != 0u ? step(0.5, at - low) : at - low;
-    uint x0 = texture_neighbour(int(low.x), record.width, record.wrap_u);
-    uint x1 = texture_neighbour(int(low.x) + 1, record.width, record.wrap_u);
-    uint y0 = texture_neighbour(int(low.y), record.height, record.wrap_v);
-    uint y1 = texture_neighbour(int(low.y) + 1, record.height, record.wrap_v);
+    vec2 weight = (record.options & 2u) != 0u ? step(0.5, at - low) : at - low;
+    uint x0 = texture_neighbour(int(low.x), record.width, wrap_u);
+    uint x1 = texture_neighbour(int(low.x) + 1, record.width, wrap_u);
+    uint y0 = texture_neighbour(int(low.y), record.height, wrap_v);
+    uint y1 = texture_neighbour(int(low.y) + 1, record.height, wrap_v);
+    if (TEXEL_FORMATS)
+    {
+        vec4 sum = vec4(0.0); // a loop, as reading any format is long
+        DONT_UNROLL for (uint corner = 0u; corner < 4u; corner = corner + 1u)
+        {
+            bool is_right = (corner & 1u) != 0u, is_lower = (corner & 2u) != 0u;
+            float share = (is_right ? weight.x : 1.0 - weight.x) * (is_lower ? weight.y : 1.0 - weight.y);
+            if (share != 0.0) sum += share * texture_texel(record, is_right ? x1 : x0, is_lower ? y1 : y0, is_srgb);
+        }
+        return sum;
+    }
     vec4 top = mix(texture_texel(record, x0, y0, is_srgb), texture_texel(record, x1, y0, is_srgb), weight.x);
     vec4 bottom = mix(texture_texel(record, x0, y1, is_srgb), texture_texel(record, x1, y1, is_srgb), weight.x);
     return mix(top, bottom, weight.y);
@@ -114,7 +183,7 @@ vec4 sample_texture(TextureTable table, TextureRef ref, vec2 uv)
 {
     if (!has_texture(table, ref)) return vec4(1.0);
     TextureRecord record = AT(table.records, ref.number - 1u);
-    return texture_filtered(record, uv, record.is_srgb != 0u);
+    return texture_filtered(record, uv, (record.options & 1u) != 0u);
 }
 
 // The same of a texture that was not pushed as sRGB: kernels then lack the decoding.
@@ -122,6 +191,22 @@ vec4 sample_linear_texture(TextureTable table, TextureRef ref, vec2 uv)
 {
     if (!has_texture(table, ref)) return vec4(1.0);
     return texture_filtered(AT(table.records, ref.number - 1u), uv, false);
+}
+
+// Trilinear, or of one level, as the texture was pushed.
+vec4 sample_texture_lod(TextureTable table, TextureRef ref, vec2 uv, float lod)
+{
+    if (!has_texture(table, ref)) return vec4(1.0);
+    TextureRecord record = AT(table.records, ref.number - 1u);
+    bool is_srgb = (record.options & 1u) != 0u;
+    lod = clamp(lod, 0.0, float(record.levels - 1u));
+    if ((record.options & 4u) != 0u) lod = ceil(lod + 0.5) - 1.0;
+    uint level = uint(lod);
+    TextureRecord large = texture_level(record, level);
+    vec4 color = texture_filtered(large, uv, is_srgb);
+    float share = lod - float(level);
+    if (share == 0.0) return color;
+    return mix(color, texture_filtered(texture_level(large, 1u), uv, is_srgb), share);
 }
 #endif
 #endif

@@ -14,15 +14,25 @@ const uint TEXTURE_REPEAT = 0u;
 const uint TEXTURE_CLAMP = 1u;
 const uint TEXTURE_MIRROR = 2u;
 
+// As TexelFormat.
+const uint TEXEL_UNORM8 = 0u;
+const uint TEXEL_UNORM16 = 1u;
+const uint TEXEL_FLOAT16 = 2u;
+const uint TEXEL_FLOAT32 = 3u;
+
+// Of all textures of a store that lie in buffers, as a specialization constant of kernels: whether they have formats or
+// channels other than four of unorm8. True, its default, reads any.
+const uint TEXEL_FORMATS_CONSTANT = 107u;
+
 // A texture in a buffer.
 struct TextureRecord {
-    Uints texels;  // 8-bit RGBA, row 0 at v = 0
+    Uints texels;  // row 0 at v = 0; a level begins at a multiple of 4 bytes
     uint width;
     uint height;
-    uint wrap_u;  // TEXTURE_*
-    uint wrap_v;
-    uint is_srgb;
-    uint is_nearest;  // not filtered
+    uint wraps;    // TEXTURE_* of u, and times 4 of v
+    uint options;  // 1: sRGB; 2: not filtered; 4: not filtered between levels
+    uint format;   // TEXEL_*, and the number of channels times 4
+    uint levels;
 };
 BUFFER_OF(TextureRecord, 8);
 

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// Texels on the host: sizes, widening, mipmaps. Pure functions.
+#pragma once
+
+#include <twinray/scene.h>
+
+namespace twinray {
+
+struct TexelSize {
+    uint width, height;
+};
+// Of a level: half as wide and high as the one before, 1 at least.
+TexelSize level_size(const Texels& texels, std::size_t level);
+std::size_t texel_bytes(const Texels& texels);  // of one texel
+
+// Throws Error naming `object`, the texels and what does not fit: channels, the number of levels, the bytes of one.
+void check(const Texels& texels, const std::string& object);
+// Whether one may lie in the memory of the other.
+bool is_alike(const Texels& a, const Texels& b);
+// With four channels.
+Texels widened(Texels texels);
+// unorm16 of sRGB as unorm16 of linear light, alpha as it is.
+Texels decoded_srgb16(Texels texels);
+
+}  // namespace twinray
