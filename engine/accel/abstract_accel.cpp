@@ -97,6 +97,9 @@ std::vector<Hit> AbstractAccel::closest_hits(std::span<const Ray> rays, const Tr
 std::vector<Hit> AbstractAccel::any_hits(std::span<const Ray> rays, const TraceDesc& desc) {
     return backend_->any_hits(rays, desc);
 }
+std::vector<HitExact> AbstractAccel::exact_hits(std::span<const Ray64> rays, const TraceDesc& desc) {
+    return backend_->exact_hits(rays, desc);
+}
 std::vector<Surface> AbstractAccel::surfaces(std::span<const Ray> rays, std::span<const Hit> hits) const {
     return backend_->surfaces(rays, hits);
 }

@@ -84,6 +84,7 @@ class AccelBackend {
     void trace(Commands& commands, const AccelView& view, const TraceDesc& desc, Pace& pace) const;
     std::vector<Hit> closest_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
     std::vector<Hit> any_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
+    std::vector<HitExact> exact_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
     std::vector<Surface> surfaces(std::span<const Ray> rays, std::span<const Hit> hits) const;
     std::vector<vec4> attributes(std::string_view name, std::span<const Ray> rays, std::span<const Hit> hits,
                                  vec4 missing) const;

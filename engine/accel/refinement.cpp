@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/accel/instance_array.h"
+#include "engine_exact_hits.spv.h"
 #include "engine_refine_gather.spv.h"
 
 namespace twinray {
@@ -11,6 +12,7 @@ namespace twinray {
 Refinement::Refinement(Context& context)
     : context_(context),
       gather_(context, {.name = "engine_refine_gather", .spirv = engine_refine_gather_spirv, .group_size = 256}),
+      exact_hits_(context, {.name = "engine_exact_hits", .spirv = engine_exact_hits_spirv, .compiles_when_used = true}),
       scene_(context, {.name = "refinement", .bytes = sizeof(RefineScene)}) {}
 
 std::optional<Buffer> Refinement::stage(Commands& commands, Ref<InstanceRecord> records, std::size_t count,
@@ -26,6 +28,24 @@ std::optional<Buffer> Refinement::stage(Commands& commands, Ref<InstanceRecord> 
     }
     gather_.dispatch(commands, {records, instances, static_cast<uint>(count), 0}, count);
     return made;
+}
+
+std::vector<HitDouble> Refinement::exact(std::span<const Ray64> rays, std::span<const Hit> hits) const {
+    if (hits.empty()) return {};
+    const Buffer ray_buffer(context_, {.name = "rays", .bytes = rays.size_bytes()});
+    const Buffer hit_buffer(context_, {.name = "hits", .bytes = hits.size_bytes()});
+    const Buffer results(context_, {.name = "exact hits", .bytes = hits.size() * sizeof(HitDouble)});
+    Commands commands(context_, "exact hits");
+    {
+        const auto pass = commands.pass("upload hits");
+        commands.upload(ray_buffer, rays);
+        commands.upload(hit_buffer, hits);
+    }
+    const auto count = static_cast<uint>(hits.size());
+    exact_hits_.dispatch(
+        commands, {scene(), ray_buffer.ref<Ray64>(), hit_buffer.ref<Hit>(), results.ref<HitDouble>(), count, 0}, count);
+    commands.submit();
+    return download<HitDouble>(context_, results, hits.size());
 }
 
 void Refinement::commit(std::optional<Buffer>&& instances) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "engine/accel/world_bound.h"
 #include "engine/core/kernel.h"
@@ -10,7 +12,7 @@
 namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
 #include "shaders/shared/trace.h"
-#include "shaders/shared/refine.h"
+#include "shaders/shared/exact_hit.h"
 #include "twinray/glsl/cpp_end.h"
 
 static_assert(sizeof(RefineInstance) == 176 && sizeof(RefineScene) == 16);
@@ -25,12 +27,16 @@ class Refinement {
                                 Ref<WorldBound> bound) const;
     void commit(std::optional<Buffer>&& instances);
 
+    // Waits. What float64 says of hits of the last sync; of misses nothing is written.
+    std::vector<HitDouble> exact(std::span<const Ray64> rays, std::span<const Hit> hits) const;
+
     Ref<RefineScene> scene() const { return scene_.ref<RefineScene>(); }
     std::uint64_t bytes() const { return scene_.bytes() + instances_.bytes(); }
 
   private:
     Context& context_;
     Kernel<RefineGatherArgs> gather_;
+    Kernel<ExactHitsArgs> exact_hits_;
     Buffer scene_, instances_;
 };
 

@@ -40,6 +40,25 @@ std::size_t AccelBackend::index_in_handle(const Hit& hit) const {
     return hit.instance_index - owner_of(hit, "index_in_handle").first_instance;
 }
 
+std::vector<HitExact> AccelBackend::exact_hits(std::span<const Ray64> rays, const TraceDesc& desc) {
+    if (!refinement_)
+        fail(name_, ": exact_hits: made for level ", name_of(options_.level), "; it takes refined or more");
+    std::vector<Ray> rounded;
+    for (const Ray64& ray : rays)
+        rounded.push_back(
+            {vec3(ray.origin), static_cast<float>(ray.t_min), vec3(ray.direction), static_cast<float>(ray.t_max)});
+    TraceDesc at_level = desc;
+    at_level.level = options_.level;
+    const std::vector<Hit> hits = closest_hits(rounded, at_level);
+    const std::vector<HitDouble> exact = refinement_->exact(rays, hits);
+    std::vector<HitExact> found(hits.size());
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        if (const Hit& hit = hits[i]; hit.hit)
+            found[i] = {1,          hit.primitive_index, hit.custom_index, hit.instance_index, handle_of(hit),
+                        exact[i].t, exact[i].u,          exact[i].v};
+    return found;
+}
+
 void AccelBackend::check_keeps_surfaces(const char* action) const {
     if (!surfaces_) fail(name_, ": ", action, ": made without AccelOptions::keeps_surfaces");
 }

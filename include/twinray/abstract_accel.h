@@ -146,6 +146,9 @@ class AbstractAccel {
     // and occlusion_only.
     std::vector<Hit> closest_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
     std::vector<Hit> any_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
+    // Closest hits at the accelerator's own level, which must be refined or certified; then t, u and v of what each met
+    // in float64, of the ray in float64. What is met is found with the ray rounded to float32.
+    std::vector<HitExact> exact_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
     // What lies where each ray met what its hit names, as twinray/glsl/surface.glsl finds it; of misses and boxes
     // all is 0. Waits, for what sync(Commands&) has recorded too, which must be submitted. Wants
     // AccelOptions::keeps_surfaces. Throws Error for a hit that names nothing, and if edits are pending.

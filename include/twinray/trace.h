@@ -14,6 +14,7 @@
 namespace twinray {
 
 #include "twinray/glsl/cpp_begin.h"
+#include "twinray/glsl/ray64.h"
 #include "twinray/glsl/surface.h"
 #include "twinray/glsl/cpp_end.h"
 
@@ -167,6 +168,14 @@ struct AccelHandle {
     std::uint64_t id = 0;  // 0 = invalid
 
     bool operator==(const AccelHandle&) const = default;
+};
+
+// A hit in float64.
+struct HitExact {
+    uint hit = 0;  // 0: a miss, and t is -1
+    uint primitive_index = 0, custom_index = 0, instance_index = 0;
+    AccelHandle handle;  // of what was pushed: users' ids of surfaces or volumes go by it
+    double t = -1, u = 0, v = 0;
 };
 
 // An instance as the accelerator holds it.

@@ -9,3 +9,4 @@
 #include <twinray/tlas.h>
 #include <twinray/trace.h>
 #include <twinray/validation.h>
+#include <twinray/world.h>

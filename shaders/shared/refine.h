@@ -89,6 +89,40 @@ FUNC dvec3 nearest_of(dvec3 a, dvec3 b, dvec3 c)
     return nearest;
 }
 
+// Where a line meets the plane of a triangle.
+struct PlaneHit
+{
+    double det; // 0: the plane contains the line, and the others are no numbers
+    double t;
+    double u;
+    double v;
+};
+
+FUNC PlaneHit meet_plane(dvec3 origin, dvec3 direction, GivenMesh mesh, uint primitive)
+{
+    PlaneHit met;
+    dvec3 a = vertex_from(origin, mesh, 3u * primitive);
+    dvec3 b = vertex_from(origin, mesh, 3u * primitive + 1u);
+    dvec3 c = vertex_from(origin, mesh, 3u * primitive + 2u);
+    dvec3 e1 = b - a;
+    dvec3 e2 = c - a;
+    dvec3 normal = cross_product(e1, e2);
+    met.det = product_sum(normal, direction);
+    PRECISE double way = product_sum(normal, nearest_of(a, b, c)) / met.det;
+    // The point from a, and its weights in the plane: w = u e1 + v e2, so (w x e2) = u n and (e1 x w) = v n.
+    PRECISE double wx = direction.x * way - a.x;
+    PRECISE double wy = direction.y * way - a.y;
+    PRECISE double wz = direction.z * way - a.z;
+    dvec3 w = dvec3(wx, wy, wz);
+    double square = product_sum(normal, normal);
+    PRECISE double weight_u = product_sum(cross_product(w, e2), normal) / square;
+    PRECISE double weight_v = product_sum(cross_product(e1, w), normal) / square;
+    met.t = way;
+    met.u = weight_u;
+    met.v = weight_v;
+    return met;
+}
+
 // A hit of advanced(ray) as one of `ray`: t, u and v are what float64 gives, rounded once.
 FUNC Hit refined(Hit hit, Ray ray, double advance, GivenMesh mesh)
 {
@@ -97,26 +131,11 @@ FUNC Hit refined(Hit hit, Ray ray, double advance, GivenMesh mesh)
     if (is_null(mesh.indices)) return hit;
     dvec3 origin = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
     dvec3 direction = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
-    dvec3 a = vertex_from(origin, mesh, 3u * hit.primitive_index);
-    dvec3 b = vertex_from(origin, mesh, 3u * hit.primitive_index + 1u);
-    dvec3 c = vertex_from(origin, mesh, 3u * hit.primitive_index + 2u);
-    dvec3 e1 = b - a;
-    dvec3 e2 = c - a;
-    dvec3 normal = cross_product(e1, e2);
-    double det = product_sum(normal, direction);
-    if (det == double(0.0f)) return hit; // the plane contains the ray: float32 has the last word
-    PRECISE double t = product_sum(normal, nearest_of(a, b, c)) / det;
-    // The point from a, and its weights in the plane: w = u e1 + v e2, so (w x e2) = u n and (e1 x w) = v n.
-    PRECISE double wx = direction.x * t - a.x;
-    PRECISE double wy = direction.y * t - a.y;
-    PRECISE double wz = direction.z * t - a.z;
-    dvec3 w = dvec3(wx, wy, wz);
-    double square = product_sum(normal, normal);
-    PRECISE double u = product_sum(cross_product(w, e2), normal) / square;
-    PRECISE double v = product_sum(cross_product(e1, w), normal) / square;
-    hit.t = rounded_within(t, ray);
-    hit.u = float(u);
-    hit.v = float(v);
+    PlaneHit met = meet_plane(origin, direction, mesh, hit.primitive_index);
+    if (met.det == double(0.0f)) return hit; // float32 has the last word
+    hit.t = rounded_within(met.t, ray);
+    hit.u = float(met.u);
+    hit.v = float(met.v);
     return hit;
 }
 #endif

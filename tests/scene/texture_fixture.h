@@ -46,8 +46,8 @@ class Textures : public VulkanTest, public ::testing::WithParamInterface<Texture
         const std::span<const uint> modules[] = {test_texture_buffers_spirv, test_texture_buffers_debug_spirv,
                                                  test_texture_images_spirv, test_texture_images_debug_spirv};
         const Kernel<TextureTestArgs> kernel(context(), {.name = "test_texture",
-                                                               .spirv = modules[2 * store().has_images() + is_debug],
-                                                               .has_images = store().has_images()});
+                                                         .spirv = modules[2 * store().has_images() + is_debug],
+                                                         .has_images = store().has_images()});
         Buffer answers(context(), {.name = "answers", .bytes = questions.size() * sizeof(TextureAnswer)});
         Buffer asked(context(), {.name = "questions", .bytes = questions.size() * sizeof(TextureQuestion)});
         {

@@ -46,17 +46,20 @@ Sample random_sample(TexelFormat format, uint channels, uint width, uint height,
                 const auto number = static_cast<std::uint16_t>(random() % 0x7800 | (random() & 1u) << 15);
                 add(number);
                 const int exponent = number >> 10 & 31;
-                const double value = std::ldexp((exponent ? 1024.0 : 0.0) + (number & 1023), std::max(exponent, 1) - 25);
+                const double value =
+                    std::ldexp((exponent ? 1024.0 : 0.0) + (number & 1023), std::max(exponent, 1) - 25);
                 color[channel] = static_cast<float>(number & 0x8000 ? -value : value);
             } else {
-                const float number = std::ldexp(static_cast<float>(random()) / 1e9f - 2, static_cast<int>(random() % 60) - 30);
+                const float number =
+                    std::ldexp(static_cast<float>(random()) / 1e9f - 2, static_cast<int>(random() % 60) - 30);
                 add(number);
                 color[channel] = number;
             }
         }
         sample.colors.push_back(color);
     }
-    sample.texels = {text("format ", int(format), " of ", channels), width, height, channels, format, {std::move(bytes)}};
+    sample.texels = {
+        text("format ", int(format), " of ", channels), width, height, channels, format, {std::move(bytes)}};
     return sample;
 }
 
@@ -68,8 +71,7 @@ TEST_P(TextureFormats, EachTexelIsItsNumbers) {
             store().sync();
             std::vector<TextureQuestion> questions;
             for (int y = 0; y < 3; ++y)
-                for (int x = 0; x < 5; ++x)
-                    questions.push_back({texture, x, y, (vec2(x, y) + 0.5f) / vec2(5, 3), 0});
+                for (int x = 0; x < 5; ++x) questions.push_back({texture, x, y, (vec2(x, y) + 0.5f) / vec2(5, 3), 0});
             const std::vector<TextureAnswer> answers = answers_to(questions);
             for (std::size_t i = 0; i < answers.size(); ++i) {
                 EXPECT_EQ(answers[i].levels, 1u);
@@ -87,11 +89,13 @@ TEST_P(TextureFormats, EachTexelIsItsNumbers) {
 
 TEST_P(TextureFormats, FloatsBeyondOneAreFilteredAsTheyAre) {
     const float ramp[] = {-1000, 1000, 3000, 5000};
-    const TextureRef texture = store().push(
-        Texels::of("ramp", 4, 1, 1, TexelFormat::float32, std::span<const float>(ramp)), {.wrap_u = Wrap::clamp_to_edge});
+    const TextureRef texture =
+        store().push(Texels::of("ramp", 4, 1, 1, TexelFormat::float32, std::span<const float>(ramp)),
+                     {.wrap_u = Wrap::clamp_to_edge});
     store().sync();
     std::vector<TextureQuestion> questions;
-    for (int i = 0; i <= 100; ++i) questions.push_back({texture, 0, 0, vec2(0.125f + 0.0075f * static_cast<float>(i), 0.5f), 0});
+    for (int i = 0; i <= 100; ++i)
+        questions.push_back({texture, 0, 0, vec2(0.125f + 0.0075f * static_cast<float>(i), 0.5f), 0});
     const std::vector<TextureAnswer> answers = answers_to(questions);
     for (std::size_t i = 0; i < answers.size(); ++i)
         EXPECT_NEAR(answers[i].color.x, -1000 + 60 * static_cast<float>(i), 2000.0f / 256 + 0.01f) << i;
@@ -125,9 +129,8 @@ TEST_P(TextureFormats, MipmapsBlurAndAreBlended) {
 
 TEST_P(TextureFormats, SixteenBitsOfSrgbAreLinearLight) {
     const std::uint16_t gray[] = {0, 1000, 32768, 65535};
-    const TextureRef texture =
-        store().push(Texels::of("gray", 4, 1, 1, TexelFormat::unorm16, std::span<const std::uint16_t>(gray)),
-                     {.is_srgb = true});
+    const TextureRef texture = store().push(
+        Texels::of("gray", 4, 1, 1, TexelFormat::unorm16, std::span<const std::uint16_t>(gray)), {.is_srgb = true});
     const TextureRef narrow =
         store().push(Texels::of("gray8", 1, 1, 2, TexelFormat::unorm8, std::span<const std::uint8_t>({128, 128})),
                      {.is_srgb = true});
@@ -152,7 +155,8 @@ TEST_P(TextureFormats, AnUpdateMayChangeTheFormat) {
 
 TEST_P(TextureFormats, WhatCannotBeIsRefused) {
     const Sample sample = random_sample(TexelFormat::float32, 2, 4, 4, 1);
-    const auto refused = [&](const char* why, const TextureOptions& options, const std::function<void(Texels&)>& change) {
+    const auto refused = [&](const char* why, const TextureOptions& options,
+                             const std::function<void(Texels&)>& change) {
         Texels texels = sample.texels;
         change(texels);
         expect_contains(error_of([&] { store().push(texels, options); }), why);

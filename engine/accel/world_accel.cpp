@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include <twinray/world.h>
+
+#include <cmath>
+#include <utility>
+
+#include "engine/core/error.h"
+#include "twinray/glsl/cpp.h"
+
+namespace twinray {
+namespace {
+
+void check_finite(const std::string& name, const char* what, const dvec3& point) {
+    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z))
+        fail(name, ": ", what, " (", point.x, ", ", point.y, ", ", point.z, ") must be finite");
+}
+
+// The map of vertices about `center` to the world as it is seen from `origin`.
+Transform about(const Transform64& transform, const dvec3& center, const dvec3& origin) {
+    Transform local;
+    for (int row = 0; row < 3; ++row) {
+        const dvec4& r = transform.rows[static_cast<std::size_t>(row)];
+        const double offset = dot(dvec3(r), center) + (r.w - origin[row]);
+        local.rows[static_cast<std::size_t>(row)] = vec4(dvec4(r.x, r.y, r.z, offset));
+    }
+    return local;
+}
+
+// The middle of the finite vertices.
+dvec3 center_of(std::span<const dvec3> positions) {
+    dvec3 lo(INFINITY), hi(-INFINITY);
+    for (const dvec3& p : positions) {
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;
+        lo = min(lo, p);
+        hi = max(hi, p);
+    }
+    return lo.x <= hi.x ? lo + (hi - lo) * 0.5 : dvec3(0);
+}
+
+}  // namespace
+
+Transform64::Transform64(const Transform& transform) {
+    for (std::size_t row = 0; row < 3; ++row) rows[row] = dvec4(transform.rows[row]);
+}
+
+Transform64 Transform64::translation(dvec3 offset) {
+    Transform64 transform;
+    for (int row = 0; row < 3; ++row) transform.rows[static_cast<std::size_t>(row)].w = offset[row];
+    return transform;
+}
+
+WorldAccel::WorldAccel(AbstractAccel& accel, dvec3 origin) : accel_(accel), origin_(origin) {
+    check_finite(accel.name(), "origin", origin);
+}
+
+std::vector<Transform> WorldAccel::local(const Placed& placed) const {
+    std::vector<Transform> transforms;
+    for (const Transform64& transform : placed.transforms)
+        transforms.push_back(about(transform, placed.center, origin_));
+    return transforms;
+}
+
+template <class Mesh>
+AccelHandle WorldAccel::place(const Mesh& mesh, Placed&& placed, std::span<const InstanceOptions> options) {
+    const AccelHandle handle = accel_.push(mesh, local(placed), options);
+    placed_.emplace(handle.id, std::move(placed));
+    return handle;
+}
+
+AccelHandle WorldAccel::push(const MeshView& mesh, const Transform64& transform, const InstanceOptions& options) {
+    return push(mesh, std::span(&transform, 1), std::span(&options, 1));
+}
+AccelHandle WorldAccel::push(const MeshView& mesh, std::span<const Transform64> transforms,
+                             std::span<const InstanceOptions> options) {
+    return place(mesh, {{}, {transforms.begin(), transforms.end()}}, options);
+}
+AccelHandle WorldAccel::push(const DeviceMesh& mesh, std::span<const Transform64> transforms,
+                             std::span<const InstanceOptions> options) {
+    return place(mesh, {{}, {transforms.begin(), transforms.end()}}, options);
+}
+AccelHandle WorldAccel::push(const MeshView64& mesh, const Transform64& transform, const InstanceOptions& options) {
+    const dvec3 center = center_of(mesh.positions);
+    std::vector<vec3> positions;
+    for (const dvec3& p : mesh.positions) positions.push_back(vec3(p - center));
+    return place(MeshView(mesh.name, positions, mesh.triangles), {center, {transform}}, std::span(&options, 1));
+}
+
+bool WorldAccel::erase(AccelHandle handle) {
+    placed_.erase(handle.id);
+    return accel_.erase(handle);
+}
+
+void WorldAccel::update_transforms(AccelHandle handle, std::span<const Transform64> transforms) {
+    const auto found = placed_.find(handle.id);
+    if (found == placed_.end())
+        fail(accel_.name(), ": update_transforms: handle ", handle.id, " was not pushed in world coordinates");
+    Placed moved{found->second.center, {transforms.begin(), transforms.end()}};
+    accel_.update_transforms(handle, local(moved));
+    found->second = std::move(moved);
+}
+
+void WorldAccel::set_origin(dvec3 origin) {
+    check_finite(accel_.name(), "origin", origin);
+    origin_ = origin;
+    for (const auto& [id, placed] : placed_) accel_.update_transforms({id}, local(placed));
+}
+
+Ray WorldAccel::local(const Ray64& ray) const {
+    return {local(ray.origin), static_cast<float>(ray.t_min), vec3(ray.direction), static_cast<float>(ray.t_max)};
+}
+
+std::vector<Ray> WorldAccel::local(std::span<const Ray64> rays) const {
+    std::vector<Ray> all;
+    for (const Ray64& ray : rays) all.push_back(local(ray));
+    return all;
+}
+
+std::vector<Hit> WorldAccel::closest_hits(std::span<const Ray64> rays, const TraceDesc& desc) {
+    return accel_.closest_hits(local(rays), desc);
+}
+std::vector<Hit> WorldAccel::any_hits(std::span<const Ray64> rays, const TraceDesc& desc) {
+    return accel_.any_hits(local(rays), desc);
+}
+
+std::vector<HitExact> WorldAccel::exact_hits(std::span<const Ray64> rays, const TraceDesc& desc) {
+    std::vector<Ray64> about_origin(rays.begin(), rays.end());
+    for (Ray64& ray : about_origin) ray.origin = ray.origin - origin_;
+    return accel_.exact_hits(about_origin, desc);
+}
+
+}  // namespace twinray

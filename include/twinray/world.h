@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// World coordinates in float64: scenes that are far larger than float32 resolves, as maps in metres.
+//
+//     WorldAccel world(accel, dvec3(500000, 5400000, 100));   // what float32 counts from
+//     AccelHandle house = world.push(mesh, Transform64::translation({500012.13, 5400003.27, 101.5}));
+//     std::vector<Hit> hits = world.closest_hits(rays);       // of Ray64
+//     world.set_origin(camera);                               // views stay valid: only the top level is refitted
+#pragma once
+
+#include <unordered_map>
+
+#include <twinray/abstract_accel.h>
+
+namespace twinray {
+
+// As Transform, in float64.
+struct Transform64 {
+    std::array<dvec4, 3> rows = {dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0)};
+
+    Transform64() = default;
+    Transform64(const Transform& transform);
+    static Transform64 translation(dvec3 offset);
+};
+
+// A mesh whose vertices are in float64, not owned: its triangles keep their shape wherever they lie, as it is built about
+// a point of its own.
+struct MeshView64 {
+    std::string_view name;
+    std::span<const dvec3> positions;
+    std::span<const uvec3> triangles;
+};
+
+// An accelerator whose instances stand in float64. It counts from an origin: what it traces in float32 is relative to
+// that, so that t of rays that begin near it is right to 2 units in the last place of how large the scene around it is.
+// What is pushed through it is moved, updated and erased through it, and counted in coordinates of the world; all else of
+// the accelerator (view(), trace(), surfaces()) is in coordinates about the origin.
+class WorldAccel {
+  public:
+    // The accelerator must outlive it. Throws Error for an origin that is not finite.
+    explicit WorldAccel(AbstractAccel& accel, dvec3 origin = {});
+
+    AccelHandle push(const MeshView& mesh, const Transform64& transform = {}, const InstanceOptions& options = {});
+    AccelHandle push(const MeshView& mesh, std::span<const Transform64> transforms,
+                     std::span<const InstanceOptions> options = {});
+    AccelHandle push(const MeshView64& mesh, const Transform64& transform = {}, const InstanceOptions& options = {});
+    AccelHandle push(const DeviceMesh& mesh, std::span<const Transform64> transforms,
+                     std::span<const InstanceOptions> options = {});
+    bool erase(AccelHandle handle);
+    void update_transforms(AccelHandle handle, std::span<const Transform64> transforms);
+
+    // Moves every instance to where it is seen from there; the next sync refits the top level and no geometry.
+    void set_origin(dvec3 origin);
+    dvec3 origin() const { return origin_; }
+
+    // From the world to coordinates about the origin, rounded once, and back.
+    vec3 local(dvec3 position) const { return vec3(position - origin_); }
+    Ray local(const Ray64& ray) const;
+    dvec3 world(dvec3 local) const { return local + origin_; }
+    std::vector<Hit> closest_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
+    std::vector<Hit> any_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
+    // As AbstractAccel::exact_hits.
+    std::vector<HitExact> exact_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
+
+    AbstractAccel& accel() { return accel_; }
+
+  private:
+    struct Placed {
+        dvec3 center;  // what the mesh's vertices count from
+        std::vector<Transform64> transforms;
+    };
+    std::vector<Transform> local(const Placed& placed) const;
+    template <class Mesh>
+    AccelHandle place(const Mesh& mesh, Placed&& placed, std::span<const InstanceOptions> options);
+    std::vector<Ray> local(std::span<const Ray64> rays) const;
+
+    AbstractAccel& accel_;
+    dvec3 origin_;
+    std::unordered_map<std::uint64_t, Placed> placed_;
+};
+
+}  // namespace twinray

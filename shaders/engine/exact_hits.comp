@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// t, u and v of hits in float64, of rays in float64.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "twinray/glsl/common.glsl"
+#include "shaders/shared/exact_hit.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { ExactHitsArgs args; };
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.count) return;
+    Hit hit = AT(args.hits, i);
+    if (hit.hit == 0u) return;
+    AT(args.results, i) = exact_hit(AT(args.scene, 0).instances, AT(args.rays, i), hit);
+}
