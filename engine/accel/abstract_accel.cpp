@@ -55,6 +55,12 @@ void AbstractAccel::update_transforms(AccelHandle handle, Ref<Transform> transfo
 void AbstractAccel::update_options(AccelHandle handle, std::size_t index, const InstanceOptions& options) {
     backend_->update_options(handle, index, options);
 }
+std::size_t AbstractAccel::append_instances(AccelHandle handle, std::span<const Transform> transforms,
+                                            std::span<const InstanceOptions> options) {
+    return backend_->append_instances(handle, transforms, options);
+}
+void AbstractAccel::erase_instance(AccelHandle handle, std::size_t index) { backend_->erase_instance(handle, index); }
+Bounds AbstractAccel::object_bound(AccelHandle handle) const { return backend_->object_bound(handle); }
 InstanceRange AbstractAccel::instance_buffer(AccelHandle handle) const { return backend_->instance_buffer(handle); }
 void AbstractAccel::mark_transforms_dirty(AccelHandle handle) { backend_->mark_transforms_dirty(handle); }
 bool AbstractAccel::is_valid(AccelHandle handle) const { return backend_->is_valid(handle); }

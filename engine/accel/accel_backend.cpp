@@ -85,9 +85,7 @@ Geometry AccelBackend::geometry_of(const DeviceMesh& mesh, const char* action) c
 
 AccelHandle AccelBackend::place(Geometry&& geometry, SurfaceSlice&& surface, std::span<const Transform> transforms,
                                 std::span<const InstanceOptions> options) {
-    if (!options.empty() && options.size() != transforms.size())
-        fail(name_, ": mesh '", geometry.name, "': ", options.size(), " instance options for ", transforms.size(),
-             " transforms; the lengths must match");
+    check_option_count(geometry.name, transforms.size(), options.size());
     PushedGeometry pushed{std::move(geometry),
                           Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}),
                           nullptr,
@@ -104,6 +102,12 @@ AccelHandle AccelBackend::place(Geometry&& geometry, SurfaceSlice&& surface, std
     pushed_.emplace(handle.id, std::move(pushed));
     mark(Dirty::structure);
     return handle;
+}
+
+void AccelBackend::check_option_count(const std::string& mesh, std::size_t transforms, std::size_t options) const {
+    if (options != 0 && options != transforms)
+        fail(name_, ": mesh '", mesh, "': ", options, " instance options for ", transforms,
+             " transforms; the lengths must match");
 }
 
 AccelHandle AccelBackend::push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
@@ -277,6 +281,15 @@ std::size_t AccelBackend::n_instances(AccelHandle handle) const {
 std::size_t AccelBackend::n_primitives(AccelHandle handle) const {
     const auto found = pushed_.find(handle.id);
     return found == pushed_.end() ? 0 : found->second.geometry.primitive_count();
+}
+
+Bounds AccelBackend::object_bound(AccelHandle handle) const {
+    const PushedGeometry& pushed = live(handle, "object_bound");
+    check_synced("object_bound");
+    const GeometryBox box = download<GeometryBox>(context_, pushed.block, 1).front();
+    const float unit = pushed.geometry.scale;
+    const Bounds bounds{box.lo * unit, box.hi * unit};
+    return bounds.is_empty() ? Bounds{} : bounds;
 }
 
 std::vector<AccelHandle> AccelBackend::handles() const {

@@ -54,6 +54,9 @@ class AccelBackend {
     void update_transform_at(AccelHandle handle, std::size_t index, const Transform& transform);
     void update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count);
     void update_options(AccelHandle handle, std::size_t index, const InstanceOptions& options);
+    std::size_t append_instances(AccelHandle handle, std::span<const Transform> transforms,
+                                 std::span<const InstanceOptions> options = {});
+    void erase_instance(AccelHandle handle, std::size_t index);
     InstanceRange instance_buffer(AccelHandle handle) const;
     void mark_transforms_dirty(AccelHandle handle);
     bool is_valid(AccelHandle handle) const { return pushed_.contains(handle.id); }
@@ -71,6 +74,7 @@ class AccelBackend {
     void set_scratch_budget(std::uint64_t bytes) { scratch_budget_ = bytes; }
     AccelView view() const;
     std::uint64_t revision() const { return revision_; }
+    Bounds object_bound(AccelHandle handle) const;
     Bounds world_bound() const;
     std::optional<Bounds> world_bound_if_ready() const;
     Ref<WorldBound> world_bound_on_device() const { return bound_.result(); }
@@ -248,6 +252,8 @@ class AccelBackend {
     template <class Mesh>
     SurfaceSlice surface_of(const Mesh& mesh);
     Geometry geometry_of(const DeviceMesh& mesh, const char* action) const;
+    void check_option_count(const std::string& mesh, std::size_t transforms, std::size_t options) const;
+    std::vector<InstanceRecord> newest_records(const InstanceSlice& slice) const;
     InstanceRecord checked_record(const PushedGeometry& pushed, std::size_t index, const Transform& transform,
                                   const InstanceOptions& options) const;
     PushedGeometry& live(AccelHandle handle, const char* action);

@@ -50,9 +50,14 @@ void InstanceSlice::edit_all(std::vector<InstanceRecord>&& all) {
 
 void InstanceSlice::replace_transforms(Ref<Transform> transforms) {
     incoming = transforms;
+    incoming_count = records.size();
     device_wrote = true;
     edited.clear();
     all_edited = false;
+}
+
+void InstanceSlice::append(std::span<const InstanceRecord> more) {
+    records.insert(records.end(), more.begin(), more.end());
 }
 
 InstanceArray::InstanceArray(Context& context)
@@ -93,7 +98,7 @@ void InstanceArray::record_moves(Commands& commands, const Staged& staged,
     for (std::size_t i = 0; i < slices.size(); ++i)
         if (lies_on_device(*slices[i]))
             commands.copy(buffer_, *slices[i]->first * stride, *staged.replacement, staged.firsts[i] * stride,
-                          slices[i]->records.size() * stride);
+                          slices[i]->placed * stride);
 }
 
 void InstanceArray::record_uploads(Commands& commands, const Staged& staged,
@@ -101,8 +106,9 @@ void InstanceArray::record_uploads(Commands& commands, const Staged& staged,
     std::vector<Commands::Region> regions;
     for (std::size_t i = 0; i < slices.size(); ++i) {
         const InstanceSlice& slice = *slices[i];
-        if (lies_on_device(slice) || (!staged.replacement && slice.first == staged.firsts[i])) continue;
-        regions.push_back({staged.firsts[i] * stride, bytes_of(slice, 0, slice.records.size())});
+        const bool is_there = lies_on_device(slice) || (!staged.replacement && slice.first == staged.firsts[i]);
+        const std::size_t first = is_there ? std::min(slice.placed, slice.records.size()) : 0;
+        regions.push_back({(staged.firsts[i] + first) * stride, bytes_of(slice, first, slice.records.size())});
     }
     if (regions.empty()) return;
     const auto pass = commands.pass("instance upload");
@@ -114,7 +120,7 @@ void InstanceArray::record_incoming(Commands& commands, const Staged& staged,
     for (std::size_t i = 0; i < slices.size(); ++i) {
         const InstanceSlice& slice = *slices[i];
         if (!slice.incoming.address) continue;
-        const auto count = static_cast<uint>(slice.records.size());
+        const auto count = static_cast<uint>(slice.incoming_count);
         copy_transforms_.dispatch(
             commands, {{staged.records.address + staged.firsts[i] * stride}, {slice.incoming.address}, count, 0},
             count);
@@ -143,6 +149,7 @@ void InstanceArray::commit(Staged&& staged, std::span<InstanceSlice* const> slic
     if (staged.replacement) buffer_ = std::move(*staged.replacement);
     for (std::size_t i = 0; i < slices.size(); ++i) {
         slices[i]->first = staged.firsts[i];
+        slices[i]->placed = slices[i]->records.size();
         slices[i]->incoming = {};
         slices[i]->edited.clear();
         slices[i]->all_edited = false;

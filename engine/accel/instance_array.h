@@ -23,8 +23,10 @@ std::size_t capacity_for(std::size_t count, std::size_t capacity);
 struct InstanceSlice {
     std::vector<InstanceRecord> records;  // as the host last wrote them
     std::optional<std::size_t> first;     // where they start in the device's array; none: not there yet
+    std::size_t placed = 0;               // how many of them are there; those that were appended follow
     bool device_wrote = false;            // transforms on the device may be newer than `records`
     Ref<Transform> incoming;              // device memory that the next sync copies the transforms from; 0 = none
+    std::size_t incoming_count = 0;
     // Records that the host changed since the last sync and after `incoming` was set. Not a range: what lies between
     // two of them may be newer on the device.
     std::set<std::size_t> edited;
@@ -36,6 +38,7 @@ struct InstanceSlice {
     void edit_options(std::size_t index, const InstanceRecord& record);
     void edit_all(std::vector<InstanceRecord>&& all);
     void replace_transforms(Ref<Transform> transforms);
+    void append(std::span<const InstanceRecord> more);
 };
 
 // The records of all instances on the device: one array in push order, that keeps what kernels wrote into it.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Transforms and states of instances: what AbstractAccel lets a host change and read of them.
+#include <algorithm>
+
 #include "engine/accel/accel_backend.h"
 #include "engine/core/error.h"
 
@@ -69,6 +71,34 @@ void AccelBackend::update_options(AccelHandle handle, std::size_t index, const I
     mark(Dirty::structure);
 }
 
+std::size_t AccelBackend::append_instances(AccelHandle handle, std::span<const Transform> transforms,
+                                           std::span<const InstanceOptions> options) {
+    PushedGeometry& pushed = live(handle, "append_instances");
+    check_option_count(pushed.geometry.name, transforms.size(), options.size());
+    const std::size_t before = pushed.instances.records.size();
+    std::vector<InstanceRecord> more;
+    for (std::size_t i = 0; i < transforms.size(); ++i)
+        more.push_back(
+            checked_record(pushed, before + i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
+    pushed.instances.append(more);
+    mark(Dirty::structure);
+    return before;
+}
+
+void AccelBackend::erase_instance(AccelHandle handle, std::size_t index) {
+    PushedGeometry& pushed = live(handle, "erase_instance");
+    check_index(handle, pushed, index, "erase_instance");
+    if (pushed.instances.incoming.address)
+        fail(name_, ": erase_instance: handle ", handle.id,
+             " waits for transforms from device memory; call sync() first");
+    std::vector<InstanceRecord> records = newest_records(pushed.instances);
+    records.erase(records.begin() + static_cast<std::ptrdiff_t>(index));
+    pushed.instances.edit_all(std::move(records));
+    pushed.instances.options_edited.clear();
+    pushed.instances.first.reset();  // what the device has is of other instances
+    mark(Dirty::structure);
+}
+
 InstanceRange AccelBackend::instance_buffer(AccelHandle handle) const {
     const PushedGeometry& pushed = live(handle, "instance_buffer");
     if (dirty_ == Dirty::structure || !pushed.instances.first)
@@ -93,19 +123,25 @@ InstanceState AccelBackend::get_instance(AccelHandle handle, std::size_t index) 
 }
 
 std::vector<InstanceState> AccelBackend::get_instances(AccelHandle handle) const {
-    const InstanceSlice& slice = live(handle, "get_instances").instances;
+    std::vector<InstanceState> states;
+    for (const InstanceRecord& record : newest_records(live(handle, "get_instances").instances))
+        states.push_back(state_of(record));
+    return states;
+}
+
+// With what the device knows better, for which it waits.
+std::vector<InstanceRecord> AccelBackend::newest_records(const InstanceSlice& slice) const {
     std::vector<InstanceRecord> records = slice.records;
     if (slice.device_wrote && slice.first)
-        records = download<InstanceRecord>(context_, instances_.buffer(), records.size(),
-                                           *slice.first * sizeof(InstanceRecord));
+        std::ranges::copy(download<InstanceRecord>(context_, instances_.buffer(), slice.placed,
+                                                   *slice.first * sizeof(InstanceRecord)),
+                          records.begin());
     for (const std::size_t i : slice.edited) records[i] = slice.records[i];
     for (const std::size_t i : slice.options_edited) {
         records[i].custom_index_mask = slice.records[i].custom_index_mask;
         records[i].sbt_offset_flags = slice.records[i].sbt_offset_flags;
     }
-    std::vector<InstanceState> states;
-    for (const InstanceRecord& record : records) states.push_back(state_of(record));
-    return states;
+    return records;
 }
 
 }  // namespace twinray

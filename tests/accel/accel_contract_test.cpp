@@ -513,6 +513,43 @@ TEST_P(Accel, NewTransformsKeepCustomIndicesMasksAndFlags) {
     expect_kept();
 }
 
+TEST_P(Accel, InstancesComeAndGoOneByOne) {
+    const Transform places[] = {Transform{}, Transform::translation({2, 0, 0}), Transform::translation({4, 0, 0})};
+    const AccelHandle handle = accel().push(square(0), std::span(places, 1));
+    const AccelHandle other = accel().push(square(5), Transform::translation({20, 0, 0}));
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 10.0f);
+    const InstanceOptions options[] = {{.custom_index = 7}, {.custom_index = 8}};
+    EXPECT_EQ(accel().append_instances(handle, std::span(places).subspan(1), options), 1u);
+    EXPECT_EQ(accel().n_instances(handle), 3u);
+    EXPECT_EQ(closest(down(4.5f, 0.25f)).custom_index, 8u);
+    EXPECT_EQ(accel().index_in_handle(closest(down(2.5f, 0.25f))), 1u);
+    EXPECT_EQ(accel().handle_of(closest(down(20.5f, 0.25f))), other);
+    accel().erase_instance(handle, 1);
+    EXPECT_EQ(closest(down(2.5f, 0.25f)).hit, 0u);
+    EXPECT_EQ(accel().index_in_handle(closest(down(4.5f, 0.25f))), 1u);
+    EXPECT_EQ(closest(down(20.5f, 0.25f)).t, 5.0f);
+    EXPECT_EQ(accel().get_instance(handle, 1).options, options[1]);
+    EXPECT_NE(error_of([&] { accel().erase_instance(handle, 2); }).find("index 2 of the 2 instances"), std::string::npos);
+    EXPECT_NE(error_of([&] { accel().append_instances(handle, places, options); }).find("2 instance options for 3"),
+              std::string::npos);
+    accel().erase_instance(handle, 1);
+    accel().erase_instance(handle, 0);
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).hit, 0u);
+    accel().append_instances(handle, places);
+    EXPECT_EQ(closest(down(4.5f, 0.25f)).t, 10.0f);
+}
+
+TEST_P(Accel, AHandleHasTheBoxOfItsGeometry) {
+    Mesh mesh = make_box(vec3(-1, -2, -3), vec3(4, 5, 6));
+    mesh.positions.push_back(vec3(100));  // of no triangle
+    const AccelHandle handle = accel().push(mesh, Transform::translation({50, 0, 0})), empty = accel().push(Mesh{});
+    EXPECT_NE(error_of([&] { accel().object_bound(handle); }).find("edits are pending"), std::string::npos);
+    accel().sync();
+    EXPECT_EQ(accel().object_bound(handle).lo, vec3(-1, -2, -3));
+    EXPECT_EQ(accel().object_bound(handle).hi, vec3(4, 5, 6));
+    EXPECT_TRUE(accel().object_bound(empty).is_empty());
+}
+
 TEST_P(Accel, KernelsMoveInstancesInTheirBuffer) {
     const AccelHandle handle = accel().push(square(0), std::vector<Transform>(2));
     EXPECT_NE(error_of([&] { accel().instance_buffer(handle); }).find("call sync() first"), std::string::npos);

@@ -44,6 +44,8 @@ class Churn : public test::AccelTest {
     void erase();
     void move_by_host();
     void move_one();
+    void append();
+    void erase_one();
     void move_by_device();
     void move();
     std::vector<vec3> random_positions(const Mesh& mesh);
@@ -91,6 +93,22 @@ void Churn::move_one() {
     accel().update_transform_at(placed.handle, index, placed.transforms[index]);
 }
 
+void Churn::append() {
+    Placed& placed = any_placed();
+    const std::vector<Transform> more = random_transforms(random_() % 4);
+    EXPECT_EQ(accel().append_instances(placed.handle, more), placed.transforms.size());
+    placed.transforms.insert(placed.transforms.end(), more.begin(), more.end());
+}
+
+void Churn::erase_one() {
+    Placed& placed = any_placed();
+    if (placed.transforms.empty()) return;
+    accel().sync();  // transforms from device memory cannot be pending
+    const std::size_t index = random_() % placed.transforms.size();
+    accel().erase_instance(placed.handle, index);
+    placed.transforms.erase(placed.transforms.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
 void Churn::move_by_device() {
     Placed& placed = any_placed();
     if (placed.transforms.empty()) return;
@@ -122,9 +140,11 @@ void Churn::move_vertices() {
 }
 
 void Churn::move() {
-    const auto kind = random_() % 5;
+    const auto kind = random_() % 7;
     if (kind == 0) return move_by_host();
     if (kind == 1) return move_one();
+    if (kind == 5) return append();
+    if (kind == 6) return erase_one();
     if (kind > 2) return move_vertices();
     move_by_device();
 }
