@@ -46,8 +46,8 @@ class AbstractAccel {
     AccelHandle push(const DeviceMesh& mesh, const Transform& transform = {}, const InstanceOptions& options = {});
     AccelHandle push(const DeviceMesh& mesh, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
-    // More instances of the handle's geometry, behind those that it has; returns the index of the first of them. Options
-    // as in push.
+    // More instances of the handle's geometry, behind those that it has; returns the index of the first of them.
+    // Options as in push.
     std::size_t append_instances(AccelHandle handle, std::span<const Transform> transforms,
                                  std::span<const InstanceOptions> options = {});
     // Those behind it move up by one. Waits for the GPU if kernels may have moved the instances. Throws Error while
@@ -119,8 +119,8 @@ class AbstractAccel {
     // Counts the syncs that changed more than transforms and vertices: views of before are stale.
     std::uint64_t revision() const;
 
-    // The box of the handle's geometry, in object space; empty where nothing of it could be hit. Waits for the last sync.
-    // Throws Error if edits are pending.
+    // The box of the handle's geometry, in object space; empty where nothing of it could be hit. Waits for the last
+    // sync. Throws Error if edits are pending.
     Bounds object_bound(AccelHandle handle) const;
     // A box around all live instances at the last sync: the box of each geometry under its transform, rounded outward.
     // Empty for an empty accelerator. Waits for the last sync if it is not done.

@@ -22,8 +22,8 @@ struct Transform64 {
     static Transform64 translation(dvec3 offset);
 };
 
-// A mesh whose vertices are in float64, not owned: its triangles keep their shape wherever they lie, as it is built about
-// a point of its own.
+// A mesh whose vertices are in float64, not owned: its triangles keep their shape wherever they lie, as it is built
+// about a point of its own.
 struct MeshView64 {
     std::string_view name;
     std::span<const dvec3> positions;
@@ -32,8 +32,8 @@ struct MeshView64 {
 
 // An accelerator whose instances stand in float64. It counts from an origin: what it traces in float32 is relative to
 // that, so that t of rays that begin near it is right to 2 units in the last place of how large the scene around it is.
-// What is pushed through it is moved, updated and erased through it, and counted in coordinates of the world; all else of
-// the accelerator (view(), trace(), surfaces()) is in coordinates about the origin.
+// What is pushed through it is moved, updated and erased through it, and counted in coordinates of the world; all else
+// of the accelerator (view(), trace(), surfaces()) is in coordinates about the origin.
 class WorldAccel {
   public:
     // The accelerator must outlive it. Throws Error for an origin that is not finite.

@@ -529,7 +529,8 @@ TEST_P(Accel, InstancesComeAndGoOneByOne) {
     EXPECT_EQ(accel().index_in_handle(closest(down(4.5f, 0.25f))), 1u);
     EXPECT_EQ(closest(down(20.5f, 0.25f)).t, 5.0f);
     EXPECT_EQ(accel().get_instance(handle, 1).options, options[1]);
-    EXPECT_NE(error_of([&] { accel().erase_instance(handle, 2); }).find("index 2 of the 2 instances"), std::string::npos);
+    EXPECT_NE(error_of([&] { accel().erase_instance(handle, 2); }).find("index 2 of the 2 instances"),
+              std::string::npos);
     EXPECT_NE(error_of([&] { accel().append_instances(handle, places, options); }).find("2 instance options for 3"),
               std::string::npos);
     accel().erase_instance(handle, 1);

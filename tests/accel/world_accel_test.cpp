@@ -50,13 +50,16 @@ class WorldAccelTest : public test::AccelTest {
     static std::vector<dvec3> sphere_at(dvec3 place) {
         std::vector<dvec3> positions;
         for (const vec3& p : sphere_.positions)
-            positions.push_back(place + dvec3(std::round(10240.0 * p.x), std::round(10240.0 * p.y), std::round(10240.0 * p.z)) / 1024.0);
+            positions.push_back(place +
+                                dvec3(std::round(10240.0 * p.x), std::round(10240.0 * p.y), std::round(10240.0 * p.z)) /
+                                    1024.0);
         return positions;
     }
     std::vector<Ray64> rays_at(dvec3 place, std::size_t count) {
         std::vector<Ray64> rays;
         for (std::size_t i = 0; i < count; ++i) {
-            const dvec3 from(unit_(random_), unit_(random_), unit_(random_)), to(unit_(random_), unit_(random_), unit_(random_));
+            const dvec3 from(unit_(random_), unit_(random_), unit_(random_)),
+                to(unit_(random_), unit_(random_), unit_(random_));
             const dvec3 way = 8.0 * to - 25.0 * from;
             rays.push_back({place + 25.0 * from, 0, way / length(way), INFINITY});
         }
@@ -77,7 +80,8 @@ class WorldAccelTest : public test::AccelTest {
             if (!hits[i].hit) continue;
             ++count;
             // Rounding moves rays sideways, too: along a slanted triangle, t grows by that over the cosine.
-            worst = std::max(worst, std::abs(hits[i].t - expected.t) * std::abs(cosine(positions, rays[i], expected.triangle)));
+            worst = std::max(
+                worst, std::abs(hits[i].t - expected.t) * std::abs(cosine(positions, rays[i], expected.triangle)));
         }
         EXPECT_GT(count, rays.size() / 4);
         EXPECT_EQ(wrong, 0u);

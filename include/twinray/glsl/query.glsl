@@ -72,12 +72,28 @@ bool closest_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
     hit = trace(accel, ray, trace_options(mask, flags, QUERY_CLOSEST));
     return hit.hit != 0u;
 }
+// For kernels with a program of their own (twinray/glsl/program.h), which finds user_data in its candidates.
+bool closest_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit)
+{
+    TraceOptions options = trace_options(mask, flags, QUERY_CLOSEST);
+    options.user_data = user_data;
+    hit = trace(accel, ray, options);
+    return hit.hit != 0u;
+}
 bool closest_hit(Address accel, Ray ray, out Hit hit) { return closest_hit(accel, ray, 0xffu, 0u, hit); }
 
 // Any hit of them, whichever is found first. False: hit is a miss.
 bool any_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
 {
     hit = trace(accel, ray, trace_options(mask, flags, QUERY_ANY));
+    return hit.hit != 0u;
+}
+
+bool any_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit)
+{
+    TraceOptions options = trace_options(mask, flags, QUERY_ANY);
+    options.user_data = user_data;
+    hit = trace(accel, ray, options);
     return hit.hit != 0u;
 }
 
