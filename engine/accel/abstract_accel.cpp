@@ -31,6 +31,10 @@ AccelHandle AbstractAccel::push(const DeviceMesh& mesh, std::span<const Transfor
 }
 void AbstractAccel::update(AccelHandle handle, const DeviceMesh& mesh) { backend_->update(handle, mesh); }
 void AbstractAccel::mark_vertices_dirty(AccelHandle handle) { backend_->mark_vertices_dirty(handle); }
+AccelHandle AbstractAccel::push_instances_of(AccelHandle handle, std::span<const Transform> transforms,
+                                             std::span<const InstanceOptions> options) {
+    return backend_->push_instances_of(handle, transforms, options);
+}
 bool AbstractAccel::erase(AccelHandle handle) { return backend_->erase(handle); }
 void AbstractAccel::update(AccelHandle handle, const MeshView& mesh) { backend_->update(handle, mesh); }
 void AbstractAccel::update(AccelHandle handle, const BoxesView& boxes) { backend_->update(handle, boxes); }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <unordered_set>
 #include <utility>
 
 #include "engine/accel/ray_sort.h"
@@ -86,22 +87,42 @@ Geometry AccelBackend::geometry_of(const DeviceMesh& mesh, const char* action) c
 AccelHandle AccelBackend::place(Geometry&& geometry, SurfaceSlice&& surface, std::span<const Transform> transforms,
                                 std::span<const InstanceOptions> options) {
     check_option_count(geometry.name, transforms.size(), options.size());
-    PushedGeometry pushed{std::move(geometry),
-                          Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}),
-                          nullptr,
-                          {},
-                          {},
-                          std::move(surface),
-                          {}};
+    auto held = std::make_shared<HeldGeometry>(
+        HeldGeometry{.geometry = std::move(geometry),
+                     .block = Buffer(context_, {.name = "geometry block", .bytes = geometry_block_bytes}),
+                     .built = nullptr,
+                     .surface = std::move(surface)});
+    if (held->geometry.device) held->vertices.read_again();
+    const AccelHandle handle = place(held, transforms, options);
+    warn_of_inactive_triangles(held->geometry);
+    return handle;
+}
+
+AccelHandle AccelBackend::place(std::shared_ptr<HeldGeometry> held, std::span<const Transform> transforms,
+                                std::span<const InstanceOptions> options) {
+    PushedGeometry pushed{std::move(held)};
     for (std::size_t i = 0; i < transforms.size(); ++i)
         pushed.instances.records.push_back(
             checked_record(pushed, i, transforms[i], options.empty() ? InstanceOptions{} : options[i]));
-    if (pushed.geometry.device) pushed.vertices.read_again();
-    warn_of_inactive_triangles(pushed.geometry);
     const AccelHandle handle{next_handle()};
     pushed_.emplace(handle.id, std::move(pushed));
     mark(Dirty::structure);
     return handle;
+}
+
+AccelHandle AccelBackend::push_instances_of(AccelHandle handle, std::span<const Transform> transforms,
+                                            std::span<const InstanceOptions> options) {
+    const PushedGeometry& pushed = live(handle, "push_instances_of");
+    check_option_count(pushed.held->geometry.name, transforms.size(), options.size());
+    return place(pushed.held, transforms, options);
+}
+
+std::vector<AccelBackend::HeldGeometry*> AccelBackend::held_geometries() const {
+    std::vector<HeldGeometry*> all;
+    std::unordered_set<const HeldGeometry*> seen;
+    for (const auto& [id, pushed] : pushed_)
+        if (seen.insert(pushed.held.get()).second) all.push_back(pushed.held.get());
+    return all;
 }
 
 void AccelBackend::check_option_count(const std::string& mesh, std::size_t transforms, std::size_t options) const {
@@ -112,10 +133,11 @@ void AccelBackend::check_option_count(const std::string& mesh, std::size_t trans
 
 AccelHandle AccelBackend::push_built(Geometry&& geometry, Buffer&& block, std::unique_ptr<BuiltGeometry> built,
                                      std::span<const InstanceRecord> records) {
-    PushedGeometry pushed{std::move(geometry), std::move(block), std::move(built), {}, {}, {}, {}};
+    PushedGeometry pushed{std::make_shared<HeldGeometry>(
+        HeldGeometry{.geometry = std::move(geometry), .block = std::move(block), .built = std::move(built)})};
     for (const InstanceRecord& record : records) {
         pushed.instances.records.push_back(make_instance_record(transform_of(record), options_of(record)));
-        pushed.instances.records.back().geometry = pushed.block.address();
+        pushed.instances.records.back().geometry = pushed.held->block.address();
     }
     const AccelHandle handle{next_handle()};
     pushed_.emplace(handle.id, std::move(pushed));
@@ -146,46 +168,45 @@ void AccelBackend::update(AccelHandle handle, const DeviceMesh& mesh) {
     PushedGeometry& pushed = live(handle, "update");
     Geometry geometry = geometry_of(mesh, "update");
     SurfaceSlice surface = surface_of(mesh);
-    if (!pushed.geometry.fits_in_place_of(geometry) || !pushed.surface.is_empty() || !surface.is_empty())
+    if (!pushed.held->geometry.fits_in_place_of(geometry) || !pushed.held->surface.is_empty() || !surface.is_empty())
         return replace(handle, std::move(geometry), std::move(surface));
-    pushed.geometry = std::move(geometry);
-    pushed.vertices.read_again();
-    pushed.vertices.rebuilds = true;
-    pushed.has_source = false;
+    pushed.held->geometry = std::move(geometry);
+    pushed.held->vertices.read_again();
+    pushed.held->vertices.rebuilds = true;
+    pushed.held->has_source = false;
     mark(Dirty::moves);
 }
 
 void AccelBackend::mark_vertices_dirty(AccelHandle handle) {
     PushedGeometry& pushed = live(handle, "mark_vertices_dirty");
-    if (!pushed.geometry.is_in_place())
-        fail(name_, ": mark_vertices_dirty: mesh '", pushed.geometry.name,
+    if (!pushed.held->geometry.is_in_place())
+        fail(name_, ": mark_vertices_dirty: mesh '", pushed.held->geometry.name,
              "' is not in place in memory of the caller's");
-    pushed.vertices.read_again();
+    pushed.held->vertices.read_again();
     mark(Dirty::moves);
 }
 
 void AccelBackend::replace(AccelHandle handle, Geometry&& geometry, SurfaceSlice&& surface) {
     PushedGeometry& pushed = live(handle, "update");
     warn_of_inactive_triangles(geometry);
-    if (pushed.built)
-        outdated_.push_back({std::move(pushed.geometry),
-                             {},
-                             std::move(pushed.built),
-                             {},
-                             std::move(pushed.vertices),
-                             std::move(pushed.surface),
-                             {}});
-    pushed.geometry = std::move(geometry);
-    pushed.vertices = {};
-    if (pushed.geometry.device) pushed.vertices.read_again();
-    pushed.surface = std::move(surface);
-    pushed.has_source = false;
+    HeldGeometry& held = *pushed.held;
+    if (held.built)
+        replaced_.push_back({.geometry = std::move(held.geometry),
+                             .block = {},
+                             .built = std::move(held.built),
+                             .vertices = std::move(held.vertices),
+                             .surface = std::move(held.surface)});
+    held.geometry = std::move(geometry);
+    held.vertices = {};
+    if (held.geometry.device) held.vertices.read_again();
+    held.surface = std::move(surface);
+    held.has_source = false;
     mark(Dirty::structure);
 }
 
 AccelBackend::PushedGeometry& AccelBackend::checked_for_vertices(AccelHandle handle, std::size_t count) {
     PushedGeometry& pushed = live(handle, "update_vertices");
-    const Geometry& geometry = pushed.geometry;
+    const Geometry& geometry = pushed.held->geometry;
     if (geometry.kind == GEOMETRY_BOXES)
         fail(name_, ": update_vertices: handle ", handle.id, " holds boxes, '", geometry.name, "', not triangles");
     if (geometry.is_in_place())
@@ -199,15 +220,16 @@ AccelBackend::PushedGeometry& AccelBackend::checked_for_vertices(AccelHandle han
 
 void AccelBackend::update_vertices(AccelHandle handle, std::span<const vec3> positions) {
     PushedGeometry& pushed = checked_for_vertices(handle, positions.size());
-    Geometry& geometry = pushed.geometry;
+    Geometry& geometry = pushed.held->geometry;
     const std::size_t inactive = count_non_finite_triangles({geometry.name, positions, geometry.triangles});
     geometry.move_to(positions);
     geometry.non_finite_triangles = inactive;
     warn_of_inactive_triangles(geometry);
     if (geometry.triangle_count() == 0) return;
-    pushed.vertices.incoming = {};
-    pushed.vertices.device_wrote = false;
-    pushed.vertices.edited = pushed.built || pushed.vertices.on_device() || pushed.vertices.gathers;
+    pushed.held->vertices.incoming = {};
+    pushed.held->vertices.device_wrote = false;
+    pushed.held->vertices.edited =
+        pushed.held->built || pushed.held->vertices.on_device() || pushed.held->vertices.gathers;
     mark(Dirty::moves);
 }
 
@@ -216,14 +238,15 @@ void AccelBackend::update_vertices(AccelHandle handle, Floats positions, std::si
     if (!works_on_device()) fail(name_, ": update_vertices: vertices in device memory are unsupported");
     if (!positions.address || positions.address % 4)
         fail(name_, ": update_vertices: device address ", positions.address, " must be a multiple of 4 and not 0");
-    if (pushed.geometry.triangle_count() == 0) return;
-    pushed.vertices.incoming = positions;
-    pushed.vertices.edited = true;
+    if (pushed.held->geometry.triangle_count() == 0) return;
+    pushed.held->vertices.incoming = positions;
+    pushed.held->vertices.edited = true;
     mark(Dirty::moves);
 }
 
 void AccelBackend::PushedGeometry::add_to(SceneTraits& traits) const {
     if (instances.records.empty()) return;
+    const Geometry& geometry = held->geometry;
     traits.has_boxes |= geometry.kind == GEOMETRY_BOXES;
     traits.has_transforms |= geometry.scale != 1;
     traits.instances += instances.records.size();
@@ -245,9 +268,9 @@ InstanceRecord AccelBackend::checked_record(const PushedGeometry& pushed, std::s
     std::string fault = fault_of(transform);
     if (options.custom_index > max_custom_index)
         fault = text("custom index ", options.custom_index, " exceeds 24 bits (at most ", max_custom_index, ")");
-    if (!fault.empty()) fail(name_, ": mesh '", pushed.geometry.name, "', instance ", index, ": ", fault);
+    if (!fault.empty()) fail(name_, ": mesh '", pushed.held->geometry.name, "', instance ", index, ": ", fault);
     InstanceRecord record = make_instance_record(transform, options);
-    record.geometry = pushed.block.address();
+    record.geometry = pushed.held->block.address();
     return record;
 }
 
@@ -280,14 +303,14 @@ std::size_t AccelBackend::n_instances(AccelHandle handle) const {
 
 std::size_t AccelBackend::n_primitives(AccelHandle handle) const {
     const auto found = pushed_.find(handle.id);
-    return found == pushed_.end() ? 0 : found->second.geometry.primitive_count();
+    return found == pushed_.end() ? 0 : found->second.held->geometry.primitive_count();
 }
 
 Bounds AccelBackend::object_bound(AccelHandle handle) const {
     const PushedGeometry& pushed = live(handle, "object_bound");
     check_synced("object_bound");
-    const GeometryBox box = download<GeometryBox>(context_, pushed.block, 1).front();
-    const float unit = pushed.geometry.scale;
+    const GeometryBox box = download<GeometryBox>(context_, pushed.held->block, 1).front();
+    const float unit = pushed.held->geometry.scale;
     const Bounds bounds{box.lo * unit, box.hi * unit};
     return bounds.is_empty() ? Bounds{} : bounds;
 }
@@ -300,16 +323,18 @@ std::vector<AccelHandle> AccelBackend::handles() const {
 
 const AccelBackend::BuiltGeometry& AccelBackend::built_geometry(AccelHandle handle) const {
     const PushedGeometry& pushed = live(handle, "built geometry");
-    if (!pushed.built) fail(name_, ": handle ", handle.id, " is not built yet; call sync() first");
-    return *pushed.built;
+    if (!pushed.held->built) fail(name_, ": handle ", handle.id, " is not built yet; call sync() first");
+    return *pushed.held->built;
 }
 
-const Buffer& AccelBackend::geometry_block(AccelHandle handle) const { return live(handle, "geometry block").block; }
+const Buffer& AccelBackend::geometry_block(AccelHandle handle) const {
+    return live(handle, "geometry block").held->block;
+}
 
 Geometry AccelBackend::geometry(AccelHandle handle) const {
     const PushedGeometry& pushed = live(handle, "geometry");
-    Geometry geometry = pushed.geometry;
-    vertices_.download(geometry, pushed.vertices);
+    Geometry geometry = pushed.held->geometry;
+    vertices_.download(geometry, pushed.held->vertices);
     return geometry;
 }
 

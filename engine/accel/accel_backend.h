@@ -42,6 +42,8 @@ class AccelBackend {
     AccelHandle push(const DeviceMesh& mesh, const Transform& transform = {}, const InstanceOptions& options = {});
     AccelHandle push(const DeviceMesh& mesh, std::span<const Transform> transforms,
                      std::span<const InstanceOptions> options = {});
+    AccelHandle push_instances_of(AccelHandle handle, std::span<const Transform> transforms,
+                                  std::span<const InstanceOptions> options = {});
     bool erase(AccelHandle handle);
     void update(AccelHandle handle, const DeviceMesh& mesh);
     void mark_vertices_dirty(AccelHandle handle);
@@ -64,7 +66,7 @@ class AccelBackend {
     std::vector<InstanceState> get_instances(AccelHandle handle) const;
     std::size_t n_instances() const;
     std::size_t n_instances(AccelHandle handle) const;  // 0 for a dead handle
-    std::size_t n_geometries() const { return pushed_.size(); }
+    std::size_t n_geometries() const { return held_geometries().size(); }
     std::size_t n_primitives(AccelHandle handle) const;  // triangles or boxes of its geometry; 0 for a dead handle
     std::vector<AccelHandle> handles() const;            // those alive, in push order
     SyncPoint sync();
@@ -200,18 +202,22 @@ class AccelBackend {
     virtual std::vector<Hit> trace_host(std::span<const Ray> rays, TraceDesc desc);
 
   private:
-    // What one push placed.
-    struct PushedGeometry {
+    // A geometry, of one handle or more.
+    struct HeldGeometry {
         Geometry geometry;
         Buffer block;                          // see GeometryInput
         std::unique_ptr<BuiltGeometry> built;  // null: `geometry` is not built yet
-        SyncPoint built_at;
-        VertexSlice vertices;
-        SurfaceSlice surface;
-        InstanceSlice instances;
+        SyncPoint built_at = {};
+        VertexSlice vertices = {};
+        SurfaceSlice surface = {};
         bool has_source = false;  // the block's GeometrySource is that of `geometry`
+    };
+    // What one push placed.
+    struct PushedGeometry {
+        std::shared_ptr<HeldGeometry> held;
+        InstanceSlice instances = {};
 
-        bool is_synced() const { return built || instances.first; }
+        bool is_synced() const { return held->built || instances.first; }
 
         void add_to(SceneTraits& traits) const;
     };
@@ -219,11 +225,11 @@ class AccelBackend {
     // What a sync recorded, to be committed once it is certain to run.
     struct Staged {
         VertexArrays::Staged vertices;
-        std::vector<PushedGeometry*> sources;  // whose GeometrySource was written
-        std::vector<bool> is_rebuilt;          // by moved item of `vertices`, which come first
+        std::vector<HeldGeometry*> sources;  // whose GeometrySource was written
+        std::vector<bool> is_rebuilt;        // by moved item of `vertices`, which come first
         std::optional<Buffer> refinement;
         SurfaceTables::Staged surfaces;
-        std::vector<PushedGeometry*> building;
+        std::vector<HeldGeometry*> building;
         std::vector<std::unique_ptr<BuiltGeometry>> built;  // by `building`
         std::vector<InstanceSlice*> slices;
         InstanceArray::Staged instances;
@@ -246,6 +252,8 @@ class AccelBackend {
     enum class Dirty : std::uint8_t { no, compaction, moves, structure };  // moves: of instances and of vertices
 
     void mark(Dirty what) { dirty_ = std::max(dirty_, what); }
+    AccelHandle place(std::shared_ptr<HeldGeometry> held, std::span<const Transform> transforms,
+                      std::span<const InstanceOptions> options);
     AccelHandle place(Geometry&& geometry, SurfaceSlice&& surface, std::span<const Transform> transforms,
                       std::span<const InstanceOptions> options);
     void replace(AccelHandle handle, Geometry&& geometry, SurfaceSlice&& surface);
@@ -274,15 +282,16 @@ class AccelBackend {
     // On the device, whether their vertices move or not.
     bool keeps_meshes() const { return refinement_ || surfaces_; }
     void stage_sources(Commands& commands, Staged& staged);
-    static PackedMesh kept_mesh(const PushedGeometry& pushed, const Staged& staged);
-    bool lacks_mesh(const PushedGeometry& pushed) const;
+    static PackedMesh kept_mesh(const HeldGeometry& held, const Staged& staged);
+    bool lacks_mesh(const HeldGeometry& held) const;
     void stage_geometries(Commands& commands, Staged& staged);
     void stage_scene(Commands& commands, Staged& staged);
     void commit(Staged&& staged, SyncPoint done);
     enum class Wait : std::uint8_t { no, yes };
     std::optional<double> sah_of(const CostLog& costs, Wait wait) const;
     bool has_degraded(const CostLog& costs) const;
-    bool is_compactable(const PushedGeometry& pushed) const;
+    bool is_compactable(const HeldGeometry& held) const;
+    std::vector<HeldGeometry*> held_geometries() const;  // each once, in push order
     AccelTraits accel_traits() const { return {is_software(), options_.layout, reorders()}; }
     SceneTraits scene_traits() const;
     void check_movable(const char* action) const;
@@ -321,7 +330,9 @@ class AccelBackend {
     std::unique_ptr<BuiltTlas> scene_;
     // Its instances.
     std::size_t scene_count_ = 0;
-    std::vector<PushedGeometry> outdated_;  // erased or replaced since the last sync: views of it still read them
+    // Erased or replaced since the last sync: views of it still read them.
+    std::vector<PushedGeometry> outdated_;
+    std::vector<HeldGeometry> replaced_;
     std::unique_ptr<Commands> last_build_;
 };
 

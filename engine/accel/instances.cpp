@@ -74,7 +74,7 @@ void AccelBackend::update_options(AccelHandle handle, std::size_t index, const I
 std::size_t AccelBackend::append_instances(AccelHandle handle, std::span<const Transform> transforms,
                                            std::span<const InstanceOptions> options) {
     PushedGeometry& pushed = live(handle, "append_instances");
-    check_option_count(pushed.geometry.name, transforms.size(), options.size());
+    check_option_count(pushed.held->geometry.name, transforms.size(), options.size());
     const std::size_t before = pushed.instances.records.size();
     std::vector<InstanceRecord> more;
     for (std::size_t i = 0; i < transforms.size(); ++i)

@@ -11,21 +11,21 @@ MemoryUsage AccelBackend::memory_usage() const {
     if (scene_) usage.scratch = scene_->scratch_bytes;
     usage.instances = instances_.buffer().bytes() + (refinement_ ? refinement_->bytes() : 0);
     if (surfaces_) usage.surfaces = surfaces_->bytes();
-    for (const auto& [id, pushed] : pushed_) {
-        usage.blocks += pushed.block.bytes();
-        usage.vertices += pushed.vertices.bytes();
-        usage.surfaces += pushed.surface.data.bytes();
-        if (pushed.built) usage.geometries += pushed.built->bytes;
+    for (const HeldGeometry* held : held_geometries()) {
+        usage.blocks += held->block.bytes();
+        usage.vertices += held->vertices.bytes();
+        usage.surfaces += held->surface.data.bytes();
+        if (held->built) usage.geometries += held->built->bytes;
     }
     return usage;
 }
 
 BuildBytes AccelBackend::memory_requirements() const {
     std::vector<GeometrySize> sizes;
-    for (const auto& [id, pushed] : pushed_)
-        if (!pushed.built)
-            sizes.push_back({pushed.geometry.vertex_count(), pushed.geometry.primitive_count(),
-                             pushed.geometry.device.has_value()});
+    for (const HeldGeometry* held : held_geometries())
+        if (!held->built)
+            sizes.push_back(
+                {held->geometry.vertex_count(), held->geometry.primitive_count(), held->geometry.device.has_value()});
     BuildBytes bytes = geometry_bytes(sizes);
     if (dirty_ == Dirty::no) return bytes;
     const std::size_t count = n_instances(), room = scene_ ? scene_->capacity : 0;

@@ -15,11 +15,11 @@ std::optional<double> AccelBackend::sah_of(const CostLog& costs, Wait wait) cons
 }
 
 std::optional<double> AccelBackend::sah(AccelHandle handle) const {
-    return sah_of(live(handle, "sah").vertices.costs, Wait::yes);
+    return sah_of(live(handle, "sah").held->vertices.costs, Wait::yes);
 }
 
 std::optional<double> AccelBackend::sah_if_ready(AccelHandle handle) const {
-    return sah_of(live(handle, "sah_if_ready").vertices.costs, Wait::no);
+    return sah_of(live(handle, "sah_if_ready").held->vertices.costs, Wait::no);
 }
 
 void AccelBackend::set_rebuild_ratio(double ratio) {
@@ -32,13 +32,13 @@ bool AccelBackend::has_degraded(const CostLog& costs) const {
     return cost && cost->now > rebuild_ratio_ * cost->at_build;
 }
 
-bool AccelBackend::is_compactable(const PushedGeometry& pushed) const {
-    return pushed.built && !pushed.vertices.edited && can_compact(*pushed.built, pushed.built_at);
+bool AccelBackend::is_compactable(const HeldGeometry& held) const {
+    return held.built && !held.vertices.edited && can_compact(*held.built, held.built_at);
 }
 
 bool AccelBackend::compact() {
     const bool any =
-        std::any_of(pushed_.begin(), pushed_.end(), [&](const auto& entry) { return is_compactable(entry.second); });
+        std::ranges::any_of(held_geometries(), [&](const HeldGeometry* held) { return is_compactable(*held); });
     if (any) mark(Dirty::compaction);
     return any;
 }

@@ -35,8 +35,8 @@ Mesh AccelBackend::held_mesh(AccelHandle handle) const {
 
 std::vector<uint> AccelBackend::face_metadata(AccelHandle handle) const {
     const PushedGeometry& pushed = live(handle, "face_metadata");
-    const SurfaceSlice& surface = pushed.surface;
-    const std::size_t count = pushed.geometry.triangle_count();
+    const SurfaceSlice& surface = pushed.held->surface;
+    const std::size_t count = pushed.held->geometry.triangle_count();
     if (!surface.face_metadata) return std::vector<uint>(count);
     return surfaces_->read(surface, *surface.face_metadata, count);
 }

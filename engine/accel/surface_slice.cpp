@@ -87,7 +87,7 @@ std::optional<uint> AttributeNames::number_of(std::string_view name) const {
 }
 
 uint AttributeNames::number_for(std::string_view mesh, std::string_view name) {
-    if (name.empty()) fail("mesh '", mesh, "': an attribute's name is empty");
+    if (name.empty()) fail("mesh '", mesh, "': an attribute's name, '', is empty");
     if (const std::optional<uint> known = number_of(name)) return *known;
     if (names_.size() == most_names)
         fail("mesh '", mesh, "': attribute '", name, "' is one too many: an accelerator has ",

@@ -16,6 +16,8 @@ SurfaceTables::SurfaceTables(Context& context)
 
 // Returns where its arrays are.
 std::uint64_t SurfaceTables::stage_data(Commands& commands, SurfaceSlice& slice, Staged& staged) const {
+    const auto shared = std::ranges::find(staged.data, &slice, [](const auto& made) { return made.first; });
+    if (shared != staged.data.end()) return shared->second.address();
     const std::uint64_t bytes = slice.pending_bytes();
     if (bytes == 0) return slice.data.bytes() ? slice.data.address() : 0;
     Buffer data(context_, {.name = "surface data", .bytes = bytes});

@@ -21,7 +21,7 @@ const AccelBackend::InstanceOwners& AccelBackend::instance_owners(const char* ac
     for (const auto& [id, pushed] : pushed_) {
         const std::size_t first = owners.of_instance.size(), count = pushed.instances.records.size();
         owners.of_instance.insert(owners.of_instance.end(), count, static_cast<uint>(owners.all.size()));
-        owners.all.push_back({{id}, first, pushed.geometry.primitive_count()});
+        owners.all.push_back({{id}, first, pushed.held->geometry.primitive_count()});
     }
     return owners_ = std::move(owners);
 }

@@ -11,11 +11,11 @@ namespace twinray {
 
 // Geometries of which the same is wanted.
 struct AccelBackend::Work {
-    std::vector<PushedGeometry*> pushed;
+    std::vector<HeldGeometry*> held;
     std::vector<GeometryInput> inputs;
 
-    void add(PushedGeometry& item, const GeometryInput& input) {
-        pushed.push_back(&item);
+    void add(HeldGeometry& item, const GeometryInput& input) {
+        held.push_back(&item);
         inputs.push_back(input);
     }
 };
@@ -23,7 +23,7 @@ struct AccelBackend::Work {
 void AccelBackend::Staged::add(const Work& work, std::vector<std::unique_ptr<BuiltGeometry>>&& done) {
     for (std::size_t i = 0; i < done.size(); ++i) {
         if (!done[i]) continue;  // what it had was adapted
-        building.push_back(work.pushed[i]);
+        building.push_back(work.held[i]);
         built.push_back(std::move(done[i]));
     }
 }
@@ -59,57 +59,57 @@ AccelBackend::Staged AccelBackend::stage(Commands& commands) {
 
 void AccelBackend::stage_vertices(Commands& commands, Staged& staged) {
     std::vector<VertexArrays::Item> items;
-    for (auto& [id, pushed] : pushed_)
-        if (pushed.vertices.edited) items.push_back({&pushed.geometry, &pushed.vertices});
-    for (auto& [id, pushed] : pushed_)
-        if (lacks_mesh(pushed)) items.push_back({&pushed.geometry, &pushed.vertices});
+    for (HeldGeometry* held : held_geometries())
+        if (held->vertices.edited) items.push_back({&held->geometry, &held->vertices});
+    for (HeldGeometry* held : held_geometries())
+        if (lacks_mesh(*held)) items.push_back({&held->geometry, &held->vertices});
     staged.vertices = vertices_.stage(commands, std::move(items));
     stage_sources(commands, staged);
 }
 
 // Whether refining or surfaces lack its mesh on the device, which no edit brings there.
-bool AccelBackend::lacks_mesh(const PushedGeometry& pushed) const {
-    return keeps_meshes() && !pushed.vertices.edited && !pushed.vertices.on_device() &&
-           pushed.geometry.kind == GEOMETRY_TRIANGLES && !pushed.geometry.is_in_place();
+bool AccelBackend::lacks_mesh(const HeldGeometry& held) const {
+    return keeps_meshes() && !held.vertices.edited && !held.vertices.on_device() &&
+           held.geometry.kind == GEOMETRY_TRIANGLES && !held.geometry.is_in_place();
 }
 
 void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
-    for (auto& [id, pushed] : pushed_)
-        if (!pushed.has_source) staged.sources.push_back(&pushed);
+    for (HeldGeometry* held : held_geometries())
+        if (!held->has_source) staged.sources.push_back(held);
     if (staged.sources.empty()) return;
     const auto pass = commands.pass("geometry sources");
-    for (const PushedGeometry* pushed : staged.sources) {
-        const PackedMesh mesh = keeps_meshes() ? kept_mesh(*pushed, staged) : PackedMesh{};
-        commands.write(pushed->block, GeometrySource{mesh.positions, mesh.indices, pushed->geometry.scale, 0},
+    for (const HeldGeometry* held : staged.sources) {
+        const PackedMesh mesh = keeps_meshes() ? kept_mesh(*held, staged) : PackedMesh{};
+        commands.write(held->block, GeometrySource{mesh.positions, mesh.indices, held->geometry.scale, 0},
                        GEOMETRY_SOURCE_OFFSET);
     }
 }
 
 // Where it lies on the device after this sync.
-PackedMesh AccelBackend::kept_mesh(const PushedGeometry& pushed, const Staged& staged) {
-    const Geometry& geometry = pushed.geometry;
+PackedMesh AccelBackend::kept_mesh(const HeldGeometry& held, const Staged& staged) {
+    const Geometry& geometry = held.geometry;
     if (geometry.is_in_place()) return {{geometry.device->positions}, {geometry.device->indices}};
-    return staged.vertices.mesh_of(pushed.vertices);
+    return staged.vertices.mesh_of(held.vertices);
 }
 
 void AccelBackend::stage_geometries(Commands& commands, Staged& staged) {
     stage_vertices(commands, staged);
     Work builds, refits, compactions;
-    for (auto& [id, pushed] : pushed_) {
-        GeometryInput input{&pushed.geometry, &pushed.block, {}, pushed.built.get(), {}};
+    for (HeldGeometry* held : held_geometries()) {
+        GeometryInput input{&held->geometry, &held->block, {}, held->built.get(), {}};
         const bool is_refit =
-            pushed.vertices.edited && pushed.built && !pushed.vertices.rebuilds && !has_degraded(pushed.vertices.costs);
-        if (pushed.vertices.edited) {
+            held->vertices.edited && held->built && !held->vertices.rebuilds && !has_degraded(held->vertices.costs);
+        if (held->vertices.edited) {
             input.mesh = staged.vertices.mesh(staged.is_rebuilt.size());
             input.cost = staged.vertices.cost_target(staged.is_rebuilt.size());
             staged.is_rebuilt.push_back(!is_refit);
         }
         if (is_refit)
-            refits.add(pushed, input);
-        else if (!pushed.built || pushed.vertices.edited)
-            builds.add(pushed, input);
-        else if (is_compactable(pushed))
-            compactions.add(pushed, input);
+            refits.add(*held, input);
+        else if (!held->built || held->vertices.edited)
+            builds.add(*held, input);
+        else if (is_compactable(*held))
+            compactions.add(*held, input);
     }
     staged.add(builds, build_geometries(commands, builds.inputs));
     staged.add(refits, refit_geometries(commands, refits.inputs));
@@ -143,7 +143,8 @@ void AccelBackend::stage_scene(Commands& commands, Staged& staged) {
 void AccelBackend::stage_surfaces(Commands& commands, Staged& staged) {
     std::vector<SurfaceTables::Item> items;
     for (auto& [id, pushed] : pushed_)
-        items.push_back({id, pushed.geometry.triangle_count(), pushed.instances.records.size(), &pushed.surface});
+        items.push_back(
+            {id, pushed.held->geometry.triangle_count(), pushed.instances.records.size(), &pushed.held->surface});
     staged.surfaces = surfaces_->stage(commands, items, staged.instances.records);
 }
 
@@ -154,7 +155,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     }
     const std::vector<VertexSlice*> moved = vertices_.commit(std::move(staged.vertices), done);
     for (std::size_t i = 0; i < staged.is_rebuilt.size(); ++i) moved[i]->costs.commit(staged.is_rebuilt[i], done);
-    for (PushedGeometry* pushed : staged.sources) pushed->has_source = true;
+    for (HeldGeometry* held : staged.sources) held->has_source = true;
     if (refinement_) refinement_->commit(std::move(staged.refinement));
     if (surfaces_) surfaces_->commit(std::move(staged.surfaces));
     scene_costs_.commit(staged.is_scene_built, done);
@@ -166,6 +167,7 @@ void AccelBackend::commit(Staged&& staged, SyncPoint done) {
     if (staged.scene) scene_ = std::move(staged.scene);
     instances_.commit(std::move(staged.instances), staged.slices);
     outdated_.clear();
+    replaced_.clear();
     dirty_ = Dirty::no;
     synced_ = done;
 }

@@ -105,6 +105,9 @@ void WorldAccel::set_origin(dvec3 origin) {
     for (const auto& [id, placed] : placed_) accel_.update_transforms({id}, local(placed));
 }
 
+vec3 WorldAccel::local(dvec3 position) const { return vec3(position - origin_); }
+dvec3 WorldAccel::world(dvec3 position) const { return position + origin_; }
+
 Ray WorldAccel::local(const Ray64& ray) const {
     return {local(ray.origin), static_cast<float>(ray.t_min), vec3(ray.direction), static_cast<float>(ray.t_max)};
 }

@@ -53,6 +53,10 @@ class AbstractAccel {
     // Those behind it move up by one. Waits for the GPU if kernels may have moved the instances. Throws Error while
     // transforms from device memory are pending.
     void erase_instance(AccelHandle handle, std::size_t index);
+    // Instances of the geometry of another handle, which is neither copied nor built again and lives as long as one of
+    // its handles. What changes it through one (update, update_vertices) changes it for all.
+    AccelHandle push_instances_of(AccelHandle handle, std::span<const Transform> transforms,
+                                  std::span<const InstanceOptions> options = {});
     // False if the handle is dead already.
     bool erase(AccelHandle handle);
     // Another mesh, or other boxes, for all instances of the handle.

@@ -53,9 +53,9 @@ class WorldAccel {
     dvec3 origin() const { return origin_; }
 
     // From the world to coordinates about the origin, rounded once, and back.
-    vec3 local(dvec3 position) const { return vec3(position - origin_); }
+    vec3 local(dvec3 position) const;
     Ray local(const Ray64& ray) const;
-    dvec3 world(dvec3 local) const { return local + origin_; }
+    dvec3 world(dvec3 position) const;
     std::vector<Hit> closest_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
     std::vector<Hit> any_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
     // As AbstractAccel::exact_hits.

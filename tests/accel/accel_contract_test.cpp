@@ -540,6 +540,38 @@ TEST_P(Accel, InstancesComeAndGoOneByOne) {
     EXPECT_EQ(closest(down(4.5f, 0.25f)).t, 10.0f);
 }
 
+TEST_P(Accel, HandlesShareAGeometry) {
+    const Transform here[] = {Transform{}},
+                    there[] = {Transform::translation({2, 0, 0}), Transform::translation({4, 0, 0})};
+    const AccelHandle first = accel().push(make_icosphere(4), here);
+    accel().sync();
+    const std::uint64_t built = accel().memory_usage().geometries;
+    const InstanceOptions options[] = {{.custom_index = 5}, {.custom_index = 6}};
+    const AccelHandle second = accel().push_instances_of(first, there, options);
+    EXPECT_EQ(accel().n_geometries(), 1u);
+    EXPECT_NEAR(closest(down(4.0f, 0.0f)).t, 9.0f, 0.1f);
+    EXPECT_EQ(accel().memory_usage().geometries, built);
+    EXPECT_EQ(closest(down(4.0f, 0.0f)).custom_index, 6u);
+    EXPECT_EQ(accel().handle_of(closest(down(2.0f, 0.0f))), second);
+    EXPECT_EQ(accel().handle_of(closest(down(0.0f, 0.0f))), first);
+    EXPECT_EQ(accel().index_in_handle(closest(down(4.0f, 0.0f))), 1u);
+    // What changes it changes it for all, and it lives as long as one of them.
+    accel().update(first, square(3));
+    EXPECT_EQ(closest(down(4.5f, 0.25f)).t, 7.0f);
+    EXPECT_TRUE(accel().erase(first));
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).hit, 0u);
+    EXPECT_EQ(closest(down(2.5f, 0.25f)).t, 7.0f);
+    accel().update_vertices(second, square(4).positions);
+    EXPECT_EQ(closest(down(2.5f, 0.25f)).t, 6.0f);
+    accel().update_transforms(second, std::array{Transform{}, Transform::translation({4, 0, 1})});
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).t, 6.0f);
+    EXPECT_EQ(closest(down(4.5f, 0.25f)).t, 5.0f);
+    EXPECT_NE(error_of([&] { accel().push_instances_of(first, here); }).find("is not alive"), std::string::npos);
+    EXPECT_TRUE(accel().erase(second));
+    EXPECT_EQ(closest(down(0.5f, 0.25f)).hit, 0u);
+    EXPECT_EQ(accel().n_geometries(), 0u);
+}
+
 TEST_P(Accel, AHandleHasTheBoxOfItsGeometry) {
     Mesh mesh = make_box(vec3(-1, -2, -3), vec3(4, 5, 6));
     mesh.positions.push_back(vec3(100));  // of no triangle

@@ -25,7 +25,8 @@ class NextHit : public test::AccelTest {};
 TWINRAY_OVER_EVERY_ACCEL(NextHit);
 
 TEST_P(NextHit, GivesAllHitsInTheirOrder) {
-    if (accel().capability(Feature::kernel_queries).support == Support::unsupported) return;  // a pipeline has no queries
+    if (accel().capability(Feature::kernel_queries).support == Support::unsupported)
+        return;  // a pipeline has no queries
     const Mesh soup = make_soup(400, 5, 0.5f), square = test::square(0.5f);
     const Transform twice[] = {Transform{}, Transform{}};  // at one distance, each of them
     accel().push(soup, Transform::translation({0.1f, 0, 0}));
@@ -34,7 +35,8 @@ TEST_P(NextHit, GivesAllHitsInTheirOrder) {
     std::vector<Ray> rays;
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(0, 1);
-    for (int i = 0; i < 500; ++i) rays.push_back({vec3(unit(random), unit(random), 3), 0, vec3(0.01f, 0, -1), INFINITY});
+    for (int i = 0; i < 500; ++i)
+        rays.push_back({vec3(unit(random), unit(random), 3), 0, vec3(0.01f, 0, -1), INFINITY});
 
     constexpr uint most = 40;
     const Buffer ray_buffer = device_copy(rays);

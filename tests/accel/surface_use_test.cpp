@@ -64,6 +64,28 @@ TEST_P(SurfaceUse, FollowEditsOfTheirMeshes) {
     EXPECT_EQ(surface().face_metadata, 0u);
 }
 
+TEST_P(SurfaceUse, OfASharedGeometryAreEachHandles) {
+    Mesh mesh = test::square(0);
+    mesh.materials = {4, 5};
+    const Transform there[] = {Transform::translation({3, 0, 0})};
+    const AccelHandle first = accel().push(mesh), second = accel().push_instances_of(first, there);
+    const Ray rays[] = {test::down(0.75f, 0.5f), test::down(3.75f, 0.5f)};
+    for (const bool is_synced_before : {false, true}) {
+        const std::vector<Hit> hits = accel().closest_hits(rays);
+        const std::vector<Surface> surfaces = accel().surfaces(rays, hits);
+        EXPECT_EQ(surfaces[0].face_metadata, surfaces[1].face_metadata) << is_synced_before;
+        EXPECT_NE(surfaces[0].face_metadata, 0u);
+        EXPECT_EQ(surfaces[1].point.position, vec3(3.75f, 0.5f, 0));
+        EXPECT_EQ(accel().handle_of(hits[0]), first);
+        EXPECT_EQ(accel().handle_of(hits[1]), second);
+        if (is_synced_before) break;
+        const std::uint64_t bytes = accel().memory_usage().surfaces;
+        accel().push_instances_of(second, std::span<const Transform>());
+        accel().sync();
+        EXPECT_LT(accel().memory_usage().surfaces, bytes + 256);
+    }
+}
+
 TEST_P(SurfaceUse, WrongUseIsNamed) {
     Mesh mesh = test::square(0);
     mesh.uvs = {vec2(0), vec2(1)};
