@@ -28,12 +28,9 @@ std::vector<float> sky_view(AbstractAccel& accel, const Scene& scene, Args args)
     Context& context = accel.context();
     push_scene(accel, scene);
     accel.sync();
-    const AccelView view = accel.view();
-    const std::span<const uint> modules[] = {headless_dispatch_hw_spirv, headless_dispatch_sw_spirv};
-    const Kernel<Args> kernel(
-        context, {.name = "sky view", .spirv = modules[accel.is_software()], .constants = {view.features_constant()}});
+    QueryKernel<Args> kernel(accel, {.name = "sky view"}, headless_dispatch_sw_spirv, headless_dispatch_hw_spirv);
     const Buffer result(context, {.name = "sky view", .bytes = args.count * sizeof(float)});
-    args.accel = view.scene;
+    args.accel = accel.view().scene;
     args.sky_view = result.ref<float>();
     Commands commands(context, "sky view");
     kernel.dispatch(commands, args, args.count);

@@ -38,7 +38,7 @@ MOST_HEADERS = {  # of this project behind a header, directly or not; lower them
     "include/twinray/tlas.h": 12, "engine/accel/accel_backend.h": 76,
 }
 MOST_PUBLIC = {"headers": 15, "lines": 3500}  # of include/twinray, its GLSL apart
-MOST_LINES = {"include/twinray/abstract_accel.h": 240}
+MOST_LINES = {"include/twinray/abstract_accel.h": 270}
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all
 SOURCE = re.compile(r"\.(h|hpp|c|cc|cpp|inl)$|" + GLSL.pattern)
 GENERATED = re.compile(r"\.(spv|trace_program)\.h$|^twinray_program\.glsl$|^twinray_version\.h$|^kernel_modules\.h$|\.py\.h$")  # by the build, or as installed

@@ -76,7 +76,7 @@ SurfaceSlice AccelBackend::surface_of(const Mesh& mesh) {
 Geometry AccelBackend::geometry_of(const DeviceMesh& mesh, const char* action) const {
     if (!works_on_device()) fail(name_, ": ", action, ": meshes in device memory are unsupported");
     const vec3 corners[] = {mesh.bounds ? mesh.bounds->lo : vec3(1), mesh.bounds ? mesh.bounds->hi : vec3(1)};
-    const float unit = mesh.in_place ? 1 : unit_of(corners);
+    const float unit = mesh.in_place && keeps_meshes() ? 1 : unit_of(corners);
     if (mesh.in_place && keeps_meshes() && !is_packed(mesh))
         fail(name_, ": ", action, ": mesh '", mesh.name,
              "' in place: surfaces and refining read float32 positions of stride 12 and 32-bit indices; pack it, or "
@@ -179,6 +179,7 @@ void AccelBackend::update(AccelHandle handle, const DeviceMesh& mesh) {
 
 void AccelBackend::mark_vertices_dirty(AccelHandle handle) {
     PushedGeometry& pushed = live(handle, "mark_vertices_dirty");
+    if (pushed.held->geometry.triangle_count() == 0) return;
     if (!pushed.held->geometry.is_in_place())
         fail(name_, ": mark_vertices_dirty: mesh '", pushed.held->geometry.name,
              "' is not in place in memory of the caller's");
@@ -309,6 +310,7 @@ std::size_t AccelBackend::n_primitives(AccelHandle handle) const {
 Bounds AccelBackend::object_bound(AccelHandle handle) const {
     const PushedGeometry& pushed = live(handle, "object_bound");
     check_synced("object_bound");
+    context_.wait(synced_);
     const GeometryBox box = download<GeometryBox>(context_, pushed.held->block, 1).front();
     const float unit = pushed.held->geometry.scale;
     const Bounds bounds{box.lo * unit, box.hi * unit};
@@ -334,6 +336,7 @@ const Buffer& AccelBackend::geometry_block(AccelHandle handle) const {
 Geometry AccelBackend::geometry(AccelHandle handle) const {
     const PushedGeometry& pushed = live(handle, "geometry");
     Geometry geometry = pushed.held->geometry;
+    context_.state().check_submitted(synced_);
     vertices_.download(geometry, pushed.held->vertices);
     return geometry;
 }

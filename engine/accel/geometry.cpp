@@ -45,7 +45,7 @@ Geometry::Geometry(const MeshView& mesh, float unit)
 
 Geometry::Geometry(const DeviceMesh& mesh, float unit) : name(mesh.name), scale(unit) {
     if (mesh.triangle_count == 0) return;
-    check(mesh);
+    check_device_mesh(mesh);
     device = mesh;
     device->name = {};
     device->attributes = {};

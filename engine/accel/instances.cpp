@@ -92,6 +92,7 @@ void AccelBackend::erase_instance(AccelHandle handle, std::size_t index) {
         fail(name_, ": erase_instance: handle ", handle.id,
              " waits for transforms from device memory; call sync() first");
     std::vector<InstanceRecord> records = newest_records(pushed.instances);
+    for (InstanceRecord& record : records) record.geometry = pushed.held->block.address();  // kernels may write there
     records.erase(records.begin() + static_cast<std::ptrdiff_t>(index));
     pushed.instances.edit_all(std::move(records));
     pushed.instances.options_edited.clear();
@@ -132,6 +133,7 @@ std::vector<InstanceState> AccelBackend::get_instances(AccelHandle handle) const
 // With what the device knows better, for which it waits.
 std::vector<InstanceRecord> AccelBackend::newest_records(const InstanceSlice& slice) const {
     std::vector<InstanceRecord> records = slice.records;
+    context_.state().check_submitted(synced_);
     if (slice.device_wrote && slice.first)
         std::ranges::copy(download<InstanceRecord>(context_, instances_.buffer(), slice.placed,
                                                    *slice.first * sizeof(InstanceRecord)),

@@ -33,7 +33,7 @@ void check_indices_of(const DeviceMesh& mesh) {
 
 }  // namespace
 
-void check(const DeviceMesh& mesh) {
+void check_device_mesh(const DeviceMesh& mesh) {
     if (mesh.triangle_count > Geometry::max_primitives)
         fail("mesh '", mesh.name, "': ", mesh.triangle_count, " triangles; at most ", Geometry::max_primitives,
              " fit in one geometry");
@@ -99,9 +99,11 @@ void MeshGather::warn_of_faults(const std::string& accel) {
         if (!context_.is_reached(done)) return false;
         std::vector<uint> counts(faults.names.size());
         std::memcpy(counts.data(), faults.counts.mapped(), counts.size() * sizeof(uint));
-        for (std::size_t i = 0; i < counts.size(); ++i)
-            if (uint& told = told_[faults.names[i]]; std::exchange(told, counts[i]) != counts[i] && counts[i] != 0)
-                context_.state().warn(text(accel, ": mesh '", faults.names[i], "': ", counts[i],
+        std::map<std::string, uint> by_name;
+        for (std::size_t i = 0; i < counts.size(); ++i) by_name[faults.names[i]] += counts[i];
+        for (const auto& [name, count] : by_name)
+            if (uint& told = told_[name]; std::exchange(told, count) != count && count != 0)
+                context_.state().warn(text(accel, ": mesh '", name, "': ", count,
                                            " triangles name a vertex that it lacks; they are inactive"));
         return true;
     });

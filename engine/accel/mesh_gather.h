@@ -23,7 +23,7 @@ struct PackedMesh {
 };
 
 // Throws Error naming the mesh and what of it cannot be: an address, a stride, a count.
-void check(const DeviceMesh& mesh);
+void check_device_mesh(const DeviceMesh& mesh);
 // Whether it is packed already.
 bool is_packed(const DeviceMesh& mesh);
 

@@ -62,6 +62,7 @@ SurfaceSlice::Place place(SurfaceSlice& slice, const DeviceMesh& mesh, std::stri
     if (address == 0 || address % 4 != 0)
         fail("mesh '", mesh.name, "': device address ", address, " of its '", name,
              "' must be a multiple of 4 and not 0");
+    if (words > ~0u) fail("mesh '", mesh.name, "': '", name, "' has ", words, " numbers; at most ", ~0u, " fit");
     if (mesh.in_place) return {.in_place = address};
     slice.copies.push_back({{address}, aligned(slice.pending_bytes()), words});
     return {.offset = slice.copies.back().offset};

@@ -16,8 +16,7 @@ SurfaceTables::SurfaceTables(Context& context)
 
 // Returns where its arrays are.
 std::uint64_t SurfaceTables::stage_data(Commands& commands, SurfaceSlice& slice, Staged& staged) const {
-    const auto shared = std::ranges::find(staged.data, &slice, [](const auto& made) { return made.first; });
-    if (shared != staged.data.end()) return shared->second.address();
+    if (const auto shared = staged.data.find(&slice); shared != staged.data.end()) return shared->second.address();
     const std::uint64_t bytes = slice.pending_bytes();
     if (bytes == 0) return slice.data.bytes() ? slice.data.address() : 0;
     Buffer data(context_, {.name = "surface data", .bytes = bytes});
@@ -26,7 +25,7 @@ std::uint64_t SurfaceTables::stage_data(Commands& commands, SurfaceSlice& slice,
         copy_words_.dispatch(commands, {copy.from, data.ref<uint>(copy.offset), static_cast<uint>(copy.words), 0},
                              copy.words);
     const std::uint64_t address = data.address();
-    staged.data.emplace_back(&slice, std::move(data));
+    staged.data.emplace(&slice, std::move(data));
     return address;
 }
 

@@ -2,6 +2,8 @@
 // What AccelOptions::keeps_surfaces keeps on the device: arrays of meshes, and the table that leads from a hit to them.
 #pragma once
 
+#include <unordered_map>
+
 #include "engine/accel/surface_slice.h"
 #include "engine/core/kernel.h"
 #include "twinray/glsl/cpp_spawn.h"
@@ -29,7 +31,7 @@ class SurfaceTables {
     };
     // What stage() recorded, to be committed once it is certain to run.
     struct Staged {
-        std::vector<std::pair<SurfaceSlice*, Buffer>> data;
+        std::unordered_map<SurfaceSlice*, Buffer> data;
         std::optional<Buffer> rows;
     };
     // Records the upload of arrays that are not on the device yet, and of the table of all items, in the order of their

@@ -81,6 +81,7 @@ template <class Out, class Record>
 std::vector<Out> AccelBackend::of_hits(std::span<const Ray> rays, std::span<const Hit> hits,
                                        const Record& record) const {
     if (hits.empty()) return {};
+    context_.wait(synced_);
     if (!surface_kernels_) surface_kernels_ = std::make_unique<SurfaceKernels>(context_);
     const Buffer ray_buffer(context_, {.name = "rays", .bytes = rays.size_bytes()});
     const Buffer hit_buffer(context_, {.name = "hits", .bytes = hits.size_bytes()});

@@ -53,16 +53,16 @@ WorldAccel::WorldAccel(AbstractAccel& accel, dvec3 origin) : accel_(accel), orig
     check_finite(accel.name(), "origin", origin);
 }
 
-std::vector<Transform> WorldAccel::local(const Placed& placed) const {
+std::vector<Transform> WorldAccel::local(const Placed& placed, const dvec3& origin) const {
     std::vector<Transform> transforms;
     for (const Transform64& transform : placed.transforms)
-        transforms.push_back(about(transform, placed.center, origin_));
+        transforms.push_back(about(transform, placed.center, origin));
     return transforms;
 }
 
 template <class Mesh>
 AccelHandle WorldAccel::place(const Mesh& mesh, Placed&& placed, std::span<const InstanceOptions> options) {
-    const AccelHandle handle = accel_.push(mesh, local(placed), options);
+    const AccelHandle handle = accel_.push(mesh, local(placed, origin_), options);
     placed_.emplace(handle.id, std::move(placed));
     return handle;
 }
@@ -95,14 +95,26 @@ void WorldAccel::update_transforms(AccelHandle handle, std::span<const Transform
     if (found == placed_.end())
         fail(accel_.name(), ": update_transforms: handle ", handle.id, " was not pushed in world coordinates");
     Placed moved{found->second.center, {transforms.begin(), transforms.end()}};
-    accel_.update_transforms(handle, local(moved));
+    accel_.update_transforms(handle, local(moved, origin_));
     found->second = std::move(moved);
 }
 
+// All is checked before anything moves.
 void WorldAccel::set_origin(dvec3 origin) {
     check_finite(accel_.name(), "origin", origin);
+    if (!accel_.options().can_move) fail(accel_.name(), ": set_origin: made with AccelOptions::can_move = false");
+    std::vector<std::pair<AccelHandle, std::vector<Transform>>> moves;
+    for (const auto& [id, placed] : placed_) {
+        const auto& [handle, transforms] = moves.emplace_back(AccelHandle{id}, local(placed, origin));
+        if (const std::size_t n = accel_.n_instances(handle); n != transforms.size())
+            fail(accel_.name(), ": set_origin: handle ", id, " has ", n, " instances, of which ", transforms.size(),
+                 " were pushed in world coordinates");
+        for (const Transform& transform : transforms)
+            if (const std::string fault = fault_of(transform); !fault.empty())
+                fail(accel_.name(), ": set_origin: handle ", id, ": ", fault);
+    }
+    for (const auto& [handle, transforms] : moves) accel_.update_transforms(handle, transforms);
     origin_ = origin;
-    for (const auto& [id, placed] : placed_) accel_.update_transforms({id}, local(placed));
 }
 
 vec3 WorldAccel::local(dvec3 position) const { return vec3(position - origin_); }

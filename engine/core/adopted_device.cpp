@@ -44,6 +44,8 @@ void check_claims(const DeviceProperties& told, const DeviceProperties& supporte
                    VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME);
     check_function(told.ray_tracing_pipeline, reinterpret_cast<const void*>(vk.vkCreateRayTracingPipelinesKHR),
                    VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+    check_function(told.external_memory_fd, reinterpret_cast<const void*>(vk.vkGetMemoryFdKHR),
+                   VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
 }
 
 }  // namespace
@@ -57,6 +59,7 @@ DeviceProperties check_adoption(const AdoptedDevice& adopted, const VulkanFuncti
     properties.has_compute_queue = true;
     properties.api_version = std::min(supported.api_version, adopted.api_version);
     for (const FeatureBit& bit : feature_bits()) properties.*bit.fact = adopted.enabled.*bit.fact;
+    properties.external_memory_fd = adopted.enabled.external_memory_fd;
     check_needs(properties);
     check_claims(properties, supported, vk);
     return properties;

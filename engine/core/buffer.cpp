@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/buffer.h"
 
+#include <unistd.h>
+
 #include <utility>
 
 #include "engine/core/error.h"
@@ -45,7 +47,9 @@ Buffer::Buffer(Context& context, const BufferDesc& desc, const ExportedMemory& m
 Buffer Buffer::exportable(Context& context, const BufferDesc& desc) { return {context, desc, ExportedMemory{}}; }
 Buffer Buffer::imported(Context& context, const BufferDesc& desc, const ExportedMemory& memory) {
     if (memory.fd < 0) fail("buffer '", desc.name, "' to be shared: file descriptor ", memory.fd);
-    return {context, desc, memory};
+    Buffer made(context, desc, memory);
+    close(memory.fd);
+    return made;
 }
 
 ExportedMemory Buffer::exported() const {

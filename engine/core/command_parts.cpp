@@ -134,6 +134,8 @@ SyncPoint Commands::submit() {
     if (state_->is_of_caller) fail("commands '", state_->name, "': they are the caller's to submit");
     if (state_->is_ended) fail("commands '", state_->name, "': submitted twice");
     if (state_->in_pass) fail("commands '", state_->name, "': submitted within a pass");
+    if (state_->promised.value && !state_->context.state().is_due(state_->promised.value))
+        fail("commands '", state_->name, "': others, into which a sync was recorded before, must be submitted first");
     state_->is_ended = true;
     std::vector<Submission> submissions;
     for (const State::Part& part : state_->parts) {

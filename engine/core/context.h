@@ -56,7 +56,9 @@ struct Context::State {
     // which points were promised, or given up.
     SyncPoint promise();
     void give_up(std::uint64_t promised) noexcept;
-    // Throws Error for such a point whose commands are not submitted yet.
+    // Whether no other commands are to be submitted before.
+    bool is_due(std::uint64_t promised) const { return promised_.is_due(promised); }
+    // Throws Error for such a point whose commands are not submitted yet, or never will be.
     void check_submitted(SyncPoint point) const;
     // Context says what these do.
     void wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
@@ -99,6 +101,7 @@ struct Context::State {
     void create_pipeline_cache(const PipelineStore& store);
     void keep_pipelines() noexcept;
     VkSemaphore new_timeline(const char* name);
+    void wait_for(SyncPoint point) const;
     VkResult enqueue(std::span<const Submission> submissions, std::uint64_t promised) const;
     VkResult enqueue(std::span<const VkSubmitInfo> infos) const;
     std::string words_of_loss() const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/external_memory.h"
 
+#include <unistd.h>
+
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -50,9 +52,18 @@ VkDeviceMemory new_memory(const Context::State& state, std::uint32_t type, std::
     info.allocationSize = bytes;
     info.memoryTypeIndex = type;
     VkDeviceMemory memory = VK_NULL_HANDLE;
-    vk_check(state.vk().vkAllocateMemory(state.device(), &info, nullptr, &memory),
-             fd < 0 ? "allocate memory to be shared" : "import memory");
+    const VkResult result = state.vk().vkAllocateMemory(state.device(), &info, nullptr, &memory);
+    if (result != VK_SUCCESS && fd >= 0) close(fd);
+    vk_check(result, fd < 0 ? "allocate memory to be shared" : "import memory");
     return memory;
+}
+
+// What is imported belongs to the driver, whatever fails then.
+int copy_of(int fd) {
+    if (fd < 0) return fd;
+    const int copy = dup(fd);
+    if (copy < 0) fail("file descriptor ", fd, " cannot be copied");
+    return copy;
 }
 
 }  // namespace
@@ -64,14 +75,15 @@ ExternalBuffer make_external(Context& context, const BufferDesc& desc, VkBufferU
         fail("device '", state.properties().name, "' has not enabled VK_KHR_external_memory_fd");
     if (desc.memory != Memory::device) fail("only memory of the device can be shared");
     if (desc.bytes == 0) fail("0 bytes cannot be shared");
-    if (imported.fd >= 0 && imported.bytes < desc.bytes) fail(imported.bytes, " bytes were exported, for ", desc.bytes);
     ExternalBuffer made{new_buffer(state.vk(), state.device(), desc.bytes, usage), {}};
     try {
         VkMemoryRequirements needs{};
         state.vk().vkGetBufferMemoryRequirements(state.device(), made.buffer, &needs);
         made.memory.bytes = imported.fd >= 0 ? imported.bytes : needs.size;
+        if (made.memory.bytes < needs.size)
+            fail(made.memory.bytes, " bytes were exported; ", needs.size, " are needed");
         made.memory.memory =
-            new_memory(state, memory_type(state, needs.memoryTypeBits), made.memory.bytes, imported.fd);
+            new_memory(state, memory_type(state, needs.memoryTypeBits), made.memory.bytes, copy_of(imported.fd));
         vk_check(state.vk().vkBindBufferMemory(state.device(), made.buffer, made.memory.memory, 0), "bind memory");
     } catch (...) {
         free_external(state, made);

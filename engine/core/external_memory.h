@@ -13,8 +13,8 @@ struct ExternalBuffer {
     ExternalMemory memory;
 };
 
-// In memory to be exported, or, with fd >= 0, in memory that another has exported, whose file descriptor it takes.
-// Throws Error naming the buffer; the descriptor then stays the caller's.
+// In memory to be exported, or, with fd >= 0, in memory that another has exported, by a copy of its file descriptor.
+// Throws Error naming the buffer.
 ExternalBuffer make_external(Context& context, const BufferDesc& desc, VkBufferUsageFlags usage,
                              const ExportedMemory& imported);
 void free_external(const Context::State& state, const ExternalBuffer& buffer);

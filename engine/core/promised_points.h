@@ -24,11 +24,17 @@ class PromisedPoints {
         passed_ = value_of(point);
         given_up_.erase(given_up_.begin(), given_up_.upper_bound(passed_));
     }
-    void give_up(std::uint64_t point) { given_up_.insert(point); }
+    void give_up(std::uint64_t point) {
+        given_up_.insert(point);
+        lost_.insert(point);
+    }
+    // Whether its commands were given up: what counted on them never came to be.
+    bool is_lost(std::uint64_t point) const { return lost_.contains(point); }
 
   private:
     std::uint64_t promised_ = 0, passed_ = 0;
-    std::set<std::uint64_t> given_up_;
+    std::set<std::uint64_t> given_up_;  // not passed yet
+    std::set<std::uint64_t> lost_;
 };
 
 }  // namespace twinray

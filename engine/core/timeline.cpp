@@ -33,8 +33,8 @@ SyncPoint Context::State::promise() {
 }
 
 void Context::State::give_up(std::uint64_t promised) noexcept {
-    if (is_lost_) return;
-    if (!promised_.is_due(promised)) return promised_.give_up(promised);
+    promised_.give_up(promised);
+    if (is_lost_ || !promised_.is_due(promised)) return;
     const std::uint64_t value = promised_.value_of(promised);
     VkTimelineSemaphoreSubmitInfo timeline{};
     timeline.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
@@ -107,8 +107,6 @@ VkResult Context::State::enqueue(std::span<const VkSubmitInfo> infos) const {
 SyncPoint Context::State::submit(const std::string& name, std::vector<Submission> submissions, std::uint64_t promised) {
     check_alive();
     if (submissions.empty()) return last_submission();
-    if (promised && !promised_.is_due(promised))
-        fail("commands '", name, "': others, into which a sync was recorded before, must be submitted first");
     check(enqueue(submissions, promised), "submit to the queue");
     if (promised) promised_.pass(promised);
     for (Submission& submission : submissions)
@@ -126,14 +124,23 @@ bool Context::State::is_reached(SyncPoint point) const {
 }
 
 void Context::State::check_submitted(SyncPoint point) const {
-    if (point.semaphore && point.semaphore == promised_timeline_ && !promised_.is_passed(point.value))
-        fail("the commands into which a sync was recorded must be submitted first");
+    if (!point.semaphore || point.semaphore != promised_timeline_) return;
+    if (promised_.is_lost(point.value))
+        fail(
+            "the commands into which a sync was recorded were given up: what it built is not there, and whoever was to "
+            "be "
+            "synced must be made anew");
+    if (!promised_.is_passed(point.value)) fail("the commands into which a sync was recorded must be submitted first");
 }
 
 void Context::State::wait(SyncPoint point) const {
+    check_submitted(point);
+    wait_for(point);
+}
+
+void Context::State::wait_for(SyncPoint point) const {
     check_alive();
     if (!point.semaphore || !point.value) return;
-    check_submitted(point);
     VkSemaphoreWaitInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
     info.semaphoreCount = 1;
@@ -145,8 +152,14 @@ void Context::State::wait(SyncPoint point) const {
 
 void Context::State::wait_for_gpu() {
     wait(last_submission());
-    for (const SyncPoint point : announced_) wait(point);
-    announced_.clear();
+    for (SyncPoint point : announced_) {
+        // Commands that nobody has submitted yet are nothing that the GPU does.
+        if (point.semaphore == promised_timeline_) point.value = std::min(point.value, promised_.last_passed());
+        wait_for(point);
+    }
+    std::erase_if(announced_, [&](const SyncPoint& point) {
+        return point.semaphore != promised_timeline_ || promised_.is_passed(point.value);
+    });
     collect();
 }
 
@@ -187,7 +200,7 @@ void Context::State::collect() noexcept {
 void Context::State::finish() noexcept {
     try {
         wait(last_submission());
-        wait({promised_timeline_, promised_.last_passed()});
+        wait_for({promised_timeline_, promised_.last_passed()});
     } catch (const Error& error) {
         warn(error.what());
         while (!is_lost_ && reached(timeline_) < submitted_) std::this_thread::sleep_for(std::chrono::milliseconds(1));

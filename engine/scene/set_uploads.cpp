@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/core/context.h"
 #include "engine/core/error.h"
 
 namespace twinray {
@@ -37,6 +38,7 @@ void SetUploads::note_update(std::size_t type, uint index) {
 }
 
 SyncPoint SetUploads::sync(Elements elements) {
+    context_.state().check_submitted(synced_);
     if (is_clean_) return synced_;
     Commands commands(context_, name_ + " sync");
     Staged staged = stage(commands, elements);

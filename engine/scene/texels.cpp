@@ -117,9 +117,12 @@ TexelSize level_size(const Texels& texels, std::size_t level) {
 
 std::size_t texel_bytes(const Texels& texels) { return std::size_t{texels.channels} * bytes_of(texels.format); }
 
-void check(const Texels& texels, const std::string& object) {
+void check_texels(const Texels& texels, const std::string& object) {
     const std::string it = text(object, ": image '", texels.name, "' of ", texels.width, " x ", texels.height);
     if (texels.channels < 1 || texels.channels > 4) fail(it, " has ", texels.channels, " channels; 1 to 4 fit");
+    constexpr std::uint64_t most_bytes = ~0u;  // that kernels find a texel among
+    if (std::uint64_t{texels.width} * texels.height > most_bytes / texel_bytes(texels))
+        fail(it, " has a level of more than 4 GiB");
     const std::size_t most = std::bit_width(std::max(texels.width, texels.height));
     if (texels.width == 0 || texels.height == 0 || texels.levels.empty())
         fail(it, " has no texels; it needs one at least");
@@ -145,7 +148,7 @@ Texels Texels::of(const Image& image) {
 }
 
 Texels with_mipmaps(Texels texels, bool is_srgb) {
-    check(texels, "with_mipmaps");
+    check_texels(texels, "with_mipmaps");
     texels.levels.resize(1);
     const Halving halving(texels, is_srgb);
     while (texels.levels.size() < static_cast<std::size_t>(std::bit_width(std::max(texels.width, texels.height))))

@@ -14,7 +14,7 @@ TexelSize level_size(const Texels& texels, std::size_t level);
 std::size_t texel_bytes(const Texels& texels);  // of one texel
 
 // Throws Error naming `object`, the texels and what does not fit: channels, the number of levels, the bytes of one.
-void check(const Texels& texels, const std::string& object);
+void check_texels(const Texels& texels, const std::string& object);
 // Whether one may lie in the memory of the other.
 bool is_alike(const Texels& a, const Texels& b);
 // With four channels.

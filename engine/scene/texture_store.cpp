@@ -46,6 +46,11 @@ bool is_decoded(const TextureOptions& options, const Texels& texels) {
     return options.is_srgb && texels.format == TexelFormat::unorm8;
 }
 
+// One level has nothing between it and another.
+Filter between_levels(const TextureOptions& options, const Texels& texels) {
+    return texels.levels.size() == 1 ? Filter::nearest : options.between_levels;
+}
+
 uint options_word(const TextureOptions& options, const Texels& texels) {
     return (is_decoded(options, texels) ? 1u : 0u) | (options.filter == Filter::nearest ? 2u : 0u) |
            (options.between_levels == Filter::nearest ? 4u : 0u);
@@ -119,7 +124,7 @@ struct TextureStore::State {
     Texels checked(Texels&& texels, const TextureOptions& options, const char* action) const;
     Staged stage(Commands& commands);
     void record_upload(Commands& commands, std::size_t index, const Texels& texels, std::vector<Made>& made);
-    VkSampler sampler_of(const TextureOptions& options);
+    VkSampler sampler_of(const TextureOptions& options, const Texels& texels);
     Made make(std::size_t index, const Texels& texels);
     ImageArray array_with(const std::vector<Made>& made) const;
     void check_format(const Texels& texels, const TextureOptions& options, const char* action) const;
@@ -161,7 +166,7 @@ TextureStore::State::State(Context& context, std::string name, TextureStorage st
 
 // As it is kept: what Vulkan has no format for is brought into one that it has.
 Texels TextureStore::State::checked(Texels&& texels, const TextureOptions& options, const char* action) const {
-    check(texels, name_ + ": " + action);
+    check_texels(texels, name_ + ": " + action);
     const bool is_float = texels.format == TexelFormat::float16 || texels.format == TexelFormat::float32;
     if (options.is_srgb && is_float)
         fail(name_, ": ", action, ": image '", texels.name, "' is sRGB in floats; only unorm8 and unorm16 can be");
@@ -181,9 +186,8 @@ void TextureStore::State::check_format(const Texels& texels, const TextureOption
     VkFormatProperties properties{};
     context_.state().vk().vkGetPhysicalDeviceFormatProperties(
         context_.physical_device(), format_of(texels, is_decoded(options, texels)), &properties);
-    const VkFormatFeatureFlags filtered = options.filter == Filter::nearest
-                                              ? 0u
-                                              : VkFormatFeatureFlags{VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT};
+    const bool is_filtered = options.filter == Filter::linear || between_levels(options, texels) == Filter::linear;
+    const VkFormatFeatureFlags filtered = is_filtered ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT : 0;
     const VkFormatFeatureFlags needed = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | filtered;
     if ((properties.optimalTilingFeatures & needed) != needed)
         fail(name_, ": ", action, ": image '", texels.name, "': the device cannot ", filtered ? "filter" : "sample",
@@ -212,6 +216,7 @@ void TextureStore::State::update(TextureRef ref, Texels&& texels) {
 }
 
 SyncPoint TextureStore::State::sync() {
+    context_.state().check_submitted(synced_);
     if (pending_.empty()) return synced_;
     Commands commands(context_, name_ + " sync");
     Staged staged = stage(commands);
@@ -252,12 +257,13 @@ void TextureStore::State::record_upload(Commands& commands, std::size_t index, c
     commands.upload_regions(is_reused ? texture.texels : made.back().texels, regions);
 }
 
-VkSampler TextureStore::State::sampler_of(const TextureOptions& options) {
+VkSampler TextureStore::State::sampler_of(const TextureOptions& options, const Texels& texels) {
     return samplers_.get({.wrap_u = address_mode(options.wrap_u),
                           .wrap_v = address_mode(options.wrap_v),
                           .filter = options.filter == Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR,
-                          .between_levels = options.between_levels == Filter::nearest ? VK_SAMPLER_MIPMAP_MODE_NEAREST
-                                                                                      : VK_SAMPLER_MIPMAP_MODE_LINEAR});
+                          .between_levels = between_levels(options, texels) == Filter::nearest
+                                                ? VK_SAMPLER_MIPMAP_MODE_NEAREST
+                                                : VK_SAMPLER_MIPMAP_MODE_LINEAR});
 }
 
 TextureStore::State::Made TextureStore::State::make(std::size_t index, const Texels& texels) {
@@ -270,7 +276,7 @@ TextureStore::State::Made TextureStore::State::make(std::size_t index, const Tex
                                              .height = texels.height,
                                              .levels = static_cast<uint>(texels.levels.size()),
                                              .format = format_of(texels, is_decoded(texture.options, texels)),
-                                             .sampler = sampler_of(texture.options)});
+                                             .sampler = sampler_of(texture.options, texels)});
     else
         made.texels = Buffer(context_, {.name = name, .bytes = bytes_of_levels(texels)});
     return made;

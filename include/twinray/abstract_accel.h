@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include <twinray/commands.h>
 #include <twinray/device_mesh.h>
@@ -62,8 +63,9 @@ class AbstractAccel {
     // Another mesh, or other boxes, for all instances of the handle.
     void update(AccelHandle handle, const MeshView& mesh);
     void update(AccelHandle handle, const BoxesView& boxes);
-    // Where the handle had a DeviceMesh of the same counts, both without attributes, the next sync rebuilds in the same
-    // memory and views stay valid: kernels can make a mesh anew for each frame.
+    // Where the handle had a DeviceMesh of the same counts (and built in the same units: DeviceMesh::bounds), both
+    // without attributes, the next sync rebuilds in the same memory and views stay valid: kernels can make a mesh anew
+    // for each frame.
     void update(AccelHandle handle, const DeviceMesh& mesh);
     // New positions for the vertices of the handle's mesh, as many as it has; the triangles stay. The next sync refits
     // the geometry in place: views stay valid. A triangle with a corner that is not finite, or without an area, is
@@ -139,7 +141,8 @@ class AbstractAccel {
     // Measured by the GPU in float32, with pairwise sums: right to 1e-5 of itself. What a driver builds is hidden: for
     // HwTlas it is an estimate, the cost of the tree that halves the driver's input again and again. The form without a
     // handle is about the top level, measured in each sync, the other about a geometry, measured from its first
-    // update_vertices() on: nothing before. They wait for the last sync that measured.
+    // update_vertices() on, a DeviceMesh's from its first sync: nothing before. They wait for the last sync that
+    // measured.
     std::optional<double> sah() const;
     std::optional<double> sah(AccelHandle handle) const;
     // The same without waiting: the latest that the GPU has done since the tree was last built; nothing while it has
@@ -214,6 +217,37 @@ class AbstractAccel {
 
   private:
     std::unique_ptr<AccelBackend> backend_;
+};
+
+// A kernel with twinray/glsl/query.glsl, of the two modules that twinray_add_kernel() makes the one for this
+// accelerator, specialised for what traces of its scene need: again where an edit has made that more.
+template <class Args>
+class QueryKernel {
+  public:
+    // `desc` without spirv. The accelerator must outlive the kernel.
+    QueryKernel(const AbstractAccel& accel, KernelDesc desc, std::span<const std::uint32_t> software,
+                std::span<const std::uint32_t> hardware)
+        : accel_(accel), desc_(std::move(desc)) {
+        desc_.spirv = accel.is_software() ? software : hardware;
+    }
+
+    // As Kernel::dispatch. Throws Error if edits are pending.
+    void dispatch(Commands& commands, const Args& args, std::uint64_t count, VkDescriptorSet images = VK_NULL_HANDLE) {
+        const AccelView view = accel_.view();
+        if (!kernel_ || (view.features & ~features_) != 0) {
+            KernelDesc desc = desc_;
+            desc.constants.push_back(view.features_constant());
+            kernel_.emplace(accel_.context(), desc);
+            features_ = view.features;
+        }
+        kernel_->dispatch(commands, args, count, images);
+    }
+
+  private:
+    const AbstractAccel& accel_;
+    KernelDesc desc_;
+    uint features_ = 0;
+    std::optional<Kernel<Args>> kernel_;
 };
 
 }  // namespace twinray

@@ -13,7 +13,7 @@
 namespace twinray {
 
 // Numbers of a position, three of them from the start of each vertex. With 16 bits as IEEE's half, or as -32767 to
-// 32767 standing for -1 to 1.
+// 32767 standing for -1 to 1; arrays of 16 bits are read by words of 4 bytes, so up to 2 bytes before or behind them.
 enum class VertexFormat : std::uint8_t { float32, float16, snorm16 };
 constexpr std::uint32_t component_bytes(VertexFormat format) { return format == VertexFormat::float32 ? 4 : 2; }
 
@@ -45,8 +45,8 @@ struct DeviceMesh {
     // Device address of a uint, or 0. The mesh has min(triangle_count, that many) triangles; the tree has room for, and
     // costs the time of, all triangle_count. Those beyond are inactive.
     Uints count_on_device = {};
-    // A box around the positions. Where its largest coordinate is below 2^-20 or above 2^60 (2 for drivers' own
-    // structures: anything but near 1), the mesh is built in units near its size; without it, in its own.
+    // A box around the positions, so that meshes far from 1 in size are built in units near it: in SwTlas where its
+    // largest coordinate is below 2^-20 or above 2^60, in HwTlas the power of two below it. Without, in units of 1.
     std::optional<Bounds> bounds = {};
     // False: each sync that sees a change copies the mesh, and the caller's memory is free once that sync is done.
     // True: no copy is kept; the arrays must stay, and be written by kernels alone that run before a sync told of it by

@@ -403,7 +403,7 @@ enum class TextureStorage : std::uint8_t {
 struct TextureOptions {
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
-    bool is_srgb = false;  // of unorm8
+    bool is_srgb = false;  // of unorm8 and unorm16
     Filter filter = Filter::linear;
     Filter between_levels = Filter::linear;  // of sample_texture_lod()
     bool operator==(const TextureOptions&) const = default;
@@ -426,7 +426,8 @@ class TextureStore {
     // says.
     TextureRef push(const Texels& texels, const TextureOptions& options = {});
     TextureRef push(const Image& image, const TextureOptions& options = {});
-    // Other texels, sampled as before. Where the size is the same they go into the same memory and views stay valid.
+    // Other texels, sampled as before. Where size, channels, format and levels are the same they go into the same
+    // memory and views stay valid.
     void update(TextureRef ref, const Texels& texels);
     void update(TextureRef ref, const Image& image);
     bool contains(TextureRef ref) const;

@@ -32,8 +32,8 @@ struct MeshView64 {
 
 // An accelerator whose instances stand in float64. It counts from an origin: what it traces in float32 is relative to
 // that, so that t of rays that begin near it is right to 2 units in the last place of how large the scene around it is.
-// What is pushed through it is moved, updated and erased through it, and counted in coordinates of the world; all else
-// of the accelerator (view(), trace(), surfaces()) is in coordinates about the origin.
+// What is pushed through it is moved and erased through it; all else of the accelerator (view(), trace(), surfaces(),
+// other meshes by update()) is in coordinates about the origin, and those of a MeshView64 about the middle of its box.
 class WorldAccel {
   public:
     // The accelerator must outlive it. Throws Error for an origin that is not finite.
@@ -68,7 +68,7 @@ class WorldAccel {
         dvec3 center;  // what the mesh's vertices count from
         std::vector<Transform64> transforms;
     };
-    std::vector<Transform> local(const Placed& placed) const;
+    std::vector<Transform> local(const Placed& placed, const dvec3& origin) const;
     template <class Mesh>
     AccelHandle place(const Mesh& mesh, Placed&& placed, std::span<const InstanceOptions> options);
     std::vector<Ray> local(std::span<const Ray64> rays) const;

@@ -34,38 +34,33 @@ int main(int argc, char** argv) try {
             : std::make_unique<SwTlas>(context, options);
     const Buffer positions(context, {.name = "positions", .bytes = most * 3 * sizeof(vec3)});
     const Buffer normals(context, {.name = "normals", .bytes = most * 3 * sizeof(vec3)});
-    const Buffer count(context, {.name = "triangles", .bytes = sizeof(uint)});
-    const Buffer pixels(context, {.name = "pixels", .bytes = width * height * sizeof(uint)});
+    const Buffer pixels(context, {.name = "pixels", .bytes = (width * height + 1) * sizeof(uint)});
+    const Uints count = pixels.ref<uint>(width * height * sizeof(uint));  // of triangles, behind the picture
     const DeviceAttribute attributes[] = {{"normals", 3, false, normals.ref<float>()}};
     accel->push(DeviceMesh{.name = "gyroid",
                            .positions = positions.address(),
                            .vertex_count = 3 * most,
                            .index_format = IndexFormat::none,
                            .triangle_count = most,
-                           .count_on_device = count.ref<uint>(),
+                           .count_on_device = count,
                            .attributes = attributes});
     Commands commands(context, "frame");
     {
         const auto pass = commands.pass("no triangles");
-        commands.fill(count, 0, sizeof(uint), 0);
+        commands.fill(pixels, width * height * sizeof(uint), sizeof(uint), 0);
     }
     const Kernel<MarchArgs> march(context, {.name = "march", .spirv = iso_surface_march_spirv});
-    march.dispatch(commands, {positions.ref<float>(), normals.ref<float>(), count.ref<uint>(), cells, most},
-                   cells * cells * cells);
+    march.dispatch(commands, {positions.ref<float>(), normals.ref<float>(), count, cells, most}, cells * cells * cells);
     accel->sync(commands);
-    const AccelView view = accel->view();
-    const std::span<const uint> modules[] = {iso_surface_shade_hw_spirv, iso_surface_shade_sw_spirv};
-    const Kernel<ShadeArgs> shade(
-        context, {.name = "shade", .spirv = modules[accel->is_software()], .constants = {view.features_constant()}});
-    shade.dispatch(commands, {view.scene, pixels.ref<uint>(), width, height}, width * height);
+    QueryKernel<ShadeArgs> shade(*accel, {.name = "shade"}, iso_surface_shade_sw_spirv, iso_surface_shade_hw_spirv);
+    shade.dispatch(commands, {accel->view().scene, pixels.ref<uint>(), width, height}, width * height);
     commands.submit();
+    const std::vector<uint> shown = download<uint>(context, pixels, width * height + 1);  // the one wait
     std::vector<Rgb> picture;
-    for (const uint pixel : download<uint>(context, pixels, width * height))
+    for (const uint pixel : std::span(shown).first(width * height))
         picture.push_back({std::uint8_t(pixel), std::uint8_t(pixel >> 8), std::uint8_t(pixel >> 16)});
     write_png(argv[1], width, height, picture);
-    for (const PassTiming& pass : commands.timings())
-        if (pass.name == "march" || pass.name == "shade") std::cout << pass.name << ": " << pass.ms << " ms\n";
-    std::cout << accel->name() << ": " << download<uint>(context, count, 1).front() << " triangles\n";
+    std::cout << accel->name() << ": " << shown.back() << " triangles\n";
 } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

@@ -2,7 +2,8 @@
 // Hits one after the other in a kernel of a user's: those that AllHits lists, ties too.
 #include <twinray/queries.h>
 
-#include <cstring>
+#include <algorithm>
+#include <array>
 #include <random>
 
 #include "engine/accel/all_hits.h"
@@ -42,7 +43,9 @@ TEST_P(NextHit, GivesAllHitsInTheirOrder) {
     const Buffer ray_buffer = device_copy(rays);
     const Buffer hits(context(), {.name = "hits", .bytes = rays.size() * most * sizeof(Hit)});
     const std::span<const uint> modules[] = {test_next_hit_hw_spirv, test_next_hit_sw_spirv};
-    const Kernel<NextHitArgs> kernel(context(), {.name = "test_next_hit", .spirv = modules[accel().is_software()]});
+    const Kernel<NextHitArgs> kernel(context(), {.name = "test_next_hit",
+                                                 .spirv = modules[accel().is_software()],
+                                                 .constants = {accel().view().features_constant()}});
     Commands commands(context(), "next hits");
     const auto count = static_cast<uint>(rays.size());
     kernel.dispatch(commands, {accel().view().scene, ray_buffer.ref<Ray>(), hits.ref<Hit>(), count, most}, count);
@@ -63,6 +66,29 @@ TEST_P(NextHit, GivesAllHitsInTheirOrder) {
         EXPECT_EQ(found[i * most + n].hit, 0u) << i;
     }
     EXPECT_GT(ties, 100u);
+}
+
+// Specialised for one mesh where it stands, then for whatever comes.
+TEST_P(NextHit, AQueryKernelFollowsWhatTheSceneNeeds) {
+    if (accel().capability(Feature::kernel_queries).support == Support::unsupported) return;
+    QueryKernel<NextHitArgs> kernel(accel(), {.name = "test_next_hit"}, test_next_hit_sw_spirv, test_next_hit_hw_spirv);
+    const Buffer rays = device_copy(std::vector<Ray>{test::down(0.5f, 0.25f)});
+    const Buffer hits(context(), {.name = "hits", .bytes = 4 * sizeof(Hit)});
+    const auto count = [&] {
+        accel().sync();
+        Commands commands(context(), "query");
+        kernel.dispatch(commands, {accel().view().scene, rays.ref<Ray>(), hits.ref<Hit>(), 1, 4}, 1);
+        commands.submit();
+        const std::vector<Hit> found = download<Hit>(context(), hits, 4);
+        return std::ranges::find(found, 0u, &Hit::hit) - found.begin();
+    };
+    const AccelHandle first = accel().push(test::square(0));
+    EXPECT_EQ(count(), 1);
+    accel().push(test::square(1), Transform::translation({0, 0, 1}));
+    EXPECT_EQ(count(), 2);
+    accel().push(test::square(4), std::array{Transform{}, Transform::scaling({2, 2, 1})}, {});
+    accel().erase(first);
+    EXPECT_EQ(count(), 3);
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ TEST_P(SharedMemory, WhatCannotBeSharedIsRefused) {
     const ExportedMemory exported = small.exported();
     EXPECT_NE(error_of([&] {
                   Buffer::imported(context(), {.name = "large", .bytes = 1 << 20}, exported);
-              }).find("bytes were exported, for 1048576"),
+              }).find("bytes were exported; 1048576 are needed"),
               std::string::npos);
     EXPECT_EQ(close(exported.fd), 0) << "the descriptor is no longer the caller's";
 }

@@ -32,6 +32,7 @@ const Family families[] = {
     {"collide_"},
     {"points_", {Of::points}},
     {"engine_refine_gather", {Of::refinement}},
+    {"engine_exact_hits", {Of::refinement}},
     {"engine_"},
     {"scene_"},
     {"verify_float_probe64", {Of::refinement}},

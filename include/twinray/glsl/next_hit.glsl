@@ -4,8 +4,8 @@
 //     Hit hit = no_hit();
 //     while (next_hit(accel, ray, hit)) depth += hit.t;
 //
-// By t, then by (instance, primitive), so that triangles at one distance each come once. Of triangles, at levels fast and
-// watertight; kernels with a program of their own (twinray/glsl/program.h) have no use of it. Each call is a traversal
+// By t, then by (instance, primitive), so that triangles at one distance each come once; by hardware a driver may choose
+// among them and pass some over. Of triangles, at levels fast and watertight; kernels with a program of their own (twinray/glsl/program.h) have no use of it. Each call is a traversal
 // from the ray's origin on: for all hits of many rays AllHits is faster.
 #ifndef TWINRAY_NEXT_HIT_GLSL
 #define TWINRAY_NEXT_HIT_GLSL
@@ -32,7 +32,10 @@ bool next_hit(Address accel, Ray ray, uint mask, uint flags, inout Hit hit)
 {
     twinray_passed = hit;
     if (hit.hit != 0u) ray.t_min = uintBitsToFloat(floatBitsToUint(hit.t) - 1u);
-    hit = trace(accel, ray, trace_options(mask, flags | ALL_NON_OPAQUE, QUERY_CLOSEST));
+    TraceOptions options = trace_options(mask, flags | ALL_NON_OPAQUE, QUERY_CLOSEST);
+    options.features |= FEATURE_FILTERS; // whatever the kernel was specialised for: accept_hit is one
+    options.level = min(options.level, LEVEL_WATERTIGHT);
+    hit = trace(accel, ray, options);
     return hit.hit != 0u;
 }
 bool next_hit(Address accel, Ray ray, inout Hit hit) { return next_hit(accel, ray, 0xffu, 0u, hit); }

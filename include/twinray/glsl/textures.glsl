@@ -201,11 +201,11 @@ vec4 sample_texture_lod(TextureTable table, TextureRef ref, vec2 uv, float lod)
     bool is_srgb = (record.options & 1u) != 0u;
     lod = clamp(lod, 0.0, float(record.levels - 1u));
     if ((record.options & 4u) != 0u) lod = ceil(lod + 0.5) - 1.0;
-    uint level = uint(lod);
+    uint level = min(uint(lod), record.levels - 1u); // whatever a NaN became
     TextureRecord large = texture_level(record, level);
     vec4 color = texture_filtered(large, uv, is_srgb);
     float share = lod - float(level);
-    if (share == 0.0) return color;
+    if (!(share > 0.0) || level + 1u == record.levels) return color;
     return mix(color, texture_filtered(texture_level(large, 1u), uv, is_srgb), share);
 }
 #endif
