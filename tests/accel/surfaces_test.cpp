@@ -61,7 +61,7 @@ void expect_interpolated(const std::vector<V>& values, const Surface& surface, c
 TEST_P(Surfaces, AreWhatFloat64MakesOfTheHit) {
     add_some();
     push_all(accel());
-    const std::vector<Ray> rays = random_rays(40'000);
+    const std::vector<Ray> rays = random_rays(1'000'000);
     const std::vector<Hit> hits = accel().closest_hits(rays);
     const std::vector<Surface> surfaces = accel().surfaces(rays, hits);
     const std::vector<vec4> heat = accel().attributes("heat", rays, hits, vec4(-1));
