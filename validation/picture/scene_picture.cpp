@@ -5,6 +5,7 @@
 
 #include "engine/scene/bytes.h"
 #include "engine/scene/glb.h"
+#include "twinray/glsl/vector_math.h"
 #include "validation/picture/html_page.h"
 #include <twinray/scene.h>
 
