@@ -28,6 +28,9 @@ void main()
     vec3 origin = push.corner + push.cell * vec3(float(i % push.width) + 0.5f, 0.0f, float(i / push.width) + 0.5f);
     uint seen = 0u;
     for (uint k = 0u; k < push.rays; k++)
-        if (!any_hit(push.accel, Ray(origin, 0.0f, cosine_weighted(i * push.rays + k), uintBitsToFloat(0x7f800000u)))) seen++;
+    {
+        Ray ray = Ray(origin, 0.0f, cosine_weighted(i * push.rays + k), uintBitsToFloat(0x7f800000u));
+        if (!any_hit(push.accel, ray)) seen++;
+    }
     AT(push.sky_view, i) = float(seen) / float(push.rays);
 }

@@ -14,7 +14,10 @@ vec3 color_of(Checker checker, vec2 uv)
     return (cell.x + cell.y & 1u) == 0u ? checker.even : checker.odd;
 }
 
-vec3 color_of(Painted painted, vec2 uv) { return painted.gain * sample_texture(args.textures, painted.texture, uv).rgb; }
+vec3 color_of(Painted painted, vec2 uv)
+{
+    return painted.gain * sample_texture(args.textures, painted.texture, uv).rgb;
+}
 
 void main()
 {

@@ -26,7 +26,7 @@ fi
 mapfile -t cpp < <(git ls-files '*.h' '*.cpp' | grep -v '^shaders/')
 mapfile -t cmake < <(git ls-files '*CMakeLists.txt' '*.cmake')
 mapfile -t scripts < <(git ls-files '*.sh' .ci/run)
-mapfile -t shaders < <(git ls-files shaders)
+mapfile -t shaders < <(git ls-files shaders '*.glsl' '*.comp' '*.frag' '*.vert')
 mapfile -t texts < <(git ls-files '*.md' '*.h' '*.cpp' '*.py' '*.sh' '*.glsl' '*.comp' '*.cmake' '*CMakeLists.txt')
 
 if [[ ${1-} == --fix ]]; then

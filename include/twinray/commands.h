@@ -208,7 +208,7 @@ struct SpecializationConstant {
 };
 
 struct KernelDesc {
-    std::string name = {};                      // folder_stem: the label, the timing and the twin have this name too
+    std::string name = {};                      // folder_stem: the label and the timing have this name, too
     std::span<const std::uint32_t> spirv = {};  // embedded at build time
     std::uint32_t group_size = 64;              // local_size_x of the shader
     std::vector<SpecializationConstant> constants = {};

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Three spheres one behind the other and rays along them, with what they meet. Usage: hit_tests.py TWINRAY PICTURE..."""
+"""Three spheres one behind the other and rays along them, with what they meet.
+Usage: hit_tests.py TWINRAY PICTURE..."""
 import math
 import pathlib
 import subprocess

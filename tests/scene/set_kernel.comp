@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Looks elements of a set up by key, and runs loops over the types of one that are unrolled.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/multi_type_set.glsl"

@@ -121,7 +121,8 @@ TextureRecord texture_level(TextureRecord record, uint level)
     uint bytes = format == TEXEL_UNORM8 ? 1u : (format == TEXEL_FLOAT32 ? 4u : 2u);
     for (uint i = 0u; i < level; i = i + 1u)
     {
-        record.texels = Uints(address_after(record.texels.address, (record.width * record.height * channels * bytes + 3u) & ~3u));
+        uint level_bytes = (record.width * record.height * channels * bytes + 3u) & ~3u;
+        record.texels = Uints(address_after(record.texels.address, level_bytes));
         record.width = max(record.width >> 1u, 1u);
         record.height = max(record.height >> 1u, 1u);
     }
@@ -156,7 +157,8 @@ vec4 fetch_texel(TextureTable table, TextureRef ref, ivec2 at)
 vec4 texture_filtered(TextureRecord record, vec2 uv, bool is_srgb)
 {
     uint wrap_u = record.wraps & 3u, wrap_v = record.wraps >> 2u;
-    vec2 at = vec2(texture_wrapped(uv.x, wrap_u) * float(record.width), texture_wrapped(uv.y, wrap_v) * float(record.height)) - 0.5;
+    vec2 at = vec2(texture_wrapped(uv.x, wrap_u) * float(record.width),
+                   texture_wrapped(uv.y, wrap_v) * float(record.height)) - 0.5;
     vec2 low = floor(at);
     vec2 weight = (record.options & 2u) != 0u ? step(0.5, at - low) : at - low;
     uint x0 = texture_neighbour(int(low.x), record.width, wrap_u);
