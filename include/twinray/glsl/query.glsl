@@ -66,35 +66,33 @@ TraceOptions trace_options(uint mask, uint flags, uint query)
     return options;
 }
 
-// The closest hit of the instances that share a bit with mask; flags: CULL_BACK, CULL_FRONT or 0. False: hit is a miss.
-bool closest_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
+bool find_hit(Address accel, Ray ray, TraceOptions options, Address user_data, out Hit hit)
 {
-    hit = trace(accel, ray, trace_options(mask, flags, QUERY_CLOSEST));
-    return hit.hit != 0u;
-}
-// For kernels with a program of their own (twinray/glsl/program.h), which finds user_data in its candidates.
-bool closest_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit)
-{
-    TraceOptions options = trace_options(mask, flags, QUERY_CLOSEST);
     options.user_data = user_data;
     hit = trace(accel, ray, options);
     return hit.hit != 0u;
+}
+
+// The closest hit of the instances that share a bit with mask; flags: CULL_BACK, CULL_FRONT or 0. False: hit is a miss.
+// user_data is for kernels with a program of their own (twinray/glsl/program.h), which finds it in its candidates.
+bool closest_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit)
+{
+    return find_hit(accel, ray, trace_options(mask, flags, QUERY_CLOSEST), user_data, hit);
+}
+bool closest_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
+{
+    return closest_hit(accel, ray, mask, flags, NULL_ADDRESS, hit);
 }
 bool closest_hit(Address accel, Ray ray, out Hit hit) { return closest_hit(accel, ray, 0xffu, 0u, hit); }
 
 // Any hit of them, whichever is found first. False: hit is a miss.
-bool any_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
-{
-    hit = trace(accel, ray, trace_options(mask, flags, QUERY_ANY));
-    return hit.hit != 0u;
-}
-
 bool any_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit)
 {
-    TraceOptions options = trace_options(mask, flags, QUERY_ANY);
-    options.user_data = user_data;
-    hit = trace(accel, ray, options);
-    return hit.hit != 0u;
+    return find_hit(accel, ray, trace_options(mask, flags, QUERY_ANY), user_data, hit);
+}
+bool any_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
+{
+    return any_hit(accel, ray, mask, flags, NULL_ADDRESS, hit);
 }
 
 // Whether anything lies on the ray.
