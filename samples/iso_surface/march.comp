@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Triangles of a surface f = 0, a cell of a grid an invocation: each cell is cut into six tetrahedra about its diagonal,
-// and each of those by a plane (marching tetrahedra: Doi, Koide 1991).
+// Triangles of a surface f = 0, a cell of a grid an invocation: each cell is cut into six tetrahedra about its
+// diagonal, and each of those by a plane (marching tetrahedra: Doi, Koide 1991).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"

@@ -5,9 +5,9 @@
 //     while (next_hit(accel, ray, hit)) depth += hit.t;
 //
 // By t, then by (instance, primitive), so that triangles at one distance each come once; by hardware a driver may
-// choose among them and pass some over. Of triangles, at levels fast and watertight; kernels with a program of their own
-// (twinray/glsl/program.h) have no use of it. Each call is a traversal from the ray's origin on: for all hits of many
-// rays AllHits is faster.
+// choose among them and pass some over. Of triangles, at levels fast and watertight; kernels with a program of their
+// own (twinray/glsl/program.h) have no use of it. Each call is a traversal from the ray's origin on: for all hits of
+// many rays AllHits is faster.
 #ifndef TWINRAY_NEXT_HIT_GLSL
 #define TWINRAY_NEXT_HIT_GLSL
 #define TWINRAY_PROGRAM

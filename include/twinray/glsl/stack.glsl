@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Where the entries of a traversal's stack lie: in the memory of the workgroup, a column for each invocation, or in
 // registers (STACK_CONSTANT). A kernel whose groups have more than 64 invocations defines TWINRAY_INVOCATIONS as their
-// number before it includes twinray/glsl/query.glsl; TWINRAY_PRIVATE_STACK, in stages without such memory, leaves it out.
+// number before it includes twinray/glsl/query.glsl; TWINRAY_PRIVATE_STACK, in stages without such memory, leaves it
+// out.
 #ifndef TWINRAY_STACK_GLSL
 #define TWINRAY_STACK_GLSL
 #include "shaders/shared/features.h"
