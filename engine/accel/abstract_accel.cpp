@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The contract, handed on to what is behind it.
 #include "engine/accel/accel_backend.h"
+#include "engine/core/error.h"
 
 namespace twinray {
 
@@ -126,6 +127,10 @@ std::unique_ptr<TraceProgram> AbstractAccel::make_program(const TraceProgramCode
     return backend_->make_program(code, features);
 }
 Capability AbstractAccel::capability(Feature feature) const { return backend_->capability(feature); }
+void AbstractAccel::check_kernel_queries(const std::string& kernel) const {
+    if (const Capability queries = capability(Feature::kernel_queries); queries.support == Support::unsupported)
+        fail(name(), ": ", kernel, ": ", name_of(queries.feature), " is unsupported: ", queries.note);
+}
 std::vector<Capability> AbstractAccel::capabilities() const { return backend_->capabilities(); }
 bool AbstractAccel::is_software() const { return backend_->is_software(); }
 void AbstractAccel::wait_for_gpu() { backend_->wait_for_gpu(); }

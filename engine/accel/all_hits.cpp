@@ -16,8 +16,7 @@ namespace {
 constexpr std::size_t batch = 1 << 20;  // rays
 
 AbstractAccel& checked(AbstractAccel& accel) {
-    if (const Capability queries = accel.capability(Feature::kernel_queries); queries.support == Support::unsupported)
-        fail(accel.name(), ": all hits: ", name_of(queries.feature), " is unsupported: ", queries.note);
+    accel.check_kernel_queries("all hits");
     return accel;
 }
 

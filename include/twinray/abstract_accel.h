@@ -190,6 +190,8 @@ class AbstractAccel {
 
     // What this accelerator can do on its device.
     Capability capability(Feature feature) const;
+    // Throws Error, which names `kernel`, where the accelerator lacks Feature::kernel_queries.
+    void check_kernel_queries(const std::string& kernel) const;
     std::vector<Capability> capabilities() const;
     // Which of the two modules of a kernel with twinray/glsl/query.glsl fits.
     bool is_software() const;
@@ -224,10 +226,12 @@ class AbstractAccel {
 template <class Args>
 class QueryKernel {
   public:
-    // `desc` without spirv. The accelerator must outlive the kernel.
+    // `desc` without spirv. The accelerator must outlive the kernel. Throws Error where kernels cannot trace it
+    // (Feature::kernel_queries).
     QueryKernel(const AbstractAccel& accel, KernelDesc desc, std::span<const std::uint32_t> software,
                 std::span<const std::uint32_t> hardware)
         : accel_(accel), desc_(std::move(desc)) {
+        accel.check_kernel_queries(desc_.name);
         desc_.spirv = accel.is_software() ? software : hardware;
     }
 

@@ -104,7 +104,11 @@ FUNC TreeBox around(TreeBox a, TreeBox b)
 }
 
 // Halved first: their sum might not be finite.
-FUNC vec3 center_of(TreeBox box) { return box.min * 0.5f + box.max * 0.5f; }
+FUNC vec3 center_of(TreeBox box)
+{
+    PRECISE vec3 center = box.min * 0.5f + box.max * 0.5f;
+    return center;
+}
 
 // The node after `node` and all below it, in depth-first order; 0 after the last.
 FUNC uint next_subtree(uint node)

@@ -8,10 +8,6 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PairSearchArgs args; };
 
-const uint BATCH = 16u; // pairs for which room is asked at once
-uint batch[BATCH];
-uint batch_count = 0u;
-
 bool has(uint flag) { return (args.flags & flag) != 0u; }
 
 // Counts them; gives how many there were before, without the high word.
@@ -22,18 +18,13 @@ uint count(uint pairs)
     return before;
 }
 
-void flush(uint item)
+void append_pair(uint item, uint other)
 {
-    uint at = count(batch_count);
-    for (uint i = 0u; i < batch_count; i++)
-    {
-        uint slot = at + i;
-        if (slot < at || slot >= args.capacity) break;
-        bool is_turned = has(SEARCH_WITHIN) && batch[i] < item;
-        AT(args.first, slot) = is_turned ? batch[i] : item;
-        AT(args.second, slot) = is_turned ? item : batch[i];
-    }
-    batch_count = 0u;
+    uint slot = count(1u);
+    if (slot >= args.capacity) return;
+    bool is_turned = has(SEARCH_WITHIN) && other < item;
+    AT(args.first, slot) = is_turned ? other : item;
+    AT(args.second, slot) = is_turned ? item : other;
 }
 
 void main()
@@ -60,11 +51,9 @@ void main()
         }
         else if (meets && !is_empty(other))
         {
-            batch[batch_count++] = other.item;
-            if (batch_count == BATCH || has(SEARCH_ANY)) flush(query.item);
+            append_pair(query.item, other.item);
             if (has(SEARCH_ANY)) return;
         }
         node = next_subtree(node);
     }
-    if (batch_count != 0u) flush(query.item);
 }

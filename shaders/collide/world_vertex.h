@@ -10,14 +10,14 @@
 
 FUNC double world_coordinate(vec4 row, dvec3 p)
 {
-    PRECISE double x = product_sum(linear_double(row), p) + double(row.w);
+    PRECISE double x = product_sum(dvec3(widened(row.x), widened(row.y), widened(row.z)), p) + widened(row.w);
     return x;
 }
 
 FUNC dvec3 world_vertex(InstancedMesh mesh, uint vertex)
 {
-    dvec3 p = dvec3(double(AT(mesh.positions, 3u * vertex)), double(AT(mesh.positions, 3u * vertex + 1u)),
-                    double(AT(mesh.positions, 3u * vertex + 2u)));
+    dvec3 p = dvec3(widened(AT(mesh.positions, 3u * vertex)), widened(AT(mesh.positions, 3u * vertex + 1u)),
+                    widened(AT(mesh.positions, 3u * vertex + 2u)));
     return dvec3(world_coordinate(mesh.object_to_world[0], p), world_coordinate(mesh.object_to_world[1], p),
                  world_coordinate(mesh.object_to_world[2], p));
 }

@@ -16,7 +16,8 @@ uint code_of(InstanceRecord record)
     GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);
     Rows to_world = to_world_of(record);
     if (!(box.lo.x <= box.hi.x) || !is_finite_map(to_world)) return LAST;
-    vec3 center = transform_point(to_world, box.lo * 0.5f + box.hi * 0.5f);
+    precise vec3 middle = box.lo * 0.5f + box.hi * 0.5f; // halved first: their sum might not be finite
+    vec3 center = transform_point(to_world, middle);
     WorldBound bound = AT(args.bound, 0);
     return morton_code(center, bound.lo, bound.hi);
 }

@@ -72,8 +72,10 @@ FUNC PointBox box_around(dvec3 p)
 // In units of 1 / scale, a power of two.
 FUNC PointBox scaled(PointBox box, float scale)
 {
-    box.min = box.min * scale;
-    box.max = box.max * scale;
+    PRECISE vec3 low = box.min * scale;
+    PRECISE vec3 high = box.max * scale;
+    box.min = low;
+    box.max = high;
     return box;
 }
 
@@ -89,11 +91,15 @@ FUNC TreeBox tree_box_of(dvec3 p, uint item)
 }
 
 // Not above the squared distance of any point of the box from the query, which is scaled, in units of 1 / scale.
-// Scaling comes first, so that no difference overflows; what it flushes is below what counts. Each rounding is below
-// 2^-24 of what it rounds. The largest float stands for all that is larger.
+// Scaling comes first, so that no difference overflows, and compilers are kept from taking the factor out; what it
+// flushes is below what counts. Each rounding is below 2^-24 of what it rounds. The largest float stands for all above.
 FUNC float squared_distance_below(PointBox p, TreeBox box, float scale)
 {
-    vec3 gap = max(max(box.min * scale - p.max, p.min - box.max * scale), vec3(0.0f));
+    PRECISE vec3 low = box.min * scale;
+    PRECISE vec3 high = box.max * scale;
+    PRECISE vec3 before = low - p.max;
+    PRECISE vec3 behind = p.min - high;
+    vec3 gap = max(max(before, behind), vec3(0.0f));
     return min(dot(gap, gap), 3.402823466e38f) * 0.9999995f;
 }
 

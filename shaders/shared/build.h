@@ -174,13 +174,30 @@ FUNC BvhTriangle fetch_primitive(BuildTree tree, uint primitive)
     return triangle;
 }
 
+// In place of a denormal, which devices may flush, what is next to it below and above. By its bits.
+FUNC bool is_denormal(float x) { return (floatBitsToUint(x) << 1u) - 1u < 0xffffffu; }
+FUNC float normal_next_to(float x, bool is_below)
+{
+    const float LEAST_NORMAL = 1.17549435082e-38f;
+    if (!is_denormal(x) || (floatBitsToUint(x) >> 31u != 0u) != is_below) return is_denormal(x) ? 0.0f : x;
+    return is_below ? -LEAST_NORMAL : LEAST_NORMAL;
+}
+FUNC vec3 normals_below(vec3 v)
+{
+    return vec3(normal_next_to(v.x, true), normal_next_to(v.y, true), normal_next_to(v.z, true));
+}
+FUNC vec3 normals_above(vec3 v)
+{
+    return vec3(normal_next_to(v.x, false), normal_next_to(v.y, false), normal_next_to(v.z, false));
+}
+
 // Triangles that cannot be hit stay in the tree with an empty box.
 FUNC LeafBox box_of_triangle(BvhTriangle t)
 {
     if (!is_active_triangle(t.v0, t.v1, t.v2)) return empty_box();
     LeafBox box;
-    box.lo = min_by_comparison(t.v0, min_by_comparison(t.v1, t.v2));
-    box.hi = max_by_comparison(t.v0, max_by_comparison(t.v1, t.v2));
+    box.lo = min_by_comparison(normals_below(t.v0), min_by_comparison(normals_below(t.v1), normals_below(t.v2)));
+    box.hi = max_by_comparison(normals_above(t.v0), max_by_comparison(normals_above(t.v1), normals_above(t.v2)));
     return box;
 }
 
@@ -189,8 +206,8 @@ FUNC LeafBox box_of_primitive(BuildTree tree, uint primitive)
     BvhTriangle fetched = fetch_primitive(tree, primitive);
     if (!has_boxes(tree)) return box_of_triangle(fetched);
     LeafBox box;
-    box.lo = fetched.v0;
-    box.hi = fetched.v1;
+    box.lo = normals_below(fetched.v0);
+    box.hi = normals_above(fetched.v1);
     return box;
 }
 

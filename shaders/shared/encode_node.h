@@ -131,7 +131,7 @@ FUNC NodeRecords encode_node(NodeChildren children, NodeOrder order, uint first_
     {
         uint exponent = cell_exponent(around.lo[axis], around.hi[axis]);
         PRECISE float lower = around.lo[axis] - cell_size(exponent);
-        origin[axis] = origin_below(lower, exponent);
+        origin[axis] = origin_below(is_denormal(lower) ? 0.0f : lower, exponent); // devices may have flushed it
         planes[axis] = encode_axis(children, order, axis, origin[axis], cells_per_unit(exponent), width);
     }
     uint count = uint(bitCount(order.mask & 0xffu));

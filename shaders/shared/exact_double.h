@@ -3,6 +3,16 @@
 #ifndef TWINRAY_SHARED_EXACT_DOUBLE_H
 #define TWINRAY_SHARED_EXACT_DOUBLE_H
 
+// The same number, of denormals too, which a device's conversion may flush.
+FUNC double widened(float x)
+{
+    const double LEAST = double(7.8886090522101181e-31f) * double(1.7763568394002505e-15f); // 2^-149
+    uint bits = floatBitsToUint(x);
+    if ((bits & 0x7f800000u) != 0u) return double(x);
+    double magnitude = double(bits & 0x7fffffu) * LEAST;
+    return bits >> 31u != 0u ? -magnitude : magnitude;
+}
+
 FUNC double product_sum(dvec3 a, dvec3 b)
 {
     PRECISE double x = a.x * b.x;

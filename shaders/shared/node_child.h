@@ -59,8 +59,7 @@ FUNC float area_of(LeafBox box, float scale)
 {
     if (!is_active(box)) return 0.0f;
     PRECISE vec3 size = (box.hi - box.lo) * scale;
-    PRECISE float area = size.x * size.y + size.y * size.z + size.z * size.x;
-    return area;
+    return area_of_sides(size);
 }
 FUNC float area_around(NodeChild a, NodeChild b, float scale)
 {
@@ -70,6 +69,6 @@ FUNC float area_around(NodeChild a, NodeChild b, float scale)
 FUNC float area_scale(vec3 lo, vec3 hi)
 {
     float unit = area_unit(lo, hi);
-    return unit > 0.0f ? 1.0f / unit : 0.0f;
+    return unit > 1e-37f ? 1.0f / min(unit, 8.5070591730234616e+37f) : 0.0f; // 2^126: its inverse is normal
 }
 #endif

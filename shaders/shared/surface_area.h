@@ -46,14 +46,23 @@ struct NodeAreasArgs
     uint reserved;
 };
 
+// Half the area of a box with these sides, about 1 long at most. Some are so small that their products, which devices
+// may flush, do not count.
+FUNC float or_zero(float side) { return side < 8.6736173798840355e-19f ? 0.0f : side; } // 2^-60
+FUNC float area_of_sides(vec3 sides)
+{
+    vec3 s = vec3(or_zero(sides.x), or_zero(sides.y), or_zero(sides.z));
+    PRECISE float area = s.x * s.y + s.y * s.z + s.z * s.x;
+    return area;
+}
+
 // Half the area of a box in squares of `unit`, which keeps it in range. Neither too small nor infinite: else 0.
 FUNC float half_area(vec3 lo, vec3 hi, float unit)
 {
     const float LARGEST_FLOAT = uintBitsToFloat(0x7f7fffffu);
     if (!(lo.x <= hi.x) || !(unit > 1e-37f && unit <= LARGEST_FLOAT)) return 0.0f;
     PRECISE vec3 size = (hi - lo) / unit;
-    PRECISE float area = size.x * size.y + size.y * size.z + size.z * size.x;
-    return area;
+    return area_of_sides(size);
 }
 
 FUNC float area_unit(vec3 lo, vec3 hi)

@@ -40,6 +40,12 @@ class AccelTest : public VulkanTest, public ::testing::WithParamInterface<Kind> 
 
     // Not the driver: held to every rule to the letter.
     bool is_ours() const { return GetParam() == Kind::software || GetParam() == Kind::reference; }
+    // Not the order of the input alone, whatever the driver makes of it.
+    bool measures_its_trees() const { return is_ours() || context().state().tuning().builds_in_input_order; }
+    // Of a whole scene. A GPU's driver may invert instances' maps by a determinant in float32 (docs/requirements.md).
+    float smallest_scale() const {
+        return is_ours() || context().state().tuning().row == TuningRow::cpu_driver ? 1e-18f : 1e-12f;
+    }
     // On this device; the reference has all on any.
     bool has_level(Level level) const {
         if (GetParam() == Kind::reference) return true;

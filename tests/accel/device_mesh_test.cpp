@@ -276,7 +276,7 @@ TEST_P(DeviceMeshTest, MemoryIsToldBeforeItIsTaken) {
 
 TEST_P(DeviceMeshTest, UnitsFollowTheBounds) {
     Mesh mesh = make_icosphere(3);
-    for (vec3& p : mesh.positions) p *= 1e-20f;
+    for (vec3& p : mesh.positions) p *= smallest_scale();
     OnDevice device = on_device(mesh);
     device.mesh.bounds = bounds_of(mesh);
     accel().push(device.mesh);

@@ -91,5 +91,18 @@ TEST_P(NextHit, AQueryKernelFollowsWhatTheSceneNeeds) {
     EXPECT_EQ(count(), 3);
 }
 
+// And what was recorded before is given up: nothing waits for it.
+TEST_P(NextHit, AKernelThatTheDeviceCannotRunIsRefused) {
+    Commands commands(context(), "given up");
+    accel().push(test::square(0.5f));
+    accel().sync(commands);
+    const auto make = [&] {
+        const QueryKernel<NextHitArgs> kernel(accel(), {.name = "next hits"}, test_next_hit_sw_spirv,
+                                              test_next_hit_hw_spirv);
+    };
+    if (accel().capability(Feature::kernel_queries).support != Support::unsupported) return make();
+    EXPECT_NE(error_of(make).find("next hits: queries in kernels is unsupported"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace twinray

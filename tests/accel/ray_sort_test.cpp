@@ -57,11 +57,16 @@ class SortedRays : public test::AccelTest {
         desc.order = RayOrder::sorted;
         const std::vector<Hit> sorted = hits_of(rays, desc);
         for (std::size_t i = 0; i < rays.size(); ++i)
-            if (std::memcmp(&given[i], &sorted[i], sizeof(Hit)) != 0) {
+            if (!is_same(given[i], sorted[i])) {
                 ADD_FAILURE() << "ray " << i << " of " << rays.size() << " has another hit";
                 break;
             }
         return given;
+    }
+    // To the last bit; a driver may name another of the triangles that meet in the point.
+    bool is_same(const Hit& a, const Hit& b) const {
+        if (std::memcmp(&a, &b, sizeof(Hit)) == 0) return true;
+        return !is_ours() && a.hit == b.hit && std::abs(a.t - b.t) <= 1e-5f * a.t;
     }
     void push_scene() {
         accel().push(make_icosphere(3));

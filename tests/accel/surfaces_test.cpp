@@ -199,8 +199,7 @@ struct HostTable {
     }
 };
 
-// To the last bit but for what has been made a unit vector, by roots and quotients that devices round in their own
-// ways.
+// To the last bit on a device that rounds quotients to nearest, but for what has been made a unit vector.
 TEST_P(Surfaces, AreWhatTheSameFunctionsGiveOnTheHost) {
     add_some();
     push_all(accel());
@@ -208,22 +207,24 @@ TEST_P(Surfaces, AreWhatTheSameFunctionsGiveOnTheHost) {
     const std::vector<Hit> hits = accel().closest_hits(rays);
     const std::vector<Surface> surfaces = accel().surfaces(rays, hits);
     const HostTable host(placed_);
+    const float off = context().state().tuning().row == TuningRow::cpu_driver ? 0.0f : 1e-5f;
+    const auto distance_of = [](const auto& a, const auto& b) { return length(a - b); };
     for (std::size_t i = 0; i < rays.size(); ++i) {
         if (!hits[i].hit) continue;
         const Surface expected = surface_at(surface_place(host.table(), rays[i], hits[i]), hits[i].instance_index);
         const Surface& found = surfaces[i];
-        ASSERT_EQ(found.point.position, expected.point.position) << i;
-        ASSERT_EQ(found.t, expected.t) << i;
-        ASSERT_EQ(found.uv, expected.uv) << i;
+        ASSERT_LE(distance_of(found.point.position, expected.point.position), off) << i;
+        ASSERT_NEAR(found.t, expected.t, off * expected.t) << i;
+        ASSERT_LE(distance_of(found.uv, expected.uv), off) << i;
         ASSERT_EQ(found.vertices, expected.vertices) << i;
         ASSERT_EQ(found.is_front, expected.is_front) << i;
-        ASSERT_EQ(found.uv0, expected.uv0) << i;
-        ASSERT_EQ(found.uv1, expected.uv1) << i;
-        ASSERT_EQ(found.color, expected.color) << i;
+        ASSERT_LE(distance_of(found.uv0, expected.uv0), off) << i;
+        ASSERT_LE(distance_of(found.uv1, expected.uv1), off) << i;
+        ASSERT_LE(distance_of(found.color, expected.color), off) << i;
         ASSERT_EQ(found.face_metadata, expected.face_metadata) << i;
-        ASSERT_LE(length(expected.point.normal - found.point.normal), 1e-6f) << i;
-        ASSERT_LE(length(expected.normal - found.normal), 1e-6f) << i;
-        ASSERT_LE(length(vec3(expected.tangent) - vec3(found.tangent)), 1e-6f) << i;
+        ASSERT_LE(length(expected.point.normal - found.point.normal), 1e-6f + off) << i;
+        ASSERT_LE(length(expected.normal - found.normal), 1e-6f + off) << i;
+        ASSERT_LE(length(vec3(expected.tangent) - vec3(found.tangent)), 1e-6f + off) << i;
         ASSERT_EQ(expected.tangent.w, found.tangent.w) << i;
     }
 }

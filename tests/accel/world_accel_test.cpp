@@ -124,7 +124,7 @@ TEST_P(WorldAccelTest, TheOriginMovesWithoutARebuild) {
         world.set_origin(far_away + dvec3(away, -away, 0.5 * away));
         accel().sync();
         EXPECT_EQ(accel().revision(), view.revision);
-        EXPECT_EQ(accel().memory_usage().geometries, geometries);
+        EXPECT_LE(accel().memory_usage().geometries, geometries) << "less where a driver compacts it";
         if (away < 20) expect_hits(positions, rays, world.closest_hits(rays));
     }
 }

@@ -5,6 +5,7 @@
 #include "engine/core/vma.h"
 #include <twinray/geometry.h>
 #include <twinray/tlas.h>
+#include "tests/support/caller.h"
 #include "tests/support/device.h"
 #include "tests/support/fault_injection.h"
 
@@ -68,7 +69,7 @@ TEST_F(Compaction, HappensWhenAskedForAndKeepsViewsAndHits) {
     EXPECT_EQ(accel().memory_usage().structures(), bytes) << "a clean sync does nothing";
     EXPECT_TRUE(accel().compact());
     sync_and_wait();
-    EXPECT_EQ(accel().memory_usage().structures(), bytes - 3 * slack);
+    EXPECT_LE(accel().memory_usage().structures(), bytes - 3 * slack) << "a driver may make them smaller still";
     EXPECT_EQ(accel().revision(), view.revision);
     EXPECT_EQ(accel().view().scene, view.scene);
     wipe_freed_memory();
@@ -93,17 +94,12 @@ TEST_F(Compaction, HappensInASyncThatHasOtherWork) {
 }
 
 TEST_F(Compaction, NeverWaitsForTheBuild) {
-    const Buffer filled(context(), {.name = "filled", .bytes = 256 << 20});
-    Commands busy(context(), "busy");
-    for (std::uint32_t word = 0; word < 8; ++word) {
-        const auto pass = busy.pass("fill");
-        busy.fill(filled, 0, filled.bytes(), word);
-    }
-    busy.submit();
+    test::Caller caller(context());
+    context().wait_before_next_submission(caller.begin().done);
     push_box(0);
     accel().sync();
     EXPECT_FALSE(accel().compact());
-    ASSERT_FALSE(context().is_reached(busy.done())) << "the queue was not busy for long enough to show anything";
+    caller.signal();
     context().wait_for_gpu();
     EXPECT_TRUE(accel().compact());
 }

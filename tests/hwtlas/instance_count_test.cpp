@@ -20,6 +20,7 @@ class Row {
         squares_.erase(squares_.begin());
     }
     void move(float z) {
+        if (accel_.compact()) accel_.sync();  // or it would come with the move, and rebuild
         for (std::size_t i = 0; i < squares_.size(); ++i) {
             squares_[i].z = z + static_cast<float>(i);
             accel_.update_transform(squares_[i].handle,
@@ -37,10 +38,13 @@ class Row {
         }
         EXPECT_EQ(hits.back().hit, 0u);
     }
-    bool was_updated() const {
-        for (const PassTiming& pass : accel_.build_timings())
-            if (pass.name == "hwtlas_update_tlas") return true;
-        return false;
+    ::testing::AssertionResult was_updated() const {
+        std::string passes;
+        for (const PassTiming& pass : accel_.build_timings()) {
+            if (pass.name == "hwtlas_update_tlas") return ::testing::AssertionSuccess();
+            passes += ' ' + pass.name;
+        }
+        return ::testing::AssertionFailure() << "passes of the build:" << passes;
     }
 
   private:
