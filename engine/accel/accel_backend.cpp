@@ -260,6 +260,7 @@ void AccelBackend::PushedGeometry::add_to(SceneTraits& traits) const {
 
 SceneTraits AccelBackend::scene_traits() const {
     SceneTraits traits{.instances = 0, .has_transforms = options_.can_move};
+    if (options_.masks_on_device) traits.common_mask = 0;
     for (const auto& [id, pushed] : pushed_) pushed.add_to(traits);
     return traits;
 }

@@ -16,7 +16,9 @@ struct InstanceRecord;
 struct WorldBound;
 
 // The records of one handle's instances on the device, for kernels that move them. They may write object_to_world (12
-// floats at offset 0 of each record) and must leave the rest. Valid as long as revision() does not change.
+// floats at offset 0 of each record) and the custom index (lower 24 bits of the word at offset 48); the mask (upper 8
+// bits) where the accelerator was made with AccelOptions::masks_on_device; and must leave the rest. What the host edits
+// of an instance later is the host's again. Valid as long as revision() does not change.
 struct InstanceRange {
     VkBuffer buffer = VK_NULL_HANDLE;
     std::uint64_t offset = 0;     // of the first record, in bytes

@@ -88,6 +88,8 @@ struct AccelOptions {
     // False: instances stay where push() puts them, and whatever would move them throws. Where they stand as their
     // meshes were given, rays of software are then not transformed.
     bool can_move = true;
+    // Kernels write masks into AbstractAccel::instance_buffer(), too: no trace leaves out that instances have them.
+    bool masks_on_device = false;
     // Software: programs for other needs than those of the first trace are compiled by a thread of the accelerator's
     // own, while one that fits all scenes serves. False: traces wait for them.
     bool compiles_in_background = true;

@@ -606,6 +606,39 @@ TEST_P(Accel, KernelsMoveInstancesInTheirBuffer) {
     EXPECT_EQ(accel().world_bound().hi.z, 6.0f);
 }
 
+TEST_P(Accel, KernelsMaskInstancesInTheirBuffer) {
+    if (GetParam() == test::Kind::reference) return;  // it takes no options
+    const std::unique_ptr<AbstractAccel> masked =
+        make_accel({.masks_on_device = true, .compiles_in_background = false});
+    const Transform places[] = {Transform{}, Transform::translation({0, 0, 1}), Transform::translation({0, 0, 2})};
+    const AccelHandle handle = masked->push(square(0), places);
+    masked->sync();
+    const InstanceRange range = masked->instance_buffer(handle);
+    Commands commands(context(), "mask");
+    {
+        const auto pass = commands.pass("mask");
+        const uint with_mask_2 = 2u << 24 | 77u;
+        context().state().vk().vkCmdUpdateBuffer(
+            commands.handle(), range.buffer,
+            range.offset + 2 * sizeof(InstanceRecord) + offsetof(InstanceRecord, custom_index_mask), sizeof with_mask_2,
+            &with_mask_2);
+    }
+    commands.submit();
+    masked->mark_transforms_dirty(handle);
+    const Ray ray = down(0.5f, 0.25f);
+    const auto seen = [&](std::uint8_t mask) {
+        return masked->closest_hits(std::span(&ray, 1), {.mask = mask}).front();
+    };
+    EXPECT_EQ(seen(1).t, 9.0f);
+    EXPECT_EQ(seen(2).t, 8.0f);
+    EXPECT_EQ(seen(2).custom_index, 77u);
+    EXPECT_EQ(masked->get_instance(handle, 2).options.mask, 2u);
+    masked->push(square(-5));  // what was written moves along
+    EXPECT_EQ(seen(1).t, 9.0f);
+    masked->update_options(handle, 2, {.mask = 1});
+    EXPECT_EQ(seen(1).t, 8.0f);
+}
+
 TEST_P(Accel, UnusableTransformsFromTheDeviceAreInactiveAndCounted) {
     const AccelHandle handle = accel().push(square(0), std::vector<Transform>(4));
     const Buffer source =
