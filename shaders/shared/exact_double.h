@@ -9,7 +9,7 @@ FUNC double widened(float x)
     const double LEAST = double(7.8886090522101181e-31f) * double(1.7763568394002505e-15f); // 2^-149
     uint bits = floatBitsToUint(x);
     if ((bits & 0x7f800000u) != 0u) return double(x);
-    double magnitude = double(bits & 0x7fffffu) * LEAST;
+    PRECISE double magnitude = double(bits & 0x7fffffu) * LEAST;
     return bits >> 31u != 0u ? -magnitude : magnitude;
 }
 
