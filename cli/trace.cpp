@@ -12,7 +12,7 @@
 #include "cli/common.h"
 #include "cli/picture_options.h"
 #include "engine/scene/ray_file.h"
-#include "engine/accel/all_hits.h"
+#include <twinray/queries.h>
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "validation/picture/ray_picture.h"

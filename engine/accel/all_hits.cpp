@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "engine/accel/all_hits.h"
+#include <twinray/queries.h>
 
 #include <algorithm>
 #include <tuple>
@@ -8,9 +8,18 @@
 #include "all_hits_sw.spv.h"
 #include "engine/accel/features_of.h"
 #include "engine/accel/instance_record.h"
+#include "engine/core/device_list.h"
 #include "engine/core/error.h"
+#include "engine/core/kernel.h"
+#include "engine/core/ray.h"
 
 namespace twinray {
+#include "twinray/glsl/cpp_begin.h"
+#include "shaders/shared/all_hits.h"
+#include "twinray/glsl/cpp_end.h"
+
+static_assert(sizeof(RayHit) == 36);
+
 namespace {
 
 constexpr std::size_t batch = 1 << 20;  // rays
@@ -45,42 +54,63 @@ void tidy(std::vector<RayHit>& found) {
 
 }  // namespace
 
-AllHits::AllHits(AbstractAccel& accel)
-    : accel_(checked(accel)),
-      kernel_(accel.context(), kernel_for(accel)),
-      found_(accel.context(), "hits", sizeof(RayHit)) {}
+struct AllHits::State {
+    explicit State(AbstractAccel& traced)
+        : accel(checked(traced)),
+          kernel(traced.context(), kernel_for(traced)),
+          found(traced.context(), "hits", sizeof(RayHit)) {}
+
+    std::vector<RayHit> find(const AccelView& view, std::span<const Ray> some, const TraceDesc& desc);
+
+    AbstractAccel& accel;
+    Kernel<AllHitsArgs> kernel;
+    Buffer rays;
+    DeviceList found;
+};
+
+AllHits::AllHits(AbstractAccel& accel) : state_(std::make_unique<State>(accel)) {}
+AllHits::~AllHits() = default;
+
+std::uint64_t AllHits::max_hits() const { return state_->found.limit(); }
+void AllHits::set_max_hits(std::uint64_t count) { state_->found.set_limit(count); }
+
+// In order.
+std::vector<RayHit> AllHits::State::find(const AccelView& view, std::span<const Ray> some, const TraceDesc& desc) {
+    grow(accel.context(), rays, "rays", some.size_bytes());
+    const auto record = [&](Commands& commands, const DeviceList::View& list, std::uint64_t first,
+                            std::uint64_t count) {
+        {
+            const auto pass = commands.pass("upload rays");
+            commands.upload(rays, some.subspan(first, count), first * sizeof(Ray));
+        }
+        kernel.dispatch(commands,
+                        {view.scene,
+                         rays.ref<Ray>(),
+                         {list.address},
+                         list.total,
+                         static_cast<uint>(first),
+                         static_cast<uint>(first + count),
+                         list.capacity,
+                         desc.mask,
+                         flags_of(desc.cull),
+                         0},
+                        count);
+    };
+    const std::uint64_t count = found.fill(record, some.size(), 2 * some.size(), accel.name() + ": all hits");
+    std::vector<RayHit> hits = download<RayHit>(accel.context(), found.buffer(), count);
+    tidy(hits);
+    return hits;
+}
 
 HitsOfRays AllHits::operator()(std::span<const Ray> rays, const TraceDesc& desc) {
-    Context& context = accel_.context();
-    accel_.sync();
-    const AccelView view = accel_.view();
-    if (view.features & FEATURE_BOXES) fail(accel_.name(), ": all hits: the scene has boxes, which need a program");
+    AbstractAccel& accel = state_->accel;
+    accel.sync();
+    const AccelView view = accel.view();
+    if (view.features & FEATURE_BOXES) fail(accel.name(), ": all hits: the scene has boxes, which need a program");
     HitsOfRays result{.first = {0}, .hits = {}};
     for (std::size_t begin = 0; begin < rays.size(); begin += batch) {
         const std::span<const Ray> some = rays.subspan(begin, std::min(batch, rays.size() - begin));
-        grow(context, rays_, "rays", some.size_bytes());
-        const auto record = [&](Commands& commands, const DeviceList::View& list, std::uint64_t first,
-                                std::uint64_t count) {
-            {
-                const auto pass = commands.pass("upload rays");
-                commands.upload(rays_, some.subspan(first, count), first * sizeof(Ray));
-            }
-            kernel_.dispatch(commands,
-                             {view.scene,
-                              rays_.ref<Ray>(),
-                              {list.address},
-                              list.total,
-                              static_cast<uint>(first),
-                              static_cast<uint>(first + count),
-                              list.capacity,
-                              desc.mask,
-                              flags_of(desc.cull),
-                              0},
-                             count);
-        };
-        const std::uint64_t count = found_.fill(record, some.size(), 2 * some.size(), accel_.name() + ": all hits");
-        std::vector<RayHit> found = download<RayHit>(context, found_.buffer(), count);
-        tidy(found);
+        const std::vector<RayHit> found = state_->find(view, some, desc);
         auto next = found.begin();
         for (std::size_t ray = 0; ray < some.size(); ++ray) {
             for (; next != found.end() && next->ray == ray; ++next) result.hits.push_back(next->hit);

@@ -79,7 +79,7 @@ struct PointQuery::State {
 
     PointSearchArgs upload(std::span<const dvec3> some, std::uint64_t result_bytes);
     std::vector<PointItem> found(const Kernel<PointSearchArgs>& kernel, PointSearchArgs args);
-    void check_closed();
+    const std::string& why_not_closed();  // "" where all meshes are
     void wind(std::span<const dvec3> some, std::span<int> windings);
 
     Context& context;
@@ -233,19 +233,20 @@ std::vector<NearTriangle> PointQuery::within(std::span<const dvec3> points, doub
     return near;
 }
 
-void PointQuery::State::check_closed() {
-    if (!side_fault) {
-        side_fault.emplace();
-        std::set<uint> used;
-        for (const MeshInstance& instance : instances) used.insert(instance.mesh);
-        for (auto mesh = used.begin(); mesh != used.end() && side_fault->empty(); ++mesh)
-            side_fault = side_fault_of(meshes[*mesh], *mesh);
-    }
-    if (!side_fault->empty()) fail("points: ", *side_fault);
+const std::string& PointQuery::State::why_not_closed() {
+    if (side_fault) return *side_fault;
+    side_fault.emplace();
+    std::set<uint> used;
+    for (const MeshInstance& instance : instances) used.insert(instance.mesh);
+    for (auto mesh = used.begin(); mesh != used.end() && side_fault->empty(); ++mesh)
+        side_fault = side_fault_of(meshes[*mesh], *mesh);
+    return *side_fault;
 }
 
+bool PointQuery::is_closed() { return state_->why_not_closed().empty(); }
+
 std::vector<int> PointQuery::winding_numbers(std::span<const dvec3> points) {
-    state_->check_closed();
+    if (const std::string& why = state_->why_not_closed(); !why.empty()) fail("points: ", why);
     for (std::size_t i = 0; i < points.size(); ++i)
         if (const std::string fault = sign_fault_of(points[i]); !fault.empty())
             fail("points: point ", i, " has ", fault);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Geometric queries that trace no rays: collisions of instances and of triangles, closest points, distances and winding
-// numbers. All work is done on the GPU, over a tree of boxes in Hilbert order.
+// All hits of rays, and geometric queries that trace none: collisions of instances and of triangles, closest points,
+// distances and winding numbers. All work is done on the GPU, of the latter over a tree of boxes in Hilbert order.
 //
 // - Vertices are where float64 puts them: from float32 positions p and rows r of a transform by
 //   ((r.x p.x + r.y p.y) + r.z p.z) + r.w, each sum rounded to nearest.
@@ -37,6 +37,38 @@ struct MeshInstance {
 
 // How many pairs a search may find before it throws, unless told otherwise.
 inline constexpr std::uint64_t default_max_pairs = 1u << 27;
+
+// All hits of rays ----------------------------------------------------------------------------------------------------
+
+struct HitsOfRays {
+    std::vector<std::uint64_t> first;  // of each ray's hits, and at the end how many there are in all
+    std::vector<Hit> hits;             // of each ray ascending by t, then by (instance, primitive)
+
+    std::span<const Hit> of(std::size_t ray) const {
+        return std::span(hits).subspan(first[ray], first[ray + 1] - first[ray]);
+    }
+};
+
+// Finds every triangle that rays meet, each once, at level watertight: a closed surface is met as often from outside as
+// from inside, and of the triangles around an edge or a corner SwTlas names exactly one a crossing. Filters of
+// instances are not asked: what is non-opaque counts. Uses mask and cull of TraceDesc. Each call syncs the accelerator.
+class AllHits {
+  public:
+    // Throws Error where kernels cannot trace the accelerator (Feature::kernel_queries).
+    explicit AllHits(AbstractAccel& accel);
+    ~AllHits();
+
+    // Throws Error for a scene with boxes, and one that says how many hits there are where they exceed max_hits().
+    HitsOfRays operator()(std::span<const Ray> rays, const TraceDesc& desc = {});
+
+    // 36 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
+    std::uint64_t max_hits() const;
+    void set_max_hits(std::uint64_t count);
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 // Broad phase: instances whose boxes overlap --------------------------------------------------------------------------
 
@@ -240,6 +272,8 @@ class PointQuery {
     // that is neither 0 nor of a magnitude from 2^-245 to 2^259, and where more crossings are undecided than
     // max_found().
     std::vector<int> winding_numbers(std::span<const dvec3> points);
+    // Whether all meshes are, so that there are winding numbers.
+    bool is_closed();
     // The distance of closest(), negative where the winding number is not 0.
     std::vector<double> signed_distances(std::span<const dvec3> points);
     // Of the last winding numbers: how many crossings float64 could not decide, and the host did.

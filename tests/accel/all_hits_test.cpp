@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every hit of rays, against closest hits that begin behind each other.
-#include "engine/accel/all_hits.h"
+#include <twinray/queries.h>
 
 #include <algorithm>
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <random>
 
-#include "engine/accel/all_hits.h"
 #include "engine/core/kernel.h"
 #include "test_next_hit_hw.spv.h"
 #include "test_next_hit_sw.spv.h"

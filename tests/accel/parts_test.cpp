@@ -8,7 +8,6 @@
 
 #include <twinray/scene.h>
 
-#include "engine/accel/all_hits.h"
 #include "validation/reference/aimed_rays.h"
 #include "tests/accel/accel_fixture.h"
 

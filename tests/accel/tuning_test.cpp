@@ -3,7 +3,7 @@
 #include <cstring>
 #include <random>
 
-#include "engine/accel/all_hits.h"
+#include <twinray/queries.h>
 #include "validation/reference/aimed_rays.h"
 #include "test_program.trace_program.h"
 #include "tests/accel/accel_fixture.h"

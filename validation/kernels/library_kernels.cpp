@@ -4,7 +4,6 @@
 #include <twinray/queries.h>
 
 #include "validation/kernels/kernel_list.h"
-#include "engine/accel/all_hits.h"
 #include "engine/accel/ray_sort.h"
 #include "engine/accel/surface_kernels.h"
 #include <twinray/scene.h>
