@@ -12,7 +12,7 @@ PRODUCT = ENGINE + ["swtlas", "hwtlas"]
 # twinray::validation, then what the command and the tests link beside it.
 VALIDATION = ["validation/" + room for room in ("reference", "leaks", "records", "verify", "cpu_reference")]
 CHECKS = VALIDATION + ["validation/" + room for room in ("exact", "kernels", "picture", "replay", "report", "suite")]
-AS_HOSTS = ["samples", "shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"]  # see include alone
+AS_HOSTS = ["samples", "bindings", "shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"]  # see include alone
 SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "include": ["shaders/hwtlas"],  # the public face; its GLSL has parts there and in shaders/shared
     "engine": ENGINE,  # headers that gather the others
@@ -27,6 +27,7 @@ SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "validation/replay": PRODUCT + CHECKS, "validation/report": BASE + CHECKS, "validation/picture": BASE,
     "validation/kernels": PRODUCT + CHECKS + ["shaders/path_tracer", "samples"],
     "cli": PRODUCT + CHECKS + ["bench"],
+    "bindings": [],
     "samples": ["shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"],
     "bench": PRODUCT + VALIDATION, "tests": PRODUCT + CHECKS + ["shaders/scene", "cli", "samples", "bench"],
     "shaders/path_tracer": [], "shaders/particles": [], "shaders/embed_renderer": ["shaders/path_tracer"],

@@ -20,13 +20,37 @@ section_end() {
     section_start=
 }
 
+# A Python with what the package twinray is built and tested with, at versions that are known to work: prints its path,
+# or says on standard error why there is none.
+python_for_package() {
+    local folder=$PWD/build/venv
+    local packages=(nanobind==3.1.0 nanobind-backend==1.0.0 numpy pytest==9.2.0 trimesh==5.2.0)
+    if [[ ! -e $folder/complete ]]; then
+        python3 -m venv --clear "$folder" >&2 &&
+            "$folder/bin/pip" install --quiet --disable-pip-version-check "${packages[@]}" >&2 || return
+        touch "$folder/complete"
+    fi
+    echo "$folder/bin/python"
+}
+
 # Installs the packages and builds; the working directory is the checkout. TWINRAY_WERROR=ON in the environment makes
 # warnings errors.
 build() { # preset [what tools/setup.sh takes]
     section "Packages"
     tools/setup.sh "${@:2}"
     section "Configure ($1)"
-    cmake --preset "$1" ${TWINRAY_WERROR+-DTWINRAY_WERROR="$TWINRAY_WERROR"}
+    local options=() python
+    if [[ -n ${TWINRAY_WERROR+set} ]]; then options+=(-DTWINRAY_WERROR="$TWINRAY_WERROR"); fi
+    if [[ ${with_python-} ]]; then
+        if python=$(python_for_package); then
+            options+=(-DTWINRAY_PYTHON=ON -DPython_EXECUTABLE="$python")
+        elif [[ ${TWINRAY_REQUIRE-} == *python* ]]; then
+            return 1
+        else
+            echo "the Python package and its tests are left out: see above"
+        fi
+    fi
+    cmake --preset "$1" "${options[@]}"
     section "Build ($1)"
     cmake --build --preset "$1"
 }

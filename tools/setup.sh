@@ -3,6 +3,7 @@
 # Installs the Debian packages that twinray needs, and nothing else.
 #   tools/setup.sh           install all; does nothing if everything is there
 #   tools/setup.sh demo      install what path_tracer needs, and no more
+#   tools/setup.sh python    install what `pip install .` needs, and no more
 #   tools/setup.sh --undo    remove the apt configuration that it wrote
 #   SKIP_APT=1               install nothing, whatever is missing
 # On Debian 12 (bookworm) two things are not in the release itself: a Mesa whose CPU driver traces rays (from
@@ -15,7 +16,7 @@ demo_packages=(
     libglm-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libcli11-dev libopenexr-dev zlib1g-dev
 )
 packages=(
-    "${demo_packages[@]}" pkg-config python3-minimal python3-venv libvulkan-volk-dev vulkan-tools
+    "${demo_packages[@]}" pkg-config python3-minimal python3-venv python3-dev libvulkan-volk-dev vulkan-tools
     vulkan-validationlayers spirv-tools
     libgtest-dev libgmp-dev libeigen3-dev assimp-testmodels chromium-common graphviz
 )
@@ -184,8 +185,9 @@ main() {
         return
         ;;
     demo) packages=("${demo_packages[@]}") ;;
+    python) packages=("${demo_packages[@]}" python3-dev python3-venv) ;;
     '') ;;
-    *) die "unknown option '$1'; usage: tools/setup.sh [demo|--undo]" ;;
+    *) die "unknown option '$1'; usage: tools/setup.sh [demo|python|--undo]" ;;
     esac
     if [[ ${SKIP_APT-} == 1 ]]; then
         say "SKIP_APT=1, installs nothing"

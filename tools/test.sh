@@ -3,7 +3,8 @@
 # Installs the packages, builds and runs every test; `quick` runs those that need no device, and of the others those of
 # the accelerators' common contract, within three minutes on two cores.
 #   tools/test.sh [quick|release|debug|asan]
-# TWINRAY_REQUIRE names the devices without which tests fail instead of skipping: "vulkan,ray_tracing,descriptor_indexing" unless it is set.
+# TWINRAY_REQUIRE names the devices without which tests fail instead of skipping: "vulkan,ray_tracing,descriptor_indexing" unless it is set;
+# with "python" in it the Python package must be built, too, for which PyPI must be reached.
 # The last lines are ctest's summary.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -20,6 +21,8 @@ if [[ ! $preset =~ ^(release|debug|asan)$ || $# -gt 1 ]]; then
     exit 2
 fi
 
+# Sanitizers want to be loaded before Python; quick is about other things.
+if [[ $preset == release && ${#which[@]} == 0 ]]; then with_python=1; fi
 build "$preset"
 section "Tests ($preset)"
 export TWINRAY_REQUIRE=${TWINRAY_REQUIRE-vulkan,ray_tracing,descriptor_indexing}

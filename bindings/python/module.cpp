@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// twinray._core: scene.h for Python. Arguments are checked and cast in Python, which has the public names.
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "bindings/python/arrays.h"
+#include "bindings/python/scene.h"
+
+namespace twinray::python {
+namespace {
+
+using RayRows = Rows<float, 6>;
+using PointRows = Rows<double, 3>;
+using Matrix = nb::ndarray<const float, nb::shape<3, 4>, nb::c_contig, nb::device::cpu>;
+
+std::vector<Ray> rays_of(const RayRows& rows, float t_near, float t_far) {
+    std::vector<Ray> rays(rows.shape(0));
+    const float* row = rows.data();
+    for (Ray& ray : rays) {
+        ray = {vec3(row[0], row[1], row[2]), t_near, vec3(row[3], row[4], row[5]), t_far};
+        row += 6;
+    }
+    return rays;
+}
+
+Transform transform_of(const Matrix& matrix) {
+    Transform transform;
+    for (std::size_t i = 0; i < 12; ++i) transform.rows[i / 4][i % 4] = matrix.data()[i];
+    return transform;
+}
+
+template <class Row, class Array>
+std::vector<Row> copied(const Array& rows) {
+    const std::span<const Row> span = as<Row>(rows);
+    return {span.begin(), span.end()};
+}
+
+// Calls without the GIL: others go on while the device works.
+template <class Call>
+auto unlocked(const Call& call) {
+    const nb::gil_scoped_release released;
+    return call();
+}
+
+nb::dict dict_of(Cast&& hits) {
+    nb::dict arrays;
+    arrays["t_hit"] = given<float>(std::move(hits.t));
+    arrays["geometry_ids"] = given<uint>(std::move(hits.geometry));
+    arrays["primitive_ids"] = given<uint>(std::move(hits.primitive));
+    arrays["primitive_uvs"] = given<float>(std::move(hits.uv), 2);
+    if (!hits.normal.empty()) arrays["primitive_normals"] = given<float>(std::move(hits.normal), 3);
+    return arrays;
+}
+
+nb::dict dict_of(Nearest&& found) {
+    nb::dict arrays;
+    arrays["points"] = given<double>(std::move(found.position), 3);
+    arrays["distances"] = given<double>(std::move(found.distance));
+    arrays["geometry_ids"] = given<uint>(std::move(found.geometry));
+    arrays["primitive_ids"] = given<uint>(std::move(found.primitive));
+    arrays["primitive_uvs"] = given<float>(std::move(found.uv), 2);
+    if (!found.normal.empty()) arrays["primitive_normals"] = given<float>(std::move(found.normal), 3);
+    return arrays;
+}
+
+nb::dict dict_of(const Backend& backend) {
+    nb::dict names;
+    names["device"] = backend.device;
+    names["driver"] = backend.driver;
+    names["kind"] = backend.kind;
+    names["accel"] = backend.accel;
+    names["why"] = backend.why;
+    names["path"] = backend.path;
+    names["level"] = backend.level;
+    return names;
+}
+
+uint add(Scene& scene, const Rows<float, 3>& positions, const Rows<uint, 3>& triangles, const Matrix& transform) {
+    Mesh mesh;
+    mesh.positions = copied<vec3>(positions);
+    mesh.triangles = copied<uvec3>(triangles);
+    const Transform placed = transform_of(transform);
+    return unlocked([&] { return scene.add(std::move(mesh), placed); });
+}
+
+nb::dict cast(Scene& scene, const RayRows& rows, float t_near, float t_far, bool with_normals) {
+    const std::vector<Ray> rays = rays_of(rows, t_near, t_far);
+    return dict_of(unlocked([&] { return scene.cast(rays, with_normals); }));
+}
+
+nb::tuple list(Scene& scene, const RayRows& rows, float t_near, float t_far, bool with_normals) {
+    const std::vector<Ray> rays = rays_of(rows, t_near, t_far);
+    Listed found = unlocked([&] { return scene.list(rays, with_normals); });
+    return nb::make_tuple(given<std::uint64_t>(std::move(found.first)), dict_of(std::move(found.hits)));
+}
+
+void bind_scene(nb::module_& m) {
+    nb::class_<Scene>(m, "Scene")
+        .def(nb::init<const std::string&, const std::string&, const std::string&>(), nb::arg("accel"),
+             nb::arg("device"), nb::arg("level"), nb::call_guard<nb::gil_scoped_release>())
+        .def("add", &add)
+        .def("add_instance",
+             [](Scene& scene, uint of, const Matrix& matrix) {
+                 return unlocked([&] { return scene.add_instance(of, transform_of(matrix)); });
+             })
+        .def("remove", &Scene::remove, nb::call_guard<nb::gil_scoped_release>())
+        .def("set_transform",
+             [](Scene& scene, uint geometry, const Matrix& matrix) {
+                 unlocked([&] { scene.set_transform(geometry, transform_of(matrix)); });
+             })
+        .def("update_vertices",
+             [](Scene& scene, uint geometry, const Rows<float, 3>& positions) {
+                 unlocked([&] { scene.update_vertices(geometry, copied<vec3>(positions)); });
+             })
+        .def("geometries", &Scene::geometries, nb::call_guard<nb::gil_scoped_release>())
+        .def("triangle_count", &Scene::triangle_count, nb::call_guard<nb::gil_scoped_release>())
+        .def("cast", &cast)
+        .def("occlusions",
+             [](Scene& scene, const RayRows& rows, float t_near, float t_far) {
+                 const std::vector<Ray> rays = rays_of(rows, t_near, t_far);
+                 return given<bool>(unlocked([&] { return scene.occlusions(rays); }));
+             })
+        .def("counts",
+             [](Scene& scene, const RayRows& rows, float t_near, float t_far) {
+                 const std::vector<Ray> rays = rays_of(rows, t_near, t_far);
+                 return given<int>(unlocked([&] { return scene.counts(rays); }));
+             })
+        .def("list", &list)
+        .def("closest",
+             [](Scene& scene, const PointRows& points, bool with_normals) {
+                 return dict_of(unlocked([&] { return scene.closest(as<dvec3>(points), with_normals); }));
+             })
+        .def("winding_numbers",
+             [](Scene& scene, const PointRows& points) {
+                 return given<int>(unlocked([&] { return scene.winding_numbers(as<dvec3>(points)); }));
+             })
+        .def("is_closed", &Scene::is_closed, nb::call_guard<nb::gil_scoped_release>())
+        .def("world_triangles",
+             [](const Scene& scene) { return given<double>(unlocked([&] { return scene.world_triangles(); }), 3); })
+        .def("backend", [](const Scene& scene) { return dict_of(unlocked([&] { return scene.backend(); })); })
+        .def("take_log", &Scene::take_log, nb::call_guard<nb::gil_scoped_release>());
+}
+
+nb::list devices() {
+    nb::list found;
+    for (const DeviceProperties& device : unlocked([] { return list_devices(); })) {
+        nb::dict properties;
+        properties["name"] = device.name;
+        properties["driver"] = device.driver;
+        properties["kind"] = name_of(device.kind);
+        properties["ray_query"] = device.ray_query;
+        properties["ray_tracing_pipeline"] = device.ray_tracing_pipeline;
+        properties["float64"] = device.shader_float64;
+        found.append(properties);
+    }
+    return found;
+}
+
+}  // namespace
+
+NB_MODULE(_core, m) {
+    nb::exception<Error>(m, "Error", PyExc_RuntimeError);
+    m.attr("__version__") = TWINRAY_VERSION;
+    bind_scene(m);
+    m.def("devices", &devices);
+    m.def("forget_devices", &forget_devices, nb::call_guard<nb::gil_scoped_release>());
+    m.def("widen_cpu_vectors", &widen_cpu_vectors);
+}
+
+}  // namespace twinray::python

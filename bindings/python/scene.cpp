@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+#include "bindings/python/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace twinray::python {
+namespace {
+
+constexpr uint invalid = 0xffffffffu;
+constexpr uint most_geometries = 1u << 24;  // custom indices have 24 bits
+
+Level level_of(const std::string& name) {
+    for (const Level level : all_levels)
+        if (name_of(level) == name) return level;
+    throw Error("level '" + name + "' is not one of fast, watertight, refined, certified");
+}
+
+std::map<std::string, std::shared_ptr<Device>>& devices() {
+    static auto& all = *new std::map<std::string, std::shared_ptr<Device>>;  // no driver is called at static ends
+    return all;
+}
+std::mutex& devices_mutex() {
+    static auto& mutex = *new std::mutex;
+    return mutex;
+}
+
+ContextDesc desc_for(const std::string& request, std::vector<std::string>& log) {
+    ContextDesc desc;
+    desc.device = request;
+    desc.pipeline_folder = user_pipeline_folder();
+    desc.log = [&log](std::string_view message) { log.emplace_back(message); };
+    return desc;
+}
+
+std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, Level level) {
+    const AccelOptions options{.level = level};
+    if (choice.is_software) return std::make_unique<SwTlas>(context, options);
+    return std::make_unique<HwTlas>(context, BuildOrder::automatic, options);
+}
+
+dvec3 world_vertex(const Transform& transform, vec3 p) {
+    dvec3 world;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const vec4& row = transform.rows[i];
+        world[i] = double(row.x) * p.x + double(row.y) * p.y + double(row.z) * p.z + row.w;
+    }
+    return world;
+}
+
+}  // namespace
+
+Device::Device(const std::string& request) : context(desc_for(request, log)) {}
+
+std::shared_ptr<Device> device_for(const std::string& request) {
+    const std::lock_guard lock(devices_mutex());
+    std::shared_ptr<Device>& device = devices()[request];
+    if (!device) device = std::make_shared<Device>(request);
+    return device;
+}
+
+void forget_devices() {
+    const std::lock_guard lock(devices_mutex());
+    devices().clear();
+}
+
+Scene::Scene(const std::string& accel, const std::string& device, const std::string& level) : level_(level_of(level)) {
+    device_ = device_for(device);
+    const Lock lock(device_->mutex);
+    choice_ = choose_accel(device_->context.properties(), accel, {.level = level_});
+    accel_ = make_accel(device_->context, choice_, level_);
+}
+
+Scene::~Scene() {
+    const Lock lock(device_->mutex);
+    all_hits_.reset();
+    points_.reset();
+    accel_.reset();
+}
+
+Scene::Part& Scene::part(uint geometry, const char* action) {
+    if (geometry >= parts_.size() || !parts_[geometry])
+        throw Error(std::string(action) + ": geometry " + std::to_string(geometry) + " is not in the scene");
+    return *parts_[geometry];
+}
+
+InstanceOptions Scene::options_of_next() const {
+    if (parts_.size() >= most_geometries)
+        throw Error("add_triangles: a scene has at most " + std::to_string(most_geometries) + " geometries");
+    return {.custom_index = static_cast<uint>(parts_.size())};
+}
+
+uint Scene::keep(AccelHandle handle, std::shared_ptr<Mesh> mesh, const Transform& transform) {
+    is_searchable_ = false;
+    parts_.push_back(Part{handle, std::move(mesh), transform});
+    return static_cast<uint>(parts_.size() - 1);
+}
+
+uint Scene::add(Mesh&& mesh, const Transform& transform) {
+    const Lock lock(device_->mutex);
+    mesh.name = "geometry " + std::to_string(parts_.size());
+    auto kept = std::make_shared<Mesh>(std::move(mesh));
+    const AccelHandle handle = accel_->push(*kept, transform, options_of_next());
+    return keep(handle, std::move(kept), transform);
+}
+
+uint Scene::add_instance(uint of, const Transform& transform) {
+    const Lock lock(device_->mutex);
+    const Part original = part(of, "add_instance");
+    const InstanceOptions options = options_of_next();
+    const AccelHandle handle =
+        accel_->push_instances_of(original.handle, std::span(&transform, 1), std::span(&options, 1));
+    return keep(handle, original.mesh, transform);
+}
+
+void Scene::remove(uint geometry) {
+    const Lock lock(device_->mutex);
+    accel_->erase(part(geometry, "remove").handle);
+    parts_[geometry].reset();
+    is_searchable_ = false;
+}
+
+void Scene::set_transform(uint geometry, const Transform& transform) {
+    const Lock lock(device_->mutex);
+    Part& moved = part(geometry, "set_transform");
+    accel_->update_transform(moved.handle, transform);
+    moved.transform = transform;
+    is_searchable_ = false;
+}
+
+void Scene::update_vertices(uint geometry, std::vector<vec3>&& positions) {
+    const Lock lock(device_->mutex);
+    Part& moved = part(geometry, "update_vertices");
+    accel_->update_vertices(moved.handle, positions);
+    moved.mesh->positions = std::move(positions);
+    is_searchable_ = false;
+}
+
+std::vector<uint> Scene::geometries() const {
+    const Lock lock(device_->mutex);
+    std::vector<uint> alive;
+    for (uint i = 0; i < parts_.size(); ++i)
+        if (parts_[i]) alive.push_back(i);
+    return alive;
+}
+
+std::size_t Scene::triangle_count() const {
+    const Lock lock(device_->mutex);
+    std::size_t count = 0;
+    for (const auto& part : parts_) count += part ? part->mesh->triangles.size() : 0;
+    return count;
+}
+
+vec3 Scene::normal_of(uint geometry, uint primitive) const {
+    const Part& hit = *parts_[geometry];
+    const uvec3 vertices = hit.mesh->triangles[primitive];
+    dvec3 corners[3];
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = world_vertex(hit.transform, hit.mesh->positions[vertices[i]]);
+    double ab[3], ac[3];
+    for (std::size_t i = 0; i < 3; ++i) ab[i] = corners[1][i] - corners[0][i], ac[i] = corners[2][i] - corners[0][i];
+    const double n[] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]};
+    const double length = std::hypot(n[0], n[1], n[2]);
+    return length > 0 ? vec3(n[0] / length, n[1] / length, n[2] / length) : vec3(0);
+}
+
+Cast Scene::cast_of(std::span<const Hit> hits, bool with_normals) const {
+    Cast found;
+    found.t.reserve(hits.size());
+    for (auto* numbers : {&found.geometry, &found.primitive}) numbers->reserve(hits.size());
+    found.uv.reserve(hits.size());
+    for (const Hit& hit : hits) {
+        found.t.push_back(hit.hit ? hit.t : std::numeric_limits<float>::infinity());
+        found.geometry.push_back(hit.hit ? hit.custom_index : invalid);
+        found.primitive.push_back(hit.hit ? hit.primitive_index : invalid);
+        found.uv.emplace_back(hit.u, hit.v);
+        if (with_normals) found.normal.push_back(hit.hit ? normal_of(hit.custom_index, hit.primitive_index) : vec3(0));
+    }
+    return found;
+}
+
+Cast Scene::cast(std::span<const Ray> rays, bool with_normals) {
+    const Lock lock(device_->mutex);
+    return cast_of(accel_->closest_hits(rays, {.level = level_}), with_normals);
+}
+
+std::vector<std::uint8_t> Scene::occlusions(std::span<const Ray> rays) {
+    const Lock lock(device_->mutex);
+    std::vector<std::uint8_t> is_hit;
+    is_hit.reserve(rays.size());
+    for (const Hit& hit : accel_->any_hits(rays, {.level = level_})) is_hit.push_back(hit.hit != 0);
+    return is_hit;
+}
+
+HitsOfRays Scene::all_hits(std::span<const Ray> rays) {
+    if (!all_hits_) all_hits_ = std::make_unique<AllHits>(*accel_);
+    return (*all_hits_)(rays);
+}
+
+std::vector<int> Scene::counts(std::span<const Ray> rays) {
+    const Lock lock(device_->mutex);
+    const HitsOfRays found = all_hits(rays);
+    std::vector<int> counts;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        counts.push_back(static_cast<int>(found.first[i + 1] - found.first[i]));
+    return counts;
+}
+
+Listed Scene::list(std::span<const Ray> rays, bool with_normals) {
+    const Lock lock(device_->mutex);
+    HitsOfRays found = all_hits(rays);
+    return {std::move(found.first), cast_of(found.hits, with_normals)};
+}
+
+PointQuery& Scene::points() {
+    if (!points_) points_ = std::make_unique<PointQuery>(device_->context);
+    if (!is_searchable_) points_->set(*accel_);
+    is_searchable_ = true;
+    return *points_;
+}
+
+Nearest Scene::closest(std::span<const dvec3> asked, bool with_normals) {
+    const Lock lock(device_->mutex);
+    const std::vector<uint> numbers = geometries();  // each has one instance, in the order of numbers
+    Nearest nearest;
+    for (const ClosestPoint& found : points().closest(asked)) {
+        const uint geometry = found.is_found ? numbers[found.instance] : invalid;
+        nearest.position.push_back(found.position);
+        nearest.distance.push_back(found.distance);
+        nearest.geometry.push_back(geometry);
+        nearest.primitive.push_back(found.is_found ? found.triangle : invalid);
+        nearest.uv.emplace_back(found.u, found.v);
+        if (with_normals) nearest.normal.push_back(found.is_found ? normal_of(geometry, found.triangle) : vec3(0));
+    }
+    return nearest;
+}
+
+std::vector<int> Scene::winding_numbers(std::span<const dvec3> asked) {
+    const Lock lock(device_->mutex);
+    return points().winding_numbers(asked);
+}
+
+bool Scene::is_closed() {
+    const Lock lock(device_->mutex);
+    return points().is_closed();
+}
+
+std::vector<dvec3> Scene::world_triangles() const {
+    const Lock lock(device_->mutex);
+    std::vector<dvec3> vertices;
+    for (const auto& part : parts_) {
+        if (!part) continue;
+        for (const uvec3& triangle : part->mesh->triangles)
+            for (std::size_t i = 0; i < 3; ++i)
+                vertices.push_back(world_vertex(part->transform, part->mesh->positions[triangle[i]]));
+    }
+    return vertices;
+}
+
+Backend Scene::backend() const {
+    const Lock lock(device_->mutex);
+    const DeviceProperties& device = device_->context.properties();
+    const auto* hardware = dynamic_cast<const HwTlas*>(accel_.get());
+    return {device.name,
+            device.driver,
+            name_of(device.kind),
+            choice_.name(),
+            choice_.why,
+            hardware ? hardware->trace_path() : "compute",
+            std::string(name_of(level_))};
+}
+
+std::vector<std::string> Scene::take_log() {
+    const Lock lock(device_->mutex);
+    return std::exchange(device_->log, {});
+}
+
+}  // namespace twinray::python

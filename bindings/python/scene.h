@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// A scene as twinray's Python package has it, without Python: meshes by number on one accelerator, and what is asked of
+// them. Any thread; calls on one device take turns.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <twinray/queries.h>
+#include <twinray/tlas.h>
+
+namespace twinray::python {
+
+// One context for all scenes of a device, kept until the end of the program.
+struct Device {
+    explicit Device(const std::string& request);
+
+    std::recursive_mutex mutex;
+    std::vector<std::string> log;  // warnings that nobody has taken yet
+    Context context;
+};
+// Throws Error with the reason why each device was rejected if none fits.
+std::shared_ptr<Device> device_for(const std::string& request);
+// Scenes that are alive keep theirs.
+void forget_devices();
+
+struct Backend {
+    std::string device, driver, kind, accel, why, path, level;
+};
+
+// By ray; of a miss t is infinite, both numbers are 2^32 - 1, the rest is 0.
+struct Cast {
+    std::vector<float> t;
+    std::vector<uint> geometry, primitive;
+    std::vector<vec2> uv;
+    std::vector<vec3> normal;  // unit, of the triangle in world space; empty unless asked for
+};
+
+// Hits of each ray are those from first[ray] to first[ray + 1] - 1, ascending by t.
+struct Listed {
+    std::vector<std::uint64_t> first;
+    Cast hits;
+};
+
+// By point; as Cast where there is nothing.
+struct Nearest {
+    std::vector<dvec3> position;
+    std::vector<double> distance;
+    std::vector<uint> geometry, primitive;
+    std::vector<vec2> uv;
+    std::vector<vec3> normal;
+};
+
+class Scene {
+  public:
+    // accel: "auto", "sw" or "hw"; device: as ContextDesc::device; level: as name_of(Level).
+    Scene(const std::string& accel, const std::string& device, const std::string& level);
+    ~Scene();
+
+    // Numbers of geometries, 0, 1, ...; never given again. Throws Error as AbstractAccel::push does.
+    uint add(Mesh&& mesh, const Transform& transform);
+    uint add_instance(uint of, const Transform& transform);
+    void remove(uint geometry);
+    void set_transform(uint geometry, const Transform& transform);
+    // Of all instances of the mesh.
+    void update_vertices(uint geometry, std::vector<vec3>&& positions);
+    std::vector<uint> geometries() const;
+    std::size_t triangle_count() const;
+
+    Cast cast(std::span<const Ray> rays, bool with_normals);
+    std::vector<std::uint8_t> occlusions(std::span<const Ray> rays);
+    std::vector<int> counts(std::span<const Ray> rays);
+    Listed list(std::span<const Ray> rays, bool with_normals);
+
+    Nearest closest(std::span<const dvec3> points, bool with_normals);
+    // Whether all meshes are; else winding_numbers() throws Error naming one that is not.
+    bool is_closed();
+    std::vector<int> winding_numbers(std::span<const dvec3> points);
+    std::vector<dvec3> world_triangles() const;  // three vertices each
+
+    Backend backend() const;
+    std::vector<std::string> take_log();
+
+  private:
+    struct Part {
+        AccelHandle handle;
+        std::shared_ptr<Mesh> mesh;
+        Transform transform;
+    };
+    using Lock = std::lock_guard<std::recursive_mutex>;
+
+    Part& part(uint geometry, const char* action);
+    uint keep(AccelHandle handle, std::shared_ptr<Mesh> mesh, const Transform& transform);
+    InstanceOptions options_of_next() const;
+    vec3 normal_of(uint geometry, uint primitive) const;
+    Cast cast_of(std::span<const Hit> hits, bool with_normals) const;
+    HitsOfRays all_hits(std::span<const Ray> rays);
+    PointQuery& points();
+
+    std::shared_ptr<Device> device_;
+    Level level_;
+    AccelChoice choice_;
+    std::unique_ptr<AbstractAccel> accel_;
+    std::vector<std::optional<Part>> parts_;  // by number
+    std::unique_ptr<AllHits> all_hits_;
+    std::unique_ptr<PointQuery> points_;
+    bool is_searchable_ = false;  // points_ holds what the accelerator does
+};
+
+}  // namespace twinray::python

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+"""Ray tracing on Vulkan for NumPy: rays that miss nothing, signs that do not flip, on any GPU or CPU.
+
+>>> import numpy as np
+>>> import twinray
+>>> scene = twinray.Scene()
+>>> triangle = scene.add_triangles([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+>>> scene.cast_rays([[0.25, 0.25, 2, 0, 0, -1]])["t_hit"]
+Array([2.], dtype=float32)
+"""
+
+import atexit as _atexit
+
+from . import _core
+from ._arrays import Array
+from ._core import Error
+from .scene import INVALID_ID, Scene, create_rays_pinhole
+
+__all__ = ["Array", "Error", "INVALID_ID", "Scene", "create_rays_pinhole", "devices"]
+__version__ = _core.__version__
+
+_atexit.register(_core.forget_devices)
+_core.widen_cpu_vectors()
+
+
+def devices():
+    """List the Vulkan devices of this machine.
+
+    Returns
+    -------
+    list of dict
+        ``name``, ``driver``, ``kind`` ("discrete GPU", "CPU", ...), and whether it has
+        ``ray_query``, ``ray_tracing_pipeline`` and ``float64``.
+
+    Raises
+    ------
+    Error
+        Where there is no Vulkan at all.
+    """
+    return _core.devices()

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""What callers give becomes NumPy arrays of one dtype, or an exception that names the argument."""
+
+import numpy as np
+
+_CPU = (1, 3)  # DLPack's kDLCPU and kDLCUDAHost
+
+
+class Array(np.ndarray):
+    """A NumPy array that also answers what Open3D's tensors are asked: ``numpy()``, ``cpu()``, ``isfinite()``."""
+
+    def numpy(self):
+        return self.view(np.ndarray)
+
+    def cpu(self):
+        return self
+
+    def isfinite(self):
+        return np.isfinite(self)
+
+
+def array_of(values, name):
+    """Any array of numbers in host memory, without a copy where that can be."""
+    if hasattr(values, "__dlpack_device__"):
+        device = values.__dlpack_device__()[0]
+        if getattr(device, "value", device) not in _CPU:  # Open3D's is an enumeration of its own
+            raise TypeError(f"{name}: an array in device memory; copy it to the host first")
+    if not isinstance(values, np.ndarray) and callable(getattr(values, "numpy", None)):
+        values = values.numpy()
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        raise ValueError(f"{name}: not an array of numbers: {error}") from None
+    if array.size == 0 and array.dtype.kind == "f":
+        return array
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name}: dtype {array.dtype}; wanted are floats or integers")
+    return array
+
+
+def rows_of(values, name, dtype, columns):
+    """Of shape (..., columns), as (n, columns) of the dtype, and the leading shape."""
+    array = array_of(values, name)
+    if array.ndim == 0 or array.shape[-1] != columns:
+        if array.size != 0 or array.ndim != 1:
+            raise ValueError(f"{name}: shape {array.shape}; wanted is (..., {columns})")
+        array = array.reshape(0, columns)
+    with np.errstate(over="ignore"):  # what float32 does not hold is infinite, and hits nothing
+        flat = np.ascontiguousarray(array.reshape(-1, columns), dtype=dtype)
+    return flat, array.shape[:-1]
+
+
+def indices_of(values, name):
+    """Of shape (m, 3), as uint32."""
+    array = array_of(values, name)
+    if array.size == 0:
+        return np.zeros((0, 3), np.uint32)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{name}: shape {array.shape}; wanted is (m, 3)")
+    if array.dtype.kind == "f":
+        raise TypeError(f"{name}: dtype {array.dtype}; wanted are integers")
+    if array.min() < 0 or array.max() > 0xFFFFFFFF:
+        raise ValueError(f"{name}: indices from {array.min()} to {array.max()}; they must be from 0 to 2**32 - 1")
+    return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def matrix_of(values, name):
+    """Of shape (4, 4) or (3, 4), the last row (0, 0, 0, 1), as (3, 4) of float32; None is the identity."""
+    if values is None:
+        return np.eye(3, 4, dtype=np.float32)
+    array = array_of(values, name)
+    if array.shape not in ((4, 4), (3, 4)):
+        raise ValueError(f"{name}: shape {array.shape}; wanted is (4, 4) or (3, 4)")
+    if array.shape == (4, 4) and not np.array_equal(array[3], [0, 0, 0, 1]):
+        raise ValueError(f"{name}: its last row is {array[3]}, not (0, 0, 0, 1)")
+    return np.ascontiguousarray(array[:3], dtype=np.float32)
+
+
+def number_of(value, name, least=None):
+    """A float, not NaN."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: {value!r} is not a number") from None
+    if number != number or (least is not None and number < least):
+        raise ValueError(f"{name}: {number}; wanted is a number{'' if least is None else f' of at least {least}'}")
+    return number
+
+
+def geometry_of(value, name):
+    """The number of a geometry."""
+    try:
+        number = value.__index__()
+    except AttributeError:
+        raise TypeError(f"{name}: {value!r} is not the number of a geometry") from None
+    if not 0 <= number < 2**32:
+        raise ValueError(f"{name}: {number} is not the number of a geometry")
+    return number

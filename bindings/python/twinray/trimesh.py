@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: MIT
+"""trimesh's ray interface: ``mesh.ray = twinray.trimesh.RayMeshIntersector(mesh)``."""
+
+import numpy as np
+
+from ._arrays import rows_of
+from .scene import Scene
+
+
+class RayMeshIntersector:
+    """What ``trimesh.Trimesh.ray`` answers, by twinray.
+
+    Parameters
+    ----------
+    geometry : trimesh.Trimesh
+        Its triangles are taken at the first question, and again where they have changed.
+    accel, device, level
+        As of `twinray.Scene`.
+    scale_to_box : bool
+        Not used; for programs written for trimesh.
+
+    Notes
+    -----
+    Vertices and rays are moved to the middle of the mesh in float64 before they become float32. A ray that passes
+    exactly between triangles meets one of them, never none and never two. Rows are by ray, then by distance.
+    """
+
+    def __init__(self, geometry, scale_to_box=True, *, accel="auto", device=None, level="watertight"):
+        self.mesh = geometry
+        self._options = {"accel": accel, "device": device, "level": level}
+        self._built = None
+
+    def __getstate__(self):
+        return {"mesh": self.mesh, "_options": self._options, "_built": None}
+
+    def __deepcopy__(self, memo):
+        from copy import deepcopy
+
+        return type(self)(deepcopy(self.mesh, memo), **self._options)
+
+    @property
+    def scene(self):
+        """The `twinray.Scene` of the mesh, about `center`."""
+        return self._scene_and_center()[0]
+
+    def _scene_and_center(self):
+        key = hash(self.mesh)
+        if self._built is None or self._built[0] != key:
+            vertices = np.asarray(self.mesh.vertices, np.float64).reshape(-1, 3)
+            finite = vertices[np.isfinite(vertices).all(axis=1)]
+            center = (finite.min(axis=0) + finite.max(axis=0)) / 2 if len(finite) else np.zeros(3)
+            scene = Scene(**self._options)
+            scene.add_triangles(vertices - center, self.mesh.faces)
+            self._built = key, scene, center
+        return self._built[1:]
+
+    def _rays(self, ray_origins, ray_directions):
+        origins, _ = rows_of(ray_origins, "ray_origins", np.float64, 3)
+        directions, _ = rows_of(ray_directions, "ray_directions", np.float64, 3)
+        if len(origins) != len(directions):
+            raise ValueError(f"ray_directions: {len(directions)} rows, of ray_origins {len(origins)}")
+        with np.errstate(invalid="ignore", divide="ignore"):
+            directions = directions / np.abs(directions).max(axis=1, keepdims=True, initial=0)
+            directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+        return origins, directions
+
+    def _ask(self, question, origins, directions, **options):
+        scene, center = self._scene_and_center()
+        return getattr(scene, question)(np.hstack([origins - center, directions]), **options)
+
+    def intersects_id(
+        self, ray_origins, ray_directions, multiple_hits=True, max_hits=None, return_locations=False
+    ):
+        """Find which triangles each ray meets.
+
+        Parameters
+        ----------
+        ray_origins, ray_directions : array_like, (n, 3)
+        multiple_hits : bool
+            False: the first hit of each ray alone.
+        max_hits : int, optional
+            Of each ray; None is all.
+        return_locations : bool
+
+        Returns
+        -------
+        index_tri, index_ray : (m,) int64
+        locations : (m, 3) float64
+            Where asked for.
+        """
+        origins, directions = self._rays(ray_origins, ray_directions)
+        if multiple_hits:
+            found = self._ask("list_intersections", origins, directions)
+            rays, triangles = found["ray_ids"].astype(np.int64), found["primitive_ids"].astype(np.int64)
+            if max_hits is not None:
+                rank = np.arange(len(rays)) - found["ray_splits"].astype(np.int64)[rays]
+                rays, triangles = rays[rank < max_hits], triangles[rank < max_hits]
+        else:
+            first = self._ask("cast_rays", origins, directions, normals=False)
+            rays = np.flatnonzero(np.isfinite(first["t_hit"]))
+            triangles = first["primitive_ids"][rays].astype(np.int64)
+        rays, triangles = rays.view(np.ndarray), triangles.view(np.ndarray)
+        if not return_locations:
+            return triangles, rays
+        return triangles, rays, self._locations(origins[rays], directions[rays], triangles)
+
+    def _locations(self, origins, directions, triangles):
+        """Where rays meet the planes of triangles, in float64; next to parallel ones the point of the plane on the ray
+        is within rounding of the triangle only along it, so the nearest point of the triangle's box is taken."""
+        corners = np.asarray(self.mesh.triangles, np.float64)[triangles].reshape(-1, 3, 3)
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        with np.errstate(invalid="ignore", divide="ignore"):
+            distance = np.einsum("ij,ij->i", corners[:, 0] - origins, normals) / np.einsum(
+                "ij,ij->i", directions, normals
+            )
+            points = origins + distance[:, None] * directions
+        return np.clip(points, corners.min(axis=1), corners.max(axis=1)) if len(points) else points.reshape(0, 3)
+
+    def intersects_location(self, ray_origins, ray_directions, multiple_hits=True, **options):
+        """Find where rays meet the mesh: ``locations`` (m, 3) float64, ``index_ray`` and ``index_tri`` (m,) int64."""
+        triangles, rays, locations = self.intersects_id(
+            ray_origins, ray_directions, multiple_hits=multiple_hits, return_locations=True, **options
+        )
+        return locations, rays, triangles
+
+    def intersects_first(self, ray_origins, ray_directions):
+        """Find the first triangle that each ray meets: (n,) int32, -1 for none."""
+        origins, directions = self._rays(ray_origins, ray_directions)
+        found = self._ask("cast_rays", origins, directions, normals=False)
+        return found["primitive_ids"].view(np.ndarray).view(np.int32)
+
+    def intersects_any(self, ray_origins, ray_directions):
+        """Tell whether each ray meets the mesh: (n,) bool."""
+        origins, directions = self._rays(ray_origins, ray_directions)
+        return self._ask("test_occlusions", origins, directions).view(np.ndarray)
+
+    def contains_points(self, points):
+        """Tell whether each point is inside: (n,) bool, by winding numbers."""
+        rows, _ = rows_of(points, "points", np.float64, 3)
+        scene, center = self._scene_and_center()
+        return scene.compute_occupancy(rows - center).view(np.ndarray) != 0

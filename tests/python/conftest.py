@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""What all tests of the Python package share."""
+
+import numpy as np
+import pytest
+
+import twinray
+
+
+def pytest_configure(config):
+    config.addinivalue_line("filterwarnings", "ignore:twinray runs on a CPU")
+
+
+@pytest.fixture(params=["sw", "hw"])
+def accel(request):
+    try:
+        twinray.Scene(request.param)
+    except twinray.Error as error:
+        pytest.skip(str(error))
+    return request.param
+
+
+def grid(n, seed=1):
+    """A height field of n x n squares over (0, 1) x (0, 1), two triangles each."""
+    height = np.random.default_rng(seed).uniform(0, 0.1, (n + 1, n + 1))
+    x, y = np.meshgrid(np.linspace(0, 1, n + 1), np.linspace(0, 1, n + 1), indexing="ij")
+    vertices = np.stack([x, y, height], axis=-1).reshape(-1, 3).astype(np.float32)
+    i = np.arange((n + 1) * (n + 1)).reshape(n + 1, n + 1)
+    a, b, c, d = i[:-1, :-1], i[1:, :-1], i[1:, 1:], i[:-1, 1:]
+    triangles = np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)])
+    return vertices, triangles.astype(np.uint32)
+
+
+def cube(size=1.0):
+    """A closed cube, fronts outward."""
+    vertices = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], np.float32) * size
+    triangles = [
+        [0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
+        [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3],
+    ]
+    return vertices, np.array(triangles, np.uint32)

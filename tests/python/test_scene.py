@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: MIT
+"""twinray.Scene: names, shapes and dtypes of Open3D's RaycastingScene, and right answers."""
+
+import doctest
+import os
+import re
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import twinray
+from conftest import cube, grid
+from twinray import INVALID_ID
+
+
+def scene_of(mesh, **options):
+    scene = twinray.Scene(**options)
+    scene.add_triangles(*mesh)
+    return scene
+
+
+def test_answers_have_open3ds_shapes_and_dtypes():
+    scene = scene_of(cube())
+    rays = np.zeros((4, 5, 6), np.float32)
+    rays[..., :3], rays[..., 5] = [0.3, 0.6, -1], 1
+    found = scene.cast_rays(rays)
+    expected = {
+        "t_hit": ((4, 5), np.float32),
+        "geometry_ids": ((4, 5), np.uint32),
+        "primitive_ids": ((4, 5), np.uint32),
+        "primitive_uvs": ((4, 5, 2), np.float32),
+        "primitive_normals": ((4, 5, 3), np.float32),
+    }
+    assert {name: (array.shape, array.dtype) for name, array in found.items()} == expected
+    assert (found["t_hit"] == 1).all() and (found["geometry_ids"] == 0).all()
+    assert (found["primitive_normals"] == [0, 0, -1]).all()
+    assert scene.test_occlusions(rays).dtype == bool and scene.test_occlusions(rays).shape == (4, 5)
+    counts = scene.count_intersections(rays)
+    assert counts.dtype == np.int32 and (counts == 2).all()
+    listed = scene.list_intersections(rays)
+    assert {name: array.dtype for name, array in listed.items()} == {
+        "ray_splits": np.uint32, "ray_ids": np.uint32, "t_hit": np.float32, "geometry_ids": np.uint32,
+        "primitive_ids": np.uint32, "primitive_uvs": np.float32,
+    }  # fmt: skip
+    assert (listed["ray_splits"] == np.arange(0, 41, 2)).all()
+    assert (listed["t_hit"].reshape(20, 2) == [1, 2]).all()
+    closest = scene.compute_closest_points(np.full((2, 3), 0.5))
+    assert closest["points"].shape == (2, 3) and closest["points"].dtype == np.float32
+    assert scene.compute_distance([[2, 0.5, 0.5]]) == 1
+
+
+def test_misses_are_infinite_and_invalid():
+    for scene in (twinray.Scene(), scene_of(cube())):
+        found = scene.cast_rays([5, 5, 5, 0, 0, 1])
+        assert found["t_hit"] == np.inf and found["primitive_ids"] == INVALID_ID
+        assert found["geometry_ids"] == INVALID_ID and (found["primitive_normals"] == 0).all()
+    empty = twinray.Scene()
+    assert empty.compute_distance([0, 0, 0]) == np.inf
+    assert empty.compute_closest_points([0, 0, 0])["primitive_ids"] == INVALID_ID
+    assert empty.compute_occupancy([0, 0, 0]) == 0
+
+
+def test_empty_questions_have_empty_answers():
+    scene = scene_of(cube())
+    for rays in ([], np.zeros((0, 6)), np.zeros((3, 0, 6))):
+        assert scene.cast_rays(rays)["t_hit"].size == 0
+        assert scene.test_occlusions(rays).size == 0
+        assert (scene.list_intersections(rays)["ray_splits"] == 0).all()
+    assert scene.compute_distance(np.zeros((0, 3))).shape == (0,)
+
+
+def test_only_hits_between_tnear_and_tfar_count():
+    scene = scene_of(cube())
+    ray = [0.3, 0.6, -1, 0, 0, 1]
+    assert scene.cast_rays(ray, tnear=1.5)["t_hit"] == 2
+    assert scene.cast_rays(ray, tfar=0.5)["t_hit"] == np.inf
+    assert not scene.test_occlusions(ray, tfar=0.5) and scene.test_occlusions(ray, 1.5)
+    assert scene.count_intersections(ray, tnear=1.5) == 1
+
+
+def test_geometries_move_go_and_are_repeated(accel):
+    scene = twinray.Scene(accel)
+    vertices, triangles = cube()
+    first = scene.add_triangles(vertices, triangles)
+    moved = scene.add_triangles(vertices, triangles, transform=[[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    again = scene.add_instance(moved, np.diag([-2.0, 2, 2, 1]) + [[0, 0, 0, 12], [0] * 4, [0] * 4, [0] * 4])
+    assert (first, moved, again) == (0, 1, 2) and len(scene) == 3
+
+    def seen(x):
+        return int(scene.cast_rays([x, 0.6, -1, 0, 0, 1])["geometry_ids"])
+
+    assert [seen(x) for x in (0.3, 5.3, 11.3, 8)] == [0, 1, 2, INVALID_ID]
+    assert (scene.cast_rays([11.3, 0.6, -1, 0, 0, 1])["primitive_normals"] == [0, 0, 1]).all()  # mirrored
+    assert scene.compute_closest_points([11, 1, -3])["geometry_ids"] == 2
+    scene.remove(first)
+    assert seen(0.3) == INVALID_ID and scene.compute_closest_points([0, 0, -3])["geometry_ids"] == 1
+    scene.set_transform(moved, [[1, 0, 0, 8], [0, 1, 0, 0], [0, 0, 1, 0]])
+    assert [seen(5.3), seen(8.3)] == [INVALID_ID, 1]
+    scene.update_vertices(moved, vertices + [0, 0, 3])
+    assert scene.cast_rays([8.3, 0.6, -1, 0, 0, 1])["t_hit"] == 4
+    assert scene.add_triangles(vertices, triangles) == 3
+    with pytest.raises(twinray.Error, match="geometry 0 is not in the scene"):
+        scene.remove(first)
+
+
+def aimed_rays(vertices, triangles, seed):
+    """Through vertices and points of edges, from above."""
+    random = np.random.default_rng(seed)
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    along = random.uniform(0, 1, (len(edges), 1)).astype(np.float32)
+    targets = np.concatenate([vertices, vertices[edges[:, 0]] * (1 - along) + vertices[edges[:, 1]] * along])
+    origins = np.float32([0.4, 0.7, 3]) + random.uniform(-0.1, 0.1, targets.shape).astype(np.float32)
+    return np.hstack([origins, targets - origins])
+
+
+def test_edges_and_vertices_are_met_once():
+    vertices, triangles = grid(40)
+    vertices[:, 2] *= 0.02  # so flat that no ray of these meets it twice
+    scene = scene_of((vertices, triangles), accel="sw")
+    rays = aimed_rays(vertices, triangles, 3)
+    at = rays[:, :2] + rays[:, 3:5]
+    rays = rays[(np.abs(at - 0.5) < 0.49).all(axis=1)]  # not those at the border
+    assert len(rays) > 5000
+    assert (scene.count_intersections(rays) == 1).all()
+    assert np.isfinite(scene.cast_rays(rays)["t_hit"]).all()
+
+
+def test_any_first_and_all_agree():
+    vertices, triangles = grid(30)
+    random = np.random.default_rng(5)
+    scattered = np.hstack([random.uniform(-0.5, 1.5, (20000, 3)), random.normal(size=(20000, 3))])
+    rays = np.concatenate([scattered, aimed_rays(vertices, triangles, 4)])
+    scene = scene_of((vertices, triangles), accel="sw")
+    any_hit = scene.test_occlusions(rays)
+    first = scene.cast_rays(rays)
+    listed = scene.list_intersections(rays)
+    counts = np.diff(listed["ray_splits"].astype(int))
+    assert (any_hit == np.isfinite(first["t_hit"])).all()
+    assert (any_hit == (counts > 0)).all()
+    assert (scene.count_intersections(rays) == counts).all()
+    begins = listed["ray_splits"][:-1][counts > 0]
+    assert (listed["t_hit"][begins] == first["t_hit"][any_hit]).all()
+    assert (np.diff(listed["t_hit"])[np.diff(listed["ray_ids"]) == 0] >= 0).all()
+
+
+def test_signs_do_not_flip_next_to_edges_and_diagonals():
+    # Where signs by counting the hits of one ray flip: behind edges and vertices as the ray sees them.
+    scene = scene_of(cube())
+    steps = np.linspace(-0.5, 1.5, 41)
+    points = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1)
+    inside = ((points > 0) & (points < 1)).all(axis=-1)
+    on_surface = ((points >= 0) & (points <= 1)).all(axis=-1) & ~inside
+    signed = scene.compute_signed_distance(points)
+    assert signed.shape == (41, 41, 41)
+    assert ((signed < 0) == inside)[~on_surface].all()
+    assert (scene.compute_occupancy(points)[~on_surface] == inside[~on_surface]).all()
+    outside = np.maximum(np.maximum(-points, points - 1), 0)
+    expected = np.where(inside, -np.minimum(points, 1 - points).min(axis=-1), np.linalg.norm(outside, axis=-1))
+    assert np.abs(signed - expected).max() < 1e-6
+
+
+def test_signs_hold_on_open_and_on_touching_meshes():
+    vertices, triangles = cube()
+    opened = scene_of((vertices, triangles[1:]))
+    assert opened.compute_occupancy([[0.5, 0.5, 0.5], [0.9, 0.9, 0.9], [3, 3, 3], [0.5, 0.5, 2]]).tolist() == [1, 1, 0, 0]
+    two = scene_of((vertices, triangles))
+    two.add_triangles(vertices + [1, 0, 0], triangles)  # they share a face
+    assert two.compute_occupancy([[0.5, 0.5, 0.5], [1.5, 0.5, 0.5], [2.5, 0.5, 0.5]]).tolist() == [1, 1, 0]
+
+
+def test_pinhole_rays_are_open3ds():
+    rays = twinray.create_rays_pinhole(90, [0, 0, 0], [0, 0, -2], [0, 1, 0], 4, 2)
+    assert rays.shape == (2, 4, 6) and rays.dtype == np.float32
+    assert (rays[..., :3] == [0, 0, -2]).all()
+    assert np.allclose(rays[0, 0, 3:], [-0.75, -0.25, 1]) and np.allclose(rays[1, 3, 3:], [0.75, 0.25, 1])
+    same = twinray.create_rays_pinhole(
+        [[2, 0, 2], [0, 2, 1], [0, 0, 1]], [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 2], [0, 0, 0, 1]], 4, 2
+    )
+    assert np.allclose(rays, same)
+
+
+def test_wrong_arguments_are_named():
+    scene = scene_of(cube())
+    rays = np.zeros((1, 6))
+    for call, kind, name in [
+        (lambda: scene.cast_rays(np.zeros((3, 5))), ValueError, r"rays: shape \(3, 5\)"),
+        (lambda: scene.cast_rays("rays"), TypeError, "rays: dtype"),
+        (lambda: scene.cast_rays(rays * 1j), TypeError, "rays: dtype complex128"),
+        (lambda: scene.cast_rays([[1, 2], [3]]), ValueError, "rays"),
+        (lambda: scene.cast_rays(rays, tnear=-1), ValueError, "tnear: -1.0"),
+        (lambda: scene.cast_rays(rays, tfar=np.nan), ValueError, "tfar: nan"),
+        (lambda: scene.test_occlusions(rays, "near"), TypeError, "tnear: 'near'"),
+        (lambda: scene.compute_distance([1, 2]), ValueError, "query_points: shape"),
+        (lambda: scene.add_triangles(np.zeros((3, 2)), [[0, 1, 2]]), ValueError, "vertex_positions: shape"),
+        (lambda: scene.add_triangles(np.zeros((3, 3)), [[0, 1, 2.5]]), TypeError, "triangle_indices: dtype float64"),
+        (lambda: scene.add_triangles(np.zeros((3, 3)), [[0, 1, -1]]), ValueError, "triangle_indices: indices from -1"),
+        (lambda: scene.add_triangles(np.zeros((3, 3)), [[0, 1, 3]]), twinray.Error, "3"),
+        (lambda: scene.add_triangles(object()), TypeError, "object is no mesh"),
+        (lambda: scene.add_triangles(*cube(), transform=np.eye(3)), ValueError, r"transform: shape \(3, 3\)"),
+        (lambda: scene.add_triangles(*cube(), transform=np.zeros((4, 4))), ValueError, "transform: its last row"),
+        (lambda: scene.add_triangles(*cube(), transform=np.zeros((3, 4))), twinray.Error, "singular"),
+        (lambda: scene.set_transform(7, np.eye(4)), twinray.Error, "geometry 7"),
+        (lambda: scene.remove(-1), ValueError, "geometry: -1"),
+        (lambda: scene.remove("0"), TypeError, "geometry: '0'"),
+        (lambda: scene.update_vertices(0, np.zeros((3, 3))), twinray.Error, "3 positions for its 8 vertices"),
+        (lambda: twinray.Scene(level="high"), twinray.Error, "level 'high'"),
+        (lambda: twinray.Scene(accel="gpu"), twinray.Error, "gpu"),
+        (lambda: twinray.Scene(device="no such device"), twinray.Error, "no such device"),
+    ]:
+        with pytest.raises(kind, match=name):
+            call()
+    assert len(scene) == 1 and scene.cast_rays([0.3, 0.6, -1, 0, 0, 1])["t_hit"] == 1
+
+
+def test_what_is_not_finite_meets_nothing():
+    scene = scene_of(cube())
+    bad = np.array([[np.nan, 0, 0, 0, 0, 1], [0, 0, -1, 0, 0, 0], [np.inf, 0, 0, 1, 0, 0], [0.3, 0.6, -1, 0, np.nan, 1],
+                    [1e300, 0, 0, -1, 0, 0]])  # fmt: skip
+    assert not np.isfinite(scene.cast_rays(bad)["t_hit"]).any()
+    assert scene.compute_distance([[np.nan, 0, 0], [np.inf, 0, 0]]).tolist() == [np.inf, np.inf]
+
+
+def test_threads_ask_while_others_move():
+    scene = scene_of(cube())
+    walker = scene.add_triangles(*cube(), transform=np.eye(4))
+    rays = np.tile(np.float32([0.3, 0.6, -1, 0, 0, 1]), (500, 1))
+    wrong = []
+
+    def ask():
+        for _ in range(30):
+            found = scene.cast_rays(rays)
+            if not (found["t_hit"] == 1).all():
+                wrong.append(found)
+
+    def move():
+        for i in range(60):
+            scene.set_transform(walker, [[1, 0, 0, 5 + i], [0, 1, 0, 0], [0, 0, 1, 0]])
+            extra = scene.add_triangles(*cube(), transform=[[1, 0, 0, 0], [0, 1, 0, 5], [0, 0, 1, 0]])
+            scene.remove(extra)
+
+    scene.set_transform(walker, [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]])
+    threads = [threading.Thread(target=call) for call in (ask, ask, move)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong and len(scene) == 2
+
+
+def in_another_process(code, **environment):
+    return subprocess.run(
+        [sys.executable, "-c", code], env=os.environ | environment, capture_output=True, text=True, timeout=100
+    )
+
+
+def test_without_vulkan_the_first_scene_says_so():
+    ended = in_another_process(
+        "import twinray\ntry: twinray.Scene()\nexcept twinray.Error as error: print('told:', error)",
+        VK_DRIVER_FILES="/nowhere", VK_ICD_FILENAMES="/nowhere",
+    )  # fmt: skip
+    assert ended.returncode == 0 and ended.stdout.startswith("told: create a Vulkan instance"), ended
+
+
+def test_a_cpu_driver_is_told_once():
+    code = "import twinray; s = [twinray.Scene() for _ in range(3)]; print(s[0].backend['kind'])"
+    ended = in_another_process(code)
+    assert ended.stderr.count("runs on a CPU") == (1 if ended.stdout == "CPU\n" else 0), ended
+
+
+def test_the_backend_is_told():
+    backend = twinray.Scene("sw").backend
+    assert set(backend) == {"device", "driver", "kind", "accel", "why", "path", "level"}
+    assert backend["accel"] == "sw" and backend["level"] == "watertight" and backend["device"]
+    assert any(device["name"] == backend["device"] for device in twinray.devices())
+
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_examples_of_the_documentation():
+    for results in (doctest.testmod(twinray), doctest.testfile(str(ROOT / "docs/python.md"), module_relative=False)):
+        assert results.attempted > 0 and results.failed == 0
+
+
+def test_the_five_lines_of_the_readme(capsys):
+    [lines] = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.S)
+    exec(lines, {})
+    assert capsys.readouterr().out == "[2.] [0]\n" and len(lines.splitlines()) == 5
