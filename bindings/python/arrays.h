@@ -25,14 +25,13 @@ std::span<const Row> as(const Array& rows) {
 }
 
 // An array that owns its memory, of `columns` numbers of type T a row; 0: one number, without the second axis.
-template <class T, class Row>
-nb::object given(std::vector<Row>&& rows, std::size_t columns = 0) {
-    auto owner = std::make_unique<std::vector<Row>>(std::move(rows));
-    const std::size_t count = owner->size();
+template <class T, class Rows>
+nb::object given(Rows&& rows, std::size_t columns = 0) {
+    auto owner = std::make_unique<Rows>(std::move(rows));
+    const std::size_t shape[] = {owner->size(), columns};
     auto* data = reinterpret_cast<T*>(owner->data());
-    nb::capsule capsule(owner.get(), [](void* p) noexcept { delete static_cast<std::vector<Row>*>(p); });
+    nb::capsule capsule(owner.get(), [](void* p) noexcept { delete static_cast<Rows*>(p); });
     owner.release();
-    const std::size_t shape[] = {count, columns};
     return nb::cast(nb::ndarray<nb::numpy, T>(data, columns ? 2 : 1, shape, capsule));
 }
 

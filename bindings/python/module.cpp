@@ -4,6 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings/python/arrays.h"
+#include "bindings/python/parallel.h"
 #include "bindings/python/scene.h"
 
 namespace twinray::python {
@@ -15,11 +16,12 @@ using Matrix = nb::ndarray<const float, nb::shape<3, 4>, nb::c_contig, nb::devic
 
 std::vector<Ray> rays_of(const RayRows& rows, float t_near, float t_far) {
     std::vector<Ray> rays(rows.shape(0));
-    const float* row = rows.data();
-    for (Ray& ray : rays) {
-        ray = {vec3(row[0], row[1], row[2]), t_near, vec3(row[3], row[4], row[5]), t_far};
-        row += 6;
-    }
+    in_parts(rays.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const float* row = rows.data() + 6 * i;
+            rays[i] = {vec3(row[0], row[1], row[2]), t_near, vec3(row[3], row[4], row[5]), t_far};
+        }
+    });
     return rays;
 }
 
@@ -48,7 +50,7 @@ nb::dict dict_of(Cast&& hits) {
     arrays["geometry_ids"] = given<uint>(std::move(hits.geometry));
     arrays["primitive_ids"] = given<uint>(std::move(hits.primitive));
     arrays["primitive_uvs"] = given<float>(std::move(hits.uv), 2);
-    if (!hits.normal.empty()) arrays["primitive_normals"] = given<float>(std::move(hits.normal), 3);
+    if (hits.normal.size()) arrays["primitive_normals"] = given<float>(std::move(hits.normal), 3);
     return arrays;
 }
 
@@ -59,7 +61,7 @@ nb::dict dict_of(Nearest&& found) {
     arrays["geometry_ids"] = given<uint>(std::move(found.geometry));
     arrays["primitive_ids"] = given<uint>(std::move(found.primitive));
     arrays["primitive_uvs"] = given<float>(std::move(found.uv), 2);
-    if (!found.normal.empty()) arrays["primitive_normals"] = given<float>(std::move(found.normal), 3);
+    if (found.normal.size()) arrays["primitive_normals"] = given<float>(std::move(found.normal), 3);
     return arrays;
 }
 

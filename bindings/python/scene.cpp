@@ -6,6 +6,8 @@
 #include <limits>
 #include <map>
 
+#include "bindings/python/parallel.h"
+
 namespace twinray::python {
 namespace {
 
@@ -153,7 +155,7 @@ std::size_t Scene::triangle_count() const {
     return count;
 }
 
-vec3 Scene::normal_of(uint geometry, uint primitive) const {
+Numbers3 Scene::normal_of(uint geometry, uint primitive) const {
     const Part& hit = *parts_[geometry];
     const uvec3 vertices = hit.mesh->triangles[primitive];
     dvec3 corners[3];
@@ -162,21 +164,25 @@ vec3 Scene::normal_of(uint geometry, uint primitive) const {
     for (std::size_t i = 0; i < 3; ++i) ab[i] = corners[1][i] - corners[0][i], ac[i] = corners[2][i] - corners[0][i];
     const double n[] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]};
     const double length = std::hypot(n[0], n[1], n[2]);
-    return length > 0 ? vec3(n[0] / length, n[1] / length, n[2] / length) : vec3(0);
+    if (!(length > 0)) return {0, 0, 0};
+    return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length), static_cast<float>(n[2] / length)};
 }
 
 Cast Scene::cast_of(std::span<const Hit> hits, bool with_normals) const {
-    Cast found;
-    found.t.reserve(hits.size());
-    for (auto* numbers : {&found.geometry, &found.primitive}) numbers->reserve(hits.size());
-    found.uv.reserve(hits.size());
-    for (const Hit& hit : hits) {
-        found.t.push_back(hit.hit ? hit.t : std::numeric_limits<float>::infinity());
-        found.geometry.push_back(hit.hit ? hit.custom_index : invalid);
-        found.primitive.push_back(hit.hit ? hit.primitive_index : invalid);
-        found.uv.emplace_back(hit.u, hit.v);
-        if (with_normals) found.normal.push_back(hit.hit ? normal_of(hit.custom_index, hit.primitive_index) : vec3(0));
-    }
+    const std::size_t count = hits.size();
+    Cast found{Column<float>(count), Column<uint>(count), Column<uint>(count), Column<Numbers2>(count),
+               Column<Numbers3>(with_normals ? count : 0)};
+    in_parts(count, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const Hit& hit = hits[i];
+            found.t[i] = hit.hit ? hit.t : std::numeric_limits<float>::infinity();
+            found.geometry[i] = hit.hit ? hit.custom_index : invalid;
+            found.primitive[i] = hit.hit ? hit.primitive_index : invalid;
+            found.uv[i] = {hit.u, hit.v};
+            if (with_normals)
+                found.normal[i] = hit.hit ? normal_of(hit.custom_index, hit.primitive_index) : Numbers3{0, 0, 0};
+        }
+    });
     return found;
 }
 
@@ -185,11 +191,13 @@ Cast Scene::cast(std::span<const Ray> rays, bool with_normals) {
     return cast_of(accel_->closest_hits(rays, {.level = level_}), with_normals);
 }
 
-std::vector<std::uint8_t> Scene::occlusions(std::span<const Ray> rays) {
+Column<bool> Scene::occlusions(std::span<const Ray> rays) {
     const Lock lock(device_->mutex);
-    std::vector<std::uint8_t> is_hit;
-    is_hit.reserve(rays.size());
-    for (const Hit& hit : accel_->any_hits(rays, {.level = level_})) is_hit.push_back(hit.hit != 0);
+    const std::vector<Hit> hits = accel_->any_hits(rays, {.level = level_});
+    Column<bool> is_hit(hits.size());
+    in_parts(hits.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) is_hit[i] = hits[i].hit != 0;
+    });
     return is_hit;
 }
 
@@ -198,12 +206,11 @@ HitsOfRays Scene::all_hits(std::span<const Ray> rays) {
     return (*all_hits_)(rays);
 }
 
-std::vector<int> Scene::counts(std::span<const Ray> rays) {
+Column<int> Scene::counts(std::span<const Ray> rays) {
     const Lock lock(device_->mutex);
     const HitsOfRays found = all_hits(rays);
-    std::vector<int> counts;
-    for (std::size_t i = 0; i < rays.size(); ++i)
-        counts.push_back(static_cast<int>(found.first[i + 1] - found.first[i]));
+    Column<int> counts(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) counts[i] = static_cast<int>(found.of(i).size());
     return counts;
 }
 
@@ -223,15 +230,20 @@ PointQuery& Scene::points() {
 Nearest Scene::closest(std::span<const dvec3> asked, bool with_normals) {
     const Lock lock(device_->mutex);
     const std::vector<uint> numbers = geometries();  // each has one instance, in the order of numbers
-    Nearest nearest;
-    for (const ClosestPoint& found : points().closest(asked)) {
-        const uint geometry = found.is_found ? numbers[found.instance] : invalid;
-        nearest.position.push_back(found.position);
-        nearest.distance.push_back(found.distance);
-        nearest.geometry.push_back(geometry);
-        nearest.primitive.push_back(found.is_found ? found.triangle : invalid);
-        nearest.uv.emplace_back(found.u, found.v);
-        if (with_normals) nearest.normal.push_back(found.is_found ? normal_of(geometry, found.triangle) : vec3(0));
+    const std::vector<ClosestPoint> points_found = points().closest(asked);
+    const std::size_t count = points_found.size();
+    Nearest nearest{Column<dvec3>(count), Column<double>(count), Column<uint>(count), Column<uint>(count),
+                    Column<Numbers2>(count), Column<Numbers3>(with_normals ? count : 0)};
+    for (std::size_t i = 0; i < count; ++i) {
+        const ClosestPoint& found = points_found[i];
+        nearest.position[i] = found.position;
+        nearest.distance[i] = found.distance;
+        nearest.geometry[i] = found.is_found ? numbers[found.instance] : invalid;
+        nearest.primitive[i] = found.is_found ? found.triangle : invalid;
+        nearest.uv[i] = {static_cast<float>(found.u), static_cast<float>(found.v)};
+        if (with_normals)
+            nearest.normal[i] =
+                found.is_found ? normal_of(nearest.geometry[i], found.triangle) : Numbers3{0, 0, 0};
     }
     return nearest;
 }

@@ -13,6 +13,8 @@
 #include <twinray/queries.h>
 #include <twinray/tlas.h>
 
+#include "bindings/python/column.h"
+
 namespace twinray::python {
 
 // One context for all scenes of a device, kept until the end of the program.
@@ -34,10 +36,10 @@ struct Backend {
 
 // By ray; of a miss t is infinite, both numbers are 2^32 - 1, the rest is 0.
 struct Cast {
-    std::vector<float> t;
-    std::vector<uint> geometry, primitive;
-    std::vector<vec2> uv;
-    std::vector<vec3> normal;  // unit, of the triangle in world space; empty unless asked for
+    Column<float> t;
+    Column<uint> geometry, primitive;
+    Column<Numbers2> uv;
+    Column<Numbers3> normal;  // unit, of the triangle in world space; empty unless asked for
 };
 
 // Hits of each ray are those from first[ray] to first[ray + 1] - 1, ascending by t.
@@ -48,11 +50,11 @@ struct Listed {
 
 // By point; as Cast where there is nothing.
 struct Nearest {
-    std::vector<dvec3> position;
-    std::vector<double> distance;
-    std::vector<uint> geometry, primitive;
-    std::vector<vec2> uv;
-    std::vector<vec3> normal;
+    Column<dvec3> position;
+    Column<double> distance;
+    Column<uint> geometry, primitive;
+    Column<Numbers2> uv;
+    Column<Numbers3> normal;
 };
 
 class Scene {
@@ -72,8 +74,8 @@ class Scene {
     std::size_t triangle_count() const;
 
     Cast cast(std::span<const Ray> rays, bool with_normals);
-    std::vector<std::uint8_t> occlusions(std::span<const Ray> rays);
-    std::vector<int> counts(std::span<const Ray> rays);
+    Column<bool> occlusions(std::span<const Ray> rays);
+    Column<int> counts(std::span<const Ray> rays);
     Listed list(std::span<const Ray> rays, bool with_normals);
 
     Nearest closest(std::span<const dvec3> points, bool with_normals);
@@ -96,7 +98,7 @@ class Scene {
     Part& part(uint geometry, const char* action);
     uint keep(AccelHandle handle, std::shared_ptr<Mesh> mesh, const Transform& transform);
     InstanceOptions options_of_next() const;
-    vec3 normal_of(uint geometry, uint primitive) const;
+    Numbers3 normal_of(uint geometry, uint primitive) const;
     Cast cast_of(std::span<const Hit> hits, bool with_normals) const;
     HitsOfRays all_hits(std::span<const Ray> rays);
     PointQuery& points();

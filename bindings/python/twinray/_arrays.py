@@ -38,6 +38,11 @@ def array_of(values, name):
     return array
 
 
+def _cast(array, dtype):
+    with np.errstate(over="ignore"):  # what float32 does not hold is infinite, and hits nothing
+        return np.ascontiguousarray(array, dtype=dtype)
+
+
 def rows_of(values, name, dtype, columns):
     """Of shape (..., columns), as (n, columns) of the dtype, and the leading shape."""
     array = array_of(values, name)
@@ -45,9 +50,7 @@ def rows_of(values, name, dtype, columns):
         if array.size != 0 or array.ndim != 1:
             raise ValueError(f"{name}: shape {array.shape}; wanted is (..., {columns})")
         array = array.reshape(0, columns)
-    with np.errstate(over="ignore"):  # what float32 does not hold is infinite, and hits nothing
-        flat = np.ascontiguousarray(array.reshape(-1, columns), dtype=dtype)
-    return flat, array.shape[:-1]
+    return _cast(array.reshape(-1, columns), dtype), array.shape[:-1]
 
 
 def indices_of(values, name):
@@ -73,7 +76,7 @@ def matrix_of(values, name):
         raise ValueError(f"{name}: shape {array.shape}; wanted is (4, 4) or (3, 4)")
     if array.shape == (4, 4) and not np.array_equal(array[3], [0, 0, 0, 1]):
         raise ValueError(f"{name}: its last row is {array[3]}, not (0, 0, 0, 1)")
-    return np.ascontiguousarray(array[:3], dtype=np.float32)
+    return _cast(array[:3], np.float32)
 
 
 def number_of(value, name, least=None):
