@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // twinray._core: scene.h for Python. Arguments are checked and cast in Python, which has the public names.
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "bindings/python/analysis.h"
 #include "bindings/python/arrays.h"
 #include "bindings/python/parallel.h"
 #include "bindings/python/scene.h"
@@ -12,7 +15,7 @@ namespace {
 
 using RayRows = Rows<float, 6>;
 using PointRows = Rows<double, 3>;
-using Matrix = nb::ndarray<const float, nb::shape<3, 4>, nb::c_contig, nb::device::cpu>;
+using TransformRows = nb::ndarray<const float, nb::shape<3, 4>, nb::c_contig, nb::device::cpu>;
 
 std::vector<Ray> rays_of(const RayRows& rows, float t_near, float t_far) {
     std::vector<Ray> rays(rows.shape(0));
@@ -25,7 +28,7 @@ std::vector<Ray> rays_of(const RayRows& rows, float t_near, float t_far) {
     return rays;
 }
 
-Transform transform_of(const Matrix& matrix) {
+Transform transform_of(const TransformRows& matrix) {
     Transform transform;
     for (std::size_t i = 0; i < 12; ++i) transform.rows[i / 4][i % 4] = matrix.data()[i];
     return transform;
@@ -77,7 +80,8 @@ nb::dict dict_of(const Backend& backend) {
     return names;
 }
 
-uint add(Scene& scene, const Rows<float, 3>& positions, const Rows<uint, 3>& triangles, const Matrix& transform) {
+uint add(Scene& scene, const Rows<float, 3>& positions, const Rows<uint, 3>& triangles,
+         const TransformRows& transform) {
     Mesh mesh;
     mesh.positions = copied<vec3>(positions);
     mesh.triangles = copied<uvec3>(triangles);
@@ -102,12 +106,12 @@ void bind_scene(nb::module_& m) {
              nb::arg("device"), nb::arg("level"), nb::call_guard<nb::gil_scoped_release>())
         .def("add", &add)
         .def("add_instance",
-             [](Scene& scene, uint of, const Matrix& matrix) {
+             [](Scene& scene, uint of, const TransformRows& matrix) {
                  return unlocked([&] { return scene.add_instance(of, transform_of(matrix)); });
              })
         .def("remove", &Scene::remove, nb::call_guard<nb::gil_scoped_release>())
         .def("set_transform",
-             [](Scene& scene, uint geometry, const Matrix& matrix) {
+             [](Scene& scene, uint geometry, const TransformRows& matrix) {
                  unlocked([&] { scene.set_transform(geometry, transform_of(matrix)); });
              })
         .def("update_vertices",
@@ -143,6 +147,58 @@ void bind_scene(nb::module_& m) {
         .def("take_log", &Scene::take_log, nb::call_guard<nb::gil_scoped_release>());
 }
 
+dvec3 vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
+nb::dict bound_view_factors(Scene& scene, std::vector<uint> groups, bool both_sides, std::uint64_t rays,
+                            std::optional<double> target_error, std::uint32_t seed, const std::string& estimator) {
+    Matrix matrix = unlocked([&] {
+        return view_factors(scene, {std::move(groups), both_sides, rays, target_error, seed, estimator});
+    });
+    nb::dict arrays;
+    arrays["first"] = given<std::uint64_t>(std::move(matrix.first));
+    arrays["column"] = given<uint>(std::move(matrix.column));
+    arrays["value"] = given<float>(std::move(matrix.value));
+    arrays["low"] = given<float>(std::move(matrix.low));
+    arrays["high"] = given<float>(std::move(matrix.high));
+    arrays["area"] = given<double>(std::move(matrix.area));
+    arrays["open"] = given<double>(std::move(matrix.open));
+    arrays["rays"] = matrix.rays;
+    return arrays;
+}
+
+nb::tuple bound_centroid(Scene& scene, const std::array<double, 3>& direction, std::uint32_t side, std::uint64_t seed) {
+    const Centroid found = unlocked([&] { return centroid_of(scene, vector_of(direction), side, seed); });
+    const auto tuple = [](const std::optional<dvec3>& v) {
+        return v ? nb::object(nb::make_tuple(v->x, v->y, v->z)) : nb::object(nb::none());
+    };
+    return nb::make_tuple(tuple(found.mean), tuple(found.standard_error), found.point_count, found.ray_count);
+}
+
+void bind_analysis(nb::module_& m) {
+    m.def("view_factors", &bound_view_factors);
+    m.def("illumination", [](Scene& scene, const std::array<double, 3>& direction, std::uint32_t side, bool both_sides,
+                             std::uint64_t seed, const std::vector<uint>& groups) {
+        Light light =
+            unlocked([&] { return illumination(scene, vector_of(direction), side, both_sides, seed, groups); });
+        return nb::make_tuple(given<double>(std::move(light.groups), 6), light.rays);
+    });
+    m.def("sky_light", [](Scene& scene, const std::array<double, 3>& zenith, std::uint32_t samples, bool both_sides,
+                          std::uint64_t seed) {
+        return given<double>(unlocked([&] { return sky_light(scene, vector_of(zenith), samples, both_sides, seed); }),
+                             3);
+    });
+    m.def("centroid", &bound_centroid);
+    m.def("collide", [](Scene& scene, bool self, bool by_position, bool segments) {
+        Touching found = unlocked([&] { return collide(scene, self, by_position, segments); });
+        return nb::make_tuple(given<uint>(std::move(found.contacts), 5), given<double>(std::move(found.segments), 6));
+    });
+    m.def("visible", [](Scene& scene, const Rows<float, 3>& points, const Rows<float, 3>& vectors,
+                        const Rows<float, 3>& normals, float t_near) {
+        return given<std::uint8_t>(
+            unlocked([&] { return visible(scene, as<vec3>(points), as<vec3>(vectors), as<vec3>(normals), t_near); }));
+    });
+}
+
 nb::list devices() {
     nb::list found;
     for (const DeviceProperties& device : unlocked([] { return list_devices(); })) {
@@ -164,6 +220,7 @@ NB_MODULE(_core, m) {
     nb::exception<Error>(m, "Error", PyExc_RuntimeError);
     m.attr("__version__") = TWINRAY_VERSION;
     bind_scene(m);
+    bind_analysis(m);
     m.def("devices", &devices);
     m.def("forget_devices", &forget_devices, nb::call_guard<nb::gil_scoped_release>());
     m.def("widen_cpu_vectors", &widen_cpu_vectors);

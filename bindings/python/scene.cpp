@@ -232,8 +232,8 @@ Nearest Scene::closest(std::span<const dvec3> asked, bool with_normals) {
     const std::vector<uint> numbers = geometries();  // each has one instance, in the order of numbers
     const std::vector<ClosestPoint> points_found = points().closest(asked);
     const std::size_t count = points_found.size();
-    Nearest nearest{Column<dvec3>(count), Column<double>(count), Column<uint>(count), Column<uint>(count),
-                    Column<Numbers2>(count), Column<Numbers3>(with_normals ? count : 0)};
+    Nearest nearest{Column<dvec3>(count), Column<double>(count),   Column<uint>(count),
+                    Column<uint>(count),  Column<Numbers2>(count), Column<Numbers3>(with_normals ? count : 0)};
     for (std::size_t i = 0; i < count; ++i) {
         const ClosestPoint& found = points_found[i];
         nearest.position[i] = found.position;
@@ -242,8 +242,7 @@ Nearest Scene::closest(std::span<const dvec3> asked, bool with_normals) {
         nearest.primitive[i] = found.is_found ? found.triangle : invalid;
         nearest.uv[i] = {static_cast<float>(found.u), static_cast<float>(found.v)};
         if (with_normals)
-            nearest.normal[i] =
-                found.is_found ? normal_of(nearest.geometry[i], found.triangle) : Numbers3{0, 0, 0};
+            nearest.normal[i] = found.is_found ? normal_of(nearest.geometry[i], found.triangle) : Numbers3{0, 0, 0};
     }
     return nearest;
 }

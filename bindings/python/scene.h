@@ -87,6 +87,17 @@ class Scene {
     Backend backend() const;
     std::vector<std::string> take_log();
 
+    // While it lives, no other thread uses the scene's device.
+    class Turn {
+      public:
+        explicit Turn(Scene& scene) : scene_(scene), lock_(scene.device_->mutex) {}
+        AbstractAccel& accel() const { return *scene_.accel_; }
+
+      private:
+        Scene& scene_;
+        std::lock_guard<std::recursive_mutex> lock_;
+    };
+
   private:
     struct Part {
         AccelHandle handle;

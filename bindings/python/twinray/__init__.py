@@ -14,9 +14,27 @@ import atexit as _atexit
 from . import _core
 from ._arrays import Array
 from ._core import Error
+from .analysis import PAIR_CLASSES, centroid, collide, illumination, sky_light, view_factors, visible
 from .scene import INVALID_ID, Scene, create_rays_pinhole
+from .sky import read_sensors, sky_patches
 
-__all__ = ["Array", "Error", "INVALID_ID", "Scene", "create_rays_pinhole", "devices"]
+__all__ = [
+    "Array",
+    "Error",
+    "INVALID_ID",
+    "PAIR_CLASSES",
+    "Scene",
+    "centroid",
+    "collide",
+    "create_rays_pinhole",
+    "devices",
+    "illumination",
+    "read_sensors",
+    "sky_light",
+    "sky_patches",
+    "view_factors",
+    "visible",
+]
 __version__ = _core.__version__
 
 _atexit.register(_core.forget_devices)

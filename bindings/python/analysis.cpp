@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "bindings/python/analysis.h"
+
+#include <algorithm>
+
+#include "bindings/python/parallel.h"
+
+namespace twinray::python {
+namespace {
+
+constexpr std::size_t rays_of_tile = 1 << 20;
+
+PairEstimator estimator_of(const std::string& name) {
+    for (const PairEstimator estimator : all_pair_estimators)
+        if (name_of(estimator) == name) return estimator;
+    throw Error("estimator '" + name + "' is not one of auto, hits, area, contour");
+}
+
+Sides sides_of(bool both) { return both ? Sides::both : Sides::front; }
+
+FaceGrouping group(Faces& faces, std::vector<uint>&& groups) {
+    if (groups.empty()) return FaceGrouping::face;
+    faces.set_custom_groups(std::move(groups));
+    return FaceGrouping::custom;
+}
+
+// Pairs are looked at one by one where there are few enough of them.
+PairExchanges pairs_of(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
+                       PairEstimator estimator) {
+    const auto count =
+        std::count_if(faces.areas().begin(), faces.areas().end(), [](double area) { return area > 0; });
+    if (estimator == PairEstimator::automatic && static_cast<std::size_t>(count) > most_paired_faces) return {};
+    return exchanges_of_pairs(accel, faces, options, estimator);
+}
+
+void append(Matrix& matrix, const ViewFactorRow& row) {
+    for (const ViewFactor& factor : row.factors) {
+        matrix.column.push_back(factor.target);
+        matrix.value.push_back(factor.value);
+        matrix.low.push_back(factor.low);
+        matrix.high.push_back(factor.high);
+    }
+    matrix.first.push_back(matrix.column.size());
+    matrix.open.push_back(row.open.value);
+    matrix.rays += row.rays;
+}
+
+}  // namespace
+
+Matrix view_factors(Scene& scene, MatrixOptions options) {
+    const Scene::Turn turn(scene);
+    Faces faces(turn.accel());
+    const ViewFactorOptions asked{.grouping = group(faces, std::move(options.groups)),
+                                  .sides = sides_of(options.both_sides),
+                                  .rays = options.rays,
+                                  .target_error = options.target_error,
+                                  .seed = options.seed};
+    const PairExchanges pairs = pairs_of(turn.accel(), faces, asked, estimator_of(options.estimator));
+    ViewFactors factors(turn.accel(), faces, asked, pairs.known);
+    Matrix matrix;
+    matrix.first.push_back(0);
+    matrix.area = factors.areas();
+    for (std::size_t first = 0; first < factors.row_count(); first += factors.batch_size())
+        for (const ViewFactorRow& row :
+             factors.rows(first, std::min(first + factors.batch_size(), factors.row_count())))
+            append(matrix, row);
+    matrix.rays += pairs.rays;
+    return matrix;
+}
+
+Light illumination(Scene& scene, dvec3 direction, std::uint32_t side, bool both_sides, std::uint64_t seed,
+                   const std::vector<uint>& groups) {
+    const Scene::Turn turn(scene);
+    Faces faces(turn.accel());
+    const FaceGrouping by = group(faces, std::vector<uint>(groups));
+    const Illumination found =
+        illuminate(turn.accel(), faces,
+                   {.grid = {.direction = direction, .side = side, .seed = seed}, .sides = sides_of(both_sides), .by = by});
+    Light light;
+    light.rays = found.ray_count;
+    for (const LitArea& lit : found.groups)
+        light.groups.push_back({static_cast<double>(lit.hits), lit.area, lit.interval.low, lit.interval.high,
+                                lit.unobstructed, lit.surface});
+    return light;
+}
+
+std::vector<std::array<double, 3>> sky_light(Scene& scene, dvec3 zenith, std::uint32_t samples, bool both_sides,
+                                             std::uint64_t seed) {
+    const Scene::Turn turn(scene);
+    const Faces faces(turn.accel());
+    const SkyLight found = twinray::sky_light(turn.accel(), faces, zenith,
+                                              {.samples = samples, .sides = sides_of(both_sides), .seed = seed});
+    std::vector<std::array<double, 3>> rows;
+    for (const Received& received : found.faces)
+        rows.push_back({received.value, received.interval.low, received.interval.high});
+    return rows;
+}
+
+Centroid centroid_of(Scene& scene, dvec3 direction, std::uint32_t side, std::uint64_t seed) {
+    const Scene::Turn turn(scene);
+    return centroid(turn.accel(), {.grid = {.direction = direction, .side = side, .seed = seed}});
+}
+
+Touching collide(Scene& scene, bool self, bool by_position, bool segments) {
+    const Scene::Turn turn(scene);
+    const ContactOptions options{.self = self,
+                                 .shared = by_position ? SharedVertices::by_position : SharedVertices::by_index,
+                                 .segments = segments};
+    Contacts found = NarrowPhase(turn.accel().context()).find(turn.accel(), options);
+    const std::vector<uint> numbers = scene.geometries();
+    Touching touching;
+    for (const TriangleContact& contact : found.list)
+        touching.contacts.push_back({numbers[contact.instance_a], numbers[contact.instance_b], contact.triangle_a,
+                                     contact.triangle_b, static_cast<uint>(contact.pair_class)});
+    touching.segments = std::move(found.segments);
+    return touching;
+}
+
+std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, std::span<const vec3> vectors,
+                                  std::span<const vec3> normals, float t_near) {
+    std::vector<std::uint8_t> free(points.size() * vectors.size());
+    if (free.empty()) return free;
+    const std::size_t step = std::max<std::size_t>(1, rays_of_tile / vectors.size());
+    const float infinite = std::numeric_limits<float>::infinity();
+    std::vector<Ray> rays;
+    for (std::size_t first = 0; first < points.size(); first += step) {
+        const std::size_t count = std::min(step, points.size() - first);
+        rays.resize(count * vectors.size());
+        in_parts(count, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t k = 0; k < vectors.size(); ++k)
+                    rays[i * vectors.size() + k] = {points[first + i], t_near, vectors[k], infinite};
+        });
+        const Column<bool> is_hit = scene.occlusions(rays);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const std::size_t point = first + i / vectors.size();
+            const vec3 v = vectors[i % vectors.size()];
+            const vec3 n = normals.empty() ? v : normals[point];
+            const bool leaves = normals.empty() || n.x * v.x + n.y * v.y + n.z * v.z > 0;
+            free[first * vectors.size() + i] = leaves && !is_hit[i];
+        }
+    }
+    return free;
+}
+
+}  // namespace twinray::python

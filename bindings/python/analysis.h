@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Analyses of a scene for Python, as arrays. Faces are numbered by geometry, in the order of their numbers, then by
+// triangle.
+#pragma once
+
+#include <twinray/analysis.h>
+
+#include "bindings/python/scene.h"
+
+namespace twinray::python {
+
+// Row i has the entries from first[i] to first[i + 1] - 1.
+struct Matrix {
+    std::vector<std::uint64_t> first;
+    std::vector<uint> column;
+    std::vector<float> value, low, high;
+    std::vector<double> area, open;  // by row
+    std::uint64_t rays = 0;
+};
+
+struct MatrixOptions {
+    std::vector<uint> groups;  // by face; empty: each face is one
+    bool both_sides = false;
+    std::uint64_t rays = 1 << 14;
+    std::optional<double> target_error;
+    std::uint32_t seed = 1;
+    std::string estimator = "auto";
+};
+
+// By face, or group of faces: columns hits, area, low, high, unobstructed, surface.
+struct Light {
+    std::vector<std::array<double, 6>> groups;
+    std::uint64_t rays = 0;
+};
+
+// By contact: instance_a, instance_b, triangle_a, triangle_b, class; geometries instead of instances.
+struct Touching {
+    std::vector<std::array<uint, 5>> contacts;
+    std::vector<ContactSegment> segments;
+};
+
+// All throw Error as the functions of twinray/analysis.h and queries.h do.
+Matrix view_factors(Scene& scene, MatrixOptions options);
+Light illumination(Scene& scene, dvec3 direction, std::uint32_t side, bool both_sides, std::uint64_t seed,
+                   const std::vector<uint>& groups);
+// By face: value, low, high.
+std::vector<std::array<double, 3>> sky_light(Scene& scene, dvec3 zenith, std::uint32_t samples, bool both_sides,
+                                             std::uint64_t seed);
+Centroid centroid_of(Scene& scene, dvec3 direction, std::uint32_t side, std::uint64_t seed);
+Touching collide(Scene& scene, bool self, bool by_position, bool segments);
+
+// Row-major, a row a point: 1 where nothing lies on the ray from it along the vector; 0 for vectors that do not leave
+// the point's normal's side (with normals). Rays are made in tiles of about a million.
+std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, std::span<const vec3> vectors,
+                                  std::span<const vec3> normals, float t_near);
+
+}  // namespace twinray::python

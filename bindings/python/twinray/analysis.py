@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: MIT
+"""What rays tell of scenes: what is visible, view factors, light, centroids, collisions."""
+
+import numpy as np
+
+from . import _core
+from ._arrays import Array, array_of, number_of, rows_of
+from .scene import Scene
+
+PAIR_CLASSES = ("separate", "vertex_touch", "edge_touch", "coplanar_touch", "coplanar_overlap", "crossing")
+
+
+def _scene_of(mesh):
+    if isinstance(mesh, Scene):
+        return mesh
+    scene = Scene()
+    scene.add_triangles(mesh)
+    return scene
+
+
+def _direction(value, name):
+    array = array_of(value, name)
+    if array.shape != (3,):
+        raise ValueError(f"{name}: shape {array.shape}; wanted is (3,)")
+    return [float(x) for x in array]
+
+
+def _count(value, name, least, most):
+    if not hasattr(value, "__index__") or not least <= value.__index__() <= most:
+        raise ValueError(f"{name}: {value!r}; wanted is an integer from {least} to {most}")
+    return value.__index__()
+
+
+def _groups(groups, scene):
+    if groups is None:
+        return []
+    array = array_of(groups, "groups")
+    faces = scene._core.triangle_count()
+    if array.shape != (faces,) or array.dtype.kind == "f" or (array.size and array.min() < 0):
+        raise ValueError(f"groups: shape {array.shape}, dtype {array.dtype}; wanted are {faces} integers from 0, one a face")
+    return array.astype(np.uint32).tolist()
+
+
+def visible(points, vectors, normals=None, *, scene, tnear=0.0):
+    """Tell which points see free sky along which vectors.
+
+    Parameters
+    ----------
+    points : array_like, (P, 3) float32
+    vectors : array_like, (V, 3) float32
+        Of any length, as patches of the sky (`sky_patches`).
+    normals : array_like, (P, 3) float32, optional
+        A vector that does not leave the side of a point's normal is not seen there.
+    scene : Scene, or a mesh
+    tnear : float
+        How far off, in lengths of a vector, hits begin to count: for points on the scene itself.
+
+    Returns
+    -------
+    (P, V) uint8
+        1 where nothing of the scene lies on the ray. All rays are never in memory at once.
+    """
+    rows, _ = rows_of(points, "points", np.float32, 3)
+    across, _ = rows_of(vectors, "vectors", np.float32, 3)
+    sides = np.zeros((0, 3), np.float32) if normals is None else rows_of(normals, "normals", np.float32, 3)[0]
+    if normals is not None and len(sides) != len(rows):
+        raise ValueError(f"normals: {len(sides)} rows, of points {len(rows)}")
+    core = _scene_of(scene)._core
+    return _core.visible(core, rows, across, sides, number_of(tnear, "tnear", 0)).reshape(len(rows), len(across))
+
+
+def view_factors(
+    scene, groups=None, *, sides="front", rays=1 << 14, target_error=None, seed=1, estimator="auto", sparse=False
+):
+    """Compute which fraction of the diffuse radiation of each face, or group of faces, meets each other one directly.
+
+    Parameters
+    ----------
+    scene : Scene, or a mesh
+    groups : array_like, (faces,) of int, optional
+        To which group each face belongs. Faces are numbered by geometry, then by triangle.
+    sides : {"front", "both"}
+        Which sides of faces radiate. The front is where vertices turn counter-clockwise.
+    rays : int
+        Of a row; the most where `target_error` is set.
+    target_error : float, optional
+        A row ends when the 95 % interval of each of its entries is within +- this.
+    seed : int
+        The same, the same result.
+    estimator : {"auto", "hits", "area", "contour"}
+        Contour integrals for pairs that nothing can come between, rays between points of both for those far apart,
+        else what the rays of a row meet; or one of them for all.
+    sparse : bool
+        True gives matrices of SciPy (CSR) instead of arrays.
+
+    Returns
+    -------
+    F : (n, n) float64
+        ``F[i, j]`` from i to j.
+    half_width : (n, n) float64
+        Half of the 95 % interval of each entry; 0 where F is 0 or no estimate.
+    """
+    if sides not in ("front", "both"):
+        raise ValueError(f"sides: {sides!r} is not one of front, both")
+    scene = _scene_of(scene)
+    error = None if target_error is None else number_of(target_error, "target_error", 0)
+    found = _core.view_factors(
+        scene._core, _groups(groups, scene), sides == "both", _count(rays, "rays", 1, 2**31), error,
+        _count(seed, "seed", 0, 2**32 - 1), estimator,
+    )  # fmt: skip
+    n = len(found["area"])
+    half = (found["high"].astype(np.float64) - found["low"]) / 2
+    matrices = []
+    for values in (found["value"].astype(np.float64), half):
+        if sparse:
+            from scipy.sparse import csr_matrix
+
+            first = found["first"].astype(np.int64)
+            matrices.append(csr_matrix((values, found["column"].astype(np.int64), first), shape=(n, n)))
+        else:
+            dense = np.zeros((n, n))
+            dense[np.repeat(np.arange(n), np.diff(found["first"].astype(np.int64))), found["column"]] = values
+            matrices.append(dense)
+    return tuple(matrices)
+
+
+def illumination(scene, direction, groups=None, *, side=1000, sides="both", seed=1):
+    """Compute what parallel light reaches, by a grid of rays in front of the scene.
+
+    Parameters
+    ----------
+    scene : Scene, or a mesh
+    direction : array_like, (3,)
+        Of the light's rays.
+    groups : array_like, (faces,) of int, optional
+    side : int
+        ``side * side`` rays.
+    sides : {"front", "both"}
+
+    Returns
+    -------
+    dict
+        Arrays (n,) float64 by face or group: ``area`` as the light sees it, ``low`` and ``high``, its 95 % interval,
+        ``unobstructed``, what it would be if nothing else were there, ``surface``, the faces' own, ``hits``.
+    """
+    scene = _scene_of(scene)
+    rows, _ = _core.illumination(
+        scene._core, _direction(direction, "direction"), _count(side, "side", 1, 65535), sides != "front",
+        _count(seed, "seed", 0, 2**63), _groups(groups, scene),
+    )  # fmt: skip
+    return {name: rows[:, i] for i, name in enumerate(("hits", "area", "low", "high", "unobstructed", "surface"))}
+
+
+def sky_light(scene, zenith=(0, 0, 1), *, samples=256, sides="front", seed=1):
+    """Compute what each face gets of a uniform sky, in units of an unobstructed horizontal plane.
+
+    Returns
+    -------
+    value, low, high : (faces,) float64
+        Of the front, the sky view factor, with its 95 % interval.
+    """
+    rows = _core.sky_light(
+        _scene_of(scene)._core, _direction(zenith, "zenith"), _count(samples, "samples", 1, 2**20), sides != "front",
+        _count(seed, "seed", 0, 2**63),
+    )  # fmt: skip
+    return rows[:, 0], rows[:, 1], rows[:, 2]
+
+
+def centroid(scene, direction, *, side=1000, seed=1):
+    """Compute the mean of what is seen of a scene along a direction.
+
+    Returns
+    -------
+    mean, standard_error : (3,) float64, or None where nothing is seen
+    """
+    mean, error, _, _ = _core.centroid(
+        _scene_of(scene)._core, _direction(direction, "direction"), _count(side, "side", 1, 65535),
+        _count(seed, "seed", 0, 2**63),
+    )  # fmt: skip
+    return (None if mean is None else np.array(mean)), (None if error is None else np.array(error))
+
+
+def collide(scene, *, self=False, shared="index", segments=False):
+    """Find the triangles of different geometries that touch or intersect, exactly.
+
+    Parameters
+    ----------
+    scene : Scene
+    self : bool
+        Also those within a geometry that are no neighbours, or more than that.
+    shared : {"index", "position"}
+        Which vertices of a mesh are one, for neighbours.
+    segments : bool
+        Also where the insides of crossing triangles meet.
+
+    Returns
+    -------
+    dict
+        ``geometry_ids`` and ``primitive_ids`` (m, 2) uint32, ``classes`` (m,) uint8, indices into `PAIR_CLASSES`;
+        ``segments`` (m, 2, 3) float64 where asked for, 0 for other classes.
+    """
+    if shared not in ("index", "position"):
+        raise ValueError(f"shared: {shared!r} is not one of index, position")
+    contacts, ends = _core.collide(_scene_of(scene)._core, bool(self), shared == "position", bool(segments))
+    found = {
+        "geometry_ids": contacts[:, :2].copy().view(Array),
+        "primitive_ids": contacts[:, 2:4].copy().view(Array),
+        "classes": contacts[:, 4].astype(np.uint8).view(Array),
+    }
+    if segments:
+        found["segments"] = ends.reshape(-1, 2, 3)
+    return found
