@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# What docs/python.md says to a user with nothing installed: packages, `pip install .` into a new environment, the
+# README's five lines; with the time of each. For tools/check_clean_room.sh.
+#   tools/try_python.sh [FOLDER OF THE ENVIRONMENT]
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. tools/lib.sh
+
+folder=${1-$(mktemp -d)}
+section "Packages"
+tools/setup.sh python
+section "pip install ."
+python3 -m venv "$folder"
+"$folder/bin/pip" install --quiet --disable-pip-version-check .
+section "Five lines"
+sed -n '/^```python$/,/^```$/p' README.md | sed '1d;$d' | "$folder/bin/python" -W ignore -
+section_end
