@@ -27,8 +27,7 @@ FaceGrouping group(Faces& faces, std::vector<uint>&& groups) {
 // Pairs are looked at one by one where there are few enough of them.
 PairExchanges pairs_of(AbstractAccel& accel, const Faces& faces, const ViewFactorOptions& options,
                        PairEstimator estimator) {
-    const auto count =
-        std::count_if(faces.areas().begin(), faces.areas().end(), [](double area) { return area > 0; });
+    const auto count = std::count_if(faces.areas().begin(), faces.areas().end(), [](double area) { return area > 0; });
     if (estimator == PairEstimator::automatic && static_cast<std::size_t>(count) > most_paired_faces) return {};
     return exchanges_of_pairs(accel, faces, options, estimator);
 }
@@ -73,9 +72,9 @@ Light illumination(Scene& scene, dvec3 direction, std::uint32_t side, bool both_
     const Scene::Turn turn(scene);
     Faces faces(turn.accel());
     const FaceGrouping by = group(faces, std::vector<uint>(groups));
-    const Illumination found =
-        illuminate(turn.accel(), faces,
-                   {.grid = {.direction = direction, .side = side, .seed = seed}, .sides = sides_of(both_sides), .by = by});
+    const Illumination found = illuminate(
+        turn.accel(), faces,
+        {.grid = {.direction = direction, .side = side, .seed = seed}, .sides = sides_of(both_sides), .by = by});
     Light light;
     light.rays = found.ray_count;
     for (const LitArea& lit : found.groups)
