@@ -72,6 +72,10 @@ proxies=()
 for name in http_proxy https_proxy no_proxy; do
     if [[ -n ${!name-} ]]; then proxies+=("$name=${!name}"); fi
 done
+if [[ -r ${PIP_CERT-} ]]; then # whom pip trusts
+    cp -L "$PIP_CERT" "$room/etc/pip-certificates.crt"
+    proxies+=(PIP_CERT=/etc/pip-certificates.crt)
+fi
 
 section "Checkout"
 mkdir "$room/twinray"

@@ -14,5 +14,5 @@ section "pip install ."
 python3 -m venv "$folder"
 "$folder/bin/pip" install --quiet --disable-pip-version-check .
 section "Five lines"
-sed -n '/^```python$/,/^```$/p' README.md | sed '1d;$d' | "$folder/bin/python" -W ignore -
+awk '/^```/ { inside = /python/; next } inside' README.md | "$folder/bin/python" -W ignore -
 section_end
