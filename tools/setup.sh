@@ -185,7 +185,7 @@ main() {
         return
         ;;
     demo) packages=("${demo_packages[@]}") ;;
-    python) packages=("${demo_packages[@]}" python3-dev python3-venv) ;;
+    python) packages=("${demo_packages[@]}" libeigen3-dev python3-dev python3-venv) ;;
     '') ;;
     *) die "unknown option '$1'; usage: tools/setup.sh [demo|python|--undo]" ;;
     esac

@@ -3,12 +3,8 @@
 
 #include <algorithm>
 
-#include "bindings/python/parallel.h"
-
 namespace twinray::python {
 namespace {
-
-constexpr std::size_t rays_of_tile = 1 << 20;
 
 PairEstimator estimator_of(const std::string& name) {
     for (const PairEstimator estimator : all_pair_estimators)
@@ -117,29 +113,8 @@ Touching collide(Scene& scene, bool self, bool by_position, bool segments) {
 
 std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, std::span<const vec3> vectors,
                                   std::span<const vec3> normals, float t_near) {
-    std::vector<std::uint8_t> free(points.size() * vectors.size());
-    if (free.empty()) return free;
-    const std::size_t step = std::max<std::size_t>(1, rays_of_tile / vectors.size());
-    const float infinite = std::numeric_limits<float>::infinity();
-    std::vector<Ray> rays;
-    for (std::size_t first = 0; first < points.size(); first += step) {
-        const std::size_t count = std::min(step, points.size() - first);
-        rays.resize(count * vectors.size());
-        in_parts(count, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t k = 0; k < vectors.size(); ++k)
-                    rays[i * vectors.size() + k] = {points[first + i], t_near, vectors[k], infinite};
-        });
-        const Column<bool> is_hit = scene.occlusions(rays);
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            const std::size_t point = first + i / vectors.size();
-            const vec3 v = vectors[i % vectors.size()];
-            const vec3 n = normals.empty() ? v : normals[point];
-            const bool leaves = normals.empty() || n.x * v.x + n.y * v.y + n.z * v.z > 0;
-            free[first * vectors.size() + i] = leaves && !is_hit[i];
-        }
-    }
-    return free;
+    const Scene::Turn turn(scene);
+    return visibility(turn.accel(), points, vectors, normals, {.t_near = t_near});
 }
 
 }  // namespace twinray::python

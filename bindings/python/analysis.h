@@ -48,9 +48,6 @@ std::vector<std::array<double, 3>> sky_light(Scene& scene, dvec3 zenith, std::ui
                                              std::uint64_t seed);
 Centroid centroid_of(Scene& scene, dvec3 direction, std::uint32_t side, std::uint64_t seed);
 Touching collide(Scene& scene, bool self, bool by_position, bool segments);
-
-// Row-major, a row a point: 1 where nothing lies on the ray from it along the vector; 0 for vectors that do not leave
-// the point's normal's side (with normals). Rays are made in tiles of about a million.
 std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, std::span<const vec3> vectors,
                                   std::span<const vec3> normals, float t_near);
 

@@ -192,6 +192,12 @@ void bind_analysis(nb::module_& m) {
         Touching found = unlocked([&] { return collide(scene, self, by_position, segments); });
         return nb::make_tuple(given<uint>(std::move(found.contacts), 5), given<double>(std::move(found.segments), 6));
     });
+    m.def("sky_patches", [](const std::string& name) {
+        std::vector<std::array<double, 4>> rows;
+        for (const SkyPatch& patch : sky_patches(name))
+            rows.push_back({patch.direction.x, patch.direction.y, patch.direction.z, patch.solid_angle});
+        return given<double>(std::move(rows), 4);
+    });
     m.def("visible", [](Scene& scene, const Rows<float, 3>& points, const Rows<float, 3>& vectors,
                         const Rows<float, 3>& normals, float t_near) {
         return given<std::uint8_t>(

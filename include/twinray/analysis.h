@@ -344,6 +344,27 @@ SkyLight sun_hours(AbstractAccel& accel, const Scene& scene, const Faces& faces,
 SkyLight sun_hours(AbstractAccel& accel, const Faces& faces, std::span<const SunPosition> positions,
                    const SkyRaysDesc& desc);
 
+// Patches of the sky by their middles, as Radiance numbers them: by row from the horizon up, in a row from north by
+// east, the zenith's last; z is up, y north. Tregenza, "Subdivision of the sky hemisphere for luminance measurements"
+// (1987), and Reinhart's division of each into 2 x 2 or 4 x 4.
+inline constexpr std::array<std::string_view, 3> sky_names = {"tregenza145", "reinhart577", "reinhart2305"};
+struct SkyPatch {
+    dvec3 direction;         // unit
+    double solid_angle = 0;  // steradians; 2 pi in all
+};
+std::vector<SkyPatch> sky_patches(std::string_view name);
+
+struct VisibilityDesc {
+    float t_near = 0;  // in lengths of a direction: hits before it do not count, for points on the scene itself
+    ProgressCallback progress = {};
+};
+// Of each point along each direction, of any length: 1 where nothing lies on the ray, else 0; rows are points. With
+// normals, a direction that does not leave the side of the point's normal gives 0. The device makes the rays, about a
+// million at a time. Throws Error for other counts of normals than of points and more than 2^20 directions.
+std::vector<std::uint8_t> visibility(AbstractAccel& accel, std::span<const vec3> points,
+                                     std::span<const vec3> directions, std::span<const vec3> normals = {},
+                                     const VisibilityDesc& desc = {});
+
 struct CentroidDesc {
     RayGridDesc grid;
     bool keeps_points = false;

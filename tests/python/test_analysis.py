@@ -96,7 +96,7 @@ def test_skies_are_radiances(name, count):
     if count == 145:
         assert np.isclose(np.rad2deg(np.arcsin(directions[0, 2])), 6)
         assert np.allclose(directions[1, :2] / np.cos(np.deg2rad(6)), [np.sin(np.deg2rad(12)), np.cos(np.deg2rad(12))])
-    with pytest.raises(ValueError, match="name: 'cie'"):
+    with pytest.raises(twinray.Error, match="sky 'cie'"):
         twinray.sky_patches("cie")
 
 

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Rays from points along vectors, each along each, and which of them meet nothing.
+#ifndef TWINRAY_ANALYSIS_VISIBLE_H
+#define TWINRAY_ANALYSIS_VISIBLE_H
+#include "twinray/glsl/ray.h"
+
+struct VisibleArgs
+{
+    Floats points;  // three each
+    Floats vectors; // likewise
+    Floats normals; // of the points, or null
+    REF(Ray) rays;  // of a tile: by point, then by vector; one that leaves the back of its point ends before it begins
+    REF(Hit) hits;
+    Uints answers;  // a byte a ray
+    uint first_point;
+    uint ray_count;
+    uint vector_count;
+    float t_near;
+};
+#endif

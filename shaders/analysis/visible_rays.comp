@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "twinray/glsl/common.glsl"
+#include "shaders/analysis/visible.h"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { VisibleArgs args; };
+
+vec3 row(Floats numbers, uint index)
+{
+    return vec3(AT(numbers, 3u * index), AT(numbers, 3u * index + 1u), AT(numbers, 3u * index + 2u));
+}
+
+void main()
+{
+    uint i = global_index();
+    if (i >= args.ray_count) return;
+    uint point = args.first_point + i / args.vector_count;
+    Ray ray;
+    ray.origin = row(args.points, point);
+    ray.t_min = args.t_near;
+    ray.direction = row(args.vectors, i % args.vector_count);
+    ray.t_max = uintBitsToFloat(0x7f800000u);
+    if (!is_null(args.normals) && !(dot(row(args.normals, point), ray.direction) > 0.0f)) ray.t_max = -1.0f;
+    AT(args.rays, i) = ray;
+}
