@@ -25,5 +25,6 @@ Command report_command();
 Command trace_command();
 Command verify_command();
 Command viewfactors_command();
+Command visible_command();
 
 }  // namespace twinray::cli

@@ -75,7 +75,7 @@ std::vector<Command> all_commands() {
     commands.push_back(bench_command());
 #endif
     for (const auto& make : {kernels_command, distance_command, collide_command, viewfactors_command,
-                             illumination_command, centroid_command, completion_command})
+                             illumination_command, visible_command, centroid_command, completion_command})
         commands.push_back(make());
     std::vector<std::string> names;
     for (const Command& command : commands) names.push_back(command.name);

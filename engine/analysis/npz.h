@@ -30,6 +30,7 @@ class Npz {
         std::vector<std::byte> header;  // of the .npy, and the value of a text
         std::span<const std::byte> data;
     };
+    static const char* type_of(std::uint8_t) { return "|u1"; }
     static const char* type_of(float) { return "<f4"; }
     static const char* type_of(double) { return "<f8"; }
     static const char* type_of(std::uint32_t) { return "<u4"; }

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// `twinray visible`: which patches of the sky sensors see.
+#include <twinray/analysis.h>
+
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/command/values.h"
+#include "cli/commands.h"
+#include "cli/ray_grid_options.h"
+#include "engine/analysis/npz.h"
+#include "engine/core/error.h"
+#include "engine/scene/bytes.h"
+#include "engine/scene/number_lines.h"
+#include "twinray/glsl/vector_math.h"
+#include "validation/records/progress.h"
+
+namespace twinray::cli {
+namespace {
+
+struct VisibleOptions {
+    AnalysisOptions analysis;
+    std::filesystem::path sensors;
+    std::string sky = std::string(sky_names[0]);
+    std::string up = "y";
+    float t_near = 0;
+};
+
+struct Sensors {
+    std::vector<vec3> points, normals;
+};
+
+Sensors read_sensors(const std::filesystem::path& file, const dvec3& origin) {
+    Sensors sensors;
+    read_number_lines(file, "sensor file", "x,y,z,dx,dy,dz", [&](std::span<const double> row, std::size_t) {
+        sensors.points.emplace_back(row[0] - origin.x, row[1] - origin.y, row[2] - origin.z);
+        sensors.normals.emplace_back(row[3], row[4], row[5]);
+    });
+    return sensors;
+}
+
+// Of patches in the scene's axes: with y up, north is -z.
+std::vector<vec3> directions_of(std::span<const SkyPatch> sky, bool is_y_up) {
+    std::vector<vec3> directions;
+    for (const SkyPatch& patch : sky) {
+        const dvec3& d = patch.direction;
+        directions.push_back(is_y_up ? vec3(d.x, d.z, -d.y) : vec3(d.x, d.y, d.z));
+    }
+    return directions;
+}
+
+// Of each sensor, what its free patches of a uniform sky bring it, in units of what all of a hemisphere would.
+std::vector<double> shares_of(std::span<const std::uint8_t> free, const Sensors& sensors,
+                              std::span<const vec3> directions, std::span<const SkyPatch> sky) {
+    std::vector<double> shares(sensors.points.size(), 0);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        const dvec3 normal = normalize(dvec3(sensors.normals[i]));
+        double free_light = 0, all = 0;
+        for (std::size_t k = 0; k < sky.size(); ++k) {
+            const double light = std::max(dot(normal, dvec3(directions[k])), 0.0) * sky[k].solid_angle;
+            all += light;
+            free_light += free[i * sky.size() + k] * light;
+        }
+        shares[i] = all > 0 ? free_light / all : 0;
+    }
+    return shares;
+}
+
+void write(const std::filesystem::path& file, std::span<const std::uint8_t> free, std::span<const double> shares,
+           std::span<const vec3> directions, std::span<const SkyPatch> sky) {
+    if (lower_suffix(file) == ".csv") {
+        CsvFile csv(file, "sensor,free_patches,share");
+        for (std::size_t i = 0; i < shares.size(); ++i) {
+            const auto row = free.subspan(i * sky.size(), sky.size());
+            csv.row({i, static_cast<std::uint64_t>(std::count(row.begin(), row.end(), 1))}, {shares[i]});
+        }
+        return csv.close();
+    }
+    std::vector<float> along;
+    std::vector<double> angles;
+    for (std::size_t k = 0; k < sky.size(); ++k) {
+        for (int axis = 0; axis < 3; ++axis) along.push_back(directions[k][axis]);
+        angles.push_back(sky[k].solid_angle);
+    }
+    Npz npz;
+    npz.add("visible", free, {shares.size(), sky.size()});
+    npz.add("share", shares);
+    npz.add("directions", std::span<const float>(along), {sky.size(), 3});
+    npz.add("solid_angles", std::span<const double>(angles));
+    npz.write(file);
+}
+
+void run(const VisibleOptions& options) {
+    const Analysed analysed(options.analysis);
+    const Sensors sensors = read_sensors(options.sensors, analysed.scene.origin);
+    const std::vector<SkyPatch> sky = sky_patches(options.sky);
+    const std::vector<vec3> directions = directions_of(sky, options.up == "y");
+    const std::uint64_t rays = sensors.points.size() * sky.size();
+    std::vector<std::uint8_t> free;
+    const double seconds = seconds_of([&] {
+        Progress progress("visible", rays, options.analysis.common.quiet);
+        free = visibility(*analysed.accel, sensors.points, directions, sensors.normals,
+                          {.t_near = options.t_near, .progress = [&](std::uint64_t n) { progress.advance(n); }});
+    });
+    const std::vector<double> shares = shares_of(free, sensors, directions, sky);
+    if (!options.analysis.output.empty()) write(options.analysis.output, free, shares, directions, sky);
+    double mean = 0;
+    for (const double share : shares) mean += share / static_cast<double>(shares.size());
+    if (!options.analysis.common.quiet)
+        std::cout << analysed.head("visible", options.analysis) << "  " << speed_text(rays, seconds) << "\n  "
+                  << sensors.points.size() << " sensors see " << mean << " of the light of " << options.sky
+                  << ", in the mean\n";
+    nlohmann::json record = {
+        {"sensors", sensors.points.size()}, {"sky", options.sky}, {"n", rays}, {"mean_share", mean},
+        {"seconds", seconds}};
+    record.update(analysed.record("twinray-visible/1", options.analysis));
+    append_json(options.analysis.common.json, record);
+}
+
+}  // namespace
+
+Command visible_command() {
+    const auto options = std::make_shared<VisibleOptions>();
+    const std::vector<std::string> skies(sky_names.begin(), sky_names.end());
+    Section asked = {"Sensors and sky",
+                     {{.name = "--sensors",
+                       .value = file(options->sensors),
+                       .help = "a file of Radiance's: a line x y z dx dy dz each, the place and where it looks",
+                       .is_required = true},
+                      {.name = "--sky",
+                       .value = choice(options->sky, skies),
+                       .help = "its patches, by the names of Tregenza and Reinhart"},
+                      {.name = "--up",
+                       .value = choice(options->up, {"y", "z"}),
+                       .help = "which axis points to the zenith: y, as in glTF, with north along -z, or z, with north "
+                               "along y"},
+                      {.name = "--t-near",
+                       .value = number(options->t_near, {.least = 0}),
+                       .help = "how far from a sensor triangles begin to count"}}};
+    return {.name = "visible",
+            .group = "Analyses",
+            .summary = "find which patches of the sky sensors see",
+            .description = "Sends a ray from each sensor to the middle of each patch of the sky that is on its side.",
+            .positionals = {scene_argument(options->analysis.scene)},
+            .sections = {asked,
+                         analysis_output(options->analysis,
+                                         ".npz: visible (sensors, patches) of 0 and 1, share, directions, "
+                                         "solid_angles; .csv: sensor, free_patches, share: of the light of a uniform "
+                                         "sky that would come if nothing stood in its way"),
+                         common_options(options->analysis.common)},
+            .examples = {{"twinray visible street.glb --sensors windows.pts --sky reinhart577 -o windows.npz",
+                          "577 patches as each window sees them"}},
+            .run = [options] {
+                run(*options);
+                return 0;
+            }};
+}
+
+}  // namespace twinray::cli
