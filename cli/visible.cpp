@@ -111,9 +111,11 @@ void run(const VisibleOptions& options) {
         std::cout << analysed.head("visible", options.analysis) << "  " << speed_text(rays, seconds) << "\n  "
                   << sensors.points.size() << " sensors see " << mean << " of the light of " << options.sky
                   << ", in the mean\n";
-    nlohmann::json record = {
-        {"sensors", sensors.points.size()}, {"sky", options.sky}, {"n", rays}, {"mean_share", mean},
-        {"seconds", seconds}};
+    nlohmann::json record = {{"sensors", sensors.points.size()},
+                             {"sky", options.sky},
+                             {"n", rays},
+                             {"mean_share", mean},
+                             {"seconds", seconds}};
     record.update(analysed.record("twinray-visible/1", options.analysis));
     append_json(options.analysis.common.json, record);
 }
