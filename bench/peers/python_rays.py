@@ -4,9 +4,10 @@
 
     python_rays.py [--rays 1000000] [--subdivisions 8] [--instances 1000] [--rounds 3] [-o FILE.json]
 
-Speed: a camera's rays at a sphere of 20 * 4**subdivisions triangles, and at as many spheres as there are instances. Wrong
-answers: rays from inside a sphere, aimed at its vertices and at points of its edges, must hit at t = 1. Packages that are not
-installed are left out: twinray, embreex, open3d, warp-lang."""
+Speed: a camera's rays at a sphere of 20 * 4**subdivisions triangles, and at as many spheres as there are instances.
+Wrong answers: rays from inside a sphere, aimed at its vertices and at points of its edges, must hit at t = 1. Packages
+that are not installed are left out: twinray, embreex, open3d, warp-lang."""
+
 import argparse
 import json
 import statistics
@@ -121,7 +122,8 @@ class Warp(Baked):
 
     def cast(self, rays):
         origins, directions = (
-            self.wp.array(np.ascontiguousarray(part), dtype=self.wp.vec3, device="cpu") for part in (rays[:, :3], rays[:, 3:])
+            self.wp.array(np.ascontiguousarray(part), dtype=self.wp.vec3, device="cpu")
+            for part in (rays[:, :3], rays[:, 3:])
         )
         found = self.wp.zeros(len(rays), dtype=float, device="cpu")
         self.wp.launch(self.kernel, len(rays), [self.mesh.id, origins, directions, found], device="cpu")
@@ -133,8 +135,12 @@ def moved(offset):
 
 
 BACKENDS = {
-    "twinray sw": lambda: Twinray("sw"), "twinray hw": lambda: Twinray("hw"), "embreex": Embreex, "open3d": Open3d, "warp": Warp,
-}  # fmt: skip
+    "twinray sw": lambda: Twinray("sw"),
+    "twinray hw": lambda: Twinray("hw"),
+    "embreex": Embreex,
+    "open3d": Open3d,
+    "warp": Warp,
+}
 
 
 def main():
@@ -146,7 +152,11 @@ def main():
     parser.add_argument("-o", "--output")
     options = parser.parse_args()
     fine, coarse = sphere(options.subdivisions), sphere(4)
-    spread = np.random.default_rng(2).uniform(-1, 1, (options.instances, 3)).astype(np.float32) * [20, 20, 1] - [0, 0, 30]
+    spread = np.random.default_rng(2).uniform(-1, 1, (options.instances, 3)).astype(np.float32) * [20, 20, 1] - [
+        0,
+        0,
+        30,
+    ]
     scenes = {
         f"sphere of {len(fine[1])}": (*fine, np.zeros((1, 3), np.float32), camera(options.rays)),
         f"{options.instances} spheres of {len(coarse[1])}": (*coarse, spread.astype(np.float32), camera(options.rays)),

@@ -14,7 +14,6 @@ from pathlib import Path
 import pytest
 import trimesh
 import trimesh.ray
-
 from twinray.trimesh import RayMeshIntersector
 
 

@@ -3,7 +3,6 @@
 
 import numpy as np
 import pytest
-
 import twinray
 from conftest import cube, grid
 
@@ -43,10 +42,20 @@ def test_a_shadow_takes_its_part_of_the_light():
     scene.add_triangles([[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]], [[0, 1, 2], [0, 2, 3]])
     scene.add_triangles([[1, 1, 1], [2, 1, 1], [2, 2, 1], [1, 2, 1]], [[0, 1, 2], [0, 2, 3]])
     light = twinray.illumination(scene, [0, 0, -1], groups=[0, 0, 1, 1], side=500)
-    assert np.abs(light["area"] - [15, 1]).max() < 0.05 and (light["low"] <= [15, 1]).all() and (light["high"] >= [15, 1]).all()
+    assert (
+        np.abs(light["area"] - [15, 1]).max() < 0.05
+        and (light["low"] <= [15, 1]).all()
+        and (light["high"] >= [15, 1]).all()
+    )
     assert (light["surface"] == [16, 1]).all() and light["unobstructed"].tolist() == [16, 1]
     value, low, high = twinray.sky_light(scene)
-    assert value.shape == (4,) and (value[2:] == 1).all() and (value[:2] < 1).all() and (low <= value).all() and (value <= high).all()
+    assert (
+        value.shape == (4,)
+        and (value[2:] == 1).all()
+        and (value[:2] < 1).all()
+        and (low <= value).all()
+        and (value <= high).all()
+    )
     mean, error = twinray.centroid(scene, [0, 0, -1], side=300)
     assert np.abs(mean - [2, 2, 1 / 16]).max() < 0.02 and (error > 0).any()
     assert twinray.centroid(twinray.Scene(), [0, 0, 1]) == (None, None)

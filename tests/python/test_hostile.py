@@ -7,7 +7,6 @@ import resource
 import threading
 
 import numpy as np
-
 import twinray
 from conftest import cube, grid
 
@@ -17,7 +16,9 @@ CALLS = 10_000
 def hostile_array(random, columns):
     """Of any shape, dtype and content."""
     kind = random.integers(16)
-    shape = [(3, columns), (0, columns), (columns,), (2, 2, columns), (columns, 3), (), (3, columns + 1)][random.integers(7)]
+    shape = [(3, columns), (0, columns), (columns,), (2, 2, columns), (columns, 3), (), (3, columns + 1)][
+        random.integers(7)
+    ]
     values = random.normal(size=shape) * 10.0 ** random.integers(-300, 300)
     if kind == 0:
         return None
@@ -86,7 +87,16 @@ def test_ten_thousand_hostile_calls():
         "transform": [lambda: scene.set_transform(0, hostile_array(random, 4))],
         "geometry": [lambda: scene.remove(hostile_number(random)), lambda: scene.add_instance(hostile_number(random))],
     }
-    argument_names = ("rays", "query_points", "vertex_positions", "triangle_indices", "transform", "geometry", "tnear", "tfar")
+    argument_names = (
+        "rays",
+        "query_points",
+        "vertex_positions",
+        "triangle_indices",
+        "transform",
+        "geometry",
+        "tnear",
+        "tfar",
+    )
     thread = threading.Thread(target=disturb)
     thread.start()
     answered, told, half = 0, 0, None

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 import twinray
 from conftest import cube, grid
 from twinray import INVALID_ID
@@ -166,7 +165,12 @@ def test_signs_do_not_flip_next_to_edges_and_diagonals():
 def test_signs_hold_on_open_and_on_touching_meshes():
     vertices, triangles = cube()
     opened = scene_of((vertices, triangles[1:]))
-    assert opened.compute_occupancy([[0.5, 0.5, 0.5], [0.9, 0.9, 0.9], [3, 3, 3], [0.5, 0.5, 2]]).tolist() == [1, 1, 0, 0]
+    assert opened.compute_occupancy([[0.5, 0.5, 0.5], [0.9, 0.9, 0.9], [3, 3, 3], [0.5, 0.5, 2]]).tolist() == [
+        1,
+        1,
+        0,
+        0,
+    ]
     two = scene_of((vertices, triangles))
     two.add_triangles(vertices + [1, 0, 0], triangles)  # they share a face
     assert two.compute_occupancy([[0.5, 0.5, 0.5], [1.5, 0.5, 0.5], [2.5, 0.5, 0.5]]).tolist() == [1, 1, 0]

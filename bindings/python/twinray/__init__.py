@@ -9,7 +9,10 @@
 Array([2.], dtype=float32)
 """
 
+from __future__ import annotations
+
 import atexit as _atexit
+from typing import Any as _Any
 
 from . import _core
 from ._arrays import Array
@@ -41,7 +44,7 @@ _atexit.register(_core.forget_devices)
 _core.widen_cpu_vectors()
 
 
-def devices():
+def devices() -> list[dict[str, _Any]]:
     """List the Vulkan devices of this machine.
 
     Returns

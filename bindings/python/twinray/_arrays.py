@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What callers give becomes NumPy arrays of one dtype, or an exception that names the argument."""
 
+from __future__ import annotations
+
 import numpy as np
+from numpy.typing import NDArray
 
 _CPU = (1, 3)  # DLPack's kDLCPU and kDLCUDAHost
 
@@ -9,13 +12,13 @@ _CPU = (1, 3)  # DLPack's kDLCPU and kDLCUDAHost
 class Array(np.ndarray):
     """A NumPy array that also answers what Open3D's tensors are asked: ``numpy()``, ``cpu()``, ``isfinite()``."""
 
-    def numpy(self):
+    def numpy(self) -> NDArray:
         return self.view(np.ndarray)
 
-    def cpu(self):
+    def cpu(self) -> Array:
         return self
 
-    def isfinite(self):
+    def isfinite(self) -> NDArray[np.bool_]:
         return np.isfinite(self)
 
 

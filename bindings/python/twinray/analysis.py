@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: MIT
 """What rays tell of scenes: what is visible, view factors, light, centroids, collisions."""
 
+from __future__ import annotations
+
+from typing import Any, Literal
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Array, array_of, number_of, rows_of
@@ -37,11 +42,20 @@ def _groups(groups, scene):
     array = array_of(groups, "groups")
     faces = scene._core.triangle_count()
     if array.shape != (faces,) or array.dtype.kind == "f" or (array.size and array.min() < 0):
-        raise ValueError(f"groups: shape {array.shape}, dtype {array.dtype}; wanted are {faces} integers from 0, one a face")
+        raise ValueError(
+            f"groups: shape {array.shape}, dtype {array.dtype}; wanted are {faces} integers from 0, one a face"
+        )
     return array.astype(np.uint32).tolist()
 
 
-def visible(points, vectors, normals=None, *, scene, tnear=0.0):
+def visible(
+    points: ArrayLike,
+    vectors: ArrayLike,
+    normals: ArrayLike | None = None,
+    *,
+    scene: Scene | Any,
+    tnear: float = 0.0,
+) -> NDArray[np.uint8]:
     """Tell which points see free sky along which vectors.
 
     Parameters
@@ -70,8 +84,16 @@ def visible(points, vectors, normals=None, *, scene, tnear=0.0):
 
 
 def view_factors(
-    scene, groups=None, *, sides="front", rays=1 << 14, target_error=None, seed=1, estimator="auto", sparse=False
-):
+    scene: Scene | Any,
+    groups: ArrayLike | None = None,
+    *,
+    sides: Literal["front", "both"] = "front",
+    rays: int = 1 << 14,
+    target_error: float | None = None,
+    seed: int = 1,
+    estimator: Literal["auto", "hits", "area", "contour"] = "auto",
+    sparse: bool = False,
+) -> tuple[Any, Any]:
     """Compute which fraction of the diffuse radiation of each face, or group of faces, meets each other one directly.
 
     Parameters
@@ -113,7 +135,7 @@ def view_factors(
     matrices = []
     for values in (found["value"].astype(np.float64), half):
         if sparse:
-            from scipy.sparse import csr_matrix
+            from scipy.sparse import csr_matrix  # type: ignore[import-untyped]
 
             first = found["first"].astype(np.int64)
             matrices.append(csr_matrix((values, found["column"].astype(np.int64), first), shape=(n, n)))
@@ -124,7 +146,15 @@ def view_factors(
     return tuple(matrices)
 
 
-def illumination(scene, direction, groups=None, *, side=1000, sides="both", seed=1):
+def illumination(
+    scene: Scene | Any,
+    direction: ArrayLike,
+    groups: ArrayLike | None = None,
+    *,
+    side: int = 1000,
+    sides: Literal["front", "both"] = "both",
+    seed: int = 1,
+) -> dict[str, NDArray[np.float64]]:
     """Compute what parallel light reaches, by a grid of rays in front of the scene.
 
     Parameters
@@ -151,7 +181,14 @@ def illumination(scene, direction, groups=None, *, side=1000, sides="both", seed
     return {name: rows[:, i] for i, name in enumerate(("hits", "area", "low", "high", "unobstructed", "surface"))}
 
 
-def sky_light(scene, zenith=(0, 0, 1), *, samples=256, sides="front", seed=1):
+def sky_light(
+    scene: Scene | Any,
+    zenith: ArrayLike = (0, 0, 1),
+    *,
+    samples: int = 256,
+    sides: Literal["front", "both"] = "front",
+    seed: int = 1,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Compute what each face gets of a uniform sky, in units of an unobstructed horizontal plane.
 
     Returns
@@ -166,7 +203,9 @@ def sky_light(scene, zenith=(0, 0, 1), *, samples=256, sides="front", seed=1):
     return rows[:, 0], rows[:, 1], rows[:, 2]
 
 
-def centroid(scene, direction, *, side=1000, seed=1):
+def centroid(
+    scene: Scene | Any, direction: ArrayLike, *, side: int = 1000, seed: int = 1
+) -> tuple[NDArray[np.float64] | None, NDArray[np.float64] | None]:
     """Compute the mean of what is seen of a scene along a direction.
 
     Returns
@@ -180,7 +219,13 @@ def centroid(scene, direction, *, side=1000, seed=1):
     return (None if mean is None else np.array(mean)), (None if error is None else np.array(error))
 
 
-def collide(scene, *, self=False, shared="index", segments=False):
+def collide(
+    scene: Scene | Any,
+    *,
+    self: bool = False,
+    shared: Literal["index", "position"] = "index",
+    segments: bool = False,
+) -> dict[str, Any]:
     """Find the triangles of different geometries that touch or intersect, exactly.
 
     Parameters

@@ -1,18 +1,22 @@
 # SPDX-License-Identifier: MIT
 """Scenes of triangle meshes, with the names, shapes and dtypes of Open3D's ``RaycastingScene``."""
 
+from __future__ import annotations
+
 import os
 import warnings
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _core
 from ._arrays import Array, array_of, geometry_of, indices_of, matrix_of, number_of, rows_of
 from ._winding import winding_numbers_of_open_meshes
 
-INVALID_ID = 0xFFFFFFFF  #: in place of the number of a geometry or a triangle, where there is none
+INVALID_ID: int = 0xFFFFFFFF  #: in place of the number of a geometry or a triangle, where there is none
 
-_told_of_cpu = set()
+_told_of_cpu: set[str] = set()
 
 
 class Scene:
@@ -35,7 +39,12 @@ class Scene:
     in their lengths. Other dtypes are cast once. All calls may come from several threads.
     """
 
-    def __init__(self, accel="auto", device=None, level="watertight"):
+    def __init__(
+        self,
+        accel: Literal["auto", "sw", "hw"] = "auto",
+        device: str | int | None = None,
+        level: Literal["fast", "watertight", "refined", "certified"] = "watertight",
+    ) -> None:
         for name, value in (("accel", accel), ("level", level)):
             if not isinstance(value, str):
                 raise TypeError(f"{name}: {value!r} is not a str")
@@ -45,23 +54,29 @@ class Scene:
         self._tell()
 
     @property
-    def backend(self):
+    def backend(self) -> dict[str, str]:
         """What answers: dict of ``device``, ``driver``, ``kind``, ``accel``, ``why``, ``path``, ``level``."""
         return self._core.backend()
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         backend = self.backend
         return (
             f"<twinray.Scene of {len(self)} geometries, {self._core.triangle_count()} triangles; "
             f"{backend['accel']} on {backend['device']}>"
         )
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._core.geometries())
 
     # Geometries
 
-    def add_triangles(self, vertex_positions, triangle_indices=None, *, transform=None):
+    def add_triangles(
+        self,
+        vertex_positions: ArrayLike | Any,
+        triangle_indices: ArrayLike | None = None,
+        *,
+        transform: ArrayLike | None = None,
+    ) -> int:
         """Add a mesh.
 
         Parameters
@@ -90,26 +105,28 @@ class Scene:
         triangles = indices_of(triangle_indices, "triangle_indices")
         return self._core.add(positions, triangles, matrix_of(transform, "transform"))
 
-    def add_instance(self, geometry, transform=None):
+    def add_instance(self, geometry: int, transform: ArrayLike | None = None) -> int:
         """Add the mesh of a geometry once more, without another copy; returns the number of the new geometry."""
         return self._core.add_instance(geometry_of(geometry, "geometry"), matrix_of(transform, "transform"))
 
-    def remove(self, geometry):
+    def remove(self, geometry: int) -> None:
         """Take a geometry out. Its number is not given again."""
         self._core.remove(geometry_of(geometry, "geometry"))
 
-    def set_transform(self, geometry, transform):
+    def set_transform(self, geometry: int, transform: ArrayLike) -> None:
         """Move a geometry: `transform` is (4, 4) or (3, 4), from its mesh to the scene."""
         self._core.set_transform(geometry_of(geometry, "geometry"), matrix_of(transform, "transform"))
 
-    def update_vertices(self, geometry, vertex_positions):
+    def update_vertices(self, geometry: int, vertex_positions: ArrayLike) -> None:
         """Move the vertices of a mesh, and of all its instances: as many as it has, (N, 3)."""
         positions, _ = rows_of(vertex_positions, "vertex_positions", np.float32, 3)
         self._core.update_vertices(geometry_of(geometry, "geometry"), positions)
 
     # Rays
 
-    def cast_rays(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf, normals=True):
+    def cast_rays(
+        self, rays: ArrayLike, nthreads: int = 0, *, tnear: float = 0.0, tfar: float = np.inf, normals: bool = True
+    ) -> dict[str, Array]:
         """Find what each ray meets first.
 
         Parameters
@@ -134,17 +151,21 @@ class Scene:
         self._tell()
         return _shaped(found, shape)
 
-    def test_occlusions(self, rays, tnear=0.0, tfar=np.inf, nthreads=0):
+    def test_occlusions(self, rays: ArrayLike, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0) -> Array:
         """Tell whether each ray meets anything between `tnear` and `tfar`; (...) bool."""
         flat, shape = rows_of(rays, "rays", np.float32, 6)
         return self._core.occlusions(flat, *_interval(tnear, tfar)).reshape(shape).view(Array)
 
-    def count_intersections(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):
+    def count_intersections(
+        self, rays: ArrayLike, nthreads: int = 0, *, tnear: float = 0.0, tfar: float = np.inf
+    ) -> Array:
         """Count the triangles that each ray meets, an edge or vertex between them once; (...) int32."""
         flat, shape = rows_of(rays, "rays", np.float32, 6)
         return self._core.counts(flat, *_interval(tnear, tfar)).reshape(shape).view(Array)
 
-    def list_intersections(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf, normals=False):
+    def list_intersections(
+        self, rays: ArrayLike, nthreads: int = 0, *, tnear: float = 0.0, tfar: float = np.inf, normals: bool = False
+    ) -> dict[str, Array]:
         """List all that each ray meets, by ray, then by t; an edge or vertex between triangles once.
 
         Returns
@@ -164,7 +185,7 @@ class Scene:
 
     # Points
 
-    def compute_closest_points(self, query_points, nthreads=0):
+    def compute_closest_points(self, query_points: ArrayLike, nthreads: int = 0) -> dict[str, Array]:
         """Find the point of the scene that is closest to each.
 
         Parameters
@@ -184,12 +205,12 @@ class Scene:
         del found["distances"]
         return _shaped(found, shape)
 
-    def compute_distance(self, query_points, nthreads=0):
+    def compute_distance(self, query_points: ArrayLike, nthreads: int = 0) -> Array:
         """Compute the distance of each point from the scene; (...) float32, infinite where it is empty."""
         flat, shape = rows_of(query_points, "query_points", np.float64, 3)
         return self._core.closest(flat, False)["distances"].astype(np.float32).reshape(shape).view(Array)
 
-    def compute_signed_distance(self, query_points, nthreads=0, nsamples=1):
+    def compute_signed_distance(self, query_points: ArrayLike, nthreads: int = 0, nsamples: int = 1) -> Array:
         """Compute the distance of each point, negative inside; (...) float32.
 
         Inside is where the winding number is not 0. That is exact for closed meshes; of open ones it is the
@@ -201,12 +222,15 @@ class Scene:
         signed = np.where(self._is_inside(flat), -distances, distances)
         return signed.astype(np.float32).reshape(shape).view(Array)
 
-    def compute_occupancy(self, query_points, nthreads=0, nsamples=1):
+    def compute_occupancy(self, query_points: ArrayLike, nthreads: int = 0, nsamples: int = 1) -> Array:
         """Tell which points are inside, by 1; others are 0; (...) float32. Inside is as for signed distances."""
         flat, shape = rows_of(query_points, "query_points", np.float64, 3)
         return self._is_inside(flat).astype(np.float32).reshape(shape).view(Array)
 
-    create_rays_pinhole = staticmethod(lambda *args, **options: create_rays_pinhole(*args, **options))
+    @staticmethod
+    def create_rays_pinhole(*args: Any, **options: Any) -> Array:
+        """As the function `create_rays_pinhole`."""
+        return create_rays_pinhole(*args, **options)
 
     INVALID_ID = INVALID_ID
 
@@ -231,7 +255,7 @@ class Scene:
             warnings.warn(f"twinray runs on a CPU, by Vulkan device '{backend['device']}'", stacklevel=3)
 
 
-def create_rays_pinhole(*args, **options):
+def create_rays_pinhole(*args: Any, **options: Any) -> Array:
     """Make the rays of a pinhole camera.
 
     Called as ``create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px)``: `fov_deg` is horizontal, x of
@@ -288,7 +312,9 @@ def arrays_of_mesh(mesh):
     if hasattr(mesh, "points") and hasattr(mesh, "regular_faces"):
         surface = mesh.triangulate()
         return np.asarray(surface.points), np.asarray(surface.regular_faces)
-    raise TypeError(f"vertex_positions: {type(mesh).__name__} is no mesh of trimesh, Open3D or PyVista; give triangle_indices")
+    raise TypeError(
+        f"vertex_positions: {type(mesh).__name__} is no mesh of trimesh, Open3D or PyVista; give triangle_indices"
+    )
 
 
 def _interval(tnear, tfar):

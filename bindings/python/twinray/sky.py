@@ -1,13 +1,21 @@
 # SPDX-License-Identifier: MIT
 """Skies in patches, and sensors, as users of Radiance have them."""
 
+from __future__ import annotations
+
+import os
+from typing import Literal
+
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _core
 from ._arrays import Array
 
 
-def sky_patches(name="tregenza145"):
+def sky_patches(
+    name: Literal["tregenza145", "reinhart577", "reinhart2305"] = "tregenza145",
+) -> tuple[Array, Array]:
     """Give the middles and solid angles of the patches of a sky, as Radiance numbers them.
 
     Of Tregenza ("Subdivision of the sky hemisphere for luminance measurements", 1987), and Reinhart's division of each
@@ -30,7 +38,7 @@ def sky_patches(name="tregenza145"):
     return rows[:, :3].view(Array), rows[:, 3].view(Array)
 
 
-def read_sensors(file):
+def read_sensors(file: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Read a sensor file of Radiance: a line ``x y z dx dy dz`` a point.
 
     Returns

@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: MIT
 """trimesh's ray interface: ``mesh.ray = twinray.trimesh.RayMeshIntersector(mesh)``."""
 
+from __future__ import annotations
+
+from typing import Any, Literal
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import rows_of
 from .scene import Scene
@@ -25,7 +30,15 @@ class RayMeshIntersector:
     exactly between triangles meets one of them, never none and never two. Rows are by ray, then by distance.
     """
 
-    def __init__(self, geometry, scale_to_box=True, *, accel="auto", device=None, level="watertight"):
+    def __init__(
+        self,
+        geometry: Any,
+        scale_to_box: bool = True,
+        *,
+        accel: Literal["auto", "sw", "hw"] = "auto",
+        device: str | int | None = None,
+        level: Literal["fast", "watertight", "refined", "certified"] = "watertight",
+    ) -> None:
         self.mesh = geometry
         self._options = {"accel": accel, "device": device, "level": level}
         self._built = None
@@ -39,7 +52,7 @@ class RayMeshIntersector:
         return type(self)(deepcopy(self.mesh, memo), **self._options)
 
     @property
-    def scene(self):
+    def scene(self) -> Scene:
         """The `twinray.Scene` of the mesh, about `center`."""
         return self._scene_and_center()[0]
 
@@ -69,8 +82,13 @@ class RayMeshIntersector:
         return getattr(scene, question)(np.hstack([origins - center, directions]), **options)
 
     def intersects_id(
-        self, ray_origins, ray_directions, multiple_hits=True, max_hits=None, return_locations=False
-    ):
+        self,
+        ray_origins: ArrayLike,
+        ray_directions: ArrayLike,
+        multiple_hits: bool = True,
+        max_hits: int | None = None,
+        return_locations: bool = False,
+    ) -> tuple[NDArray[Any], ...]:
         """Find which triangles each ray meets.
 
         Parameters
@@ -116,25 +134,27 @@ class RayMeshIntersector:
             points = origins + distance[:, None] * directions
         return np.clip(points, corners.min(axis=1), corners.max(axis=1)) if len(points) else points.reshape(0, 3)
 
-    def intersects_location(self, ray_origins, ray_directions, multiple_hits=True, **options):
+    def intersects_location(
+        self, ray_origins: ArrayLike, ray_directions: ArrayLike, multiple_hits: bool = True, **options: Any
+    ) -> tuple[NDArray[Any], ...]:
         """Find where rays meet the mesh: ``locations`` (m, 3) float64, ``index_ray`` and ``index_tri`` (m,) int64."""
         triangles, rays, locations = self.intersects_id(
             ray_origins, ray_directions, multiple_hits=multiple_hits, return_locations=True, **options
         )
         return locations, rays, triangles
 
-    def intersects_first(self, ray_origins, ray_directions):
+    def intersects_first(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.int32]:
         """Find the first triangle that each ray meets: (n,) int32, -1 for none."""
         origins, directions = self._rays(ray_origins, ray_directions)
         found = self._ask("cast_rays", origins, directions, normals=False)
         return found["primitive_ids"].view(np.ndarray).view(np.int32)
 
-    def intersects_any(self, ray_origins, ray_directions):
+    def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]:
         """Tell whether each ray meets the mesh: (n,) bool."""
         origins, directions = self._rays(ray_origins, ray_directions)
         return self._ask("test_occlusions", origins, directions).view(np.ndarray)
 
-    def contains_points(self, points):
+    def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Tell whether each point is inside: (n,) bool, by winding numbers."""
         rows, _ = rows_of(points, "points", np.float64, 3)
         scene, center = self._scene_and_center()
