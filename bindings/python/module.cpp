@@ -109,6 +109,7 @@ void bind_scene(nb::module_& m) {
              [](Scene& scene, uint of, const TransformRows& matrix) {
                  return unlocked([&] { return scene.add_instance(of, transform_of(matrix)); });
              })
+        .def("add_file", &Scene::add_file, nb::call_guard<nb::gil_scoped_release>())
         .def("remove", &Scene::remove, nb::call_guard<nb::gil_scoped_release>())
         .def("set_transform",
              [](Scene& scene, uint geometry, const TransformRows& matrix) {

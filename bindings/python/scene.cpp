@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "bindings/python/scene.h"
 
+#include <twinray/scene.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -115,6 +117,21 @@ uint Scene::add_instance(uint of, const Transform& transform) {
     const AccelHandle handle =
         accel_->push_instances_of(original.handle, std::span(&transform, 1), std::span(&options, 1));
     return keep(handle, original.mesh, transform);
+}
+
+std::vector<uint> Scene::add_file(const std::string& file) {
+    twinray::Scene loaded = load_scene(file, dvec3(0));  // where rays are, too
+    const Lock lock(device_->mutex);
+    for (const std::string& warning : loaded.warnings) device_->log.push_back(warning);
+    std::vector<std::optional<uint>> first_of(loaded.meshes.size());
+    std::vector<uint> added;
+    for (const Instance& instance : loaded.instances) {
+        std::optional<uint>& first = first_of[instance.mesh];
+        added.push_back(first ? add_instance(*first, instance.transform)
+                              : add(std::move(loaded.meshes[instance.mesh]), instance.transform));
+        if (!first) first = added.back();
+    }
+    return added;
 }
 
 void Scene::remove(uint geometry) {

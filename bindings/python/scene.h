@@ -66,6 +66,8 @@ class Scene {
     // Numbers of geometries, 0, 1, ...; never given again. Throws Error as AbstractAccel::push does.
     uint add(Mesh&& mesh, const Transform& transform);
     uint add_instance(uint of, const Transform& transform);
+    // A geometry for each instance of the file. Throws Error as load_scene() does.
+    std::vector<uint> add_file(const std::string& file);
     void remove(uint geometry);
     void set_transform(uint geometry, const Transform& transform);
     // Of all instances of the mesh.

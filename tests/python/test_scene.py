@@ -106,6 +106,17 @@ def test_geometries_move_go_and_are_repeated(accel):
         scene.remove(first)
 
 
+def test_files_are_added(tmp_path):
+    vertices, triangles = cube()
+    lines = [f"v {x} {y} {z}" for x, y, z in vertices] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]
+    (tmp_path / "cube.obj").write_text("\n".join(lines))
+    scene = twinray.Scene()
+    assert scene.add_file(tmp_path / "cube.obj") == [0]
+    assert scene.count_intersections([0.3, 0.6, -1, 0, 0, 1]) == 2
+    with pytest.raises(twinray.Error, match="nothing.glb"):
+        scene.add_file(tmp_path / "nothing.glb")
+
+
 def aimed_rays(vertices, triangles, seed):
     """Through vertices and points of edges, from above."""
     random = np.random.default_rng(seed)

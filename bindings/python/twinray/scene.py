@@ -109,6 +109,22 @@ class Scene:
         """Add the mesh of a geometry once more, without another copy; returns the number of the new geometry."""
         return self._core.add_instance(geometry_of(geometry, "geometry"), matrix_of(transform, "transform"))
 
+    def add_file(self, file: str | os.PathLike[str]) -> list[int]:
+        """Add all that a file shows: .gltf, .glb, .obj, .ply or .stl.
+
+        Returns
+        -------
+        list of int
+            A number for each instance; those of one mesh share it.
+
+        Notes
+        -----
+        Coordinates become float32: what lies far from the origin, as in UTM, is better moved there first.
+        """
+        added = self._core.add_file(os.fspath(file))
+        self._tell()
+        return added
+
     def remove(self, geometry: int) -> None:
         """Take a geometry out. Its number is not given again."""
         self._core.remove(geometry_of(geometry, "geometry"))
