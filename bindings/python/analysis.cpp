@@ -111,6 +111,24 @@ Touching collide(Scene& scene, bool self, bool by_position, bool segments) {
     return touching;
 }
 
+Verdict verify(Scene& scene, std::vector<Ray>&& rays, std::size_t count, std::uint64_t seed) {
+    const Scene::Turn turn(scene);
+    turn.accel().sync();
+    const twinray::Scene held = scene_of(turn.accel());
+    const Reference reference(held);
+    if (rays.empty()) {
+        rays = random_rays(bounds_of(held), count - count / 2, seed);
+        for (const auto& make : {vertex_aimed_rays, edge_aimed_rays})
+            for (const Ray& ray : make(reference, count / 4, seed)) rays.push_back(ray);
+    }
+    const TracedBy by = turn.accel().is_software() ? TracedBy::software : TracedBy::hardware;
+    Verdict verdict;
+    verdict.classes = reference.classify(rays, turn.accel().closest_hits(rays, {.level = turn.level()}), by);
+    verdict.counts = twinray::count(verdict.classes);
+    verdict.rays = std::move(rays);
+    return verdict;
+}
+
 std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, std::span<const vec3> vectors,
                                   std::span<const vec3> normals, float t_near) {
     const Scene::Turn turn(scene);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <twinray/analysis.h>
+#include <twinray/validation.h>
 
 #include "bindings/python/scene.h"
 
@@ -48,6 +49,16 @@ std::vector<std::array<double, 3>> sky_light(Scene& scene, dvec3 zenith, std::ui
                                              std::uint64_t seed);
 Centroid centroid_of(Scene& scene, dvec3 direction, std::uint32_t side, std::uint64_t seed);
 Touching collide(Scene& scene, bool self, bool by_position, bool segments);
+
+// Closest hits of rays judged by the reference in float64; without rays `count` of them are made, of which a half are
+// random, a quarter aimed at vertices and a quarter at edges.
+struct Verdict {
+    std::vector<Ray> rays;
+    std::vector<HitClass> classes;  // by ray
+    HitClassCounts counts;
+};
+Verdict verify(Scene& scene, std::vector<Ray>&& rays, std::size_t count, std::uint64_t seed);
+
 std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, std::span<const vec3> vectors,
                                   std::span<const vec3> normals, float t_near);
 

@@ -175,6 +175,23 @@ nb::tuple bound_centroid(Scene& scene, const std::array<double, 3>& direction, s
     return nb::make_tuple(tuple(found.mean), tuple(found.standard_error), found.point_count, found.ray_count);
 }
 
+nb::dict bound_verify(Scene& scene, const RayRows& rows, std::size_t count, std::uint64_t seed) {
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    std::vector<Ray> rays = rays_of(rows, 0, infinite);
+    Verdict verdict = unlocked([&] { return verify(scene, std::move(rays), count, seed); });
+    nb::dict counts, found;
+    for (std::size_t i = 0; i < hit_class_count; ++i) {
+        const std::string_view name = name_of(static_cast<HitClass>(i));
+        counts[nb::str(name.data(), name.size())] = verdict.counts.counts[i];
+    }
+    found["counts"] = counts;
+    found["faults"] = verdict.counts.faults_of_ours() + verdict.counts.faults_of_hardware();
+    found["bound_95"] = verdict.counts.bound_95();
+    found["classes"] = given<std::uint8_t>(std::move(verdict.classes));
+    found["rays"] = given<float>(std::move(verdict.rays), 8);
+    return found;
+}
+
 void bind_analysis(nb::module_& m) {
     m.def("view_factors", &bound_view_factors);
     m.def("illumination", [](Scene& scene, const std::array<double, 3>& direction, std::uint32_t side, bool both_sides,
@@ -193,6 +210,7 @@ void bind_analysis(nb::module_& m) {
         Touching found = unlocked([&] { return collide(scene, self, by_position, segments); });
         return nb::make_tuple(given<uint>(std::move(found.contacts), 5), given<double>(std::move(found.segments), 6));
     });
+    m.def("verify", &bound_verify);
     m.def("sky_patches", [](const std::string& name) {
         std::vector<std::array<double, 4>> rows;
         for (const SkyPatch& patch : sky_patches(name))

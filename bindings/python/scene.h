@@ -94,6 +94,7 @@ class Scene {
       public:
         explicit Turn(Scene& scene) : scene_(scene), lock_(scene.device_->mutex) {}
         AbstractAccel& accel() const { return *scene_.accel_; }
+        Level level() const { return scene_.level_; }
 
       private:
         Scene& scene_;

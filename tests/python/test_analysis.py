@@ -80,6 +80,18 @@ def test_collisions_are_exact():
     assert len(twinray.collide(scene)["classes"]) == 0
 
 
+def test_hits_are_verified():
+    scene = twinray.Scene(accel="sw")
+    scene.add_triangles(*grid(12))
+    scene.add_triangles(*cube(), transform=[[0.1, 0.02, 0, 0.4], [0, 0.1, 0, 0.4], [0, 0, 0.1, 0.2]])
+    verdict = twinray.verify(scene, count=20_000)
+    assert verdict["faults"] == 0 and verdict["bound_95"] < 1e-3 and verdict["classes"].shape == (20_000,)
+    assert sum(verdict["counts"].values()) == 20_000 and verdict["counts"]["AGREE"] > 15_000
+    assert tuple(verdict["counts"]) == twinray.HIT_CLASSES and verdict["rays"].shape == (20_000, 6)
+    one = twinray.verify(scene, [[0.5, 0.5, 3, 0, 0, -1]])
+    assert len(one["classes"]) == 1 and twinray.HIT_CLASSES[one["classes"][0]] in ("AGREE", "TIE", "BOUNDARY")
+
+
 def test_visible_is_what_occlusion_rays_say():
     scene = twinray.Scene()
     scene.add_triangles(*grid(20))

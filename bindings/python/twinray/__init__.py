@@ -17,13 +17,24 @@ from typing import Any as _Any
 from . import _core
 from ._arrays import Array
 from ._core import Error
-from .analysis import PAIR_CLASSES, centroid, collide, illumination, sky_light, view_factors, visible
+from .analysis import (
+    HIT_CLASSES,
+    PAIR_CLASSES,
+    centroid,
+    collide,
+    illumination,
+    sky_light,
+    verify,
+    view_factors,
+    visible,
+)
 from .scene import INVALID_ID, Scene, create_rays_pinhole
 from .sky import read_sensors, sky_patches
 
 __all__ = [
     "Array",
     "Error",
+    "HIT_CLASSES",
     "INVALID_ID",
     "PAIR_CLASSES",
     "Scene",
@@ -35,6 +46,7 @@ __all__ = [
     "read_sensors",
     "sky_light",
     "sky_patches",
+    "verify",
     "view_factors",
     "visible",
 ]

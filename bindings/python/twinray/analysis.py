@@ -12,6 +12,21 @@ from . import _core
 from ._arrays import Array, array_of, number_of, rows_of
 from .scene import Scene
 
+HIT_CLASSES = (
+    "AGREE",
+    "TIE",
+    "BOUNDARY",
+    "BOUNDARY_HW_MISS",
+    "UNSPECIFIED",
+    "INVALID_INPUT",
+    "SW_LEAK",
+    "SW_FALSE",
+    "T_ERR",
+    "HW_LEAK",
+    "HW_FALSE",
+    "HW_T_ERR",
+    "HW_RANGE",
+)
 PAIR_CLASSES = ("separate", "vertex_touch", "edge_touch", "coplanar_touch", "coplanar_overlap", "crossing")
 
 
@@ -254,4 +269,26 @@ def collide(
     }
     if segments:
         found["segments"] = ends.reshape(-1, 2, 3)
+    return found
+
+
+def verify(scene: Scene | Any, rays: ArrayLike | None = None, *, count: int = 100_000, seed: int = 1) -> dict[str, Any]:
+    """Judge closest hits by a reference on the CPU, in float64 and, where that cannot tell, more.
+
+    Parameters
+    ----------
+    scene : Scene, or a mesh
+    rays : array_like, (n, 6) float32, optional
+        By default `count` are made: half random, a quarter aimed at vertices, a quarter at points of edges.
+
+    Returns
+    -------
+    dict
+        ``counts``, how often each of `HIT_CLASSES` occurred; ``faults``, how many rays got a wrong answer;
+        ``bound_95``, below which the rate of faults is (95 %); ``classes`` (n,) uint8, indices into `HIT_CLASSES`;
+        ``rays`` (n, 6) float32.
+    """
+    flat = np.zeros((0, 6), np.float32) if rays is None else rows_of(rays, "rays", np.float32, 6)[0]
+    found = _core.verify(_scene_of(scene)._core, flat, _count(count, "count", 4, 2**31), _count(seed, "seed", 0, 2**63))
+    found["rays"] = found["rays"][:, [0, 1, 2, 4, 5, 6]]
     return found
