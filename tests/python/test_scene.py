@@ -296,6 +296,19 @@ def test_the_backend_is_told():
 ROOT = Path(__file__).parents[2]
 
 
+def test_what_notebooks_show():
+    scene = scene_of(cube())
+    assert "<th>triangles</th><td>12</td>" in scene._repr_html_()
+    trimesh = pytest.importorskip("trimesh")
+    moved = scene.add_instance(0, [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0]])
+    mesh = scene.to_trimesh()
+    assert (
+        isinstance(mesh, trimesh.Trimesh) and len(mesh.faces) == 24 and mesh.bounds.tolist() == [[0, 0, 0], [4, 1, 1]]
+    )
+    scene.remove(moved)
+    assert len(scene.to_trimesh().faces) == 12
+
+
 def test_examples_of_the_documentation():
     for results in (doctest.testmod(twinray), doctest.testfile(str(ROOT / "docs/python.md"), module_relative=False)):
         assert results.attempted > 0 and results.failed == 0

@@ -150,7 +150,7 @@ def view_factors(
     matrices = []
     for values in (found["value"].astype(np.float64), half):
         if sparse:
-            from scipy.sparse import csr_matrix  # type: ignore[import-untyped]
+            from scipy.sparse import csr_matrix
 
             first = found["first"].astype(np.int64)
             matrices.append(csr_matrix((values, found["column"].astype(np.int64), first), shape=(n, n)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from html import escape
 from typing import Any, Literal
 
 import numpy as np
@@ -65,8 +66,23 @@ class Scene:
             f"{backend['accel']} on {backend['device']}>"
         )
 
+    def _repr_html_(self) -> str:
+        backend = self.backend
+        rows = {"geometries": len(self), "triangles": self._core.triangle_count()} | backend
+        cells = "".join(
+            f"<tr><th>{escape(name)}</th><td>{escape(str(value))}</td></tr>" for name, value in rows.items()
+        )
+        return f"<table>{cells}</table>"
+
     def __len__(self) -> int:
         return len(self._core.geometries())
+
+    def to_trimesh(self) -> Any:
+        """Give all triangles where they are as a ``trimesh.Trimesh``, which trimesh is installed for."""
+        import trimesh
+
+        triangles = self._core.world_triangles()
+        return trimesh.Trimesh(triangles, np.arange(len(triangles)).reshape(-1, 3), process=False)
 
     # Geometries
 
