@@ -3,6 +3,7 @@
 #include <twinray/analysis.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -22,8 +23,8 @@ namespace {
 struct VisibleOptions {
     AnalysisOptions analysis;
     std::filesystem::path sensors;
-    std::string sky = std::string(sky_names[0]);
-    std::string up = "y";
+    std::string patches = std::string(sky_names[0]);
+    std::vector<double> up = {0, 1, 0};
     float t_near = 0;
 };
 
@@ -40,12 +41,17 @@ Sensors read_sensors(const std::filesystem::path& file, const dvec3& origin) {
     return sensors;
 }
 
-// Of patches in the scene's axes: with y up, north is -z.
-std::vector<vec3> directions_of(std::span<const SkyPatch> sky, bool is_y_up) {
+// Of patches in the scene's axes. North is where -z goes along the ground, or y where the zenith is nearer to z.
+std::vector<vec3> directions_of(std::span<const SkyPatch> sky, dvec3 up) {
+    const double length = twinray::length(up);
+    if (!(length > 0) || !std::isfinite(length)) fail("--up must be finite and not 0");
+    const dvec3 zenith = up / length;
+    const dvec3 ahead = std::abs(zenith.z) < 0.7 ? dvec3(0, 0, -1) : dvec3(0, 1, 0);
+    const dvec3 north = normalize(ahead - dot(ahead, zenith) * zenith), east = cross(north, zenith);
     std::vector<vec3> directions;
     for (const SkyPatch& patch : sky) {
         const dvec3& d = patch.direction;
-        directions.push_back(is_y_up ? vec3(d.x, d.z, -d.y) : vec3(d.x, d.y, d.z));
+        directions.emplace_back(d.x * east + d.y * north + d.z * zenith);
     }
     return directions;
 }
@@ -94,8 +100,8 @@ void write(const std::filesystem::path& file, std::span<const std::uint8_t> free
 void run(const VisibleOptions& options) {
     const Analysed analysed(options.analysis);
     const Sensors sensors = read_sensors(options.sensors, analysed.scene.origin);
-    const std::vector<SkyPatch> sky = sky_patches(options.sky);
-    const std::vector<vec3> directions = directions_of(sky, options.up == "y");
+    const std::vector<SkyPatch> sky = sky_patches(options.patches);
+    const std::vector<vec3> directions = directions_of(sky, {options.up[0], options.up[1], options.up[2]});
     const std::uint64_t rays = sensors.points.size() * sky.size();
     std::vector<std::uint8_t> free;
     const double seconds = seconds_of([&] {
@@ -109,10 +115,10 @@ void run(const VisibleOptions& options) {
     for (const double share : shares) mean += share / static_cast<double>(shares.size());
     if (!options.analysis.common.quiet)
         std::cout << analysed.head("visible", options.analysis) << "  " << speed_text(rays, seconds) << "\n  "
-                  << sensors.points.size() << " sensors see " << mean << " of the light of " << options.sky
+                  << sensors.points.size() << " sensors see " << mean << " of the light of " << options.patches
                   << ", in the mean\n";
     nlohmann::json record = {{"sensors", sensors.points.size()},
-                             {"sky", options.sky},
+                             {"sky", options.patches},
                              {"n", rays},
                              {"mean_share", mean},
                              {"seconds", seconds}};
@@ -125,18 +131,16 @@ void run(const VisibleOptions& options) {
 Command visible_command() {
     const auto options = std::make_shared<VisibleOptions>();
     const std::vector<std::string> skies(sky_names.begin(), sky_names.end());
-    Section asked = {"Sensors and sky",
+    Section asked = {"Sensors and patches",
                      {{.name = "--sensors",
                        .value = file(options->sensors),
                        .help = "a file of Radiance's: a line x y z dx dy dz each, the place and where it looks",
                        .is_required = true},
-                      {.name = "--sky",
-                       .value = choice(options->sky, skies),
-                       .help = "its patches, by the names of Tregenza and Reinhart"},
-                      {.name = "--up",
-                       .value = choice(options->up, {"y", "z"}),
-                       .help = "which axis points to the zenith: y, as in glTF, with north along -z, or z, with north "
-                               "along y"},
+                      {.name = "--patches",
+                       .value = choice(options->patches, skies),
+                       .help = "of the sky, by the names of Tregenza and Reinhart; north is along -z, or along y where "
+                               "the zenith is nearer to z"},
+                      {.name = "--up", .value = numbers(options->up, "X Y Z"), .help = "where the zenith is"},
                       {.name = "--t-near",
                        .value = number(options->t_near, {.least = 0}),
                        .help = "how far from a sensor triangles begin to count"}}};
@@ -151,7 +155,7 @@ Command visible_command() {
                                          "solid_angles; .csv: sensor, free_patches, share: of the light of a uniform "
                                          "sky that would come if nothing stood in its way"),
                          common_options(options->analysis.common)},
-            .examples = {{"twinray visible street.glb --sensors windows.pts --sky reinhart577 -o windows.npz",
+            .examples = {{"twinray visible street.glb --sensors windows.pts --patches reinhart577 -o windows.npz",
                           "577 patches as each window sees them"}},
             .run = [options] {
                 run(*options);

@@ -28,7 +28,7 @@ def rows():
 sensors = "# x y z dx dy dz\n1 0 1  0 0 1\n-1 0 1  0 0 1\n1 0 1  1 0 0\n1 0 1  -1 0 0\n0 0 1  1 0 0\n"
 (here / "grid.pts").write_text(sensors)
 for accel in ("sw", "hw"):
-    run("visible", "wall.obj", "--sensors", "grid.pts", "--up", "z", "--t-near", "0.01", "-o", "out.csv",
+    run("visible", "wall.obj", "--sensors", "grid.pts", "--up", "0", "0", "1", "--t-near", "0.01", "-o", "out.csv",
         "--accel", accel, "--json", "log.json")
     upward, behind, away, facing, on_it = rows()
     # Of 145 patches 65 are behind the wall, and 15 over it: two of each row, and the zenith.
@@ -39,11 +39,12 @@ record = json.loads((here / "log.json").read_text().splitlines()[-1])
 assert record["sensors"] == 5 and record["sky"] == "tregenza145" and record["n"] == 5 * 145, record
 
 # The same scene with y up: its sky is over y, and the wall still hides one half.
-run("visible", "wall.obj", "--sensors", "grid.pts", "--sky", "reinhart577", "-o", "out.csv")
+run("visible", "wall.obj", "--sensors", "grid.pts", "--patches", "reinhart577", "-o", "out.csv")
 assert rows()[2][2] == 1 and 200 < rows()[2][1] < 290, rows()
 
 (here / "bad.pts").write_text("1 2 3 0 0\n")
 assert "line 1" in run("visible", "wall.obj", "--sensors", "bad.pts", status=1)
+assert "--up" in run("visible", "wall.obj", "--sensors", "grid.pts", "--up", "0", "0", "0", status=1)
 assert "--sensors" in run("visible", "wall.obj", status=2)
-assert "reinhart2305" in run("visible", "wall.obj", "--sensors", "grid.pts", "--sky", "cie", status=2)
+assert "reinhart2305" in run("visible", "wall.obj", "--sensors", "grid.pts", "--patches", "cie", status=2)
 print("visible: as it should be")
