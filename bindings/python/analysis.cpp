@@ -111,7 +111,7 @@ Touching collide(Scene& scene, bool self, bool by_position, bool segments) {
     return touching;
 }
 
-Verdict verify(Scene& scene, std::vector<Ray>&& rays, std::size_t count, std::uint64_t seed) {
+VerifyResult verify(Scene& scene, std::vector<Ray>&& rays, std::size_t count, std::uint64_t seed) {
     const Scene::Turn turn(scene);
     turn.accel().sync();
     const twinray::Scene held = scene_of(turn.accel());
@@ -122,11 +122,11 @@ Verdict verify(Scene& scene, std::vector<Ray>&& rays, std::size_t count, std::ui
             for (const Ray& ray : make(reference, count / 4, seed)) rays.push_back(ray);
     }
     const TracedBy by = turn.accel().is_software() ? TracedBy::software : TracedBy::hardware;
-    Verdict verdict;
-    verdict.classes = reference.classify(rays, turn.accel().closest_hits(rays, {.level = turn.level()}), by);
-    verdict.counts = twinray::count(verdict.classes);
-    verdict.rays = std::move(rays);
-    return verdict;
+    VerifyResult result;
+    result.classes = reference.classify(rays, turn.accel().closest_hits(rays, {.level = turn.level()}), by);
+    result.counts = twinray::count(result.classes);
+    result.rays = std::move(rays);
+    return result;
 }
 
 std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, std::span<const vec3> vectors,

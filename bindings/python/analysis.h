@@ -52,12 +52,12 @@ Touching collide(Scene& scene, bool self, bool by_position, bool segments);
 
 // Closest hits of rays judged by the reference in float64; without rays `count` of them are made, of which a half are
 // random, a quarter aimed at vertices and a quarter at edges.
-struct Verdict {
+struct VerifyResult {
     std::vector<Ray> rays;
     std::vector<HitClass> classes;  // by ray
     HitClassCounts counts;
 };
-Verdict verify(Scene& scene, std::vector<Ray>&& rays, std::size_t count, std::uint64_t seed);
+VerifyResult verify(Scene& scene, std::vector<Ray>&& rays, std::size_t count, std::uint64_t seed);
 
 std::vector<std::uint8_t> visible(Scene& scene, std::span<const vec3> points, std::span<const vec3> vectors,
                                   std::span<const vec3> normals, float t_near);

@@ -47,13 +47,17 @@ auto unlocked(const Call& call) {
     return call();
 }
 
+void add_places(nb::dict& arrays, Places&& places) {
+    arrays["geometry_ids"] = given<uint>(std::move(places.geometry));
+    arrays["primitive_ids"] = given<uint>(std::move(places.primitive));
+    arrays["primitive_uvs"] = given<float>(std::move(places.uv), 2);
+    if (places.normal.size()) arrays["primitive_normals"] = given<float>(std::move(places.normal), 3);
+}
+
 nb::dict dict_of(Cast&& hits) {
     nb::dict arrays;
     arrays["t_hit"] = given<float>(std::move(hits.t));
-    arrays["geometry_ids"] = given<uint>(std::move(hits.geometry));
-    arrays["primitive_ids"] = given<uint>(std::move(hits.primitive));
-    arrays["primitive_uvs"] = given<float>(std::move(hits.uv), 2);
-    if (hits.normal.size()) arrays["primitive_normals"] = given<float>(std::move(hits.normal), 3);
+    add_places(arrays, std::move(hits.places));
     return arrays;
 }
 
@@ -61,10 +65,7 @@ nb::dict dict_of(Nearest&& found) {
     nb::dict arrays;
     arrays["points"] = given<double>(std::move(found.position), 3);
     arrays["distances"] = given<double>(std::move(found.distance));
-    arrays["geometry_ids"] = given<uint>(std::move(found.geometry));
-    arrays["primitive_ids"] = given<uint>(std::move(found.primitive));
-    arrays["primitive_uvs"] = given<float>(std::move(found.uv), 2);
-    if (found.normal.size()) arrays["primitive_normals"] = given<float>(std::move(found.normal), 3);
+    add_places(arrays, std::move(found.places));
     return arrays;
 }
 
@@ -178,17 +179,17 @@ nb::tuple bound_centroid(Scene& scene, const std::array<double, 3>& direction, s
 nb::dict bound_verify(Scene& scene, const RayRows& rows, std::size_t count, std::uint64_t seed) {
     constexpr float infinite = std::numeric_limits<float>::infinity();
     std::vector<Ray> rays = rays_of(rows, 0, infinite);
-    Verdict verdict = unlocked([&] { return verify(scene, std::move(rays), count, seed); });
+    VerifyResult result = unlocked([&] { return verify(scene, std::move(rays), count, seed); });
     nb::dict counts, found;
     for (std::size_t i = 0; i < hit_class_count; ++i) {
         const std::string_view name = name_of(static_cast<HitClass>(i));
-        counts[nb::str(name.data(), name.size())] = verdict.counts.counts[i];
+        counts[nb::str(name.data(), name.size())] = result.counts.counts[i];
     }
     found["counts"] = counts;
-    found["faults"] = verdict.counts.faults_of_ours() + verdict.counts.faults_of_hardware();
-    found["bound_95"] = verdict.counts.bound_95();
-    found["classes"] = given<std::uint8_t>(std::move(verdict.classes));
-    found["rays"] = given<float>(std::move(verdict.rays), 8);
+    found["faults"] = result.counts.faults_of_ours() + result.counts.faults_of_hardware();
+    found["bound_95"] = result.counts.bound_95();
+    found["classes"] = given<std::uint8_t>(std::move(result.classes));
+    found["rays"] = given<float>(std::move(result.rays), 8);
     return found;
 }
 

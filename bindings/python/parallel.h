@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Loops over large arrays of arguments and answers on several threads.
 #pragma once
 
 #include <algorithm>

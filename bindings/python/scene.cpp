@@ -185,19 +185,23 @@ Numbers3 Scene::normal_of(uint geometry, uint primitive) const {
     return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length), static_cast<float>(n[2] / length)};
 }
 
+void Scene::put(const Places& places, std::size_t i, uint geometry, uint primitive, Numbers2 uv) const {
+    places.geometry[i] = geometry;
+    places.primitive[i] = primitive;
+    places.uv[i] = uv;
+    if (places.normal.size())
+        places.normal[i] = geometry == invalid ? Numbers3{0, 0, 0} : normal_of(geometry, primitive);
+}
+
 Cast Scene::cast_of(std::span<const Hit> hits, bool with_normals) const {
     const std::size_t count = hits.size();
-    Cast found{Column<float>(count), Column<uint>(count), Column<uint>(count), Column<Numbers2>(count),
-               Column<Numbers3>(with_normals ? count : 0)};
+    Cast found{Column<float>(count), Places(count, with_normals)};
     in_parts(count, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             const Hit& hit = hits[i];
             found.t[i] = hit.hit ? hit.t : std::numeric_limits<float>::infinity();
-            found.geometry[i] = hit.hit ? hit.custom_index : invalid;
-            found.primitive[i] = hit.hit ? hit.primitive_index : invalid;
-            found.uv[i] = {hit.u, hit.v};
-            if (with_normals)
-                found.normal[i] = hit.hit ? normal_of(hit.custom_index, hit.primitive_index) : Numbers3{0, 0, 0};
+            put(found.places, i, hit.hit ? hit.custom_index : invalid, hit.hit ? hit.primitive_index : invalid,
+                {hit.u, hit.v});
         }
     });
     return found;
@@ -249,17 +253,13 @@ Nearest Scene::closest(std::span<const dvec3> asked, bool with_normals) {
     const std::vector<uint> numbers = geometries();  // each has one instance, in the order of numbers
     const std::vector<ClosestPoint> points_found = points().closest(asked);
     const std::size_t count = points_found.size();
-    Nearest nearest{Column<dvec3>(count), Column<double>(count),   Column<uint>(count),
-                    Column<uint>(count),  Column<Numbers2>(count), Column<Numbers3>(with_normals ? count : 0)};
+    Nearest nearest{Column<dvec3>(count), Column<double>(count), Places(count, with_normals)};
     for (std::size_t i = 0; i < count; ++i) {
         const ClosestPoint& found = points_found[i];
         nearest.position[i] = found.position;
         nearest.distance[i] = found.distance;
-        nearest.geometry[i] = found.is_found ? numbers[found.instance] : invalid;
-        nearest.primitive[i] = found.is_found ? found.triangle : invalid;
-        nearest.uv[i] = {static_cast<float>(found.u), static_cast<float>(found.v)};
-        if (with_normals)
-            nearest.normal[i] = found.is_found ? normal_of(nearest.geometry[i], found.triangle) : Numbers3{0, 0, 0};
+        put(nearest.places, i, found.is_found ? numbers[found.instance] : invalid,
+            found.is_found ? found.triangle : invalid, {static_cast<float>(found.u), static_cast<float>(found.v)});
     }
     return nearest;
 }

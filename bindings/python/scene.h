@@ -34,12 +34,21 @@ struct Backend {
     std::string device, driver, kind, accel, why, path, level;
 };
 
-// By ray; of a miss t is infinite, both numbers are 2^32 - 1, the rest is 0.
-struct Cast {
-    Column<float> t;
+// Places on triangles; where there is none both numbers are 2^32 - 1, the rest is 0.
+struct Places {
+    Places() = default;
+    Places(std::size_t count, bool with_normals)
+        : geometry(count), primitive(count), uv(count), normal(with_normals ? count : 0) {}
+
     Column<uint> geometry, primitive;
     Column<Numbers2> uv;
     Column<Numbers3> normal;  // unit, of the triangle in world space; empty unless asked for
+};
+
+// By ray; t is infinite for a miss.
+struct Cast {
+    Column<float> t;
+    Places places;
 };
 
 // Hits of each ray are those from first[ray] to first[ray + 1] - 1, ascending by t.
@@ -48,13 +57,11 @@ struct Listed {
     Cast hits;
 };
 
-// By point; as Cast where there is nothing.
+// By point; the distance is infinite where there is nothing.
 struct Nearest {
     Column<dvec3> position;
     Column<double> distance;
-    Column<uint> geometry, primitive;
-    Column<Numbers2> uv;
-    Column<Numbers3> normal;
+    Places places;
 };
 
 class Scene {
@@ -113,6 +120,8 @@ class Scene {
     uint keep(AccelHandle handle, std::shared_ptr<Mesh> mesh, const Transform& transform);
     InstanceOptions options_of_next() const;
     Numbers3 normal_of(uint geometry, uint primitive) const;
+    // None: 2^32 - 1 both.
+    void put(const Places& places, std::size_t i, uint geometry, uint primitive, Numbers2 uv) const;
     Cast cast_of(std::span<const Hit> hits, bool with_normals) const;
     HitsOfRays all_hits(std::span<const Ray> rays);
     PointQuery& points();
