@@ -12,7 +12,8 @@ PRODUCT = ENGINE + ["swtlas", "hwtlas"]
 # twinray::validation, then what the command and the tests link beside it.
 VALIDATION = ["validation/" + room for room in ("reference", "leaks", "records", "verify", "cpu_reference")]
 CHECKS = VALIDATION + ["validation/" + room for room in ("exact", "kernels", "picture", "replay", "report", "suite")]
-AS_HOSTS = ["samples", "bindings", "shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"]  # see include alone
+# See include alone.
+AS_HOSTS = ["samples", "bindings", "shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"]
 SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "include": ["shaders/hwtlas"],  # the public face; its GLSL has parts there and in shaders/shared
     "engine": ENGINE,  # headers that gather the others

@@ -24,7 +24,7 @@ section_end() {
 # or says on standard error why there is none.
 python_for_package() {
     local folder=$PWD/build/venv
-    local packages=(nanobind==3.1.0 nanobind-backend==1.0.0 numpy pytest==9.2.0 trimesh==5.2.0)
+    local packages=(nanobind==3.1.0 nanobind-backend==1.0.0 numpy scipy pytest==9.2.0 trimesh==5.2.0)
     if [[ ! -e $folder/complete ]]; then
         python3 -m venv --clear "$folder" >&2 &&
             "$folder/bin/pip" install --quiet --disable-pip-version-check "${packages[@]}" >&2 || return

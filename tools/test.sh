@@ -3,8 +3,9 @@
 # Installs the packages, builds and runs every test; `quick` runs those that need no device, and of the others those of
 # the accelerators' common contract, within three minutes on two cores.
 #   tools/test.sh [quick|release|debug|asan]
-# TWINRAY_REQUIRE names the devices without which tests fail instead of skipping: "vulkan,ray_tracing,descriptor_indexing" unless it is set;
-# with "python" in it the Python package must be built, too, for which PyPI must be reached.
+# TWINRAY_REQUIRE names the devices without which tests fail instead of skipping:
+# "vulkan,ray_tracing,descriptor_indexing" unless it is set; with "python" in it the Python package must be built, too,
+# for which PyPI must be reached.
 # The last lines are ctest's summary.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

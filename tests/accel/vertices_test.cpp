@@ -187,7 +187,7 @@ std::vector<Transform> row_of(std::size_t count, uint shuffle_seed) {
 }
 
 TEST_P(Vertices, MovesRaiseTheCostUntilASyncRebuilds) {
-    if (!measures_its_trees()) GTEST_SKIP() << "costs are those of the order of the input";
+    if (!measures_its_trees()) TWINRAY_LACKS("tree_costs", "costs are those of the order of the input");
     EXPECT_EQ(accel().sah(), std::nullopt);
     const AccelHandle handle = accel().push(square(0), row_of(500, 0));
     accel().sync();
@@ -216,7 +216,7 @@ TEST_P(Vertices, MovesRaiseTheCostUntilASyncRebuilds) {
 }
 
 TEST_P(Vertices, MovedVerticesRaiseTheCostUntilASyncRebuilds) {
-    if (!measures_its_trees()) GTEST_SKIP() << "costs are those of the order of the input";
+    if (!measures_its_trees()) TWINRAY_LACKS("tree_costs", "costs are those of the order of the input");
     Mesh mesh = make_soup(700, 1, 0.05f);
     const AccelHandle handle = accel().push(mesh);
     accel().sync();

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What all tests of the Python package share."""
 
+import os
+
 import numpy as np
 import pytest
 import twinray
@@ -15,8 +17,17 @@ def accel(request):
     try:
         twinray.Scene(request.param)
     except twinray.Error as error:
+        if "ray_tracing" in os.environ.get("TWINRAY_REQUIRE", ""):
+            raise
         pytest.skip(str(error))
     return request.param
+
+
+def needed(module):
+    """The module, which tools/test.sh installs: where TWINRAY_REQUIRE names python it must be there, else it may."""
+    if "python" in os.environ.get("TWINRAY_REQUIRE", ""):
+        return __import__(module, fromlist=["_"])
+    return pytest.importorskip(module)
 
 
 def grid(n, seed=1):

@@ -16,14 +16,9 @@ import trimesh
 import trimesh.ray
 from twinray.trimesh import RayMeshIntersector
 
-
-class Intersector(RayMeshIntersector):
-    """With the one option of embree's that trimesh sets by position."""
-
-
 for name in ("ray_triangle", "ray_pyembree"):
     module = sys.modules.get(f"trimesh.ray.{name}") or types.ModuleType(f"trimesh.ray.{name}")
-    module.RayMeshIntersector = Intersector
+    module.RayMeshIntersector = RayMeshIntersector
     module.error = None
     sys.modules[f"trimesh.ray.{name}"] = module
     setattr(trimesh.ray, name, module)

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 import twinray
-from conftest import cube, grid
+from conftest import cube, grid, needed
 
 
 def room():
@@ -31,7 +31,7 @@ def test_view_factors_of_a_cube():
 
 
 def test_sparse_is_the_same():
-    scipy = pytest.importorskip("scipy.sparse")
+    scipy = needed("scipy.sparse")
     dense, _ = twinray.view_factors(room(), estimator="hits", rays=1024)
     sparse, _ = twinray.view_factors(room(), estimator="hits", rays=1024, sparse=True)
     assert scipy.issparse(sparse) and (sparse.toarray() == dense).all()
@@ -84,10 +84,10 @@ def test_hits_are_verified():
     scene = twinray.Scene(accel="sw")
     scene.add_triangles(*grid(12))
     scene.add_triangles(*cube(), transform=[[0.1, 0.02, 0, 0.4], [0, 0.1, 0, 0.4], [0, 0, 0.1, 0.2]])
-    verdict = twinray.verify(scene, count=20_000)
-    assert verdict["faults"] == 0 and verdict["bound_95"] < 1e-3 and verdict["classes"].shape == (20_000,)
-    assert sum(verdict["counts"].values()) == 20_000 and verdict["counts"]["AGREE"] > 15_000
-    assert tuple(verdict["counts"]) == twinray.HIT_CLASSES and verdict["rays"].shape == (20_000, 6)
+    result = twinray.verify(scene, count=20_000)
+    assert result["faults"] == 0 and result["bound_95"] < 1e-3 and result["classes"].shape == (20_000,)
+    assert sum(result["counts"].values()) == 20_000 and result["counts"]["AGREE"] > 15_000
+    assert tuple(result["counts"]) == twinray.HIT_CLASSES and result["rays"].shape == (20_000, 6)
     one = twinray.verify(scene, [[0.5, 0.5, 3, 0, 0, -1]])
     assert len(one["classes"]) == 1 and twinray.HIT_CLASSES[one["classes"][0]] in ("AGREE", "TIE", "BOUNDARY")
 

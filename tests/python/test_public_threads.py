@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 import twinray
-from conftest import cube, grid
+from conftest import cube, grid, needed
 
 
 def sphere(rings=24, segments=48):
@@ -71,7 +71,7 @@ def test_open3d_5430_rays_from_a_surface_leave_it():
     assert not scene.test_occlusions(rays).any()
 
 
-trimesh = pytest.importorskip("trimesh")
+trimesh = needed("trimesh")
 from twinray.trimesh import RayMeshIntersector  # noqa: E402
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import twinray
-from conftest import cube, grid
+from conftest import cube, grid, needed
 from twinray import INVALID_ID
 
 
@@ -299,7 +299,7 @@ ROOT = Path(__file__).parents[2]
 def test_what_notebooks_show():
     scene = scene_of(cube())
     assert "<th>triangles</th><td>12</td>" in scene._repr_html_()
-    trimesh = pytest.importorskip("trimesh")
+    trimesh = needed("trimesh")
     moved = scene.add_instance(0, [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0]])
     mesh = scene.to_trimesh()
     assert (

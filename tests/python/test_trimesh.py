@@ -6,8 +6,9 @@ import pickle
 
 import numpy as np
 import pytest
+from conftest import needed
 
-trimesh = pytest.importorskip("trimesh")
+trimesh = needed("trimesh")
 
 from twinray.trimesh import RayMeshIntersector  # noqa: E402
 
