@@ -4,7 +4,12 @@ import warp as wp
 
 
 @wp.kernel
-def closest(mesh: wp.uint64, origins: wp.array(dtype=wp.vec3), directions: wp.array(dtype=wp.vec3), t: wp.array(dtype=float)):
+def closest(
+    mesh: wp.uint64,
+    origins: wp.array(dtype=wp.vec3),
+    directions: wp.array(dtype=wp.vec3),
+    t: wp.array(dtype=float),
+):
     i = wp.tid()
     query = wp.mesh_query_ray(mesh, origins[i], directions[i], 1.0e6)
     t[i] = wp.where(query.result, query.t, wp.inf)

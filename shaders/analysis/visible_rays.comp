@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Makes the rays of a tile, one an invocation.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "twinray/glsl/common.glsl"
