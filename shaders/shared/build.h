@@ -179,7 +179,9 @@ FUNC bool is_denormal(float x) { return (floatBitsToUint(x) << 1u) - 1u < 0xffff
 FUNC float normal_next_to(float x, bool is_below)
 {
     const float LEAST_NORMAL = 1.17549435082e-38f;
-    if (!is_denormal(x) || (floatBitsToUint(x) >> 31u != 0u) != is_below) return is_denormal(x) ? 0.0f : x;
+    bool is_negative = floatBitsToUint(x) >> 31u != 0u;
+    if (!is_denormal(x)) return x;
+    if (is_negative != is_below) return 0.0f;
     return is_below ? -LEAST_NORMAL : LEAST_NORMAL;
 }
 FUNC vec3 normals_below(vec3 v)
