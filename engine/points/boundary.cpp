@@ -15,6 +15,7 @@ struct Edge {
     std::array<Vertex, 2> ends;  // ascending
     int passes;                  // 1: from the first to the second; -1: back
     uint triangle;
+    uint vertex;  // where the triangle begins to pass it
 
     bool operator<(const Edge& other) const {
         return ends != other.ends ? ends < other.ends : triangle < other.triangle;
@@ -31,7 +32,7 @@ std::vector<Edge> sorted_edges(const MeshView& mesh) {
         for (std::size_t k = 0; k < 3; ++k) {
             const vec3 p = vertices[k], q = vertices[(k + 1) % 3];
             const Vertex a{p.x, p.y, p.z}, b{q.x, q.y, q.z};
-            if (a != b) edges.push_back({{std::min(a, b), std::max(a, b)}, a < b ? 1 : -1, i});
+            if (a != b) edges.push_back({{std::min(a, b), std::max(a, b)}, a < b ? 1 : -1, i, static_cast<uint>(k)});
         }
     }
     std::sort(edges.begin(), edges.end());
@@ -42,18 +43,29 @@ vec3 to_vec3(const Vertex& at) { return {at[0], at[1], at[2]}; }
 
 }  // namespace
 
-std::optional<BoundaryEdge> find_boundary_edge(const MeshView& mesh) {
+std::vector<BoundaryEdge> boundary_edges(const MeshView& mesh) {
     const std::vector<Edge> edges = sorted_edges(mesh);
-    std::optional<BoundaryEdge> found;
+    std::vector<BoundaryEdge> found;
     for (auto first = edges.begin(); first != edges.end();) {
         int passes = 0;
         auto last = first;
         for (; last != edges.end() && last->ends == first->ends; ++last) passes += last->passes;
-        if (passes != 0 && (!found || first->triangle < found->triangle))
-            found = {{to_vec3(first->ends[0]), to_vec3(first->ends[1])}, first->triangle};
+        if (passes != 0)
+            found.push_back({{to_vec3(first->ends[0]), to_vec3(first->ends[1])},
+                             first->triangle,
+                             first->vertex,
+                             passes * first->passes});
         first = last;
     }
     return found;
+}
+
+std::optional<BoundaryEdge> find_boundary_edge(const MeshView& mesh) {
+    const std::vector<BoundaryEdge> edges = boundary_edges(mesh);
+    const auto lowest = std::min_element(edges.begin(), edges.end(), [](const BoundaryEdge& a, const BoundaryEdge& b) {
+        return a.triangle < b.triangle;
+    });
+    return lowest == edges.end() ? std::nullopt : std::optional(*lowest);
 }
 
 std::string side_fault_of(const MeshView& mesh, uint number) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -14,6 +15,7 @@
 #include "engine/core/error.h"
 #include "engine/core/float64.h"
 #include "engine/points/boundary.h"
+#include "points_boundary.spv.h"
 #include "points_boxes.spv.h"
 #include "points_closest.spv.h"
 #include "points_winding.spv.h"
@@ -24,10 +26,11 @@ namespace twinray {
 #include "shaders/points/point_search.h"
 #include "twinray/glsl/cpp_end.h"
 static_assert(sizeof(SearchPoint) == 24 && sizeof(ClosestItem) == 56 && sizeof(PointItem) == 16);
+static_assert(sizeof(OpenEdge) == 56 && sizeof(AngleSum) == 24);
 
 namespace {
 #include "twinray/glsl/cpp_begin.h"
-#include "shaders/points/point_winding.h"
+#include "shaders/points/point_boundary.h"
 #include "twinray/glsl/cpp_end.h"
 
 constexpr std::size_t batch = 1 << 20;  // points
@@ -53,8 +56,8 @@ void in_batches(std::span<const dvec3> points, const Body& body) {
         body(first, points.subspan(first, std::min(batch, points.size() - first)));
 }
 
-void dispatch(Commands& commands, const Kernel<PointSearchArgs>& kernel, PointSearchArgs args, std::uint64_t first,
-              std::uint64_t count) {
+template <class Args>
+void dispatch(Commands& commands, const Kernel<Args>& kernel, Args args, std::uint64_t first, std::uint64_t count) {
     args.first = static_cast<uint>(first);
     args.end = static_cast<uint>(first + count);
     kernel.dispatch(commands, args, count);
@@ -71,6 +74,7 @@ struct PointQuery::State {
           find_closest(device, {.name = "points_closest", .spirv = points_closest_spirv}),
           find_within(device, {.name = "points_within", .spirv = points_within_spirv}),
           find_winding(device, {.name = "points_winding", .spirv = points_winding_spirv}),
+          sum_boundary(device, {.name = "points_boundary", .spirv = points_boundary_spirv}),
           order(device),
           triangles(device),
           tree(device),
@@ -81,9 +85,13 @@ struct PointQuery::State {
     std::vector<PointItem> found(const Kernel<PointSearchArgs>& kernel, PointSearchArgs args);
     const std::string& why_not_closed();  // "" where all meshes are
     void wind(std::span<const dvec3> some, std::span<int> windings);
+    std::vector<int> wind_all(std::span<const dvec3> all);
+    const std::vector<OpenEdge>& open_edges();
+    void add_boundary(std::span<const dvec3> some, std::span<double> windings);
 
     Context& context;
     Kernel<PointSearchArgs> boxes_of_points, find_closest, find_within, find_winding;
+    Kernel<BoundaryArgs> sum_boundary;
     HilbertOrder order;
     TriangleSet triangles;
     BoxTree tree;
@@ -91,7 +99,8 @@ struct PointQuery::State {
     std::vector<MeshInstance> instances;
     std::optional<std::string> side_fault;  // of the first mesh that is not closed; not set: not looked for yet
     float scale = 1;
-    Buffer points, point_boxes, results;
+    std::optional<std::vector<OpenEdge>> edges;  // of all instances; not set: not looked for yet
+    Buffer points, point_boxes, results, edges_on_device;
     DeviceList found_items;
     Pace pace;
     std::uint64_t host_decided = 0;
@@ -128,6 +137,7 @@ void PointQuery::set(std::span<const MeshView> meshes, std::span<const MeshInsta
     state_->meshes.assign(meshes.begin(), meshes.end());
     state_->instances.assign(instances.begin(), instances.end());
     state_->side_fault.reset();
+    state_->edges.reset();
     state_->scale = scale_for(state_->meshes, state_->instances);
     std::vector<uint> all(instances.size());
     std::iota(all.begin(), all.end(), 0u);
@@ -247,14 +257,27 @@ bool PointQuery::is_closed() { return state_->why_not_closed().empty(); }
 
 std::vector<int> PointQuery::winding_numbers(std::span<const dvec3> points) {
     if (const std::string& why = state_->why_not_closed(); !why.empty()) fail("points: ", why);
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (const std::string fault = sign_fault_of(points[i]); !fault.empty())
-            fail("points: point ", i, " has ", fault);
-    state_->host_decided = 0;
-    std::vector<int> windings(points.size(), 0);
-    if (state_->triangles.count() == 0) return windings;
+    return state_->wind_all(points);
+}
+
+std::vector<double> PointQuery::generalized_winding_numbers(std::span<const dvec3> points) {
+    const std::vector<int> crossings = state_->wind_all(points);
+    std::vector<double> windings(crossings.begin(), crossings.end());
+    if (state_->open_edges().empty()) return windings;
     in_batches(points, [&](std::size_t first, std::span<const dvec3> some) {
-        state_->wind(some, std::span(windings).subspan(first, some.size()));
+        state_->add_boundary(some, std::span(windings).subspan(first, some.size()));
+    });
+    return windings;
+}
+
+std::vector<int> PointQuery::State::wind_all(std::span<const dvec3> all) {
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (const std::string fault = sign_fault_of(all[i]); !fault.empty()) fail("points: point ", i, " has ", fault);
+    host_decided = 0;
+    std::vector<int> windings(all.size(), 0);
+    if (triangles.count() == 0) return windings;
+    in_batches(all, [&](std::size_t first, std::span<const dvec3> some) {
+        wind(some, std::span(windings).subspan(first, some.size()));
     });
     return windings;
 }
@@ -268,6 +291,62 @@ void PointQuery::State::wind(std::span<const dvec3> some, std::span<int> winding
         windings[each.point] += triangles.is_mirrored(each.item) ? -crossing : crossing;
     }
     host_decided += undecided.size();
+}
+
+const std::vector<OpenEdge>& PointQuery::State::open_edges() {
+    if (edges) return *edges;
+    std::vector<std::optional<std::vector<BoundaryEdge>>> of_mesh(meshes.size());
+    std::vector<OpenEdge> all;
+    uint first_item = 0;
+    for (const MeshInstance& instance : instances) {
+        auto& boundary = of_mesh[instance.mesh];
+        if (!boundary) boundary = boundary_edges(meshes[instance.mesh]);
+        for (const BoundaryEdge& edge : *boundary) {
+            const uint item = first_item + edge.triangle;
+            const WorldTriangle at = triangles.triangle(item);
+            const dvec3 vertices[] = {at.a, at.b, at.c, at.a};
+            if (!is_finite_point(at.a) || !is_finite_point(at.b) || !is_finite_point(at.c)) continue;
+            all.push_back({.a = vertices[edge.vertex],
+                           .b = vertices[edge.vertex + 1],
+                           .passes = triangles.is_mirrored(item) ? -edge.passes : edge.passes,
+                           .reserved = 0});
+        }
+        first_item += static_cast<uint>(meshes[instance.mesh].triangles.size());
+    }
+    edges = std::move(all);
+    grow(context, edges_on_device, "boundary edges", edges->size() * sizeof(OpenEdge));
+    Commands commands(context, "points boundary");
+    {
+        const auto pass = commands.pass("boundary upload");
+        commands.upload(edges_on_device, std::span<const OpenEdge>(*edges));
+    }
+    commands.submit();
+    return *edges;
+}
+
+void PointQuery::State::add_boundary(std::span<const dvec3> some, std::span<double> windings) {
+    upload(some, some.size() * sizeof(AngleSum));
+    const BoundaryArgs args{.points = points.ref<SearchPoint>(),
+                            .edges = edges_on_device.ref<OpenEdge>(),
+                            .angles = results.ref<AngleSum>(),
+                            .first = 0,
+                            .end = 0,
+                            .edge_count = static_cast<uint>(edges->size())};
+    Commands commands(context, "points boundary");
+    pace.record(commands, some.size(), [&](std::uint64_t begin, std::uint64_t count) {
+        dispatch(commands, sum_boundary, args, begin, count);
+    });
+    pace.finish(commands);
+    std::vector<AngleSum> sums = download<AngleSum>(context, results, some.size());
+    for (std::size_t i = 0; i < some.size(); ++i) {
+        AngleSum& sum = sums[i];
+        if (sum.is_undecided != 0) {
+            sum = no_angle();
+            for (const OpenEdge& edge : *edges) sum = with_edge(sum, some[i], edge);
+            ++host_decided;
+        }
+        windings[i] += std::atan2(sum.y == 0 ? 0.0 : sum.y, sum.x) / (2 * std::numbers::pi) + sum.turns;
+    }
 }
 
 std::vector<double> PointQuery::signed_distances(std::span<const dvec3> points) {

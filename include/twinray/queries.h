@@ -272,7 +272,11 @@ class PointQuery {
     // that is neither 0 nor of a magnitude from 2^-245 to 2^259, and where more crossings are undecided than
     // max_found().
     std::vector<int> winding_numbers(std::span<const dvec3> points);
-    // Whether all meshes are, so that there are winding numbers.
+    // The same of any scene, closed or not (Jacobson et al. 2013): the solid angle of all triangles over 4 pi, between
+    // whole numbers near holes. Off by some 2^-50 times the number of edges without a neighbour, and time grows with
+    // that number: crossings of a line, exactly, and what the boundary adds (Martens, Trettner, Bessmeltsev 2026).
+    std::vector<double> generalized_winding_numbers(std::span<const dvec3> points);
+    // Whether all meshes are closed, so that there are winding numbers.
     bool is_closed();
     // The distance of closest(), negative where the winding number is not 0.
     std::vector<double> signed_distances(std::span<const dvec3> points);

@@ -54,6 +54,36 @@ struct PointSearchArgs
     float scale;              // a power of two that makes the whole tree about 1 large
 };
 
+// An edge of an open surface, in world space.
+struct OpenEdge
+{
+    dvec3 a;
+    dvec3 b;
+    int passes; // how much oftener triangles go from a to b than back; of a mirrored instance the other way round
+    uint reserved;
+};
+BUFFER_OF(OpenEdge, 8);
+
+// A sum of angles without arc tangents: the angle of (x, y), in (-pi, pi], and so many whole turns.
+struct AngleSum
+{
+    double x;
+    double y;
+    int turns;
+    uint is_undecided; // 1: float64 could not tell on which side of an edge the line passes
+};
+BUFFER_OF(AngleSum, 8);
+
+struct BoundaryArgs
+{
+    REF(SearchPoint) points;
+    REF(OpenEdge) edges;
+    REF(AngleSum) angles; // by point, written
+    uint first;           // of the points of this dispatch
+    uint end;
+    uint edge_count;
+};
+
 // A point between floats.
 struct PointBox
 {

@@ -67,6 +67,73 @@ TEST_F(WindingTest, EqualsTheSolidAngleOverTheSphere) {
     for (const int count : seen) EXPECT_GT(count, 20);
 }
 
+// Without the triangles that `is_cut` names.
+template <class IsCut>
+Mesh with_holes(Mesh mesh, const IsCut& is_cut) {
+    std::vector<uvec3> kept;
+    for (uint i = 0; i < mesh.triangles.size(); ++i)
+        if (!is_cut(i)) kept.push_back(mesh.triangles[i]);
+    mesh.triangles = std::move(kept);
+    return mesh;
+}
+
+double furthest_from_solid_angle(PointQuery& query, const std::vector<MeshView>& meshes,
+                                 const std::vector<MeshInstance>& instances, const std::vector<dvec3>& points) {
+    query.set(meshes, instances);
+    const auto placed = test::placed_triangles(meshes, instances);
+    const std::vector<double> found = query.generalized_winding_numbers(points);
+    double furthest = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        furthest = std::max(furthest, std::abs(found[i] - test::solid_winding(points[i], placed)));
+    return furthest;
+}
+
+TEST_F(WindingTest, OfOpenMeshesIsTheSolidAngle) {
+    std::mt19937 random(3);
+    const Mesh ball = with_holes(make_icosphere(3), [&](uint i) { return i < 80 || i % 97 == 0; });
+    const Mesh ring = with_holes(torus(40, 20, 1, 0.6f), [&](uint i) { return i % 31 < 4; });
+    const std::vector<MeshView> meshes = {ball, ring};
+    const std::vector<MeshInstance> instances = {
+        {0, {}}, {1, {}}, {1, Transform::scaling(vec3(1, -1, 1.5f))}, {0, Transform::translation(vec3(0.5f, 0, 0))}};
+    std::vector<dvec3> points(3000);
+    for (dvec3& p : points) p = dvec3(test::uniform3(random, -1.8f, 1.8f));
+    PointQuery query(context());
+    EXPECT_LT(furthest_from_solid_angle(query, meshes, instances, points), 1e-11);
+    query.set({&meshes[0], 1}, {instances.data(), 1});
+    EXPECT_FALSE(query.is_closed());
+    EXPECT_THROW((void)query.winding_numbers(points), Error);
+}
+
+// The line from lattice points meets boundary edges and their vertices exactly, ahead and behind.
+TEST_F(WindingTest, OfOpenLatticeBoxes) {
+    std::vector<dvec3> points;
+    for (int x = -3; x <= 3; ++x)
+        for (int y = -3; y <= 3; ++y)
+            for (int z = -3; z <= 3; ++z)
+                if (std::max({std::abs(x), std::abs(y), std::abs(z)}) != 2) points.emplace_back(x, y, z);
+    PointQuery query(context());
+    for (uint kept = 1; kept < (1u << 12); kept += 37) {
+        const Mesh box = with_holes(make_box(vec3(-2), vec3(2)), [&](uint i) { return (kept >> i & 1) == 0; });
+        if (box.triangles.empty()) continue;
+        EXPECT_LT(furthest_from_solid_angle(query, {box}, {{0, {}}}, points), 1e-13) << kept;
+    }
+}
+
+// A sheet seen twice, turned round on itself, and an edge that three triangles have.
+TEST_F(WindingTest, OfSurfacesThatAreNoManifolds) {
+    Mesh mesh = make_box(vec3(-1), vec3(1));
+    const uvec3 first = mesh.triangles[0], second = mesh.triangles[1];
+    mesh.triangles.push_back(first);
+    mesh.triangles.emplace_back(second.x, second.z, second.y);
+    mesh.positions.emplace_back(3.0f, 0.25f, 0.125f);
+    mesh.triangles.emplace_back(first.x, first.y, static_cast<uint>(mesh.positions.size() - 1));
+    std::mt19937 random(4);
+    std::vector<dvec3> points(2000);
+    for (dvec3& p : points) p = dvec3(test::uniform3(random, -2, 2));
+    PointQuery query(context());
+    EXPECT_LT(furthest_from_solid_angle(query, {mesh}, {{0, {}}}, points), 1e-13);
+}
+
 // The line from a lattice point meets edges, vertices and faces exactly; sides are those of exact arithmetic.
 TEST_F(WindingTest, OfLatticePointsInLatticeBoxes) {
     const Mesh box = make_box(vec3(-2), vec3(2));
