@@ -44,6 +44,8 @@ void append(Matrix& matrix, const ViewFactorRow& row) {
 
 Matrix view_factors(Scene& scene, MatrixOptions options) {
     const Scene::Turn turn(scene);
+    scene.progress().done = 0;
+    scene.progress().total = 0;
     Faces faces(turn.accel());
     const ViewFactorOptions asked{.grouping = group(faces, std::move(options.groups)),
                                   .sides = sides_of(options.both_sides),
@@ -55,10 +57,13 @@ Matrix view_factors(Scene& scene, MatrixOptions options) {
     Matrix matrix;
     matrix.first.push_back(0);
     matrix.area = factors.areas();
-    for (std::size_t first = 0; first < factors.row_count(); first += factors.batch_size())
+    scene.progress().total = factors.row_count();
+    for (std::size_t first = 0; first < factors.row_count(); first += factors.batch_size()) {
+        scene.progress().done = first;
         for (const ViewFactorRow& row :
              factors.rows(first, std::min(first + factors.batch_size(), factors.row_count())))
             append(matrix, row);
+    }
     matrix.rays += pairs.rays;
     return matrix;
 }

@@ -7,6 +7,7 @@
 
 #include "bindings/python/analysis.h"
 #include "bindings/python/arrays.h"
+#include "bindings/python/device_memory.h"
 #include "bindings/python/parallel.h"
 #include "bindings/python/scene.h"
 
@@ -101,6 +102,15 @@ nb::tuple list(Scene& scene, const RayRows& rows, float t_near, float t_far, boo
     return nb::make_tuple(given<std::uint64_t>(std::move(found.first)), dict_of(std::move(found.hits)));
 }
 
+dvec3 vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
+nb::tuple add_file(Scene& scene, const std::string& file, const std::optional<std::array<double, 3>>& asked) {
+    std::optional<dvec3> origin;
+    if (asked) origin = vector_of(*asked);
+    const std::vector<uint> added = unlocked([&] { return scene.add_file(file, origin); });
+    return nb::make_tuple(added, nb::make_tuple(origin->x, origin->y, origin->z));
+}
+
 void bind_scene(nb::module_& m) {
     nb::class_<Scene>(m, "Scene")
         .def(nb::init<const std::string&, const std::string&, const std::string&>(), nb::arg("accel"),
@@ -110,7 +120,7 @@ void bind_scene(nb::module_& m) {
              [](Scene& scene, uint of, const TransformRows& matrix) {
                  return unlocked([&] { return scene.add_instance(of, transform_of(matrix)); });
              })
-        .def("add_file", &Scene::add_file, nb::call_guard<nb::gil_scoped_release>())
+        .def("add_file", &add_file)
         .def("remove", &Scene::remove, nb::call_guard<nb::gil_scoped_release>())
         .def("set_transform",
              [](Scene& scene, uint geometry, const TransformRows& matrix) {
@@ -122,6 +132,15 @@ void bind_scene(nb::module_& m) {
              })
         .def("geometries", &Scene::geometries, nb::call_guard<nb::gil_scoped_release>())
         .def("triangle_count", &Scene::triangle_count, nb::call_guard<nb::gil_scoped_release>())
+        .def("first_faces",
+             [](const Scene& scene) { return given<std::uint64_t>(unlocked([&] { return scene.first_faces(); })); })
+        .def("bounds",
+             [](Scene& scene) {
+                 const Bounds box = unlocked([&] { return scene.bounds(); });
+                 std::vector<std::array<double, 3>> corners{{box.lo.x, box.lo.y, box.lo.z},
+                                                            {box.hi.x, box.hi.y, box.hi.z}};
+                 return given<double>(std::move(corners), 3);
+             })
         .def("cast", &cast)
         .def("occlusions",
              [](Scene& scene, const RayRows& rows, float t_near, float t_far) {
@@ -140,16 +159,15 @@ void bind_scene(nb::module_& m) {
              })
         .def("winding_numbers",
              [](Scene& scene, const PointRows& points) {
-                 return given<int>(unlocked([&] { return scene.winding_numbers(as<dvec3>(points)); }));
+                 return given<double>(unlocked([&] { return scene.winding_numbers(as<dvec3>(points)); }));
              })
-        .def("is_closed", &Scene::is_closed, nb::call_guard<nb::gil_scoped_release>())
         .def("world_triangles",
              [](const Scene& scene) { return given<double>(unlocked([&] { return scene.world_triangles(); }), 3); })
         .def("backend", [](const Scene& scene) { return dict_of(unlocked([&] { return scene.backend(); })); })
+        .def("progress",
+             [](Scene& scene) { return nb::make_tuple(scene.progress().done.load(), scene.progress().total.load()); })
         .def("take_log", &Scene::take_log, nb::call_guard<nb::gil_scoped_release>());
 }
-
-dvec3 vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
 nb::dict bound_view_factors(Scene& scene, std::vector<uint> groups, bool both_sides, std::uint64_t rays,
                             std::optional<double> target_error, std::uint32_t seed, const std::string& estimator) {
@@ -225,6 +243,34 @@ void bind_analysis(nb::module_& m) {
     });
 }
 
+void bind_device_memory(nb::module_& m) {
+    nb::class_<DeviceMemory>(m, "DeviceMemory")
+        .def(nb::init<Scene&, std::uint64_t, bool>(), nb::call_guard<nb::gil_scoped_release>())
+        .def("mapped",
+             [](nb::object self) -> nb::object {
+                 const auto& memory = nb::cast<DeviceMemory&>(self);
+                 if (!memory.mapped()) return nb::none();
+                 const std::size_t shape[] = {memory.bytes()};
+                 auto* bytes = reinterpret_cast<std::uint8_t*>(memory.mapped());
+                 return nb::cast(nb::ndarray<nb::numpy, std::uint8_t>(bytes, 1, shape, self));
+             })
+        .def(
+            "download",
+            [](const DeviceMemory& memory) { return given<std::uint8_t>(unlocked([&] { return memory.download(); })); })
+        .def("export_fd",
+             [](const DeviceMemory& memory) {
+                 const ExportedMemory exported = memory.exported();
+                 return nb::make_tuple(exported.fd, exported.bytes);
+             })
+        .def("device_uuid", [](const DeviceMemory& memory) {
+            const auto uuid = memory.device_uuid();
+            return nb::bytes(reinterpret_cast<const char*>(uuid.data()), uuid.size());
+        });
+    m.def("trace", [](Scene& scene, const DeviceMemory& rays, DeviceMemory& hits, std::size_t count, bool any_hit) {
+        unlocked([&] { trace(scene, rays, hits, count, any_hit ? Query::any : Query::closest); });
+    });
+}
+
 nb::list devices() {
     nb::list found;
     for (const DeviceProperties& device : unlocked([] { return list_devices(); })) {
@@ -247,6 +293,7 @@ NB_MODULE(_core, m) {
     m.attr("__version__") = TWINRAY_VERSION;
     bind_scene(m);
     bind_analysis(m);
+    bind_device_memory(m);
     m.def("devices", &devices);
     m.def("forget_devices", &forget_devices, nb::call_guard<nb::gil_scoped_release>());
     m.def("widen_cpu_vectors", &widen_cpu_vectors);

@@ -119,8 +119,9 @@ uint Scene::add_instance(uint of, const Transform& transform) {
     return keep(handle, original.mesh, transform);
 }
 
-std::vector<uint> Scene::add_file(const std::string& file) {
-    twinray::Scene loaded = load_scene(file, dvec3(0));  // where rays are, too
+std::vector<uint> Scene::add_file(const std::string& file, std::optional<dvec3>& origin) {
+    twinray::Scene loaded = load_scene(file, origin);
+    origin = loaded.origin;
     const Lock lock(device_->mutex);
     for (const std::string& warning : loaded.warnings) device_->log.push_back(warning);
     std::vector<std::optional<uint>> first_of(loaded.meshes.size());
@@ -170,6 +171,19 @@ std::size_t Scene::triangle_count() const {
     std::size_t count = 0;
     for (const auto& part : parts_) count += part ? part->mesh->triangles.size() : 0;
     return count;
+}
+
+std::vector<std::uint64_t> Scene::first_faces() const {
+    const Lock lock(device_->mutex);
+    std::vector<std::uint64_t> first{0};
+    for (const auto& part : parts_) first.push_back(first.back() + (part ? part->mesh->triangles.size() : 0));
+    return first;
+}
+
+Bounds Scene::bounds() {
+    const Lock lock(device_->mutex);
+    accel_->sync();
+    return accel_->world_bound();
 }
 
 Numbers3 Scene::normal_of(uint geometry, uint primitive) const {
@@ -264,14 +278,9 @@ Nearest Scene::closest(std::span<const dvec3> asked, bool with_normals) {
     return nearest;
 }
 
-std::vector<int> Scene::winding_numbers(std::span<const dvec3> asked) {
+std::vector<double> Scene::winding_numbers(std::span<const dvec3> asked) {
     const Lock lock(device_->mutex);
-    return points().winding_numbers(asked);
-}
-
-bool Scene::is_closed() {
-    const Lock lock(device_->mutex);
-    return points().is_closed();
+    return points().generalized_winding_numbers(asked);
 }
 
 std::vector<dvec3> Scene::world_triangles() const {

@@ -3,6 +3,7 @@
 // them. Any thread; calls on one device take turns.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -74,13 +75,16 @@ class Scene {
     uint add(Mesh&& mesh, const Transform& transform);
     uint add_instance(uint of, const Transform& transform);
     // A geometry for each instance of the file. Throws Error as load_scene() does.
-    std::vector<uint> add_file(const std::string& file);
+    // `origin`, as its; set where it was not.
+    std::vector<uint> add_file(const std::string& file, std::optional<dvec3>& origin);
     void remove(uint geometry);
     void set_transform(uint geometry, const Transform& transform);
     // Of all instances of the mesh.
     void update_vertices(uint geometry, std::vector<vec3>&& positions);
     std::vector<uint> geometries() const;
     std::size_t triangle_count() const;
+    std::vector<std::uint64_t> first_faces() const;  // by number, and their count at the end
+    Bounds bounds();                                 // in world space
 
     Cast cast(std::span<const Ray> rays, bool with_normals);
     Column<bool> occlusions(std::span<const Ray> rays);
@@ -88,13 +92,19 @@ class Scene {
     Listed list(std::span<const Ray> rays, bool with_normals);
 
     Nearest closest(std::span<const dvec3> points, bool with_normals);
-    // Whether all meshes are; else winding_numbers() throws Error naming one that is not.
-    bool is_closed();
-    std::vector<int> winding_numbers(std::span<const dvec3> points);
-    std::vector<dvec3> world_triangles() const;  // three vertices each
+    std::vector<double> winding_numbers(std::span<const dvec3> points);  // generalized ones, where meshes are open
+    std::vector<dvec3> world_triangles() const;                          // three vertices each
 
     Backend backend() const;
     std::vector<std::string> take_log();
+    const std::shared_ptr<Device>& device() const { return device_; }
+
+    // How many rows of the view factors that are being computed, or were last, are done, and how many there are; any
+    // time.
+    struct Progress {
+        std::atomic<std::uint64_t> done = 0, total = 0;
+    };
+    Progress& progress() { return progress_; }
 
     // While it lives, no other thread uses the scene's device.
     class Turn {
@@ -133,6 +143,7 @@ class Scene {
     std::vector<std::optional<Part>> parts_;  // by number
     std::unique_ptr<AllHits> all_hits_;
     std::unique_ptr<PointQuery> points_;
+    Progress progress_;
     bool is_searchable_ = false;  // points_ holds what the accelerator does
 };
 

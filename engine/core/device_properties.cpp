@@ -82,9 +82,12 @@ DeviceProperties query_device_properties(const VulkanFunctions& vk, VkPhysicalDe
     VkPhysicalDeviceSubgroupProperties subgroup{};
     subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
     subgroup.pNext = &driver;
+    VkPhysicalDeviceIDProperties id{};
+    id.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES;
+    id.pNext = &subgroup;
     VkPhysicalDeviceProperties2 reported{};
     reported.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-    reported.pNext = &subgroup;
+    reported.pNext = &id;
     vk.vkGetPhysicalDeviceProperties2(device, &reported);
 
     DeviceProperties properties;
@@ -92,6 +95,7 @@ DeviceProperties query_device_properties(const VulkanFunctions& vk, VkPhysicalDe
     properties.driver = std::string(driver.driverName) + " " + driver.driverInfo;
     properties.kind = kind_of(reported.properties.deviceType);
     properties.driver_id = driver.driverID;
+    std::copy(std::begin(id.deviceUUID), std::end(id.deviceUUID), properties.uuid.begin());
     if (properties.kind == DeviceKind::cpu) properties.cpu_threads = count_cpu_threads();
     properties.subgroup_size = subgroup.subgroupSize;
     properties.api_version = reported.properties.apiVersion;

@@ -6,6 +6,7 @@
 //     twinray::DeviceRequirements needs(properties);   // what such a device should have enabled
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -36,8 +37,9 @@ struct DeviceProperties {
     std::uint32_t api_version = 0;  // as VK_MAKE_API_VERSION
     // Of a compute group; until the device is asked, what Vulkan guarantees.
     std::uint32_t shared_bytes = 16384, group_invocations = 128, push_constant_bytes = 128;
-    std::uint32_t driver_id = 0;    // VkDriverId
-    std::uint32_t cpu_threads = 0;  // of a CPU, which run the groups of a dispatch; else 0
+    std::uint32_t driver_id = 0;          // VkDriverId
+    std::array<std::uint8_t, 16> uuid{};  // by which other APIs know the device
+    std::uint32_t cpu_threads = 0;        // of a CPU, which run the groups of a dispatch; else 0
     std::uint32_t subgroup_size = 0;
     bool has_compute_queue = false;
     bool timeline_semaphore = false;

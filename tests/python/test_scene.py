@@ -139,12 +139,15 @@ def test_edges_and_vertices_are_met_once():
     assert np.isfinite(scene.cast_rays(rays)["t_hit"]).all()
 
 
-def test_any_first_and_all_agree():
+@pytest.mark.parametrize("offset", [(0, 0, 0), (500000.25, 5600000.5, 120)])  # the latter in metres of UTM
+def test_any_first_and_all_agree(offset):
     vertices, triangles = grid(30)
     random = np.random.default_rng(5)
     scattered = np.hstack([random.uniform(-0.5, 1.5, (20000, 3)), random.normal(size=(20000, 3))])
-    rays = np.concatenate([scattered, aimed_rays(vertices, triangles, 4)])
-    scene = scene_of((vertices, triangles), accel="sw")
+    rays = np.concatenate([scattered, aimed_rays(vertices, triangles, 4)]).astype(np.float64)
+    rays[:, :3] += offset
+    scene = scene_of((vertices + np.float64(offset), triangles), accel="sw")
+    assert scene.origin.any() == bool(np.any(offset))
     any_hit = scene.test_occlusions(rays)
     first = scene.cast_rays(rays)
     listed = scene.list_intersections(rays)
@@ -155,6 +158,57 @@ def test_any_first_and_all_agree():
     begins = listed["ray_splits"][:-1][counts > 0]
     assert (listed["t_hit"][begins] == first["t_hit"][any_hit]).all()
     assert (np.diff(listed["t_hit"])[np.diff(listed["ray_ids"]) == 0] >= 0).all()
+
+
+def test_float64_far_from_0_keeps_its_precision(accel):
+    offset = np.array([500000.25, 5600000.5, 120])
+    vertices, triangles = cube()
+    near, far = scene_of((vertices, triangles), accel=accel), scene_of((vertices + offset, triangles), accel=accel)
+    rays = np.hstack([[[0.3, 0.6, -1]], [[0.1, 0.05, 1]]])
+    moved = rays + np.concatenate([offset, np.zeros(3)])
+    assert far.cast_rays(moved)["t_hit"] == pytest.approx(near.cast_rays(rays)["t_hit"], abs=1e-6)
+    points = np.array([[0.5, 0.5, 0.4], [2, 0.25, 0.5]])
+    signed = far.compute_signed_distance(points + offset)
+    assert signed == pytest.approx([-0.4, 1.0], abs=1e-6)
+    closest = far.compute_closest_points(points + offset)["points"]
+    assert closest.dtype == np.float64
+    assert closest[1] - offset == pytest.approx([1, 0.25, 0.5], abs=1e-9)
+    matrix = np.eye(4)
+    matrix[:3, 3] = offset + [2, 0, 0]
+    assert near.add_instance(0, matrix) == 1  # is where float32 puts it: this scene counts from 0
+    turned = np.eye(4)
+    turned[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+    turned[:3, 3] = offset - turned[:3, :3] @ offset  # about the corner at the offset
+    far.set_transform(0, turned)
+    assert far.bounds() - offset == pytest.approx(np.array([[-1, 0, 0], [0, 1, 1]]), abs=1e-6)
+    far.update_vertices(0, 2 * vertices + offset)
+    assert far.bounds() - offset == pytest.approx(np.array([[-2, 0, 0], [0, 2, 2]]), abs=1e-6)
+    assert far.to_trimesh().bounds == pytest.approx(far.bounds(), abs=1e-6)
+    eye = offset + [0.5, 0.5, 4]
+    pixels = far.create_rays_pinhole(30, offset + [-0.5, 0.5, 1], eye, [0, 1, 0], 8, 8, dtype=np.float64)
+    assert np.isfinite(far.cast_rays(pixels)["t_hit"]).any()
+
+
+def test_files_far_from_0_keep_their_precision(tmp_path):
+    offset = np.array([500000.25, 5600000.5, 120])
+    vertices, triangles = cube()
+    lines = [f"v {x:.4f} {y:.4f} {z:.4f}" for x, y, z in vertices + offset]
+    (tmp_path / "cube.obj").write_text("\n".join(lines + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]))
+    scene = twinray.Scene(accel="sw")
+    assert scene.add_file(tmp_path / "cube.obj") == [0]
+    found = scene.cast_rays(np.concatenate([offset + [0.3, 0.6, -1], [0, 0, 1]]))
+    assert found["t_hit"] == pytest.approx(1, abs=1e-6)
+
+
+def test_winding_numbers_of_a_cube_without_its_lid():
+    vertices, triangles = cube()
+    lid = (vertices[triangles, 2] == 1).all(axis=1)
+    scene = scene_of((vertices, triangles[~lid]))
+    middle, outside, nothing = scene.compute_winding_numbers([[0.5, 0.5, 0.5], [5, 0.5, -9], [np.nan, 0, 0]])
+    assert middle == pytest.approx(5 / 6, abs=1e-12)
+    assert abs(outside) < 0.01
+    assert np.isnan(nothing)
+    assert scene.compute_occupancy([[0.5, 0.5, 0.25], [0.5, 0.5, 1.1], [0.5, 0.5, 2]]).tolist() == [1, 0, 0]
 
 
 def test_signs_do_not_flip_next_to_edges_and_diagonals():

@@ -28,15 +28,21 @@ from .analysis import (
     view_factors,
     visible,
 )
-from .scene import INVALID_ID, Scene, create_rays_pinhole
+from .device_array import HIT, DeviceArray
+from .picture import Picture
+from .pinhole import create_rays_pinhole
+from .scene import INVALID_ID, Scene
 from .sky import read_sensors, sky_patches
 
 __all__ = [
     "Array",
+    "DeviceArray",
     "Error",
+    "HIT",
     "HIT_CLASSES",
     "INVALID_ID",
     "PAIR_CLASSES",
+    "Picture",
     "Scene",
     "centroid",
     "collide",

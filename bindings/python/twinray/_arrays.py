@@ -27,7 +27,7 @@ def array_of(values, name):
     if hasattr(values, "__dlpack_device__"):
         device = values.__dlpack_device__()[0]
         if getattr(device, "value", device) not in _CPU:  # Open3D's is an enumeration of its own
-            raise TypeError(f"{name}: an array in device memory; copy it to the host first")
+            raise TypeError(f"{name}: an array in device memory; copy it to the host, or share Scene.device_array")
     if not isinstance(values, np.ndarray) and callable(getattr(values, "numpy", None)):
         values = values.numpy()
     try:
@@ -47,13 +47,22 @@ def _cast(array, dtype):
 
 
 def rows_of(values, name, dtype, columns):
-    """Of shape (..., columns), as (n, columns) of the dtype, and the leading shape."""
+    """Of shape (..., columns), as (n, columns) of the dtype (None: its own), and the leading shape."""
     array = array_of(values, name)
     if array.ndim == 0 or array.shape[-1] != columns:
         if array.size != 0 or array.ndim != 1:
             raise ValueError(f"{name}: shape {array.shape}; wanted is (..., {columns})")
         array = array.reshape(0, columns)
-    return _cast(array.reshape(-1, columns), dtype), array.shape[:-1]
+    flat = array.reshape(-1, columns)
+    return flat if dtype is None else _cast(flat, dtype), array.shape[:-1]
+
+
+def vector_of(value, name):
+    """Of shape (3,), as float64, finite."""
+    array = array_of(value, name).astype(np.float64)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise ValueError(f"{name}: {value!r}; wanted are three finite numbers")
+    return array
 
 
 def indices_of(values, name):
@@ -71,15 +80,17 @@ def indices_of(values, name):
 
 
 def matrix_of(values, name):
-    """Of shape (4, 4) or (3, 4), the last row (0, 0, 0, 1), as (3, 4) of float32; None is the identity."""
+    """Of shape (4, 4) or (3, 4), the last row (0, 0, 0, 1), as (4, 4) of float64; None is the identity."""
+    matrix = np.eye(4)
     if values is None:
-        return np.eye(3, 4, dtype=np.float32)
+        return matrix
     array = array_of(values, name)
     if array.shape not in ((4, 4), (3, 4)):
         raise ValueError(f"{name}: shape {array.shape}; wanted is (4, 4) or (3, 4)")
     if array.shape == (4, 4) and not np.array_equal(array[3], [0, 0, 0, 1]):
         raise ValueError(f"{name}: its last row is {array[3]}, not (0, 0, 0, 1)")
-    return _cast(array[:3], np.float32)
+    matrix[:3] = array[:3]
+    return matrix
 
 
 def number_of(value, name, least=None):
@@ -102,3 +113,19 @@ def geometry_of(value, name):
     if not 0 <= number < 2**32:
         raise ValueError(f"{name}: {number} is not the number of a geometry")
     return number
+
+
+def arrays_of_mesh(mesh):
+    """The vertices and triangles of a mesh of trimesh, Open3D (legacy or tensor) or PyVista."""
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
+        return mesh.vertices, mesh.faces
+    if hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):
+        return np.asarray(mesh.vertices), np.asarray(mesh.triangles)
+    if hasattr(mesh, "vertex") and hasattr(mesh, "triangle"):
+        return mesh.vertex.positions.cpu().numpy(), mesh.triangle.indices.cpu().numpy()
+    if hasattr(mesh, "points") and hasattr(mesh, "regular_faces"):
+        surface = mesh.triangulate()
+        return np.asarray(surface.points), np.asarray(surface.regular_faces)
+    raise TypeError(
+        f"vertex_positions: {type(mesh).__name__} is no mesh of trimesh, Open3D or PyVista; give triangle_indices"
+    )

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import Array, array_of, number_of, rows_of
+from ._progress import in_blocks, watched
 from .scene import Scene
 
 HIT_CLASSES = (
@@ -28,6 +29,9 @@ HIT_CLASSES = (
     "HW_RANGE",
 )
 PAIR_CLASSES = ("separate", "vertex_touch", "edge_touch", "coplanar_touch", "coplanar_overlap", "crossing")
+
+
+_RAYS_OF_BLOCK = 1 << 22  # at least, where progress is shown
 
 
 def _scene_of(mesh):
@@ -70,12 +74,13 @@ def visible(
     *,
     scene: Scene | Any,
     tnear: float = 0.0,
+    progress: bool = False,
 ) -> NDArray[np.uint8]:
     """Tell which points see free sky along which vectors.
 
     Parameters
     ----------
-    points : array_like, (P, 3) float32
+    points : array_like, (P, 3)
     vectors : array_like, (V, 3) float32
         Of any length, as patches of the sky (`sky_patches`).
     normals : array_like, (P, 3) float32, optional
@@ -83,19 +88,33 @@ def visible(
     scene : Scene, or a mesh
     tnear : float
         How far off, in lengths of a vector, hits begin to count: for points on the scene itself.
+    progress : bool
+        True shows a bar of tqdm's.
 
     Returns
     -------
     (P, V) uint8
         1 where nothing of the scene lies on the ray. All rays are never in memory at once.
     """
-    rows, _ = rows_of(points, "points", np.float32, 3)
+    rows, _ = rows_of(points, "points", None, 3)
     across, _ = rows_of(vectors, "vectors", np.float32, 3)
     sides = np.zeros((0, 3), np.float32) if normals is None else rows_of(normals, "normals", np.float32, 3)[0]
     if normals is not None and len(sides) != len(rows):
         raise ValueError(f"normals: {len(sides)} rows, of points {len(rows)}")
-    core = _scene_of(scene)._core
-    return _core.visible(core, rows, across, sides, number_of(tnear, "tnear", 0)).reshape(len(rows), len(across))
+    scene = _scene_of(scene)
+    near = number_of(tnear, "tnear", 0)
+    rows = scene._frame.moved(rows, scene.origin)
+    seen = np.empty((len(rows), len(across)), np.uint8)
+
+    def fill(first, last):
+        part = slice(first, last)
+        seen[part] = _core.visible(scene._core, rows[part], across, sides[part], near).reshape(-1, len(across))
+
+    if progress:
+        in_blocks(len(rows), 1 + _RAYS_OF_BLOCK // max(1, len(across)), "visible", fill)
+    else:
+        fill(0, len(rows))
+    return seen
 
 
 def view_factors(
@@ -108,6 +127,7 @@ def view_factors(
     seed: int = 1,
     estimator: Literal["auto", "hits", "area", "contour"] = "auto",
     sparse: bool = False,
+    progress: bool = False,
 ) -> tuple[Any, Any]:
     """Compute which fraction of the diffuse radiation of each face, or group of faces, meets each other one directly.
 
@@ -129,6 +149,8 @@ def view_factors(
         else what the rays of a row meet; or one of them for all.
     sparse : bool
         True gives matrices of SciPy (CSR) instead of arrays.
+    progress : bool
+        True shows a bar of tqdm's.
 
     Returns
     -------
@@ -141,10 +163,14 @@ def view_factors(
         raise ValueError(f"sides: {sides!r} is not one of front, both")
     scene = _scene_of(scene)
     error = None if target_error is None else number_of(target_error, "target_error", 0)
-    found = _core.view_factors(
+    arguments = (
         scene._core, _groups(groups, scene), sides == "both", _count(rays, "rays", 1, 2**31), error,
         _count(seed, "seed", 0, 2**32 - 1), estimator,
     )  # fmt: skip
+    if progress:
+        found = watched(scene, "view factors", lambda: _core.view_factors(*arguments))
+    else:
+        found = _core.view_factors(*arguments)
     n = len(found["area"])
     half = (found["high"].astype(np.float64) - found["low"]) / 2
     matrices = []
@@ -227,11 +253,12 @@ def centroid(
     -------
     mean, standard_error : (3,) float64, or None where nothing is seen
     """
+    scene = _scene_of(scene)
     mean, error, _, _ = _core.centroid(
-        _scene_of(scene)._core, _direction(direction, "direction"), _count(side, "side", 1, 65535),
+        scene._core, _direction(direction, "direction"), _count(side, "side", 1, 65535),
         _count(seed, "seed", 0, 2**63),
     )  # fmt: skip
-    return (None if mean is None else np.array(mean)), (None if error is None else np.array(error))
+    return (None if mean is None else mean + scene.origin), (None if error is None else np.array(error))
 
 
 def collide(
@@ -261,14 +288,16 @@ def collide(
     """
     if shared not in ("index", "position"):
         raise ValueError(f"shared: {shared!r} is not one of index, position")
-    contacts, ends = _core.collide(_scene_of(scene)._core, bool(self), shared == "position", bool(segments))
+    scene = _scene_of(scene)
+    contacts, ends = _core.collide(scene._core, bool(self), shared == "position", bool(segments))
     found = {
         "geometry_ids": contacts[:, :2].copy().view(Array),
         "primitive_ids": contacts[:, 2:4].copy().view(Array),
         "classes": contacts[:, 4].astype(np.uint8).view(Array),
     }
     if segments:
-        found["segments"] = ends.reshape(-1, 2, 3)
+        is_crossing = found["classes"] == PAIR_CLASSES.index("crossing")
+        found["segments"] = ends.reshape(-1, 2, 3) + is_crossing[:, None, None] * scene.origin
     return found
 
 
@@ -286,9 +315,12 @@ def verify(scene: Scene | Any, rays: ArrayLike | None = None, *, count: int = 10
     dict
         ``counts``, how often each of `HIT_CLASSES` occurred; ``faults``, how many rays got a wrong answer;
         ``bound_95``, below which the rate of faults is (95 %); ``classes`` (n,) uint8, indices into `HIT_CLASSES`;
-        ``rays`` (n, 6) float32.
+        ``rays`` (n, 6) float32, or float64 where the scene's `origin` is not 0.
     """
-    flat = np.zeros((0, 6), np.float32) if rays is None else rows_of(rays, "rays", np.float32, 6)[0]
-    found = _core.verify(_scene_of(scene)._core, flat, _count(count, "count", 4, 2**31), _count(seed, "seed", 0, 2**63))
+    scene = _scene_of(scene)
+    flat = scene._frame.rays(np.zeros((0, 6)) if rays is None else rows_of(rays, "rays", None, 6)[0])
+    found = _core.verify(scene._core, flat, _count(count, "count", 4, 2**31), _count(seed, "seed", 0, 2**63))
     found["rays"] = found["rays"][:, [0, 1, 2, 4, 5, 6]]
+    if scene.origin.any():
+        found["rays"] = found["rays"] + np.concatenate([scene.origin, np.zeros(3)])
     return found

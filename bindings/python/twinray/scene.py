@@ -9,11 +9,13 @@ from html import escape
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from . import _core
-from ._arrays import Array, array_of, geometry_of, indices_of, matrix_of, number_of, rows_of
-from ._winding import winding_numbers_of_open_meshes
+from . import _core, picture
+from . import device_array as _device
+from ._arrays import Array, arrays_of_mesh, geometry_of, indices_of, matrix_of, number_of, rows_of, vector_of
+from ._frame import Frame
+from .pinhole import create_rays_pinhole
 
 INVALID_ID: int = 0xFFFFFFFF  #: in place of the number of a geometry or a triangle, where there is none
 
@@ -33,11 +35,15 @@ class Scene:
     level : {"watertight", "refined", "certified", "fast"}
         Of the triangle test: "watertight" loses no ray at an edge, "refined" computes t, u and v in float64,
         "certified" decides hits and their order in float64, too; "fast" may lose rays at edges.
+    origin : array_like, (3,), optional
+        What the device's float32 coordinates are counted from; by default the first mesh says: 0, unless it lies so far
+        from there that it would be rounded by more than a millionth of its extent.
 
     Notes
     -----
-    Rays are rows of six numbers, origin and direction, in float32; directions need not be unit, and ``t_hit`` counts
-    in their lengths. Other dtypes are cast once. All calls may come from several threads.
+    Rays are rows of six numbers, origin and direction; directions need not be unit, and ``t_hit`` counts in their
+    lengths. The device computes in float32; what is given in float64 is counted from `origin` before it is rounded,
+    so that scenes far from 0, as in UTM, keep their precision. All calls may come from several threads.
     """
 
     def __init__(
@@ -45,12 +51,14 @@ class Scene:
         accel: Literal["auto", "sw", "hw"] = "auto",
         device: str | int | None = None,
         level: Literal["fast", "watertight", "refined", "certified"] = "watertight",
+        origin: ArrayLike | None = None,
     ) -> None:
         for name, value in (("accel", accel), ("level", level)):
             if not isinstance(value, str):
                 raise TypeError(f"{name}: {value!r} is not a str")
         if device is None:
             device = os.environ.get("TWINRAY_DEVICE", "")
+        self._frame = Frame(None if origin is None else vector_of(origin, "origin"))
         self._core = _core.Scene(accel, str(device), level)
         self._tell()
 
@@ -58,6 +66,11 @@ class Scene:
     def backend(self) -> dict[str, str]:
         """What answers: dict of ``device``, ``driver``, ``kind``, ``accel``, ``why``, ``path``, ``level``."""
         return self._core.backend()
+
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """What the device's coordinates are counted from: (3,) float64."""
+        return self._frame.origin
 
     def __repr__(self) -> str:
         backend = self.backend
@@ -77,11 +90,58 @@ class Scene:
     def __len__(self) -> int:
         return len(self._core.geometries())
 
+    def bounds(self) -> NDArray[np.float64]:
+        """The box around all triangles, lowest and highest corner: (2, 3) float64, infinite where there are none."""
+        return self._core.bounds() + self.origin
+
+    def first_faces(self) -> NDArray[np.uint64]:
+        """The number of each geometry's first face, where faces of all are numbered: (geometries + 1,) uint64."""
+        return self._core.first_faces()
+
+    def show(self, *args: Any, **options: Any) -> Any:
+        """Make a picture of the scene, of rays and of what they hit.
+
+        Parameters
+        ----------
+        rays : array_like, (..., 6), optional
+            Drawn from their origins to `t_hit`, which they are cast for where it is not given; those that miss are
+            blue. Behind surfaces they are faint. Of more than 2,000 every second, third, ... is drawn.
+        t_hit : array_like, (...), optional
+            Infinite for a miss.
+        points : array_like, (n, 3), optional
+        point_values : array_like, (n,), optional
+            Numbers whose colours the points get.
+        point_size : float
+            Of points, across, in pixels; 5 by default.
+        values : array_like, (faces,), optional
+            Numbers whose colours the faces get (`first_faces` says which are whose); NaN: grey.
+        value_range : (float, float), optional
+            The values of the darkest and the brightest colour; by default the least and the greatest.
+        eye, center, up : array_like, (3,), optional
+            Where the camera stands, what it looks at and which way is up; by default all is seen, +y is up.
+        fov_deg : float
+            Horizontal, 40 by default.
+        size : (int, int)
+            Width and height in pixels, (640, 480) by default.
+        interactive : bool
+            True opens the window, or in a notebook the widget, of PyVista or trimesh, with their camera.
+
+        Returns
+        -------
+        Picture
+            Shown by notebooks; ``save("picture.png")`` writes it. With `interactive`, what that package returns.
+        """
+        return picture.show(self, *args, **options)
+
+    def world_triangles(self) -> NDArray[np.float64]:
+        """The vertices of all triangles where they are, three rows each: (3 m, 3) float64."""
+        return self._core.world_triangles() + self.origin
+
     def to_trimesh(self) -> Any:
         """Give all triangles where they are as a ``trimesh.Trimesh``, which trimesh is installed for."""
         import trimesh
 
-        triangles = self._core.world_triangles()
+        triangles = self.world_triangles()
         return trimesh.Trimesh(triangles, np.arange(len(triangles)).reshape(-1, 3), process=False)
 
     # Geometries
@@ -117,13 +177,19 @@ class Scene:
         """
         if triangle_indices is None:
             vertex_positions, triangle_indices = arrays_of_mesh(vertex_positions)
-        positions, _ = rows_of(vertex_positions, "vertex_positions", np.float32, 3)
+        positions, _ = rows_of(vertex_positions, "vertex_positions", None, 3)
         triangles = indices_of(triangle_indices, "triangle_indices")
-        return self._core.add(positions, triangles, matrix_of(transform, "transform"))
+        positions, matrix, mesh_origin = self._frame.placed(positions, matrix_of(transform, "transform"))
+        geometry = self._core.add(positions, triangles, matrix)
+        self._frame.keep(geometry, mesh_origin)
+        return geometry
 
     def add_instance(self, geometry: int, transform: ArrayLike | None = None) -> int:
         """Add the mesh of a geometry once more, without another copy; returns the number of the new geometry."""
-        return self._core.add_instance(geometry_of(geometry, "geometry"), matrix_of(transform, "transform"))
+        number, matrix = geometry_of(geometry, "geometry"), matrix_of(transform, "transform")
+        added = self._core.add_instance(number, self._frame.matrix_of(number, matrix))
+        self._frame.keep(added, self._frame.mesh_origin(number))
+        return added
 
     def add_file(self, file: str | os.PathLike[str]) -> list[int]:
         """Add all that a file shows: .gltf, .glb, .obj, .ply or .stl.
@@ -132,12 +198,9 @@ class Scene:
         -------
         list of int
             A number for each instance; those of one mesh share it.
-
-        Notes
-        -----
-        Coordinates become float32: what lies far from the origin, as in UTM, is better moved there first.
         """
-        added = self._core.add_file(os.fspath(file))
+        added, origin = self._core.add_file(os.fspath(file), self._frame.fixed_origin())
+        self._frame.keep_file(added, np.array(origin))
         self._tell()
         return added
 
@@ -147,12 +210,14 @@ class Scene:
 
     def set_transform(self, geometry: int, transform: ArrayLike) -> None:
         """Move a geometry: `transform` is (4, 4) or (3, 4), from its mesh to the scene."""
-        self._core.set_transform(geometry_of(geometry, "geometry"), matrix_of(transform, "transform"))
+        number, matrix = geometry_of(geometry, "geometry"), matrix_of(transform, "transform")
+        self._core.set_transform(number, self._frame.matrix_of(number, matrix))
 
     def update_vertices(self, geometry: int, vertex_positions: ArrayLike) -> None:
         """Move the vertices of a mesh, and of all its instances: as many as it has, (N, 3)."""
-        positions, _ = rows_of(vertex_positions, "vertex_positions", np.float32, 3)
-        self._core.update_vertices(geometry_of(geometry, "geometry"), positions)
+        positions, _ = rows_of(vertex_positions, "vertex_positions", None, 3)
+        number = geometry_of(geometry, "geometry")
+        self._core.update_vertices(number, self._frame.moved(positions, self._frame.mesh_origin(number)))
 
     # Rays
 
@@ -163,7 +228,7 @@ class Scene:
 
         Parameters
         ----------
-        rays : array_like, (..., 6) float32
+        rays : array_like, (..., 6)
         nthreads : int
             Not used; for programs written for Open3D.
         tnear, tfar : float
@@ -178,21 +243,21 @@ class Scene:
             `INVALID_ID` for a miss; ``primitive_uvs`` (..., 2) float32: the point is (1 - u - v) a + u b + v c;
             ``primitive_normals`` (..., 3) float32, unit, of the triangle.
         """
-        flat, shape = rows_of(rays, "rays", np.float32, 6)
+        flat, shape = self._rays_of(rays)
         found = self._core.cast(flat, *_interval(tnear, tfar), bool(normals))
         self._tell()
         return _shaped(found, shape)
 
     def test_occlusions(self, rays: ArrayLike, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0) -> Array:
         """Tell whether each ray meets anything between `tnear` and `tfar`; (...) bool."""
-        flat, shape = rows_of(rays, "rays", np.float32, 6)
+        flat, shape = self._rays_of(rays)
         return self._core.occlusions(flat, *_interval(tnear, tfar)).reshape(shape).view(Array)
 
     def count_intersections(
         self, rays: ArrayLike, nthreads: int = 0, *, tnear: float = 0.0, tfar: float = np.inf
     ) -> Array:
         """Count the triangles that each ray meets, an edge or vertex between them once; (...) int32."""
-        flat, shape = rows_of(rays, "rays", np.float32, 6)
+        flat, shape = self._rays_of(rays)
         return self._core.counts(flat, *_interval(tnear, tfar)).reshape(shape).view(Array)
 
     def list_intersections(
@@ -207,13 +272,61 @@ class Scene:
             ``ray_splits[i + 1]``; ``ray_ids``, ``t_hit``, ``geometry_ids``, ``primitive_ids`` (m,);
             ``primitive_uvs`` (m, 2); ``primitive_normals`` (m, 3) where asked for.
         """
-        flat, _ = rows_of(rays, "rays", np.float32, 6)
+        flat, _ = self._rays_of(rays)
         splits, found = self._core.list(flat, *_interval(tnear, tfar), bool(normals))
         if splits[-1] > INVALID_ID:
             raise _core.Error(f"list_intersections: {splits[-1]} hits; ray_splits holds numbers below 2**32")
         found["ray_splits"] = splits.astype(np.uint32)
         found["ray_ids"] = np.repeat(np.arange(len(flat), dtype=np.uint32), np.diff(splits.astype(np.int64)))
         return {name: array.view(Array) for name, array in found.items()}
+
+    # On the device
+
+    def device_array(self, shape: int | tuple[int, ...], dtype: DTypeLike = np.float32) -> _device.DeviceArray:
+        """Make an array in the memory of the scene's device, which NumPy, PyTorch and CuPy see without a copy.
+
+        Parameters
+        ----------
+        shape : int or tuple of int
+        dtype : dtype
+            `HIT` for hits.
+
+        Returns
+        -------
+        DeviceArray
+            What it holds is not set.
+
+        Raises
+        ------
+        Error
+            Where the driver cannot export memory (``VK_KHR_external_memory_fd``).
+        """
+        return _device.device_array(self, shape, dtype)
+
+    def trace(
+        self,
+        rays: _device.DeviceArray,
+        hits: _device.DeviceArray | None = None,
+        *,
+        any_hit: bool = False,
+    ) -> _device.DeviceArray:
+        """Find what rays in the device's memory meet, without a copy through the host; returns when it is done.
+
+        Parameters
+        ----------
+        rays : DeviceArray, (n, 8) float32
+            Origin, tnear, direction, tfar of each, origins counted from `origin`. What CUDA writes there is waited for.
+        hits : DeviceArray, (n,) of `HIT`, optional
+            Written; by default a new one.
+        any_hit : bool
+            Any hit instead of the first.
+
+        Returns
+        -------
+        DeviceArray
+            `hits`.
+        """
+        return _device.trace(self, rays, hits, bool(any_hit))
 
     # Points
 
@@ -228,35 +341,45 @@ class Scene:
         Returns
         -------
         dict
-            ``points`` (..., 3) float32, ``geometry_ids``, ``primitive_ids`` (...) uint32, ``primitive_uvs`` (..., 2),
-            ``primitive_normals`` (..., 3) float32. Of an empty scene the numbers are `INVALID_ID`.
+            ``points`` (..., 3) float32, or float64 where `origin` is not 0; ``geometry_ids``, ``primitive_ids`` (...)
+            uint32, ``primitive_uvs`` (..., 2), ``primitive_normals`` (..., 3) float32. Of an empty scene the numbers
+            are `INVALID_ID`.
         """
-        flat, shape = rows_of(query_points, "query_points", np.float64, 3)
+        flat, shape = self._points_of(query_points)
         found = self._core.closest(flat, True)
-        found["points"] = found["points"].astype(np.float32)
+        found["points"] = self._from_device(found["points"])
         del found["distances"]
         return _shaped(found, shape)
 
     def compute_distance(self, query_points: ArrayLike, nthreads: int = 0) -> Array:
         """Compute the distance of each point from the scene; (...) float32, infinite where it is empty."""
-        flat, shape = rows_of(query_points, "query_points", np.float64, 3)
+        flat, shape = self._points_of(query_points)
         return self._core.closest(flat, False)["distances"].astype(np.float32).reshape(shape).view(Array)
+
+    def compute_winding_numbers(self, query_points: ArrayLike) -> Array:
+        """Compute how often the scene winds around each point; (...) float64.
+
+        Of closed meshes with fronts outward 0 outside, 1 inside, exactly; of open ones the generalized winding number
+        (Jacobson, Kavan, Sorkine-Hornung 2013), the solid angle of all triangles over 4 pi; NaN for a point that is not
+        finite.
+        """
+        flat, shape = self._points_of(query_points)
+        return self._windings(flat).reshape(shape).view(Array)
 
     def compute_signed_distance(self, query_points: ArrayLike, nthreads: int = 0, nsamples: int = 1) -> Array:
         """Compute the distance of each point, negative inside; (...) float32.
 
-        Inside is where the winding number is not 0. That is exact for closed meshes; of open ones it is the
-        generalised winding number (Jacobson, Kavan, Sorkine-Hornung 2013), rounded. `nsamples` is not used: no rays
-        vote here.
+        Inside is where the winding number, rounded, is not 0: see `compute_winding_numbers`. `nsamples` is not used: no
+        rays vote here.
         """
-        flat, shape = rows_of(query_points, "query_points", np.float64, 3)
+        flat, shape = self._points_of(query_points)
         distances = self._core.closest(flat, False)["distances"]
         signed = np.where(self._is_inside(flat), -distances, distances)
         return signed.astype(np.float32).reshape(shape).view(Array)
 
     def compute_occupancy(self, query_points: ArrayLike, nthreads: int = 0, nsamples: int = 1) -> Array:
         """Tell which points are inside, by 1; others are 0; (...) float32. Inside is as for signed distances."""
-        flat, shape = rows_of(query_points, "query_points", np.float64, 3)
+        flat, shape = self._points_of(query_points)
         return self._is_inside(flat).astype(np.float32).reshape(shape).view(Array)
 
     @staticmethod
@@ -266,17 +389,25 @@ class Scene:
 
     INVALID_ID = INVALID_ID
 
-    def _is_inside(self, points):
-        if self._core.triangle_count() == 0:
-            return np.zeros(len(points), bool)
+    def _rays_of(self, rays):
+        flat, shape = rows_of(rays, "rays", None, 6)
+        return self._frame.rays(flat), shape
+
+    def _points_of(self, points):
+        flat, shape = rows_of(points, "query_points", np.float64, 3)
+        return flat - self.origin, shape
+
+    def _from_device(self, points):
+        return points + self.origin if self.origin.any() else points.astype(np.float32)
+
+    def _windings(self, points):
+        windings = np.full(len(points), np.nan)
         is_finite = np.isfinite(points).all(axis=1)
-        inside = np.zeros(len(points), bool)
-        if self._core.is_closed():
-            inside[is_finite] = self._core.winding_numbers(points[is_finite]) != 0
-        else:
-            triangles = self._core.world_triangles().reshape(-1, 3, 3)
-            inside[is_finite] = np.rint(winding_numbers_of_open_meshes(points[is_finite], triangles)) != 0
-        return inside
+        windings[is_finite] = self._core.winding_numbers(points[is_finite])
+        return windings
+
+    def _is_inside(self, points):
+        return np.nan_to_num(np.rint(self._windings(points))) != 0
 
     def _tell(self):
         for message in self._core.take_log():
@@ -285,68 +416,6 @@ class Scene:
         if backend["kind"] == "CPU" and backend["device"] not in _told_of_cpu:
             _told_of_cpu.add(backend["device"])
             warnings.warn(f"twinray runs on a CPU, by Vulkan device '{backend['device']}'", stacklevel=3)
-
-
-def create_rays_pinhole(*args: Any, **options: Any) -> Array:
-    """Make the rays of a pinhole camera.
-
-    Called as ``create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px)``: `fov_deg` is horizontal, x of
-    pixels goes along `up` x (`center` - `eye`) and y along `up`, as Open3D has it; or as
-    ``create_rays_pinhole(intrinsic_matrix, extrinsic_matrix, width_px, height_px)``: (3, 3), and (4, 4) from the
-    scene to the camera, which looks along +z.
-
-    Returns
-    -------
-    Array, (height_px, width_px, 6) float32
-        Through the middles of pixels; directions reach the plane at distance 1.
-    """
-    if "fov_deg" in options or (args and np.ndim(args[0]) == 0):
-        return _rays_looking_at(*args, **options)
-    return _rays_of_matrices(*args, **options)
-
-
-def _rays_looking_at(fov_deg, center, eye, up, width_px, height_px):
-    fov = number_of(fov_deg, "fov_deg", 0)
-    center, eye, up = (
-        array_of(v, name).astype(np.float64) for v, name in ((center, "center"), (eye, "eye"), (up, "up"))
-    )
-    forward = (center - eye) / np.linalg.norm(center - eye)
-    right = np.cross(up, forward)
-    right /= np.linalg.norm(right)
-    focal = 0.5 * width_px / np.tan(0.5 * np.deg2rad(fov))
-    intrinsic = np.array([[focal, 0, 0.5 * width_px], [0, focal, 0.5 * height_px], [0, 0, 1]])
-    extrinsic = np.eye(4)
-    extrinsic[:3, :3] = [right, np.cross(forward, right), forward]
-    extrinsic[:3, 3] = -extrinsic[:3, :3] @ eye
-    return _rays_of_matrices(intrinsic, extrinsic, width_px, height_px)
-
-
-def _rays_of_matrices(intrinsic_matrix, extrinsic_matrix, width_px, height_px):
-    intrinsic = array_of(intrinsic_matrix, "intrinsic_matrix").astype(np.float64)
-    extrinsic = array_of(extrinsic_matrix, "extrinsic_matrix").astype(np.float64)
-    x, y = np.meshgrid(np.arange(width_px) + 0.5, np.arange(height_px) + 0.5)
-    pixels = np.stack([x, y, np.ones_like(x)], axis=-1)
-    to_scene = extrinsic[:3, :3].T @ np.linalg.inv(intrinsic)
-    rays = np.empty((height_px, width_px, 6), np.float32)
-    rays[..., :3] = -extrinsic[:3, :3].T @ extrinsic[:3, 3]
-    rays[..., 3:] = pixels @ to_scene.T
-    return rays.view(Array)
-
-
-def arrays_of_mesh(mesh):
-    """The vertices and triangles of a mesh of trimesh, Open3D (legacy or tensor) or PyVista."""
-    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
-        return mesh.vertices, mesh.faces
-    if hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):
-        return np.asarray(mesh.vertices), np.asarray(mesh.triangles)
-    if hasattr(mesh, "vertex") and hasattr(mesh, "triangle"):
-        return mesh.vertex.positions.cpu().numpy(), mesh.triangle.indices.cpu().numpy()
-    if hasattr(mesh, "points") and hasattr(mesh, "regular_faces"):
-        surface = mesh.triangulate()
-        return np.asarray(surface.points), np.asarray(surface.regular_faces)
-    raise TypeError(
-        f"vertex_positions: {type(mesh).__name__} is no mesh of trimesh, Open3D or PyVista; give triangle_indices"
-    )
 
 
 def _interval(tnear, tfar):

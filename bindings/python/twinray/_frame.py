@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: MIT
+"""Float64 coordinates for a device that computes in float32: what lies far from 0 is counted from nearer by."""
+
+from __future__ import annotations
+
+import numpy as np
+
+_ROUNDING = 2.0**-24  # of float32
+_HARMLESS = 1e-6  # a rounding, in extents of a mesh
+
+
+def near_point(points):
+    """The point (3,) that float32 coordinates are best counted from: 0, unless they would be rounded by more than a
+    millionth of their extent; then one near their middle with as round numbers as the extent allows."""
+    finite = points[np.isfinite(points).all(axis=1)]
+    if len(finite) == 0:
+        return np.zeros(3)
+    low, high = finite.min(axis=0).astype(np.float64), finite.max(axis=0).astype(np.float64)
+    extent = float((high - low).max())
+    largest = float(np.abs([low, high]).max())
+    if largest * _ROUNDING <= _HARMLESS * extent or not np.isfinite(extent):
+        return np.zeros(3)
+    middle = low + (high - low) / 2
+    if extent == 0:
+        return middle
+    step = 2.0 ** np.ceil(np.log2(extent))
+    return np.round(middle / step) * step
+
+
+class Frame:
+    """The origin of a scene, and of each of its meshes."""
+
+    def __init__(self, origin):
+        self.origin = np.zeros(3) if origin is None else origin
+        self._is_given = origin is not None
+        self._of_mesh = {}  # by geometry
+
+    def placed(self, positions, matrix):
+        """Of a new mesh: positions in float32, its matrix (3, 4) in float32, and what they are counted from."""
+        mesh_origin = near_point(positions)
+        if not self._is_given and not self._of_mesh:
+            with np.errstate(over="ignore", invalid="ignore"):
+                world = positions @ matrix[:3, :3].T + matrix[:3, 3]
+            self.origin = near_point(world)
+        return self.moved(positions, mesh_origin), self._on_device(matrix, mesh_origin), mesh_origin
+
+    def keep(self, geometry, mesh_origin):
+        """Remember what a geometry's vertices are counted from."""
+        self._of_mesh[geometry] = mesh_origin
+
+    def fixed_origin(self):
+        """The origin as a tuple; None where the next mesh still says it."""
+        return tuple(self.origin) if self._is_given or self._of_mesh else None
+
+    def keep_file(self, geometries, origin):
+        """Remember geometries of a file whose instances were counted from the origin."""
+        self.origin = origin
+        for geometry in geometries:
+            self._of_mesh[geometry] = np.zeros(3)
+
+    def mesh_origin(self, geometry):
+        """What a geometry's vertices are counted from."""
+        return self._of_mesh.get(geometry, np.zeros(3))
+
+    def matrix_of(self, geometry, matrix):
+        """The matrix of a geometry, (3, 4) in float32, from its vertices to the device's coordinates."""
+        return self._on_device(matrix, self.mesh_origin(geometry))
+
+    @staticmethod
+    def moved(points, origin):
+        """Points (..., 3), counted from the origin, in float32."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            if origin.any():
+                points = points.astype(np.float64) - origin
+            return np.ascontiguousarray(points, dtype=np.float32)
+
+    def rays(self, rows):
+        """Rays (n, 6), on the device, in float32."""
+        if not self.origin.any():
+            with np.errstate(over="ignore"):  # what float32 does not hold is infinite, and hits nothing
+                return np.ascontiguousarray(rows, dtype=np.float32)
+        return np.hstack([self.moved(rows[:, :3], self.origin), self.moved(rows[:, 3:], np.zeros(3))])
+
+    def _on_device(self, matrix, mesh_origin):
+        with np.errstate(over="ignore", invalid="ignore"):
+            placed = matrix[:3].copy()
+            if mesh_origin.any() or self.origin.any():
+                placed[:, 3] += matrix[:3, :3] @ mesh_origin - self.origin
+            return np.ascontiguousarray(placed, dtype=np.float32)

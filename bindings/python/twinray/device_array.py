@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: MIT
+"""Arrays in the memory of a scene's device, which NumPy, PyTorch and CuPy see without a copy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from . import _core
+from ._cuda import ImportedMemory
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+#: What `Scene.trace` writes of each ray; ``t`` of a miss is -1.
+HIT = np.dtype(
+    [
+        ("is_hit", np.uint32),
+        ("t_hit", np.float32),
+        ("primitive_ids", np.uint32),
+        ("geometry_ids", np.uint32),
+        ("u", np.float32),
+        ("v", np.float32),
+        ("instance", np.uint32),
+        ("flags", np.uint32),
+    ]
+)
+
+
+class DeviceArray:
+    """An array in the memory of a scene's device, made by `Scene.device_array`.
+
+    On a GPU of NVIDIA's it is ``torch.as_tensor(array, device="cuda")`` or ``cupy.asarray(array)``, by
+    ``__cuda_array_interface__``; on a CPU ``numpy.asarray(array)`` or ``torch.from_dlpack(array)``: each the same
+    memory. A field of hits, as ``hits["t_hit"]``, is an array of its own, again the same memory.
+
+    Attributes
+    ----------
+    shape : tuple of int
+    dtype : numpy.dtype
+    """
+
+    def __init__(self, memory: Any, shape: tuple[int, ...], dtype: np.dtype, offset: int = 0, step: int = 0) -> None:
+        self._memory = memory
+        self._imported: list[ImportedMemory] = []  # shared with fields
+        self.shape = shape
+        self.dtype = dtype
+        self._offset = offset
+        self._strides = _strides(shape, step or dtype.itemsize)
+
+    def __repr__(self) -> str:
+        return f"<twinray.DeviceArray {self.shape} of {self.dtype}>"
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, field: str) -> DeviceArray:
+        if not isinstance(field, str) or self.dtype.fields is None or field not in self.dtype.fields:
+            raise KeyError(f"{field!r} is no field of {self.dtype}; slices are for the package that sees the array")
+        dtype, offset = self.dtype.fields[field][:2]
+        part = DeviceArray(self._memory, self.shape, dtype, self._offset + offset, self.dtype.itemsize)
+        part._imported = self._imported
+        return part
+
+    def numpy(self) -> NDArray:
+        """As NumPy's: the same memory on a CPU, else a copy."""
+        mapped = self._memory.mapped()
+        bytes_ = self._memory.download() if mapped is None else mapped
+        return np.ndarray(self.shape, self.dtype, bytes_, self._offset, self._strides)
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray:
+        array = self._on_host()
+        return array.copy() if copy else array if dtype is None else array.astype(dtype, copy=False)
+
+    def __dlpack__(self, **options: Any) -> Any:
+        return self._on_host().__dlpack__(**options)
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return self._on_host().__dlpack_device__()
+
+    @property
+    def __cuda_array_interface__(self) -> dict[str, Any]:
+        if self._memory.mapped() is not None:
+            raise AttributeError("__cuda_array_interface__: the array lies in the host's memory")
+        if not self._imported:
+            self._imported.append(ImportedMemory(self._memory))
+        return {
+            "shape": self.shape,
+            "typestr": self.dtype.str,
+            "descr": self.dtype.descr,
+            "data": (self._imported[0].pointer + self._offset, False),
+            "strides": self._strides,
+            "version": 3,
+        }
+
+    def export_fd(self) -> tuple[int, int]:
+        """A new file descriptor of the memory for other APIs (opaque, as Vulkan, CUDA and HIP import it), which the
+        caller closes or gives away, and the size of the memory in bytes."""
+        return self._memory.export_fd()
+
+    def synchronize(self) -> None:
+        """Wait for what CUDA is to do with the array."""
+        for imported in self._imported:
+            imported.synchronize()
+
+    def _on_host(self):
+        if self._memory.mapped() is None:
+            raise BufferError("the array lies in the GPU's memory; .numpy() copies it")
+        return self.numpy()
+
+
+def device_array(scene: Scene, shape: int | tuple[int, ...], dtype: DTypeLike = np.float32) -> DeviceArray:
+    """See `Scene.device_array`, which this is."""
+    sizes = (shape,) if hasattr(shape, "__index__") else tuple(shape)
+    if not all(hasattr(n, "__index__") and n.__index__() >= 0 for n in sizes):
+        raise ValueError(f"shape: {shape!r}; wanted are integers of at least 0")
+    sizes = tuple(n.__index__() for n in sizes)
+    kind = np.dtype(dtype)
+    count = int(np.prod(sizes, dtype=object)) * kind.itemsize
+    if count == 0 or count >= 2**63:
+        raise ValueError(f"shape: {shape!r}; an array of {count} bytes cannot be shared")
+    return DeviceArray(_core.DeviceMemory(scene._core, count, scene.backend["kind"] == "CPU"), sizes, kind)
+
+
+def trace(scene: Scene, rays: DeviceArray, hits: DeviceArray | None, any_hit: bool) -> DeviceArray:
+    """See `Scene.trace`, which this is."""
+    if not isinstance(rays, DeviceArray):
+        raise TypeError(f"rays: {type(rays).__name__} is no DeviceArray; Scene.device_array makes one")
+    if rays.dtype != np.float32 or len(rays.shape) != 2 or rays.shape[1] != 8 or rays._offset:
+        raise ValueError(f"rays: {rays.shape} of {rays.dtype}; wanted is (n, 8) of float32")
+    hits = device_array(scene, len(rays), HIT) if hits is None else hits
+    if not isinstance(hits, DeviceArray):
+        raise TypeError(f"hits: {type(hits).__name__} is no DeviceArray; Scene.device_array makes one")
+    if hits.dtype != HIT or hits.shape != rays.shape[:1]:
+        raise ValueError(f"hits: {hits.shape} of {hits.dtype}; wanted is {rays.shape[:1]} of twinray.HIT")
+    rays.synchronize()
+    hits.synchronize()
+    _core.trace(scene._core, rays._memory, hits._memory, len(rays), any_hit)
+    return hits
+
+
+def _strides(shape, step):
+    strides = []
+    for size in reversed(shape):
+        strides.insert(0, step)
+        step *= size
+    return tuple(strides)
