@@ -24,6 +24,7 @@ Command leaks_command();
 Command report_command();
 Command trace_command();
 Command verify_command();
+Command view_command();
 Command viewfactors_command();
 Command visible_command();
 

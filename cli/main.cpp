@@ -29,7 +29,7 @@ int run(const Command& command, const std::vector<std::string>& arguments) {
             std::cout << help_text(command, terminal_width());
             return done;
         }
-        widen_cpu_vectors();
+        if (!command.rasterises) widen_cpu_vectors();
         return command.run();
     } catch (const UsageError& error) {
         return refuse(program, error.what(), program + " --help");
@@ -69,8 +69,8 @@ int run(const std::vector<std::string>& words) {
 }  // namespace
 
 std::vector<Command> all_commands() {
-    std::vector<Command> commands = {trace_command(), devices_command(), verify_command(), leaks_command(),
-                                     report_command()};
+    std::vector<Command> commands = {view_command(),   trace_command(), devices_command(),
+                                     verify_command(), leaks_command(), report_command()};
 #ifdef TWINRAY_HAS_BENCH
     commands.push_back(bench_command());
 #endif

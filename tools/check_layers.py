@@ -27,10 +27,11 @@ SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "validation/suite": PRODUCT + CHECKS + ["shaders/suite", "shaders/path_tracer", "shaders/collide", "samples"],
     "validation/replay": PRODUCT + CHECKS, "validation/report": BASE + CHECKS, "validation/picture": BASE,
     "validation/kernels": PRODUCT + CHECKS + ["shaders/path_tracer", "samples"],
-    "cli": PRODUCT + CHECKS + ["bench"],
+    "viewer": PRODUCT + CHECKS + ["samples"],
+    "cli": PRODUCT + CHECKS + ["bench", "viewer"],
     "bindings": [],
     "samples": ["shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"],
-    "bench": PRODUCT + VALIDATION, "tests": PRODUCT + CHECKS + ["shaders/scene", "cli", "samples", "bench"],
+    "bench": PRODUCT + VALIDATION, "tests": PRODUCT + CHECKS + ["shaders/scene", "cli", "samples", "bench", "viewer"],
     "shaders/path_tracer": [], "shaders/particles": [], "shaders/embed_renderer": ["shaders/path_tracer"],
     "shaders/points": ["shaders/collide", "shaders/engine"],
     # Each other folder of shaders, but shaders/shared, which sees nothing else.

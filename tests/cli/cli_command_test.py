@@ -39,7 +39,7 @@ for command in commands:
         assert re.search(rf"^    {status}$", text, re.M), f"{command}: exit status {status} is not told"
 
 # An option has one meaning, default and set of choices everywhere; these differ, and their helps say how.
-differ = {"--sides", "--grid", "--levels", "--output", "--width", "--random"}
+differ = {"--sides", "--grid", "--levels", "--output", "--width", "--random", "--up"}
 seen = {}
 for command in commands:
     for head, help in re.findall(r"^    ((?:-\w, )?--.*)\n((?:            .*\n)+)", run(command, "--help"), re.M):
@@ -51,9 +51,9 @@ assert seen["--accel"] == ("--accel auto|sw|hw", "auto"), seen["--accel"]
 
 # Wrong use: status 2, and what was meant.
 for arguments, words in [
-        (["frob"], "there is no command 'frob', but trace, devices, verify,"), (["view"], "did you mean viewfactors?"),
+        (["frob"], "there is no command 'frob', but view, trace, devices,"), (["viewf"], "did you mean view"),
         (["trase"], "there is no command 'trase'; did you mean trace? See 'twinray help'"),
-        (["help", "trase"], "must be trace, devices"), (["help", "trase"], "did you mean trace?"),
+        (["help", "trase"], "must be view, trace, devices"), (["help", "trase"], "did you mean trace?"),
         (["trace", "a.ply", "--ray", "r"], "there is no option --ray; did you mean --rays?"),
         (["trace", "a.ply"], "--rays is required"), (["trace"], "SCENE is required"),
         (["trace", "a.ply", "--rays", "r", "--hits"], "--hits wants FILE, and nothing follows"),

@@ -102,6 +102,8 @@ Hit Scene::trace(const Ray& ray, uint query, uint mask, uint level) const {
 
 TraversalSteps Scene::take_steps() { return std::exchange(traversal_steps(), {}); }
 
+SwGeometry Scene::scene_nodes() const { return {header_.bvh, {}, header_.records, GEOMETRY_TRIANGLES, 0}; }
+
 Scene::Tree Scene::geometry_tree(std::size_t instance) const {
     const BuiltGeometry& built = geometries_[placed_[instance].first];
     return {built.block.geometry.bvh, built.triangles, built.mesh.scale};

@@ -40,6 +40,11 @@ class Scene {
     };
     Tree scene_tree() const { return {header_.bvh, {}}; }
     Tree geometry_tree(std::size_t instance) const;
+    // The same as node_boxes.h reads them, in every layout.
+    SwGeometry scene_nodes() const;
+    SwGeometry geometry_nodes(std::size_t instance) const {
+        return geometries_[placed_[instance].first].block.geometry;
+    }
     const SwInstance& instance(std::size_t index) const { return instances_[index]; }
     std::span<const LeafBox> instance_boxes() const { return instance_boxes_; }  // in world space
 

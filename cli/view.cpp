@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+// `twinray view`: a window, or its pictures without one.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/command/values.h"
+#include "cli/commands.h"
+#include "cli/common.h"
+#include "engine/core/error.h"
+#include "twinray_version.h"
+#include "viewer/viewer.h"
+#include "viewer/window.h"
+
+namespace twinray::cli {
+namespace {
+
+using viewer::Layer;
+using viewer::Shown;
+
+struct ViewOptions {
+    CommonOptions common;
+    std::filesystem::path scene, screenshot, reference, play, record, folder;
+    viewer::State state;
+    std::vector<double> camera, up = {0, 1, 0};
+    std::vector<uint> size = {1280, 720}, pick;
+    double fov = 40;
+    bool is_orthographic = false;
+    int tree_depth = -1;
+    uint headless = 0, samples = 0;
+    double threshold = 2;
+};
+
+viewer::UpAxis up_of(const std::vector<double>& up) {
+    if (up == std::vector<double>{0, 1, 0}) return viewer::UpAxis::y;
+    if (up == std::vector<double>{0, 0, 1}) return viewer::UpAxis::z;
+    throw UsageError("--up: 0 1 0 or 0 0 1");
+}
+
+viewer::State state_of(const ViewOptions& options) {
+    viewer::State state = options.state;
+    state.width = options.size[0], state.height = options.size[1];
+    state.orbit.up = up_of(options.up);
+    state.orbit.vertical_fov = options.fov * M_PI / 180;
+    state.orbit.is_orthographic = options.is_orthographic;
+    if (options.tree_depth >= 0) state.tree_depth = options.tree_depth;
+    if (!options.pick.empty()) {
+        if (options.pick[0] >= state.width || options.pick[1] >= state.height)
+            throw UsageError(text("--pick ", options.pick[0], ' ', options.pick[1], ": the picture has ", state.width,
+                                  " x ", state.height, " pixels"));
+        state.picked = uvec2(options.pick[0], options.pick[1]);
+    }
+    return state;
+}
+
+std::optional<std::array<dvec3, 2>> camera_of(const std::vector<double>& c) {
+    if (c.empty()) return {};
+    return std::array{dvec3(c[0], c[1], c[2]), dvec3(c[3], c[4], c[5])};
+}
+
+// The root mean square of the differences of all channels, of 255. Throws Error for a picture of another size.
+double difference_of(const Raster& raster, const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) fail("'", file.string(), "': cannot be read");
+    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    const Image image =
+        decode_image(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), file.string());
+    if (image.width != raster.width || image.height != raster.height)
+        fail("'", file.string(), "' has ", image.width, " x ", image.height, " pixels, the picture ", raster.width,
+             " x ", raster.height);
+    double sum = 0;
+    for (std::size_t i = 0; i < raster.pixels.size(); ++i) {
+        const Rgb pixel = raster.pixels[i];
+        const double d[] = {double(pixel.r) - image.rgba[4 * i], double(pixel.g) - image.rgba[4 * i + 1],
+                            double(pixel.b) - image.rgba[4 * i + 2]};
+        sum += d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+    }
+    return std::sqrt(sum / (3.0 * static_cast<double>(raster.pixels.size())));
+}
+
+void write(const Raster& raster, const std::filesystem::path& file) {
+    write_png(file, raster.width, raster.height, raster.pixels);
+}
+
+// Frames until nothing gets better, or there are as many samples as asked for.
+const Raster& finished(viewer::Viewer& view, uint samples) {
+    const Raster* raster = &view.frame(false);
+    while (view.state().layer == Layer::path && view.samples() < samples) raster = &view.frame(false);
+    return *raster;
+}
+
+// Plays events as fast as it can. Returns the seconds of each frame between them.
+std::vector<double> play(viewer::Viewer& view, const std::vector<viewer::Event>& events, const ViewOptions& options) {
+    std::vector<double> seconds;
+    for (const viewer::Event& event : events) {
+        if (view.is_closed()) break;
+        if (const auto* frames = std::get_if<viewer::Frames>(&event))
+            for (unsigned i = 0; i < frames->count; ++i) {
+                const auto start = std::chrono::steady_clock::now();
+                view.frame(true);
+                seconds.push_back(seconds_since(start));
+            }
+        else if (const auto* shot = std::get_if<viewer::Shot>(&event))
+            write(finished(view, options.samples), options.folder / shot->file);
+        else
+            view.handle(event);
+    }
+    return seconds;
+}
+
+nlohmann::json record_of(const viewer::Viewer& view, const nlohmann::json& base, double seconds, uint frames) {
+    nlohmann::json record = base;
+    record.update({{"layer", viewer::name_of(view.state().layer)},
+                   {"show", viewer::name_of(view.state().shown)},
+                   {"width", view.state().width},
+                   {"height", view.state().height},
+                   {"frames", frames},
+                   {"seconds", seconds},
+                   {"samples", view.samples()}});
+    if (view.state().shown == Shown::difference) record["disagreements"] = view.disagreements();
+    return record;
+}
+
+int run_without_window(viewer::Viewer& view, const ViewOptions& options, const nlohmann::json& base) {
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<double> frames;
+    if (!options.play.empty()) frames = play(view, viewer::read_events(options.play), options);
+    for (uint i = 0; i < options.headless; ++i) {
+        const Raster& raster = view.frame(false);
+        if (!options.folder.empty()) write(raster, options.folder / text("frame", i, ".png"));
+    }
+    if (options.headless == 0) finished(view, std::max(1u, options.samples));
+    const Raster& raster = view.last();
+    if (view.picked() && !options.common.quiet)
+        std::cout << text_of(*view.picked()) << explanation_of(view.stage(), *view.picked());
+    nlohmann::json record = record_of(view, base, seconds_since(start), options.headless);
+    if (!options.play.empty()) record["frame_seconds"] = frames;
+    append_json(options.common.json, record);
+    if (!options.reference.empty()) {
+        const double difference = difference_of(raster, options.reference);
+        const bool is_alike = difference <= options.threshold;
+        std::cout << "differs from " << options.reference.string() << " by " << difference << " of 255, at most "
+                  << options.threshold << '\n';
+        if (is_alike) return 0;
+        if (!options.screenshot.empty()) write(raster, options.screenshot);
+        return 1;
+    }
+    if (!options.screenshot.empty()) write(raster, options.screenshot);
+    return 0;
+}
+
+int run(const ViewOptions& options) {
+    const bool has_window =
+        options.screenshot.empty() && options.headless == 0 && options.folder.empty() && options.reference.empty();
+    for (const auto& file : {options.screenshot, options.record}) check_writable(file);
+    const auto say = [](const std::string& line) { std::cout << line << std::endl; };
+    viewer::ViewerDesc desc{.file = options.scene,
+                            .state = state_of(options),
+                            .camera = camera_of(options.camera),
+                            .say = say,
+                            .version = twinray_version};
+    if (has_window)
+        return viewer::run_window(
+            {.context = context_desc(options.common), .viewer = desc, .play = options.play, .record = options.record});
+    const std::unique_ptr<Context> context = make_context(options.common);
+    viewer::Viewer view(*context, desc);
+    return run_without_window(view, options,
+                              base_record("twinray-view/1", *context, options.scene, view.stage().scene()));
+}
+
+}  // namespace
+
+Command view_command() {
+    const auto options = std::make_shared<ViewOptions>();
+    Value layer = choice(options->state.layer, names_of(viewer::all_layers));
+    layer.metavar = "NAME";
+    const Section picture = {
+        "What is shown",
+        {{.name = "--layer",
+          .value = layer,
+          .help = "what colours tell: path: the picture, path traced; eyelight: base colours, lit from the camera; of "
+                  "hits occlusion, uv, normal, geometry, primitive or depth; steps: of each ray through the software "
+                  "tree; of faces light, factors (view factors from the picked one) or collisions"},
+         {.name = "--show",
+          .value = choice(options->state.shown, names_of(viewer::all_shown)),
+          .help = "the software accelerator, the driver's, both with a wipe between them, or where they disagree"},
+         {.name = "--wipe",
+          .value = number(options->state.wipe, {.least = 0, .most = 1}),
+          .help = "where the wipe is, of the width"},
+         {.name = "--tree-depth",
+          .value = number(options->tree_depth, {.least = -1, .most = 64}),
+          .help = "draw the boxes of the software tree so many levels below its root; -1: none"},
+         {.name = "--pick", .value = numbers(options->pick, "X Y"), .help = "explain the ray of this pixel"},
+         {.name = "--time",
+          .value = number(options->state.seconds, {.least = 0}),
+          .help = "of the animation, in seconds"},
+         {.name = "--hour",
+          .value = number(options->state.hour, {.least = 6, .most = 18}),
+          .help = "of the day, for --layer light"},
+         {.name = "--exposure",
+          .value = number(options->state.exposure, {.least = -32, .most = 32}),
+          .help = "of --layer path, in stops"}}};
+    const Section camera = {
+        "Camera",
+        {{.name = "--camera",
+          .value = numbers(options->camera, "X Y Z X Y Z"),
+          .help =
+              "where the camera stands, then the point that it looks at; if not given, the scene's first camera, or "
+              "one that shows all of it"},
+         {.name = "--fov",
+          .value = number(options->fov, {.least = 1, .most = 170}),
+          .help = "vertical field of view in degrees, of --camera"},
+         {.name = "--orthographic", .value = flag(options->is_orthographic), .help = "without perspective"},
+         {.name = "--up", .value = numbers(options->up, "X Y Z"), .help = "which axis is up: 0 1 0 or 0 0 1"},
+         {.name = "--size",
+          .value = numbers(options->size, "WIDTH HEIGHT", {1, 16384}),
+          .help = "of the picture, in pixels"}}};
+    const Section without = {
+        "Without a window",
+        {{.name = "--screenshot", .value = file(options->screenshot, {".png"}), .help = "write the picture and end"},
+         {.name = "--spp",
+          .value = number(options->samples, {.least = 0, .most = 1u << 20u}),
+          .help = "samples of each pixel, of --layer path"},
+         {.name = "--headless",
+          .value = number(options->headless, {.least = 1, .most = 1000000}),
+          .help = "so many frames, and end"},
+         {.name = "--output",
+          .letter = 'o',
+          .value = folder(options->folder),
+          .help = "where frames, or the pictures of --play, are written"},
+         {.name = "--reference",
+          .value = file(options->reference, {".png"}),
+          .help = "compare with this picture: exit status 1 where they differ, and only then --screenshot is written"},
+         {.name = "--threshold",
+          .value = number(options->threshold, {.least = 0, .most = 255}),
+          .help = "of the root mean square difference, of 255",
+          .needs = {"--reference"}}}};
+    const Section input = {
+        "Input",
+        {{.name = "--play", .value = file(options->play), .help = "events from a file, as --record writes them"},
+         {.name = "--record", .value = file(options->record), .help = "write what is done in the window"}}};
+    return {.name = "view",
+            .group = "Tracing",
+            .summary = "show a scene in a window: picture, tree, disagreement, analyses",
+            .description =
+                "Left drags turn, middle or shift and left drags pan, the wheel goes nearer, a double click "
+                "centres, a click explains a pixel's ray; H shows all keys.",
+            .positionals = {scene_argument(options->scene)},
+            .sections = {picture, camera, without, input, common_options(options->common)},
+            .examples = {{"twinray view scene.glb", "a window"},
+                         {"twinray view scene.glb --layer steps --tree-depth 4 --screenshot steps.png",
+                          "how much work each ray is, with boxes of the tree"},
+                         {"twinray view scene.glb --show difference --screenshot difference.png",
+                          "pixels where the driver's hits and twinray's differ"}},
+            .rasterises = true,
+            .fault = "the picture differs from --reference",
+            .run = [options] { return run(*options); }};
+}
+
+}  // namespace twinray::cli

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+// The viewer without its window: what events do, and what is on its frames.
+#include "viewer/viewer.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "tests/accel/accel_fixture.h"
+#include "twinray/glsl/vector_math.h"
+#include "viewer/tree_lines.h"
+
+namespace twinray::viewer {
+namespace {
+
+constexpr uint width = 64, height = 48;
+
+// Two boxes beside each other, and a folder for them.
+class ViewerTest : public test::VulkanTest {
+  protected:
+    void SetUp() override {
+        VulkanTest::SetUp();
+        if (IsSkipped() || HasFatalFailure()) return;
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("twinray_viewer_" + std::to_string(reinterpret_cast<std::uintptr_t>(this)));
+        std::filesystem::create_directories(folder_);
+        write_boxes(2);
+    }
+    void TearDown() override {
+        if (!folder_.empty()) std::filesystem::remove_all(folder_);
+    }
+    void write_boxes(int count) {
+        std::ofstream out(file());
+        for (int i = 0; i < count; ++i)
+            for (int corner = 0; corner < 8; ++corner)
+                out << "v " << (corner & 1 ? 1 : 0) + 2 * i << ' ' << (corner & 2 ? 1 : 0) << ' '
+                    << (corner & 4 ? 1 : 0) << '\n';
+        const int faces[][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                                {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+        for (int i = 0; i < count; ++i) {
+            out << "o box" << i << '\n';
+            for (const auto& f : faces)
+                out << "f " << f[0] + 1 + 8 * i << ' ' << f[1] + 1 + 8 * i << ' ' << f[2] + 1 + 8 * i << '\n';
+        }
+    }
+    std::filesystem::path file() const { return folder_ / "boxes.obj"; }
+    std::filesystem::path folder() const { return folder_; }
+
+    // From the front, the first box on the left.
+    ViewerDesc desc(Layer layer = Layer::eyelight) {
+        State state;
+        state.layer = layer;
+        state.width = width, state.height = height;
+        return {.file = file(),
+                .state = state,
+                .camera = std::array{dvec3(1.5, 0.5, 6), dvec3(1.5, 0.5, 0)},
+                .say = [this](const std::string& line) { said.push_back(line); },
+                .version = "test"};
+    }
+    std::vector<std::string> said;
+
+  private:
+    std::filesystem::path folder_;
+};
+
+constexpr uvec2 on_first{20, 24}, on_second{44, 24}, on_nothing{32, 2};
+
+Rgb at(const Raster& raster, uvec2 pixel) { return raster.at(pixel.x, pixel.y); }
+
+TEST_F(ViewerTest, LayersTellMeshesNormalsAndMisses) {
+    Viewer viewer(context(), desc());
+    const auto shown = [&](const char* key) {
+        viewer.handle(KeyDown{key});
+        return viewer.frame(false);
+    };
+    const Raster occlusion = shown("F3");
+    EXPECT_EQ(at(occlusion, on_nothing), background);
+    EXPECT_EQ(at(occlusion, on_first), at(occlusion, on_second));
+    EXPECT_NE(at(occlusion, on_first), background);
+    const Raster normal = shown("F5");
+    EXPECT_EQ(at(normal, on_first), (Rgb{128, 128, 255}));
+    const Raster primitive = shown("F7");
+    EXPECT_NE(at(primitive, on_first), at(primitive, on_second));
+    const Raster depth = shown("F8");
+    EXPECT_NE(at(depth, on_first), background);
+    EXPECT_TRUE(viewer.figures().size() >= 5);
+}
+
+TEST_F(ViewerTest, BothAcceleratorsAreSeen) {
+    Viewer viewer(context(), desc(Layer::primitive));
+    if (!viewer.stage().hardware()) TWINRAY_LACKS("ray_tracing", viewer.stage().why_no_hardware());
+    const Raster software = viewer.frame(false);
+    viewer.handle(KeyDown{"Tab"});
+    EXPECT_EQ(viewer.state().shown, Shown::hardware);
+    const Raster hardware = viewer.frame(false);
+    viewer.handle(KeyDown{"W"});
+    const Raster wipe = viewer.frame(false);
+    for (uint y = 0; y < height; ++y) {
+        EXPECT_EQ(wipe.at(3, y), software.at(3, y));
+        EXPECT_EQ(wipe.at(width - 3, y), hardware.at(width - 3, y));
+        EXPECT_EQ(wipe.at(width / 2, y), ink) << "the wipe's line";
+    }
+    viewer.handle(KeyDown{"D"});
+    (void)viewer.frame(false);
+    std::uint64_t unlike = 0;
+    for (std::size_t i = 0; i < software.pixels.size(); ++i) unlike += software.pixels[i] != hardware.pixels[i];
+    EXPECT_EQ(viewer.disagreements(), unlike);
+}
+
+TEST_F(ViewerTest, ClicksExplainRays) {
+    Viewer viewer(context(), desc());
+    viewer.handle(ButtonDown{Button::left, on_second.x + 0.5, on_second.y + 0.5});
+    viewer.handle(ButtonUp{Button::left});
+    ASSERT_TRUE(viewer.picked());
+    EXPECT_EQ(viewer.picked()->software.hit, 1u);
+    EXPECT_EQ(viewer.picked()->software_class, HitClass::agree);
+    EXPECT_GT(viewer.picked()->nodes, 0u);
+    EXPECT_NEAR(viewer.picked()->point->z, 1, 1e-6);
+    EXPECT_NE(viewer.explanation().find("exactly: hit"), std::string::npos) << viewer.explanation();
+    EXPECT_EQ(viewer.state().picked, on_second);
+    viewer.handle(ButtonDown{Button::left, 10, 10});  // a drag is no click
+    viewer.handle(Moved{20, 10});
+    viewer.handle(ButtonUp{Button::left});
+    EXPECT_EQ(viewer.state().picked, on_second);
+}
+
+TEST_F(ViewerTest, DragsWheelAndKeysMoveTheCamera) {
+    Viewer viewer(context(), desc());
+    const Orbit before = viewer.state().orbit;
+    viewer.handle(ButtonDown{Button::left, 10, 10});
+    viewer.handle(Moved{34, 10});
+    viewer.handle(ButtonUp{Button::left});
+    EXPECT_NEAR(viewer.state().orbit.azimuth, before.azimuth - std::acos(-1.0) * 0.5, 1e-9);
+    EXPECT_EQ(viewer.state().orbit.center, before.center);
+    viewer.handle(ButtonDown{Button::left, 10, 10, true});
+    viewer.handle(Moved{34, 10});
+    viewer.handle(ButtonUp{Button::left});
+    EXPECT_NE(viewer.state().orbit.center, before.center);
+    viewer.handle(Scrolled{2});
+    EXPECT_LT(viewer.state().orbit.distance, before.distance);
+    viewer.handle(KeyDown{"1"});
+    viewer.handle(KeyDown{"Home"});
+    const double distance = viewer.state().orbit.distance;
+    viewer.handle(DoubleClick{on_first.x + 4.0, on_first.y + 0.5});
+    EXPECT_GT(viewer.state().orbit.center.z, 0.9) << "on the front of the box";
+    EXPECT_EQ(viewer.state().orbit.distance, distance);
+    const dvec3 center = viewer.state().orbit.center;
+    viewer.handle(KeyDown{"W"});  // without the right button it wipes
+    EXPECT_EQ(viewer.state().orbit.center, center);
+    viewer.handle(ButtonDown{Button::right, 10, 10});
+    viewer.handle(KeyDown{"W"});
+    (void)viewer.frame(false);
+    EXPECT_LT(viewer.state().orbit.center.z, center.z) << "it flies ahead";
+    viewer.handle(KeyDown{"C"});
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_EQ(said[0].rfind("--camera ", 0), 0u);
+}
+
+TEST_F(ViewerTest, FramesAreCoarseWhileItMovesAndWholeAtRest) {
+    Viewer viewer(context(), desc(Layer::primitive));
+    const Raster whole = viewer.frame(true);
+    EXPECT_FALSE(viewer.is_refining());
+    viewer.handle(ButtonDown{Button::left, 10, 10});
+    viewer.handle(Moved{20, 12});
+    (void)viewer.frame(true);
+    viewer.handle(ButtonUp{Button::left});
+    EXPECT_TRUE(viewer.is_refining());
+    (void)viewer.frame(true);
+    (void)viewer.frame(true);
+    EXPECT_FALSE(viewer.is_refining());
+    const State state = viewer.state();
+    Viewer other(context(), desc(Layer::primitive));
+    other.set_state(state);
+    EXPECT_EQ(viewer.last().pixels, other.frame(false).pixels) << "a state is one picture, however it was reached";
+    EXPECT_NE(whole.pixels, viewer.last().pixels);
+}
+
+TEST_F(ViewerTest, PathsGetBetterAndBeginAnew) {
+    Viewer viewer(context(), desc(Layer::path));
+    for (int i = 0; i < 4; ++i) (void)viewer.frame(true);
+    EXPECT_EQ(viewer.samples(), 4u);
+    EXPECT_TRUE(viewer.is_refining());
+    viewer.handle(Scrolled{1});
+    (void)viewer.frame(false);
+    EXPECT_EQ(viewer.samples(), 1u);
+}
+
+TEST_F(ViewerTest, TreesAreDrawnLevelByLevel) {
+    write_boxes(40);
+    Viewer viewer(context(), desc());
+    const auto boxes = [&](int depth) { return boxes_at(viewer.stage().scene(), viewer.stage().twin(), depth); };
+    ASSERT_EQ(boxes(0).size(), 1u);
+    std::size_t before = 1;
+    for (int depth = 1; depth < 4; ++depth) {
+        EXPECT_GT(boxes(depth).size(), before);
+        before = boxes(depth).size();
+    }
+    const Box root = boxes(0)[0];
+    for (const Box& box : boxes(3)) {  // within the root, but for the rounding of planes
+        EXPECT_GE(box.lo.x, root.lo.x - 0.01 * (root.hi.x - root.lo.x));
+        EXPECT_LE(box.hi.x, root.hi.x + 0.01 * (root.hi.x - root.lo.x));
+    }
+    EXPECT_LE(boxes_at(viewer.stage().scene(), viewer.stage().twin(), 20, 10).size(), 10u);
+    viewer.handle(KeyDown{"["});
+    EXPECT_FALSE(viewer.state().tree_depth);
+    const Raster without = viewer.frame(false);
+    viewer.handle(KeyDown{"]"});
+    EXPECT_EQ(viewer.state().tree_depth, 0);
+    EXPECT_NE(viewer.frame(false).pixels, without.pixels);
+}
+
+TEST_F(ViewerTest, StepsAreMoreWhereThereIsSomethingToFind) {
+    Viewer viewer(context(), desc(Layer::steps));
+    (void)viewer.frame(false);
+    ASSERT_TRUE(viewer.values().scale);
+    const auto steps = [&](uvec2 pixel) { return viewer.values().numbers[std::size_t{pixel.y} * width + pixel.x]; };
+    EXPECT_GT(steps(on_first), steps(uvec2(0, 0)));
+    EXPECT_GE(viewer.values().scale->hi(), steps(on_first));
+}
+
+TEST_F(ViewerTest, AnalysesAreLayers) {
+    Viewer viewer(context(), desc(Layer::light));
+    (void)viewer.frame(false);
+    ASSERT_EQ(viewer.values().numbers.size(), 24u);
+    viewer.handle(KeyDown{"F11"});
+    (void)viewer.frame(false);
+    EXPECT_NE(viewer.message().find("click a face"), std::string::npos);
+    viewer.handle(ButtonDown{Button::left, on_first.x + 0.5, on_first.y + 0.5});
+    viewer.handle(ButtonUp{Button::left});
+    (void)viewer.frame(false);
+    EXPECT_EQ(viewer.values().numbers.size(), 24u);
+    viewer.handle(KeyDown{"F12"});
+    (void)viewer.frame(false);
+    for (const double worst : viewer.values().numbers) EXPECT_TRUE(std::isnan(worst)) << "the boxes are apart";
+}
+
+TEST_F(ViewerTest, BadFilesAndNoPixelsLeaveItAsItIs) {
+    Viewer viewer(context(), desc());
+    const std::vector<Rgb> before = viewer.frame(false).pixels;
+    std::ofstream(folder() / "garbage.glb") << "no scene";
+    viewer.handle(Dropped{folder() / "garbage.glb"});
+    EXPECT_NE(viewer.message().find("garbage.glb"), std::string::npos) << viewer.message();
+    EXPECT_EQ(viewer.frame(false).pixels, before);
+    viewer.handle(Resized{0, 0});
+    EXPECT_EQ(viewer.frame(false).pixels, before);
+    std::ofstream(file()) << "garbage";
+    viewer.handle(KeyDown{"R"});
+    EXPECT_FALSE(viewer.message().empty());
+    EXPECT_EQ(viewer.frame(false).pixels, before);
+    write_boxes(3);
+    viewer.handle(KeyDown{"R"});
+    EXPECT_EQ(count_triangles(viewer.stage().scene()), 36u);
+    viewer.handle(Resized{30, 20});
+    EXPECT_EQ(viewer.frame(false).width, 30u);
+    viewer.handle(Closed{});
+    EXPECT_TRUE(viewer.is_closed());
+}
+
+}  // namespace
+}  // namespace twinray::viewer

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+// The frames of a Viewer.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+#include "engine/core/error.h"
+#include "engine/core/parallel.h"
+#include "validation/picture/font.h"
+#include "viewer/face_values.h"
+#include "viewer/tree_lines.h"
+#include "viewer/viewer.h"
+
+namespace twinray::viewer {
+namespace {
+
+constexpr double seconds_while_moving = 0.07;  // of a frame
+constexpr uint coarsest = 8;                   // pixels of a coarse frame, along each side
+
+constexpr Rgb ours = {213, 94, 0}, of_driver = {204, 121, 167}, harmless = {0, 114, 178}, pick_color = {213, 94, 0};
+
+bool has_face_values(Layer layer) {
+    return layer == Layer::light || layer == Layer::factors || layer == Layer::collisions;
+}
+
+Rgb color_of_classes(HitClass software, HitClass hardware) {
+    return is_fault_of_ours(software) ? ours : is_fault_of_hardware(hardware) ? of_driver : harmless;
+}
+
+Raster by_pixel(const Traced& traced, const std::function<Rgb(std::size_t)>& color) {
+    Raster raster(traced.width, traced.height);
+    parallel_for(raster.pixels.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) raster.pixels[i] = color(i);
+    });
+    return raster;
+}
+
+std::vector<float> depths_of(const Traced& traced, uint width, uint height, uint grain) {
+    std::vector<float> depths(std::size_t{width} * height);
+    for (uint y = 0; y < height; ++y)
+        for (uint x = 0; x < width; ++x) {
+            const std::size_t i = std::size_t{std::min(y / grain, traced.height - 1)} * traced.width +
+                                  std::min(x / grain, traced.width - 1);
+            depths[std::size_t{y} * width + x] = traced.hits[i].hit ? traced.hits[i].t : INFINITY;
+        }
+    return depths;
+}
+
+std::string range_text(const ValueScale& scale) {
+    std::ostringstream out;
+    out.precision(3);
+    out << scale.lo() << " to " << scale.hi() << "  ";
+    return out.str();
+}
+
+}  // namespace
+
+AbstractAccel& Viewer::accel_of(Shown shown) {
+    if (shown == Shown::hardware) return *stage_->hardware();
+    return stage_->software();
+}
+
+bool Viewer::is_refining() const {
+    return is_stale_ || is_coarse_ || state_ != shown_ || state_.layer == Layer::path || is_playing_ || !held_.empty();
+}
+
+const Raster& Viewer::frame(bool may_be_coarse) {
+    const auto start = std::chrono::steady_clock::now();
+    fly();
+    if (is_playing_) state_.seconds = std::fmod(state_.seconds + frame_seconds_, stage_->animation_seconds());
+    stage_->set_time(state_.seconds);
+    if (state_.shown != Shown::software && !stage_->hardware())
+        fail("view: the device has no hardware accelerator: ", stage_->why_no_hardware());
+    const bool has_moved = state_.orbit != shown_.orbit || is_playing_ || button_.has_value();
+    const bool is_new = is_stale_ || state_ != shown_ || is_coarse_ || is_playing_;
+    if (!is_new && state_.layer != Layer::path) return raster_;
+    const uint grain = may_be_coarse && has_moved && state_ != shown_ ? grain_ : 1;
+    update_values();
+    raster_ = drawn(grain, may_be_coarse && has_moved && is_new).raster;
+    draw_legend(raster_);
+    shown_ = state_;
+    is_coarse_ = may_be_coarse && has_moved && is_new;
+    is_stale_ = false;
+    frame_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (is_coarse_) {
+        const double ideal = grain * std::sqrt(frame_seconds_ / seconds_while_moving);
+        grain_ = std::clamp(static_cast<uint>(std::ceil(ideal)), 1u, coarsest);
+    }
+    return raster_;
+}
+
+FacePicture Viewer::drawn(uint grain, bool is_moving) {
+    const uint width = (state_.width + grain - 1) / grain, height = (state_.height + grain - 1) / grain;
+    Traced traced{width, height, rays_of(state_.orbit, width, height), {}};
+    const auto hits_of = [&](AbstractAccel& accel) { return accel.closest_hits(traced.rays); };
+    Raster coarse(width, height);
+    if (state_.shown == Shown::wipe || state_.shown == Shown::difference) {
+        Traced other = traced;
+        traced.hits = hits_of(stage_->software());
+        other.hits = hits_of(*stage_->hardware());
+        if (state_.shown == Shown::difference) {
+            coarse = difference(traced, other, grain);
+        } else {
+            coarse = shaded(Shown::software, traced, is_moving);
+            const Raster right = shaded(Shown::hardware, other, is_moving);
+            const uint cut = std::min(width, static_cast<uint>(std::lround(state_.wipe * static_cast<float>(width))));
+            for (uint y = 0; y < height; ++y)
+                for (uint x = cut; x < width; ++x) coarse.at(x, y) = right.at(x, y);
+        }
+    } else {
+        traced.hits = hits_of(accel_of(state_.shown));
+        coarse = shaded(state_.shown, traced, is_moving);
+    }
+    FacePicture picture{.raster = grain == 1 ? std::move(coarse) : enlarged(coarse, state_.width, state_.height, grain),
+                        .depths = depths_of(traced, state_.width, state_.height, grain),
+                        .plane = image_plane(camera_of(state_.orbit),
+                                             static_cast<float>(state_.width) / static_cast<float>(state_.height))};
+    draw_over(picture);
+    return picture;
+}
+
+Raster Viewer::shaded(Shown shown, const Traced& traced, bool is_moving) {
+    const Scene& scene = stage_->scene();
+    if (state_.layer == Layer::path && !is_moving) {
+        std::unique_ptr<PathPicture>& path = paths_.at(static_cast<std::size_t>(shown));
+        if (!path) path = std::make_unique<PathPicture>(context_, scene);
+        path->look(state_.orbit, traced.width, traced.height, accel_of(shown), stage_->version());
+        path->add_sample(accel_of(shown));
+        return path->picture(state_.exposure);
+    }
+    if (state_.layer == Layer::steps && shown == Shown::software) {
+        values_ = steps_of(traced);
+        return by_pixel(traced, [&](std::size_t i) { return values_.scale->color(values_.numbers[i]); });
+    }
+    if (state_.layer == Layer::steps)  // no driver tells
+        return by_pixel(traced, [&](std::size_t i) { return traced.hits[i].hit ? no_value_color : background; });
+    if (!has_face_values(state_.layer) || values_.numbers.empty())
+        return by_pixel(traced, [&](std::size_t i) {
+            return color_of(state_.layer, scene, traced.rays[i], traced.hits[i], stage_->bounds());
+        });
+    const std::vector<std::size_t> first = first_faces(scene);
+    return by_pixel(traced, [&](std::size_t i) {
+        const Hit& hit = traced.hits[i];
+        if (hit.hit == 0) return background;
+        const double value = values_.numbers[first[hit.instance_index] + hit.primitive_index];
+        const Rgb color = std::isnan(value) || !values_.scale ? no_value_color : values_.scale->color(value);
+        return lit(scene, traced.rays[i], hit, color);
+    });
+}
+
+// Grey where both say the same; else by who is wrong.
+Raster Viewer::difference(const Traced& software, const Traced& hardware, uint grain) {
+    const Scene& scene = stage_->scene();
+    Raster raster = by_pixel(software, [&](std::size_t i) {
+        const Rgb color = color_of(Layer::eyelight, scene, software.rays[i], software.hits[i], stage_->bounds());
+        return rgb_of_linear(vec3(0.25f) + linear_of(color) * 0.45f);
+    });
+    std::vector<std::size_t> unlike;
+    for (std::size_t i = 0; i < software.hits.size(); ++i)
+        if (!agree(software.hits[i], hardware.hits[i])) unlike.push_back(i);
+    disagreements_ = unlike.size() * grain * grain;
+    if (unlike.empty()) return raster;
+    const Reference& reference = stage_->reference();
+    std::vector<Rgb> colors(unlike.size());
+    parallel_for(unlike.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t i = unlike[k];
+            colors[k] = color_of_classes(reference.classify(software.rays[i], software.hits[i], TracedBy::software),
+                                         reference.classify(hardware.rays[i], hardware.hits[i], TracedBy::hardware));
+        }
+    });
+    for (std::size_t k = 0; k < unlike.size(); ++k) {
+        const auto x = static_cast<int>(unlike[k] % software.width), y = static_cast<int>(unlike[k] / software.width);
+        fill(raster, {x - 1, y - 1, 3, 3}, colors[k]);
+    }
+    return raster;
+}
+
+Values Viewer::steps_of(const Traced& traced) {
+    const reference::Scene& twin = stage_->twin();
+    Values values{.numbers = std::vector<double>(traced.rays.size()), .scale = {}, .what = "steps a ray"};
+    parallel_for(traced.rays.size(), [&](std::size_t begin, std::size_t end) {
+        reference::Scene::take_steps();
+        for (std::size_t i = begin; i < end; ++i) {
+            (void)twin.trace(traced.rays[i]);
+            const TraversalSteps steps = reference::Scene::take_steps();
+            values.numbers[i] = static_cast<double>(steps.nodes + steps.primitives);
+        }
+    });
+    values.scale = ValueScale::linear_for(values.numbers);
+    return values;
+}
+
+void Viewer::update_values() {
+    const std::optional<std::size_t> face = state_.layer == Layer::factors && pick_ ? pick_->face : std::nullopt;
+    const double hour = state_.layer == Layer::light ? state_.hour : 0;
+    const ValuesKey key{state_.layer, stage_->version(), face, hour};
+    if (values_of_ == key) return;
+    values_of_ = key;
+    values_ = {};
+    if (state_.layer == Layer::light) values_ = light_on(*stage_, hour, state_.orbit.up);
+    if (state_.layer == Layer::collisions) values_ = contacts_of(*stage_);
+    if (face) values_ = factors_from(*stage_, *face);
+    if (state_.layer == Layer::factors && !face) message_ = "click a face: view factors are those from it";
+}
+
+void Viewer::draw_over(FacePicture& picture) {
+    if (state_.tree_depth) {
+        const std::vector<Box> boxes = boxes_at(stage_->scene(), stage_->twin(), *state_.tree_depth);
+        tree_boxes_ = boxes.size();
+        draw_strokes(picture, strokes_of(boxes));
+    }
+    Raster& raster = picture.raster;
+    if (state_.shown == Shown::wipe) {
+        const auto x = static_cast<int>(std::lround(state_.wipe * static_cast<float>(raster.width)));
+        fill(raster, {x - 1, 0, 2, static_cast<int>(raster.height)}, ink);
+    }
+    if (pick_ && pick_->point)
+        draw_dots(picture,
+                  std::vector<Dot>{{.position = *pick_->point, .radius = 4, .color = pick_color, .behind = 0.5f}});
+}
+
+void Viewer::draw_legend(Raster& raster) const {
+    if (!values_.scale || raster.width < 200 || raster.height < 60) return;
+    constexpr int margin = 12, bar_width = 300, bar_height = 10;
+    const int top = static_cast<int>(raster.height) - margin - bar_height;
+    fill(raster, {margin - 6, top - text_height - 8, bar_width + 12, bar_height + text_height + 14}, paper);
+    for (int x = 0; x < bar_width; ++x) {
+        const double share = (x + 0.5) / bar_width;
+        const double value = values_.scale->is_logarithmic()
+                                 ? values_.scale->lo() * std::pow(values_.scale->hi() / values_.scale->lo(), share)
+                                 : values_.scale->lo() + (values_.scale->hi() - values_.scale->lo()) * share;
+        fill(raster, {margin + x, top, 1, bar_height}, values_.scale->color(value));
+    }
+    draw_text(raster, margin, top - text_height - 2, fitted(range_text(*values_.scale) + values_.what, bar_width));
+}
+
+std::vector<std::string> Viewer::figures() const {
+    std::vector<std::string> lines;
+    const MemoryUsage software = stage_->software_memory();
+    lines.push_back(context_.properties().name + ", " + context_.properties().driver);
+    lines.push_back(text(count_triangles(stage_->scene()), " triangles, ", stage_->scene().instances.size(),
+                         " instances; built in ", std::lround(1000 * stage_->build_seconds()), " ms"));
+    lines.push_back(text("software: ", software.geometries >> 10, " KiB geometries, ", software.scene >> 10,
+                         " KiB scene, ", software.instances >> 10, " KiB instances"));
+    if (const std::optional<MemoryUsage> hardware = stage_->hardware_memory())
+        lines.push_back(text("hardware: ", hardware->geometries >> 10, " KiB geometries, ", hardware->scene >> 10,
+                             " KiB scene, ", hardware->instances >> 10, " KiB instances"));
+    else
+        lines.push_back("hardware: none: " + stage_->why_no_hardware());
+    lines.push_back(text(state_.width, " x ", state_.height, ", ", std::lround(1000 * frame_seconds_), " ms a frame"));
+    if (state_.layer == Layer::path && samples() > 0)
+        lines.push_back(text(samples(), " samples a pixel, ",
+                             static_cast<double>(std::lround(1e-5 * path_rays_a_second())) / 10, " Mrays/s"));
+    if (state_.shown == Shown::difference) lines.push_back(text(disagreements_, " pixels where the two disagree"));
+    if (state_.tree_depth) lines.push_back(text("level ", *state_.tree_depth, ": ", tree_boxes_, " boxes"));
+    return lines;
+}
+
+uint Viewer::samples() const {
+    const auto& path = paths_.at(state_.shown == Shown::hardware ? 1 : 0);
+    return path ? path->samples() : 0;
+}
+
+double Viewer::path_rays_a_second() const {
+    const auto& path = paths_.at(state_.shown == Shown::hardware ? 1 : 0);
+    return path && path->seconds() > 0 ? static_cast<double>(path->rays()) / path->seconds() : 0;
+}
+
+}  // namespace twinray::viewer

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// What each key does: one table, which the program and its sheet of keys read.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "viewer/state.h"
+
+namespace twinray::viewer {
+
+enum class Action : std::uint8_t {
+    frame_all,
+    center_here,
+    front,
+    right,
+    top,
+    isometric,
+    orthographic,
+    layer,
+    flip_accelerators,
+    wipe,
+    difference,
+    tree_deeper,
+    tree_higher,
+    darker,
+    brighter,
+    play,
+    copy_camera,
+    copy_bookmark,
+    reload,
+    panel,
+    sheet,
+    screenshot,
+    quit,
+};
+
+struct Key {
+    std::string_view name;  // "F2", "Tab", "[": as events have it
+    Action action;
+    std::string_view what;          // for the sheet
+    Layer layer = Layer::eyelight;  // of Action::layer
+};
+std::span<const Key> all_keys();
+// Null: the key does nothing.
+const Key* find_key(std::string_view name);
+
+// What the state is that a key changes, for the sheet: "on", "sw", ...; empty where there is none.
+std::string state_of(const Key& key, const State& state);
+
+}  // namespace twinray::viewer

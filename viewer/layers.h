@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// From rays and their hits to colours.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "validation/picture/raster.h"
+#include "validation/picture/value_scale.h"
+#include "viewer/state.h"
+
+namespace twinray::viewer {
+
+inline constexpr Rgb background = {238, 240, 243};
+
+// The rays of a picture's pixels, row 0 on top, and what they hit.
+struct Traced {
+    uint width = 0, height = 0;
+    std::vector<Ray> rays;
+    std::vector<Hit> hits;
+};
+std::vector<Ray> rays_of(const Orbit& orbit, uint width, uint height);
+Ray ray_of_pixel(const Orbit& orbit, uint width, uint height, uvec2 pixel);
+
+// Numbers with colours and a legend: of faces (by instance, then by triangle), or of pixels.
+struct Values {
+    std::vector<double> numbers;  // NaN: there is none
+    std::optional<ValueScale> scale;
+    std::string what;  // "steps a ray"
+};
+
+// For layers of hits alone, from occlusion to depth, and eyelight.
+Rgb color_of(Layer layer, const Scene& scene, const Ray& ray, const Hit& hit, const Bounds& bounds);
+// A face's colour, lit from the camera.
+Rgb lit(const Scene& scene, const Ray& ray, const Hit& hit, Rgb color);
+
+// Of distinct numbers, told apart as far as three channels can.
+Rgb color_of_number(std::uint64_t number);
+
+// What two accelerators say of a ray: whether they name the same, bit for bit but for t, u and v.
+bool agree(const Hit& a, const Hit& b);
+
+// Each pixel of `coarse` as a square; the last of a row or column may be cut.
+Raster enlarged(const Raster& coarse, uint width, uint height, uint grain);
+
+}  // namespace twinray::viewer

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/path_picture.h"
+
+#include <cmath>
+
+#include "engine/core/parallel.h"
+#include "samples/path_tracer/camera.h"
+
+namespace twinray::viewer {
+namespace {
+
+constexpr uint most_samples = 1 << 20;
+
+}  // namespace
+
+PathPicture::PathPicture(Context& context, const Scene& scene)
+    : context_(context), lights_(path_tracer::collect_lights(scene)) {
+    if (!path_tracer::has_lamps(scene))
+        environment_ = std::make_unique<path_tracer::EnvironmentMap>(path_tracer::default_sky());
+    device_scene_ = std::make_unique<path_tracer::DeviceScene>(context, scene, lights_, environment_.get());
+}
+
+void PathPicture::look(const Orbit& orbit, uint width, uint height, const AbstractAccel& accel, std::uint64_t version) {
+    const View view{orbit, width, height, &accel, version};
+    if (renderer_ && view == view_) return;
+    const path_tracer::CameraRays camera =
+        path_tracer::camera_rays(camera_of(orbit), static_cast<float>(width) / static_cast<float>(height));
+    if (!renderer_ || view.width != view_.width || view.height != view_.height) {
+        path_tracer::RenderSettings settings{.width = width, .height = height, .samples = most_samples};
+        settings.camera = camera;
+        renderer_ = std::make_unique<path_tracer::Renderer>(context_, *device_scene_, settings);
+    }
+    renderer_->set_frame(camera, 1);
+    film_ = renderer_->make_film();
+    renderer_->start(film_);
+    samples_ = 0;
+    view_ = view;
+}
+
+void PathPicture::add_sample(AbstractAccel& accel) {
+    renderer_->add_block(accel, samples_);
+    ++samples_;
+    renderer_->read(film_);
+}
+
+double PathPicture::seconds() const { return renderer_ ? renderer_->stats().seconds : 0; }
+std::uint64_t PathPicture::rays() const {
+    return renderer_ ? renderer_->stats().path_rays + renderer_->stats().shadow_rays : 0;
+}
+
+Raster PathPicture::picture(float exposure) const {
+    const HdrImage mean = film_.mean();
+    Raster raster(mean.width, mean.height);
+    const float factor = std::exp2(exposure);
+    parallel_for(raster.pixels.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) raster.pixels[i] = rgb_of_linear(mean.rgb[i] * factor);
+    });
+    return raster;
+}
+
+}  // namespace twinray::viewer

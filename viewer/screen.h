@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// A Vulkan device that can show pictures in a window: made here, adopted by twinray's Context.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <twinray/context.h>
+
+#include "validation/picture/raster.h"
+
+struct GLFWwindow;
+
+namespace twinray::viewer {
+
+class Screen {
+  public:
+    // Throws Error where no device both runs twinray and shows pictures there.
+    Screen(GLFWwindow* window, const ContextDesc& desc);
+    ~Screen();
+    Screen(const Screen&) = delete;
+    Screen& operator=(const Screen&) = delete;
+
+    AdoptedDevice adopted() const;
+    std::uint64_t validation_messages() const { return message_count_; }
+
+    // Begins what draws over pictures: Dear ImGui for this device. After its context is there.
+    void start_overlay();
+    void end_overlay();  // before its context ends
+    // Shows the picture, enlarged to the window, and what ImGui has to draw. False: the window has no pixels now.
+    bool present(const Raster& picture);
+    void wait() const;
+
+  private:
+    struct Image {  // of the swapchain
+        VkImage image;
+        VkImageView view;
+        VkFramebuffer framebuffer;
+        VkSemaphore is_drawn;
+    };
+
+    void create_instance(const ContextDesc& desc);
+    void choose(const std::string& request);
+    void create_device(const ContextDesc& desc);
+    void create_commands();
+    void create_pass();
+    bool create_swapchain();
+    void destroy_swapchain();
+    void upload(const Raster& picture);
+    void destroy_picture();
+    void record(VkCommandBuffer commands, const Image& target, const Raster& picture);
+    std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
+    static VkBool32 VKAPI_PTR on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                         const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
+
+    GLFWwindow* window_;
+    Log log_;
+    std::uint64_t message_count_ = 0;
+    VkInstance instance_ = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    VkSurfaceKHR surface_ = VK_NULL_HANDLE;
+    VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+    std::uint32_t family_ = 0;
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkQueue queue_ = VK_NULL_HANDLE;
+    DeviceProperties enabled_;
+    VkCommandPool pool_ = VK_NULL_HANDLE;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+    VkFence is_done_ = VK_NULL_HANDLE;
+    VkSemaphore is_acquired_ = VK_NULL_HANDLE;
+    VkRenderPass pass_ = VK_NULL_HANDLE;
+    VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
+    VkFormat format_ = VK_FORMAT_B8G8R8A8_UNORM;
+    VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
+    VkExtent2D extent_{};
+    std::vector<Image> images_;
+    bool is_out_of_date_ = true, has_overlay_ = false;
+    VkBuffer staging_ = VK_NULL_HANDLE;  // the picture's pixels
+    VkDeviceMemory staging_memory_ = VK_NULL_HANDLE;
+    VkImage picture_ = VK_NULL_HANDLE;
+    VkDeviceMemory picture_memory_ = VK_NULL_HANDLE;
+    void* mapped_ = nullptr;
+    VkExtent2D picture_extent_{};
+};
+
+}  // namespace twinray::viewer

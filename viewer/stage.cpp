@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/stage.h"
+
+#include <chrono>
+
+#include "engine/core/error.h"
+#include "validation/suite/twin.h"
+
+namespace twinray::viewer {
+namespace {
+
+// What a level of the tree and its boxes are read from; kernels of hosts want no more.
+constexpr AccelOptions options{.level = Level::watertight};
+
+std::string lacking_for(const DeviceProperties& device) {
+    const std::vector<std::string> missing = missing_for_hardware(device);
+    return missing.empty() ? "" : missing.front();
+}
+
+// By mesh: push_scene makes one handle for each that has instances, in their order.
+std::vector<AccelHandle> by_mesh(const Scene& scene, const std::vector<AccelHandle>& handles) {
+    std::vector<AccelHandle> found(scene.meshes.size());
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i)
+        if (i == 0 || scene.instances[i].mesh != scene.instances[i - 1].mesh)
+            found[scene.instances[i].mesh] = handles[next++];
+    return found;
+}
+
+void move(AbstractAccel& accel, const Scene& scene, const std::vector<AccelHandle>& handles) {
+    std::vector<std::vector<Transform>> transforms(scene.meshes.size());
+    for (const Instance& instance : scene.instances) transforms[instance.mesh].push_back(instance.transform);
+    for (std::size_t mesh = 0; mesh < handles.size(); ++mesh)
+        if (handles[mesh] != AccelHandle{}) accel.update_transforms(handles[mesh], transforms[mesh]);
+    const std::vector<uint> meshes = deformed_meshes(*scene.rig);
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+        if (handles[meshes[i]] != AccelHandle{})
+            accel.update_vertices(handles[meshes[i]], scene.meshes[meshes[i]].positions);
+    accel.sync();
+}
+
+}  // namespace
+
+Stage::Stage(Context& context, const std::filesystem::path& file)
+    : context_(context), file_(file), scene_(load_scene(file)), software_(context, options) {
+    if (scene_.rig) show_hidden(scene_);
+    bounds_ = bounds_of(scene_);
+    why_no_hardware_ = lacking_for(context.properties());
+    if (why_no_hardware_.empty()) hardware_ = std::make_unique<HwTlas>(context, BuildOrder::automatic, options);
+    const auto start = std::chrono::steady_clock::now();
+    push();
+    build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Stage::push() {
+    software_handles_ = by_mesh(scene_, push_scene(software_, scene_));
+    software_.sync();
+    if (hardware_) {
+        hardware_handles_ = by_mesh(scene_, push_scene(*hardware_, scene_));
+        hardware_->sync();
+    }
+    context_.wait_for_gpu();
+}
+
+double Stage::animation_seconds() const {
+    if (!scene_.rig) return 0;
+    const std::vector<AnimationInfo> animations = animations_of(*scene_.rig);
+    return animations.empty() || !animations[0].fault.empty() ? 0 : animations[0].range.end;
+}
+
+void Stage::set_time(double seconds) {
+    if (animation_seconds() == 0 || seconds == time_) return;
+    const Pose pose = pose_at(*scene_.rig, 0, seconds);
+    pose_scene(scene_, pose);
+    const std::vector<uint> meshes = deformed_meshes(*scene_.rig);
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        MeshVertices moved = deformed(*scene_.rig, i, pose);
+        scene_.meshes[meshes[i]].positions = std::move(moved.positions);
+        scene_.meshes[meshes[i]].normals = std::move(moved.normals);
+    }
+    move(software_, scene_, software_handles_);
+    if (hardware_) move(*hardware_, scene_, hardware_handles_);
+    time_ = seconds;
+    ++version_;
+    reference_.reset();
+    twin_.reset();
+    faces_.reset();
+}
+
+const Reference& Stage::reference() {
+    if (!reference_) reference_ = std::make_unique<Reference>(scene_);
+    return *reference_;
+}
+
+const reference::Scene& Stage::twin() {
+    if (!twin_) twin_ = suite::twin_of(scene_, options);
+    return *twin_;
+}
+
+const Faces& Stage::faces() {
+    if (!faces_) faces_ = std::make_unique<Faces>(software_);
+    return *faces_;
+}
+
+}  // namespace twinray::viewer

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// A scene on both accelerators, and what is made of it only when it is asked for.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <twinray/analysis.h>
+#include <twinray/tlas.h>
+#include <twinray/validation.h>
+
+#include "validation/cpu_reference/reference_scene.h"
+
+namespace twinray::viewer {
+
+class Stage {
+  public:
+    // Throws Error as load_scene() does.
+    Stage(Context& context, const std::filesystem::path& file);
+
+    const std::filesystem::path& file() const { return file_; }
+    const Scene& scene() const { return scene_; }
+    const Bounds& bounds() const { return bounds_; }
+    SwTlas& software() { return software_; }
+    HwTlas* hardware() { return hardware_.get(); }                           // null: see the next
+    const std::string& why_no_hardware() const { return why_no_hardware_; }  // "" where there is one
+    Context& context() const { return context_; }
+    MemoryUsage software_memory() const { return software_.memory_usage(); }
+    std::optional<MemoryUsage> hardware_memory() const {
+        return hardware_ ? std::optional(hardware_->memory_usage()) : std::nullopt;
+    }
+    double build_seconds() const { return build_seconds_; }  // of both, with uploads
+
+    // Whether an animation moves it, and how long the first one lasts.
+    double animation_seconds() const;
+    // Poses the scene; both accelerators follow.
+    void set_time(double seconds);
+    // Counts what set_time() has changed.
+    std::uint64_t version() const { return version_; }
+
+    const Reference& reference();
+    const reference::Scene& twin();  // the software accelerator on the host
+    const Faces& faces();
+
+  private:
+    void push();
+
+    Context& context_;
+    std::filesystem::path file_;
+    Scene scene_;
+    Bounds bounds_;
+    SwTlas software_;
+    std::unique_ptr<HwTlas> hardware_;
+    std::string why_no_hardware_;
+    std::vector<AccelHandle> software_handles_, hardware_handles_;  // by mesh with instances
+    double build_seconds_ = 0;
+    double time_ = 0;
+    std::uint64_t version_ = 0;
+    std::unique_ptr<Reference> reference_;
+    std::unique_ptr<reference::Scene> twin_;
+    std::unique_ptr<Faces> faces_;
+};
+
+}  // namespace twinray::viewer

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// What a window shows, as data: every state of it is a command line.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "viewer/orbit.h"
+
+namespace twinray::viewer {
+
+// What the colour of a pixel tells.
+enum class Layer : std::uint8_t {
+    path,        // the picture, path traced
+    eyelight,    // base colours, lit from the camera
+    occlusion,   // whether there is a hit
+    uv,          // barycentric coordinates
+    normal,      // of the triangle, geometric
+    geometry,    // a colour for each mesh
+    primitive,   // a colour for each triangle of each instance
+    depth,       // t
+    steps,       // nodes, boxes and triangles that the ray asks for
+    light,       // what the sun brings to each face (illumination)
+    factors,     // view factors from the face that was picked
+    collisions,  // triangles that touch or cross others, by class
+};
+inline constexpr std::array all_layers = {Layer::path,   Layer::eyelight, Layer::occlusion, Layer::uv,
+                                          Layer::normal, Layer::geometry, Layer::primitive, Layer::depth,
+                                          Layer::steps,  Layer::light,    Layer::factors,   Layer::collisions};
+std::string_view name_of(Layer layer);
+
+// Whose hits.
+enum class Shown : std::uint8_t {
+    software,
+    hardware,
+    wipe,        // software on the left, hardware on the right
+    difference,  // where the two disagree, and who is right by the float64 reference
+};
+inline constexpr std::array all_shown = {Shown::software, Shown::hardware, Shown::wipe, Shown::difference};
+std::string_view name_of(Shown shown);
+
+struct State {
+    Orbit orbit;
+    Layer layer = Layer::eyelight;
+    Shown shown = Shown::software;
+    float wipe = 0.5f;                // where the wipe is, of the width
+    std::optional<int> tree_depth;    // boxes of that level of the software tree are drawn; 0: the root
+    uint width = 1280, height = 720;  // pixels
+    std::optional<uvec2> picked;      // a pixel
+    double seconds = 0;               // of the animation
+    double hour = 12;                 // of the day, for Layer::light
+    float exposure = 0;               // in stops, of Layer::path
+
+    bool operator==(const State&) const = default;
+};
+
+// "--layer steps --show wipe ...": the options of `twinray view` that show the same; those at their defaults are left
+// out.
+std::string options_of(const State& state, const dvec3& origin);
+
+}  // namespace twinray::viewer

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/tree_lines.h"
+
+#include <twinray/scene.h>
+
+namespace twinray::viewer {
+namespace {
+#include "twinray/glsl/cpp_begin.h"
+#include "shaders/shared/node_boxes.h"
+#include "twinray/glsl/cpp_end.h"
+
+constexpr Rgb scene_color = {0, 114, 178}, geometry_color = {213, 94, 0};
+
+class Collector {
+  public:
+    Collector(const Scene& scene, const reference::Scene& twin, std::size_t most)
+        : scene_(scene), twin_(twin), most_(most) {}
+
+    void scene_level(int depth) {
+        const SwGeometry tree = twin_.scene_nodes();
+        if (tree.bvh.leaf_count == 0) return;
+        if (depth == 0 && tree.bvh.leaf_count > 1) return add(world_box(tree.bvh.lo, tree.bvh.hi), true);
+        if (tree.bvh.leaf_count == 1) return instance(0, depth);
+        descend(tree, tree.bvh.root, depth, nullptr, 1);
+    }
+    std::vector<Box> take() { return std::move(boxes_); }
+
+  private:
+    void add(const Bounds& box, bool is_of_instances) {
+        if (boxes_.size() < most_) boxes_.push_back({dvec3(box.lo), dvec3(box.hi), is_of_instances});
+    }
+    static Bounds world_box(vec3 lo, vec3 hi) {
+        Bounds box;
+        box.lo = lo, box.hi = hi;
+        return box;
+    }
+
+    // The tree of an instance, whose root is at depth 0.
+    void instance(std::size_t index, int depth) {
+        const SwGeometry tree = twin_.geometry_nodes(index);
+        const Transform& to_world = scene_.instances[index].transform;
+        const float scale = twin_.geometry_tree(index).scale;
+        if (tree.bvh.leaf_count == 0) return;
+        if (depth <= 0 || tree.bvh.leaf_count == 1) return add(moved(to_world, tree.bvh.lo, tree.bvh.hi, scale), false);
+        descend(tree, tree.bvh.root, depth, &to_world, scale);
+    }
+
+    static Bounds moved(const Transform& to_world, vec3 lo, vec3 hi, float scale) {
+        Bounds box;
+        for (unsigned corner = 0; corner < 8; ++corner)
+            box.include(
+                transform_point(to_world, vec3((corner & 1u ? hi : lo).x * scale, (corner & 2u ? hi : lo).y * scale,
+                                               (corner & 4u ? hi : lo).z * scale)));
+        return box;
+    }
+
+    // to_world: null for the scene's level, whose leaves are instances.
+    void descend(const SwGeometry& tree, uint node, int depth, const Transform* to_world, float scale) {
+        if (boxes_.size() >= most_) return;
+        const AnyNode here = node_of(tree, node);
+        for (uint slot = 0; slot < slots_of(tree); ++slot) {
+            if (!has_child(here.slots, slot)) continue;
+            const uint child = child_in(tree, here, slot);
+            const LeafBox box = box_in(tree, here, slot);
+            if (is_inner_child(tree, child) && depth > 1) {
+                descend(tree, child, depth - 1, to_world, scale);
+            } else if (!to_world && !is_inner_child(tree, child) && depth > 1) {
+                instance(index_in(load_record(tree.records, child)), depth - 2);
+            } else {
+                add(to_world ? moved(*to_world, box.lo, box.hi, scale) : world_box(box.lo, box.hi), !to_world);
+            }
+        }
+    }
+
+    const Scene& scene_;
+    const reference::Scene& twin_;
+    std::size_t most_;
+    std::vector<Box> boxes_;
+};
+
+}  // namespace
+
+std::vector<Box> boxes_at(const Scene& scene, const reference::Scene& twin, int depth, std::size_t most) {
+    Collector collector(scene, twin, most);
+    collector.scene_level(depth);
+    return collector.take();
+}
+
+std::vector<Stroke> strokes_of(const std::vector<Box>& boxes) {
+    std::vector<Stroke> strokes;
+    for (const Box& box : boxes) {
+        const auto corner = [&](unsigned i) {
+            return dvec3(i & 1u ? box.hi.x : box.lo.x, i & 2u ? box.hi.y : box.lo.y, i & 4u ? box.hi.z : box.lo.z);
+        };
+        for (unsigned i = 0; i < 8; ++i)
+            for (unsigned axis = 1; axis < 8; axis *= 2)
+                if ((i & axis) == 0)
+                    strokes.push_back({.from = corner(i),
+                                       .to = corner(i | axis),
+                                       .radius = 0.5f,
+                                       .color = box.is_of_instances ? scene_color : geometry_color,
+                                       .behind = 0.15f});
+    }
+    return strokes;
+}
+
+}  // namespace twinray::viewer

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// The boxes of a tree, level by level, as lines.
+#pragma once
+
+#include <vector>
+
+#include "validation/cpu_reference/reference_scene.h"
+#include "validation/picture/marks.h"
+
+namespace twinray::viewer {
+
+struct Box {
+    dvec3 lo, hi;
+    bool is_of_instances;  // of the scene's level; else of a geometry, under its instance's transform
+};
+
+// Boxes `depth` steps below the root, in world space; those of leaves that end before stay. Below the scene's level go
+// on the trees of the instances. At most so many boxes; the rest is left out.
+std::vector<Box> boxes_at(const Scene& scene, const reference::Scene& twin, int depth, std::size_t most = 20000);
+
+// The twelve edges of each box.
+std::vector<Stroke> strokes_of(const std::vector<Box>& boxes);
+
+}  // namespace twinray::viewer

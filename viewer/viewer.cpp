@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/viewer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/core/error.h"
+#include "twinray/glsl/vector_math.h"
+
+namespace twinray::viewer {
+namespace {
+
+constexpr double dolly_a_step = 1.15;
+constexpr double flight_a_frame = 0.03;  // of the distance
+constexpr double least_drag = 3;         // pixels; less is a click
+constexpr uint least_side = 1, most_side = 16384;
+
+double aspect_of(const State& state) { return static_cast<double>(state.width) / state.height; }
+
+}  // namespace
+
+Viewer::Viewer(Context& context, const ViewerDesc& desc)
+    : context_(context), say_(desc.say), version_(desc.version), state_(desc.state) {
+    open(desc.file);
+    const Orbit asked = state_.orbit;
+    if (desc.camera) {
+        const dvec3 origin = stage_->scene().origin;
+        state_.orbit = looking((*desc.camera)[0] - origin, (*desc.camera)[1] - origin, asked.up, asked.vertical_fov);
+    } else if (!stage_->scene().cameras.empty()) {
+        state_.orbit = orbit_of(stage_->scene().cameras[0], stage_->bounds(), asked.up);
+    } else {
+        look_at_all();
+    }
+    if (asked.is_orthographic) state_.orbit.is_orthographic = true;
+    shown_ = state_;
+    if (state_.picked) pick_at(state_.picked->x, state_.picked->y);
+}
+
+void Viewer::look_at_all() {
+    const std::optional<vec3> direction =
+        state_.orbit.up == UpAxis::z ? std::optional(vec3(-0.55f, 0.75f, -0.45f)) : std::nullopt;
+    const Camera camera = frame_scene(stage_->scene(), static_cast<float>(aspect_of(state_)), direction);
+    state_.orbit = orbit_of(camera, stage_->bounds(), state_.orbit.up);
+}
+
+// Leaves all as it was if the file cannot be shown.
+void Viewer::open(const std::filesystem::path& file) {
+    auto opened = std::make_unique<Stage>(context_, file);
+    paths_ = {};
+    pick_.reset();
+    values_of_.reset();
+    stage_ = std::move(opened);
+    is_stale_ = true;
+}
+
+void Viewer::set_state(const State& state) {
+    state_ = state;
+    state_.width = std::clamp(state_.width, least_side, most_side);
+    state_.height = std::clamp(state_.height, least_side, most_side);
+}
+
+std::string Viewer::command_line() const {
+    return "twinray view " + stage_->file().string() + ' ' + options_of(state_, stage_->scene().origin);
+}
+
+void Viewer::handle(const Event& event) {
+    if (const auto* down = std::get_if<KeyDown>(&event)) {
+        const bool flies = button_ == Button::right && (down->key == "W" || down->key == "A" || down->key == "S" ||
+                                                        down->key == "D" || down->key == "Q" || down->key == "E");
+        if (flies)
+            held_.push_back(down->key);
+        else if (const Key* key = find_key(down->key))
+            press(*key);
+    } else if (const auto* up = std::get_if<KeyUp>(&event)) {
+        std::erase(held_, up->key);
+    } else if (const auto* button = std::get_if<ButtonDown>(&event)) {
+        button_ = button->button;
+        has_shift_ = button->has_shift;
+        has_dragged_ = false;
+        x_ = button->x, y_ = button->y;
+    } else if (std::get_if<ButtonUp>(&event)) {
+        if (button_ == Button::left && !has_dragged_) pick_at(x_, y_);
+        button_.reset();
+        held_.clear();
+    } else if (const auto* moved = std::get_if<Moved>(&event)) {
+        drag(moved->x, moved->y);
+    } else if (const auto* click = std::get_if<DoubleClick>(&event)) {
+        center_at(click->x, click->y);
+    } else if (const auto* scrolled = std::get_if<Scrolled>(&event)) {
+        state_.orbit = dollied(state_.orbit, std::pow(dolly_a_step, scrolled->steps));
+    } else if (const auto* resized = std::get_if<Resized>(&event)) {
+        if (resized->width == 0 || resized->height == 0) return;  // minimised: the last picture stays
+        State state = state_;
+        state.width = resized->width, state.height = resized->height;
+        set_state(state);
+    } else if (const auto* dropped = std::get_if<Dropped>(&event)) {
+        try {
+            open(dropped->file);
+            look_at_all();
+            message_ = "shows " + dropped->file.string();
+        } catch (const Error& error) {
+            message_ = error.what();
+        }
+    } else if (std::get_if<Closed>(&event)) {
+        is_closed_ = true;
+    }
+}
+
+void Viewer::drag(double x, double y) {
+    const double dx = x - x_, dy = y_ - y;
+    if (!button_) {
+        x_ = x, y_ = y;
+        return;
+    }
+    if (!has_dragged_ && std::hypot(dx, dy) < least_drag) return;
+    has_dragged_ = true;
+    x_ = x, y_ = y;
+    const double right = dx / state_.height, up = dy / state_.height;
+    if (*button_ == Button::middle || (*button_ == Button::left && has_shift_))
+        state_.orbit = panned(state_.orbit, right, up);
+    else
+        state_.orbit = turned(state_.orbit, right, up);
+}
+
+void Viewer::fly() {
+    for (const std::string& key : held_) {
+        const double right = key == "D" ? 1 : key == "A" ? -1 : 0;
+        const double up = key == "E" ? 1 : key == "Q" ? -1 : 0;
+        const double forward = key == "W" ? 1 : key == "S" ? -1 : 0;
+        state_.orbit = flown(state_.orbit, right * flight_a_frame, up * flight_a_frame, forward * flight_a_frame);
+    }
+}
+
+void Viewer::pick_at(double x, double y) {
+    const uvec2 pixel(static_cast<uint>(std::clamp(x, 0.0, state_.width - 1.0)),
+                      static_cast<uint>(std::clamp(y, 0.0, state_.height - 1.0)));
+    stage_->set_time(state_.seconds);
+    pick_ = pick(*stage_, ray_of_pixel(state_.orbit, state_.width, state_.height, pixel));
+    explanation_.clear();
+    state_.picked = pixel;
+    is_stale_ = true;
+}
+
+const std::string& Viewer::explanation() {
+    if (explanation_.empty() && pick_) explanation_ = explanation_of(*stage_, *pick_);
+    return explanation_;
+}
+
+void Viewer::center_at(double x, double y) {
+    const uvec2 pixel(static_cast<uint>(std::clamp(x, 0.0, state_.width - 1.0)),
+                      static_cast<uint>(std::clamp(y, 0.0, state_.height - 1.0)));
+    const Ray ray = ray_of_pixel(state_.orbit, state_.width, state_.height, pixel);
+    const Hit hit = stage_->software().closest_hits(std::span(&ray, 1))[0];
+    if (hit.hit) state_.orbit = centered(state_.orbit, dvec3(ray.origin) + dvec3(ray.direction) * double(hit.t));
+}
+
+void Viewer::press(const Key& key) {
+    const auto toggle = [&](Shown shown) { state_.shown = state_.shown == shown ? Shown::software : shown; };
+    message_.clear();
+    switch (key.action) {
+        case Action::frame_all: state_.orbit = framed(state_.orbit, stage_->bounds(), aspect_of(state_)); break;
+        case Action::center_here: center_at(x_, y_); break;
+        case Action::front: state_.orbit = seen_from(state_.orbit, Side::front); break;
+        case Action::right: state_.orbit = seen_from(state_.orbit, Side::right); break;
+        case Action::top: state_.orbit = seen_from(state_.orbit, Side::top); break;
+        case Action::isometric: state_.orbit = seen_from(state_.orbit, Side::isometric); break;
+        case Action::orthographic: state_.orbit.is_orthographic = !state_.orbit.is_orthographic; break;
+        case Action::layer: state_.layer = key.layer; break;
+        case Action::flip_accelerators:
+            state_.shown = state_.shown == Shown::software ? Shown::hardware : Shown::software;
+            break;
+        case Action::wipe: toggle(Shown::wipe); break;
+        case Action::difference: toggle(Shown::difference); break;
+        case Action::tree_deeper: state_.tree_depth = state_.tree_depth.value_or(-1) + 1; break;
+        case Action::tree_higher:
+            if (state_.tree_depth.value_or(0) == 0)
+                state_.tree_depth.reset();
+            else
+                --*state_.tree_depth;
+            break;
+        case Action::darker:
+        case Action::brighter: {
+            const double step = key.action == Action::brighter ? 1 : -1;
+            if (state_.layer == Layer::light)
+                state_.hour = std::clamp(state_.hour + step, 6.0, 18.0);
+            else
+                state_.exposure += static_cast<float>(step);
+            break;
+        }
+        case Action::play: is_playing_ = !is_playing_ && stage_->animation_seconds() > 0; break;
+        case Action::copy_camera: say_(options_of(state_.orbit, stage_->scene().origin)); break;
+        case Action::copy_bookmark:
+            if (pick_ && (is_fault_of_hardware(pick_->hardware_class) || is_fault_of_ours(pick_->software_class))) {
+                replay::write("view.replay.json", replay_of(*stage_, *pick_, version_));
+                say_("twinray verify --replay view.replay.json");
+            }
+            say_(command_line());
+            break;
+        case Action::reload:
+            try {
+                open(stage_->file());
+                message_ = "read again";
+            } catch (const Error& error) {
+                message_ = error.what();
+            }
+            break;
+        case Action::panel: shows_panel_ = !shows_panel_; break;
+        case Action::sheet: shows_sheet_ = !shows_sheet_; break;
+        case Action::screenshot:
+            write_png("view.png", raster_.width, raster_.height, raster_.pixels);
+            message_ = "wrote view.png";
+            break;
+        case Action::quit: is_closed_ = true; break;
+    }
+    if (state_.shown != Shown::software && !stage_->hardware()) {
+        message_ = "only the software accelerator: " + stage_->why_no_hardware();
+        state_.shown = Shown::software;
+    }
+}
+
+}  // namespace twinray::viewer

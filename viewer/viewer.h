@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// The viewer without its window: events in, frames out. What it shows is its State; the window only brings events and
+// shows frames, so that every state can be made, and tested, without a display.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "validation/picture/face_picture.h"
+#include "viewer/events.h"
+#include "viewer/keys.h"
+#include "viewer/layers.h"
+#include "viewer/path_picture.h"
+#include "viewer/pick.h"
+#include "viewer/stage.h"
+
+namespace twinray::viewer {
+
+struct ViewerDesc {
+    std::filesystem::path file;
+    State state;
+    // Where the camera stands and what it looks at, in the file's coordinates; none: as the scene's first camera, or so
+    // that all is seen. The rest is state.orbit's.
+    std::optional<std::array<dvec3, 2>> camera;
+    std::function<void(const std::string&)> say;  // what keys tell, as the camera's options
+    std::string version;                          // of twinray
+};
+
+class Viewer {
+  public:
+    // Throws Error as load_scene() does.
+    Viewer(Context& context, const ViewerDesc& desc);
+
+    void handle(const Event& event);
+    // The next frame: coarse while the camera moves, then whole, then better and better.
+    const Raster& frame(bool may_be_coarse);
+    const Raster& last() const { return raster_; }
+    // Whether another frame would be better than the last.
+    bool is_refining() const;
+    bool is_closed() const { return is_closed_; }
+
+    const State& state() const { return state_; }
+    void set_state(const State& state);
+    Stage& stage() { return *stage_; }
+    const std::optional<Pick>& picked() const { return pick_; }
+    const std::string& explanation();  // of the picked ray; made when it is asked for
+    // Lines about device, trees, times and what is shown.
+    std::vector<std::string> figures() const;
+    // What colours of values mean; empty: they are none.
+    const Values& values() const { return values_; }
+    // A sentence for the user, of what just happened; empty: nothing did.
+    const std::string& message() const { return message_; }
+    bool shows_panel() const { return shows_panel_; }
+    bool shows_sheet() const { return shows_sheet_; }
+    double frame_seconds() const { return frame_seconds_; }
+    uint samples() const;  // a pixel, of Layer::path
+    double path_rays_a_second() const;
+    std::uint64_t disagreements() const { return disagreements_; }  // pixels, of Shown::difference
+
+  private:
+    void open(const std::filesystem::path& file);
+    void look_at_all();
+    void press(const Key& key);
+    void drag(double x, double y);
+    void fly();
+    void pick_at(double x, double y);
+    void center_at(double x, double y);
+    std::string command_line() const;
+
+    AbstractAccel& accel_of(Shown shown);
+    FacePicture drawn(uint grain, bool is_moving);
+    Raster shaded(Shown shown, const Traced& traced, bool is_moving);
+    Raster difference(const Traced& software, const Traced& hardware, uint grain);
+    void update_values();
+    Values steps_of(const Traced& traced);
+    void draw_over(FacePicture& picture);
+    void draw_legend(Raster& raster) const;
+
+    Context& context_;
+    std::function<void(const std::string&)> say_;
+    std::string version_;
+    State state_;
+    std::unique_ptr<Stage> stage_;
+    std::array<std::unique_ptr<PathPicture>, 2> paths_;  // by Shown::software, hardware
+    std::optional<Pick> pick_;
+    std::string explanation_;
+    struct ValuesKey {
+        Layer layer;
+        std::uint64_t version;
+        std::optional<std::size_t> face;
+        double hour;
+        bool operator==(const ValuesKey&) const = default;
+    };
+    Values values_;
+    std::optional<ValuesKey> values_of_;  // what values_ were computed for
+    std::uint64_t disagreements_ = 0;
+    std::size_t tree_boxes_ = 0;
+    Raster raster_{1, 1};
+    State shown_;            // what raster_ shows
+    bool is_coarse_ = true;  // raster_ is
+    bool is_stale_ = true;
+    uint grain_ = 1;  // pixels of a coarse frame, along each side
+    double frame_seconds_ = 0;
+    std::string message_;
+    bool shows_panel_ = true, shows_sheet_ = false, is_closed_ = false, is_playing_ = false;
+    std::optional<Button> button_;
+    bool has_shift_ = false, has_dragged_ = false;
+    double x_ = 0, y_ = 0;
+    std::vector<std::string> held_;  // keys, while the right button is down
+};
+
+}  // namespace twinray::viewer

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_vulkan.h>
+
+#include "viewer/window.h"
+
+#include <chrono>
+#include <deque>
+#include <fstream>
+#include <iostream>
+
+#include "engine/core/error.h"
+#include "viewer/panels.h"
+#include "viewer/screen.h"
+
+namespace twinray::viewer {
+namespace {
+
+constexpr double double_click_seconds = 0.35;
+constexpr double idle_seconds = 0.25;  // between looks at a picture that gets no better
+
+std::string name_of_key(int key) {
+    switch (key) {
+        case GLFW_KEY_HOME: return "Home";
+        case GLFW_KEY_TAB: return "Tab";
+        case GLFW_KEY_SPACE: return "Space";
+        case GLFW_KEY_ESCAPE: return "Escape";
+        case GLFW_KEY_LEFT_BRACKET: return "[";
+        case GLFW_KEY_RIGHT_BRACKET: return "]";
+        case GLFW_KEY_MINUS: return "-";
+        case GLFW_KEY_EQUAL: return "=";
+        default: break;
+    }
+    if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12) return "F" + std::to_string(key - GLFW_KEY_F1 + 1);
+    if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9)
+        return std::string(1, static_cast<char>('0' + key - GLFW_KEY_KP_0));
+    if ((key >= GLFW_KEY_A && key <= GLFW_KEY_Z) || (key >= GLFW_KEY_0 && key <= GLFW_KEY_9))
+        return std::string(1, static_cast<char>(key));
+    return {};
+}
+
+Button button_of(int button) {
+    return button == GLFW_MOUSE_BUTTON_LEFT    ? Button::left
+           : button == GLFW_MOUSE_BUTTON_RIGHT ? Button::right
+                                               : Button::middle;
+}
+
+// GLFW as an object: what it calls back becomes events.
+class Glfw {
+  public:
+    Glfw(unsigned width, unsigned height) {
+        if (!glfwInit()) fail("window: there is no display (--screenshot and --headless need none): ", reason());
+        glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+        window_ = glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), "twinray", nullptr, nullptr);
+        if (!window_) {
+            const std::string why = reason();
+            glfwTerminate();
+            fail("window: cannot be opened: ", why);
+        }
+        glfwSetWindowUserPointer(window_, this);
+        glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) { of(w).on_key(key, action); });
+        glfwSetMouseButtonCallback(
+            window_, [](GLFWwindow* w, int button, int action, int mods) { of(w).on_button(button, action, mods); });
+        glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) { of(w).on_move(x, y); });
+        glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) {
+            if (!ImGui::GetIO().WantCaptureMouse) of(w).events.push_back(Scrolled{y});
+        });
+        glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int x, int y) {
+            of(w).events.push_back(Resized{static_cast<unsigned>(x), static_cast<unsigned>(y)});
+        });
+        glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** files) {
+            if (count > 0) of(w).events.push_back(Dropped{files[0]});
+        });
+    }
+    ~Glfw() {
+        glfwDestroyWindow(window_);
+        glfwTerminate();
+    }
+    Glfw(const Glfw&) = delete;
+    Glfw& operator=(const Glfw&) = delete;
+
+    GLFWwindow* window() const { return window_; }
+    std::deque<Event> events;
+
+  private:
+    static Glfw& of(GLFWwindow* window) { return *static_cast<Glfw*>(glfwGetWindowUserPointer(window)); }
+    static std::string reason() {
+        const char* why = nullptr;
+        glfwGetError(&why);
+        return why ? why : "unknown";
+    }
+    void on_key(int key, int action) {
+        if (action == GLFW_REPEAT || ImGui::GetIO().WantTextInput) return;
+        const std::string name = name_of_key(key);
+        if (name.empty()) return;
+        if (action == GLFW_PRESS)
+            events.push_back(KeyDown{name});
+        else
+            events.push_back(KeyUp{name});
+    }
+    void on_button(int button, int action, int mods) {
+        if (action == GLFW_PRESS && ImGui::GetIO().WantCaptureMouse) return;
+        if (action == GLFW_RELEASE) return events.push_back(ButtonUp{button_of(button)});
+        const double now = glfwGetTime();
+        if (button == GLFW_MOUSE_BUTTON_LEFT && now - clicked_ < double_click_seconds)
+            events.push_back(DoubleClick{x_, y_});
+        clicked_ = button == GLFW_MOUSE_BUTTON_LEFT ? now : -1;
+        events.push_back(ButtonDown{button_of(button), x_, y_, (mods & GLFW_MOD_SHIFT) != 0});
+    }
+    // In pixels, which are more than the system's units on some screens.
+    void on_move(double x, double y) {
+        int units_x = 1, units_y = 1, pixels_x = 1, pixels_y = 1;
+        glfwGetWindowSize(window_, &units_x, &units_y);
+        glfwGetFramebufferSize(window_, &pixels_x, &pixels_y);
+        x_ = units_x > 0 ? x * pixels_x / units_x : x;
+        y_ = units_y > 0 ? y * pixels_y / units_y : y;
+        events.push_back(Moved{x_, y_});
+    }
+
+    GLFWwindow* window_ = nullptr;
+    double x_ = 0, y_ = 0, clicked_ = -1;
+};
+
+struct Overlay {
+    Overlay(GLFWwindow* window, Screen& screen) : screen_(screen) {
+        ImGui::CreateContext();
+        ImGui::GetIO().IniFilename = nullptr;
+        ImGui_ImplGlfw_InitForVulkan(window, true);
+        screen.start_overlay();
+    }
+    ~Overlay() {
+        screen_.end_overlay();
+        ImGui_ImplGlfw_Shutdown();
+        ImGui::DestroyContext();
+    }
+    Overlay(const Overlay&) = delete;
+    Overlay& operator=(const Overlay&) = delete;
+
+    static void draw(Viewer& viewer) {
+        ImGui_ImplVulkan_NewFrame();
+        ImGui_ImplGlfw_NewFrame();
+        ImGui::NewFrame();
+        draw_panels(viewer);
+        ImGui::Render();
+    }
+
+  private:
+    Screen& screen_;
+};
+
+}  // namespace
+
+int run_window(const WindowDesc& desc) {
+    std::deque<Event> played;
+    if (!desc.play.empty())
+        for (Event& event : read_events(desc.play)) played.push_back(std::move(event));
+    std::ofstream record;
+    if (!desc.record.empty()) record.open(desc.record);
+    Glfw glfw(desc.viewer.state.width, desc.viewer.state.height);
+    Screen screen(glfw.window(), desc.context);
+    Context context(screen.adopted());
+    ViewerDesc viewer_desc = desc.viewer;
+    viewer_desc.say = [&](const std::string& line) {
+        desc.viewer.say(line);
+        glfwSetClipboardString(glfw.window(), line.c_str());
+    };
+    Viewer viewer(context, viewer_desc);
+    const Overlay overlay(glfw.window(), screen);
+    unsigned frames_to_pass = 0;
+    while (!viewer.is_closed() && !glfwWindowShouldClose(glfw.window())) {
+        if (viewer.is_refining() || !played.empty() || frames_to_pass > 0)
+            glfwPollEvents();
+        else
+            glfwWaitEventsTimeout(idle_seconds);
+        for (; !glfw.events.empty(); glfw.events.pop_front()) {
+            if (record) record << text_of(glfw.events.front()) << std::endl;
+            viewer.handle(glfw.events.front());
+        }
+        if (frames_to_pass > 0) --frames_to_pass;
+        while (frames_to_pass == 0 && !played.empty()) {
+            const Event event = std::move(played.front());
+            played.pop_front();
+            if (const auto* frames = std::get_if<Frames>(&event))
+                frames_to_pass = frames->count;
+            else if (const auto* shot = std::get_if<Shot>(&event))
+                write_png(shot->file, viewer.last().width, viewer.last().height, viewer.last().pixels);
+            else
+                viewer.handle(event);
+        }
+        const Raster& picture = viewer.frame(true);
+        Overlay::draw(viewer);
+        screen.present(picture);
+    }
+    screen.wait();
+    if (screen.validation_messages() > 0) std::cerr << screen.validation_messages() << " validation messages\n";
+    return screen.validation_messages() == 0 ? 0 : 1;
+}
+
+}  // namespace twinray::viewer

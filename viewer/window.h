@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// The window of a Viewer.
+#pragma once
+
+#include "viewer/viewer.h"
+
+namespace twinray::viewer {
+
+struct WindowDesc {
+    ContextDesc context;  // name, device and log of it
+    ViewerDesc viewer;
+    std::filesystem::path play, record;  // events; empty: none
+};
+// Until it is closed; returns the exit status. Throws Error where there is no display, and where twinray was built
+// without GLFW or Dear ImGui.
+int run_window(const WindowDesc& desc);
+
+}  // namespace twinray::viewer
