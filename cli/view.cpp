@@ -11,6 +11,7 @@
 #include "cli/common.h"
 #include "engine/core/error.h"
 #include "twinray_version.h"
+#include "viewer/export.h"
 #include "viewer/viewer.h"
 #include "viewer/window.h"
 
@@ -22,7 +23,7 @@ using viewer::Shown;
 
 struct ViewOptions {
     CommonOptions common;
-    std::filesystem::path scene, screenshot, reference, play, record, folder;
+    std::filesystem::path scene, screenshot, exported, reference, play, record, folder;
     viewer::State state;
     std::vector<double> camera, up = {0, 1, 0};
     std::vector<uint> size = {1280, 720}, pick;
@@ -138,6 +139,7 @@ int run_without_window(viewer::Viewer& view, const ViewOptions& options, const n
     nlohmann::json record = record_of(view, base, seconds_since(start), options.headless);
     if (!options.play.empty()) record["frame_seconds"] = frames;
     append_json(options.common.json, record);
+    if (!options.exported.empty()) viewer::write_values(options.exported, view.stage().scene(), view.values());
     if (!options.reference.empty()) {
         const double difference = difference_of(raster, options.reference);
         const bool is_alike = difference <= options.threshold;
@@ -152,9 +154,9 @@ int run_without_window(viewer::Viewer& view, const ViewOptions& options, const n
 }
 
 int run(const ViewOptions& options) {
-    const bool has_window =
-        options.screenshot.empty() && options.headless == 0 && options.folder.empty() && options.reference.empty();
-    for (const auto& file : {options.screenshot, options.record}) check_writable(file);
+    const bool has_window = options.screenshot.empty() && options.headless == 0 && options.folder.empty() &&
+                            options.reference.empty() && options.exported.empty();
+    for (const auto& file : {options.screenshot, options.record, options.exported}) check_writable(file);
     const auto say = [](const std::string& line) { std::cout << line << std::endl; };
     viewer::ViewerDesc desc{.file = options.scene,
                             .state = state_of(options),
@@ -223,6 +225,9 @@ Command view_command() {
          {.name = "--spp",
           .value = number(options->samples, {.least = 0, .most = 1u << 20u}),
           .help = "samples of each pixel, of --layer path"},
+         {.name = "--export",
+          .value = file(options->exported, {".csv", ".glb"}),
+          .help = "write what the layer says of faces, as numbers or as a scene in its colours, and end"},
          {.name = "--headless",
           .value = number(options->headless, {.least = 1, .most = 1000000}),
           .help = "so many frames, and end"},

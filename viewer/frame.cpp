@@ -72,15 +72,17 @@ const Raster& Viewer::frame(bool may_be_coarse) {
     stage_->set_time(state_.seconds);
     if (state_.shown != Shown::software && !stage_->hardware())
         fail("view: the device has no hardware accelerator: ", stage_->why_no_hardware());
-    const bool has_moved = state_.orbit != shown_.orbit || is_playing_ || button_.has_value();
     const bool is_new = is_stale_ || state_ != shown_ || is_coarse_ || is_playing_;
+    const bool has_moved = state_.orbit != shown_.orbit || is_playing_ || button_.has_value();
+    const bool wants_preview = state_.layer == Layer::path && (is_stale_ || state_ != shown_);
     if (!is_new && state_.layer != Layer::path) return raster_;
     const uint grain = may_be_coarse && has_moved && state_ != shown_ ? grain_ : 1;
+    const bool is_preview = may_be_coarse && ((has_moved && is_new) || wants_preview);
     update_values();
-    raster_ = drawn(grain, may_be_coarse && has_moved && is_new).raster;
+    raster_ = drawn(grain, is_preview).raster;
     draw_legend(raster_);
     shown_ = state_;
-    is_coarse_ = may_be_coarse && has_moved && is_new;
+    is_coarse_ = is_preview;
     is_stale_ = false;
     frame_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (is_coarse_) {
@@ -252,7 +254,10 @@ std::vector<std::string> Viewer::figures() const {
     lines.push_back(text(state_.width, " x ", state_.height, ", ", std::lround(1000 * frame_seconds_), " ms a frame"));
     if (state_.layer == Layer::path && samples() > 0)
         lines.push_back(text(samples(), " samples a pixel, ",
-                             static_cast<double>(std::lround(1e-5 * path_rays_a_second())) / 10, " Mrays/s"));
+                             static_cast<double>(std::lround(1e-5 * path_rays_a_second())) / 10, " Mrays/s, error ",
+                             std::isfinite(path_error())
+                                 ? text(static_cast<double>(std::lround(1000 * path_error())) / 10, " %")
+                                 : "?"));
     if (state_.shown == Shown::difference) lines.push_back(text(disagreements_, " pixels where the two disagree"));
     if (state_.tree_depth) lines.push_back(text("level ", *state_.tree_depth, ": ", tree_boxes_, " boxes"));
     return lines;
@@ -261,6 +266,11 @@ std::vector<std::string> Viewer::figures() const {
 uint Viewer::samples() const {
     const auto& path = paths_.at(state_.shown == Shown::hardware ? 1 : 0);
     return path ? path->samples() : 0;
+}
+
+double Viewer::path_error() const {
+    const auto& path = paths_.at(state_.shown == Shown::hardware ? 1 : 0);
+    return path ? path->error() : INFINITY;
 }
 
 double Viewer::path_rays_a_second() const {

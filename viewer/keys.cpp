@@ -38,6 +38,7 @@ constexpr Key table[] = {
     {"B", Action::copy_bookmark, "all that is shown as a command line, likewise"},
     {"R", Action::reload, "read the file again"},
     {"S", Action::screenshot, "write view.png"},
+    {"E", Action::export_values, "write what is said of faces: view.csv and view.glb"},
     {"P", Action::panel, "panel of settings and figures"},
     {"H", Action::sheet, "this sheet"},
     {"Escape", Action::quit, "end"},

@@ -33,6 +33,7 @@ enum class Action : std::uint8_t {
     panel,
     sheet,
     screenshot,
+    export_values,
     quit,
 };
 

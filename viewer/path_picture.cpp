@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/path_picture.h"
 
+#include <bit>
 #include <cmath>
 
 #include "engine/core/parallel.h"
@@ -34,6 +35,7 @@ void PathPicture::look(const Orbit& orbit, uint width, uint height, const Abstra
     film_ = renderer_->make_film();
     renderer_->start(film_);
     samples_ = 0;
+    error_ = INFINITY;
     view_ = view;
 }
 
@@ -41,6 +43,8 @@ void PathPicture::add_sample(AbstractAccel& accel) {
     renderer_->add_block(accel, samples_);
     ++samples_;
     renderer_->read(film_);
+    film_.blocks.insert(samples_ - 1);
+    if (std::has_single_bit(samples_)) error_ = film_.error();
 }
 
 double PathPicture::seconds() const { return renderer_ ? renderer_->stats().seconds : 0; }

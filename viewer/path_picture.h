@@ -2,6 +2,7 @@
 // The scene path traced, a sample of each pixel after the other.
 #pragma once
 
+#include <cmath>
 #include <memory>
 
 #include "samples/path_tracer/lights.h"
@@ -23,6 +24,8 @@ class PathPicture {
     uint samples() const { return samples_; }
     double seconds() const;  // that the samples took
     std::uint64_t rays() const;
+    // Of the picture, relative, at most: see Film::error(). Of the last power of two of samples; infinite before two.
+    double error() const { return error_; }
     Raster picture(float exposure) const;
 
   private:
@@ -42,6 +45,7 @@ class PathPicture {
     View view_;
     path_tracer::Film film_;
     uint samples_ = 0;
+    double error_ = INFINITY;
 };
 
 }  // namespace twinray::viewer

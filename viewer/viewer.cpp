@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "twinray/glsl/vector_math.h"
+#include "viewer/export.h"
 
 namespace twinray::viewer {
 namespace {
@@ -50,7 +51,26 @@ void Viewer::open(const std::filesystem::path& file) {
     pick_.reset();
     values_of_.reset();
     stage_ = std::move(opened);
+    std::error_code none;
+    written_ = std::filesystem::last_write_time(file, none);
     is_stale_ = true;
+}
+
+void Viewer::reload() {
+    try {
+        open(stage_->file());
+        message_ = "read again";
+    } catch (const Error& error) {
+        message_ = error.what();
+    }
+}
+
+void Viewer::reload_if_changed() {
+    std::error_code none;
+    const auto written = std::filesystem::last_write_time(stage_->file(), none);
+    if (none || written == written_) return;
+    written_ = written;
+    reload();
 }
 
 void Viewer::set_state(const State& state) {
@@ -196,19 +216,20 @@ void Viewer::press(const Key& key) {
             }
             say_(command_line());
             break;
-        case Action::reload:
-            try {
-                open(stage_->file());
-                message_ = "read again";
-            } catch (const Error& error) {
-                message_ = error.what();
-            }
-            break;
+        case Action::reload: reload(); break;
         case Action::panel: shows_panel_ = !shows_panel_; break;
         case Action::sheet: shows_sheet_ = !shows_sheet_; break;
         case Action::screenshot:
             write_png("view.png", raster_.width, raster_.height, raster_.pixels);
             message_ = "wrote view.png";
+            break;
+        case Action::export_values:
+            try {
+                for (const char* file : {"view.csv", "view.glb"}) write_values(file, stage_->scene(), values_);
+                message_ = "wrote view.csv and view.glb";
+            } catch (const Error& error) {
+                message_ = error.what();
+            }
             break;
         case Action::quit: is_closed_ = true; break;
     }

@@ -43,6 +43,8 @@ class Viewer {
 
     const State& state() const { return state_; }
     void set_state(const State& state);
+    // Reads the file again if it has changed since; goes on with what there is where it cannot be read.
+    void reload_if_changed();
     Stage& stage() { return *stage_; }
     const std::optional<Pick>& picked() const { return pick_; }
     const std::string& explanation();  // of the picked ray; made when it is asked for
@@ -57,11 +59,13 @@ class Viewer {
     double frame_seconds() const { return frame_seconds_; }
     uint samples() const;  // a pixel, of Layer::path
     double path_rays_a_second() const;
+    double path_error() const;                                      // as PathPicture::error()
     std::uint64_t disagreements() const { return disagreements_; }  // pixels, of Shown::difference
 
   private:
     void open(const std::filesystem::path& file);
     void look_at_all();
+    void reload();
     void press(const Key& key);
     void drag(double x, double y);
     void fly();
@@ -83,6 +87,7 @@ class Viewer {
     std::string version_;
     State state_;
     std::unique_ptr<Stage> stage_;
+    std::filesystem::file_time_type written_{};          // the file, when it was read
     std::array<std::unique_ptr<PathPicture>, 2> paths_;  // by Shown::software, hardware
     std::optional<Pick> pick_;
     std::string explanation_;

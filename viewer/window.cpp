@@ -170,6 +170,7 @@ int run_window(const WindowDesc& desc) {
     Viewer viewer(context, viewer_desc);
     const Overlay overlay(glfw.window(), screen);
     unsigned frames_to_pass = 0;
+    double looked = 0;  // for changes of the file
     while (!viewer.is_closed() && !glfwWindowShouldClose(glfw.window())) {
         if (viewer.is_refining() || !played.empty() || frames_to_pass > 0)
             glfwPollEvents();
@@ -189,6 +190,10 @@ int run_window(const WindowDesc& desc) {
                 write_png(shot->file, viewer.last().width, viewer.last().height, viewer.last().pixels);
             else
                 viewer.handle(event);
+        }
+        if (glfwGetTime() - looked > idle_seconds) {
+            viewer.reload_if_changed();
+            looked = glfwGetTime();
         }
         const Raster& picture = viewer.frame(true);
         Overlay::draw(viewer);

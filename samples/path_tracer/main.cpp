@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The sample path tracer: one scene, one picture, by either accelerator or by both against each other.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 #include <twinray/context.h>
 #include "samples/path_tracer/frames.h"
 #include "samples/path_tracer/merge.h"
 #include "samples/path_tracer/report.h"
+#include "samples/path_tracer/view.h"
 #include "samples/support/text.h"
 
 namespace twinray::path_tracer {
@@ -63,11 +66,14 @@ int cross_check(const Options& options, const Ranks& ranks) {
 
 int main(int argc, char** argv) {
     using namespace twinray::path_tracer;
-    twinray::widen_cpu_vectors();
+    // A window rasterises, too.
+    if (std::none_of(argv, argv + argc, [](const char* word) { return std::string_view(word) == "--view"; }))
+        twinray::widen_cpu_vectors();
     return twinray::samples::run_program("path_tracer", [&]() -> int {
         Ranks ranks(argc, argv);
         ParsedOptions parsed = parse_options(argc, argv);
         if (parsed.exit_status) return *parsed.exit_status;
+        if (parsed.options.view) view(parsed.options);
         if (parsed.merge) return merge_films(*parsed.merge);
         parsed.options.quiet |= ranks.index() > 0;
         if (parsed.options.sequence.is_wanted()) return render_frames(parsed.options, ranks);

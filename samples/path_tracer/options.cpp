@@ -16,9 +16,10 @@ std::string check_output(const std::string& file) {
     return is_image_file(file) || is_film_file(file) ? "" : "'" + file + "' must end in .png, .exr or .film";
 }
 
-void add_output(CLI::App& app, std::filesystem::path& output) {
-    app.add_option("-o,--output,--outfile", output,
-                   "picture: .png (tone mapped) or .exr (linear); or .film: sums to merge or to resume")
+CLI::Option* add_output(CLI::App& app, std::filesystem::path& output) {
+    return app
+        .add_option("-o,--output,--outfile", output,
+                    "picture: .png (tone mapped) or .exr (linear); or .film: sums to merge or to resume")
         ->required()
         ->check(CLI::Validator(check_output, "FILE.png|.exr|.film"));
 }
@@ -32,7 +33,15 @@ void add_finish(CLI::App& app, std::optional<float>& exposure, std::filesystem::
 
 void add_files(CLI::App& app, Options& options) {
     app.add_option("scene", options.scene, ".gltf, .glb, .obj, .ply or .stl, or builtin:cornell-box")->required();
-    add_output(app, options.output);
+    CLI::Option* output = add_output(app, options.output);
+    app.add_flag_callback(
+           "--view",
+           [&options, output] {
+               options.view = true;
+               output->required(false);
+           },
+           "open the scene in the window of twinray view instead")
+        ->trigger_on_parse();
     add_finish(app, options.exposure, options.reference);
     app.add_flag(
         "--aovs", options.aovs,

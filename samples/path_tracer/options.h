@@ -41,6 +41,7 @@ struct Options : samples::DeviceOptions {
     bool strict = false;
     bool stats = false;
     bool all_features = false;
+    bool view = false;
 };
 
 // `path_tracer merge`.

@@ -161,3 +161,19 @@ def test_progress_is_shown_by_tqdm(capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
     with pytest.raises(ImportError, match="tqdm"):
         twinray.visible(points, vectors, scene=scene, progress=True)
+
+
+def test_view_gives_the_scene_to_the_command(tmp_path, monkeypatch):
+    command = tmp_path / "command"
+    command.write_text('#!/bin/sh\ncp "$2" "$(dirname "$0")/seen.ply"\necho "$@" > "$(dirname "$0")/words"\n')
+    command.chmod(0o755)
+    monkeypatch.setenv("TWINRAY_COMMAND", str(command))
+    assert scene_of_cube().view("--layer", "steps").wait() == 0
+    words = (tmp_path / "words").read_text().split()
+    assert words[0] == "view" and words[2:] == ["--layer", "steps"]
+    again = twinray.Scene(accel="sw")
+    again.add_file(tmp_path / "seen.ply")
+    assert again._core.triangle_count() == 12 and again.bounds().tolist() == [[0, 0, 0], [1, 1, 1]]
+    monkeypatch.setenv("TWINRAY_COMMAND", str(tmp_path / "nothing"))
+    with pytest.raises(FileNotFoundError, match="TWINRAY_COMMAND"):
+        scene_of_cube().view()

@@ -118,6 +118,14 @@ assert camera.split()[1:7] == bookmark.split()[4:10] and "--layer normal" in boo
 assert len(json.loads((here / "view.jsonl").read_text().splitlines()[-1])["frame_seconds"]) == 5
 run("scene.obj", *bookmark.split()[3:], "--quiet", "--reference", "frames/moved.png", "--threshold", "0")
 
+# What a layer says of faces.
+run("scene.obj", *CAMERA, "--layer", "collisions", "--export", "contacts.csv", "--quiet")
+lines = (here / "contacts.csv").read_text().splitlines()
+assert lines[0] == "instance,triangle,value" and {line.split(",")[2] for line in lines[1:]} == {"1", "5"}, lines  # the pole touches the floor
+run("scene.obj", *CAMERA, "--layer", "light", "--export", "light.glb", "--quiet")
+assert (here / "light.glb").read_bytes()[:4] == b"glTF"
+assert "only what layers" in run("scene.obj", *CAMERA, "--export", "x.csv", status=1)
+
 # Wrong use.
 assert "--pick" in run("scene.obj", *CAMERA, "--pick", "160", "1", "--screenshot", "x.png", status=2)
 assert "--up" in run("scene.obj", "--up", "1", "0", "0", "--screenshot", "x.png", status=2)

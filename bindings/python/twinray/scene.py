@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import warnings
 from html import escape
 from typing import Any, Literal
@@ -11,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from . import _core, picture
+from . import _core, picture, viewing
 from . import device_array as _device
 from ._arrays import Array, arrays_of_mesh, geometry_of, indices_of, matrix_of, number_of, rows_of, vector_of
 from ._frame import Frame
@@ -89,6 +90,26 @@ class Scene:
 
     def __len__(self) -> int:
         return len(self._core.geometries())
+
+    def view(self, *options: str) -> subprocess.Popen[bytes]:
+        """Open the scene, as it is now, in the window of the command ``twinray view``.
+
+        Parameters
+        ----------
+        *options : str
+            Of the command, as ``"--layer", "steps"``.
+
+        Returns
+        -------
+        subprocess.Popen
+            Of the command, which is in ``PATH`` or named by ``TWINRAY_COMMAND``.
+
+        Raises
+        ------
+        FileNotFoundError
+            Where there is no such command: it is built from the same sources, not part of this package.
+        """
+        return viewing.view(self, *options)
 
     def bounds(self) -> NDArray[np.float64]:
         """The box around all triangles, lowest and highest corner: (2, 3) float64, infinite where there are none."""
