@@ -188,6 +188,7 @@ Command view_command() {
          {.name = "--show",
           .value = choice(options->state.shown, names_of(viewer::all_shown)),
           .help = "the software accelerator, the driver's, both with a wipe between them, or where they disagree"},
+         level_option(options->state.level),
          {.name = "--wipe",
           .value = number(options->state.wipe, {.least = 0, .most = 1}),
           .help = "where the wipe is, of the width"},

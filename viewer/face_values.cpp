@@ -45,10 +45,14 @@ Values factors_from(Stage& stage, std::size_t face) {
     return values;
 }
 
-Values contacts_of(Stage& stage) {
+Values contacts_of(Stage& stage, std::vector<Stroke>& segments) {
     const std::vector<std::size_t> first = first_faces(stage.scene());
     Values values{.numbers = std::vector<double>(count_triangles(stage.scene()), NAN), .scale = {}, .what = "contact"};
-    const Contacts contacts = NarrowPhase(stage.context()).find(stage.software());
+    const Contacts contacts = NarrowPhase(stage.context()).find(stage.software(), {.segments = true});
+    segments.clear();
+    for (std::size_t i = 0; i < contacts.segments.size(); ++i)
+        if (contacts.list[i].pair_class == PairClass::crossing)
+            segments.push_back({.from = contacts.segments[i].from, .to = contacts.segments[i].to});
     for (const TriangleContact& contact : contacts.list)
         for (const std::size_t face :
              {first[contact.instance_a] + contact.triangle_a, first[contact.instance_b] + contact.triangle_b}) {

@@ -2,6 +2,7 @@
 // What analyses say of each face.
 #pragma once
 
+#include "validation/picture/marks.h"
 #include "viewer/layers.h"
 #include "viewer/stage.h"
 
@@ -14,7 +15,7 @@ dvec3 sun_at(double hour, UpAxis up);
 Values light_on(Stage& stage, double hour, UpAxis up);
 // View factors from a face to all others.
 Values factors_from(Stage& stage, std::size_t face);
-// The worst class of contact, by its number in PairClass.
-Values contacts_of(Stage& stage);
+// The worst class of contact, by its number in PairClass; and where triangles cross.
+Values contacts_of(Stage& stage, std::vector<Stroke>& segments);
 
 }  // namespace twinray::viewer

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "twinray/glsl/vector_math.h"
 #include "validation/picture/font.h"
 #include "viewer/face_values.h"
 #include "viewer/tree_lines.h"
@@ -92,15 +93,23 @@ const Raster& Viewer::frame(bool may_be_coarse) {
     return raster_;
 }
 
+// At the level that is asked for, or the highest that the accelerator has.
+std::vector<Hit> Viewer::hits_of(AbstractAccel& accel, std::span<const Ray> rays) {
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<Hit> hits = accel.closest_hits(rays, {.level = std::min(state_.level, accel.options().level)});
+    rays_a_second_ = static_cast<double>(rays.size()) /
+                     std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return hits;
+}
+
 FacePicture Viewer::drawn(uint grain, bool is_moving) {
     const uint width = (state_.width + grain - 1) / grain, height = (state_.height + grain - 1) / grain;
     Traced traced{width, height, rays_of(state_.orbit, width, height), {}};
-    const auto hits_of = [&](AbstractAccel& accel) { return accel.closest_hits(traced.rays); };
     Raster coarse(width, height);
     if (state_.shown == Shown::wipe || state_.shown == Shown::difference) {
         Traced other = traced;
-        traced.hits = hits_of(stage_->software());
-        other.hits = hits_of(*stage_->hardware());
+        traced.hits = hits_of(stage_->software(), traced.rays);
+        other.hits = hits_of(*stage_->hardware(), other.rays);
         if (state_.shown == Shown::difference) {
             coarse = difference(traced, other, grain);
         } else {
@@ -111,7 +120,7 @@ FacePicture Viewer::drawn(uint grain, bool is_moving) {
                 for (uint x = cut; x < width; ++x) coarse.at(x, y) = right.at(x, y);
         }
     } else {
-        traced.hits = hits_of(accel_of(state_.shown));
+        traced.hits = hits_of(accel_of(state_.shown), traced.rays);
         coarse = shaded(state_.shown, traced, is_moving);
     }
     FacePicture picture{.raster = grain == 1 ? std::move(coarse) : enlarged(coarse, state_.width, state_.height, grain),
@@ -126,10 +135,18 @@ Raster Viewer::shaded(Shown shown, const Traced& traced, bool is_moving) {
     const Scene& scene = stage_->scene();
     if (state_.layer == Layer::path && !is_moving) {
         std::unique_ptr<PathPicture>& path = paths_.at(static_cast<std::size_t>(shown));
-        if (!path) path = std::make_unique<PathPicture>(context_, scene);
-        path->look(state_.orbit, traced.width, traced.height, accel_of(shown), stage_->version());
+        if (!path || path->version() != stage_->version())
+            path = std::make_unique<PathPicture>(context_, scene, stage_->version());
+        path->look(state_.orbit, traced.width, traced.height);
         path->add_sample(accel_of(shown));
         return path->picture(state_.exposure);
+    }
+    if (state_.layer == Layer::distance) {
+        values_ = distances_of(traced);
+        return by_pixel(traced, [&](std::size_t i) {
+            const double value = values_.numbers[i];
+            return std::isnan(value) || !values_.scale ? no_value_color : values_.scale->color(value);
+        });
     }
     if (state_.layer == Layer::steps && shown == Shown::software) {
         values_ = steps_of(traced);
@@ -179,6 +196,22 @@ Raster Viewer::difference(const Traced& software, const Traced& hardware, uint g
     return raster;
 }
 
+// On the plane through the camera's centre that faces it.
+Values Viewer::distances_of(const Traced& traced) {
+    const dvec3 forward = directions_of(state_.orbit).forward;
+    std::vector<dvec3> points;
+    for (const Ray& ray : traced.rays) {
+        const dvec3 origin(ray.origin), direction(ray.direction);
+        points.push_back(origin + direction * (dot(state_.orbit.center - origin, forward) / dot(direction, forward)));
+    }
+    Values values{.numbers = {}, .scale = {}, .what = "distance"};
+    for (const ClosestPoint& found : stage_->points().closest(points))
+        values.numbers.push_back(found.is_found ? found.distance : NAN);
+    if (std::ranges::any_of(values.numbers, [](double number) { return number > 0; }))
+        values.scale = ValueScale::linear_for(values.numbers);
+    return values;
+}
+
 Values Viewer::steps_of(const Traced& traced) {
     const reference::Scene& twin = stage_->twin();
     Values values{.numbers = std::vector<double>(traced.rays.size()), .scale = {}, .what = "steps a ray"};
@@ -202,7 +235,8 @@ void Viewer::update_values() {
     values_of_ = key;
     values_ = {};
     if (state_.layer == Layer::light) values_ = light_on(*stage_, hour, state_.orbit.up);
-    if (state_.layer == Layer::collisions) values_ = contacts_of(*stage_);
+    segments_.clear();
+    if (state_.layer == Layer::collisions) values_ = contacts_of(*stage_, segments_);
     if (face) values_ = factors_from(*stage_, *face);
     if (state_.layer == Layer::factors && !face) message_ = "click a face: view factors are those from it";
 }
@@ -213,6 +247,7 @@ void Viewer::draw_over(FacePicture& picture) {
         tree_boxes_ = boxes.size();
         draw_strokes(picture, strokes_of(boxes));
     }
+    draw_strokes(picture, segments_);
     Raster& raster = picture.raster;
     if (state_.shown == Shown::wipe) {
         const auto x = static_cast<int>(std::lround(state_.wipe * static_cast<float>(raster.width)));
@@ -251,7 +286,9 @@ std::vector<std::string> Viewer::figures() const {
                              " KiB scene, ", hardware->instances >> 10, " KiB instances"));
     else
         lines.push_back("hardware: none: " + stage_->why_no_hardware());
-    lines.push_back(text(state_.width, " x ", state_.height, ", ", std::lround(1000 * frame_seconds_), " ms a frame"));
+    lines.push_back(text(state_.width, " x ", state_.height, ", ", std::lround(1000 * frame_seconds_),
+                         " ms a frame; hits at level ", name_of(state_.level), ": ",
+                         static_cast<double>(std::lround(1e-5 * rays_a_second_)) / 10, " Mrays/s with copies"));
     if (state_.layer == Layer::path && samples() > 0)
         lines.push_back(text(samples(), " samples a pixel, ",
                              static_cast<double>(std::lround(1e-5 * path_rays_a_second())) / 10, " Mrays/s, error ",

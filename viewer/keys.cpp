@@ -26,6 +26,9 @@ constexpr Key table[] = {
     {"F10", Action::layer, "sunlight on each face", Layer::light},
     {"F11", Action::layer, "view factors from the picked face", Layer::factors},
     {"F12", Action::layer, "triangles that touch or cross others, by class", Layer::collisions},
+    {"0", Action::layer, "distances on the plane through the centre", Layer::distance},
+    {"L", Action::next_level, "the next level of the triangle test"},
+    {"N", Action::next_camera, "the next camera of the file"},
     {"Tab", Action::flip_accelerators, "software or hardware"},
     {"W", Action::wipe, "both, with a wipe"},
     {"D", Action::difference, "where the two disagree"},
@@ -59,6 +62,7 @@ std::string state_of(const Key& key, const State& state) {
     switch (key.action) {
         case Action::layer: return on_if(state.layer == key.layer);
         case Action::flip_accelerators: return std::string(name_of(state.shown));
+        case Action::next_level: return std::string(name_of(state.level));
         case Action::wipe: return on_if(state.shown == Shown::wipe);
         case Action::difference: return on_if(state.shown == Shown::difference);
         case Action::orthographic: return on_if(state.orbit.is_orthographic);

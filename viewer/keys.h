@@ -20,6 +20,8 @@ enum class Action : std::uint8_t {
     orthographic,
     layer,
     flip_accelerators,
+    next_level,
+    next_camera,
     wipe,
     difference,
     tree_deeper,

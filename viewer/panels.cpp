@@ -23,6 +23,8 @@ void settings(Viewer& viewer) {
     State state = viewer.state();
     combo("colours", state.layer, all_layers);
     if (viewer.stage().hardware()) combo("hits", state.shown, all_shown);
+    combo("level", state.level, all_levels);
+    if (!viewer.stage().has_level(state.level)) state.level = Level::watertight;
     if (state.shown == Shown::wipe) ImGui::SliderFloat("wipe", &state.wipe, 0, 1);
     int depth = state.tree_depth.value_or(-1);
     if (ImGui::SliderInt("tree level", &depth, -1, 32))

@@ -14,15 +14,15 @@ constexpr uint most_samples = 1 << 20;
 
 }  // namespace
 
-PathPicture::PathPicture(Context& context, const Scene& scene)
-    : context_(context), lights_(path_tracer::collect_lights(scene)) {
+PathPicture::PathPicture(Context& context, const Scene& scene, std::uint64_t version)
+    : context_(context), version_(version), lights_(path_tracer::collect_lights(scene)) {
     if (!path_tracer::has_lamps(scene))
         environment_ = std::make_unique<path_tracer::EnvironmentMap>(path_tracer::default_sky());
     device_scene_ = std::make_unique<path_tracer::DeviceScene>(context, scene, lights_, environment_.get());
 }
 
-void PathPicture::look(const Orbit& orbit, uint width, uint height, const AbstractAccel& accel, std::uint64_t version) {
-    const View view{orbit, width, height, &accel, version};
+void PathPicture::look(const Orbit& orbit, uint width, uint height) {
+    const View view{orbit, width, height};
     if (renderer_ && view == view_) return;
     const path_tracer::CameraRays camera =
         path_tracer::camera_rays(camera_of(orbit), static_cast<float>(width) / static_cast<float>(height));

@@ -15,11 +15,13 @@ namespace twinray::viewer {
 
 class PathPicture {
   public:
-    // Compiles and uploads what the scene needs. It must outlive this.
-    PathPicture(Context& context, const Scene& scene);
+    // Compiles and uploads what the scene needs, as it is now: `version` tells it from how it is later. It must outlive
+    // this.
+    PathPicture(Context& context, const Scene& scene, std::uint64_t version);
+    std::uint64_t version() const { return version_; }
 
     // Begins anew where what is seen differs from what was.
-    void look(const Orbit& orbit, uint width, uint height, const AbstractAccel& accel, std::uint64_t version);
+    void look(const Orbit& orbit, uint width, uint height);
     void add_sample(AbstractAccel& accel);
     uint samples() const { return samples_; }
     double seconds() const;  // that the samples took
@@ -32,12 +34,11 @@ class PathPicture {
     struct View {
         Orbit orbit;
         uint width = 0, height = 0;
-        const AbstractAccel* accel = nullptr;
-        std::uint64_t version = 0;
         bool operator==(const View&) const = default;
     };
 
     Context& context_;
+    std::uint64_t version_;
     path_tracer::LocalLights lights_;
     std::unique_ptr<path_tracer::EnvironmentMap> environment_;
     std::unique_ptr<path_tracer::DeviceScene> device_scene_;

@@ -9,8 +9,10 @@
 namespace twinray::viewer {
 namespace {
 
-// What a level of the tree and its boxes are read from; kernels of hosts want no more.
-constexpr AccelOptions options{.level = Level::watertight};
+// All levels can be asked for where the device can compute them.
+AccelOptions options_for(const DeviceProperties& device, bool is_software) {
+    return {.level = !device.shader_float64 ? Level::watertight : is_software ? Level::certified : Level::refined};
+}
 
 std::string lacking_for(const DeviceProperties& device) {
     const std::vector<std::string> missing = missing_for_hardware(device);
@@ -42,11 +44,15 @@ void move(AbstractAccel& accel, const Scene& scene, const std::vector<AccelHandl
 }  // namespace
 
 Stage::Stage(Context& context, const std::filesystem::path& file)
-    : context_(context), file_(file), scene_(load_scene(file)), software_(context, options) {
+    : context_(context),
+      file_(file),
+      scene_(load_scene(file)),
+      software_(context, options_for(context.properties(), true)) {
     if (scene_.rig) show_hidden(scene_);
     bounds_ = bounds_of(scene_);
     why_no_hardware_ = lacking_for(context.properties());
-    if (why_no_hardware_.empty()) hardware_ = std::make_unique<HwTlas>(context, BuildOrder::automatic, options);
+    if (why_no_hardware_.empty())
+        hardware_ = std::make_unique<HwTlas>(context, BuildOrder::automatic, options_for(context.properties(), false));
     const auto start = std::chrono::steady_clock::now();
     push();
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -80,11 +86,13 @@ void Stage::set_time(double seconds) {
     }
     move(software_, scene_, software_handles_);
     if (hardware_) move(*hardware_, scene_, hardware_handles_);
+    bounds_ = bounds_of(scene_);
     time_ = seconds;
     ++version_;
     reference_.reset();
     twin_.reset();
     faces_.reset();
+    points_.reset();
 }
 
 const Reference& Stage::reference() {
@@ -93,9 +101,18 @@ const Reference& Stage::reference() {
 }
 
 const reference::Scene& Stage::twin() {
-    if (!twin_) twin_ = suite::twin_of(scene_, options);
+    if (!twin_) twin_ = suite::twin_of(scene_);
     return *twin_;
 }
+
+PointQuery& Stage::points() {
+    if (points_) return *points_;
+    points_ = std::make_unique<PointQuery>(context_);
+    points_->set(software_);
+    return *points_;
+}
+
+bool Stage::has_level(Level level) const { return level <= software_.options().level; }
 
 const Faces& Stage::faces() {
     if (!faces_) faces_ = std::make_unique<Faces>(software_);

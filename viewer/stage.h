@@ -7,6 +7,7 @@
 #include <string>
 
 #include <twinray/analysis.h>
+#include <twinray/queries.h>
 #include <twinray/tlas.h>
 #include <twinray/validation.h>
 
@@ -42,6 +43,8 @@ class Stage {
     const Reference& reference();
     const reference::Scene& twin();  // the software accelerator on the host
     const Faces& faces();
+    PointQuery& points();  // of the software accelerator, as it is
+    bool has_level(Level level) const;
 
   private:
     void push();
@@ -60,6 +63,7 @@ class Stage {
     std::unique_ptr<Reference> reference_;
     std::unique_ptr<reference::Scene> twin_;
     std::unique_ptr<Faces> faces_;
+    std::unique_ptr<PointQuery> points_;
 };
 
 }  // namespace twinray::viewer

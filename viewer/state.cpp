@@ -6,8 +6,9 @@
 namespace twinray::viewer {
 
 std::string_view name_of(Layer layer) {
-    constexpr std::string_view names[] = {"path",      "eyelight", "occlusion", "uv",    "normal",  "geometry",
-                                          "primitive", "depth",    "steps",     "light", "factors", "collisions"};
+    constexpr std::string_view names[] = {"path",     "eyelight",  "occlusion", "uv",       "normal",
+                                          "geometry", "primitive", "depth",     "distance", "steps",
+                                          "light",    "factors",   "collisions"};
     return names[static_cast<std::size_t>(layer)];
 }
 
@@ -22,6 +23,7 @@ std::string options_of(const State& state, const dvec3& origin) {
     out << options_of(state.orbit, origin) << " --layer " << name_of(state.layer);
     if (state.shown != usual.shown) out << " --show " << name_of(state.shown);
     if (state.shown == Shown::wipe) out << " --wipe " << state.wipe;
+    if (state.level != usual.level) out << " --level " << name_of(state.level);
     if (state.tree_depth) out << " --tree-depth " << *state.tree_depth;
     if (state.width != usual.width || state.height != usual.height)
         out << " --size " << state.width << ' ' << state.height;

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include <twinray/trace.h>
+
 #include "viewer/orbit.h"
 
 namespace twinray::viewer {
@@ -21,14 +23,15 @@ enum class Layer : std::uint8_t {
     geometry,    // a colour for each mesh
     primitive,   // a colour for each triangle of each instance
     depth,       // t
+    distance,    // of points on the plane through the camera's centre from the nearest triangle
     steps,       // nodes, boxes and triangles that the ray asks for
     light,       // what the sun brings to each face (illumination)
     factors,     // view factors from the face that was picked
     collisions,  // triangles that touch or cross others, by class
 };
-inline constexpr std::array all_layers = {Layer::path,   Layer::eyelight, Layer::occlusion, Layer::uv,
-                                          Layer::normal, Layer::geometry, Layer::primitive, Layer::depth,
-                                          Layer::steps,  Layer::light,    Layer::factors,   Layer::collisions};
+inline constexpr std::array all_layers = {
+    Layer::path,  Layer::eyelight, Layer::occlusion, Layer::uv,    Layer::normal,  Layer::geometry,  Layer::primitive,
+    Layer::depth, Layer::distance, Layer::steps,     Layer::light, Layer::factors, Layer::collisions};
 std::string_view name_of(Layer layer);
 
 // Whose hits.
@@ -45,6 +48,7 @@ struct State {
     Orbit orbit;
     Layer layer = Layer::eyelight;
     Shown shown = Shown::software;
+    Level level = Level::watertight;
     float wipe = 0.5f;                // where the wipe is, of the width
     std::optional<int> tree_depth;    // boxes of that level of the software tree are drawn; 0: the root
     uint width = 1280, height = 720;  // pixels

@@ -23,6 +23,7 @@ double aspect_of(const State& state) { return static_cast<double>(state.width) /
 Viewer::Viewer(Context& context, const ViewerDesc& desc)
     : context_(context), say_(desc.say), version_(desc.version), state_(desc.state) {
     open(desc.file);
+    stage_->set_time(state_.seconds);
     const Orbit asked = state_.orbit;
     if (desc.camera) {
         const dvec3 origin = stage_->scene().origin;
@@ -189,6 +190,21 @@ void Viewer::press(const Key& key) {
         case Action::flip_accelerators:
             state_.shown = state_.shown == Shown::software ? Shown::hardware : Shown::software;
             break;
+        case Action::next_level: {
+            const auto next = static_cast<std::size_t>(state_.level) + 1;
+            state_.level = next < all_levels.size() ? all_levels.at(next) : all_levels.front();
+            break;
+        }
+        case Action::next_camera: {
+            const std::vector<Camera>& cameras = stage_->scene().cameras;
+            if (cameras.empty()) {
+                message_ = "the file has no camera";
+                break;
+            }
+            state_.orbit =
+                orbit_of(cameras[camera_ = (camera_ + 1) % cameras.size()], stage_->bounds(), state_.orbit.up);
+            break;
+        }
         case Action::wipe: toggle(Shown::wipe); break;
         case Action::difference: toggle(Shown::difference); break;
         case Action::tree_deeper: state_.tree_depth = state_.tree_depth.value_or(-1) + 1; break;
@@ -232,6 +248,10 @@ void Viewer::press(const Key& key) {
             }
             break;
         case Action::quit: is_closed_ = true; break;
+    }
+    if (!stage_->has_level(state_.level)) {
+        message_ = text("level ", name_of(state_.level), " needs float64, which the device lacks");
+        state_.level = Level::watertight;
     }
     if (state_.shown != Shown::software && !stage_->hardware()) {
         message_ = "only the software accelerator: " + stage_->why_no_hardware();

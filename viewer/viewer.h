@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "validation/picture/face_picture.h"
+#include "validation/picture/marks.h"
 #include "viewer/events.h"
 #include "viewer/keys.h"
 #include "viewer/layers.h"
@@ -77,6 +78,8 @@ class Viewer {
     FacePicture drawn(uint grain, bool is_moving);
     Raster shaded(Shown shown, const Traced& traced, bool is_moving);
     Raster difference(const Traced& software, const Traced& hardware, uint grain);
+    std::vector<Hit> hits_of(AbstractAccel& accel, std::span<const Ray> rays);
+    Values distances_of(const Traced& traced);
     void update_values();
     Values steps_of(const Traced& traced);
     void draw_over(FacePicture& picture);
@@ -102,6 +105,9 @@ class Viewer {
     std::optional<ValuesKey> values_of_;  // what values_ were computed for
     std::uint64_t disagreements_ = 0;
     std::size_t tree_boxes_ = 0;
+    std::size_t camera_ = 0;        // of the file, that was looked through last
+    double rays_a_second_ = 0;      // of the last frame's hits
+    std::vector<Stroke> segments_;  // where triangles cross, of Layer::collisions
     Raster raster_{1, 1};
     State shown_;            // what raster_ shows
     bool is_coarse_ = true;  // raster_ is

@@ -39,12 +39,15 @@ std::vector<std::string> command_line(const Options& options) {
 }  // namespace
 
 void view(const Options& options) {
+    if (options.scene.string().starts_with("builtin:"))
+        samples::fail("--view: '", options.scene.string(), "' is no file");
     std::vector<std::string> words = command_line(options);
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     std::error_code none;
-    const std::filesystem::path beside = std::filesystem::read_symlink("/proc/self/exe", none).parent_path() / "twinray";
+    const std::filesystem::path beside =
+        std::filesystem::read_symlink("/proc/self/exe", none).parent_path() / "twinray";
     execv(beside.c_str(), arguments.data());
     execvp("twinray", arguments.data());
     samples::fail("--view: there is no command twinray, neither in '", beside.parent_path().string(), "' nor in PATH");

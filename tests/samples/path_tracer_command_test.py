@@ -4,6 +4,7 @@
 import json
 import os
 import pathlib
+import shutil
 import signal
 import socket
 import struct
@@ -168,4 +169,25 @@ shown = tetrahedron("far.ply", (500000, 5400000, 2))
 assert shown.count("scene moved to local origin 500000 5400000 2\n") == 1, shown
 assert "moved" not in tetrahedron("near.ply", (0, 0, 0)) and same("far.ply.png", "near.ply.png")
 assert [json.loads(line)["origin"] for line in (here / "far.jsonl").read_text().splitlines()] == [[500000, 5400000, 2], [0, 0, 0]]
+
+# The window is another program's: the one beside this, else the one in PATH.
+alone = here / "alone"
+alone.mkdir()
+shutil.copy(path_tracer, alone / "path_tracer")
+(alone / "bin").mkdir()
+(alone / "bin/twinray").write_text('#!/bin/sh\necho "$@ [$LP_NATIVE_VECTOR_WIDTH]"\n')
+(alone / "bin/twinray").chmod(0o755)
+clean = {k: v for k, v in os.environ.items() if k != "LP_NATIVE_VECTOR_WIDTH"}
+
+
+def view(*arguments, path):
+    return subprocess.run([alone / "path_tracer", *arguments, "--view"], capture_output=True, text=True,
+                          env=clean | {"PATH": str(path) + ":/usr/bin:/bin"})
+
+
+done = view("a.glb", "--accel", "hw", "--look-from", "1", "2", "3", "--look-at", "0", "0", "0", path=alone / "bin")
+assert done.stdout == "view a.glb --layer path --show hw --camera 1 2 3 0 0 0 --up 0 1 0 --fov 40 []\n", done
+assert "no command twinray" in view("a.glb", path="/nowhere").stderr
+assert "is no file" in view("builtin:cornell-box", path=alone / "bin").stderr
+assert "--output is required" in run("a.glb", status=2)
 print("path_tracer_command_test: passed")

@@ -53,6 +53,7 @@ BOOKMARKS = {
     "geometry": ["--layer", "geometry"],
     "primitive": ["--layer", "primitive", "--pick", "80", "40"],
     "depth": ["--layer", "depth", "--tree-depth", "3"],
+    "distance": ["--layer", "distance"],
     "light": ["--layer", "light", "--hour", "9"],
     "collisions": ["--layer", "collisions"],
     "path": ["--layer", "path", "--spp", "64"],

@@ -221,6 +221,33 @@ TEST_F(ViewerTest, StepsAreMoreWhereThereIsSomethingToFind) {
     EXPECT_GE(viewer.values().scale->hi(), steps(on_first));
 }
 
+TEST_F(ViewerTest, LevelsAndCamerasAreOneAfterTheOther) {
+    Viewer viewer(context(), desc(Layer::primitive));
+    const Raster watertight = viewer.frame(false);
+    if (!viewer.stage().has_level(Level::certified)) TWINRAY_LACKS("float64", "no float64");
+    for (const Level level : {Level::refined, Level::certified}) {
+        viewer.handle(KeyDown{"L"});
+        EXPECT_EQ(viewer.state().level, level);
+        const Raster& raster = viewer.frame(false);
+        std::size_t unlike = 0;  // where a ray meets an edge
+        for (std::size_t i = 0; i < raster.pixels.size(); ++i) unlike += raster.pixels[i] != watertight.pixels[i];
+        EXPECT_LT(unlike, 100u);
+    }
+    viewer.handle(KeyDown{"L"});
+    EXPECT_EQ(viewer.state().level, Level::fast);
+    viewer.handle(KeyDown{"N"});
+    EXPECT_EQ(viewer.message(), "the file has no camera");
+}
+
+TEST_F(ViewerTest, DistancesAreThoseOfThePlane) {
+    Viewer viewer(context(), desc(Layer::distance));
+    (void)viewer.frame(false);
+    const auto distance = [&](uvec2 pixel) { return viewer.values().numbers[std::size_t{pixel.y} * width + pixel.x]; };
+    EXPECT_NEAR(distance(uvec2(width / 2, height / 2)), 0.5, 0.1) << "between the boxes";
+    EXPECT_NEAR(distance(on_first), 0, 1e-12) << "the plane z = 0 is the backs of both";
+    EXPECT_GT(distance(uvec2(0, 0)), 0.5);
+}
+
 TEST_F(ViewerTest, AnalysesAreLayers) {
     Viewer viewer(context(), desc(Layer::light));
     (void)viewer.frame(false);
