@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: MIT
 """Rays a second of packages of Python, and how many of a million answers are wrong, in one run:
 
-    python_rays.py [--rays 1000000] [--subdivisions 8] [--instances 1000] [--rounds 3] [-o FILE.json]
+    python_rays.py [--rays 1000000] [--subdivisions 8] [--instances 1000] [--mesh FILE] [--rounds 3] [-o FILE.json]
 
-Speed: a camera's rays at a sphere of 20 * 4**subdivisions triangles, and at as many spheres as there are instances.
-Wrong answers: rays from inside a sphere, aimed at its vertices and at points of its edges, must hit at t = 1. Packages
-that are not installed are left out: twinray, embreex, open3d, warp-lang."""
+Speed: a camera's rays at a sphere of 20 * 4**subdivisions triangles, at as many spheres as there are instances, and at
+a mesh, say the Stanford bunny. Wrong answers: rays from inside a sphere, aimed at its vertices and at points of its
+edges, must hit at t = 1; those from inside the mesh, whose holes are closed first, somewhere. Packages that are not
+installed are left out: twinray, embreex, open3d, warp-lang."""
 
 import argparse
 import json
@@ -43,8 +44,45 @@ def aimed(vertices, triangles, count, seed=1):
     return np.hstack([origins, a + along * (b - a) - origins]).astype(np.float32)
 
 
-def wrong_per_million(t):
-    return float((~(np.abs(t - 1) < 1e-3)).mean() * 1e6)
+def loaded(file):
+    """A mesh, about 0 and two large, with a fan over each hole, so that it is closed."""
+    import trimesh
+
+    mesh = trimesh.load(file, force="mesh", process=False)
+    low, high = mesh.bounds
+    vertices, triangles = (mesh.vertices - (low + high) / 2) * 2 / (high - low).max(), np.asarray(mesh.faces)
+    edges = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    rim = {tuple(e) for e in edges.tolist()} - {(b, a) for a, b in edges.tolist()}
+    after = {a: b for a, b in rim if (b, a) not in rim}
+    while after:
+        loop = [next(iter(after))]
+        while (vertex := after.pop(loop[-1])) != loop[0]:
+            loop.append(vertex)
+        fan = [(b, a, len(vertices)) for a, b in zip(loop, loop[1:] + loop[:1])]
+        vertices = np.vstack([vertices, vertices[loop].mean(axis=0)])
+        triangles = np.vstack([triangles, fan])
+    return vertices.astype(np.float32), triangles.astype(np.uint32)
+
+
+def aimed_within(vertices, triangles, count, seed=1):
+    """From points inside the closed mesh at its vertices and points of its edges: each must hit, if not there."""
+    import twinray
+
+    random = np.random.default_rng(seed)
+    scene = twinray.Scene("sw")
+    scene.add_triangles(vertices, triangles)
+    points = random.uniform(vertices.min(axis=0), vertices.max(axis=0), (20000, 3)).astype(np.float32)
+    inside = points[(scene.compute_winding_numbers(points) == 1) & (scene.compute_distance(points) > 1e-3)]
+    rays = aimed(vertices, triangles, count, seed)
+    origins = inside[random.integers(len(inside), size=count)]
+    rays[:, 3:] += rays[:, :3] - origins
+    rays[:, :3] = origins
+    return rays
+
+
+def wrong_per_million(t, is_sphere):
+    is_right = np.abs(t - 1) < 1e-3 if is_sphere else np.isfinite(t) & (t > 0) & (t < 1e30)
+    return float((~is_right).mean() * 1e6)
 
 
 class Twinray:
@@ -148,6 +186,7 @@ def main():
     parser.add_argument("--rays", type=int, default=1_000_000)
     parser.add_argument("--subdivisions", type=int, default=8)
     parser.add_argument("--instances", type=int, default=1000)
+    parser.add_argument("--mesh")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("-o", "--output")
     options = parser.parse_args()
@@ -161,7 +200,12 @@ def main():
         f"sphere of {len(fine[1])}": (*fine, np.zeros((1, 3), np.float32), camera(options.rays)),
         f"{options.instances} spheres of {len(coarse[1])}": (*coarse, spread.astype(np.float32), camera(options.rays)),
     }
-    inside = {name: aimed(*mesh, options.rays) for name, mesh in (("fine", fine), ("coarse", coarse))}
+    inside = {next(iter(scenes)): aimed(*fine, options.rays)}
+    if options.mesh:
+        mesh = loaded(options.mesh)
+        name = f"{options.mesh.rsplit('/')[-1]} of {len(mesh[1])}"
+        scenes[name] = (*mesh, np.zeros((1, 3), np.float32), camera(options.rays))
+        inside[name] = aimed_within(*mesh, options.rays)
     records = []
     for scene, (vertices, triangles, offsets, rays) in scenes.items():
         built = {}
@@ -183,9 +227,9 @@ def main():
         for name, (backend, build, seconds) in built.items():
             record = {"scene": scene, "package": name, "about": backend.about, "build_seconds": round(build, 3),
                       "mrays_per_s": round(len(rays) / statistics.median(seconds[1:]) / 1e6, 3)}  # fmt: skip
-            if len(offsets) == 1:
-                t = np.asarray(backend.cast(inside["fine"]))
-                record["wrong_per_million"] = wrong_per_million(t)
+            if scene in inside:
+                t = np.asarray(backend.cast(inside[scene]))
+                record["wrong_per_million"] = wrong_per_million(t, "sphere" in scene)
             records.append(record)
             print(record)
     if options.output:
