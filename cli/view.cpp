@@ -47,6 +47,8 @@ viewer::State state_of(const ViewOptions& options) {
     state.orbit.vertical_fov = options.fov * M_PI / 180;
     state.orbit.is_orthographic = options.is_orthographic;
     if (options.tree_depth >= 0) state.tree_depth = options.tree_depth;
+    if (state.layer == Layer::path && state.shown == Shown::difference)
+        throw UsageError("--show difference compares hits: not with --layer path");
     if (!options.pick.empty()) {
         if (options.pick[0] >= state.width || options.pick[1] >= state.height)
             throw UsageError(text("--pick ", options.pick[0], ' ', options.pick[1], ": the picture has ", state.width,
@@ -88,7 +90,7 @@ void write(const Raster& raster, const std::filesystem::path& file) {
 // Frames until nothing gets better, or there are as many samples as asked for.
 const Raster& finished(viewer::Viewer& view, uint samples) {
     const Raster* raster = &view.frame(false);
-    while (view.state().layer == Layer::path && view.samples() < samples) raster = &view.frame(false);
+    while (view.traces_paths() && view.samples() < samples) raster = &view.frame(false);
     return *raster;
 }
 
@@ -156,6 +158,8 @@ int run_without_window(viewer::Viewer& view, const ViewOptions& options, const n
 int run(const ViewOptions& options) {
     const bool has_window = options.screenshot.empty() && options.headless == 0 && options.folder.empty() &&
                             options.reference.empty() && options.exported.empty();
+    if (has_window && (!options.common.json.empty() || options.samples > 0))
+        throw UsageError("--json and --spp are for pictures without a window: --screenshot, --headless");
     for (const auto& file : {options.screenshot, options.record, options.exported}) check_writable(file);
     const auto say = [](const std::string& line) { std::cout << line << std::endl; };
     viewer::ViewerDesc desc{.file = options.scene,

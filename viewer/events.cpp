@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "engine/core/error.h"
+#include "viewer/keys.h"
 
 namespace twinray::viewer {
 namespace {
@@ -52,6 +53,23 @@ std::string rest_of(std::istream& in) {
     return rest;
 }
 
+// "" and a failed stream for one that does nothing.
+std::string key_of(std::istream& in) {
+    constexpr std::string_view flight = "WASDQE";
+    std::string name = rest_of(in);
+    if (find_key(name) || (name.size() == 1 && flight.find(name) != std::string_view::npos)) return name;
+    in.setstate(std::ios::failbit);
+    return {};
+}
+
+// Whole numbers, which a stream would take below 0, too.
+bool read_count(std::istream& in, unsigned& count) {
+    long long number = -1;
+    if (!(in >> number) || number < 0 || number > 1'000'000) return false;
+    count = static_cast<unsigned>(number);
+    return true;
+}
+
 // Nothing: not one of ours.
 std::optional<Event> event_of(const std::string& line) {
     std::istringstream in(line);
@@ -59,9 +77,9 @@ std::optional<Event> event_of(const std::string& line) {
     in >> what;
     std::optional<Event> event;
     if (what == "key")
-        event = KeyDown{rest_of(in)};
+        event = KeyDown{key_of(in)};
     else if (what == "keyup")
-        event = KeyUp{rest_of(in)};
+        event = KeyUp{key_of(in)};
     else if (what == "drop")
         event = Dropped{rest_of(in)};
     else if (what == "shot")
@@ -84,11 +102,11 @@ std::optional<Event> event_of(const std::string& line) {
     } else if (what == "scroll") {
         if (Scrolled scrolled{}; in >> scrolled.steps) event = scrolled;
     } else if (what == "resize") {
-        if (Resized resized{}; in >> resized.width >> resized.height) event = resized;
+        if (Resized resized{}; read_count(in, resized.width) && read_count(in, resized.height)) event = resized;
     } else if (what == "frames") {
-        if (Frames frames{}; in >> frames.count) event = frames;
+        if (Frames frames{}; read_count(in, frames.count)) event = frames;
     }
-    if (event && in >> what) return {};
+    if (event && (in.fail() || in >> what)) return {};
     return event;
 }
 
@@ -106,6 +124,7 @@ std::vector<Event> read_events(const std::filesystem::path& file) {
     std::vector<Event> events;
     std::string line;
     for (std::size_t number = 1; std::getline(in, line); ++number) {
+        if (!line.empty() && line.back() == '\r') line.pop_back();
         if (line.empty() || line[0] == '#') continue;
         const std::optional<Event> event = event_of(line);
         if (!event) fail("'", file.string(), "': line ", number, ": '", line, "' is no event");

@@ -21,6 +21,12 @@ constexpr uint coarsest = 8;                   // pixels of a coarse frame, alon
 
 constexpr Rgb ours = {213, 94, 0}, of_driver = {204, 121, 167}, harmless = {0, 114, 178}, pick_color = {213, 94, 0};
 
+// Whether samples of one are none of the other.
+bool is_another_picture(const State& a, const State& b) {
+    return a.orbit != b.orbit || a.layer != b.layer || a.shown != b.shown || a.width != b.width ||
+           a.height != b.height || a.seconds != b.seconds;
+}
+
 bool has_face_values(Layer layer) {
     return layer == Layer::light || layer == Layer::factors || layer == Layer::collisions;
 }
@@ -63,33 +69,36 @@ AbstractAccel& Viewer::accel_of(Shown shown) {
 }
 
 bool Viewer::is_refining() const {
-    return is_stale_ || is_coarse_ || state_ != shown_ || state_.layer == Layer::path || is_playing_ || !held_.empty();
+    return is_stale_ || is_coarse_ || state_ != shown_ || traces_paths() || is_playing_ || !held_.empty();
 }
 
 const Raster& Viewer::frame(bool may_be_coarse) {
     const auto start = std::chrono::steady_clock::now();
     fly();
+    is_playing_ = is_playing_ && stage_->animation_seconds() > 0;
     if (is_playing_) state_.seconds = std::fmod(state_.seconds + frame_seconds_, stage_->animation_seconds());
+    const std::uint64_t version = stage_->version();
     stage_->set_time(state_.seconds);
+    if (version != stage_->version()) forget_pick();
+    set_reach();
     if (state_.shown != Shown::software && !stage_->hardware())
         fail("view: the device has no hardware accelerator: ", stage_->why_no_hardware());
     const bool is_new = is_stale_ || state_ != shown_ || is_coarse_ || is_playing_;
-    const bool has_moved = state_.orbit != shown_.orbit || is_playing_ || button_.has_value();
-    const bool wants_preview = state_.layer == Layer::path && (is_stale_ || state_ != shown_);
-    if (!is_new && state_.layer != Layer::path) return raster_;
-    const uint grain = may_be_coarse && has_moved && state_ != shown_ ? grain_ : 1;
-    const bool is_preview = may_be_coarse && ((has_moved && is_new) || wants_preview);
+    const bool has_moved = state_.orbit != shown_.orbit || is_playing_;
+    // Before the first sample of another picture.
+    const bool wants_preview = traces_paths() && (is_stale_ || is_another_picture(state_, shown_));
+    if (!is_new && !traces_paths()) return raster_;
+    const uint grain = may_be_coarse && has_moved ? grain_ : 1;
+    const bool is_preview = may_be_coarse && (has_moved || wants_preview);
     update_values();
     raster_ = drawn(grain, is_preview).raster;
-    draw_legend(raster_);
+    if (state_.shown != Shown::difference) draw_legend(raster_);
     shown_ = state_;
     is_coarse_ = is_preview;
     is_stale_ = false;
     frame_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (is_coarse_) {
-        const double ideal = grain * std::sqrt(frame_seconds_ / seconds_while_moving);
-        grain_ = std::clamp(static_cast<uint>(std::ceil(ideal)), 1u, coarsest);
-    }
+    const double ideal = grain * std::sqrt(frame_seconds_ / seconds_while_moving);
+    if (is_coarse_ || !traces_paths()) grain_ = std::clamp(static_cast<uint>(std::ceil(ideal)), 1u, coarsest);
     return raster_;
 }
 
@@ -152,6 +161,7 @@ Raster Viewer::shaded(Shown shown, const Traced& traced, bool is_moving) {
         values_ = steps_of(traced);
         return by_pixel(traced, [&](std::size_t i) { return values_.scale->color(values_.numbers[i]); });
     }
+    if (state_.layer == Layer::steps && shown == state_.shown) values_ = {};
     if (state_.layer == Layer::steps)  // no driver tells
         return by_pixel(traced, [&](std::size_t i) { return traced.hits[i].hit ? no_value_color : background; });
     if (!has_face_values(state_.layer) || values_.numbers.empty())
@@ -232,12 +242,13 @@ void Viewer::update_values() {
     const double hour = state_.layer == Layer::light ? state_.hour : 0;
     const ValuesKey key{state_.layer, stage_->version(), face, hour};
     if (values_of_ == key) return;
-    values_of_ = key;
+    values_of_.reset();
     values_ = {};
     if (state_.layer == Layer::light) values_ = light_on(*stage_, hour, state_.orbit.up);
     segments_.clear();
     if (state_.layer == Layer::collisions) values_ = contacts_of(*stage_, segments_);
     if (face) values_ = factors_from(*stage_, *face);
+    values_of_ = key;
     if (state_.layer == Layer::factors && !face) message_ = "click a face: view factors are those from it";
 }
 

@@ -48,7 +48,8 @@ dvec3 eye_of(const Orbit& orbit) { return orbit.center + backward_of(orbit) * or
 
 Camera camera_of(const Orbit& orbit) {
     const Directions axes = directions_of(orbit);
-    const dvec3 eye = eye_of(orbit);
+    const double away = orbit.is_orthographic ? std::max(orbit.distance, orbit.reach) : orbit.distance;
+    const dvec3 eye = orbit.center - axes.forward * away;
     Camera camera;
     for (std::size_t i = 0; i < 3; ++i)
         camera.camera_to_world.rows[i] = vec4(static_cast<float>(axes.right[i]), static_cast<float>(axes.up[i]),
@@ -129,7 +130,7 @@ Orbit orbit_of(const Camera& camera, const Bounds& box, UpAxis up) {
 
 std::string options_of(const Orbit& orbit, const dvec3& origin) {
     std::ostringstream out;
-    out.precision(9);
+    out.precision(17);
     const dvec3 eye = eye_of(orbit) + origin, center = orbit.center + origin;
     out << "--camera " << eye.x << ' ' << eye.y << ' ' << eye.z << ' ' << center.x << ' ' << center.y << ' ' << center.z
         << " --fov " << orbit.vertical_fov * 180 / pi;

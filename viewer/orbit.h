@@ -19,6 +19,8 @@ struct Orbit {
     double vertical_fov = 0.7;
     bool is_orthographic = false;
     UpAxis up = UpAxis::y;
+    // From the centre to what of the scene is furthest: orthographic eyes, whose distance only scales, stand outside.
+    double reach = 0;
 
     bool operator==(const Orbit&) const = default;
 };

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "viewer/recent_files.h"
+
 namespace twinray::viewer {
 namespace {
 
@@ -42,6 +44,13 @@ void settings(Viewer& viewer) {
     if (state != viewer.state()) viewer.set_state(state);
 }
 
+void recent(Viewer& viewer) {
+    if (!ImGui::BeginCombo("file", viewer.stage().file().filename().string().c_str())) return;
+    for (const std::filesystem::path& file : recent_files(recent_list()))
+        if (ImGui::Selectable(file.string().c_str(), false)) viewer.handle(Dropped{file});
+    ImGui::EndCombo();
+}
+
 void sheet(const Viewer& viewer) {
     ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - 10, 10), ImGuiCond_FirstUseEver, ImVec2(1, 0));
     if (!ImGui::Begin("Keys", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return ImGui::End();
@@ -68,6 +77,7 @@ void draw_panels(Viewer& viewer) {
     if (viewer.shows_panel()) {
         ImGui::SetNextWindowPos(ImVec2(10, 10), ImGuiCond_FirstUseEver);
         if (ImGui::Begin("twinray", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
+            recent(viewer);
             settings(viewer);
             ImGui::Separator();
             for (const std::string& figure : viewer.figures()) line(figure);

@@ -63,16 +63,24 @@ void apply(VkCommandBuffer commands, VkPipelineStageFlags from, VkPipelineStageF
 
 }  // namespace
 
-Screen::Screen(GLFWwindow* window, const ContextDesc& desc) : window_(window), log_(desc.log) {
-    create_instance(desc);
-    require(glfwCreateWindowSurface(instance_, window_, nullptr, &surface_), "make a surface");
-    choose(desc.device);
-    create_device(desc);
-    create_commands();
-    create_pass();
+Screen::Screen(GLFWwindow* window, const ContextDesc& desc)
+    : window_(window), most_submission_seconds_(desc.most_submission_seconds), log_(desc.log) {
+    try {
+        create_instance(desc);
+        require(glfwCreateWindowSurface(instance_, window_, nullptr, &surface_), "make a surface");
+        choose(desc.device);
+        create_device(desc);
+        create_commands();
+        create_pass();
+    } catch (...) {
+        destroy();
+        throw;
+    }
 }
 
-Screen::~Screen() {
+Screen::~Screen() { destroy(); }
+
+void Screen::destroy() {
     if (device_) {
         vkDeviceWaitIdle(device_);
         end_overlay();
@@ -106,13 +114,21 @@ void Screen::create_instance(const ContextDesc& desc) {
     if (!needed) fail("window: this system has no Vulkan that shows pictures");
     std::vector<const char*> extensions(needed, needed + count);
     const char* layer = "VK_LAYER_KHRONOS_validation";
-    if (desc.validation) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    if (desc.validation)
+        extensions.insert(extensions.end(),
+                          {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME});
     VkApplicationInfo application{};
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
     application.pApplicationName = "twinray view";
     application.apiVersion = api_version;
+    const VkValidationFeatureEnableEXT synchronisation = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    VkValidationFeaturesEXT features{};
+    features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+    features.enabledValidationFeatureCount = 1;
+    features.pEnabledValidationFeatures = &synchronisation;
     VkInstanceCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+    info.pNext = desc.validation ? &features : nullptr;
     info.pApplicationInfo = &application;
     info.enabledLayerCount = desc.validation ? 1 : 0;
     info.ppEnabledLayerNames = &layer;
@@ -150,6 +166,22 @@ void Screen::choose(const std::string& request) {
     }
     physical_ = devices[static_cast<std::size_t>(choice.index)];
     family_ = static_cast<std::uint32_t>(family_of(physical_, surface_));
+    choose_format();
+}
+
+// One that takes 8 bits a channel as they are.
+void Screen::choose_format() {
+    std::uint32_t count = 0;
+    require(vkGetPhysicalDeviceSurfaceFormatsKHR(physical_, surface_, &count, nullptr), "list formats");
+    std::vector<VkSurfaceFormatKHR> formats(count);
+    require(vkGetPhysicalDeviceSurfaceFormatsKHR(physical_, surface_, &count, formats.data()), "list formats");
+    for (const VkFormat wanted : {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM})
+        for (const VkSurfaceFormatKHR& format : formats)
+            if (format.format == wanted && format.colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR) {
+                format_ = wanted;
+                return;
+            }
+    fail("window: it has no format of 8 bits a channel");
 }
 
 void Screen::create_device(const ContextDesc& desc) {
@@ -231,6 +263,7 @@ AdoptedDevice Screen::adopted() const {
     adopted.get_instance_proc_addr = vkGetInstanceProcAddr;
     adopted.api_version = api_version;
     adopted.enabled = enabled_;
+    adopted.most_submission_seconds = most_submission_seconds_;
     adopted.log = log_;
     return adopted;
 }
@@ -274,7 +307,7 @@ void Screen::start_overlay() {
 
 void Screen::end_overlay() {
     if (!has_overlay_) return;
-    wait();
+    vkDeviceWaitIdle(device_);  // of a device that is lost it fails, which does not matter any more
     ImGui_ImplVulkan_Shutdown();
     has_overlay_ = false;
 }
@@ -443,7 +476,11 @@ void Screen::record(VkCommandBuffer commands, const Image& target, const Raster&
 }
 
 bool Screen::present(const Raster& picture) {
-    if (is_out_of_date_ && !create_swapchain()) return false;
+    int width = 0, height = 0;  // some systems do not tell of another size by themselves
+    glfwGetFramebufferSize(window_, &width, &height);
+    const VkExtent2D now{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+    is_out_of_date_ |= now.width != extent_.width || now.height != extent_.height;
+    if (now.width == 0 || now.height == 0 || (is_out_of_date_ && !create_swapchain())) return false;
     std::uint32_t index = 0;
     const VkResult acquired =
         vkAcquireNextImageKHR(device_, swapchain_, UINT64_MAX, is_acquired_, VK_NULL_HANDLE, &index);

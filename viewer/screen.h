@@ -2,7 +2,7 @@
 // A Vulkan device that can show pictures in a window: made here, adopted by twinray's Context.
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,8 +40,10 @@ class Screen {
         VkSemaphore is_drawn;
     };
 
+    void destroy();
     void create_instance(const ContextDesc& desc);
     void choose(const std::string& request);
+    void choose_format();
     void create_device(const ContextDesc& desc);
     void create_commands();
     void create_pass();
@@ -55,6 +57,7 @@ class Screen {
                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
 
     GLFWwindow* window_;
+    std::optional<double> most_submission_seconds_;
     Log log_;
     std::uint64_t message_count_ = 0;
     VkInstance instance_ = VK_NULL_HANDLE;

@@ -29,11 +29,27 @@ std::vector<AccelHandle> by_mesh(const Scene& scene, const std::vector<AccelHand
     return found;
 }
 
-void move(AbstractAccel& accel, const Scene& scene, const std::vector<AccelHandle>& handles) {
-    std::vector<std::vector<Transform>> transforms(scene.meshes.size());
-    for (const Instance& instance : scene.instances) transforms[instance.mesh].push_back(instance.transform);
-    for (std::size_t mesh = 0; mesh < handles.size(); ++mesh)
-        if (handles[mesh] != AccelHandle{}) accel.update_transforms(handles[mesh], transforms[mesh]);
+// From device memory, where a transform may be singular: its instance is then not seen.
+Buffer upload_transforms(Context& context, const Scene& scene) {
+    std::vector<Transform> transforms;
+    for (const Instance& instance : scene.instances) transforms.push_back(instance.transform);
+    Buffer buffer(context, {.name = "viewer transforms", .bytes = transforms.size() * sizeof(Transform)});
+    Commands commands(context, "viewer transforms");
+    {
+        const auto pass = commands.pass("viewer transforms");
+        commands.upload(buffer, std::span<const Transform>(transforms));
+    }
+    commands.submit();
+    return buffer;
+}
+
+void move(AbstractAccel& accel, const Scene& scene, const std::vector<AccelHandle>& handles, const Buffer& transforms) {
+    for (std::size_t first = 0; first < scene.instances.size();) {
+        const AccelHandle handle = handles[scene.instances[first].mesh];
+        const std::size_t count = accel.n_instances(handle);
+        accel.update_transforms(handle, transforms.ref<Transform>(first * sizeof(Transform)), count);
+        first += count;
+    }
     const std::vector<uint> meshes = deformed_meshes(*scene.rig);
     for (std::size_t i = 0; i < meshes.size(); ++i)
         if (handles[meshes[i]] != AccelHandle{})
@@ -55,6 +71,7 @@ Stage::Stage(Context& context, const std::filesystem::path& file)
         hardware_ = std::make_unique<HwTlas>(context, BuildOrder::automatic, options_for(context.properties(), false));
     const auto start = std::chrono::steady_clock::now();
     push();
+    set_time(0);
     build_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -75,7 +92,7 @@ double Stage::animation_seconds() const {
 }
 
 void Stage::set_time(double seconds) {
-    if (animation_seconds() == 0 || seconds == time_) return;
+    if (animation_seconds() == 0 || time_ == seconds) return;
     const Pose pose = pose_at(*scene_.rig, 0, seconds);
     pose_scene(scene_, pose);
     const std::vector<uint> meshes = deformed_meshes(*scene_.rig);
@@ -84,8 +101,10 @@ void Stage::set_time(double seconds) {
         scene_.meshes[meshes[i]].positions = std::move(moved.positions);
         scene_.meshes[meshes[i]].normals = std::move(moved.normals);
     }
-    move(software_, scene_, software_handles_);
-    if (hardware_) move(*hardware_, scene_, hardware_handles_);
+    const Buffer transforms = upload_transforms(context_, scene_);
+    move(software_, scene_, software_handles_, transforms);
+    if (hardware_) move(*hardware_, scene_, hardware_handles_, transforms);
+    context_.wait_for_gpu();
     bounds_ = bounds_of(scene_);
     time_ = seconds;
     ++version_;

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <twinray/analysis.h>
@@ -58,7 +59,7 @@ class Stage {
     std::string why_no_hardware_;
     std::vector<AccelHandle> software_handles_, hardware_handles_;  // by mesh with instances
     double build_seconds_ = 0;
-    double time_ = 0;
+    std::optional<double> time_;  // of the pose; none: not posed yet
     std::uint64_t version_ = 0;
     std::unique_ptr<Reference> reference_;
     std::unique_ptr<reference::Scene> twin_;

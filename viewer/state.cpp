@@ -27,7 +27,8 @@ std::string options_of(const State& state, const dvec3& origin) {
     if (state.tree_depth) out << " --tree-depth " << *state.tree_depth;
     if (state.width != usual.width || state.height != usual.height)
         out << " --size " << state.width << ' ' << state.height;
-    if (state.picked) out << " --pick " << state.picked->x << ' ' << state.picked->y;
+    if (state.picked && state.picked_from == state.orbit)
+        out << " --pick " << state.picked->x << ' ' << state.picked->y;
     if (state.seconds != usual.seconds) out << " --time " << state.seconds;
     if (state.layer == Layer::light) out << " --hour " << state.hour;
     if (state.exposure != usual.exposure) out << " --exposure " << state.exposure;

@@ -53,6 +53,7 @@ struct State {
     std::optional<int> tree_depth;    // boxes of that level of the software tree are drawn; 0: the root
     uint width = 1280, height = 720;  // pixels
     std::optional<uvec2> picked;      // a pixel
+    Orbit picked_from;                // as which the camera then stood
     double seconds = 0;               // of the animation
     double hour = 12;                 // of the day, for Layer::light
     float exposure = 0;               // in stops, of Layer::path

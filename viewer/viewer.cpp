@@ -16,6 +16,16 @@ constexpr double flight_a_frame = 0.03;  // of the distance
 constexpr double least_drag = 3;         // pixels; less is a click
 constexpr uint least_side = 1, most_side = 16384;
 
+// For a shell.
+std::string quoted(const std::string& word) {
+    if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%") ==
+        std::string::npos)
+        return word;
+    std::string in_quotes = "'";
+    for (const char letter : word) in_quotes += letter == '\'' ? "'\\''" : std::string(1, letter);
+    return in_quotes + '\'';
+}
+
 double aspect_of(const State& state) { return static_cast<double>(state.width) / state.height; }
 
 }  // namespace
@@ -34,8 +44,9 @@ Viewer::Viewer(Context& context, const ViewerDesc& desc)
         look_at_all();
     }
     if (asked.is_orthographic) state_.orbit.is_orthographic = true;
+    set_reach();
     shown_ = state_;
-    if (state_.picked) pick_at(state_.picked->x, state_.picked->y);
+    if (desc.state.picked) pick_at(desc.state.picked->x, desc.state.picked->y);
 }
 
 void Viewer::look_at_all() {
@@ -49,18 +60,42 @@ void Viewer::look_at_all() {
 void Viewer::open(const std::filesystem::path& file) {
     auto opened = std::make_unique<Stage>(context_, file);
     paths_ = {};
-    pick_.reset();
+    forget_pick();
     values_of_.reset();
     stage_ = std::move(opened);
+    is_playing_ = false;
+    state_.seconds = std::min(state_.seconds, stage_->animation_seconds());
     std::error_code none;
     written_ = std::filesystem::last_write_time(file, none);
     is_stale_ = true;
+}
+
+void Viewer::set_reach() {
+    const Bounds& box = stage_->bounds();
+    const dvec3 half = (dvec3(box.hi) - dvec3(box.lo)) * 0.5;
+    state_.orbit.reach = box.is_empty() ? 0 : length(dvec3(box.lo) + half - state_.orbit.center) + 1.01 * length(half);
+}
+
+void Viewer::recover(const std::string& why) {
+    message_ = why;
+    state_.layer = Layer::eyelight;
+    state_.shown = Shown::software;
+    state_.tree_depth.reset();
+    forget_pick();
+    is_stale_ = true;
+}
+
+void Viewer::forget_pick() {
+    pick_.reset();
+    state_.picked.reset();
 }
 
 void Viewer::reload() {
     try {
         open(stage_->file());
         message_ = "read again";
+    } catch (const DeviceLost&) {
+        throw;
     } catch (const Error& error) {
         message_ = error.what();
     }
@@ -81,7 +116,7 @@ void Viewer::set_state(const State& state) {
 }
 
 std::string Viewer::command_line() const {
-    return "twinray view " + stage_->file().string() + ' ' + options_of(state_, stage_->scene().origin);
+    return "twinray view " + quoted(stage_->file().string()) + ' ' + options_of(state_, stage_->scene().origin);
 }
 
 void Viewer::handle(const Event& event) {
@@ -100,25 +135,30 @@ void Viewer::handle(const Event& event) {
         has_dragged_ = false;
         x_ = button->x, y_ = button->y;
     } else if (std::get_if<ButtonUp>(&event)) {
-        if (button_ == Button::left && !has_dragged_) pick_at(x_, y_);
+        if (button_ == Button::left && !has_dragged_ && !is_double_) pick_at(x_, y_);
+        is_double_ = false;
         button_.reset();
         held_.clear();
     } else if (const auto* moved = std::get_if<Moved>(&event)) {
         drag(moved->x, moved->y);
     } else if (const auto* click = std::get_if<DoubleClick>(&event)) {
         center_at(click->x, click->y);
+        is_double_ = true;  // its second release is no click
     } else if (const auto* scrolled = std::get_if<Scrolled>(&event)) {
         state_.orbit = dollied(state_.orbit, std::pow(dolly_a_step, scrolled->steps));
     } else if (const auto* resized = std::get_if<Resized>(&event)) {
         if (resized->width == 0 || resized->height == 0) return;  // minimised: the last picture stays
         State state = state_;
         state.width = resized->width, state.height = resized->height;
+        state.picked.reset();  // which is a pixel of the former size
         set_state(state);
     } else if (const auto* dropped = std::get_if<Dropped>(&event)) {
         try {
             open(dropped->file);
             look_at_all();
             message_ = "shows " + dropped->file.string();
+        } catch (const DeviceLost&) {
+            throw;
         } catch (const Error& error) {
             message_ = error.what();
         }
@@ -156,9 +196,11 @@ void Viewer::pick_at(double x, double y) {
     const uvec2 pixel(static_cast<uint>(std::clamp(x, 0.0, state_.width - 1.0)),
                       static_cast<uint>(std::clamp(y, 0.0, state_.height - 1.0)));
     stage_->set_time(state_.seconds);
+    set_reach();
     pick_ = pick(*stage_, ray_of_pixel(state_.orbit, state_.width, state_.height, pixel));
     explanation_.clear();
     state_.picked = pixel;
+    state_.picked_from = state_.orbit;
     is_stale_ = true;
 }
 
@@ -170,6 +212,7 @@ const std::string& Viewer::explanation() {
 void Viewer::center_at(double x, double y) {
     const uvec2 pixel(static_cast<uint>(std::clamp(x, 0.0, state_.width - 1.0)),
                       static_cast<uint>(std::clamp(y, 0.0, state_.height - 1.0)));
+    set_reach();
     const Ray ray = ray_of_pixel(state_.orbit, state_.width, state_.height, pixel);
     const Hit hit = stage_->software().closest_hits(std::span(&ray, 1))[0];
     if (hit.hit) state_.orbit = centered(state_.orbit, dvec3(ray.origin) + dvec3(ray.direction) * double(hit.t));
@@ -226,7 +269,8 @@ void Viewer::press(const Key& key) {
         case Action::play: is_playing_ = !is_playing_ && stage_->animation_seconds() > 0; break;
         case Action::copy_camera: say_(options_of(state_.orbit, stage_->scene().origin)); break;
         case Action::copy_bookmark:
-            if (pick_ && (is_fault_of_hardware(pick_->hardware_class) || is_fault_of_ours(pick_->software_class))) {
+            if (pick_ && stage_->animation_seconds() == 0 &&
+                (is_fault_of_hardware(pick_->hardware_class) || is_fault_of_ours(pick_->software_class))) {
                 replay::write("view.replay.json", replay_of(*stage_, *pick_, version_));
                 say_("twinray verify --replay view.replay.json");
             }

@@ -40,10 +40,14 @@ class Viewer {
     const Raster& last() const { return raster_; }
     // Whether another frame would be better than the last.
     bool is_refining() const;
+    // Whether frames at rest are samples of Layer::path.
+    bool traces_paths() const { return state_.layer == Layer::path && state_.shown != Shown::difference; }
     bool is_closed() const { return is_closed_; }
 
     const State& state() const { return state_; }
     void set_state(const State& state);
+    // Goes on, with the plainest layer, after an error that the user is told.
+    void recover(const std::string& why);
     // Reads the file again if it has changed since; goes on with what there is where it cannot be read.
     void reload_if_changed();
     Stage& stage() { return *stage_; }
@@ -57,7 +61,6 @@ class Viewer {
     const std::string& message() const { return message_; }
     bool shows_panel() const { return shows_panel_; }
     bool shows_sheet() const { return shows_sheet_; }
-    double frame_seconds() const { return frame_seconds_; }
     uint samples() const;  // a pixel, of Layer::path
     double path_rays_a_second() const;
     double path_error() const;                                      // as PathPicture::error()
@@ -66,7 +69,9 @@ class Viewer {
   private:
     void open(const std::filesystem::path& file);
     void look_at_all();
+    void set_reach();
     void reload();
+    void forget_pick();
     void press(const Key& key);
     void drag(double x, double y);
     void fly();
@@ -117,7 +122,7 @@ class Viewer {
     std::string message_;
     bool shows_panel_ = true, shows_sheet_ = false, is_closed_ = false, is_playing_ = false;
     std::optional<Button> button_;
-    bool has_shift_ = false, has_dragged_ = false;
+    bool has_shift_ = false, has_dragged_ = false, is_double_ = false;
     double x_ = 0, y_ = 0;
     std::vector<std::string> held_;  // keys, while the right button is down
 };

@@ -11,9 +11,11 @@
 #include <deque>
 #include <fstream>
 #include <iostream>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "viewer/panels.h"
+#include "viewer/recent_files.h"
 #include "viewer/screen.h"
 
 namespace twinray::viewer {
@@ -83,6 +85,12 @@ class Glfw {
     Glfw& operator=(const Glfw&) = delete;
 
     GLFWwindow* window() const { return window_; }
+    // Which may be another in pixels than was asked for.
+    void tell_size() {
+        int width = 0, height = 0;
+        glfwGetFramebufferSize(window_, &width, &height);
+        events.push_back(Resized{static_cast<unsigned>(width), static_cast<unsigned>(height)});
+    }
     std::deque<Event> events;
 
   private:
@@ -151,14 +159,56 @@ struct Overlay {
     Screen& screen_;
 };
 
+// Events from a file, between frames.
+class Player {
+  public:
+    explicit Player(std::deque<Event> events) : events_(std::move(events)) {}
+    bool is_playing() const { return !events_.empty() || frames_ > 0; }
+    void play(Viewer& viewer) {
+        if (frames_ > 0) --frames_;
+        while (frames_ == 0 && !events_.empty()) {
+            const Event event = std::move(events_.front());
+            events_.pop_front();
+            if (const auto* frames = std::get_if<Frames>(&event)) {
+                frames_ = frames->count;
+            } else if (const auto* shot = std::get_if<Shot>(&event)) {
+                const Raster& picture = viewer.frame(false);
+                write_png(shot->file, picture.width, picture.height, picture.pixels);
+            } else {
+                viewer.handle(event);
+            }
+        }
+    }
+
+  private:
+    std::deque<Event> events_;
+    unsigned frames_ = 0;  // to pass before the next
+};
+
+// Events into a file, with the frames between them.
+class Recorder {
+  public:
+    explicit Recorder(const std::filesystem::path& file) {
+        if (!file.empty()) out_.open(file);
+    }
+    void write(const Event& event) {
+        if (!out_.is_open()) return;
+        if (frames_ > 0) out_ << text_of(Frames{std::exchange(frames_, 0)}) << '\n';
+        out_ << text_of(event) << std::endl;
+    }
+    void pass_frame() { ++frames_; }
+
+  private:
+    std::ofstream out_;
+    unsigned frames_ = 0;
+};
+
 }  // namespace
 
 int run_window(const WindowDesc& desc) {
     std::deque<Event> played;
     if (!desc.play.empty())
         for (Event& event : read_events(desc.play)) played.push_back(std::move(event));
-    std::ofstream record;
-    if (!desc.record.empty()) record.open(desc.record);
     Glfw glfw(desc.viewer.state.width, desc.viewer.state.height);
     Screen screen(glfw.window(), desc.context);
     Context context(screen.adopted());
@@ -168,36 +218,44 @@ int run_window(const WindowDesc& desc) {
         glfwSetClipboardString(glfw.window(), line.c_str());
     };
     Viewer viewer(context, viewer_desc);
+    keep_recent(recent_list(), viewer.stage().file());
     const Overlay overlay(glfw.window(), screen);
-    unsigned frames_to_pass = 0;
-    double looked = 0;  // for changes of the file
+    Player player(played);
+    Recorder recorder(desc.record);
+    glfw.tell_size();
+    double looked = 0;        // for changes of the file
+    bool has_failed = false;  // the frame before
     while (!viewer.is_closed() && !glfwWindowShouldClose(glfw.window())) {
-        if (viewer.is_refining() || !played.empty() || frames_to_pass > 0)
+        if (viewer.is_refining() || player.is_playing())
             glfwPollEvents();
         else
             glfwWaitEventsTimeout(idle_seconds);
-        for (; !glfw.events.empty(); glfw.events.pop_front()) {
-            if (record) record << text_of(glfw.events.front()) << std::endl;
-            viewer.handle(glfw.events.front());
+        try {
+            for (; !glfw.events.empty(); glfw.events.pop_front()) {
+                recorder.write(glfw.events.front());
+                viewer.handle(glfw.events.front());
+                if (std::holds_alternative<Dropped>(glfw.events.front()))
+                    keep_recent(recent_list(), viewer.stage().file());
+            }
+            player.play(viewer);
+            if (glfwGetTime() - looked > idle_seconds) {
+                viewer.reload_if_changed();
+                looked = glfwGetTime();
+            }
+            viewer.frame(true);
+            has_failed = false;
+        } catch (const DeviceLost&) {
+            throw;
+        } catch (const Error& error) {
+            if (has_failed) throw;
+            has_failed = true;
+            glfw.events.clear();
+            viewer.recover(error.what());
+            continue;
         }
-        if (frames_to_pass > 0) --frames_to_pass;
-        while (frames_to_pass == 0 && !played.empty()) {
-            const Event event = std::move(played.front());
-            played.pop_front();
-            if (const auto* frames = std::get_if<Frames>(&event))
-                frames_to_pass = frames->count;
-            else if (const auto* shot = std::get_if<Shot>(&event))
-                write_png(shot->file, viewer.last().width, viewer.last().height, viewer.last().pixels);
-            else
-                viewer.handle(event);
-        }
-        if (glfwGetTime() - looked > idle_seconds) {
-            viewer.reload_if_changed();
-            looked = glfwGetTime();
-        }
-        const Raster& picture = viewer.frame(true);
+        recorder.pass_frame();
         Overlay::draw(viewer);
-        screen.present(picture);
+        if (!screen.present(viewer.last())) glfwWaitEventsTimeout(idle_seconds);  // minimised
     }
     screen.wait();
     if (screen.validation_messages() > 0) std::cerr << screen.validation_messages() << " validation messages\n";

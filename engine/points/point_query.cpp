@@ -313,15 +313,14 @@ const std::vector<OpenEdge>& PointQuery::State::open_edges() {
         }
         first_item += static_cast<uint>(meshes[instance.mesh].triangles.size());
     }
-    edges = std::move(all);
-    grow(context, edges_on_device, "boundary edges", edges->size() * sizeof(OpenEdge));
+    grow(context, edges_on_device, "boundary edges", all.size() * sizeof(OpenEdge));
     Commands commands(context, "points boundary");
     {
         const auto pass = commands.pass("boundary upload");
-        commands.upload(edges_on_device, std::span<const OpenEdge>(*edges));
+        commands.upload(edges_on_device, std::span<const OpenEdge>(all));
     }
     commands.submit();
-    return *edges;
+    return edges.emplace(std::move(all));
 }
 
 void PointQuery::State::add_boundary(std::span<const dvec3> some, std::span<double> windings) {

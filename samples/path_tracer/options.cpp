@@ -183,6 +183,9 @@ ParsedOptions parse_options(int argc, char** argv) {
                               "--keep-film", "--mse-reference-image", "--aovs"})
         app.get_option("--cross-check")->excludes(other);
     app.get_option("--target-error")->excludes("--shard");
+    for (const char* other : {"--camera", "--variant", "--environment", "--max-depth", "--seed", "--cropwindow",
+                              "--filter", "--lens-radius", "--focal-distance", "--spp", "--time", "--target-error"})
+        app.get_option("--view")->excludes(other);
     add_sequence(app, result.options.sequence);
     result.exit_status = samples::parse(app, argc, argv, "path_tracer");
     return result;

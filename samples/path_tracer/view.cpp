@@ -41,6 +41,7 @@ std::vector<std::string> command_line(const Options& options) {
 void view(const Options& options) {
     if (options.scene.string().starts_with("builtin:"))
         samples::fail("--view: '", options.scene.string(), "' is no file");
+    if ((options.width == 0) != (options.height == 0)) samples::fail("--view: --width and --height go together");
     std::vector<std::string> words = command_line(options);
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());

@@ -114,6 +114,7 @@ def test_nothing_and_what_is_not_finite_are_shown_too():
         ({"fov_deg": 180}, "fov_deg: "),
         ({"up": (0, 0, 1), "eye": (0, 0, 9), "center": (0, 0, 0)}, "up: "),
         ({"eye": (0, np.nan, 9)}, "eye: "),
+        ({"eye": (1, 2, 3), "center": (1, 2, 3)}, "eye: "),
     ],
 )
 def test_bad_arguments_are_named(options, message):

@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -198,6 +199,26 @@ def test_files_far_from_0_keep_their_precision(tmp_path):
     assert scene.add_file(tmp_path / "cube.obj") == [0]
     found = scene.cast_rays(np.concatenate([offset + [0.3, 0.6, -1], [0, 0, 1]]))
     assert found["t_hit"] == pytest.approx(1, abs=1e-6)
+    bounds = np.array([offset, offset + 1])
+    scene.set_transform(0, np.eye(4))
+    assert scene.bounds() == pytest.approx(bounds, abs=1e-6)
+    moved = np.eye(4)
+    moved[:3, 3] = [0, 0, 5]
+    assert scene.add_instance(0, moved) == 1
+    assert scene.bounds() == pytest.approx(bounds + [[0, 0, 0], [0, 0, 5]], abs=1e-6)
+    scene.remove(1)
+    scene.update_vertices(0, vertices + offset)
+    assert scene.bounds() == pytest.approx(bounds, abs=1e-6)
+
+
+def test_threads_agree_on_the_origin():
+    offset = np.array([500000.25, 5600000.5, 120])
+    vertices, triangles = cube()
+    for _ in range(5):
+        scene = twinray.Scene(accel="sw")
+        with ThreadPoolExecutor(4) as pool:
+            list(pool.map(lambda i: scene.add_triangles(vertices + offset + [300 * i, 0, 0], triangles), range(8)))
+        assert scene.bounds() == pytest.approx(np.array([offset, offset + [2101, 1, 1]]), abs=1e-3)
 
 
 def test_winding_numbers_of_a_cube_without_its_lid():

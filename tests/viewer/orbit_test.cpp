@@ -16,6 +16,7 @@
 #include "viewer/keys.h"
 #include "twinray/glsl/vector_math.h"
 #include "viewer/layers.h"
+#include "viewer/recent_files.h"
 
 namespace twinray::viewer {
 namespace {
@@ -104,7 +105,7 @@ TEST(Orbit, OptionsShowTheSame) {
     const dvec3 origin(500000, 0, 0);
     const Orbit again = looking(dvec3(e[0], e[1], e[2]) - origin, dvec3(c[0], c[1], c[2]) - origin, UpAxis::y,
                                 fov * std::numbers::pi / 180);
-    EXPECT_NEAR(length(eye_of(again) - eye_of(orbit)), 0, 2e-3);  // nine digits of coordinates of 500 km
+    EXPECT_NEAR(length(eye_of(again) - eye_of(orbit)), 0, 1e-9);
     EXPECT_NEAR(again.vertical_fov, orbit.vertical_fov, 1e-8);
 }
 
@@ -134,7 +135,8 @@ TEST(Events, AreWhatTheirTextSays) {
     std::string again;
     for (const Event& event : read_events(file)) again += text_of(event) + '\n';
     EXPECT_EQ(again, text);
-    for (const char* bad : {"fly", "down both 1 2", "move 1", "resize 1 2 3", "scroll up", "frames -"}) {
+    for (const char* bad : {"fly", "down both 1 2", "move 1", "resize 1 2 3", "scroll up", "frames -", "frames -1",
+                            "key Foo", "keyup F99", "resize -1 5"}) {
         std::ofstream(file) << "key A\n" << bad << '\n';
         try {
             (void)read_events(file);
@@ -145,6 +147,30 @@ TEST(Events, AreWhatTheirTextSays) {
     }
     EXPECT_THROW((void)read_events("nowhere.txt"), Error);
     std::filesystem::remove(file);
+}
+
+TEST(RecentFiles, TheLastComesFirst) {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "twinray_recent_test";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    const std::filesystem::path list = folder / "state" / "recent";
+    EXPECT_TRUE(recent_files(list).empty());
+    for (int i = 0; i < 12; ++i) {
+        const std::filesystem::path file = folder / (std::to_string(i) + ".glb");
+        std::ofstream(file) << "x";
+        keep_recent(list, file);
+    }
+    keep_recent(list, folder / "9.glb");
+    std::vector<std::filesystem::path> files = recent_files(list);
+    ASSERT_EQ(files.size(), 8u);
+    EXPECT_EQ(files[0], folder / "9.glb");
+    EXPECT_EQ(files[1], folder / "11.glb");
+    EXPECT_EQ(files[2], folder / "10.glb");
+    EXPECT_EQ(files[3], folder / "8.glb");
+    std::filesystem::remove(folder / "11.glb");
+    EXPECT_EQ(recent_files(list)[1], folder / "10.glb");
+    keep_recent({}, folder / "9.glb");  // nowhere to keep it
+    std::filesystem::remove_all(folder);
 }
 
 TEST(Layers, AgreementIsOfWhatIsHit) {

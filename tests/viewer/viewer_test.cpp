@@ -221,6 +221,41 @@ TEST_F(ViewerTest, StepsAreMoreWhereThereIsSomethingToFind) {
     EXPECT_GE(viewer.values().scale->hi(), steps(on_first));
 }
 
+TEST_F(ViewerTest, OrthographicEyesStandOutside) {
+    Viewer viewer(context(), desc(Layer::normal));
+    viewer.handle(KeyDown{"5"});
+    for (int i = 0; i < 12; ++i) viewer.handle(Scrolled{1});
+    EXPECT_EQ(at(viewer.frame(false), uvec2(width / 2, height / 2)), background) << "between the boxes";
+    viewer.handle(ButtonDown{Button::left, 10, 10, true});
+    viewer.handle(Moved{10.0 + width, 10});
+    viewer.handle(ButtonUp{Button::left});
+    EXPECT_EQ(at(viewer.frame(false), uvec2(width / 2, height / 2)), (Rgb{128, 128, 255}))
+        << "the front, not the inside";
+}
+
+TEST_F(ViewerTest, ADoubleClickIsNoClick) {
+    Viewer viewer(context(), desc());
+    const auto click = [&] {
+        viewer.handle(ButtonDown{Button::left, on_first.x + 0.5, on_first.y + 0.5});
+        viewer.handle(ButtonUp{Button::left});
+    };
+    click();
+    const std::optional<Pick> first = viewer.picked();
+    viewer.handle(DoubleClick{on_first.x + 0.5, on_first.y + 0.5});
+    click();
+    EXPECT_EQ(viewer.picked()->ray.direction, first->ray.direction);
+    viewer.handle(KeyDown{"B"});
+    EXPECT_EQ(said.back().find("--pick"), std::string::npos) << "the pixel was another camera's: " << said.back();
+}
+
+TEST_F(ViewerTest, GoesOnAfterAnError) {
+    Viewer viewer(context(), desc(Layer::path));
+    viewer.recover("what failed");
+    (void)viewer.frame(true);
+    EXPECT_EQ(viewer.message(), "what failed");
+    EXPECT_EQ(viewer.state().layer, Layer::eyelight);
+}
+
 TEST_F(ViewerTest, LevelsAndCamerasAreOneAfterTheOther) {
     Viewer viewer(context(), desc(Layer::primitive));
     const Raster watertight = viewer.frame(false);

@@ -52,11 +52,11 @@ class Frame:
         """The origin as a tuple; None where the next mesh still says it."""
         return tuple(self.origin) if self._is_given or self._of_mesh else None
 
-    def keep_file(self, geometries, origin):
-        """Remember geometries of a file whose instances were counted from the origin."""
+    def keep_file(self, geometries, origin, has_nodes):
+        """Remember geometries of a file: where it has nodes they carry the origin, else its vertices do."""
         self.origin = origin
         for geometry in geometries:
-            self._of_mesh[geometry] = np.zeros(3)
+            self._of_mesh[geometry] = np.zeros(3) if has_nodes else origin
 
     def mesh_origin(self, geometry):
         """What a geometry's vertices are counted from."""

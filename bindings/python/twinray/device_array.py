@@ -42,13 +42,13 @@ class DeviceArray:
     dtype : numpy.dtype
     """
 
-    def __init__(self, memory: Any, shape: tuple[int, ...], dtype: np.dtype, offset: int = 0, step: int = 0) -> None:
+    def __init__(self, memory: Any, shape: tuple[int, ...], dtype: np.dtype, offset: int = 0) -> None:
         self._memory = memory
         self._imported: list[ImportedMemory] = []  # shared with fields
         self.shape = shape
         self.dtype = dtype
         self._offset = offset
-        self._strides = _strides(shape, step or dtype.itemsize)
+        self._strides = _strides(shape, dtype.itemsize)
 
     def __repr__(self) -> str:
         return f"<twinray.DeviceArray {self.shape} of {self.dtype}>"
@@ -60,7 +60,8 @@ class DeviceArray:
         if not isinstance(field, str) or self.dtype.fields is None or field not in self.dtype.fields:
             raise KeyError(f"{field!r} is no field of {self.dtype}; slices are for the package that sees the array")
         dtype, offset = self.dtype.fields[field][:2]
-        part = DeviceArray(self._memory, self.shape, dtype, self._offset + offset, self.dtype.itemsize)
+        part = DeviceArray(self._memory, self.shape + dtype.shape, dtype.base, self._offset + offset)
+        part._strides = self._strides + _strides(dtype.shape, dtype.base.itemsize)
         part._imported = self._imported
         return part
 
@@ -72,7 +73,11 @@ class DeviceArray:
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray:
         array = self._on_host()
-        return array.copy() if copy else array if dtype is None else array.astype(dtype, copy=False)
+        if dtype is not None and np.dtype(dtype) != array.dtype:
+            if copy is False:
+                raise ValueError(f"the array is of {array.dtype}; as {np.dtype(dtype)} it would be a copy")
+            return array.astype(dtype)
+        return array.copy() if copy else array
 
     def __dlpack__(self, **options: Any) -> Any:
         return self._on_host().__dlpack__(**options)
@@ -105,6 +110,9 @@ class DeviceArray:
         for imported in self._imported:
             imported.synchronize()
 
+    def _is_packed(self):
+        return self._offset == 0 and self._strides == _strides(self.shape, self.dtype.itemsize)
+
     def _on_host(self):
         if self._memory.mapped() is None:
             raise BufferError("the array lies in the GPU's memory; .numpy() copies it")
@@ -128,12 +136,12 @@ def trace(scene: Scene, rays: DeviceArray, hits: DeviceArray | None, any_hit: bo
     """See `Scene.trace`, which this is."""
     if not isinstance(rays, DeviceArray):
         raise TypeError(f"rays: {type(rays).__name__} is no DeviceArray; Scene.device_array makes one")
-    if rays.dtype != np.float32 or len(rays.shape) != 2 or rays.shape[1] != 8 or rays._offset:
+    if rays.dtype != np.float32 or len(rays.shape) != 2 or rays.shape[1] != 8 or not rays._is_packed():
         raise ValueError(f"rays: {rays.shape} of {rays.dtype}; wanted is (n, 8) of float32")
     hits = device_array(scene, len(rays), HIT) if hits is None else hits
     if not isinstance(hits, DeviceArray):
         raise TypeError(f"hits: {type(hits).__name__} is no DeviceArray; Scene.device_array makes one")
-    if hits.dtype != HIT or hits.shape != rays.shape[:1]:
+    if hits.dtype != HIT or hits.shape != rays.shape[:1] or not hits._is_packed():
         raise ValueError(f"hits: {hits.shape} of {hits.dtype}; wanted is {rays.shape[:1]} of twinray.HIT")
     rays.synchronize()
     hits.synchronize()

@@ -94,6 +94,8 @@ class _Camera:
         self.eye, self.center, self.up = eye, center, up
         self.fov, self.width, self.height = fov, width, height
         forward = center - eye
+        if not np.linalg.norm(forward) > 0:
+            raise ValueError(f"eye: {eye}; the camera stands at its center")
         self.forward = forward / np.linalg.norm(forward)
         right = np.cross(self.forward, up)
         if not np.linalg.norm(right) > 0:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import subprocess
+import threading
 import warnings
 from html import escape
 from typing import Any, Literal
@@ -60,6 +61,7 @@ class Scene:
         if device is None:
             device = os.environ.get("TWINRAY_DEVICE", "")
         self._frame = Frame(None if origin is None else vector_of(origin, "origin"))
+        self._adding = threading.Lock()  # the first mesh says the origin
         self._core = _core.Scene(accel, str(device), level)
         self._tell()
 
@@ -200,16 +202,19 @@ class Scene:
             vertex_positions, triangle_indices = arrays_of_mesh(vertex_positions)
         positions, _ = rows_of(vertex_positions, "vertex_positions", None, 3)
         triangles = indices_of(triangle_indices, "triangle_indices")
-        positions, matrix, mesh_origin = self._frame.placed(positions, matrix_of(transform, "transform"))
-        geometry = self._core.add(positions, triangles, matrix)
-        self._frame.keep(geometry, mesh_origin)
+        given = matrix_of(transform, "transform")
+        with self._adding:
+            positions, matrix, mesh_origin = self._frame.placed(positions, given)
+            geometry = self._core.add(positions, triangles, matrix)
+            self._frame.keep(geometry, mesh_origin)
         return geometry
 
     def add_instance(self, geometry: int, transform: ArrayLike | None = None) -> int:
         """Add the mesh of a geometry once more, without another copy; returns the number of the new geometry."""
         number, matrix = geometry_of(geometry, "geometry"), matrix_of(transform, "transform")
-        added = self._core.add_instance(number, self._frame.matrix_of(number, matrix))
-        self._frame.keep(added, self._frame.mesh_origin(number))
+        with self._adding:
+            added = self._core.add_instance(number, self._frame.matrix_of(number, matrix))
+            self._frame.keep(added, self._frame.mesh_origin(number))
         return added
 
     def add_file(self, file: str | os.PathLike[str]) -> list[int]:
@@ -220,8 +225,10 @@ class Scene:
         list of int
             A number for each instance; those of one mesh share it.
         """
-        added, origin = self._core.add_file(os.fspath(file), self._frame.fixed_origin())
-        self._frame.keep_file(added, np.array(origin))
+        name = os.fspath(file)
+        with self._adding:
+            added, origin = self._core.add_file(name, self._frame.fixed_origin())
+            self._frame.keep_file(added, np.array(origin), name.lower().endswith((".gltf", ".glb")))
         self._tell()
         return added
 

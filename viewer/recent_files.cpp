@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/recent_files.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+namespace twinray::viewer {
+namespace {
+
+constexpr std::size_t most_files = 8;
+
+}  // namespace
+
+std::filesystem::path recent_list() {
+    const char* state = std::getenv("XDG_STATE_HOME");
+    const char* home = std::getenv("HOME");
+    if (state && *state) return std::filesystem::path(state) / "twinray" / "recent";
+    if (home && *home) return std::filesystem::path(home) / ".local" / "state" / "twinray" / "recent";
+    return {};
+}
+
+std::vector<std::filesystem::path> recent_files(const std::filesystem::path& list) {
+    std::ifstream in(list);
+    std::vector<std::filesystem::path> files;
+    std::error_code none;
+    for (std::string line; files.size() < most_files && std::getline(in, line);)
+        if (std::filesystem::is_regular_file(line, none)) files.emplace_back(line);
+    return files;
+}
+
+void keep_recent(const std::filesystem::path& list, const std::filesystem::path& file) {
+    if (list.empty()) return;
+    std::error_code none;
+    const std::filesystem::path shown = std::filesystem::absolute(file, none);
+    std::vector<std::filesystem::path> files = recent_files(list);
+    std::erase(files, shown);
+    files.insert(files.begin(), shown);
+    files.resize(std::min(files.size(), most_files));
+    std::filesystem::create_directories(list.parent_path(), none);
+    std::ofstream out(list);
+    for (const std::filesystem::path& each : files) out << each.string() << '\n';
+}
+
+}  // namespace twinray::viewer

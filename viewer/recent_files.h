@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// The files that were shown last, from one run to the next.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace twinray::viewer {
+
+// Where they are kept: twinray/recent in $XDG_STATE_HOME, else in .local/state of $HOME; empty: nowhere.
+std::filesystem::path recent_list();
+// The last one first, at most eight; those that are gone are left out.
+std::vector<std::filesystem::path> recent_files(const std::filesystem::path& list);
+// Puts a file first. What cannot be written is not kept: no error.
+void keep_recent(const std::filesystem::path& list, const std::filesystem::path& file);
+
+}  // namespace twinray::viewer
