@@ -256,7 +256,9 @@ void Viewer::draw_over(FacePicture& picture) {
     if (state_.tree_depth) {
         const std::vector<Box> boxes = boxes_at(stage_->scene(), stage_->twin(), *state_.tree_depth);
         tree_boxes_ = boxes.size();
-        draw_strokes(picture, strokes_of(boxes));
+        tree_area_ = 0;
+        for (const Box& box : boxes) tree_area_ += box.share;
+        draw_strokes(picture, strokes_of(boxes, state_.has_area_colors ? BoxColor::area : BoxColor::kind));
     }
     draw_strokes(picture, segments_);
     Raster& raster = picture.raster;
@@ -307,7 +309,9 @@ std::vector<std::string> Viewer::figures() const {
                                  ? text(static_cast<double>(std::lround(1000 * path_error())) / 10, " %")
                                  : "?"));
     if (state_.shown == Shown::difference) lines.push_back(text(disagreements_, " pixels where the two disagree"));
-    if (state_.tree_depth) lines.push_back(text("level ", *state_.tree_depth, ": ", tree_boxes_, " boxes"));
+    if (state_.tree_depth)
+        lines.push_back(text("level ", *state_.tree_depth, ": ", tree_boxes_, " boxes, together ",
+                             static_cast<double>(std::lround(100 * tree_area_)) / 100, " of the root's area"));
     return lines;
 }
 

@@ -34,6 +34,7 @@ constexpr Key table[] = {
     {"D", Action::difference, "where the two disagree"},
     {"]", Action::tree_deeper, "boxes of the tree, a level deeper"},
     {"[", Action::tree_higher, "a level higher, and off"},
+    {"T", Action::tree_areas, "boxes in the colour of their share of the root's area (SAH)"},
     {"-", Action::darker, "half as bright; an hour earlier"},
     {"=", Action::brighter, "twice as bright; an hour later"},
     {"Space", Action::play, "play the animation"},
@@ -65,6 +66,7 @@ std::string state_of(const Key& key, const State& state) {
         case Action::next_level: return std::string(name_of(state.level));
         case Action::wipe: return on_if(state.shown == Shown::wipe);
         case Action::difference: return on_if(state.shown == Shown::difference);
+        case Action::tree_areas: return on_if(state.has_area_colors);
         case Action::orthographic: return on_if(state.orbit.is_orthographic);
         case Action::tree_deeper: return state.tree_depth ? "level " + std::to_string(*state.tree_depth) : "";
         default: return "";

@@ -26,6 +26,7 @@ enum class Action : std::uint8_t {
     difference,
     tree_deeper,
     tree_higher,
+    tree_areas,
     darker,
     brighter,
     play,

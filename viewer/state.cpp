@@ -24,6 +24,7 @@ std::string options_of(const State& state, const dvec3& origin) {
     if (state.shown != usual.shown) out << " --show " << name_of(state.shown);
     if (state.shown == Shown::wipe) out << " --wipe " << state.wipe;
     if (state.level != usual.level) out << " --level " << name_of(state.level);
+    if (state.has_area_colors) out << " --tree-areas";
     if (state.tree_depth) out << " --tree-depth " << *state.tree_depth;
     if (state.width != usual.width || state.height != usual.height)
         out << " --size " << state.width << ' ' << state.height;

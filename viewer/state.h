@@ -50,6 +50,7 @@ struct State {
     Shown shown = Shown::software;
     Level level = Level::watertight;
     float wipe = 0.5f;                // where the wipe is, of the width
+    bool has_area_colors = false;     // boxes of the tree have the colour of their area, see BoxColor
     std::optional<int> tree_depth;    // boxes of that level of the software tree are drawn; 0: the root
     uint width = 1280, height = 720;  // pixels
     std::optional<uvec2> picked;      // a pixel

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/tree_lines.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <twinray/scene.h>
+
+#include "validation/picture/color_map.h"
 
 namespace twinray::viewer {
 namespace {
@@ -19,6 +24,7 @@ class Collector {
     void scene_level(int depth) {
         const SwGeometry tree = twin_.scene_nodes();
         if (tree.bvh.leaf_count == 0) return;
+        root_area_ = area_of(dvec3(tree.bvh.lo), dvec3(tree.bvh.hi));
         if (depth == 0 && tree.bvh.leaf_count > 1) return add(world_box(tree.bvh.lo, tree.bvh.hi), true);
         if (tree.bvh.leaf_count == 1) return instance(0, depth);
         descend(tree, tree.bvh.root, depth, nullptr, 1);
@@ -27,7 +33,13 @@ class Collector {
 
   private:
     void add(const Bounds& box, bool is_of_instances) {
-        if (boxes_.size() < most_) boxes_.push_back({dvec3(box.lo), dvec3(box.hi), is_of_instances});
+        if (boxes_.size() >= most_) return;
+        const dvec3 lo(box.lo), hi(box.hi);
+        boxes_.push_back({lo, hi, is_of_instances, root_area_ > 0 ? area_of(lo, hi) / root_area_ : 1});
+    }
+    static double area_of(const dvec3& lo, const dvec3& hi) {
+        const double x = hi.x - lo.x, y = hi.y - lo.y, z = hi.z - lo.z;
+        return x * y + y * z + z * x;
     }
     static Bounds world_box(vec3 lo, vec3 hi) {
         Bounds box;
@@ -76,6 +88,7 @@ class Collector {
     const reference::Scene& twin_;
     std::size_t most_;
     std::vector<Box> boxes_;
+    double root_area_ = 0;
 };
 
 }  // namespace
@@ -86,7 +99,11 @@ std::vector<Box> boxes_at(const Scene& scene, const reference::Scene& twin, int 
     return collector.take();
 }
 
-std::vector<Stroke> strokes_of(const std::vector<Box>& boxes) {
+std::vector<Stroke> strokes_of(const std::vector<Box>& boxes, BoxColor color) {
+    const auto color_of = [&](const Box& box) {
+        if (color == BoxColor::kind) return box.is_of_instances ? scene_color : geometry_color;
+        return color_at(ColorMap::magnitude, 1 + std::log10(std::max(box.share, 1e-4)) / 4);
+    };
     std::vector<Stroke> strokes;
     for (const Box& box : boxes) {
         const auto corner = [&](unsigned i) {
@@ -98,7 +115,7 @@ std::vector<Stroke> strokes_of(const std::vector<Box>& boxes) {
                     strokes.push_back({.from = corner(i),
                                        .to = corner(i | axis),
                                        .radius = 0.5f,
-                                       .color = box.is_of_instances ? scene_color : geometry_color,
+                                       .color = color_of(box),
                                        .behind = 0.15f});
     }
     return strokes;

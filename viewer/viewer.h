@@ -110,6 +110,7 @@ class Viewer {
     std::optional<ValuesKey> values_of_;  // what values_ were computed for
     std::uint64_t disagreements_ = 0;
     std::size_t tree_boxes_ = 0;
+    double tree_area_ = 0;          // of all of them, in areas of the root
     std::size_t camera_ = 0;        // of the file, that was looked through last
     double rays_a_second_ = 0;      // of the last frame's hits
     std::vector<Stroke> segments_;  // where triangles cross, of Layer::collisions

@@ -53,6 +53,7 @@ BOOKMARKS = {
     "geometry": ["--layer", "geometry"],
     "primitive": ["--layer", "primitive", "--pick", "80", "40"],
     "depth": ["--layer", "depth", "--tree-depth", "3"],
+    "areas": ["--layer", "eyelight", "--tree-depth", "5", "--tree-areas"],
     "distance": ["--layer", "distance"],
     "light": ["--layer", "light", "--hour", "9"],
     "collisions": ["--layer", "collisions"],

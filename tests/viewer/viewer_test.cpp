@@ -203,6 +203,13 @@ TEST_F(ViewerTest, TreesAreDrawnLevelByLevel) {
         EXPECT_GE(box.lo.x, root.lo.x - 0.01 * (root.hi.x - root.lo.x));
         EXPECT_LE(box.hi.x, root.hi.x + 0.01 * (root.hi.x - root.lo.x));
     }
+    EXPECT_EQ(root.share, 1);
+    for (const Box& box : boxes(3)) {
+        const dvec3 size = box.hi - box.lo, all = root.hi - root.lo;
+        const double area = size.x * size.y + size.y * size.z + size.z * size.x;
+        EXPECT_NEAR(box.share, area / (all.x * all.y + all.y * all.z + all.z * all.x), 1e-12);
+    }
+    EXPECT_NE(strokes_of(boxes(3), BoxColor::area)[0].color, strokes_of(boxes(3), BoxColor::kind)[0].color);
     EXPECT_LE(boxes_at(viewer.stage().scene(), viewer.stage().twin(), 20, 10).size(), 10u);
     viewer.handle(KeyDown{"["});
     EXPECT_FALSE(viewer.state().tree_depth);
