@@ -210,6 +210,9 @@ Command view_command() {
          {.name = "--hour",
           .value = number(options->state.hour, {.least = 6, .most = 18}),
           .help = "of the day, for --layer light"},
+         {.name = "--all-features",
+          .value = flag(options->state.has_all_features),
+          .help = "of --layer path: kernels that have what any scene may need, to see what leaving out saves"},
          {.name = "--exposure",
           .value = number(options->state.exposure, {.least = -32, .most = 32}),
           .help = "of --layer path, in stops"}}};

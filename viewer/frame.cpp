@@ -24,7 +24,7 @@ constexpr Rgb ours = {213, 94, 0}, of_driver = {204, 121, 167}, harmless = {0, 1
 // Whether samples of one are none of the other.
 bool is_another_picture(const State& a, const State& b) {
     return a.orbit != b.orbit || a.layer != b.layer || a.shown != b.shown || a.width != b.width ||
-           a.height != b.height || a.seconds != b.seconds;
+           a.height != b.height || a.seconds != b.seconds || a.has_all_features != b.has_all_features;
 }
 
 bool has_face_values(Layer layer) {
@@ -144,8 +144,8 @@ Raster Viewer::shaded(Shown shown, const Traced& traced, bool is_moving) {
     const Scene& scene = stage_->scene();
     if (state_.layer == Layer::path && !is_moving) {
         std::unique_ptr<PathPicture>& path = paths_.at(static_cast<std::size_t>(shown));
-        if (!path || path->version() != stage_->version())
-            path = std::make_unique<PathPicture>(context_, scene, stage_->version());
+        if (!path || !path->is_of(stage_->version(), state_.has_all_features))
+            path = std::make_unique<PathPicture>(context_, scene, stage_->version(), state_.has_all_features);
         path->look(state_.orbit, traced.width, traced.height);
         path->add_sample(accel_of(shown));
         return path->picture(state_.exposure);
@@ -299,6 +299,8 @@ std::vector<std::string> Viewer::figures() const {
                              " KiB scene, ", hardware->instances >> 10, " KiB instances"));
     else
         lines.push_back("hardware: none: " + stage_->why_no_hardware());
+    if (stage_->refit_seconds() > 0)
+        lines.push_back(text("posed and refitted in ", std::lround(1000 * stage_->refit_seconds()), " ms"));
     lines.push_back(text(state_.width, " x ", state_.height, ", ", std::lround(1000 * frame_seconds_),
                          " ms a frame; hits at level ", name_of(state_.level), ": ",
                          static_cast<double>(std::lround(1e-5 * rays_a_second_)) / 10, " Mrays/s with copies"));

@@ -35,6 +35,7 @@ constexpr Key table[] = {
     {"]", Action::tree_deeper, "boxes of the tree, a level deeper"},
     {"[", Action::tree_higher, "a level higher, and off"},
     {"T", Action::tree_areas, "boxes in the colour of their share of the root's area (SAH)"},
+    {"A", Action::all_features, "paths by kernels for every scene, or for what this one needs"},
     {"-", Action::darker, "half as bright; an hour earlier"},
     {"=", Action::brighter, "twice as bright; an hour later"},
     {"Space", Action::play, "play the animation"},
@@ -67,6 +68,7 @@ std::string state_of(const Key& key, const State& state) {
         case Action::wipe: return on_if(state.shown == Shown::wipe);
         case Action::difference: return on_if(state.shown == Shown::difference);
         case Action::tree_areas: return on_if(state.has_area_colors);
+        case Action::all_features: return on_if(state.has_all_features);
         case Action::orthographic: return on_if(state.orbit.is_orthographic);
         case Action::tree_deeper: return state.tree_depth ? "level " + std::to_string(*state.tree_depth) : "";
         default: return "";

@@ -27,6 +27,7 @@ enum class Action : std::uint8_t {
     tree_deeper,
     tree_higher,
     tree_areas,
+    all_features,
     darker,
     brighter,
     play,

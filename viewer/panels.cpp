@@ -31,6 +31,7 @@ void settings(Viewer& viewer) {
     int depth = state.tree_depth.value_or(-1);
     if (ImGui::SliderInt("tree level", &depth, -1, 32))
         state.tree_depth = depth < 0 ? std::nullopt : std::optional(depth);
+    if (state.layer == Layer::path) ImGui::Checkbox("kernels for every scene", &state.has_all_features);
     if (state.layer == Layer::path) ImGui::SliderFloat("exposure", &state.exposure, -8, 8, "%.1f stops");
     if (state.layer == Layer::light) {
         auto hour = static_cast<float>(state.hour);

@@ -14,11 +14,17 @@ constexpr uint most_samples = 1 << 20;
 
 }  // namespace
 
-PathPicture::PathPicture(Context& context, const Scene& scene, std::uint64_t version)
-    : context_(context), version_(version), lights_(path_tracer::collect_lights(scene)) {
+PathPicture::PathPicture(Context& context, const Scene& scene, std::uint64_t version, bool has_all_features)
+    : context_(context),
+      version_(version),
+      has_all_features_(has_all_features),
+      lights_(path_tracer::collect_lights(scene)) {
     if (!path_tracer::has_lamps(scene))
         environment_ = std::make_unique<path_tracer::EnvironmentMap>(path_tracer::default_sky());
-    device_scene_ = std::make_unique<path_tracer::DeviceScene>(context, scene, lights_, environment_.get());
+    device_scene_ = std::make_unique<path_tracer::DeviceScene>(
+        context, scene, lights_, environment_.get(),
+        has_all_features ? path_tracer::all_features(scene)
+                         : path_tracer::features_of(scene, lights_, environment_.get()));
 }
 
 void PathPicture::look(const Orbit& orbit, uint width, uint height) {

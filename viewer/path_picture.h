@@ -16,9 +16,11 @@ namespace twinray::viewer {
 class PathPicture {
   public:
     // Compiles and uploads what the scene needs, as it is now: `version` tells it from how it is later. It must outlive
-    // this.
-    PathPicture(Context& context, const Scene& scene, std::uint64_t version);
-    std::uint64_t version() const { return version_; }
+    // this. has_all_features: compiles what any scene may need, to see what leaving out saves.
+    PathPicture(Context& context, const Scene& scene, std::uint64_t version, bool has_all_features);
+    bool is_of(std::uint64_t version, bool has_all_features) const {
+        return version_ == version && has_all_features_ == has_all_features;
+    }
 
     // Begins anew where what is seen differs from what was.
     void look(const Orbit& orbit, uint width, uint height);
@@ -39,6 +41,7 @@ class PathPicture {
 
     Context& context_;
     std::uint64_t version_;
+    bool has_all_features_;
     path_tracer::LocalLights lights_;
     std::unique_ptr<path_tracer::EnvironmentMap> environment_;
     std::unique_ptr<path_tracer::DeviceScene> device_scene_;

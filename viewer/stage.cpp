@@ -93,6 +93,7 @@ double Stage::animation_seconds() const {
 
 void Stage::set_time(double seconds) {
     if (animation_seconds() == 0 || time_ == seconds) return;
+    const auto start = std::chrono::steady_clock::now();
     const Pose pose = pose_at(*scene_.rig, 0, seconds);
     pose_scene(scene_, pose);
     const std::vector<uint> meshes = deformed_meshes(*scene_.rig);
@@ -105,6 +106,7 @@ void Stage::set_time(double seconds) {
     move(software_, scene_, software_handles_, transforms);
     if (hardware_) move(*hardware_, scene_, hardware_handles_, transforms);
     context_.wait_for_gpu();
+    refit_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     bounds_ = bounds_of(scene_);
     time_ = seconds;
     ++version_;

@@ -34,6 +34,7 @@ class Stage {
     }
     double build_seconds() const { return build_seconds_; }  // of both, with uploads
 
+    double refit_seconds() const { return refit_seconds_; }  // of the last pose, on both; 0: there was none
     // Whether an animation moves it, and how long the first one lasts.
     double animation_seconds() const;
     // Poses the scene; both accelerators follow.
@@ -58,7 +59,7 @@ class Stage {
     std::unique_ptr<HwTlas> hardware_;
     std::string why_no_hardware_;
     std::vector<AccelHandle> software_handles_, hardware_handles_;  // by mesh with instances
-    double build_seconds_ = 0;
+    double build_seconds_ = 0, refit_seconds_ = 0;
     std::optional<double> time_;  // of the pose; none: not posed yet
     std::uint64_t version_ = 0;
     std::unique_ptr<Reference> reference_;

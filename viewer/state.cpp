@@ -32,6 +32,7 @@ std::string options_of(const State& state, const dvec3& origin) {
         out << " --pick " << state.picked->x << ' ' << state.picked->y;
     if (state.seconds != usual.seconds) out << " --time " << state.seconds;
     if (state.layer == Layer::light) out << " --hour " << state.hour;
+    if (state.has_all_features) out << " --all-features";
     if (state.exposure != usual.exposure) out << " --exposure " << state.exposure;
     return out.str();
 }

@@ -57,6 +57,7 @@ struct State {
     Orbit picked_from;                // as which the camera then stood
     double seconds = 0;               // of the animation
     double hour = 12;                 // of the day, for Layer::light
+    bool has_all_features = false;    // Layer::path has kernels for every scene, not only for what this one needs
     float exposure = 0;               // in stops, of Layer::path
 
     bool operator==(const State&) const = default;

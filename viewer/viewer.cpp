@@ -258,6 +258,7 @@ void Viewer::press(const Key& key) {
                 --*state_.tree_depth;
             break;
         case Action::tree_areas: state_.has_area_colors = !state_.has_area_colors; break;
+        case Action::all_features: state_.has_all_features = !state_.has_all_features; break;
         case Action::darker:
         case Action::brighter: {
             const double step = key.action == Action::brighter ? 1 : -1;

@@ -183,6 +183,12 @@ TEST_F(ViewerTest, PathsGetBetterAndBeginAnew) {
     for (int i = 0; i < 4; ++i) (void)viewer.frame(true);
     EXPECT_EQ(viewer.samples(), 4u);
     EXPECT_TRUE(viewer.is_refining());
+    const std::vector<Rgb> needed = viewer.last().pixels;
+    viewer.handle(KeyDown{"A"});
+    (void)viewer.frame(true);
+    for (int i = 0; i < 4; ++i) (void)viewer.frame(true);
+    EXPECT_EQ(viewer.samples(), 4u);
+    EXPECT_EQ(viewer.last().pixels, needed) << "what is left out is not seen";
     viewer.handle(Scrolled{1});
     (void)viewer.frame(false);
     EXPECT_EQ(viewer.samples(), 1u);
