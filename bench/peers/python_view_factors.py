@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """View factors of packages of Python at equal time, in a room in which a cabinet hides cells from each other:
 
