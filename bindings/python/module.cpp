@@ -14,19 +14,12 @@
 namespace twinray::python {
 namespace {
 
-using RayRows = Rows<float, 6>;
+using RayArray = Rows<float, 6>;
 using PointRows = Rows<double, 3>;
 using TransformRows = nb::ndarray<const float, nb::shape<3, 4>, nb::c_contig, nb::device::cpu>;
 
-std::vector<Ray> rays_of(const RayRows& rows, float t_near, float t_far) {
-    std::vector<Ray> rays(rows.shape(0));
-    in_parts(rays.size(), [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) {
-            const float* row = rows.data() + 6 * i;
-            rays[i] = {vec3(row[0], row[1], row[2]), t_near, vec3(row[3], row[4], row[5]), t_far};
-        }
-    });
-    return rays;
+RayRows rows_of(const RayArray& array, float t_near, float t_far) {
+    return {{array.data(), 6 * array.shape(0)}, t_near, t_far};
 }
 
 Transform transform_of(const TransformRows& matrix) {
@@ -91,14 +84,14 @@ uint add(Scene& scene, const Rows<float, 3>& positions, const Rows<uint, 3>& tri
     return unlocked([&] { return scene.add(std::move(mesh), placed); });
 }
 
-nb::dict cast(Scene& scene, const RayRows& rows, float t_near, float t_far, bool with_normals) {
-    const std::vector<Ray> rays = rays_of(rows, t_near, t_far);
-    return dict_of(unlocked([&] { return scene.cast(rays, with_normals); }));
+nb::dict cast(Scene& scene, const RayArray& array, float t_near, float t_far, bool with_normals) {
+    const RayRows rows = rows_of(array, t_near, t_far);
+    return dict_of(unlocked([&] { return scene.cast(rows, with_normals); }));
 }
 
-nb::tuple list(Scene& scene, const RayRows& rows, float t_near, float t_far, bool with_normals) {
-    const std::vector<Ray> rays = rays_of(rows, t_near, t_far);
-    Listed found = unlocked([&] { return scene.list(rays, with_normals); });
+nb::tuple list(Scene& scene, const RayArray& array, float t_near, float t_far, bool with_normals) {
+    const RayRows rows = rows_of(array, t_near, t_far);
+    Listed found = unlocked([&] { return scene.list(rows, with_normals); });
     return nb::make_tuple(given<std::uint64_t>(std::move(found.first)), dict_of(std::move(found.hits)));
 }
 
@@ -143,14 +136,14 @@ void bind_scene(nb::module_& m) {
              })
         .def("cast", &cast)
         .def("occlusions",
-             [](Scene& scene, const RayRows& rows, float t_near, float t_far) {
-                 const std::vector<Ray> rays = rays_of(rows, t_near, t_far);
-                 return given<bool>(unlocked([&] { return scene.occlusions(rays); }));
+             [](Scene& scene, const RayArray& array, float t_near, float t_far) {
+                 const RayRows rows = rows_of(array, t_near, t_far);
+                 return given<bool>(unlocked([&] { return scene.occlusions(rows); }));
              })
         .def("counts",
-             [](Scene& scene, const RayRows& rows, float t_near, float t_far) {
-                 const std::vector<Ray> rays = rays_of(rows, t_near, t_far);
-                 return given<int>(unlocked([&] { return scene.counts(rays); }));
+             [](Scene& scene, const RayArray& array, float t_near, float t_far) {
+                 const RayRows rows = rows_of(array, t_near, t_far);
+                 return given<int>(unlocked([&] { return scene.counts(rows); }));
              })
         .def("list", &list)
         .def("closest",
@@ -194,9 +187,8 @@ nb::tuple bound_centroid(Scene& scene, const std::array<double, 3>& direction, s
     return nb::make_tuple(tuple(found.mean), tuple(found.standard_error), found.point_count, found.ray_count);
 }
 
-nb::dict bound_verify(Scene& scene, const RayRows& rows, std::size_t count, std::uint64_t seed) {
-    constexpr float infinite = std::numeric_limits<float>::infinity();
-    std::vector<Ray> rays = rays_of(rows, 0, infinite);
+nb::dict bound_verify(Scene& scene, const RayArray& array, std::size_t count, std::uint64_t seed) {
+    std::vector<Ray> rays = rays_of({{array.data(), 6 * array.shape(0)}});
     VerifyResult result = unlocked([&] { return verify(scene, std::move(rays), count, seed); });
     nb::dict counts, found;
     for (std::size_t i = 0; i < hit_class_count; ++i) {

@@ -54,7 +54,22 @@ dvec3 world_vertex(const Transform& transform, vec3 p) {
     return world;
 }
 
+void fill(std::span<Ray> rays, const RayRows& rows) {
+    in_parts(rays.size(), [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+            const float* row = rows.numbers.data() + 6 * i;
+            rays[i] = {vec3(row[0], row[1], row[2]), rows.t_near, vec3(row[3], row[4], row[5]), rows.t_far};
+        }
+    });
+}
+
 }  // namespace
+
+std::vector<Ray> rays_of(const RayRows& rows) {
+    std::vector<Ray> rays(rows.size());
+    fill(rays, rows);
+    return rays;
+}
 
 Device::Device(const std::string& request) : context(desc_for(request, log)) {}
 
@@ -221,14 +236,21 @@ Cast Scene::cast_of(std::span<const Hit> hits, bool with_normals) const {
     return found;
 }
 
-Cast Scene::cast(std::span<const Ray> rays, bool with_normals) {
-    const Lock lock(device_->mutex);
-    return cast_of(accel_->closest_hits(rays, {.level = level_}), with_normals);
+std::span<const Ray> Scene::keep(const RayRows& rows) {
+    if (rays_.size() < rows.size()) rays_.resize(rows.size());
+    const std::span<Ray> rays(rays_.data(), rows.size());
+    fill(rays, rows);
+    return rays;
 }
 
-Column<bool> Scene::occlusions(std::span<const Ray> rays) {
+Cast Scene::cast(const RayRows& rows, bool with_normals) {
     const Lock lock(device_->mutex);
-    const std::vector<Hit> hits = accel_->any_hits(rays, {.level = level_});
+    return cast_of(accel_->closest_hits(keep(rows), {.level = level_}), with_normals);
+}
+
+Column<bool> Scene::occlusions(const RayRows& rows) {
+    const Lock lock(device_->mutex);
+    const std::vector<Hit> hits = accel_->any_hits(keep(rows), {.level = level_});
     Column<bool> is_hit(hits.size());
     in_parts(hits.size(), [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) is_hit[i] = hits[i].hit != 0;
@@ -236,22 +258,22 @@ Column<bool> Scene::occlusions(std::span<const Ray> rays) {
     return is_hit;
 }
 
-HitsOfRays Scene::all_hits(std::span<const Ray> rays) {
+HitsOfRays Scene::all_hits(const RayRows& rows) {
     if (!all_hits_) all_hits_ = std::make_unique<AllHits>(*accel_);
-    return (*all_hits_)(rays);
+    return (*all_hits_)(keep(rows));
 }
 
-Column<int> Scene::counts(std::span<const Ray> rays) {
+Column<int> Scene::counts(const RayRows& rows) {
     const Lock lock(device_->mutex);
-    const HitsOfRays found = all_hits(rays);
-    Column<int> counts(rays.size());
-    for (std::size_t i = 0; i < rays.size(); ++i) counts[i] = static_cast<int>(found.of(i).size());
+    const HitsOfRays found = all_hits(rows);
+    Column<int> counts(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) counts[i] = static_cast<int>(found.of(i).size());
     return counts;
 }
 
-Listed Scene::list(std::span<const Ray> rays, bool with_normals) {
+Listed Scene::list(const RayRows& rows, bool with_normals) {
     const Lock lock(device_->mutex);
-    HitsOfRays found = all_hits(rays);
+    HitsOfRays found = all_hits(rows);
     return {std::move(found.first), cast_of(found.hits, with_normals)};
 }
 

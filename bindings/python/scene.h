@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -46,6 +47,15 @@ struct Places {
     Column<Numbers3> normal;  // unit, of the triangle in world space; empty unless asked for
 };
 
+// Rays as Python has them: origin and direction, one after the other, with an interval for all.
+struct RayRows {
+    std::span<const float> numbers;  // six a ray
+    float t_near = 0, t_far = std::numeric_limits<float>::infinity();
+
+    std::size_t size() const { return numbers.size() / 6; }
+};
+std::vector<Ray> rays_of(const RayRows& rows);
+
 // By ray; t is infinite for a miss.
 struct Cast {
     Column<float> t;
@@ -86,10 +96,10 @@ class Scene {
     std::vector<std::uint64_t> first_faces() const;  // by number, and their count at the end
     Bounds bounds();                                 // in world space
 
-    Cast cast(std::span<const Ray> rays, bool with_normals);
-    Column<bool> occlusions(std::span<const Ray> rays);
-    Column<int> counts(std::span<const Ray> rays);
-    Listed list(std::span<const Ray> rays, bool with_normals);
+    Cast cast(const RayRows& rows, bool with_normals);
+    Column<bool> occlusions(const RayRows& rows);
+    Column<int> counts(const RayRows& rows);
+    Listed list(const RayRows& rows, bool with_normals);
 
     Nearest closest(std::span<const dvec3> points, bool with_normals);
     std::vector<double> winding_numbers(std::span<const dvec3> points);  // generalized ones, where meshes are open
@@ -133,7 +143,8 @@ class Scene {
     // None: 2^32 - 1 both.
     void put(const Places& places, std::size_t i, uint geometry, uint primitive, Numbers2 uv) const;
     Cast cast_of(std::span<const Hit> hits, bool with_normals) const;
-    HitsOfRays all_hits(std::span<const Ray> rays);
+    std::span<const Ray> keep(const RayRows& rows);  // valid until the next call
+    HitsOfRays all_hits(const RayRows& rows);
     PointQuery& points();
 
     std::shared_ptr<Device> device_;
@@ -141,6 +152,7 @@ class Scene {
     AccelChoice choice_;
     std::unique_ptr<AbstractAccel> accel_;
     std::vector<std::optional<Part>> parts_;  // by number
+    std::vector<Ray> rays_;  // of the last call: memory that is touched for the first time costs as much as its rays
     std::unique_ptr<AllHits> all_hits_;
     std::unique_ptr<PointQuery> points_;
     Progress progress_;
