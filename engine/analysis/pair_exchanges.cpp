@@ -79,7 +79,7 @@ void sample(std::vector<Sampling>& samplings, PairSampler& sampler) {
             const PlannedPair& pair = *sampling.pair;
             const double share = static_cast<double>(pair.sampled.size()) * (pair.i == pair.j ? 2 : 1);
             for (const SampledPair& faces : pair.sampled)
-                pairs.push_back({faces.a, faces.b, faces.distance, share, sampling.rounds, next, &sampling.sums});
+                pairs.push_back({&faces, share, sampling.rounds, next, &sampling.sums});
             sampling.rounds = next;
         }
         if (pairs.empty()) return;

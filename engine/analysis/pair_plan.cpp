@@ -15,11 +15,9 @@
 namespace twinray {
 namespace {
 
-Polygon64 polygon_of(const Scene& scene, uint instance, const Mesh& mesh, uvec3 triangle) {
-    const Transform& transform = scene.instances[instance].transform;
+Polygon64 polygon_of(const Transform& transform, const Mesh& mesh, uvec3 triangle) {
     const auto point = [&](uint vertex) { return in_world(transform, mesh.positions[vertex]); };
-    const Polygon64 polygon(point(triangle.x), point(triangle.y), point(triangle.z));
-    return determinant(transform) < 0 ? polygon.flipped() : polygon;
+    return {point(triangle.x), point(triangle.y), point(triangle.z)};
 }
 
 // What is known of two faces.
@@ -120,7 +118,7 @@ class Planner {
                                    faces.gap_over_size, " of their longest edge; areas are sampled from ",
                                    least_gap_asked_for, " on");
                 else
-                    pair.sampled.push_back(sampled(faces));
+                    sample(faces, pair);
                 return refusal.empty();
             case PairEstimator::automatic: break;
         }
@@ -139,8 +137,33 @@ class Planner {
             }
         }
         if (!is_far) return false;
-        pair.sampled.push_back(sampled(faces));
+        sample(faces, pair);
         return true;
+    }
+
+    void sample(const FacePair& faces, PlannedPair& pair) const {
+        if (can_be_sampled(faces))
+            pair.sampled.push_back(sampled(faces));
+        else
+            add(faces.in_between ? anything_up_to(contour_of(faces)) : contour_of(faces), pair);
+    }
+
+    // Whether a part reaches so far before the other's plane that float32 holds its samples there. They are moved away
+    // from edges, too, by some 2^-18 of the coordinates, which counts where a corner is all that is seen.
+    bool can_be_sampled(const FacePair& faces) const {
+        const double size = std::max(polygons_.sizes[faces.a], polygons_.sizes[faces.b]);
+        return std::any_of(faces.parts.begin(), faces.parts.end(), [&](const FacingPair& parts) {
+            const bool are_whole =
+                parts.a.area() == polygons_.faces[faces.a].area() && parts.b.area() == polygons_.faces[faces.b].area();
+            const double least = (are_whole ? 0x1p-14 : 0x1p-10) * size;
+            return height_before(parts.a, parts.b) >= least && height_before(parts.b, parts.a) >= least;
+        });
+    }
+
+    // What is known where something may be in the way of any part of it.
+    static ContourExchange anything_up_to(const ContourExchange& unblocked) {
+        const double half = (unblocked.flow + unblocked.error) / 2;
+        return {half, half, unblocked.evaluations};
     }
 
     ContourExchange contour_of(const FacePair& faces) const {
@@ -161,9 +184,22 @@ class Planner {
         pair.contour.evaluations += contour.evaluations;
     }
 
+    // Of two sides, all points of both faces see each other on one or the other.
     SampledPair sampled(const FacePair& faces) const {
-        const double distance = length(polygons_.faces[faces.a].center() - polygons_.faces[faces.b].center());
-        return {faces.a, faces.b, distance, contour_of(faces).flow, faces.in_between.has_value()};
+        const Polygon64 &a = polygons_.faces[faces.a], &b = polygons_.faces[faces.b];
+        const FacingPair parts = options_.sides == Sides::both ? FacingPair{a, b} : faces.parts.front();
+        return {.a = faces.a,
+                .b = faces.b,
+                .part_a = part_of_face(in_order_of_mesh(faces.a), parts.a),
+                .part_b = part_of_face(in_order_of_mesh(faces.b), parts.b),
+                .fraction = parts.a.area() / a.area() * (parts.b.area() / b.area()),
+                .distance = length(parts.a.center() - parts.b.center()),
+                .unblocked = contour_of(faces).flow,
+                .may_be_blocked = faces.in_between.has_value()};
+    }
+
+    Polygon64 in_order_of_mesh(uint face) const {
+        return polygons_.are_mirrored[face] ? polygons_.faces[face].flipped() : polygons_.faces[face];
     }
 
     const FacePolygons& polygons_;
@@ -176,9 +212,13 @@ class Planner {
 FacePolygons::FacePolygons(const Scene& scene) {
     for (uint i = 0; i < scene.instances.size(); ++i) {
         const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+        const Transform& transform = scene.instances[i].transform;
+        const bool is_mirrored = determinant(transform) < 0;
         for (uint primitive = 0; primitive < mesh.triangles.size(); ++primitive) {
             const bool has_area = area_vector(scene, {i, primitive}) != dvec3(0);
-            faces.push_back(has_area ? polygon_of(scene, i, mesh, mesh.triangles[primitive]) : Polygon64());
+            const Polygon64 face = has_area ? polygon_of(transform, mesh, mesh.triangles[primitive]) : Polygon64();
+            faces.push_back(is_mirrored ? face.flipped() : face);
+            are_mirrored.push_back(is_mirrored);
             boxes.push_back(box_of(faces.back()));
             double& largest = sizes.emplace_back(0);
             for (const dvec3& point : faces.back().points())

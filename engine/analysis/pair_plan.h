@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/analysis/contour.h"
+#include "engine/analysis/face_part.h"
 
 namespace twinray {
 
@@ -15,16 +16,19 @@ namespace twinray {
 struct FacePolygons {
     std::vector<Polygon64> faces;
     std::vector<PolygonBox> boxes;
-    std::vector<double> sizes;  // the largest magnitude of a coordinate of each
+    std::vector<double> sizes;       // the largest magnitude of a coordinate of each
+    std::vector<char> are_mirrored;  // their vertices are in the opposite order of the mesh's
 
     FacePolygons() = default;
     explicit FacePolygons(const Scene& scene);
 };
 
-// Faces of which areas are sampled.
+// Faces of which areas are sampled, each where it lies before the other's plane.
 struct SampledPair {
     uint a, b;
-    double distance;   // of their centers
+    FacePart part_a, part_b;
+    double fraction;   // of the product of both areas, what the parts have
+    double distance;   // of the parts' centers
     double unblocked;  // A F if nothing were in between
     bool may_be_blocked;
 };

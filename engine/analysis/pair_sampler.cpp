@@ -41,8 +41,9 @@ void PairSampler::sample(std::span<const Pair> pairs) {
         const auto* weights = reinterpret_cast<const float*>(weights_.mapped());
         for (std::size_t i = 0; i < chunks.size(); ++i) {
             const Pair& pair = *owners[i];
-            const double unit = pair.share * faces_.areas()[pair.a] / pair.distance * faces_.areas()[pair.b] /
-                                pair.distance / std::numbers::pi;
+            const auto& [a, b, part_a, part_b, fraction, distance, unblocked, may_be_blocked] = *pair.faces;
+            const double unit =
+                pair.share * fraction * faces_.areas()[a] / distance * faces_.areas()[b] / distance / std::numbers::pi;
             pair.sums->add({weights + i * CHUNK, CHUNK}, unit);
         }
         chunks.clear();
@@ -50,8 +51,9 @@ void PairSampler::sample(std::span<const Pair> pairs) {
     };
     for (const Pair& pair : pairs)
         for (std::uint64_t chunk = pair.first; chunk < pair.last; ++chunk) {
-            chunks.push_back(
-                {pair.a, pair.b, static_cast<uint>(chunk * SAMPLES_OF_CHUNK), static_cast<float>(pair.distance)});
+            const SampledPair& faces = *pair.faces;
+            chunks.push_back({faces.a, faces.b, static_cast<uint>(chunk * SAMPLES_OF_CHUNK),
+                              static_cast<float>(faces.distance), faces.part_a, faces.part_b});
             owners.push_back(&pair);
             if (chunks.size() == batch_chunks) flush();
         }

@@ -2,6 +2,7 @@
 // Area-to-area sampling: the exchange of two faces from points all over both and rays between them.
 #pragma once
 
+#include "engine/analysis/pair_plan.h"
 #include "engine/analysis/pair_sums.h"
 #include "engine/analysis/ray_chunks.h"
 #include "engine/core/kernel.h"
@@ -11,14 +12,13 @@ namespace twinray {
 #include "twinray/glsl/cpp_begin.h"
 #include "shaders/analysis/pair_rays.h"
 #include "twinray/glsl/cpp_end.h"
-static_assert(sizeof(PairChunk) == 16 && sizeof(PairRaysArgs) == 56 && sizeof(PairWeightsArgs) == 24);
+static_assert(sizeof(PairChunk) == 88 && sizeof(PairRaysArgs) == 56 && sizeof(PairWeightsArgs) == 24);
 
 class PairSampler {
   public:
     // Two faces that are sampled, and where what is found is added.
     struct Pair {
-        uint a, b;
-        double distance;            // about, above 0; in which weights are counted
+        const SampledPair* faces;
         double share;               // by what the exchange of these faces is multiplied
         std::uint64_t first, last;  // chunks of rays
         PairSums* sums;

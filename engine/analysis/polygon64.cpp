@@ -74,6 +74,11 @@ FacingPair facing_parts(const Polygon64& a, const Polygon64& b, double rounding)
     return {before(a, b, rounding), before(b, a, rounding)};
 }
 
+double height_before(const Polygon64& polygon, const Polygon64& other) {
+    const dvec3 normal = normalize(other.area_vector());
+    return extent_of(polygon, normal).high - dot(normal, other.vertices.front());
+}
+
 double gap_over_size(const Polygon64& a, const Polygon64& b) {
     double gap = 0;
     for (const dvec3& axis : {a.area_vector(), b.area_vector(), b.center() - a.center()}) {

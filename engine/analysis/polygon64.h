@@ -24,6 +24,7 @@ struct Polygon64 {
     const dvec3& after(std::size_t i) const { return vertices[(i + 1) % count]; }
     // As long as the area.
     dvec3 area_vector() const;
+    double area() const { return length(area_vector()); }
     double longest_edge() const;
     dvec3 center() const;  // of the vertices
     // Seen from the other side.
@@ -58,6 +59,10 @@ struct FacingPair {
     bool is_empty() const { return a.count == 0 || b.count == 0; }
 };
 FacingPair facing_parts(const Polygon64& a, const Polygon64& b, double rounding);
+
+// The largest distance of a point of `polygon` from the plane of `other`, on the side from which that turns
+// counter-clockwise.
+double height_before(const Polygon64& polygon, const Polygon64& other);
 
 // A lower bound of their distance over the longest edge of both.
 double gap_over_size(const Polygon64& a, const Polygon64& b);

@@ -2,6 +2,7 @@
 // Rays between points of two faces, and what they tell of the exchange.
 #ifndef TWINRAY_ANALYSIS_PAIR_RAYS_H
 #define TWINRAY_ANALYSIS_PAIR_RAYS_H
+#include "shaders/analysis/face_part.h"
 #include "shaders/analysis/view_factors.h"
 
 // Rays between two faces: samples `first` to `first + SAMPLES_OF_CHUNK - 1` of each replicate, in the order of
@@ -12,6 +13,8 @@ struct PairChunk
     uint b;
     uint first;
     float distance; // of the faces, about: weights are in units of what they are there
+    FacePart part_a;
+    FacePart part_b;
 };
 BUFFER_OF(PairChunk, 4);
 
@@ -55,8 +58,8 @@ FUNC vec4 pair_sample_of(PairRaysArgs args, PairChunk chunk, uint replicate, uin
 
 FUNC PairRay pair_ray(PairRaysArgs args, PairChunk chunk, vec4 u)
 {
-    SurfacePoint a = inner_point(args.table, chunk.a, sample_triangle(vec2(u.x, u.y)));
-    SurfacePoint b = inner_point(args.table, chunk.b, sample_triangle(vec2(u.z, u.w)));
+    SurfacePoint a = inner_point(args.table, chunk.a, sample_part(chunk.part_a, vec2(u.x, u.y)));
+    SurfacePoint b = inner_point(args.table, chunk.b, sample_part(chunk.part_b, vec2(u.z, u.w)));
     vec3 way = b.position - a.position;
     float r = scaled_length(way);
     float cos_a = dot(way, a.normal) / r;

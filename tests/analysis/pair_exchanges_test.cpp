@@ -71,6 +71,36 @@ TEST_P(PairExchangesTest, IntervalsOfAreasHoldTheTruthAsOftenAsTheyShould) {
     }
 }
 
+// A triangle, and another of which the part above the first one's plane, `height` of it, alone is seen.
+Scene mostly_behind(float height, const Transform& transform = {}) {
+    Mesh seen, other;
+    seen.positions = {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)};
+    other.positions = {vec3(1.5f, 0, height), vec3(1.5f, 1, height - 1.2f), vec3(1.5f, 0, height - 1.2f)};
+    seen.triangles = other.triangles = {{0, 1, 2}};
+    Scene scene = scene_of({seen, other});
+    for (Instance& instance : scene.instances) instance.transform = transform;
+    return scene;
+}
+
+TEST_P(PairExchangesTest, IntervalsHoldTheTruthWhereAFaceIsMostlyBehindTheOther) {
+    for (const Scene& scene : {mostly_behind(1), mostly_behind(0.2f), mostly_behind(0.01f), mostly_behind(1e-4f),
+                               mostly_behind(0.2f, Transform::scaling(vec3(-3, 3, 3)))}) {
+        fill(scene);
+        const double truth = test::contour_flow(scene);
+        uint inside = 0;
+        double sum = 0;
+        constexpr uint trials = 100;
+        for (uint seed = 1; seed <= trials; ++seed) {
+            const PairExchanges pairs = exchanges(scene, {.rays = 64, .seed = seed}, PairEstimator::area);
+            const KnownExchange& exchange = pairs.known.at(0);
+            inside += exchange.low <= truth && truth <= exchange.high;
+            sum += exchange.flow;
+        }
+        EXPECT_GE(inside, 85u) << truth;
+        EXPECT_NEAR(sum / trials, truth, 0.1 * truth);
+    }
+}
+
 // Of faces that see hardly anything else, rays may tell more than there is.
 TEST_P(PairExchangesTest, NoFaceSendsMoreThanItHas) {
     const Scene scene = test::parallel_squares(0.09f);

@@ -77,6 +77,39 @@ TEST(PairPlan, WhatMayBeBlockedIsLeftToAreasOrHitsByItsGap) {
     }
 }
 
+// A triangle, another one that a corner of `height` above its plane sees, and a square between them.
+Scene corner_behind_plate(float height) {
+    Mesh seen, corner;
+    seen.positions = {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)};
+    corner.positions = {vec3(1.5f, 0, height), vec3(1.5f, 1, height - 1), vec3(1.5f, 0, height - 1)};
+    seen.triangles = corner.triangles = {{0, 1, 2}};
+    return test::scene_of_meshes({seen, corner, make_quad(vec3(1.2f, -1, -1), vec3(0, 2, 0), vec3(0, 0, 2))});
+}
+
+TEST(PairPlan, AreasAreSampledWhereTheyLieBeforeTheOthersPlane) {
+    const SampledPair sampled =
+        plan_of(corner_behind_plate(0.25f), {.estimator = PairEstimator::area}).pairs.at(0).sampled.at(0);
+    EXPECT_NEAR(sampled.fraction, 1.0 / 16, 1e-6);
+    EXPECT_EQ(sampled.part_a.corners[1], vec2(1, 0));
+    EXPECT_EQ(sampled.part_a.first, 1);
+    EXPECT_NEAR(std::abs(sampled.part_b.corners[1].x), 0.25, 1e-6);
+    EXPECT_NEAR(sampled.part_b.corners[1].y, 0, 1e-6);
+    for (const vec2& u : {vec2(0.1f, 0.2f), vec2(0.7f, 0.9f), vec2(0.99f, 0.01f)}) {
+        const vec2 at = sample_part(sampled.part_b, u);
+        EXPECT_GE(at.x, 0);
+        EXPECT_GE(at.y, 0);
+        EXPECT_LE(at.x + at.y, 0.25f + 1e-6f) << "of the corner above the plane";
+    }
+}
+
+TEST(PairPlan, OfCornersThatFloat32DoesNotHoldOnlyTheBoundIsTold) {
+    const PairPlan plan = plan_of(corner_behind_plate(1e-4f), {.estimator = PairEstimator::area});
+    const PlannedPair& pair = plan.pairs.at(0);
+    EXPECT_TRUE(pair.sampled.empty());
+    EXPECT_GT(pair.contour.flow, 0);
+    EXPECT_EQ(pair.contour.flow, pair.contour.error) << "from none to all of it";
+}
+
 TEST(PairPlan, BothSidesAreSeenByHalf) {
     const Scene scene = test::scene_of_meshes(
         {make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)), make_quad(vec3(0, 0, 1), vec3(1, 0, 0), vec3(0, 1, 0))});

@@ -57,8 +57,7 @@ class Estimators {
         std::vector<PairSampler::Pair> pairs;
         const std::uint64_t rounds = std::max<std::uint64_t>(1, rays / (CHUNK * pair.sampled.size()));
         for (const SampledPair& faces : pair.sampled)
-            pairs.push_back(
-                {faces.a, faces.b, faces.distance, static_cast<double>(pair.sampled.size()), 0, rounds, &sums});
+            pairs.push_back({&faces, static_cast<double>(pair.sampled.size()), 0, rounds, &sums});
         const auto start = Clock::now();
         sampler.sample(pairs);
         const double ms = ms_since(start);
