@@ -223,12 +223,12 @@ Values Viewer::distances_of(const Traced& traced) {
 }
 
 Values Viewer::steps_of(const Traced& traced) {
-    const reference::Scene& twin = stage_->twin();
+    const reference::Scene& cpu_reference = stage_->cpu_reference();
     Values values{.numbers = std::vector<double>(traced.rays.size()), .scale = {}, .what = "steps a ray"};
     parallel_for(traced.rays.size(), [&](std::size_t begin, std::size_t end) {
         reference::Scene::take_steps();
         for (std::size_t i = begin; i < end; ++i) {
-            (void)twin.trace(traced.rays[i]);
+            (void)cpu_reference.trace(traced.rays[i]);
             const TraversalSteps steps = reference::Scene::take_steps();
             values.numbers[i] = static_cast<double>(steps.nodes + steps.primitives);
         }
@@ -254,7 +254,7 @@ void Viewer::update_values() {
 
 void Viewer::draw_over(FacePicture& picture) {
     if (state_.tree_depth) {
-        const std::vector<Box> boxes = boxes_at(stage_->scene(), stage_->twin(), *state_.tree_depth);
+        const std::vector<Box> boxes = boxes_at(stage_->scene(), stage_->cpu_reference(), *state_.tree_depth);
         tree_boxes_ = boxes.size();
         tree_area_ = 0;
         for (const Box& box : boxes) tree_area_ += box.share;

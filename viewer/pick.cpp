@@ -48,7 +48,7 @@ Pick pick(Stage& stage, const Ray& ray) {
         found.face = first_faces(stage.scene())[found.software.instance_index] + found.software.primitive_index;
     }
     reference::Scene::take_steps();
-    (void)stage.twin().trace(ray);
+    (void)stage.cpu_reference().trace(ray);
     const TraversalSteps steps = reference::Scene::take_steps();
     found.nodes = steps.nodes, found.boxes = steps.boxes, found.primitives = steps.primitives;
     return found;

@@ -16,32 +16,6 @@
 namespace twinray::viewer {
 namespace {
 
-constexpr std::uint32_t api_version = VK_API_VERSION_1_2;
-
-void require(VkResult result, const char* action) {
-    if (result != VK_SUCCESS) fail("window: ", action, ": VkResult ", static_cast<int>(result));
-}
-
-template <class Function>
-Function instance_function(VkInstance instance, const char* name) {
-    return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
-}
-
-// Draws, computes and shows there; -1 if there is none.
-int family_of(VkPhysicalDevice device, VkSurfaceKHR surface) {
-    std::uint32_t count = 0;
-    vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-    constexpr VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        VkBool32 shows = VK_FALSE;
-        if (vkGetPhysicalDeviceSurfaceSupportKHR(device, i, surface, &shows) != VK_SUCCESS) continue;
-        if (shows && (families[i].queueFlags & wanted) == wanted) return static_cast<int>(i);
-    }
-    return -1;
-}
-
 VkImageMemoryBarrier barrier(VkImage image, VkImageLayout from, VkImageLayout to, VkAccessFlags before,
                              VkAccessFlags after) {
     VkImageMemoryBarrier change{};
@@ -64,12 +38,8 @@ void apply(VkCommandBuffer commands, VkPipelineStageFlags from, VkPipelineStageF
 }  // namespace
 
 Screen::Screen(GLFWwindow* window, const ContextDesc& desc)
-    : window_(window), most_submission_seconds_(desc.most_submission_seconds), log_(desc.log) {
+    : window_(window), screen_device_(window, desc), device_(screen_device_.handle()) {
     try {
-        create_instance(desc);
-        require(glfwCreateWindowSurface(instance_, window_, nullptr, &surface_), "make a surface");
-        choose(desc.device);
-        create_device(desc);
         create_commands();
         create_pass();
     } catch (...) {
@@ -81,138 +51,22 @@ Screen::Screen(GLFWwindow* window, const ContextDesc& desc)
 Screen::~Screen() { destroy(); }
 
 void Screen::destroy() {
-    if (device_) {
-        vkDeviceWaitIdle(device_);
-        end_overlay();
-        destroy_swapchain();
-        destroy_picture();
-        vkDestroyDescriptorPool(device_, descriptors_, nullptr);
-        vkDestroyRenderPass(device_, pass_, nullptr);
-        vkDestroySemaphore(device_, is_acquired_, nullptr);
-        vkDestroyFence(device_, is_done_, nullptr);
-        vkDestroyCommandPool(device_, pool_, nullptr);
-        vkDestroyDevice(device_, nullptr);
-    }
-    if (surface_) vkDestroySurfaceKHR(instance_, surface_, nullptr);
-    if (messenger_)
-        instance_function<PFN_vkDestroyDebugUtilsMessengerEXT>(instance_, "vkDestroyDebugUtilsMessengerEXT")(
-            instance_, messenger_, nullptr);
-    if (instance_) vkDestroyInstance(instance_, nullptr);
-}
-
-VkBool32 VKAPI_PTR Screen::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
-                                      const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
-    auto& screen = *static_cast<Screen*>(user);
-    ++screen.message_count_;
-    if (screen.log_) screen.log_(data->pMessage);
-    return VK_FALSE;
-}
-
-void Screen::create_instance(const ContextDesc& desc) {
-    std::uint32_t count = 0;
-    const char** needed = glfwGetRequiredInstanceExtensions(&count);
-    if (!needed) fail("window: this system has no Vulkan that shows pictures");
-    std::vector<const char*> extensions(needed, needed + count);
-    const char* layer = "VK_LAYER_KHRONOS_validation";
-    if (desc.validation)
-        extensions.insert(extensions.end(),
-                          {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME});
-    VkApplicationInfo application{};
-    application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-    application.pApplicationName = "twinray view";
-    application.apiVersion = api_version;
-    const VkValidationFeatureEnableEXT synchronisation = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
-    VkValidationFeaturesEXT features{};
-    features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
-    features.enabledValidationFeatureCount = 1;
-    features.pEnabledValidationFeatures = &synchronisation;
-    VkInstanceCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-    info.pNext = desc.validation ? &features : nullptr;
-    info.pApplicationInfo = &application;
-    info.enabledLayerCount = desc.validation ? 1 : 0;
-    info.ppEnabledLayerNames = &layer;
-    info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
-    info.ppEnabledExtensionNames = extensions.data();
-    require(vkCreateInstance(&info, nullptr, &instance_), "make an instance");
-    if (!desc.validation) return;
-    VkDebugUtilsMessengerCreateInfoEXT listen{};
-    listen.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-    listen.messageSeverity =
-        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-    listen.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-    listen.pfnUserCallback = on_message;
-    listen.pUserData = this;
-    const auto create =
-        instance_function<PFN_vkCreateDebugUtilsMessengerEXT>(instance_, "vkCreateDebugUtilsMessengerEXT");
-    require(create(instance_, &listen, nullptr, &messenger_), "listen to the validation layer");
-}
-
-void Screen::choose(const std::string& request) {
-    std::uint32_t count = 0;
-    require(vkEnumeratePhysicalDevices(instance_, &count, nullptr), "list the devices");
-    std::vector<VkPhysicalDevice> devices(count);
-    require(vkEnumeratePhysicalDevices(instance_, &count, devices.data()), "list the devices");
-    std::vector<DeviceProperties> properties;
-    for (VkPhysicalDevice device : devices) {
-        properties.push_back(query_device_properties(vkGetInstanceProcAddr, instance_, device));
-        properties.back().has_compute_queue = family_of(device, surface_) >= 0;
-    }
-    const DeviceChoice choice = choose_device(properties, request);
-    if (choice.index < 0) {
-        std::string why;
-        for (const std::string& rejection : choice.rejections) why += "\n  " + rejection;
-        fail("window: no device runs twinray and shows pictures here", why);
-    }
-    physical_ = devices[static_cast<std::size_t>(choice.index)];
-    family_ = static_cast<std::uint32_t>(family_of(physical_, surface_));
-    choose_format();
-}
-
-// One that takes 8 bits a channel as they are.
-void Screen::choose_format() {
-    std::uint32_t count = 0;
-    require(vkGetPhysicalDeviceSurfaceFormatsKHR(physical_, surface_, &count, nullptr), "list formats");
-    std::vector<VkSurfaceFormatKHR> formats(count);
-    require(vkGetPhysicalDeviceSurfaceFormatsKHR(physical_, surface_, &count, formats.data()), "list formats");
-    for (const VkFormat wanted : {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM})
-        for (const VkSurfaceFormatKHR& format : formats)
-            if (format.format == wanted && format.colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR) {
-                format_ = wanted;
-                return;
-            }
-    fail("window: it has no format of 8 bits a channel");
-}
-
-void Screen::create_device(const ContextDesc& desc) {
-    const float priority = 1;
-    VkDeviceQueueCreateInfo queue{};
-    queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
-    queue.queueFamilyIndex = family_;
-    queue.queueCount = 1;
-    queue.pQueuePriorities = &priority;
-    const char* own = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
-    VkDeviceCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-    info.queueCreateInfoCount = 1;
-    info.pQueueCreateInfos = &queue;
-    info.enabledExtensionCount = 1;
-    info.ppEnabledExtensionNames = &own;
-    DeviceProperties wanted = query_device_properties(vkGetInstanceProcAddr, instance_, physical_);
-    wanted.ray_query &= desc.use_ray_query;
-    wanted.ray_tracing_pipeline &= desc.use_ray_tracing_pipeline;
-    DeviceRequirements requirements(wanted);
-    requirements.add_to(info);
-    require(vkCreateDevice(physical_, &info, nullptr, &device_), "make a device");
-    enabled_ = enabled_properties(vkGetInstanceProcAddr, instance_, physical_, info);
-    vkGetDeviceQueue(device_, family_, 0, &queue_);
+    vkDeviceWaitIdle(device_);
+    end_overlay();
+    destroy_swapchain();
+    destroy_picture();
+    vkDestroyDescriptorPool(device_, descriptors_, nullptr);
+    vkDestroyRenderPass(device_, pass_, nullptr);
+    vkDestroySemaphore(device_, is_acquired_, nullptr);
+    vkDestroyFence(device_, is_done_, nullptr);
+    vkDestroyCommandPool(device_, pool_, nullptr);
 }
 
 void Screen::create_commands() {
     VkCommandPoolCreateInfo pool{};
     pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
     pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-    pool.queueFamilyIndex = family_;
+    pool.queueFamilyIndex = screen_device_.queue_family();
     require(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "make a command pool");
     VkCommandBufferAllocateInfo buffer{};
     buffer.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
@@ -231,7 +85,7 @@ void Screen::create_commands() {
 // Keeps what is in the image, the picture.
 void Screen::create_pass() {
     VkAttachmentDescription target{};
-    target.format = format_;
+    target.format = screen_device_.format();
     target.samples = VK_SAMPLE_COUNT_1_BIT;
     target.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
     target.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
@@ -253,21 +107,6 @@ void Screen::create_pass() {
     require(vkCreateRenderPass(device_, &info, nullptr, &pass_), "make a render pass");
 }
 
-AdoptedDevice Screen::adopted() const {
-    AdoptedDevice adopted;
-    adopted.instance = instance_;
-    adopted.physical_device = physical_;
-    adopted.device = device_;
-    adopted.queue = queue_;
-    adopted.queue_family = family_;
-    adopted.get_instance_proc_addr = vkGetInstanceProcAddr;
-    adopted.api_version = api_version;
-    adopted.enabled = enabled_;
-    adopted.most_submission_seconds = most_submission_seconds_;
-    adopted.log = log_;
-    return adopted;
-}
-
 void Screen::start_overlay() {
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 16};
     VkDescriptorPoolCreateInfo pool{};
@@ -278,11 +117,11 @@ void Screen::start_overlay() {
     pool.pPoolSizes = &size;
     require(vkCreateDescriptorPool(device_, &pool, nullptr, &descriptors_), "make a descriptor pool");
     ImGui_ImplVulkan_InitInfo info{};
-    info.Instance = instance_;
-    info.PhysicalDevice = physical_;
+    info.Instance = screen_device_.instance();
+    info.PhysicalDevice = screen_device_.physical_device();
     info.Device = device_;
-    info.QueueFamily = family_;
-    info.Queue = queue_;
+    info.QueueFamily = screen_device_.queue_family();
+    info.Queue = screen_device_.queue();
     info.DescriptorPool = descriptors_;
     info.MinImageCount = 2;
     info.ImageCount = 2;
@@ -299,8 +138,8 @@ void Screen::start_overlay() {
     submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &commands_;
-    require(vkQueueSubmit(queue_, 1, &submit, VK_NULL_HANDLE), "submit");
-    require(vkQueueWaitIdle(queue_), "wait for the fonts");
+    require(vkQueueSubmit(screen_device_.queue(), 1, &submit, VK_NULL_HANDLE), "submit");
+    require(vkQueueWaitIdle(screen_device_.queue()), "wait for the fonts");
     ImGui_ImplVulkan_DestroyFontUploadObjects();
 #endif
 }
@@ -316,7 +155,8 @@ void Screen::end_overlay() {
 bool Screen::create_swapchain() {
     require(vkDeviceWaitIdle(device_), "wait for the device");
     VkSurfaceCapabilitiesKHR can{};
-    require(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(physical_, surface_, &can), "ask the surface");
+    require(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(screen_device_.physical_device(), screen_device_.surface(), &can),
+            "ask the surface");
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
     extent_ = can.currentExtent;
@@ -329,9 +169,9 @@ bool Screen::create_swapchain() {
         fail("window: its images cannot be copied to");
     VkSwapchainCreateInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR;
-    info.surface = surface_;
+    info.surface = screen_device_.surface();
     info.minImageCount = std::max(2u, can.minImageCount);
-    info.imageFormat = format_;
+    info.imageFormat = screen_device_.format();
     info.imageColorSpace = VK_COLOR_SPACE_SRGB_NONLINEAR_KHR;
     info.imageExtent = extent_;
     info.imageArrayLayers = 1;
@@ -353,7 +193,7 @@ bool Screen::create_swapchain() {
         view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
         view.image = image;
         view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        view.format = format_;
+        view.format = screen_device_.format();
         view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
         require(vkCreateImageView(device_, &view, nullptr, &made.view), "view an image");
         VkFramebufferCreateInfo frame{};
@@ -387,7 +227,7 @@ void Screen::destroy_swapchain() {
 
 std::uint32_t Screen::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const {
     VkPhysicalDeviceMemoryProperties properties{};
-    vkGetPhysicalDeviceMemoryProperties(physical_, &properties);
+    vkGetPhysicalDeviceMemoryProperties(screen_device_.physical_device(), &properties);
     for (std::uint32_t i = 0; i < properties.memoryTypeCount; ++i)
         if ((allowed >> i & 1u) && (properties.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
     fail("window: no memory for a picture");
@@ -507,7 +347,7 @@ bool Screen::present(const Raster& picture) {
     submit.pCommandBuffers = &commands_;
     submit.signalSemaphoreCount = 1;
     submit.pSignalSemaphores = &images_[index].is_drawn;
-    require(vkQueueSubmit(queue_, 1, &submit, is_done_), "submit");
+    require(vkQueueSubmit(screen_device_.queue(), 1, &submit, is_done_), "submit");
     VkPresentInfoKHR present{};
     present.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR;
     present.waitSemaphoreCount = 1;
@@ -515,7 +355,7 @@ bool Screen::present(const Raster& picture) {
     present.swapchainCount = 1;
     present.pSwapchains = &swapchain_;
     present.pImageIndices = &index;
-    const VkResult shown = vkQueuePresentKHR(queue_, &present);
+    const VkResult shown = vkQueuePresentKHR(screen_device_.queue(), &present);
     require(vkWaitForFences(device_, 1, &is_done_, VK_TRUE, UINT64_MAX), "wait for the frame");
     is_out_of_date_ = shown == VK_ERROR_OUT_OF_DATE_KHR || shown == VK_SUBOPTIMAL_KHR || acquired == VK_SUBOPTIMAL_KHR;
     if (!is_out_of_date_) require(shown, "show an image");

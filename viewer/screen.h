@@ -1,29 +1,23 @@
 // SPDX-License-Identifier: MIT
-// A Vulkan device that can show pictures in a window: made here, adopted by twinray's Context.
+// Pictures in a window, with what Dear ImGui draws over them.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
-#include <twinray/context.h>
-
 #include "validation/picture/raster.h"
-
-struct GLFWwindow;
+#include "viewer/screen_device.h"
 
 namespace twinray::viewer {
 
 class Screen {
   public:
-    // Throws Error where no device both runs twinray and shows pictures there.
+    // Throws Error as ScreenDevice does.
     Screen(GLFWwindow* window, const ContextDesc& desc);
     ~Screen();
     Screen(const Screen&) = delete;
     Screen& operator=(const Screen&) = delete;
 
-    AdoptedDevice adopted() const;
-    std::uint64_t validation_messages() const { return message_count_; }
+    const ScreenDevice& device() const { return screen_device_; }
 
     // Begins what draws over pictures: Dear ImGui for this device. After its context is there.
     void start_overlay();
@@ -41,10 +35,6 @@ class Screen {
     };
 
     void destroy();
-    void create_instance(const ContextDesc& desc);
-    void choose(const std::string& request);
-    void choose_format();
-    void create_device(const ContextDesc& desc);
     void create_commands();
     void create_pass();
     bool create_swapchain();
@@ -53,28 +43,16 @@ class Screen {
     void destroy_picture();
     void record(VkCommandBuffer commands, const Image& target, const Raster& picture);
     std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags wanted) const;
-    static VkBool32 VKAPI_PTR on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
-                                         const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
 
     GLFWwindow* window_;
-    std::optional<double> most_submission_seconds_;
-    Log log_;
-    std::uint64_t message_count_ = 0;
-    VkInstance instance_ = VK_NULL_HANDLE;
-    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
-    VkSurfaceKHR surface_ = VK_NULL_HANDLE;
-    VkPhysicalDevice physical_ = VK_NULL_HANDLE;
-    std::uint32_t family_ = 0;
-    VkDevice device_ = VK_NULL_HANDLE;
-    VkQueue queue_ = VK_NULL_HANDLE;
-    DeviceProperties enabled_;
+    ScreenDevice screen_device_;
+    VkDevice device_;
     VkCommandPool pool_ = VK_NULL_HANDLE;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
     VkFence is_done_ = VK_NULL_HANDLE;
     VkSemaphore is_acquired_ = VK_NULL_HANDLE;
     VkRenderPass pass_ = VK_NULL_HANDLE;
     VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
-    VkFormat format_ = VK_FORMAT_B8G8R8A8_UNORM;
     VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
     VkExtent2D extent_{};
     std::vector<Image> images_;

@@ -111,7 +111,7 @@ void Stage::set_time(double seconds) {
     time_ = seconds;
     ++version_;
     reference_.reset();
-    twin_.reset();
+    cpu_reference_.reset();
     faces_.reset();
     points_.reset();
 }
@@ -121,9 +121,9 @@ const Reference& Stage::reference() {
     return *reference_;
 }
 
-const reference::Scene& Stage::twin() {
-    if (!twin_) twin_ = suite::twin_of(scene_);
-    return *twin_;
+const reference::Scene& Stage::cpu_reference() {
+    if (!cpu_reference_) cpu_reference_ = suite::twin_of(scene_);
+    return *cpu_reference_;
 }
 
 PointQuery& Stage::points() {

@@ -43,7 +43,7 @@ class Stage {
     std::uint64_t version() const { return version_; }
 
     const Reference& reference();
-    const reference::Scene& twin();  // the software accelerator on the host
+    const reference::Scene& cpu_reference();  // the software accelerator on the host
     const Faces& faces();
     PointQuery& points();  // of the software accelerator, as it is
     bool has_level(Level level) const;
@@ -63,7 +63,7 @@ class Stage {
     std::optional<double> time_;  // of the pose; none: not posed yet
     std::uint64_t version_ = 0;
     std::unique_ptr<Reference> reference_;
-    std::unique_ptr<reference::Scene> twin_;
+    std::unique_ptr<reference::Scene> cpu_reference_;
     std::unique_ptr<Faces> faces_;
     std::unique_ptr<PointQuery> points_;
 };

@@ -18,11 +18,11 @@ constexpr Rgb scene_color = {0, 114, 178}, geometry_color = {213, 94, 0};
 
 class Collector {
   public:
-    Collector(const Scene& scene, const reference::Scene& twin, std::size_t most)
-        : scene_(scene), twin_(twin), most_(most) {}
+    Collector(const Scene& scene, const reference::Scene& cpu_reference, std::size_t most)
+        : scene_(scene), cpu_reference_(cpu_reference), most_(most) {}
 
     void scene_level(int depth) {
-        const SwGeometry tree = twin_.scene_nodes();
+        const SwGeometry tree = cpu_reference_.scene_nodes();
         if (tree.bvh.leaf_count == 0) return;
         root_area_ = area_of(dvec3(tree.bvh.lo), dvec3(tree.bvh.hi));
         if (depth == 0 && tree.bvh.leaf_count > 1) return add(world_box(tree.bvh.lo, tree.bvh.hi), true);
@@ -49,9 +49,9 @@ class Collector {
 
     // The tree of an instance, whose root is at depth 0.
     void instance(std::size_t index, int depth) {
-        const SwGeometry tree = twin_.geometry_nodes(index);
+        const SwGeometry tree = cpu_reference_.geometry_nodes(index);
         const Transform& to_world = scene_.instances[index].transform;
-        const float scale = twin_.geometry_tree(index).scale;
+        const float scale = cpu_reference_.geometry_tree(index).scale;
         if (tree.bvh.leaf_count == 0) return;
         if (depth <= 0 || tree.bvh.leaf_count == 1) return add(moved(to_world, tree.bvh.lo, tree.bvh.hi, scale), false);
         descend(tree, tree.bvh.root, depth, &to_world, scale);
@@ -85,7 +85,7 @@ class Collector {
     }
 
     const Scene& scene_;
-    const reference::Scene& twin_;
+    const reference::Scene& cpu_reference_;
     std::size_t most_;
     std::vector<Box> boxes_;
     double root_area_ = 0;
@@ -93,8 +93,8 @@ class Collector {
 
 }  // namespace
 
-std::vector<Box> boxes_at(const Scene& scene, const reference::Scene& twin, int depth, std::size_t most) {
-    Collector collector(scene, twin, most);
+std::vector<Box> boxes_at(const Scene& scene, const reference::Scene& cpu_reference, int depth, std::size_t most) {
+    Collector collector(scene, cpu_reference, most);
     collector.scene_level(depth);
     return collector.take();
 }

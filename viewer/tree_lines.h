@@ -17,7 +17,8 @@ struct Box {
 
 // Boxes `depth` steps below the root, in world space; those of leaves that end before stay. Below the scene's level go
 // on the trees of the instances. At most so many boxes; the rest is left out.
-std::vector<Box> boxes_at(const Scene& scene, const reference::Scene& twin, int depth, std::size_t most = 20000);
+std::vector<Box> boxes_at(const Scene& scene, const reference::Scene& cpu_reference, int depth,
+                          std::size_t most = 20000);
 
 // What the colour of a box tells.
 enum class BoxColor : std::uint8_t {

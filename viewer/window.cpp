@@ -211,7 +211,7 @@ int run_window(const WindowDesc& desc) {
         for (Event& event : read_events(desc.play)) played.push_back(std::move(event));
     Glfw glfw(desc.viewer.state.width, desc.viewer.state.height);
     Screen screen(glfw.window(), desc.context);
-    Context context(screen.adopted());
+    Context context(screen.device().adopted());
     ViewerDesc viewer_desc = desc.viewer;
     viewer_desc.say = [&](const std::string& line) {
         desc.viewer.say(line);
@@ -258,8 +258,9 @@ int run_window(const WindowDesc& desc) {
         if (!screen.present(viewer.last())) glfwWaitEventsTimeout(idle_seconds);  // minimised
     }
     screen.wait();
-    if (screen.validation_messages() > 0) std::cerr << screen.validation_messages() << " validation messages\n";
-    return screen.validation_messages() == 0 ? 0 : 1;
+    if (screen.device().validation_messages() > 0)
+        std::cerr << screen.device().validation_messages() << " validation messages\n";
+    return screen.device().validation_messages() == 0 ? 0 : 1;
 }
 
 }  // namespace twinray::viewer

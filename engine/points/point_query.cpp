@@ -344,7 +344,7 @@ void PointQuery::State::add_boundary(std::span<const dvec3> some, std::span<doub
             for (const OpenEdge& edge : *edges) sum = with_edge(sum, some[i], edge);
             ++host_decided;
         }
-        windings[i] += std::atan2(sum.y == 0 ? 0.0 : sum.y, sum.x) / (2 * std::numbers::pi) + sum.turns;
+        windings[i] += std::atan2(sum.y == 0 ? 0.0 : sum.y, sum.x) / (2 * std::numbers::pi) + sum.revolutions;
     }
 }
 

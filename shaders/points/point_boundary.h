@@ -15,7 +15,7 @@ FUNC AngleSum no_angle()
     AngleSum none;
     none.x = double(1.0f);
     none.y = double(0.0f);
-    none.turns = 0;
+    none.revolutions = 0;
     none.is_undecided = 0u;
     return none;
 }
@@ -23,14 +23,14 @@ FUNC AngleSum no_angle()
 // And the angle of (x, y), which is not (0, 0); of (x, 0) with x < 0, half a turn, back where `is_back`.
 FUNC AngleSum with_angle(AngleSum sum, double x, double y, bool is_back)
 {
-    if (is_back && y == double(0.0f) && x < double(0.0f)) sum.turns -= 1;
+    if (is_back && y == double(0.0f) && x < double(0.0f)) sum.revolutions -= 1;
     double real = sum.x * x - sum.y * y;
     double imaginary = sum.x * y + sum.y * x;
     double size = sqrt(real * real + imaginary * imaginary);
     bool is_up = sum.y >= double(0.0f);
     bool is_whole = is_up && x < double(0.0f) && imaginary == double(0.0f) && real > double(0.0f); // of two halves
     bool is_sum_up = imaginary >= double(0.0f) && !is_whole;
-    if (is_up == (y >= double(0.0f)) && is_up != is_sum_up) sum.turns += is_up ? 1 : -1;
+    if (is_up == (y >= double(0.0f)) && is_up != is_sum_up) sum.revolutions += is_up ? 1 : -1;
     sum.x = real / size;
     sum.y = imaginary / size;
     return sum;

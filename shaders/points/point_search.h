@@ -64,12 +64,12 @@ struct OpenEdge
 };
 BUFFER_OF(OpenEdge, 8);
 
-// A sum of angles without arc tangents: the angle of (x, y), in (-pi, pi], and so many whole turns.
+// A sum of angles without arc tangents: the angle of (x, y), in (-pi, pi], and so many whole revolutions.
 struct AngleSum
 {
     double x;
     double y;
-    int turns;
+    int revolutions;
     uint is_undecided; // 1: float64 could not tell on which side of an edge the line passes
 };
 BUFFER_OF(AngleSum, 8);

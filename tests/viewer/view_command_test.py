@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs `twinray view` as a user does. Usage: view_command_test.py TWINRAY [--record], which writes the stored pictures."""
+"""Runs `twinray view` as a user does. Usage: view_command_test.py TWINRAY [--record]; the latter writes the stored
+pictures."""
 import json
 import math
 import os
@@ -37,7 +38,8 @@ def scene(name):
     n, m = 24, 12
     ball = [(math.sin(math.pi * j / m) * math.cos(2 * math.pi * i / n), math.cos(math.pi * j / m),
              math.sin(math.pi * j / m) * math.sin(2 * math.pi * i / n)) for j in range(m + 1) for i in range(n)]
-    quads = [(j * n + i, j * n + (i + 1) % n, (j + 1) * n + (i + 1) % n, (j + 1) * n + i) for j in range(m) for i in range(n)]
+    quads = [(j * n + i, j * n + (i + 1) % n, (j + 1) * n + (i + 1) % n, (j + 1) * n + i)
+             for j in range(m) for i in range(n)]
     add("ball", ball, [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
     add("plate", [(-1.5, -0.9, -1), (1.5, -0.2, -1), (1.5, -0.2, 1.5), (-1.5, -0.9, 1.5)], [(0, 2, 1), (0, 3, 2)])
     add("floor", [(-4, -1, -4), (4, -1, -4), (4, -1, 4), (-4, -1, 4)], [(0, 2, 1), (0, 3, 2)])
@@ -103,7 +105,8 @@ if has_hardware:
 
 # Frames, figures and what is said of a ray.
 (here / "frames").mkdir()
-said = run("scene.obj", *CAMERA, "--layer", "path", "--headless", "3", "-o", "frames", "--json", "view.jsonl", "--pick", "80", "40")
+said = run("scene.obj", *CAMERA, "--layer", "path", "--headless", "3", "-o", "frames", "--json", "view.jsonl",
+           "--pick", "80", "40")
 assert sorted(p.name for p in (here / "frames").iterdir()) == ["frame0.png", "frame1.png", "frame2.png"]
 record = json.loads((here / "view.jsonl").read_text())
 assert (record["schema"], record["frames"], record["samples"]) == ("twinray-view/1", 3, 3), record
@@ -112,7 +115,8 @@ assert "software: t " in said and "float64: t " in said and "exactly: hit" in sa
 # Events are played.
 (here / "events.txt").write_text("key F5\nframes 2\ndown left 80 45\nmove 100 45\nup left\nframes 2\nshot moved.png\n"
                                  "key C\nkey B\nresize 64 36\nframes 1\nshot small.png\nkey Escape\n")
-said = run("scene.obj", *CAMERA, "--play", "events.txt", "-o", "frames", "--screenshot", "last.png", "--json", "view.jsonl")
+said = run("scene.obj", *CAMERA, "--play", "events.txt", "-o", "frames", "--screenshot", "last.png", "--json",
+           "view.jsonl")
 assert (here / "frames/moved.png").exists() and (here / "frames/small.png").exists()
 camera = next(line for line in said.splitlines() if line.startswith("--camera"))
 bookmark = next(line for line in said.splitlines() if line.startswith("twinray view"))
@@ -123,7 +127,8 @@ run("scene.obj", *bookmark.split()[3:], "--quiet", "--reference", "frames/moved.
 # What a layer says of faces.
 run("scene.obj", *CAMERA, "--layer", "collisions", "--export", "contacts.csv", "--quiet")
 lines = (here / "contacts.csv").read_text().splitlines()
-assert lines[0] == "instance,triangle,value" and {line.split(",")[2] for line in lines[1:]} == {"1", "5"}, lines  # the pole touches the floor
+classes = {line.split(",")[2] for line in lines[1:]}  # the pole touches the floor
+assert lines[0] == "instance,triangle,value" and classes == {"1", "5"}, lines
 run("scene.obj", *CAMERA, "--layer", "light", "--export", "light.glb", "--quiet")
 assert (here / "light.glb").read_bytes()[:4] == b"glTF"
 assert "only what layers" in run("scene.obj", *CAMERA, "--export", "x.csv", status=1)
@@ -132,7 +137,7 @@ assert "only what layers" in run("scene.obj", *CAMERA, "--export", "x.csv", stat
 assert "--pick" in run("scene.obj", *CAMERA, "--pick", "160", "1", "--screenshot", "x.png", status=2)
 assert "--up" in run("scene.obj", "--up", "1", "0", "0", "--screenshot", "x.png", status=2)
 assert "160 x 90" in run("scene.obj", *CAMERA, "--reference", "frames/small.png", "--headless", "1", status=1)
-assert "stands where it looks at" in run("scene.obj", "--camera", "1", "1", "1", "1", "1", "1", "--screenshot", "x.png", status=1)
+assert "stands where it looks at" in run("scene.obj", "--camera", *"111111", "--screenshot", "x.png", status=1)
 (here / "bad.txt").write_text("key A\nfly\n")
 assert "line 2" in run("scene.obj", "--play", "bad.txt", "-o", "frames", status=1)
 assert not (here / "x.png").exists()
@@ -145,7 +150,8 @@ if not shutil.which("xvfb-run"):
 (here / "session.txt").write_text(
     "frames 2\nkey H\nframes 2\nkey H\ndown left 320 180\nmove 360 180\nframes 1\nmove 400 190\nframes 1\nup left\n"
     "double 320 200\nscroll 1\nframes 2\nkey W\nframes 2\nkey ]\nkey ]\nframes 2\nkey F9\nframes 2\nkey F1\nframes 3\n"
-    "resize 500 300\nframes 2\nresize 0 0\nframes 1\nkey R\nframes 2\ndrop nowhere.glb\nframes 1\nshot window.png\nclose\n")
+    "resize 500 300\nframes 2\nresize 0 0\nframes 1\nkey R\nframes 2\ndrop nowhere.glb\nframes 1\nshot window.png\n"
+    "close\n")
 done = subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1024x768x24", twinray, "view", "scene.obj", "--size", "640",
                        "360", "--validation", "--play", "session.txt", "--record", "recorded.txt"], cwd=here,
                       capture_output=True, text=True)

@@ -197,7 +197,9 @@ TEST_F(ViewerTest, PathsGetBetterAndBeginAnew) {
 TEST_F(ViewerTest, TreesAreDrawnLevelByLevel) {
     write_boxes(40);
     Viewer viewer(context(), desc());
-    const auto boxes = [&](int depth) { return boxes_at(viewer.stage().scene(), viewer.stage().twin(), depth); };
+    const auto boxes = [&](int depth) {
+        return boxes_at(viewer.stage().scene(), viewer.stage().cpu_reference(), depth);
+    };
     ASSERT_EQ(boxes(0).size(), 1u);
     std::size_t before = 1;
     for (int depth = 1; depth < 4; ++depth) {
@@ -216,7 +218,7 @@ TEST_F(ViewerTest, TreesAreDrawnLevelByLevel) {
         EXPECT_NEAR(box.share, area / (all.x * all.y + all.y * all.z + all.z * all.x), 1e-12);
     }
     EXPECT_NE(strokes_of(boxes(3), BoxColor::area)[0].color, strokes_of(boxes(3), BoxColor::kind)[0].color);
-    EXPECT_LE(boxes_at(viewer.stage().scene(), viewer.stage().twin(), 20, 10).size(), 10u);
+    EXPECT_LE(boxes_at(viewer.stage().scene(), viewer.stage().cpu_reference(), 20, 10).size(), 10u);
     viewer.handle(KeyDown{"["});
     EXPECT_FALSE(viewer.state().tree_depth);
     const Raster without = viewer.frame(false);
