@@ -24,6 +24,8 @@ struct ReportOptions {
     CommonOptions common;
     std::filesystem::path folder = "twinray_report";
     std::string suite = "quick";
+    std::optional<double> budget;  // seconds
+    bool resume = false;
     std::vector<std::string> only;
     std::vector<suite::Backend> accels;
     std::vector<Level> levels;
@@ -32,13 +34,15 @@ struct ReportOptions {
     AccelOptions trees = {};
 };
 
-constexpr double quick_seconds = 140;  // no case is begun after; the rest is recorded as not run
+constexpr double quick_seconds = 80;  // what follows takes some more
 
+// With a budget, a full suite begins as a quick one does, and gets as far as the time is enough for.
 suite::Settings settings_of(const ReportOptions& options) {
-    suite::Settings settings{.is_full = options.suite == "full",
+    const bool is_full = options.suite == "full";
+    suite::Settings settings{.effort = is_full && !options.budget ? 1.0 : 0.0,
                              .only = options.only,
                              .seed = options.common.seed,
-                             .seconds = options.suite == "full" ? 0 : quick_seconds,
+                             .seconds = options.budget.value_or(is_full ? 0 : quick_seconds),
                              .replays_in = options.folder};
     if (!options.accels.empty()) settings.backends = options.accels;
     if (!options.levels.empty()) settings.levels = options.levels;
@@ -49,6 +53,32 @@ void check_only(const std::vector<std::string>& patterns, std::span<const suite:
     for (const std::string& pattern : patterns)
         if (std::none_of(cases.begin(), cases.end(), [&](const auto& row) { return suite::matches(row.id, pattern); }))
             throw UsageError(text("--only ", pattern, " fits no case; see the catalogue in the report"));
+}
+
+// What a run must have in common with one that it goes on with.
+std::string key_of(const ReportOptions& options, const RecordedDevice& device) {
+    std::string key = text(twinray_version, ", ", device.name, ", ", device.driver, ", suite ", options.suite,
+                           ", seed ", options.common.seed);
+    for (const std::string& pattern : options.only) key += ", " + pattern;
+    for (const suite::Backend backend : options.accels) key += ", " + std::string(name_of(backend));
+    for (const Level level : options.levels) key += ", " + std::string(name_of(level));
+    for (const std::filesystem::path& scene : options.scenes) key += ", " + scene.string();
+    return key;
+}
+
+// Where the run stands: what is done of it where it is to go on, else nothing.
+suite::SuiteState state_of(const ReportOptions& options, const RecordedDevice& device) {
+    const std::filesystem::path file = options.folder / "progress.json";
+    if (options.resume) return suite::read_state(file, key_of(options, device));
+    return {.file = file, .key = key_of(options, device)};
+}
+
+// The records of what is done.
+std::vector<Record> kept_records(const ReportOptions& options, const suite::SuiteState& state) {
+    if (!options.resume) return {};
+    std::vector<Record> records = read_json_lines(options.folder / "report.jsonl").records;
+    std::erase_if(records, [&](const Record& record) { return !state.cases.contains(record.case_id); });
+    return records;
 }
 
 // Exit status: 1 where there is a fault of ours.
@@ -62,9 +92,13 @@ int run(const ReportOptions& options) {
     std::filesystem::create_directories(options.folder);
     suite::Devices devices(context_desc(options.common), options.trees);
     Context& context = devices.context(suite::Backend::software);
-    Recorder recorder({utc_now(), twinray_version, probed_device(context)}, options.folder / "report.jsonl");
+    const RecordedDevice device = probed_device(context);
+    suite::SuiteState state = state_of(options, device);
+    Recorder recorder({utc_now(), twinray_version, device}, options.folder / "report.jsonl",
+                      kept_records(options, state));
     std::cout << "report, suite " << options.suite << ", on " << context.properties().name << '\n';
-    suite::run(cases, settings_of(options), devices, recorder, options.common.quiet);
+    suite::run(cases, settings_of(options), devices, recorder, state, options.common.quiet);
+    recorder.rewrite();
 
     write_csv(options.folder / "report.csv", recorder.records());
     for (const Record& record : recorder.records())
@@ -88,7 +122,13 @@ Command report_command() {
         "Cases",
         {{.name = "--suite",
           .value = choice(options->suite, {"quick", "full"}),
-          .help = "quick takes under 150 s on a CPU driver"},
+          .help = "quick takes 90 s on a CPU driver with two cores"},
+         {.name = "--budget",
+          .value = number(options->budget, {.least = 1}),
+          .help = "every case at its least, then the least certain ones with more effort until so much time is spent"},
+         {.name = "--resume",
+          .value = flag(options->resume),
+          .help = "go on with the run in the folder that was cut short"},
          {.name = "--only", .value = words(options->only, "CASE,..."), .help = "case ids with * and ?, as N07,B*"},
          {.name = "--scenes",
           .value = file_list(options->scenes),

@@ -44,10 +44,25 @@ std::vector<std::string> columns_of(const std::vector<Row>& rows) {
 
 }  // namespace
 
-Recorder::Recorder(Run run, const std::filesystem::path& json_lines) : run_(std::move(run)), path_(json_lines) {
+Recorder::Recorder(Run run, const std::filesystem::path& json_lines, std::vector<Record> kept)
+    : run_(std::move(run)), path_(json_lines), records_(std::move(kept)) {
+    rewrite();
+}
+
+void Recorder::drop(const std::string& case_id) {
+    std::erase_if(records_, [&](const Record& record) { return record.case_id == case_id; });
+}
+
+void Recorder::rewrite() {
     if (path_.empty()) return;
-    file_.open(path_);
-    if (!file_) fail("report '", path_.string(), "' cannot be written");
+    std::filesystem::path next = path_;
+    next += ".new";
+    std::ofstream out(next);
+    for (const Record& record : records_) out << to_json(record) << '\n';
+    std::error_code problem;
+    if (out.flush()) std::filesystem::rename(next, path_, problem);
+    if (!out || problem) fail("report '", path_.string(), "' cannot be written");
+    file_ = std::move(out);
 }
 
 void Recorder::add(Record record) {
@@ -92,6 +107,7 @@ JsonLines read_json_lines(const std::filesystem::path& file) {
             else
                 lines.records.push_back(record_of_json(line));
         } catch (const Error& error) {
+            if (in.eof()) break;
             fail("report '", file.string(), "' line ", number, ": ", error.what());
         }
     }

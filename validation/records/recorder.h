@@ -21,11 +21,17 @@ class Recorder {
         std::string git;
         RecordedDevice device;
     };
-    // Replaces `json_lines`; an empty path keeps the records in memory alone. Throws Error naming the file.
-    explicit Recorder(Run run, const std::filesystem::path& json_lines = {});
+    // Replaces `json_lines`; an empty path keeps the records in memory alone. `kept` are of an earlier part of the run.
+    // Throws Error naming the file.
+    explicit Recorder(Run run, const std::filesystem::path& json_lines = {}, std::vector<Record> kept = {});
 
     // Fills in the run. Throws Error when the file cannot be written.
     void add(Record record);
+    // Forgets what was recorded of a case that is to be measured again. In the file the old lines stay, before the new
+    // ones, until rewrite().
+    void drop(const std::string& case_id);
+    // Leaves those lines in the file that records() has, at once. Throws Error naming the file.
+    void rewrite();
     const Run& run() const { return run_; }
     const std::vector<Record>& records() const { return records_; }
 
@@ -45,7 +51,7 @@ struct JsonLines {
     std::vector<Record> records;                // of reports
     std::map<std::string, std::size_t> others;  // how many of each kind_of_json()
 };
-// Throws Error naming the file and the line.
+// Throws Error naming the file and the line. Of a last line that was cut short nothing is read.
 JsonLines read_json_lines(const std::filesystem::path& file);
 
 // Now, as Recorder::Run::started.

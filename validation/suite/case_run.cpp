@@ -2,6 +2,7 @@
 #include "validation/suite/case_run.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "validation/replay/replay.h"
 #include "validation/replay/scene_file.h"
@@ -10,7 +11,7 @@
 namespace twinray::suite {
 namespace {
 
-constexpr std::size_t quick_reps = 3, full_reps = 15;
+constexpr std::size_t least_reps = 3, full_reps = 15;
 
 // Sets pass and whose fault it is where it is false.
 void decide(Record& record, const Configuration& configuration, const Measurement& measurement) {
@@ -37,6 +38,13 @@ void decide(Record& record, const Configuration& configuration, const Measuremen
 }
 
 }  // namespace
+
+std::size_t CaseRun::amount(std::size_t least, std::size_t full) {
+    depends_on_effort_ = true;
+    if (least == 0) return settings_.effort < 1 ? least : full;
+    const double ratio = static_cast<double>(full) / static_cast<double>(least);
+    return static_cast<std::size_t>(std::llround(static_cast<double>(least) * std::pow(ratio, settings_.effort)));
+}
 
 Record CaseRun::blank() const {
     Record record;
@@ -123,7 +131,9 @@ std::string CaseRun::write_replay(const World& world, std::span<const Ray> rays,
 Measured CaseRun::measure(const World& world, std::span<const Ray> rays, const Measurement& measurement) {
     const std::vector<Configuration> able = measurement.control ? control_configuration() : configurations();
     if (able.empty() || rays.empty()) return {};
-    const std::size_t reps = measurement.reps ? measurement.reps : amount(quick_reps, full_reps);
+    const std::size_t reps = !settings_.takes_times ? 0
+                             : measurement.reps     ? measurement.reps
+                                                    : amount(least_reps, full_reps);
     std::vector<Traced> traces =
         trace(devices_, able, world,
               {.rays = rays, .reps = reps, .control = measurement.control ? &*measurement.control : nullptr});
@@ -136,7 +146,7 @@ Measured CaseRun::measure(const World& world, std::span<const Ray> rays, const M
         const CheckResult checked = check(world.reference, rays, traced.hits, traced.configuration.backend);
         set_check_result(result, checked);
         result.error = t_error(references, traced.hits);
-        result.time = time_figures(traced);
+        if (reps > 0) result.time = time_figures(traced);
         decide(result, traced.configuration, measurement);
         if (!result.pass.value_or(true)) result.replay = write_replay(world, rays, traced, checked);
         add(result);

@@ -31,8 +31,9 @@ class CaseRun {
     CaseRun(const SuiteCase& row, const Settings& settings, Devices& devices, Recorder& recorder)
         : row_(row), settings_(settings), devices_(devices), recorder_(recorder) {}
 
-    // How many rays, cells, ... by suite.
-    std::size_t amount(std::size_t quick, std::size_t full) const { return settings_.is_full ? full : quick; }
+    // How many rays, cells, ... at this effort: in between by equal ratios; of 0 and 1, whether all is to be done.
+    std::size_t amount(std::size_t least, std::size_t full);
+    bool depends_on_effort() const { return depends_on_effort_; }  // so far
     std::uint64_t seed() const { return settings_.seed; }
     Devices& devices() { return devices_; }
     // Those that can answer here; the others are recorded as not run, once a case. Hardware has one test of its own,
@@ -92,6 +93,7 @@ class CaseRun {
     Devices& devices_;
     Recorder& recorder_;
     bool has_told_ = false;  // which configurations cannot answer
+    bool depends_on_effort_ = false;
 };
 
 }  // namespace twinray::suite

@@ -175,7 +175,7 @@ void baked(CaseRun& run) {
 }
 
 void identical_boxes(CaseRun& run) {
-    const std::uint64_t n = run.amount(2'000, 10'000);
+    const std::uint64_t n = run.amount(1'000, 10'000);
     const Mesh box = make_box(vec3(-1), vec3(1));
     for (const Configuration& configuration : run.one_configuration_each()) {
         AbstractAccel& accel = run.devices().empty_accel(configuration);

@@ -126,7 +126,7 @@ std::vector<Ray> with_denormals(std::vector<Ray> rays, std::uint64_t seed) {
 void contraction(CaseRun& run) {
     const Scene scene = scene_with(far_grid());
     const ReferenceScene reference = ReferenceScene::of(scene);
-    const std::vector<Ray> rays = edge_aimed_rays(reference, run.amount(8'192, 1'000'000), run.seed());
+    const std::vector<Ray> rays = edge_aimed_rays(reference, run.amount(2'048, 1'000'000), run.seed());
     for (const Configuration& configuration : precise_configurations(run)) {
         record_contraction(run, configuration, compared(run, configuration, scene, rays), rays.size(), {});
         if (configuration.level != Level::watertight) continue;

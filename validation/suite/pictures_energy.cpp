@@ -34,6 +34,7 @@ void white_furnace(CaseRun& run) {
             question.desc.sky = 1;
             question.desc.settings.max_depth = depth;
             question.desc.settings.camera = look({0, 0, 4}, vec3(0), 0.2f);
+            question.spp = {static_cast<uint>(run.amount(16, 64))};
             question.seeds = run.amount(4, 32);
             measure_flat(run, configuration, question);
         }
@@ -52,11 +53,16 @@ FlatQuestion closed_furnace(double albedo, uint depth) {
     return question;
 }
 
+void set_side(FlatQuestion& question, std::size_t pixels) {
+    question.desc.settings.width = question.desc.settings.height = static_cast<uint>(pixels);
+}
+
 void closed_furnaces(CaseRun& run) {
     for (const Configuration& configuration : analysis_configurations(run))
         for (const double albedo : {0.5, 0.9, 0.99}) {
             FlatQuestion question = closed_furnace(albedo, 2000);
             question.spp = albedo < 0.95 ? std::vector<uint>{1, 4, 16} : std::vector<uint>{1, 2, 4};
+            set_side(question, run.amount(8, 16));
             question.seeds = run.amount(2, 16);
             measure_flat(run, configuration, question);
         }
@@ -64,9 +70,11 @@ void closed_furnaces(CaseRun& run) {
 
 void deep_paths(CaseRun& run) {
     for (const Configuration& configuration : analysis_configurations(run)) {
-        FlatQuestion question = closed_furnace(0.999, 10'000);
-        question.params.emplace("depth", 10'000);
+        const std::size_t depth = run.amount(2'000, 10'000);
+        FlatQuestion question = closed_furnace(0.999, static_cast<uint>(depth));
+        question.params.emplace("depth", depth);
         question.spp = {1};
+        set_side(question, run.amount(8, 16));
         question.seeds = run.amount(2, 16);
         question.is_swept = false;
         measure_flat(run, configuration, question);
@@ -97,8 +105,8 @@ void lights_over_a_floor(CaseRun& run) {
                 question.desc.settings.max_depth = 1;
                 question.desc.settings.strategy = strategy;
                 question.desc.settings.camera = look({0, 0.5f, 0}, vec3(0), 1e-4f);
-                question.spp = {1, 4, 16, 64};
-                if (run.amount(0, 1)) question.spp.push_back(256);
+                question.spp = {1, 4, 16};
+                if (run.amount(0, 1)) question.spp.insert(question.spp.end(), {64, 256});
                 question.seeds = run.amount(3, 16);
                 question.variant = name_of_strategy(strategy);
                 measure_flat(run, configuration, question);

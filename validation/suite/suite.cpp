@@ -3,31 +3,120 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "validation/suite/case_run.h"
+#include "validation/suite/schedule.h"
 #include "engine/core/error.h"
 #include "validation/records/progress.h"
 
 namespace twinray::suite {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 bool is_wanted(const SuiteCase& row, const Settings& settings) {
     return settings.only.empty() || std::any_of(settings.only.begin(), settings.only.end(),
                                                 [&](const std::string& only) { return matches(row.id, only); });
 }
 
-void run_guarded(const SuiteCase& row, const Settings& settings, Devices& devices, Recorder& recorder) {
-    CaseRun here(row, settings, devices, recorder);
-    try {
-        row.run(here);
-    } catch (const DeviceLost& lost) {
-        here.add_failure(lost.what());
-        throw;
-    } catch (const std::exception& error) {
-        here.add_failure(error.what());
-        devices.drop_accels();
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+class SuiteRun {
+  public:
+    SuiteRun(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder,
+             SuiteState& state)
+        : settings_(settings), devices_(devices), recorder_(recorder), state_(state) {
+        std::vector<const SuiteCase*> wanted;
+        for (const SuiteCase& row : cases)
+            if (is_wanted(row, settings)) wanted.push_back(&row);
+        std::vector<char> sections;
+        for (const SuiteCase* row : wanted) sections.push_back(row->id.front());
+        for (const std::size_t i : by_turns(sections)) cases_.push_back(wanted[i]);
     }
-}
+
+    void first_round(bool quiet) {
+        Progress progress("report", cases_.size(), quiet);
+        for (const SuiteCase* row : cases_) {
+            if (!state_.cases.contains(row->id)) run_first(*row);
+            progress.advance();
+        }
+    }
+
+    // What the seconds are enough for.
+    void improve(bool quiet) {
+        Progress progress("report: what is least certain", static_cast<std::uint64_t>(std::max(1.0, seconds_left())),
+                          quiet);
+        const auto start = Clock::now();
+        for (std::uint64_t shown = 0;;) {
+            std::vector<CaseProgress> known;
+            for (const SuiteCase* row : cases_)
+                known.push_back(state_.cases.contains(row->id) ? state_.cases[row->id]
+                                                               : CaseProgress{.can_improve = false});
+            const std::optional<std::size_t> next = next_to_improve(known, seconds_left());
+            if (!next) return;
+            recorder_.drop(cases_[*next]->id);
+            const Outcome outcome = run_guarded(*cases_[*next], known[*next].effort + effort_step);
+            note(*cases_[*next], after_step(known[*next], outcome.seconds, outcome.uncertainty));
+            const auto now = static_cast<std::uint64_t>(seconds_since(start));
+            progress.advance(now - std::exchange(shown, now));
+        }
+    }
+
+  private:
+    struct Outcome {
+        double seconds, uncertainty;
+        bool can_improve;
+    };
+
+    double seconds_left() const { return settings_.seconds - seconds_since(start_); }
+
+    void run_first(const SuiteCase& row) {
+        if (!row.run) {
+            CaseRun(row, settings_, devices_, recorder_).add_not_run(row.not_run);
+        } else if (settings_.seconds > 0 && seconds_left() <= 0) {
+            CaseRun(row, settings_, devices_, recorder_)
+                .add_not_run(text("the time of ", settings_.seconds, " s was spent before its turn"));
+        } else {
+            const auto [seconds, uncertainty, can_improve] = run_guarded(row, settings_.effort);
+            note(row, {.effort = settings_.effort,
+                       .seconds = seconds,
+                       .uncertainty = uncertainty,
+                       .can_improve = can_improve});
+        }
+    }
+
+    void note(const SuiteCase& row, const CaseProgress& progress) {
+        state_.cases[row.id] = progress;
+        write_state(state_);
+    }
+
+    Outcome run_guarded(const SuiteCase& row, double effort) {
+        const auto start = Clock::now();
+        const std::size_t before = recorder_.records().size();
+        Settings settings = settings_;
+        settings.effort = effort;
+        CaseRun here(row, settings, devices_, recorder_);
+        try {
+            row.run(here);
+        } catch (const DeviceLost& lost) {
+            here.add_failure(lost.what());
+            throw;
+        } catch (const std::exception& error) {
+            here.add_failure(error.what());
+            devices_.drop_accels();
+        }
+        return {seconds_since(start), uncertainty_of(std::span(recorder_.records()).subspan(before)),
+                here.depends_on_effort()};
+    }
+
+    Settings settings_;
+    Devices& devices_;
+    Recorder& recorder_;
+    SuiteState& state_;
+    std::vector<const SuiteCase*> cases_;
+    Clock::time_point start_ = Clock::now();
+};
 
 }  // namespace
 
@@ -78,24 +167,11 @@ bool matches(std::string_view text, std::string_view pattern) {
            matches(text.substr(1), pattern.substr(1));
 }
 
-void run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder, bool quiet) {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    Progress progress("report", cases.size(), quiet);
-    for (const SuiteCase& row : cases) {
-        if (is_wanted(row, settings)) {
-            const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-            if (!row.run) {
-                CaseRun(row, settings, devices, recorder).add_not_run(row.not_run);
-            } else if (settings.seconds > 0 && seconds > settings.seconds) {
-                CaseRun(row, settings, devices, recorder)
-                    .add_not_run(text("the time of ", settings.seconds, " s was spent before its turn"));
-            } else {
-                run_guarded(row, settings, devices, recorder);
-            }
-        }
-        progress.advance();
-    }
+void run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder,
+         SuiteState& state, bool quiet) {
+    SuiteRun suite(cases, settings, devices, recorder, state);
+    suite.first_round(quiet);
+    if (settings.seconds > 0) suite.improve(quiet);
 }
 
 }  // namespace twinray::suite

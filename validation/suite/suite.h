@@ -11,6 +11,7 @@
 
 #include "engine/accel/trace_desc.h"
 #include "validation/records/recorder.h"
+#include "validation/suite/suite_state.h"
 
 namespace twinray::suite {
 
@@ -32,12 +33,13 @@ struct Configuration {
 constexpr bool is_robust(const Configuration& configuration) { return configuration.level != Level::fast; }
 
 struct Settings {
-    bool is_full = false;
+    double effort = 0;  // of each case, from its least (0) to its full amount (1)
     std::vector<Backend> backends = {all_backends.begin(), all_backends.end()};
     std::vector<Level> levels = {all_levels.begin(), all_levels.end()};
     std::vector<std::string> only = {};  // patterns of case ids with * and ?; empty: all
     std::uint64_t seed = 1;
-    double seconds = 0;  // no case is begun after these; 0: no limit
+    double seconds = 0;       // no case is begun after these, and what is left goes to the least certain; 0: no limit
+    bool takes_times = true;  // false: answers are checked, and nothing is repeated to be timed
     // Folder of the report, into whose folder "replays" the first faulty ray of each record goes; "": none is written.
     std::filesystem::path replays_in = {};
 };
@@ -79,8 +81,11 @@ std::string_view section_of(std::string_view id);
 bool matches(std::string_view text, std::string_view pattern);
 
 class Devices;
-// Runs the cases that settings.only names, in the order of the catalogue; one that throws is recorded as our fault, and
-// the rest goes on. Throws DeviceLost, after recording it.
-void run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder, bool quiet);
+// Runs the cases that settings.only names and `state` does not have yet, the first of each section first; one that
+// throws is recorded as our fault, and the rest goes on. With the seconds that are left, those whose rate of faults is
+// least certain run again with more effort: their new records take the place of the old ones. Throws DeviceLost, after
+// recording it.
+void run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder,
+         SuiteState& state, bool quiet);
 
 }  // namespace twinray::suite

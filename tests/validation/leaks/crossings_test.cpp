@@ -34,7 +34,8 @@ class CrossingsTest : public ::testing::Test {
     std::vector<Record> run(const std::function<void(CaseRun&)>& body) {
         const SuiteCase row{"W01", "title", "measures", "criterion", body};
         Recorder recorder({"now", "0.1", {}});
-        suite::run(std::span(&row, 1), {.levels = {Level::fast, Level::watertight}}, *devices_, recorder, true);
+        SuiteState state;
+        suite::run(std::span(&row, 1), {.levels = {Level::fast, Level::watertight}}, *devices_, recorder, state, true);
         return recorder.records();
     }
     std::unique_ptr<Devices> devices_;

@@ -74,7 +74,10 @@ said = report(*again, "-o", str(here / "mixed"))
 n = len(lines("mixed/report.jsonl"))
 assert f"baseline: {n} of {n} records have one there to be compared with; not compared: 1 of twinray-trace/1, 1 of verify.random" in said, said
 with open(here / "old.jsonl", "a", encoding="utf-8") as old:
-    old.write('{"schema": \n')
+    old.write('{"schema": ')
+assert report(*again, "-o", str(here / "mixed")).count(f"{n} of {n}") == 1, "its last line was cut short"
+with open(here / "old.jsonl", "a", encoding="utf-8") as old:
+    old.write('\n')
 run = subprocess.run([twinray, "report", *again, "-o", str(here / "third")], capture_output=True, text=True)
 number = len((here / "old.jsonl").read_text().splitlines())
 assert run.returncode == 1 and f"{here / 'old.jsonl'}' line {number}: not a JSON object" in run.stderr, run.stderr
@@ -85,6 +88,17 @@ for layout in ("compressed4", "bvh2"):
     report("--only", "W14,W15", "--accels", "sw", "--layout", layout, "-o", str(here / ("controls_" + layout)))
     assert sum(r["variant"].startswith("control: ") and bool(r["pass"])
                for r in lines("controls_" + layout + "/report.jsonl")) >= 2
+# A run that was cut short goes on.
+progress = json.loads((first / "progress.json").read_text())
+del progress["cases"]["B10"]
+(first / "progress.json").write_text(json.dumps(progress))
+whole = (first / "report.jsonl").read_text()
+(first / "report.jsonl").write_text(whole[:-20])
+report("--only", "N07,B10,N13", "-o", str(first), "--resume")
+assert sorted((r["case"], r["backend"], r["level"], r["run"] == records[0]["run"]) for r in lines("first/report.jsonl")) == \
+    sorted((r["case"], r["backend"], r["level"], r["case"] == "N07") for r in records)
+report("--only", "N07", "-o", str(first), "--resume", status=1)
+report("--only", "N07", "-o", str(here / "nothing"), "--resume", status=1)
 report("--accels", "gpu", status=2)
 report("--only", "Q99", "-o", str(here / "fourth"), status=2)
 print("report: the command works")

@@ -27,7 +27,8 @@ class SuiteRun : public ::testing::Test {
     }
     std::vector<Record> run(const std::vector<SuiteCase>& cases, const Settings& settings = {}) {
         Recorder recorder({"now", "0.1", {}});
-        suite::run(cases, settings, *devices_, recorder, true);
+        SuiteState state;
+        suite::run(cases, settings, *devices_, recorder, state, true);
         EXPECT_TRUE(devices_->context(Backend::software).validation_messages().empty());
         return recorder.records();
     }
@@ -140,6 +141,26 @@ TEST_F(SuiteRun, OnlyWhatIsAskedForRuns) {
     const std::vector<Record> records = run({make_case("W01", sound), make_case("S01", sound)}, settings);
     ASSERT_EQ(records.size(), 1u);
     EXPECT_EQ(records[0].case_id + records[0].backend + records[0].level, "W01swwatertight");
+}
+
+TEST_F(SuiteRun, WhatIsLeftOfTheTimeGoesToWhatIsLeastCertain) {
+    if (!can_run_) return;
+    const auto amounts = [](std::size_t full) {
+        return [full](CaseRun& here) { here.expect({}, {.n = here.amount(10, full)}); };
+    };
+    const std::vector<Record> records =
+        run({make_case("W01", amounts(100'000)), make_case("S01", amounts(10))}, {.seconds = 30});
+    ASSERT_EQ(records.size(), 2u) << "a later run takes the place of an earlier one";
+    for (const Record& record : records) EXPECT_EQ(record.n, record.case_id == "W01" ? 100'000u : 10u);
+}
+
+TEST_F(SuiteRun, WhatIsDoneIsNotDoneAgain) {
+    if (!can_run_) return;
+    Recorder recorder({"now", "0.1", {}});
+    SuiteState state{.cases = {{"W01", {}}}};
+    suite::run(std::vector{make_case("W01", sound), make_case("S01", sound)}, {}, *devices_, recorder, state, true);
+    for (const Record& record : recorder.records()) EXPECT_EQ(record.case_id, "S01");
+    EXPECT_TRUE(state.cases.contains("S01"));
 }
 
 TEST_F(SuiteRun, NoCaseBeginsAfterTheTime) {

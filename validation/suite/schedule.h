@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Which case of the suite to run next, and how thoroughly: pure functions.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "validation/records/record.h"
+
+namespace twinray::suite {
+
+// How much of a case is done, from its least (0) to its full amount (1).
+inline constexpr double effort_step = 0.25;
+
+// What is known of a case that has run.
+struct CaseProgress {
+    double effort = 0;
+    double seconds = 0;       // the last run
+    double growth = 4;        // of its seconds with a step of effort: a guess until it was seen
+    double uncertainty = 0;   // uncertainty_of() its records
+    bool can_improve = true;  // false where the last step left it as uncertain as it was
+};
+
+// Half the widest 95 % interval of a rate of faults among the records whose faults count. 0 where there is none.
+double uncertainty_of(std::span<const Record> records);
+
+// The case after one more step of effort, which took `seconds`.
+CaseProgress after_step(const CaseProgress& before, double seconds, double uncertainty);
+
+// The least certain case, of those that can improve, that is likely to be done in time with one more step of effort.
+std::optional<std::size_t> next_to_improve(std::span<const CaseProgress> cases, double seconds_left);
+
+// The order of a first round that reaches every section early: the first case of each, then the second, ... `sections`
+// is the section of each case; returns their indices.
+std::vector<std::size_t> by_turns(std::span<const char> sections);
+
+}  // namespace twinray::suite
