@@ -12,22 +12,11 @@
 #include "bench/report.h"
 #include "bench/table.h"
 #include "feature_costs_program.trace_program.h"
-#include "feature_costs_program.trace_program.h"
+#include "engine/accel/feature_additions.h"
 #include <twinray/tlas.h>
 
 namespace twinray::bench {
 namespace {
-
-struct Addition {
-    const char* name;
-    uint features;
-};
-// From what scenes most often need to what they rarely do.
-constexpr Addition additions[] = {
-    {"+ hits", FEATURE_HITS},           {"+ transforms", FEATURE_TRANSFORMS},
-    {"+ instances", FEATURE_INSTANCES}, {"+ masks", FEATURE_MASKS},
-    {"+ culling", FEATURE_CULLING},     {"+ filters", FEATURE_FILTERS},
-    {"+ boxes", FEATURE_BOXES},         {"+ other layouts", FEATURE_BVH2 | FEATURE_COMPRESSED | FEATURE_COMPRESSED8}};
 
 // A scene, traced by one program.
 class FeatureBackend : public Backend {
@@ -86,7 +75,7 @@ LineUp line_up_of(AbstractAccel& accel, Level level, Query query) {
     };
     uint features = accel.features_for({.query = query, .occlusion_only = true});
     add("needed", features);
-    for (const Addition& addition : additions) {
+    for (const FeatureAddition& addition : feature_additions) {
         if ((addition.features & ~features) == 0) continue;
         features |= addition.features;
         add(addition.name, features);

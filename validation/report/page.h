@@ -1,38 +1,28 @@
 // SPDX-License-Identifier: MIT
-// The page of a report.
+// The page of a report: verdict first, then the plots that matter, then everything else, folded.
 #pragma once
 
+#include <filesystem>
+#include <utility>
+
 #include "validation/report/baseline.h"
-#include "validation/report/plots.h"
+#include "validation/report/figure.h"
 #include "validation/suite/suite.h"
 
 namespace twinray::report {
 
 struct PageInput {
-    std::string suite;  // "quick"
+    std::string suite;   // "quick"
+    double seconds = 0;  // that it took
     std::span<const suite::SuiteCase> catalogue;
     std::span<const Record> records;
-    std::string baseline;  // file that was compared to; "" = none
-    std::span<const Change> changes;
+    std::string baseline = {};  // file that was compared to; "" = none
+    std::span<const Change> changes = {};
+    // Drawn, each as an <svg> element; "" where there is no gnuplot.
+    std::vector<std::pair<Figure, std::string>> figures = {};
 };
 
-// "pass", "fault of twinray", "fault of driver", "measured" or "not run".
-std::string result_of(const Record& record);
-
-// Records that show a fault of ours: where there is one the command exits with 1.
-std::size_t faults_of_ours(std::span<const Record> records);
-
-// How many ns a ray of a level costs over watertight on the same accelerator, worlds and rays: the median and range of
-// the ratios over all that both ran.
-struct LevelPrice {
-    std::string backend, level;
-    double median = 1, low = 1, high = 1;
-    std::size_t measurements = 0;
-    std::optional<double> worst_p99;  // of ErrorFigures::p99, over the same
-};
-std::vector<LevelPrice> level_prices(std::span<const Record> records);
-
-// One page of HTML that is XML, too, and refers to nothing outside of itself but the replays that it links.
+// One page of HTML that is XML, too, needs no script, and refers to nothing but the files beside it that it links.
 std::string page(const PageInput& input);
 // Throws Error naming the file.
 void write_page(const std::filesystem::path& file, const PageInput& input);

@@ -4,7 +4,7 @@
 #include <iomanip>
 #include <map>
 
-#include "validation/report/page.h"
+#include "validation/report/verdict.h"
 
 namespace twinray::report {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What each level costs on scenes of an ordinary size, and what it is worth there.
 #include "validation/suite/case_run.h"
+#include "validation/suite/feature_costs.h"
 #include <twinray/scene.h>
 
 #include "engine/core/error.h"
@@ -35,7 +36,7 @@ void room(CaseRun& run) {
     measure_scene(run, scene, random_rays(bounds_of(scene), run.amount(65'536, 1 << 20), run.seed()), "incoherent");
 }
 
-void many_instances(CaseRun& run) {
+void instanced_spheres(CaseRun& run) {
     Scene scene;
     scene.meshes = {make_icosphere(3)};
     const int side = static_cast<int>(run.amount(8, 32));
@@ -55,7 +56,9 @@ std::vector<SuiteCase> price_cases() {
     return {
         {"L01", "a closed mesh, a camera's rays", "time and error of each level", criterion, closed_mesh},
         {"L02", "a room of few triangles, incoherent rays", "time and error of each level", criterion, room},
-        {"L03", "many instances, a camera's rays", "time and error of each level", criterion, many_instances},
+        {"L03", "many instances, a camera's rays", "time and error of each level", criterion, instanced_spheres},
+        {"L04", "a closed mesh, by kernels to which features are added that it does not need",
+         "time over the needed alone", "the same hits; the time is measured", feature_costs},
     };
 }
 

@@ -69,7 +69,7 @@ class SuiteRun {
         bool can_improve;
     };
 
-    double seconds_left() const { return settings_.seconds - seconds_since(start_); }
+    double seconds_left() const { return settings_.seconds - seconds_before_ - seconds_since(start_); }
 
     void run_first(const SuiteCase& row) {
         if (!row.run) {
@@ -88,6 +88,7 @@ class SuiteRun {
 
     void note(const SuiteCase& row, const CaseProgress& progress) {
         state_.cases[row.id] = progress;
+        state_.seconds = seconds_before_ + seconds_since(start_);
         write_state(state_);
     }
 
@@ -116,6 +117,7 @@ class SuiteRun {
     SuiteState& state_;
     std::vector<const SuiteCase*> cases_;
     Clock::time_point start_ = Clock::now();
+    double seconds_before_ = state_.seconds;  // in earlier parts of the run
 };
 
 }  // namespace

@@ -22,12 +22,13 @@ CaseProgress progress_of(const Json& json) {
 SuiteState read_state(const std::filesystem::path& file, const std::string& key) {
     std::ifstream in(file);
     if (!in) fail("progress '", file.string(), "' cannot be opened: there is no run to go on with");
-    SuiteState state{file, key, {}};
+    SuiteState state{file, key, {}, 0};
     try {
         const Json json = Json::parse(in);
         if (json.at("schema") != schema) fail("schema ", json.at("schema").dump(), " is not ", schema);
         if (json.at("key") != key) fail("it was begun as ", json.at("key").dump(), ", and this is \"", key, '"');
         for (const auto& [id, progress] : json.at("cases").items()) state.cases[id] = progress_of(progress);
+        state.seconds = json.at("seconds");
     } catch (const std::exception& error) {
         fail("progress '", file.string(), "': ", error.what());
     }
@@ -46,7 +47,7 @@ void write_state(const SuiteState& state) {
     std::filesystem::path next = state.file;
     next += ".new";
     std::ofstream out(next);
-    out << Json{{"schema", schema}, {"key", state.key}, {"cases", cases}}.dump(1) << '\n';
+    out << Json{{"schema", schema}, {"key", state.key}, {"seconds", state.seconds}, {"cases", cases}}.dump(1) << '\n';
     if (!out.flush()) fail("progress '", next.string(), "' cannot be written");
     out.close();
     std::filesystem::rename(next, state.file);

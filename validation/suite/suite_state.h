@@ -14,6 +14,7 @@ struct SuiteState {
     std::filesystem::path file = {};  // "" = kept in memory alone
     std::string key = {};             // all that must be the same for a run to go on: version, device, suite, seed, ...
     std::map<std::string, CaseProgress> cases = {};  // by id: those that are done
+    double seconds = 0;                              // that they took
 };
 
 // Throws Error naming the file where it cannot be read, or where its key is another.

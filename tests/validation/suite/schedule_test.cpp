@@ -60,10 +60,11 @@ TEST(Schedule, EachSectionHasItsTurn) {
 
 TEST(SuiteState, IsReadAsItWasWritten) {
     const test::TempDir folder;
-    const SuiteState state{folder / "progress.json", "0.1, a device", {{"W01", {0.25, 2, 3, 0.5, false}}}};
+    const SuiteState state{folder / "progress.json", "0.1, a device", {{"W01", {0.25, 2, 3, 0.5, false}}}, 12.5};
     write_state(state);
     const SuiteState again = read_state(state.file, state.key);
     ASSERT_EQ(again.cases.size(), 1u);
+    EXPECT_EQ(again.seconds, 12.5);
     const CaseProgress& progress = again.cases.at("W01");
     EXPECT_EQ(progress.effort, 0.25);
     EXPECT_EQ(progress.seconds, 2);
@@ -74,7 +75,7 @@ TEST(SuiteState, IsReadAsItWasWritten) {
 
 TEST(SuiteState, AnotherRunIsNotGoneOnWith) {
     const test::TempDir folder;
-    write_state({folder / "progress.json", "0.1, a device", {}});
+    write_state({folder / "progress.json", "0.1, a device", {}, 0});
     EXPECT_THROW(read_state(folder / "progress.json", "0.1, another device"), Error);
     EXPECT_THROW(read_state(folder / "nothing.json", "0.1, a device"), Error);
 }

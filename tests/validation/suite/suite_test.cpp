@@ -6,7 +6,7 @@
 
 #include "validation/replay/replay.h"
 #include "validation/replay/scene_file.h"
-#include "validation/report/page.h"
+#include "validation/report/verdict.h"
 #include "validation/suite/case_run.h"
 #include "validation/suite/checks.h"
 #include "engine/core/error.h"

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "validation/report/case_tables.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "validation/report/verdict.h"
+#include "validation/report/wording.h"
+
+namespace twinray::report {
+namespace {
+
+using Key = std::array<std::string, 3>;  // backend, level, variant
+
+// The records of a case that share an accelerator, a level and a variant.
+struct Group {
+    std::vector<const Record*> records;
+
+    std::uint64_t n() const {
+        return sum([](const Record& record) { return record.n; });
+    }
+    std::uint64_t faults() const {
+        return sum([](const Record& record) { return record.faults; });
+    }
+    // The worst of them: of ours before of the driver's, before what passed.
+    const Record& worst() const {
+        const auto rank = [](const Record* record) {
+            return !record->pass ? 0 : *record->pass ? 1 : record->fault_of == "twinray" ? 3 : 2;
+        };
+        return **std::max_element(records.begin(), records.end(),
+                                  [&](const Record* a, const Record* b) { return rank(a) < rank(b); });
+    }
+
+  private:
+    template <class Of>
+    std::uint64_t sum(const Of& of) const {
+        std::uint64_t total = 0;
+        for (const Record* record : records) total += of(*record);
+        return total;
+    }
+};
+
+// "120 to 340" over all settings.
+template <class Of>
+std::string range(const Group& group, const Of& of) {
+    std::optional<Interval> all;
+    for (const Record* record : group.records)
+        if (const std::optional<double> value = of(*record))
+            all = all ? Interval{std::min(all->low, *value), std::max(all->high, *value)} : Interval{*value, *value};
+    if (!all) return "";
+    return number(all->low) + (all->low == all->high ? "" : " to " + number(all->high));
+}
+
+std::string unit_of(const Group& group, bool of_time) {
+    for (const Record* record : group.records) {
+        if (of_time && record->time) return record->time->metric == "ns_per_ray" ? "" : ' ' + record->time->metric;
+        if (!of_time && record->error) return record->error->metric == "t_ulp" ? "" : ' ' + record->error->metric;
+    }
+    return "";
+}
+
+std::string style_of(const Record& record) {
+    if (!record.pass) return "measured";
+    return *record.pass ? "pass" : record.fault_of;
+}
+
+std::string classes_of(const Group& group) {
+    std::map<std::string, std::uint64_t> sums;
+    for (const Record* record : group.records)
+        for (const auto& [kind, count] : record->counts)
+            if (kind != "AGREE" && kind != "TIE") sums[kind] += count;
+    std::string text;
+    for (const auto& [kind, count] : sums) text += (text.empty() ? "" : ", ") + kind + ' ' + count_text(count);
+    return text;
+}
+
+void write_row(std::ostream& out, const Key& key, const Group& group) {
+    const Record& worst = group.worst();
+    out << "<tr><td>" << escaped(key[0] + ' ' + key[1]) << (key[2].empty() ? "" : " (" + escaped(key[2]) + ')')
+        << "</td><td>" << group.records.size() << "</td><td>" << count_text(group.n()) << "</td><td>"
+        << (group.faults() ? rate_text(group.faults(), group.n()) : "0") << "</td><td>" << escaped(classes_of(group))
+        << "</td><td>"
+        << range(group, [](const Record& r) { return r.error ? std::optional(r.error->p99) : std::nullopt; })
+        << escaped(unit_of(group, false)) << "</td><td>"
+        << range(group, [](const Record& r) { return r.time ? std::optional(r.time->median) : std::nullopt; })
+        << escaped(unit_of(group, true)) << "</td><td class=\"" << style_of(worst) << "\">" << escaped(result_of(worst))
+        << "</td></tr>\n";
+    if (worst.pass.value_or(true) || (worst.reason.empty() && worst.example.empty())) return;
+    out << "<tr><td colspan=\"8\">" << escaped(settings_text(worst)) << ' ' << escaped(worst.reason) << " <code>"
+        << escaped(worst.example) << "</code>";
+    if (!worst.replay.empty()) out << " <a href=\"" << escaped(worst.replay) << "\">replay</a>";
+    out << "</td></tr>\n";
+}
+
+void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vector<const Record*>& records) {
+    std::vector<Key> order;
+    std::map<Key, Group> groups;
+    for (const Record* record : records) {
+        const Key key{record->backend, record->level, record->variant};
+        if (groups[key].records.empty()) order.push_back(key);
+        groups[key].records.push_back(record);
+    }
+    const Group all{records};
+    out << "<details id=\"" << row.id << "\"><summary><span class=\"" << style_of(all.worst()) << "\">" << row.id
+        << "</span> " << escaped(row.title) << "</summary>\n<p>Measures " << escaped(row.measures)
+        << ". Passes with: " << escaped(row.criterion) << ".</p>\n<div class=\"wide\"><table><tr><th>accelerator</th>"
+        << "<th>settings</th><th>n</th><th>faults</th><th>classes</th><th>99 % of errors (t: ulp)</th>"
+        << "<th>time (ns a ray)</th><th>result</th></tr>\n";
+    for (const Key& key : order) write_row(out, key, groups[key]);
+    out << "</table></div></details>\n";
+}
+
+}  // namespace
+
+void write_case_tables(std::ostream& out, const PageInput& input) {
+    char section = 0;
+    for (const suite::SuiteCase& row : input.catalogue) {
+        std::vector<const Record*> records;
+        for (const Record& record : input.records)
+            if (record.case_id == row.id && record.was_run) records.push_back(&record);
+        if (records.empty()) continue;
+        if (row.id.front() != section) {
+            section = row.id.front();
+            out << "<h3 id=\"" << section << "\">" << section << ": " << escaped(suite::section_of(row.id))
+                << "</h3>\n";
+        }
+        write_case(out, row, records);
+    }
+}
+
+void write_not_run(std::ostream& out, const PageInput& input) {
+    std::map<std::pair<std::string, std::string>, std::set<std::string>> groups;
+    for (const Record& record : input.records)
+        if (!record.was_run) groups[{record.backend + ' ' + record.level, record.reason}].insert(record.case_id);
+    if (groups.empty()) {
+        out << "<p>Every case ran on every accelerator and level that was asked for.</p>\n";
+        return;
+    }
+    out << "<div class=\"wide\"><table><tr><th>on</th><th>cases</th><th>why</th></tr>\n";
+    for (const auto& [key, cases] : groups) {
+        std::string ids;
+        for (const std::string& id : cases) ids += (ids.empty() ? "" : " ") + id;
+        out << "<tr><td>" << escaped(key.first == " " ? "all" : key.first) << "</td><td>"
+            << (cases.size() > 12 ? count_text(cases.size()) + " cases" : escaped(ids)) << "</td><td>"
+            << escaped(key.second) << "</td></tr>\n";
+    }
+    out << "</table></div>\n";
+}
+
+}  // namespace twinray::report

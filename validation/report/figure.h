@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// The plots of a report: records in, points out. Pure functions; plotting is gnuplot's.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "validation/records/record.h"
+
+namespace twinray::report {
+
+struct FigurePoint {
+    double x = 0, y = 0;
+    Interval x_95 = {0, 0}, y_95 = {0, 0};  // no bar where both ends are the value
+    std::string label = {};                 // written beside it
+    bool is_bound = false;                  // no event was seen: x is the bound of the rate, and it may be any less
+};
+
+struct FigureSeries {
+    std::string label;      // written at its end; "" = its points have labels of their own
+    std::size_t color = 0;  // the same for a thing in all figures: see color_of()
+    bool is_joined = true;  // by a line
+    std::vector<FigurePoint> points = {};
+};
+
+struct Figure {
+    std::string id, title;
+    std::string sentence = {};  // what there is to see
+    std::string x_label = {}, y_label = {};
+    bool is_log_x = true, is_log_y = true;
+    std::vector<std::string> rows = {};  // names of y = 0, 1, ..., from above: y has no scale then
+    std::optional<double> mark_x = {};   // a line at what all are compared with
+    std::vector<double> x_tics = {};     // beside those that gnuplot chooses
+    std::vector<FigureSeries> series = {};
+};
+
+// Of SwTlas 0, of the driver's ray queries 1, of its pipelines 2, of anything else 3.
+std::size_t color_of(std::string_view backend);
+
+// The five that matter, in this order; one without a point is left out.
+//   levels: error of t against the time of a trace, a point for each accelerator and level, and the front of those that
+//           no other beats in both
+//   leaks: rays lost at edges and vertices, with 95 % intervals
+//   paths: error of the path tracer's pictures against seconds, with the slope
+//   factors: error of view factors against rays
+//   features: time of a trace with features that its scene does not need, over the time without
+std::vector<Figure> figures_of(std::span<const Record> records);
+Figure levels_figure(std::span<const Record> records);
+Figure leaks_figure(std::span<const Record> records);
+Figure paths_figure(std::span<const Record> records);
+Figure factors_figure(std::span<const Record> records);
+Figure features_figure(std::span<const Record> records);
+
+// Of points, those that no other beats in both x and y, by ascending x.
+std::vector<FigurePoint> front_of(std::vector<FigurePoint> points);
+
+}  // namespace twinray::report

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "validation/report/wording.h"
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace twinray::report {
+
+std::string escaped(std::string_view text) {
+    std::string result;
+    for (const char c : text) switch (c) {
+            case '&': result += "&amp;"; break;
+            case '<': result += "&lt;"; break;
+            case '>': result += "&gt;"; break;
+            case '"': result += "&quot;"; break;
+            default: result += c;
+        }
+    return result;
+}
+
+std::string number(double value, int digits) {
+    std::ostringstream out;
+    const bool is_long = std::abs(value) >= std::pow(10, digits) && std::abs(value) < 1e6;
+    if (is_long)
+        out << std::llround(value);
+    else
+        out << std::setprecision(digits) << value;
+    return out.str();
+}
+
+std::string count_text(std::uint64_t count) {
+    if (count >= 1'000'000) return number(static_cast<double>(count) / 1e6) + " million";
+    std::string digits = std::to_string(count);
+    if (digits.size() > 3) digits.insert(digits.size() - 3, ",");
+    return digits;
+}
+
+std::string rate_text(std::uint64_t count, std::uint64_t n) {
+    const Interval rate = rate_interval_95(count, n);
+    const bool is_rare = static_cast<double>(count) < 1e-3 * static_cast<double>(n);
+    const double unit = is_rare ? 1e6 : 100;
+    const std::string name = is_rare ? "per million" : "%";
+    if (count == 0)
+        return "0 of " + count_text(n) + " (below " + number(upper_bound_95(0, n) * unit, 2) + ' ' + name + ')';
+    return number(unit * static_cast<double>(count) / static_cast<double>(n), 2) + ' ' + name + " (" +
+           number(unit * rate.low, 2) + " to " + number(unit * rate.high, 2) + ')';
+}
+
+std::string with_interval(double value, const Interval& interval, int digits) {
+    return number(value, digits) + " (" + number(interval.low, digits) + " to " + number(interval.high, digits) + ')';
+}
+
+std::string answerer(std::string_view backend) {
+    if (backend == "sw") return "SwTlas";
+    if (backend == "hw") return "the driver's ray queries";
+    if (backend == "hw-pipeline") return "the driver's pipelines";
+    return std::string(backend);
+}
+
+std::string settings_text(const Record& record) {
+    std::string result;
+    for (const auto& [name, value] : record.params) result += (result.empty() ? "" : ", ") + name + ' ' + value.text();
+    return result;
+}
+
+bool is_users_kernel(const Record& record) { return !record.variant.starts_with("control"); }
+
+}  // namespace twinray::report

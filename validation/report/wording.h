@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// How a report writes numbers, and names those that answer: pure functions.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "validation/records/record.h"
+
+namespace twinray::report {
+
+// "&" and "<" and quotes as XML wants them.
+std::string escaped(std::string_view text);
+
+std::string number(double value, int digits = 3);  // "0.00123", "1.2e-09", "1250"
+std::string count_text(std::uint64_t count);       // "853", "8,192", "2.1 million"
+// "4.6 % (4.5 to 4.7)", or per million below 0.1 %; "0 of 2.1 million (below 1.4 per million)".
+std::string rate_text(std::uint64_t count, std::uint64_t n);
+// "1.7 (1.2 to 2.4)".
+std::string with_interval(double value, const Interval& interval, int digits = 2);
+
+// "SwTlas", "the driver's ray queries", "the driver's pipelines"; a case's own word for anything else.
+std::string answerer(std::string_view backend);
+// Settings of a record: "aim vertex, cells 64".
+std::string settings_text(const Record& record);
+
+// Whether users get the kernel: not compiled otherwise as a negative control.
+bool is_users_kernel(const Record& record);
+
+}  // namespace twinray::report
