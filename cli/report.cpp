@@ -9,6 +9,7 @@
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "validation/report/compare_text.h"
 #include "validation/report/gnuplot.h"
 #include "validation/report/page.h"
 #include "validation/report/summary.h"
@@ -32,6 +33,7 @@ struct ReportOptions {
     std::vector<Level> levels;
     std::vector<std::filesystem::path> scenes;
     std::filesystem::path baseline;
+    std::vector<std::filesystem::path> compared;  // reports of before, in place of a run
     AccelOptions trees = {};
 };
 
@@ -116,15 +118,52 @@ int run(const ReportOptions& options) {
     write_csv(options.folder / "report.csv", recorder.records());
     for (const Record& record : recorder.records())
         append_json(options.common.json, nlohmann::json::parse(to_json(record)));
-    const std::vector<report::Change> changes = report::worse_than(baseline.records, recorder.records());
+    const report::Comparison comparison = report::compare(baseline.records, recorder.records());
     report::write_page(options.folder / "report.html",
-                       {options.suite, state.seconds, cases, recorder.records(), options.baseline.string(), changes,
-                        drawn_figures(options, recorder.records())});
+                       {options.suite, state.seconds, cases, recorder.records(), options.baseline.string(),
+                        comparison.changes, drawn_figures(options, recorder.records())});
     report::print_summary(std::cout, recorder.records());
-    if (!options.baseline.empty()) report::print_baseline(std::cout, baseline, recorder.records());
-    report::print_changes(std::cout, changes);
+    if (!options.baseline.empty()) {
+        std::cout << "  since " << options.baseline.string() << ":\n";
+        report::print_comparison(std::cout, comparison);
+        report::print_other_lines(std::cout, baseline);
+    }
     std::cout << "  " << (options.folder / "report.html").string() << '\n';
     return report::faults_of_ours(recorder.records()) > 0 ? 1 : 0;
+}
+
+nlohmann::json json_of(const report::NamedReport& before, const report::NamedReport& now,
+                       const report::Comparison& comparison) {
+    nlohmann::json changes = nlohmann::json::array(), times = nlohmann::json::array();
+    constexpr std::array kinds = {"worse", "better", "slower", "faster"};
+    for (const report::Change& change : comparison.changes)
+        changes.push_back(
+            {{"kind", kinds[static_cast<std::size_t>(change.kind)]}, {"what", change.what}, {"how", change.how}});
+    for (const report::TimeRatio& time : comparison.times)
+        times.push_back({{"backend", time.backend},
+                         {"level", time.level},
+                         {"ratio", time.ratio},
+                         {"ratio_95", {time.ratio_95.low, time.ratio_95.high}},
+                         {"n", time.measurements}});
+    return {{"schema", "twinray-compare/1"},     {"before", before.name},     {"now", now.name},
+            {"n", comparison.compared},          {"tests", comparison.tests}, {"drift", comparison.drift},
+            {"is_worse", comparison.is_worse()}, {"changes", changes},        {"times", times}};
+}
+
+// The first report with each of the others. Exit status: 1 where one is worse.
+int run_compare(const ReportOptions& options) {
+    std::vector<report::NamedReport> reports;
+    for (const std::filesystem::path& path : options.compared) reports.push_back(report::read_report(path));
+    report::print_side_by_side(std::cout, reports);
+    bool is_worse = false;
+    for (std::size_t i = 1; i < reports.size(); ++i) {
+        const report::Comparison comparison = report::compare(reports[0].records, reports[i].records);
+        std::cout << reports[0].name << " -> " << reports[i].name << '\n';
+        report::print_comparison(std::cout, comparison);
+        append_json(options.common.json, json_of(reports[0], reports[i], comparison));
+        is_worse |= comparison.is_worse();
+    }
+    return is_worse ? 1 : 0;
 }
 
 }  // namespace
@@ -158,8 +197,12 @@ Command report_command() {
         {output_option(folder(options->folder), "folder of report.jsonl, report.csv and report.html"),
          {.name = "--baseline",
           .value = file(options->baseline),
-          .help = "report.jsonl, or --json, of an earlier run: says what is worse; lines of other commands are "
-                  "counted"}}};
+          .help = "report.jsonl, or --json, of an earlier run: says what changed; lines of other commands are "
+                  "counted"},
+         {.name = "--compare",
+          .value = paths(options->compared, 2, "REPORT REPORT ..."),
+          .help = "run nothing: say what changed from the first report (a folder or its JSON lines) to each other, "
+                  "beyond noise; ends with exit status 1 where something is worse"}}};
     for (Option& option : tree_options(options->trees)) output.options.push_back(std::move(option));
     return {.name = "report",
             .group = "Checking",
@@ -169,10 +212,10 @@ Command report_command() {
                 "rays and tiny scenes, and writes what they cost and how wrong the answers are: a page with "
                 "plots that needs no network, JSON lines and CSV.",
             .sections = {cases, output, common_options(options->common)},
-            .examples = {{"twinray report -o today --baseline yesterday/report.jsonl",
-                          "the quick suite, and what is worse than yesterday"}},
-            .fault = "the software accelerator has a fault",
-            .run = [options] { return run(*options); }};
+            .examples = {{"twinray report -o today", "the quick suite: today/report.html"},
+                         {"twinray report --compare yesterday today", "what changed beyond noise"}},
+            .fault = "the software accelerator has a fault, or a compared report is worse",
+            .run = [options] { return options->compared.empty() ? run(*options) : run_compare(*options); }};
 }
 
 }  // namespace twinray::cli

@@ -118,6 +118,14 @@ Value file_list(std::vector<std::filesystem::path>& target) {
     return value;
 }
 
+Value paths(std::vector<std::filesystem::path>& target, std::size_t least, const std::string& metavar) {
+    Value value = file_value({}, [&target](Words words) { target.assign(words.begin(), words.end()); });
+    value.metavar = metavar;
+    value.least = least;
+    value.most = 1000;
+    return value;
+}
+
 Value folder(std::filesystem::path& target) {
     return text_value(Value::Kind::folder, "FOLDER", target.string(),
                       [&target](Words words) { target = words.front(); });

@@ -44,6 +44,7 @@ Value file(std::filesystem::path& target, std::vector<std::string> suffixes = {}
 Value files(std::vector<std::filesystem::path>& target, std::vector<std::string> suffixes);  // the option is repeatable
 Value file_list(std::vector<std::filesystem::path>& target);                                 // separated by commas
 Value folder(std::filesystem::path& target);
+Value paths(std::vector<std::filesystem::path>& target, std::size_t least, const std::string& metavar);
 
 // "trace, verify or leaks".
 std::string either_of(const std::vector<std::string>& words);

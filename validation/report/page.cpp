@@ -90,15 +90,18 @@ void write_method(std::ostream& out, const PageInput& input) {
 
 void write_changes(std::ostream& out, const PageInput& input) {
     if (input.baseline.empty()) return;
-    out << "<h2 id=\"baseline\">Worse than " << escaped(input.baseline) << "</h2>\n";
+    out << "<h2 id=\"baseline\">Changed since " << escaped(input.baseline) << "</h2>\n";
     if (input.changes.empty()) {
-        out << "<p>Nothing.</p>\n";
+        out << "<p>Nothing beyond noise.</p>\n";
         return;
     }
     out << "<ul>\n";
+    const auto style = [](Change::Kind kind) {
+        return kind == Change::Kind::worse ? "bad" : kind == Change::Kind::slower ? "slower" : "pass";
+    };
     for (const Change& change : input.changes)
-        out << "<li class=\"" << (change.is_slower ? "slower" : "bad") << "\">" << escaped(change.what) << ": "
-            << escaped(change.how) << "</li>\n";
+        out << "<li class=\"" << style(change.kind) << "\">" << escaped(change.what) << ": " << escaped(change.how)
+            << "</li>\n";
     out << "</ul>\n";
 }
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "validation/report/baseline.h"
+#include "validation/report/compare.h"
 #include "validation/report/figure.h"
 #include "validation/suite/suite.h"
 
@@ -16,8 +16,8 @@ struct PageInput {
     double seconds = 0;  // that it took
     std::span<const suite::SuiteCase> catalogue;
     std::span<const Record> records;
-    std::string baseline = {};  // file that was compared to; "" = none
-    std::span<const Change> changes = {};
+    std::string baseline = {};             // file that was compared to; "" = none
+    std::span<const Change> changes = {};  // since then
     // Drawn, each as an <svg> element; "" where there is no gnuplot.
     std::vector<std::pair<Figure, std::string>> figures = {};
 };

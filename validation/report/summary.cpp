@@ -27,19 +27,13 @@ void print_summary(std::ostream& out, std::span<const Record> records) {
     out << '\n';
 }
 
-void print_baseline(std::ostream& out, const JsonLines& baseline, std::span<const Record> records) {
-    out << "  baseline: " << count_comparable(baseline.records, records) << " of " << records.size()
-        << " records have one there to be compared with";
-    const char* separator = "; not compared: ";
+void print_other_lines(std::ostream& out, const JsonLines& baseline) {
+    const char* separator = "  not compared: ";
     for (const auto& [kind, count] : baseline.others) {
         out << separator << count << " of " << kind;
         separator = ", ";
     }
-    out << '\n';
-}
-
-void print_changes(std::ostream& out, std::span<const Change> changes) {
-    for (const Change& change : changes) out << "  worse: " << change.what << ": " << change.how << '\n';
+    if (!baseline.others.empty()) out << '\n';
 }
 
 }  // namespace twinray::report

@@ -5,14 +5,12 @@
 #include <ostream>
 
 #include "validation/records/recorder.h"
-#include "validation/report/baseline.h"
 
 namespace twinray::report {
 
 // What did not pass, then how many records came to what.
 void print_summary(std::ostream& out, std::span<const Record> records);
-// What there was to compare with.
-void print_baseline(std::ostream& out, const JsonLines& baseline, std::span<const Record> records);
-void print_changes(std::ostream& out, std::span<const Change> changes);
+// Lines of a baseline that are no records of a report.
+void print_other_lines(std::ostream& out, const JsonLines& baseline);
 
 }  // namespace twinray::report

@@ -67,11 +67,11 @@ TEST(Page, ListsWhatWasNotRunByReason) {
     EXPECT_TRUE(has(page_of({first, second}), "<tr><td>all</td><td>B11 B13</td><td>nobody wrote it</td></tr>"));
 }
 
-TEST(Page, ShowsWhatIsWorseThanTheBaseline) {
+TEST(Page, ShowsWhatChangedSinceTheBaseline) {
     const std::vector<Record> records = {record("W01", "watertight", 400)};
-    EXPECT_TRUE(has(page_of(records, {{"W01 sw", "ns 1 -> 2", true}}, "old.jsonl"),
+    EXPECT_TRUE(has(page_of(records, {{Change::Kind::slower, "W01 sw", "ns 1 -> 2"}}, "old.jsonl"),
                     "<li class=\"slower\">W01 sw: ns 1 -&gt; 2</li>"));
-    EXPECT_TRUE(has(page_of(records, {}, "old.jsonl"), "<p>Nothing.</p>"));
+    EXPECT_TRUE(has(page_of(records, {}, "old.jsonl"), "<p>Nothing beyond noise.</p>"));
     EXPECT_FALSE(has(page_of(records), "id=\"baseline\""));
 }
 

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+#include "validation/report/compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "engine/core/error.h"
+#include "validation/report/wording.h"
+
+namespace twinray::report {
+namespace {
+
+constexpr std::uint64_t few = 100;        // items, of which a rate says little
+constexpr std::size_t fewest_cases = 5;   // of which the bootstrap draws
+constexpr std::size_t draws = 10'000;
+
+using Pair = std::pair<const Record*, const Record*>;  // before and now
+
+std::string name_of(const Record& record) {
+    std::string name = record.case_id;
+    for (const std::string& part : {record.backend, record.level, record.variant})
+        if (!part.empty()) name += ' ' + part;
+    const std::string settings = settings_text(record);
+    return settings.empty() ? name : name + " {" + settings + '}';
+}
+
+std::string group_of(const Record& record) { return record.backend + ' ' + record.level; }
+
+// Something that may have changed, with the probability of what was seen if it did not.
+struct Suspicion {
+    Change change;
+    double p = 1;
+};
+
+// So many of n, before and now.
+struct Counted {
+    std::uint64_t before = 0, n_before = 0, now = 0, n_now = 0;
+    Counted& operator+=(const Counted& other) {
+        before += other.before, n_before += other.n_before;
+        now += other.now, n_now += other.n_now;
+        return *this;
+    }
+};
+
+Suspicion suspicion_of(const std::string& what, const std::string& kind, const Counted& counted) {
+    const bool is_more = static_cast<double>(counted.now) * static_cast<double>(counted.n_before) >
+                         static_cast<double>(counted.before) * static_cast<double>(counted.n_now);
+    return {{is_more ? Change::Kind::worse : Change::Kind::better, what,
+             kind + ' ' + rate_text(counted.before, counted.n_before) + " -> " +
+                 rate_text(counted.now, counted.n_now)},
+            fisher_exact(counted.before, counted.n_before, counted.now, counted.n_now)};
+}
+
+// Any answer that Vulkan and rounding allow.
+bool is_right(std::string_view kind) {
+    for (const char* right : {"AGREE", "TIE", "BOUNDARY", "BOUNDARY_HW_MISS", "UNSPECIFIED"})
+        if (kind == right) return true;
+    return false;
+}
+
+// Whether its counts are those of classes, one for each item.
+bool has_classes(const Record& record) {
+    std::uint64_t sum = 0;
+    for (const auto& [kind, count] : record.counts) sum += count;
+    return !record.counts.empty() && sum == record.n;
+}
+
+// By class; where a record has no classes, its faults.
+std::map<std::string, Counted> counts_of(const Record& before, const Record& now) {
+    std::map<std::string, Counted> counts;
+    for (const auto& [record, is_now] : {std::pair{&before, false}, std::pair{&now, true}}) {
+        if (!has_classes(*record)) (is_now ? counts["faults"].now : counts["faults"].before) += record->faults;
+        if (!has_classes(*record)) continue;
+        for (const auto& [kind, count] : record->counts)
+            if (!is_right(kind)) (is_now ? counts[kind].now : counts[kind].before) += count;
+    }
+    for (auto& [kind, counted] : counts) counted.n_before = before.n, counted.n_now = now.n;
+    return counts;
+}
+
+class Comparing {
+  public:
+    Comparing(std::span<const Record> before, std::span<const Record> now) {
+        std::map<std::string, const Record*> known;
+        for (const Record& record : before) known[name_of(record)] = &record;
+        result_.only_before = known.size();
+        for (const Record& record : now) {
+            const auto found = known.find(name_of(record));
+            if (found == known.end()) {
+                ++result_.only_now;
+                continue;
+            }
+            pairs_.emplace_back(found->second, &record);
+            --result_.only_before;
+        }
+        result_.compared = pairs_.size();
+    }
+
+    Comparison result() {
+        for (const Pair& pair : pairs_) look_at(pair);
+        for (const auto& [what, kinds] : sums_)
+            for (const auto& [kind, counted] : kinds) suspicions_.push_back(suspicion_of(what, kind, counted));
+        compare_times();
+        std::vector<double> p;
+        for (const Suspicion& suspicion : suspicions_) p.push_back(suspicion.p);
+        const std::vector<bool> is_sure = holm(p, false_alarms);
+        for (std::size_t i = 0; i < p.size(); ++i)
+            if (is_sure[i]) result_.changes.push_back(suspicions_[i].change);
+        result_.tests = p.size();
+        return result_;
+    }
+
+  private:
+    void add(Change::Kind kind, const Record& record, const std::string& how) {
+        result_.changes.push_back({kind, name_of(record), how});
+    }
+
+    void look_at(const Pair& pair) {
+        const auto& [before, now] = pair;
+        if (before->was_run != now->was_run) {
+            if (!now->was_run && now->reason.find("was spent before its turn") == std::string::npos)
+                add(Change::Kind::worse, *now, "was run, and is not: " + now->reason);
+            return;
+        }
+        if (!now->was_run) return;
+        const bool was_fault_of_ours = before->fault_of == "twinray", is_fault_of_ours = now->fault_of == "twinray";
+        const bool asks_the_same = before->seed == now->seed && before->n == now->n;
+        if (is_fault_of_ours && !was_fault_of_ours) {
+            add(Change::Kind::worse, *now, "a fault of twinray: " + now->reason + now->example);
+        } else if (asks_the_same && now->n < few && before->pass != now->pass && before->pass && now->pass) {
+            add(*now->pass ? Change::Kind::better : Change::Kind::worse, *now,
+                *now->pass ? "did not pass, and does" : "passed, and does not: " + now->reason + now->example);
+        } else if (is_users_kernel(*now)) {
+            for (const auto& [kind, counted] : counts_of(*before, *now)) {
+                if (counted.before + counted.now == 0) continue;
+                suspicions_.push_back(suspicion_of(name_of(*now), kind, counted));
+                if (now->level != "fast") sums_[group_of(*now) + " over all cases"][kind] += counted;
+            }
+        }
+    }
+
+    // Log of the ratio of both medians, by case.
+    using CaseRatios = std::map<std::string, std::vector<double>>;
+
+    void compare_times() {
+        std::map<std::pair<std::string, std::string>, CaseRatios> groups;
+        std::vector<double> all;
+        for (const auto& [before, now] : pairs_) {
+            if (!before->time || !now->time || before->time->metric != now->time->metric || before->n != now->n) continue;
+            if (!(before->time->median > 0 && now->time->median > 0) || !is_users_kernel(*now)) continue;
+            all.push_back(std::log(now->time->median / before->time->median));
+            groups[{now->backend, now->level}][now->case_id].push_back(all.back());
+        }
+        if (all.empty()) return;
+        const double drift = median(all);
+        result_.drift = std::exp(drift);
+        for (auto& [key, cases] : groups) {
+            if (cases.size() < fewest_cases) continue;
+            for (auto& [id, ratios] : cases)
+                for (double& ratio : ratios) ratio -= drift;
+            compare_group(key.first, key.second, cases);
+        }
+    }
+
+    void compare_group(const std::string& backend, const std::string& level, const CaseRatios& cases) {
+        std::vector<double> means;  // each case counts once: what it measures has the machine's state in common
+        std::size_t measurements = 0;
+        for (const auto& [id, ratios] : cases) {
+            means.push_back(median(ratios));
+            measurements += ratios.size();
+        }
+        const double mean = median(means);
+        std::mt19937_64 random(1);
+        std::vector<double> drawn(draws), items(means.size());
+        for (double& value : drawn) {
+            for (double& item : items) item = means[random() % means.size()];
+            value = median(items);
+        }
+        std::sort(drawn.begin(), drawn.end());
+        const TimeRatio ratio{backend,
+                              level,
+                              std::exp(mean),
+                              {std::exp(quantile(drawn, 0.025)), std::exp(quantile(drawn, 0.975))},
+                              measurements};
+        result_.times.push_back(ratio);
+        const double margin = std::log(tolerated_ratio);
+        const auto within = static_cast<double>(std::count_if(drawn.begin(), drawn.end(), [&](double value) {
+            return mean > 0 ? value < margin : value > -margin;
+        }));
+        suspicions_.push_back({{mean > 0 ? Change::Kind::slower : Change::Kind::faster,
+                                "times of " + backend + (level.empty() ? "" : ' ' + level),
+                                with_interval(ratio.ratio, ratio.ratio_95, 3) + " times as long, beside all times together"},
+                               (1 + within) / (1 + static_cast<double>(draws))});
+    }
+
+    std::vector<Pair> pairs_;
+    std::map<std::string, std::map<std::string, Counted>> sums_;
+    std::vector<Suspicion> suspicions_;
+    Comparison result_ = {};
+};
+
+}  // namespace
+
+bool Comparison::is_worse() const {
+    return std::any_of(changes.begin(), changes.end(), [](const Change& change) {
+        return change.kind == Change::Kind::worse || change.kind == Change::Kind::slower;
+    });
+}
+
+Comparison compare(std::span<const Record> before, std::span<const Record> now) {
+    return Comparing(before, now).result();
+}
+
+double fisher_exact(std::uint64_t count_a, std::uint64_t n_a, std::uint64_t count_b, std::uint64_t n_b) {
+    const auto log_choose = [](double n, double k) {
+        return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1);
+    };
+    const auto a = static_cast<double>(n_a), b = static_cast<double>(n_b);
+    const std::uint64_t count = count_a + count_b;
+    const double all = log_choose(a + b, static_cast<double>(count));
+    const auto log_p = [&](std::uint64_t k) {
+        return log_choose(a, static_cast<double>(k)) + log_choose(b, static_cast<double>(count - k)) - all;
+    };
+    const double seen = log_p(count_a), slack = 1e-7;  // of rounding
+    double p = 0;
+    for (std::uint64_t k = count > n_b ? count - n_b : 0; k <= std::min(count, n_a); ++k)
+        if (const double here = log_p(k); here <= seen + slack) p += std::exp(here);
+    return std::min(p, 1.0);
+}
+
+std::vector<bool> holm(std::span<const double> p, double level) {
+    std::vector<std::size_t> order(p.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
+    std::vector<bool> is_refuted(p.size(), false);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        if (p[order[i]] > level / static_cast<double>(p.size() - i)) break;
+        is_refuted[order[i]] = true;
+    }
+    return is_refuted;
+}
+
+}  // namespace twinray::report

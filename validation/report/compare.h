@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// Two reports beside each other: what changed beyond noise. Pure functions of their records.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "validation/records/record.h"
+
+namespace twinray::report {
+
+// The chance that something is reported although nothing changed, over all tests of a comparison together.
+inline constexpr double false_alarms = 0.05;
+// Times of a group count as changed where their ratio is beyond this, or its inverse, beyond noise.
+inline constexpr double tolerated_ratio = 1.1;
+
+struct Change {
+    enum class Kind : std::uint8_t { worse, better, slower, faster } kind;
+    std::string what;  // "W04 hw watertight {aim vertex}", "times of sw refined"
+    std::string how;   // "HW_LEAK 0 of 4,096 -> 46 of 4,096", "1.3 (1.2 to 1.4)"
+
+    bool operator==(const Change&) const = default;
+};
+
+// Times of one accelerator and level over all cases, of which the median of all ratios is taken out: how busy the
+// machine was.
+struct TimeRatio {
+    std::string backend, level;
+    double ratio = 1;
+    Interval ratio_95 = {1, 1};  // bootstrap, of whole cases
+    std::size_t measurements = 0;
+};
+
+struct Comparison {
+    std::vector<Change> changes;
+    std::vector<TimeRatio> times;
+    double drift = 1;             // of all times together
+    std::size_t compared = 0;     // records with a counterpart
+    std::size_t tests = 0;        // of the hypothesis that nothing changed
+    std::size_t only_before = 0, only_now = 0;  // without one
+
+    bool is_worse() const;
+};
+
+// Records correspond where case, settings, accelerator, level and variant are the same. Counts of classes and of faults
+// are compared by Fisher's exact test, for each record and for each accelerator and level over all cases; times, of as
+// many rays, by the bootstrap. What is left of the tests by Holm's procedure (1979) at false_alarms is a change. Certain,
+// without a test: a fault of ours where there was none; a record of under 100 items that asked the same (seed and n) and
+// passes no more, or again; a record that ran and does not.
+Comparison compare(std::span<const Record> before, std::span<const Record> now);
+
+// P of a table at least as unlikely as this one, where both rates are the same: Fisher's exact test (1922), two-sided.
+double fisher_exact(std::uint64_t count_a, std::uint64_t n_a, std::uint64_t count_b, std::uint64_t n_b);
+
+// Which of the hypotheses with these p are refuted so that the chance to refute a true one is at most `level`.
+std::vector<bool> holm(std::span<const double> p, double level);
+
+}  // namespace twinray::report
