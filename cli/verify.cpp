@@ -14,6 +14,7 @@
 #include "validation/exact/exact_reference.h"
 #include "validation/replay/scene_file.h"
 #include "validation/replay/show.h"
+#include "validation/reproducer/write.h"
 #include "validation/verify/output.h"
 #include "validation/records/progress.h"
 #include "validation/reference/aimed_rays.h"
@@ -26,8 +27,9 @@ namespace {
 struct VerifyOptions {
     CommonOptions common;
     std::filesystem::path scene, rays;
-    std::filesystem::path replay;   // in place of a scene
-    std::filesystem::path replays;  // folder; "" = only faults of ours are written
+    std::filesystem::path replay;                   // in place of a scene
+    std::filesystem::path replays;                  // folder; "" = only faults of ours are written
+    std::filesystem::path reproducers, reproducer;  // folders of faults of the driver
     std::size_t random = 100'000;
     std::size_t aimed = 10'000;
     Level level = Level::watertight;
@@ -62,6 +64,30 @@ replay::Replay replay_of(const VerifyOptions& options, const Scene& scene, const
             .twinray = twinray_version};
 }
 
+// The first fault of each class of the driver's.
+void keep_first(std::vector<Fault>& firsts, const std::vector<Fault>& faults) {
+    for (const Fault& fault : faults)
+        if (!fault.is_of_software && std::ranges::count(firsts, fault.kind, &Fault::kind) == 0) firsts.push_back(fault);
+}
+
+// A folder for each.
+void write_reproducers(const VerifyOptions& options, const Scene& scene, const replay::Replay& common,
+                       const std::vector<Fault>& faults) {
+    if (faults.empty()) std::cout << "  no fault of the driver, so no reproducer\n";
+    suite::Devices devices(context_desc(options.common));
+    for (const Fault& fault : faults) {
+        replay::Replay replay = common;
+        replay.kind = name_of(fault.kind);
+        replay.ray = fault.ray;
+        const std::filesystem::path folder = options.reproducers / replay.kind;
+        try {
+            std::cout << "  " << reproducer::write_reproducer(folder, scene, replay, devices) << '\n';
+        } catch (const Error& error) {
+            std::cout << "  no reproducer of " << replay.kind << ": " << error.what() << '\n';
+        }
+    }
+}
+
 // Returns the faults of ours.
 std::uint64_t run(const VerifyOptions& options) {
     const Scene scene = load_scene(options.scene, options.common);
@@ -80,6 +106,7 @@ std::uint64_t run(const VerifyOptions& options) {
     nlohmann::json base = base_record("twinray-report/1", *context, options.scene, scene);
     base.update({{"level", name_of(options.level)}, {"seed", options.common.seed}});
     std::uint64_t faults = 0;
+    std::vector<Fault> of_driver;
     for (const RaySet& set : ray_sets(options, reference, scene)) {
         Progress progress("verify " + set.name, set.rays.size(), options.common.quiet);
         const Comparison comparison = verifier.compare(set.rays, arbiter, progress);
@@ -94,7 +121,10 @@ std::uint64_t run(const VerifyOptions& options) {
                                               [&](const Ray& ray) { return reference_hit(reference, ray, arbiter); })
                       << " replays in " << folder.string() << "; show one: twinray verify --replay FILE\n";
         faults += faults_of_ours(options, comparison);
+        keep_first(of_driver, comparison.faults);
     }
+    if (!options.reproducers.empty())
+        write_reproducers(options, scene, replay_of(options, scene, context->properties()), of_driver);
     std::cout << (faults ? text(faults, " faults of ours") : std::string("no fault of ours")) << '\n';
     return faults;
 }
@@ -103,6 +133,8 @@ bool run_replay(const VerifyOptions& options) {
     suite::Devices devices(context_desc(options.common));
     const bool is_fault = replay::show(options.replay, devices, std::cout);
     std::cout << (is_fault ? "a fault of ours" : "no fault of ours") << '\n';
+    if (!options.reproducer.empty())
+        std::cout << reproducer::write_reproducer(options.reproducer, options.replay, devices) << '\n';
     return is_fault;
 }
 
@@ -132,7 +164,15 @@ Command verify_command() {
          {.name = "--replay",
           .value = file(options->replay),
           .help = "instead of a scene: show a faulty ray of an earlier run step by step",
-          .excludes = {"--replays"}}}};
+          .excludes = {"--replays", "--reproducers"}},
+         {.name = "--reproducers",
+          .value = folder(options->reproducers),
+          .help = "written: for the first fault of each class of the driver's a folder with a C program that shows it, "
+                  "a scene of few triangles and a text for the driver's tracker"},
+         {.name = "--reproducer",
+          .value = folder(options->reproducer),
+          .help = "such a folder for the ray of --replay",
+          .needs = {"--replay"}}}};
     return {.name = "verify",
             .group = "Checking",
             .summary = "compare both accelerators with exact answers, ray by ray",

@@ -47,6 +47,8 @@ const Family families[] = {
     {"particles_"},
     {"embed_renderer_"},
     {"suite_"},
+    {"reproducer_query", {Of::ray_queries}},
+    {"reproducer_trace_r", {Of::ray_pipelines}},
     {"control_contracted", {Of::refinement}},
     {"control_"},
     {"materials_"},

@@ -147,4 +147,15 @@ std::string hash_of(const Scene& scene) {
     return hash.text();
 }
 
+Scene load_traced_scene(const std::filesystem::path& file, const Replay& replay) {
+    const std::filesystem::path path = file.parent_path() / replay.scene;
+    Scene scene = load_scene(path);
+    const std::string hash = hash_of(scene);
+    if (hash == replay.scene_hash) return scene;
+    Scene as_written = load_scene(path, dvec3(0));
+    if (hash_of(as_written) == replay.scene_hash) return as_written;
+    fail("replay '", file.string(), "': scene '", path.string(), "' is not the one that was traced: its hash is ", hash,
+         ", not ", replay.scene_hash);
+}
+
 }  // namespace twinray::replay

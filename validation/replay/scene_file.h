@@ -8,6 +8,7 @@
 #include <twinray/scene.h>
 
 #include "validation/reference/reference_scene.h"
+#include "validation/replay/replay.h"
 
 namespace twinray::replay {
 
@@ -21,5 +22,9 @@ void write_glb(const std::filesystem::path& file, const Scene& scene);
 
 // 16 hexadecimal digits over all positions, triangles and transforms (FNV-1a).
 std::string hash_of(const Scene& scene);
+
+// The scene that a replay of this file names. One of a user's was loaded as it is here; one that write_glb() made has
+// the floats that were traced. Throws Error where it is not the one that was traced, by its hash.
+Scene load_traced_scene(const std::filesystem::path& file, const Replay& replay);
 
 }  // namespace twinray::replay

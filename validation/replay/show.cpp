@@ -40,18 +40,6 @@ struct Stage {
     Stage(const Stage&) = delete;
 };
 
-// A file of a user's was loaded as it is here; one that write_glb() made has the floats that were traced.
-Scene load_checked(const std::filesystem::path& file, const Replay& replay) {
-    const std::filesystem::path path = file.parent_path() / replay.scene;
-    Scene scene = load_scene(path);
-    const std::string hash = hash_of(scene);
-    if (hash == replay.scene_hash) return scene;
-    Scene as_written = load_scene(path, dvec3(0));
-    if (hash_of(as_written) == replay.scene_hash) return as_written;
-    fail("replay '", file.string(), "': scene '", path.string(), "' is not the one that was traced: its hash is ", hash,
-         ", not ", replay.scene_hash);
-}
-
 Level level_of(const Replay& replay) {
     for (const Level level : all_levels)
         if (name_of(level) == replay.level) return level;
@@ -167,7 +155,7 @@ const char* arithmetic_of(Level level) {
 
 bool show(const std::filesystem::path& file, suite::Devices& devices, std::ostream& out) {
     const Replay replay = read(file);
-    const Stage stage(replay, load_checked(file, replay));
+    const Stage stage(replay, load_traced_scene(file, replay));
     const auto precision = out.precision(9);
     print_header(out, stage);
     const std::vector<TriangleId> truth = print_truth(out, stage);

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Asks the driver about one ray, and the references what the answer is worth.
+#pragma once
+
+#include <memory>
+
+#include <twinray/tlas.h>
+#include <twinray/validation.h>
+
+#include "validation/reproducer/fault_case.h"
+#include "validation/suite/devices.h"
+
+namespace twinray::reproducer {
+
+// The driver's own answers: nothing is refined, and triangles and instances are built in the order in which they are
+// given.
+class DriverTest {
+  public:
+    DriverTest(suite::Devices& devices, suite::Backend backend);
+
+    Hit answer(const Scene& scene, const Ray& ray);
+
+  private:
+    HwTlas accel_;
+};
+
+// As the exact reference sees it, where float64 cannot tell.
+HitClass class_of(const Scene& scene, const Ray& ray, const Hit& answer);
+
+}  // namespace twinray::reproducer

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "validation/reproducer/reproduce.h"
+
+#include <chrono>
+
+#include "engine/core/error.h"
+#include "validation/reproducer/driver_test.h"
+#include "validation/reproducer/simplify.h"
+
+namespace twinray::reproducer {
+namespace {
+
+// Whether the driver reorders this scene's triangles is known by an accelerator as users have it.
+bool reorders(suite::Devices& devices, suite::Backend backend) { return HwTlas(devices.context(backend)).reorders(); }
+
+}  // namespace
+
+Reproduction reproduce(suite::Devices& devices, suite::Backend backend, const Scene& scene, const Ray& ray,
+                       double seconds) {
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    DriverTest driver(devices, backend);
+    Reproduction found;
+    found.backend = backend;
+    FaultCase fault = case_of(scene, ray, reorders(devices, backend));
+    found.triangles_before = fault.triangles.size();
+    const Scene whole = scene_of(fault);
+    found.answer = driver.answer(whole, ray);
+    found.kind = class_of(whole, ray, found.answer);
+    if (!is_fault_of_hardware(found.kind))
+        fail("the driver's own answer is ", name_of(found.kind), ", no fault, so there is nothing to reproduce");
+
+    const auto is_late = [&] { return std::chrono::duration<double>(Clock::now() - begin).count() > seconds; };
+    const CaseTest shows_fault = [&](const FaultCase& smaller) {
+        if (smaller.triangles.empty() || is_late()) {
+            found.was_cut_short |= !smaller.triangles.empty();
+            return false;
+        }
+        ++found.questions;
+        const Scene small = scene_of(smaller);
+        const Hit answer = driver.answer(small, smaller.ray);
+        return class_of(small, smaller.ray, answer) == found.kind &&
+               !right_answers(ReferenceScene::of(small), smaller.ray).allow(answer);
+    };
+    if (FaultCase near = near_the_ray(fault, found.answer.instance_index, found.answer.primitive_index);
+        shows_fault(near))
+        fault = std::move(near);
+    fault = simplified(std::move(fault), shows_fault);
+
+    found.scene = scene_of(fault);
+    found.ray = fault.ray;
+    found.answer = driver.answer(found.scene, found.ray);
+    found.right = right_answers(ReferenceScene::of(found.scene), found.ray);
+    return found;
+}
+
+}  // namespace twinray::reproducer
