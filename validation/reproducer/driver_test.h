@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Asks the driver about one ray, and the references what the answer is worth.
+// Asks the driver about one ray.
 #pragma once
 
 #include <memory>
 
 #include <twinray/tlas.h>
-#include <twinray/validation.h>
 
 #include "validation/reproducer/fault_case.h"
 #include "validation/suite/devices.h"
@@ -23,8 +22,5 @@ class DriverTest {
   private:
     HwTlas accel_;
 };
-
-// As the exact reference sees it, where float64 cannot tell.
-HitClass class_of(const Scene& scene, const Ray& ray, const Hit& answer);
 
 }  // namespace twinray::reproducer

@@ -5,6 +5,7 @@
 #include <bit>
 #include <map>
 
+#include "engine/accel/geometry.h"
 #include "hwtlas/order.h"
 #include "validation/reference/geometry64.h"
 
@@ -84,12 +85,30 @@ FaultCase case_of(const Scene& scene, const Ray& ray, bool reorders) {
             const std::vector<uint> order = morton_order(triangle_centers(mesh.positions, mesh.triangles));
             std::ranges::transform(order, triangles.begin(), [&](uint i) { return mesh.triangles[i]; });
         }
-        for (const uvec3& t : triangles)
-            fault.triangles.push_back(
-                {fault.transforms.size(), {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]}});
+        for (const uvec3& t : triangles) {
+            const std::array<vec3, 3> vertices = {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
+            if (std::ranges::all_of(vertices, [](const vec3& v) { return is_finite(v); }))
+                fault.triangles.push_back({fault.transforms.size(), vertices});
+        }
         fault.transforms.push_back(instance.transform);
     }
     return fault;
+}
+
+FaultCase as_built(const FaultCase& fault) {
+    FaultCase built = fault;
+    for (std::size_t instance = 0; instance < built.transforms.size(); ++instance) {
+        std::vector<vec3> vertices;
+        for (const CaseTriangle& triangle : fault.triangles)
+            if (triangle.instance == instance)
+                vertices.insert(vertices.end(), triangle.vertices.begin(), triangle.vertices.end());
+        const float unit = Geometry::near_unit(vertices);
+        for (CaseTriangle& triangle : built.triangles)
+            if (triangle.instance == instance)
+                for (vec3& vertex : triangle.vertices) vertex *= 1 / unit;
+        for (vec4& row : built.transforms[instance].rows) row = vec4(vec3(row) * unit, row.w);
+    }
+    return built;
 }
 
 Scene scene_of(const FaultCase& fault) {

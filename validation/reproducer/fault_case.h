@@ -31,12 +31,17 @@ struct FaultCase {
 using CaseTest = std::function<bool(const FaultCase&)>;
 
 // The scene's triangles, instance by instance; `reorders`: along a Morton curve, as HwTlas gives them to drivers that
-// build in the order of their input.
+// build in the order of their input. Those with a vertex that is not finite are left out: HwTlas never gives such to
+// drivers.
 FaultCase case_of(const Scene& scene, const Ray& ray, bool reorders);
 
 // The triangles whose boxes, grown by a quarter, the ray meets, whatever its t_min and t_max, and the one numbered
 // `also` of `instance`, if there is such a one.
 FaultCase near_the_ray(const FaultCase& fault, std::size_t instance, std::size_t also);
+
+// What the driver is given: HwTlas builds each mesh in units of a power of two near its largest coordinate, which its
+// instances then have in their transforms. Those that have their largest coordinate in [1, 2) stay as they are.
+FaultCase as_built(const FaultCase& fault);
 
 // A mesh for each instance that has triangles; vertices with the same bits are one.
 Scene scene_of(const FaultCase& fault);

@@ -27,6 +27,10 @@ void set_barycentrics(RightHit& right, const TriangleBound& bound) {
 
 double middle(const Interval& i) { return std::isfinite(i.high - i.low) ? i.low + (i.high - i.low) / 2 : 0; }
 
+bool is_right(const ReferenceScene& reference, const Ray& ray, const Hit& hit) {
+    return !is_fault_of_hardware(class_of(reference, ray, hit));
+}
+
 // Of a number that has a short fraction this, too.
 std::string words_of(const exact::Rational& value) {
     const std::string fraction = value.get_str();
@@ -51,40 +55,40 @@ std::string words_of(const std::optional<exact::ClosestHit>& closest) {
 
 }  // namespace
 
+HitClass class_of(const ReferenceScene& reference, const Ray& ray, const Hit& hit) {
+    const exact::Reference exactly(reference);
+    return *classify(reference, ray, {}, hit, [&](const Ray& r) { return exactly.rounded_hit(r); }).hardware;
+}
+
+bool RightHit::allows(const Hit& hit) const {
+    return instance == hit.instance_index && primitive == hit.primitive_index && t.holds(hit.t) && u.holds(hit.u) &&
+           v.holds(hit.v);
+}
+
 bool RightAnswers::allow(const Hit& hit) const {
     if (!hit.hit) return is_miss_right;
-    return std::ranges::any_of(hits, [&](const RightHit& right) {
-        return right.instance == hit.instance_index && right.primitive == hit.primitive_index && right.t.holds(hit.t) &&
-               right.u.holds(hit.u) && right.v.holds(hit.v);
-    });
+    return std::ranges::any_of(hits, [&](const RightHit& right) { return right.allows(hit); });
+}
+
+std::optional<RightHit> right_hit(const ReferenceScene& reference, const Ray& ray, uint instance, uint primitive) {
+    const ErrorBounds bounds(ray, reference.placement(instance), Accelerator::hardware);
+    const TriangleBound bound = bounds.bound(reference.geometry(instance).find(primitive)->vertices64());
+    if (bound.margin < -bound.radius) return {};
+    RightHit right{instance, primitive, {bound.t_low, bound.t_high}, {}, {}};
+    set_barycentrics(right, bound);
+    const float t = static_cast<float>(std::clamp(bound.t, bound.t_low, bound.t_high));
+    const float u = static_cast<float>(middle(right.u)), v = static_cast<float>(middle(right.v));
+    if (!is_right(reference, ray, {1, t, primitive, 0, u, v, instance, 0})) return {};
+    return right;
 }
 
 RightAnswers right_answers(const ReferenceScene& reference, const Ray& ray) {
-    const exact::Reference exactly(reference);
-    const Arbiter arbiter = [&](const Ray& r) { return exactly.rounded_hit(r); };
-    const auto is_right = [&](const Hit& hit) {
-        return !is_fault_of_hardware(*classify(reference, ray, {}, hit, arbiter).hardware);
-    };
     RightAnswers right;
-    right.exact = words_of(exactly.closest_hit(ray));
-    right.is_miss_right = is_right(miss());
+    right.exact = words_of(exact::Reference(reference).closest_hit(ray));
+    right.is_miss_right = is_right(reference, ray, miss());
     for (uint instance = 0; instance < reference.instance_count(); ++instance)
-        for (const ActiveTriangle& triangle : reference.geometry(instance).active()) {
-            const ErrorBounds bounds(ray, reference.placement(instance), Accelerator::hardware);
-            const TriangleBound bound = bounds.bound(triangle.vertices64());
-            if (bound.margin < -bound.radius) continue;
-            RightHit hit{instance, triangle.primitive, {bound.t_low, bound.t_high}, {}, {}};
-            set_barycentrics(hit, bound);
-            const Hit closest{1,
-                              static_cast<float>(std::clamp(bound.t, bound.t_low, bound.t_high)),
-                              triangle.primitive,
-                              0,
-                              static_cast<float>(middle(hit.u)),
-                              static_cast<float>(middle(hit.v)),
-                              instance,
-                              0};
-            if (is_right(closest)) right.hits.push_back(hit);
-        }
+        for (const ActiveTriangle& triangle : reference.geometry(instance).active())
+            if (const auto hit = right_hit(reference, ray, instance, triangle.primitive)) right.hits.push_back(*hit);
     return right;
 }
 

@@ -2,6 +2,7 @@
 // What a driver may answer to a ray, as numbers that a program without twinray can compare with.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct Interval {
 struct RightHit {
     uint instance, primitive;
     Interval t, u, v;
+    bool allows(const Hit& hit) const;
 };
 
 struct RightAnswers {
@@ -28,8 +30,14 @@ struct RightAnswers {
     bool allow(const Hit& hit) const;
 };
 
-// All that classify() finds no fault of hardware in: the exact answer to some ray within float32 rounding of this one.
+// What an answer of the driver's is worth, by the exact reference where float64 cannot tell.
+HitClass class_of(const ReferenceScene& reference, const Ray& ray, const Hit& hit);
+
+// All that class_of() finds no fault of hardware in: the exact answer to some ray within float32 rounding of this one.
 // u and v may be off by as much as the point that they name may, in the worst direction.
 RightAnswers right_answers(const ReferenceScene& reference, const Ray& ray);
+
+// Of one triangle, which is active, the part of that; nothing where no hit of it is right.
+std::optional<RightHit> right_hit(const ReferenceScene& reference, const Ray& ray, uint instance, uint primitive);
 
 }  // namespace twinray::reproducer

@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
+#include <span>
+#include <utility>
 
+#include "engine/accel/geometry.h"
 #include "validation/reproducer/ddmin.h"
 #include "validation/reproducer/short_numbers.h"
 
@@ -35,19 +39,12 @@ bool is_point_or_line(const CaseTriangle& t) {
     return t.vertices[0] == t.vertices[1] || t.vertices[1] == t.vertices[2] || t.vertices[2] == t.vertices[0];
 }
 
-FaultCase with_vertex_moved(const FaultCase& fault, std::size_t instance, const vec3& from, const vec3& to) {
-    FaultCase moved = fault;
-    for (CaseTriangle& triangle : moved.triangles)
-        if (triangle.instance == instance) std::ranges::replace(triangle.vertices, from, to);
-    std::erase_if(moved.triangles, is_point_or_line);
-    return moved;
-}
-
 // The ends of an edge, of each instance, both ways.
 struct Edge {
     std::size_t instance;
     vec3 from, to;
 };
+
 std::vector<Edge> edges_of(const FaultCase& fault) {
     std::vector<Edge> edges;
     for (const CaseTriangle& triangle : fault.triangles)
@@ -55,6 +52,52 @@ std::vector<Edge> edges_of(const FaultCase& fault) {
             for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3})
                 edges.push_back({triangle.instance, triangle.vertices[i], triangle.vertices[j]});
     return edges;
+}
+
+// A vertex as a key, of an instance.
+using Vertex = std::pair<std::size_t, std::array<float, 3>>;
+Vertex key_of(std::size_t instance, const vec3& p) { return {instance, {p.x, p.y, p.z}}; }
+
+// Each edge's first end moved to its second; triangles that become lines are gone.
+FaultCase with_joined(const FaultCase& fault, std::span<const Edge> edges) {
+    std::map<Vertex, vec3> moves;
+    for (const Edge& edge : edges) moves.try_emplace(key_of(edge.instance, edge.from), edge.to);
+    FaultCase joined = fault;
+    for (CaseTriangle& triangle : joined.triangles)
+        for (vec3& vertex : triangle.vertices)
+            if (const auto move = moves.find(key_of(triangle.instance, vertex)); move != moves.end())
+                vertex = move->second;
+    std::erase_if(joined.triangles, is_point_or_line);
+    return joined;
+}
+
+// Edges that share no vertex, as many as are found at once.
+std::vector<Edge> separate_edges(const FaultCase& fault) {
+    std::vector<Edge> separate;
+    std::set<Vertex> used;
+    for (const Edge& edge : edges_of(fault)) {
+        const Vertex from = key_of(edge.instance, edge.from), to = key_of(edge.instance, edge.to);
+        if (used.contains(from) || used.contains(to)) continue;
+        used.insert({from, to});
+        separate.push_back(edge);
+    }
+    return separate;
+}
+
+// From so many triangles on, which may all close around one vertex, leaving out or joining one by one takes long.
+constexpr std::size_t many = 24;
+
+// Many edges at once: all of them, half of them, a quarter.
+bool join_many(FaultCase& fault, const CaseTest& shows_fault) {
+    const std::vector<Edge> edges = separate_edges(fault);
+    for (const std::size_t parts : {1u, 2u, 4u})
+        for (std::size_t part = 0; part < parts; ++part) {
+            const std::size_t begin = part * edges.size() / parts, end = (part + 1) * edges.size() / parts;
+            if (end > begin &&
+                accept(fault, with_joined(fault, std::span(edges).subspan(begin, end - begin)), shows_fault))
+                return true;
+        }
+    return false;
 }
 
 // Coordinates that are equal in one axis, of one instance, and so stay equal.
@@ -87,6 +130,22 @@ FaultCase moved(const FaultCase& fault, const vec3& center) {
     for (CaseTriangle& triangle : changed.triangles)
         for (vec3& vertex : triangle.vertices) vertex -= center;
     changed.ray.origin -= center;
+    return changed;
+}
+
+// Everything, ray and all, in units of a power of two near the largest coordinate: as_built() leaves it then.
+FaultCase in_units_of_largest(const FaultCase& fault) {
+    std::vector<vec3> vertices;
+    for (const CaseTriangle& triangle : fault.triangles)
+        vertices.insert(vertices.end(), triangle.vertices.begin(), triangle.vertices.end());
+    const float factor = 1 / Geometry::near_unit(vertices);
+    FaultCase changed = fault;
+    for (CaseTriangle& triangle : changed.triangles)
+        for (vec3& vertex : triangle.vertices) vertex *= factor;
+    for (Transform& transform : changed.transforms)
+        for (vec4& row : transform.rows) row.w *= factor;
+    changed.ray.origin *= factor;
+    changed.ray.direction *= factor;
     return changed;
 }
 
@@ -192,10 +251,11 @@ bool bake_transforms(FaultCase& fault, const CaseTest& shows_fault) {
 
 bool join_vertices(FaultCase& fault, const CaseTest& shows_fault) {
     bool has_changed = false;
+    while (fault.triangles.size() > many && join_many(fault, shows_fault)) has_changed = true;
     for (bool is_again = true; is_again;) {
         is_again = false;
         for (const Edge& edge : edges_of(fault))
-            if (accept(fault, with_vertex_moved(fault, edge.instance, edge.from, edge.to), shows_fault)) {
+            if (accept(fault, with_joined(fault, std::span(&edge, 1)), shows_fault)) {
                 is_again = has_changed = true;
                 break;
             }
@@ -211,6 +271,7 @@ bool shorten_numbers(FaultCase& fault, const CaseTest& shows_fault) {
 
 FaultCase simplified(FaultCase fault, const CaseTest& shows_fault) {
     leave_out_instances(fault, shows_fault);
+    while (fault.triangles.size() > many && join_many(fault, shows_fault)) {}
     leave_out_triangles(fault, shows_fault);
     // Each may open the way for the others.
     constexpr int most_rounds = 8;
@@ -221,6 +282,7 @@ FaultCase simplified(FaultCase fault, const CaseTest& shows_fault) {
         has_changed |= shorten_numbers(fault, shows_fault);
         if (!has_changed) break;
     }
+    accept(fault, in_units_of_largest(fault), shows_fault);
     return fault;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <twinray/geometry.h>
@@ -27,6 +28,15 @@ bool spans(const CaseTriangle& triangle, const FaultCase& fault, const vec3& poi
         box.include(transform_point(fault.transforms[triangle.instance], vertex));
     return box.lo.x <= point.x && point.x <= box.hi.x && box.lo.y <= point.y && point.y <= box.hi.y &&
            box.lo.z <= point.z && point.z <= box.hi.z;
+}
+
+// Each edge from this vertex is of two triangles, of which there are three or more.
+bool closes_around(const FaultCase& fault, const vec3& hub) {
+    std::vector<vec3> rim;
+    for (const CaseTriangle& t : fault.triangles)
+        if (std::ranges::count(t.vertices, hub) == 1)
+            std::ranges::copy_if(t.vertices, std::back_inserter(rim), [&](const vec3& v) { return v != hub; });
+    return rim.size() >= 6 && std::ranges::all_of(rim, [&](const vec3& v) { return std::ranges::count(rim, v) == 2; });
 }
 
 TEST(FaultCase, IsTheSceneThatItWasMadeOf) {
@@ -54,6 +64,22 @@ TEST(FaultCase, NearTheRayIsWhatItMeetsAndTheTriangleAskedFor) {
     }
 }
 
+TEST(FaultCase, AsBuiltIsTheSameWorldInOtherUnits) {
+    FaultCase fault = case_of(grids(2), some_ray, false);
+    for (CaseTriangle& triangle : fault.triangles)
+        for (vec3& vertex : triangle.vertices) vertex *= triangle.instance == 0 ? 24.0f : 1.0f;
+    const FaultCase built = as_built(fault);
+    EXPECT_EQ(built.transforms[0].rows[0], vec4(16, 0, 0, 0.1f));
+    EXPECT_EQ(built.transforms[1], fault.transforms[1]);
+    for (std::size_t i = 0; i < fault.triangles.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const CaseTriangle &a = built.triangles[i], &b = fault.triangles[i];
+            EXPECT_EQ(transform_point(built.transforms[a.instance], a.vertices[k]),
+                      transform_point(fault.transforms[b.instance], b.vertices[k]));
+        }
+    EXPECT_EQ(as_built(built).triangles, built.triangles);
+}
+
 TEST(Simplify, KeepsWhatTheFaultNeedsInTheWorldAndAlone) {
     // Some triangle over the point.
     const auto shows_fault = [](const FaultCase& fault) {
@@ -73,16 +99,8 @@ TEST(Simplify, KeepsWhatTheFaultNeedsInTheWorldAndAlone) {
 }
 
 TEST(Simplify, JoinsTheSixTrianglesAroundAVertexToThree) {
-    // A vertex at a place, around which triangles close: each of their edges from it is of two.
     const vec3 hub(0.5f, 0, 0.5f);
-    const auto closes = [&](const FaultCase& fault) {
-        std::vector<vec3> rim;
-        for (const CaseTriangle& t : fault.triangles)
-            if (std::ranges::count(t.vertices, hub) == 1)
-                std::ranges::copy_if(t.vertices, std::back_inserter(rim), [&](const vec3& v) { return v != hub; });
-        return rim.size() >= 6 &&
-               std::ranges::all_of(rim, [&](const vec3& v) { return std::ranges::count(rim, v) == 2; });
-    };
+    const auto closes = [&](const FaultCase& fault) { return closes_around(fault, hub); };
     Scene scene;
     scene.meshes = {make_grid(6, 6)};
     scene.instances = {{"", 0, Transform{}}};
@@ -93,6 +111,24 @@ TEST(Simplify, JoinsTheSixTrianglesAroundAVertexToThree) {
     EXPECT_TRUE(join_vertices(fault, closes));
     EXPECT_EQ(fault.triangles.size(), 3u);
     EXPECT_TRUE(closes(fault));
+}
+
+TEST(Simplify, AFanOfAThousandTrianglesTakesFewQuestions) {
+    // Closed around the origin.
+    FaultCase fault{{Transform{}}, {}, some_ray};
+    const auto rim = [](int i) {
+        const float angle = 6.2831853f * static_cast<float>(i % 1000) / 1000;
+        return vec3(std::cos(angle), 0, std::sin(angle));
+    };
+    for (int i = 0; i < 1000; ++i) fault.triangles.push_back({0, {vec3(0), rim(i), rim(i + 1)}});
+    std::size_t questions = 0;
+    const auto closes = [&](const FaultCase& smaller) {
+        ++questions;
+        return closes_around(smaller, vec3(0));
+    };
+    ASSERT_TRUE(closes(fault));
+    EXPECT_EQ(simplified(fault, closes).triangles.size(), 3u);
+    EXPECT_LT(questions, 1000u);
 }
 
 TEST(Simplify, WhatCannotBeChangedStaysAndEveryRunIsAlike) {
