@@ -14,8 +14,8 @@
 namespace twinray::report {
 namespace {
 
-constexpr std::uint64_t few = 100;        // items, of which a rate says little
-constexpr std::size_t fewest_cases = 5;   // of which the bootstrap draws
+constexpr std::uint64_t few = 100;       // items, of which a rate says little
+constexpr std::size_t fewest_cases = 5;  // of which the bootstrap draws
 constexpr std::size_t draws = 10'000;
 
 using Pair = std::pair<const Record*, const Record*>;  // before and now
@@ -50,8 +50,7 @@ Suspicion suspicion_of(const std::string& what, const std::string& kind, const C
     const bool is_more = static_cast<double>(counted.now) * static_cast<double>(counted.n_before) >
                          static_cast<double>(counted.before) * static_cast<double>(counted.n_now);
     return {{is_more ? Change::Kind::worse : Change::Kind::better, what,
-             kind + ' ' + rate_text(counted.before, counted.n_before) + " -> " +
-                 rate_text(counted.now, counted.n_now)},
+             kind + ' ' + rate_text(counted.before, counted.n_before) + " -> " + rate_text(counted.now, counted.n_now)},
             fisher_exact(counted.before, counted.n_before, counted.now, counted.n_now)};
 }
 
@@ -150,7 +149,8 @@ class Comparing {
         std::map<std::pair<std::string, std::string>, CaseRatios> groups;
         std::vector<double> all;
         for (const auto& [before, now] : pairs_) {
-            if (!before->time || !now->time || before->time->metric != now->time->metric || before->n != now->n) continue;
+            if (!before->time || !now->time || before->time->metric != now->time->metric || before->n != now->n)
+                continue;
             if (!(before->time->median > 0 && now->time->median > 0) || !is_users_kernel(*now)) continue;
             all.push_back(std::log(now->time->median / before->time->median));
             groups[{now->backend, now->level}][now->case_id].push_back(all.back());
@@ -188,13 +188,13 @@ class Comparing {
                               measurements};
         result_.times.push_back(ratio);
         const double margin = std::log(tolerated_ratio);
-        const auto within = static_cast<double>(std::count_if(drawn.begin(), drawn.end(), [&](double value) {
-            return mean > 0 ? value < margin : value > -margin;
-        }));
-        suspicions_.push_back({{mean > 0 ? Change::Kind::slower : Change::Kind::faster,
-                                "times of " + backend + (level.empty() ? "" : ' ' + level),
-                                with_interval(ratio.ratio, ratio.ratio_95, 3) + " times as long, beside all times together"},
-                               (1 + within) / (1 + static_cast<double>(draws))});
+        const auto within = static_cast<double>(std::count_if(
+            drawn.begin(), drawn.end(), [&](double value) { return mean > 0 ? value < margin : value > -margin; }));
+        suspicions_.push_back(
+            {{mean > 0 ? Change::Kind::slower : Change::Kind::faster,
+              "times of " + backend + (level.empty() ? "" : ' ' + level),
+              with_interval(ratio.ratio, ratio.ratio_95, 3) + " times as long, beside all times together"},
+             (1 + within) / (1 + static_cast<double>(draws))});
     }
 
     std::vector<Pair> pairs_;

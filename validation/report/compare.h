@@ -35,9 +35,9 @@ struct TimeRatio {
 struct Comparison {
     std::vector<Change> changes;
     std::vector<TimeRatio> times;
-    double drift = 1;             // of all times together
-    std::size_t compared = 0;     // records with a counterpart
-    std::size_t tests = 0;        // of the hypothesis that nothing changed
+    double drift = 1;                           // of all times together
+    std::size_t compared = 0;                   // records with a counterpart
+    std::size_t tests = 0;                      // of the hypothesis that nothing changed
     std::size_t only_before = 0, only_now = 0;  // without one
 
     bool is_worse() const;
@@ -45,9 +45,9 @@ struct Comparison {
 
 // Records correspond where case, settings, accelerator, level and variant are the same. Counts of classes and of faults
 // are compared by Fisher's exact test, for each record and for each accelerator and level over all cases; times, of as
-// many rays, by the bootstrap. What is left of the tests by Holm's procedure (1979) at false_alarms is a change. Certain,
-// without a test: a fault of ours where there was none; a record of under 100 items that asked the same (seed and n) and
-// passes no more, or again; a record that ran and does not.
+// many rays, by the bootstrap. What is left of the tests by Holm's procedure (1979) at false_alarms is a change.
+// Certain, without a test: a fault of ours where there was none; a record of under 100 items that asked the same (seed
+// and n) and passes no more, or again; a record that ran and does not.
 Comparison compare(std::span<const Record> before, std::span<const Record> now);
 
 // P of a table at least as unlikely as this one, where both rates are the same: Fisher's exact test (1922), two-sided.

@@ -49,13 +49,14 @@ void print_comparison(std::ostream& out, const Comparison& comparison) {
     for (const TimeRatio& time : comparison.times)
         out << "  times of " << std::left << std::setw(24) << time.backend + ' ' + time.level
             << with_interval(time.ratio, time.ratio_95, 3) << " over " << time.measurements << " measurements\n";
-    out << "  all times together: " << number(comparison.drift, 3) << " times as long, which is taken out of those above\n  "
-        << comparison.compared << " measurements compared, " << comparison.only_before << " only before, "
-        << comparison.only_now << " only now; " << comparison.tests << " tests, which report a change where there is none in "
-        << number(100 * false_alarms) << " % of comparisons at most\n  "
-        << (comparison.is_worse()          ? "verdict: worse"
+    out << "  all times together: " << number(comparison.drift, 3)
+        << " times as long, which is taken out of those above\n  " << comparison.compared << " measurements compared, "
+        << comparison.only_before << " only before, " << comparison.only_now << " only now; " << comparison.tests
+        << " tests, which report a change where there is none in " << number(100 * false_alarms)
+        << " % of comparisons at most\n  "
+        << (comparison.is_worse()        ? "verdict: worse"
             : comparison.changes.empty() ? "verdict: no change beyond noise"
-                                           : "verdict: changed, and nothing is worse")
+                                         : "verdict: changed, and nothing is worse")
         << '\n';
 }
 

@@ -63,8 +63,7 @@ TEST(Compare, ADriverThatLosesRaysIsFound) {
     const Comparison comparison = compare(before, now);
     ASSERT_FALSE(comparison.changes.empty());
     EXPECT_EQ(comparison.changes[0].what, "W7 hw watertight {aim vertex}");
-    EXPECT_EQ(comparison.changes[0].how,
-              "HW_LEAK 0 of 4,096 (below 731 per million) -> 1.1 % (0.82 to 1.5)");
+    EXPECT_EQ(comparison.changes[0].how, "HW_LEAK 0 of 4,096 (below 731 per million) -> 1.1 % (0.82 to 1.5)");
     EXPECT_TRUE(comparison.is_worse());
     const Comparison mended = compare(now, before);
     EXPECT_EQ(mended.changes[0].kind, Change::Kind::better);
@@ -122,8 +121,8 @@ TEST(Compare, WhatRanAndDoesNotIsWorseUnlessTimeWasShort) {
 }
 
 TEST(Compare, RecordsWithoutACounterpartAreCounted) {
-    const std::vector<Record> before = {measured("W1", 100), measured("W2", 100)}, now = {measured("W2", 100),
-                                                                                       measured("W3", 100)};
+    const std::vector<Record> before = {measured("W1", 100), measured("W2", 100)},
+                              now = {measured("W2", 100), measured("W3", 100)};
     const Comparison comparison = compare(before, now);
     EXPECT_EQ(comparison.compared, 1u);
     EXPECT_EQ(comparison.only_before, 1u);
