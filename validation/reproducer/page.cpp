@@ -2,13 +2,17 @@
 #include "validation/reproducer/page.h"
 
 #include <iomanip>
+#include <set>
 #include <sstream>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "validation/suite/checks.h"
 
 namespace twinray::reproducer {
 namespace {
+
+bool is_leak_at_edges(const Reproduction& found) { return found.kind == HitClass::hw_leak && !found.answer.hit; }
 
 const char* summary(const Reproduction& found) {
     switch (found.kind) {
@@ -23,7 +27,7 @@ const char* summary(const Reproduction& found) {
 
 // What the Vulkan specification says of it, and how firmly.
 const char* specification(const Reproduction& found) {
-    if (found.kind == HitClass::hw_leak && !found.answer.hit)
+    if (is_leak_at_edges(found))
         return "Chapter *Ray Traversal*, section *Ray Intersection Candidate Determination*, *Watertightness*, for "
                "triangles of one instance with equal positions of shared vertices and equal winding: \"Implementations "
                "**should** not double-hit or miss when a ray intersects a shared edge, or a shared vertex of a closed "
@@ -41,6 +45,17 @@ const char* specification(const Reproduction& found) {
            "coordinates are those of the intersection. The specification states no precision for them, so this is a "
            "matter of quality unless they are not finite; what is taken as right here allows for rounding of every "
            "operation in float32.";
+}
+
+// Whether two triangles of an instance list an edge in the same direction: that is no shared edge to Vulkan.
+bool has_unequal_winding(const Scene& scene) {
+    for (const Mesh& mesh : scene.meshes) {
+        std::set<std::pair<uint, uint>> directed;
+        for (const uvec3& t : mesh.triangles)
+            for (int k = 0; k < 3; ++k)
+                if (!directed.emplace(t[k], t[(k + 1) % 3]).second) return true;
+    }
+    return false;
 }
 
 void put_triangles(std::ostream& out, const Scene& scene) {
@@ -92,7 +107,13 @@ std::string page_text(const Reproduction& found, const replay::Replay& replay) {
         << found.triangles_before << " triangles"
         << (found.was_cut_short ? " until the time was up: it may not be the smallest.\n" : ".\n")
         << "\n## What the specification says\n\n"
-        << specification(found) << "\n\n## To see it\n\n"
+        << specification(found)
+        << (is_leak_at_edges(found) && has_unequal_winding(found.scene)
+                ? " Two of these triangles list their common edge in the same direction: their winding is not equal, "
+                  "so "
+                  "the sentence does not speak of them."
+                : "")
+        << "\n\n## To see it\n\n"
         << "    cc -std=c99 reproducer.c -lvulkan -o reproducer && ./reproducer\n\n"
         << "prints the answer, and WRONG with exit status 1, or RIGHT with 0 (2: it cannot run here). The program "
            "needs "
