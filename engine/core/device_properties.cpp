@@ -121,7 +121,9 @@ DeviceProperties enabled_properties(PFN_vkGetInstanceProcAddr get_instance_proc_
 }
 
 struct DeviceRequirements::State {
-    explicit State(const DeviceProperties& device) : supported(device) {}
+    explicit State(const DeviceProperties& device) : supported(device) {
+        supported.primitive_culling &= device.ray_tracing_pipeline;  // a feature of that extension
+    }
     void switch_on(VkDeviceCreateInfo& info, FeatureStructs& structs) const {
         for (const FeatureBit& bit : feature_bits())
             if (supported.*bit.fact) provide_bit(info, structs, bit) = VK_TRUE;

@@ -52,6 +52,8 @@ constexpr FeatureBit bits[] = {
     alone(&DeviceProperties::ray_query, "rayQuery", query, offsetof(VkPhysicalDeviceRayQueryFeaturesKHR, rayQuery)),
     alone(&DeviceProperties::ray_tracing_pipeline, "rayTracingPipeline", tracing,
           offsetof(VkPhysicalDeviceRayTracingPipelineFeaturesKHR, rayTracingPipeline)),
+    alone(&DeviceProperties::primitive_culling, "rayTraversalPrimitiveCulling", tracing,
+          offsetof(VkPhysicalDeviceRayTracingPipelineFeaturesKHR, rayTraversalPrimitiveCulling)),
     alone(&DeviceProperties::device_fault, "deviceFault", fault,
           offsetof(VkPhysicalDeviceFaultFeaturesEXT, deviceFault)),
 };
@@ -127,6 +129,7 @@ void state_features(const VkDeviceCreateInfo& info, DeviceProperties& properties
     properties.ray_query &= properties.acceleration_structure && has_extension(info, VK_KHR_RAY_QUERY_EXTENSION_NAME);
     properties.ray_tracing_pipeline &=
         properties.acceleration_structure && has_extension(info, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+    properties.primitive_culling &= properties.ray_tracing_pipeline;
     properties.device_fault &= has_extension(info, VK_EXT_DEVICE_FAULT_EXTENSION_NAME);
     properties.external_memory_fd = has_extension(info, VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
 }

@@ -16,6 +16,7 @@ enum SpirvCapability : std::uint32_t {
     Int64 = 11,
     ImageQuery = 50,
     RayQueryKHR = 4472,
+    RayTraversalPrimitiveCullingKHR = 4478,
     RayTracingKHR = 4479,
     ShaderNonUniform = 5301,
     RuntimeDescriptorArray = 5302,
@@ -48,6 +49,8 @@ constexpr Part parts[] = {
     {"contacts", "Contacts of triangles (NarrowPhase)", "NarrowPhase needs ", ", BroadPhase works without"},
     {"int64_kernels", "Kernels that have integers of 64 bits, of a host or chosen by KernelTuning",
      "Kernels with integers of 64 bits need ", ", those without work"},
+    {"primitive_culling", "Rays that skip triangles or boxes, in `twinray verify --suite conformance`",
+     "Rays that skip triangles or boxes need ", ", the other cases run without"},
     {"images", "Textures as images (TextureStore)", "Textures as images need ", ", textures in buffers work without"},
 };
 const Part& part_of(Requirement::Of part) { return parts[static_cast<std::size_t>(part)]; }
@@ -131,6 +134,11 @@ std::vector<Requirement> requirements_of(const DeviceProperties& device) {
          int64_kernels,
          device.shader_int64,
          {Int64}},
+        {"rayTraversalPrimitiveCulling",
+         "the flags of a ray that say so need it",
+         primitive_culling,
+         device.primitive_culling,
+         {RayTraversalPrimitiveCullingKHR}},
         {"descriptor indexing (runtimeDescriptorArray, shaderSampledImageArrayNonUniformIndexing, "
          "descriptorBindingVariableDescriptorCount and descriptorBindingSampledImageUpdateAfterBind)",
          "kernels reach all of them through one array",

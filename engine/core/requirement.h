@@ -17,8 +17,8 @@ struct KernelLimits {
 // One thing that twinray uses of a device.
 struct Requirement {
     // What does not work without: all; HwTlas, its kernels that query rays, its batches where no kernel can; the levels
-    // from refined on; PointQuery; NarrowPhase; kernels of a host with integers of 64 bits; or images in
-    // TextureStore.
+    // from refined on; PointQuery; NarrowPhase; kernels of a host with integers of 64 bits; two flags of
+    // rays in the conformance suite; or images in TextureStore.
     enum class Of : std::uint8_t {
         everything,
         hardware,
@@ -28,6 +28,7 @@ struct Requirement {
         points,
         contacts,
         int64_kernels,
+        primitive_culling,
         images
     };
     std::string what;

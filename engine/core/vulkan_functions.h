@@ -100,16 +100,19 @@
 #define TWINRAY_FAULT_FUNCTIONS(F) F(vkGetDeviceFaultInfoEXT)
 
 // Present only with VK_KHR_acceleration_structure and VK_KHR_ray_tracing_pipeline.
-#define TWINRAY_RAY_TRACING_FUNCTIONS(F)             \
-    F(vkCreateAccelerationStructureKHR)              \
-    F(vkDestroyAccelerationStructureKHR)             \
-    F(vkGetAccelerationStructureBuildSizesKHR)       \
-    F(vkGetAccelerationStructureDeviceAddressKHR)    \
-    F(vkCmdBuildAccelerationStructuresKHR)           \
-    F(vkCmdWriteAccelerationStructuresPropertiesKHR) \
-    F(vkCmdCopyAccelerationStructureKHR)             \
-    F(vkCreateRayTracingPipelinesKHR)                \
-    F(vkGetRayTracingShaderGroupHandlesKHR)          \
+#define TWINRAY_RAY_TRACING_FUNCTIONS(F)                \
+    F(vkCreateAccelerationStructureKHR)                 \
+    F(vkDestroyAccelerationStructureKHR)                \
+    F(vkGetAccelerationStructureBuildSizesKHR)          \
+    F(vkGetAccelerationStructureDeviceAddressKHR)       \
+    F(vkCmdBuildAccelerationStructuresKHR)              \
+    F(vkCmdWriteAccelerationStructuresPropertiesKHR)    \
+    F(vkCmdCopyAccelerationStructureKHR)                \
+    F(vkCmdCopyAccelerationStructureToMemoryKHR)        \
+    F(vkCmdCopyMemoryToAccelerationStructureKHR)        \
+    F(vkGetDeviceAccelerationStructureCompatibilityKHR) \
+    F(vkCreateRayTracingPipelinesKHR)                   \
+    F(vkGetRayTracingShaderGroupHandlesKHR)             \
     F(vkCmdTraceRaysKHR)
 
 namespace twinray {

@@ -50,6 +50,7 @@ struct DeviceProperties {
     bool acceleration_structure = false;
     bool ray_query = false;
     bool ray_tracing_pipeline = false;
+    bool primitive_culling = false;   // rays can skip triangles or boxes
     bool device_fault = false;        // it tells why it was lost
     bool external_memory_fd = false;  // memory can be shared with other programs and APIs: Buffer::exportable
     bool runtime_descriptor_array = false;

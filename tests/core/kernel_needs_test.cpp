@@ -51,6 +51,8 @@ const Family families[] = {
     {"reproducer_trace_r", {Of::ray_pipelines}},
     {"control_contracted", {Of::refinement}},
     {"control_"},
+    // The conformance suite's rays through the driver's structures.
+    {"conformance_", {Of::ray_queries}},
     {"materials_"},
     // By twinray_add_kernel and twinray_add_trace_program.
     {"all_hits_"},
@@ -63,9 +65,10 @@ const Family families[] = {
 };
 
 // What a word of the name says, whatever its family.
-const std::map<std::string, Of> words = {{"hw", Of::ray_queries},      {"rahit", Of::ray_pipelines},
-                                         {"rint", Of::ray_pipelines},  {"refined", Of::refinement},
-                                         {"int64", Of::int64_kernels}, {"images", Of::images}};
+const std::map<std::string, Of> words = {{"hw", Of::ray_queries},           {"rahit", Of::ray_pipelines},
+                                         {"rint", Of::ray_pipelines},       {"refined", Of::refinement},
+                                         {"int64", Of::int64_kernels},      {"images", Of::images},
+                                         {"culling", Of::primitive_culling}};
 
 Parts parts_of(const std::string& module) {
     const auto family = std::ranges::find_if(families, [&](const Family& f) { return module.starts_with(f.begin); });

@@ -82,7 +82,7 @@ TEST(Requirements, AreOfTheirPartAlone) {
     DeviceProperties properties = capable();
     properties.shader_float64 = properties.shader_int64 = properties.acceleration_structure = properties.ray_query =
         false;
-    properties.ray_tracing_pipeline = properties.runtime_descriptor_array = false;
+    properties.ray_tracing_pipeline = properties.primitive_culling = properties.runtime_descriptor_array = false;
     properties.subgroup_size = 1;
     properties.shared_bytes = KernelLimits::shared_bytes;
     EXPECT_TRUE(missing_for_software(properties).empty());
@@ -91,7 +91,7 @@ TEST(Requirements, AreOfTheirPartAlone) {
         if (!requirement.is_met) lacking.push_back(requirement.of);
     using enum Requirement::Of;
     EXPECT_EQ(lacking, (std::vector{hardware, hardware, ray_queries, ray_pipelines, refinement, points, contacts,
-                                    int64_kernels, images}));
+                                    int64_kernels, primitive_culling, images}));
 }
 
 TEST(Requirements, TexturesAreImagesWhereNothingOfDescriptorIndexingLacks) {
