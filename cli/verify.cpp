@@ -8,6 +8,7 @@
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "cli/verify_conformance.h"
 #include "engine/scene/ray_file.h"
 #include "engine/core/error.h"
 #include "twinray_version.h"
@@ -30,6 +31,8 @@ struct VerifyOptions {
     std::filesystem::path replay;                   // in place of a scene
     std::filesystem::path replays;                  // folder; "" = only faults of ours are written
     std::filesystem::path reproducers, reproducer;  // folders of faults of the driver
+    std::string suite;                              // in place of a scene
+    bool is_full = false;
     std::size_t random = 100'000;
     std::size_t aimed = 10'000;
     Level level = Level::watertight;
@@ -173,6 +176,16 @@ Command verify_command() {
           .value = folder(options->reproducer),
           .help = "such a folder for the ray of --replay",
           .needs = {"--replay"}}}};
+    const Section suite = {
+        "Suite",
+        {{.name = "--suite",
+          .value = choice(options->suite, {"conformance"}),
+          .help = "instead of a scene: cases about the driver's own structures, each with a control that must fail; "
+                  "with --strict a driver that fails what Vulkan demands is a fault, too"},
+         {.name = "--full",
+          .value = flag(options->is_full),
+          .help = "with 100 million rays, not 200,000",
+          .needs = {"--suite"}}}};
     return {.name = "verify",
             .group = "Checking",
             .summary = "compare both accelerators with exact answers, ray by ray",
@@ -182,12 +195,14 @@ Command verify_command() {
                 "tell, in rational arithmetic. Says how many hits agree, are ties, leaks, false or "
                 "imprecise, and below which rate faults are (95 %).",
             .positionals = {scene},
-            .sections = {rays, replays, common_options(options->common)},
-            .examples = {{"twinray verify scene.gltf --random 1000000", "a million random rays on a scene"}},
+            .sections = {rays, replays, suite, common_options(options->common)},
+            .examples = {{"twinray verify scene.gltf --random 1000000", "a million random rays on a scene"},
+                         {"twinray verify --suite conformance", "what the driver's own structures do"}},
             .fault = "the software accelerator has a fault",
             .run = [options] {
-                if (options->scene.empty() == options->replay.empty())
-                    throw UsageError("either a SCENE or --replay FILE is required");
+                if (!options->scene.empty() + !options->replay.empty() + !options->suite.empty() != 1)
+                    throw UsageError("one of SCENE, --replay FILE and --suite conformance is required");
+                if (!options->suite.empty()) return verify_conformance(options->common, options->is_full);
                 if (options->random + options->aimed == 0)
                     throw UsageError("--random 0 and --aimed 0 leave nothing to compare");
                 return (options->replay.empty() ? run(*options) > 0 : run_replay(*options)) ? 1 : 0;

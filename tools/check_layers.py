@@ -11,7 +11,7 @@ ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/points"]
 PRODUCT = ENGINE + ["swtlas", "hwtlas"]
 # twinray::validation, then what the command and the tests link beside it.
 VALIDATION = ["validation/" + room for room in ("reference", "leaks", "records", "verify", "cpu_reference")]
-CHECKS = VALIDATION + ["validation/" + room for room in ("exact", "kernels", "picture", "replay", "report", "reproducer", "suite")]
+CHECKS = VALIDATION + ["validation/" + room for room in ("conformance", "exact", "kernels", "picture", "replay", "report", "reproducer", "suite")]
 # See include alone.
 AS_HOSTS = ["samples", "bindings", "shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"]
 SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
@@ -24,6 +24,7 @@ SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "validation/reference": BASE + ["shaders/verify"], "validation/leaks": BASE + VALIDATION[:1],
     "validation/records": BASE + VALIDATION[:1], "validation/verify": PRODUCT + VALIDATION,
     "validation/cpu_reference": ENGINE + ["swtlas"], "validation/exact": BASE + VALIDATION[:1] + ["shaders/collide"],
+    "validation/conformance": PRODUCT + VALIDATION + ["shaders/conformance"],
     "validation/suite": PRODUCT + CHECKS + ["shaders/suite", "shaders/path_tracer", "shaders/collide", "samples"],
     "validation/replay": PRODUCT + CHECKS, "validation/report": BASE + CHECKS, "validation/picture": BASE,
     "validation/reproducer": PRODUCT + CHECKS,

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#include "cli/verify_conformance.h"
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/error.h"
+#include "twinray_version.h"
+#include "validation/conformance/output.h"
+
+namespace twinray::cli {
+
+int verify_conformance(const CommonOptions& options, bool is_full) {
+    const std::unique_ptr<Context> context = make_context(options);
+    Recorder recorder({utc_now(), twinray_version, probed_device(*context)});
+    std::cout << "conformance, " << (is_full ? "full" : "quick") << ", on " << context->properties().name << ", "
+              << context->properties().driver << '\n';
+    conformance::run(*context, {.is_full = is_full, .seed = options.seed}, recorder, options.quiet,
+                     [&](const Record& record) { append_json(options.json, nlohmann::json::parse(to_json(record))); });
+    conformance::print(std::cout, recorder.records());
+    if (conformance::has_fault_of_ours(recorder.records())) return 1;
+    return options.strict && conformance::fails_demands(recorder.records()) ? 1 : 0;
+}
+
+}  // namespace twinray::cli

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// What the conformance suite asks of a driver and what it is told; read by C++ and GLSL.
+#ifndef TWINRAY_CONFORMANCE_QUERY_H
+#define TWINRAY_CONFORMANCE_QUERY_H
+
+// A ray with all that a ray query takes, and what is to become of its candidates.
+struct Shot
+{
+    Ray ray;
+    uint flags;     // SPIR-V's ray flags
+    uint cull_mask;
+    uint refused;   // bit i: candidates of primitives i, i + 32, ... are refused
+    float box_t;    // a box's primitive i is met at t = box_t + i * box_step
+    float box_step;
+    uint reserved;
+};
+BUFFER_OF(Shot, 8);
+
+const uint ANSWER_MISS = 0u;
+const uint ANSWER_TRIANGLE = 1u;
+const uint ANSWER_BOX = 2u;
+
+// What was committed, and how many candidates came up on the way. A miss has zeros but for the candidates.
+struct Answer
+{
+    uint kind; // ANSWER_...
+    float t;
+    uint instance;
+    uint custom_index;
+    uint sbt_offset;
+    uint geometry;
+    uint primitive;
+    uint is_front;
+    vec2 uv;
+    vec3 object_origin;
+    vec3 object_direction;
+    vec3 to_world[4];      // columns
+    uint triangles;        // candidates
+    uint boxes;
+    uint opaque_boxes;     // of them, those that were called opaque
+    uint outside;          // triangles whose t was not inside the interval that was left
+};
+BUFFER_OF(Answer, 4);
+
+// One word for a candidate: which primitive it is. Instances below 2048, geometries below 256, primitives below 4096.
+FUNC uint candidate_name(bool is_box, uint instance, uint geometry, uint primitive)
+{
+    return (is_box ? 0x80000000u : 0u) | (instance << 20u) | (geometry << 12u) | primitive;
+}
+
+struct QueryArgs
+{
+    Address structure; // a top level
+    REF(Shot) shots;
+    REF(Answer) answers; // written
+    Uints candidates;    // written: `slots` words for each shot, those of its first candidates; null where slots is 0
+    uint count;
+    uint slots;
+};
+#endif

@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Runs `twinray verify --suite conformance` as a user does. Usage: conformance_command_test.py TWINRAY"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
+
+
+def verify(*arguments, status=0):
+    run = subprocess.run([twinray, "verify", "--quiet", *map(str, arguments)], capture_output=True, text=True)
+    assert run.returncode == status, f"{arguments}: status {run.returncode}\n{run.stdout}{run.stderr}"
+    assert "VUID" not in run.stderr and "SYNC-HAZARD" not in run.stderr, run.stderr
+    return run.stdout + run.stderr
+
+
+said = verify("--suite", "conformance", "--json", here / "all.jsonl", "--validation")
+records = [json.loads(line) for line in (here / "all.jsonl").read_text().splitlines()]
+cases = [record for record in records if not record["variant"]]
+controls = [record for record in records if record["variant"].startswith("control: ")]
+assert len(cases) > 90 and len(cases) + len(controls) == len(records)
+assert all(record["schema"] == "twinray-report/1" and record["case"].startswith("K") for record in records)
+assert all(record["pass"] for record in controls), [record["case"] for record in controls if not record["pass"]]
+for topic in {record["results"]["topic"] for record in cases}:
+    assert f"  {topic} " in said, f"no line of {topic}: {said}"
+failed = [record for record in cases if record["pass"] is False]
+for record in failed:
+    assert f"    {record['case']} {record['results']['demand']} " in said, said
+    if record["example"]:
+        assert record["example"] in said and len(record["example"].split()) == 9, record["example"]
+
+# Under --strict what Vulkan demands counts, what it advises does not.
+demanded = any(record["results"]["demand"] == "must" for record in failed)
+assert verify("--suite", "conformance", "--strict", status=int(demanded)).splitlines()[-1] == said.splitlines()[-1]
+
+assert "--suite" in verify("--full", "scene.obj", status=2)
+assert "--suite conformance" in verify(status=2)
+assert "--suite conformance" in verify("scene.obj", "--suite", "conformance", status=2)

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// The suite on a device: what passes, what is known to fail, and that every case can fail.
+#include "validation/conformance/suite.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "tests/support/device.h"
+#include "validation/conformance/driver.h"
+#include "validation/conformance/output.h"
+
+namespace twinray::conformance {
+namespace {
+
+using Ids = std::set<std::string>;
+
+// docs/conformance.md has the same, with what happens.
+const Ids faults_of_lavapipe = {"K07", "K12", "K31"};
+const Ids weaknesses_of_lavapipe = {"K33", "K79", "K80", "K81", "K82"};
+
+class ConformanceSuite : public test::VulkanTest {
+  protected:
+    std::vector<Record> run(const Settings& settings = {}) {
+        Recorder recorder({"now", "0.1", {}});
+        conformance::run(context(), settings, recorder, true);
+        return recorder.records();
+    }
+};
+
+bool is_control(const Record& record) { return record.variant.starts_with("control"); }
+
+Ids failed(const std::vector<Record>& records, const char* demand) {
+    Ids ids;
+    for (const Record& record : records)
+        if (record.fault_of == "driver" && record.results.at("demand") == Value(demand)) ids.insert(record.case_id);
+    return ids;
+}
+
+TEST_F(ConformanceSuite, KnowsWhatPassesAndEveryControlShowsFaults) {
+    if (!context().properties().ray_query) TWINRAY_LACKS("ray_tracing", "the suite traces by ray queries");
+    const std::vector<Record> records = run();
+    std::size_t cases = 0, controls = 0;
+    for (const Record& record : records) {
+        if (!record.was_run) continue;
+        ++(is_control(record) ? controls : cases);
+        EXPECT_GT(record.n, 0u) << record.case_id;
+        EXPECT_NE(record.fault_of, "twinray") << record.case_id << ' ' << record.variant << ": " << record.reason;
+        EXPECT_TRUE(!is_control(record) || record.faults > 0) << record.case_id << ' ' << record.variant;
+        EXPECT_EQ(record_of_json(to_json(record)), record);
+    }
+    EXPECT_EQ(controls, cases);
+    if (context().properties().driver_id != VK_DRIVER_ID_MESA_LLVMPIPE) return;
+    EXPECT_EQ(cases, catalogue().size());
+    EXPECT_TRUE(std::ranges::includes(faults_of_lavapipe, failed(records, "must")));
+    EXPECT_TRUE(std::ranges::includes(weaknesses_of_lavapipe, failed(records, "should")));
+    EXPECT_EQ(fails_demands(records), !failed(records, "must").empty());
+    EXPECT_FALSE(has_fault_of_ours(records));
+    std::ostringstream text;
+    print(text, records);
+    for (const std::string& id : failed(records, "must"))
+        EXPECT_NE(text.str().find(id + " must "), std::string::npos) << text.str();
+}
+
+TEST_F(ConformanceSuite, TellsTheFirstFaultyRay) {
+    if (!context().properties().ray_query) return;
+    const std::vector<Record> records = run({.only = {Topic::edges}});
+    for (const Record& record : records) {
+        EXPECT_EQ(record.results.at("topic"), Value("edges"));
+        if (record.faults == 0) continue;
+        const std::string kind = record.example.substr(0, record.example.find(' '));
+        EXPECT_TRUE(record.counts.contains(kind)) << record.example;
+        EXPECT_EQ(std::ranges::count(record.example, ' '), 8) << "eight floats: " << record.example;
+    }
+}
+
+// In full the same cases take more rays, in larger rounds.
+TEST_F(ConformanceSuite, FullSharesItsRaysOutToTheCases) {
+    if (!context().properties().ray_query) return;
+    for (const Record& record : run({.is_full = true, .full_rays = 600'000, .only = {Topic::limits}})) {
+        if (is_control(record)) continue;
+        EXPECT_GT(record.n, 20'000u) << record.case_id;
+        EXPECT_LE(record.n, 100'000u) << record.case_id;
+        EXPECT_EQ(record.pass, true) << record.case_id << ' ' << record.reason << ' ' << record.example;
+    }
+}
+
+class ConformanceWithoutQueries : public test::VulkanTest {
+  protected:
+    ContextDesc context_desc() const override {
+        ContextDesc desc;
+        desc.use_ray_query = false;
+        return desc;
+    }
+};
+
+TEST_F(ConformanceWithoutQueries, IsNotRunAndSaysWhy) {
+    Recorder recorder({"now", "0.1", {}});
+    conformance::run(context(), {}, recorder, true);
+    EXPECT_EQ(recorder.records().size(), catalogue().size());
+    for (const Record& record : recorder.records()) {
+        EXPECT_FALSE(record.was_run || record.pass.has_value());
+        EXPECT_NE(record.reason.find("ray queries"), std::string::npos);
+    }
+    EXPECT_THROW(Driver driver(context()), Error);
+}
+
+}  // namespace
+}  // namespace twinray::conformance

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include "validation/conformance/driver.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "conformance_query.spv.h"
+#include "conformance_query_culling.spv.h"
+#include "engine/core/buffer.h"
+#include "engine/core/error.h"
+
+namespace twinray::conformance {
+namespace {
+
+KernelDesc query_desc(const Context& context) {
+    if (!context.properties().ray_query) fail("the conformance suite needs VK_KHR_ray_query");
+    KernelDesc desc{.name = "conformance_query", .spirv = conformance_query_spirv};
+    if (context.properties().primitive_culling) desc.spirv = conformance_query_culling_spirv;
+    return desc;
+}
+
+VkAccelerationStructureBuildGeometryInfoKHR build_info(const BuildInput& input) {
+    VkAccelerationStructureBuildGeometryInfoKHR info{};
+    info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
+    info.type = input.type;
+    info.flags = input.flags;
+    info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
+    info.geometryCount = static_cast<std::uint32_t>(input.geometries.size());
+    info.pGeometries = input.geometries.data();
+    return info;
+}
+
+VkAccelerationStructureBuildSizesInfoKHR sizes_of(const Context& context, const BuildInput& input) {
+    const VkAccelerationStructureBuildGeometryInfoKHR info = build_info(input);
+    VkAccelerationStructureBuildSizesInfoKHR sizes{};
+    sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
+    context.state().vk().vkGetAccelerationStructureBuildSizesKHR(
+        context.device(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, input.counts.data(), &sizes);
+    return sizes;
+}
+
+BottomInput spoiled(Misdeed misdeed, BottomInput input) {
+    spoil(misdeed, input);
+    return input;
+}
+
+}  // namespace
+
+Driver::Driver(Context& context, Misdeed misdeed)
+    : context_(context), misdeed_(misdeed), query_(context, query_desc(context)) {}
+
+AccelerationStructure Driver::new_structure(const char* name, const BuildInput& input) {
+    return {context_, name, input.type, sizes_of(context_, input).accelerationStructureSize};
+}
+
+void Driver::record_build(Commands& commands, std::span<const BuildInput> inputs,
+                          std::span<const AccelerationStructure* const> targets,
+                          const AccelerationStructure* updated_from) {
+    std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
+    std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> ranges;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const VkAccelerationStructureBuildSizesInfoKHR sizes = sizes_of(context_, inputs[i]);
+        const std::uint64_t bytes = updated_from ? sizes.updateScratchSize : sizes.buildScratchSize;
+        Buffer scratch = make_build_scratch(context_, "conformance scratch", std::max<std::uint64_t>(bytes, 1));
+        VkAccelerationStructureBuildGeometryInfoKHR& info = infos.emplace_back(build_info(inputs[i]));
+        info.dstAccelerationStructure = targets[i]->handle();
+        info.scratchData.deviceAddress = scratch.address();
+        if (updated_from) {
+            info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
+            info.srcAccelerationStructure = updated_from->handle();
+        }
+        ranges.push_back(inputs[i].ranges.data());
+        commands.retain(std::move(scratch));
+    }
+    const auto pass = commands.pass("conformance build");
+    context_.state().vk().vkCmdBuildAccelerationStructuresKHR(
+        commands.handle(), static_cast<std::uint32_t>(infos.size()), infos.data(), ranges.data());
+}
+
+Bottom Driver::build(const BottomInput& input) { return std::move(build_together(std::span(&input, 1)).front()); }
+
+std::vector<Bottom> Driver::build_together(std::span<const BottomInput> inputs) {
+    Commands commands(context_, "conformance bottom levels");
+    std::vector<Bottom> bottoms;
+    std::vector<BuildInput> uploaded;
+    std::vector<const AccelerationStructure*> targets;
+    bottoms.reserve(inputs.size());
+    for (const BottomInput& input : inputs) {
+        uploaded.push_back(upload(commands, spoiled(misdeed_, input)));
+        bottoms.push_back({new_structure("conformance bottom level", uploaded.back()), input});
+        targets.push_back(&bottoms.back().structure);
+    }
+    record_build(commands, uploaded, targets);
+    commands.submit();
+    return bottoms;
+}
+
+Top Driver::build(const TopInput& input, std::span<const Bottom> bottoms) {
+    std::vector<std::uint64_t> addresses;
+    for (const Bottom& bottom : bottoms) addresses.push_back(bottom.structure.address());
+    return build(input, addresses);
+}
+
+Top Driver::build(const TopInput& given, const std::vector<std::uint64_t>& bottoms) {
+    TopInput input = given;
+    spoil(misdeed_, input);
+    Commands commands(context_, "conformance top level");
+    const BuildInput uploaded = upload(commands, input, bottoms);
+    Top top{new_structure("conformance top level", uploaded), input, bottoms};
+    const AccelerationStructure* target = &top.structure;
+    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1));
+    commands.submit();
+    return top;
+}
+
+DriverScene Driver::build(const SceneInput& scene) {
+    DriverScene built;
+    for (const BottomInput& bottom : scene.bottoms) built.bottoms.push_back(build(bottom));
+    built.top = build(scene.top, built.bottoms);
+    return built;
+}
+
+void Driver::rebuild(Bottom& bottom, const BottomInput& input) {
+    if (misdeed_ == Misdeed::forgets_updates) return;
+    Commands commands(context_, "conformance rebuild");
+    const BuildInput uploaded = upload(commands, spoiled(misdeed_, input));
+    const AccelerationStructure* target = &bottom.structure;
+    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1));
+    commands.submit();
+    bottom.input = input;
+}
+
+void Driver::update(Bottom& bottom, const BottomInput& input) {
+    if (misdeed_ == Misdeed::forgets_updates) return;
+    Commands commands(context_, "conformance update");
+    const BuildInput uploaded = upload(commands, spoiled(misdeed_, input));
+    const AccelerationStructure* target = &bottom.structure;
+    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1), target);
+    commands.submit();
+    bottom.input = input;
+}
+
+void Driver::update(Top& top, const TopInput& given) {
+    if (misdeed_ == Misdeed::forgets_updates) return;
+    TopInput input = given;
+    spoil(misdeed_, input);
+    Commands commands(context_, "conformance update of a top level");
+    const BuildInput uploaded = upload(commands, input, top.bottoms);
+    const AccelerationStructure* target = &top.structure;
+    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1), target);
+    commands.submit();
+    top.input = input;
+}
+
+Bottom Driver::updated(const Bottom& source, const BottomInput& input) {
+    if (misdeed_ == Misdeed::forgets_updates) return clone(source);
+    Commands commands(context_, "conformance update into another");
+    const BuildInput uploaded = upload(commands, spoiled(misdeed_, input));
+    Bottom updated{new_structure("conformance updated", uploaded), input};
+    const AccelerationStructure* target = &updated.structure;
+    record_build(commands, std::span(&uploaded, 1), std::span(&target, 1), &source.structure);
+    commands.submit();
+    return updated;
+}
+
+Traced Driver::trace(const Top& top, std::span<const Shot> given, uint slots) {
+    std::vector<Shot> shots(given.begin(), given.end());
+    spoil(misdeed_, shots);
+    const Buffer from(context_, {.name = "conformance shots", .bytes = shots.size() * sizeof(Shot)});
+    const Buffer answers(context_, {.name = "conformance answers", .bytes = shots.size() * sizeof(Answer)});
+    const Buffer candidates(context_, {.name = "conformance candidates", .bytes = shots.size() * slots * sizeof(uint)});
+    Commands commands(context_, "conformance trace");
+    {
+        const auto pass = commands.pass("conformance upload of shots");
+        commands.upload(from, std::span<const Shot>(shots));
+    }
+    query_.dispatch(commands,
+                    {.structure = top.structure.address(),
+                     .shots = from.ref<Shot>(),
+                     .answers = answers.ref<Answer>(),
+                     .candidates = candidates.ref<uint>(),
+                     .count = static_cast<uint>(shots.size()),
+                     .slots = slots},
+                    shots.size());
+    commands.submit();
+    Traced traced{download<Answer>(context_, answers, shots.size()),
+                  download<uint>(context_, candidates, shots.size() * slots), slots};
+    spoil(misdeed_, traced, traces_++);
+    return traced;
+}
+
+}  // namespace twinray::conformance
