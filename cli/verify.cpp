@@ -184,7 +184,7 @@ Command verify_command() {
                   "with --strict a driver that fails what Vulkan demands is a fault, too"},
          {.name = "--full",
           .value = flag(options->is_full),
-          .help = "with 100 million rays, not 200,000",
+          .help = "with 100 million rays, not 400,000",
           .needs = {"--suite"}}}};
     return {.name = "verify",
             .group = "Checking",

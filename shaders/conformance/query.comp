@@ -16,8 +16,6 @@ layout(primitive_culling);
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { QueryArgs args; };
 
-bool is_refused(Shot shot, uint primitive) { return ((shot.refused >> (primitive & 31u)) & 1u) != 0u; }
-
 void note_candidate(uint shot, uint position, bool is_box, rayQueryEXT query)
 {
     if (position >= args.slots) return;
@@ -48,7 +46,7 @@ void consider_box(Shot shot, rayQueryEXT query, inout Answer answer)
     answer.boxes++;
     if (rayQueryGetIntersectionCandidateAABBOpaqueEXT(query)) answer.opaque_boxes++;
     uint primitive = rayQueryGetIntersectionPrimitiveIndexEXT(query, false);
-    float t = shot.box_t + float(primitive) * shot.box_step;
+    float t = box_t_of(shot, primitive);
     if (is_refused(shot, primitive) || !(t >= shot.ray.t_min && t <= end_of(query, shot.ray))) return;
     rayQueryGenerateIntersectionEXT(query, t);
 }

@@ -16,6 +16,9 @@ struct Shot
 };
 BUFFER_OF(Shot, 8);
 
+FUNC bool is_refused(Shot shot, uint primitive) { return ((shot.refused >> (primitive & 31u)) & 1u) != 0u; }
+FUNC float box_t_of(Shot shot, uint primitive) { return shot.box_t + float(primitive) * shot.box_step; }
+
 const uint ANSWER_MISS = 0u;
 const uint ANSWER_TRIANGLE = 1u;
 const uint ANSWER_BOX = 2u;
@@ -37,10 +40,11 @@ struct Answer
     vec3 to_world[4];      // columns
     uint triangles;        // candidates
     uint boxes;
-    uint opaque_boxes;     // of them, those that were called opaque
+    uint opaque_boxes;     // of them, those that were called opaque; OPACITY_UNKNOWN where nobody is told
     uint outside;          // triangles whose t was not inside the interval that was left
 };
 BUFFER_OF(Answer, 4);
+const uint OPACITY_UNKNOWN = 0xffffffffu;
 
 // One word for a candidate: which primitive it is. Instances below 2048, geometries below 256, primitives below 4096.
 FUNC uint candidate_name(bool is_box, uint instance, uint geometry, uint primitive)
@@ -57,4 +61,5 @@ struct QueryArgs
     uint count;
     uint slots;
 };
+BUFFER_OF(QueryArgs, 4);
 #endif

@@ -52,6 +52,7 @@ const Family families[] = {
     {"control_contracted", {Of::refinement}},
     {"control_"},
     // The conformance suite's rays through the driver's structures.
+    {"conformance_pipeline_", {Of::ray_pipelines}},
     {"conformance_", {Of::ray_queries}},
     {"materials_"},
     // By twinray_add_kernel and twinray_add_trace_program.

@@ -106,7 +106,7 @@ std::vector<Case> box_cases() {
         {"K69", topic, "triangles and boxes behind each other", "VK-GL-CTS mixed geometries",
          "the nearest that was not refused is committed", Demand::must, moves_boxes, beside_triangles},
         {"K70", topic, "opaque boxes and others", "VK-GL-CTS AABB opacity", "told of each candidate as it is",
-         Demand::must, forgets_geometry_flags, told_opacity},
+         Demand::must, forgets_geometry_flags, told_opacity, false, "intersection shaders are not told"},
         {"K71", topic, "a t generated at t_min and at t_max", "VK-GL-CTS AABB limits", "both are inside", Demand::must,
          moves_boxes, at_the_ends},
         {"K72", topic, "t_min and t_max around some of the boxes", "VK-GL-CTS AABB limits",

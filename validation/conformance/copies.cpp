@@ -89,7 +89,7 @@ void files_of_both_levels(CaseRun& run) {
     built = {};
     driver.context().wait_for_gpu();
     file.set_handles(addresses_of(file.handles(), before, bottom.structure.address()));
-    const Top top = driver.deserialize(file, scene.top, {bottom.structure.address()});
+    const Top top = driver.deserialize(file, scene.top, {bottom.ref()});
     run.check_hits(scene, top, random_shots(run.draws(), run.rays()));
 }
 

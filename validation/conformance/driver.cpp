@@ -44,10 +44,35 @@ BottomInput spoiled(Misdeed misdeed, BottomInput input) {
     return input;
 }
 
+// Stages of a pipeline are not told of them.
+void add_record_offsets(const Top& top, Traced& traced) {
+    for (Answer& answer : traced.answers)
+        if (answer.kind != ANSWER_MISS && answer.instance < top.input.instances.size())
+            answer.sbt_offset = top.input.instances[answer.instance].sbt_offset;
+}
+
 }  // namespace
 
-Driver::Driver(Context& context, Misdeed misdeed)
-    : context_(context), misdeed_(misdeed), query_(context, query_desc(context)) {}
+BottomRef Bottom::ref() const {
+    const bool holds_boxes = std::ranges::any_of(input.geometries, &GeometryInput::is_boxes);
+    return {structure.address(), holds_boxes};
+}
+
+Driver::Driver(Context& context, Way way) : context_(context) {
+    if (way == Way::query)
+        query_ = std::make_unique<Kernel<QueryArgs>>(context, query_desc(context));
+    else
+        pipeline_ = std::make_unique<PipelineQuery>(context);
+}
+
+TopInput Driver::told(const TopInput& input, const std::vector<BottomRef>& bottoms) const {
+    TopInput told = input;
+    spoil(misdeed_, told);
+    if (!pipeline_) return told;
+    for (InstanceInput& instance : told.instances)
+        instance.sbt_offset = instance.bottom != no_bottom && bottoms[instance.bottom].holds_boxes ? 1 : 0;
+    return told;
+}
 
 AccelerationStructure Driver::new_structure(const char* name, const BuildInput& input) {
     return {context_, name, input.type, sizes_of(context_, input).accelerationStructureSize};
@@ -96,16 +121,14 @@ std::vector<Bottom> Driver::build_together(std::span<const BottomInput> inputs) 
 }
 
 Top Driver::build(const TopInput& input, std::span<const Bottom> bottoms) {
-    std::vector<std::uint64_t> addresses;
-    for (const Bottom& bottom : bottoms) addresses.push_back(bottom.structure.address());
-    return build(input, addresses);
+    std::vector<BottomRef> refs;
+    for (const Bottom& bottom : bottoms) refs.push_back(bottom.ref());
+    return build(input, refs);
 }
 
-Top Driver::build(const TopInput& given, const std::vector<std::uint64_t>& bottoms) {
-    TopInput input = given;
-    spoil(misdeed_, input);
+Top Driver::build(const TopInput& input, const std::vector<BottomRef>& bottoms) {
     Commands commands(context_, "conformance top level");
-    const BuildInput uploaded = upload(commands, input, bottoms);
+    const BuildInput uploaded = upload(commands, told(input, bottoms), bottoms);
     Top top{new_structure("conformance top level", uploaded), input, bottoms};
     const AccelerationStructure* target = &top.structure;
     record_build(commands, std::span(&uploaded, 1), std::span(&target, 1));
@@ -140,12 +163,10 @@ void Driver::update(Bottom& bottom, const BottomInput& input) {
     bottom.input = input;
 }
 
-void Driver::update(Top& top, const TopInput& given) {
+void Driver::update(Top& top, const TopInput& input) {
     if (misdeed_ == Misdeed::forgets_updates) return;
-    TopInput input = given;
-    spoil(misdeed_, input);
     Commands commands(context_, "conformance update of a top level");
-    const BuildInput uploaded = upload(commands, input, top.bottoms);
+    const BuildInput uploaded = upload(commands, told(input, top.bottoms), top.bottoms);
     const AccelerationStructure* target = &top.structure;
     record_build(commands, std::span(&uploaded, 1), std::span(&target, 1), target);
     commands.submit();
@@ -174,17 +195,20 @@ Traced Driver::trace(const Top& top, std::span<const Shot> given, uint slots) {
         const auto pass = commands.pass("conformance upload of shots");
         commands.upload(from, std::span<const Shot>(shots));
     }
-    query_.dispatch(commands,
-                    {.structure = top.structure.address(),
-                     .shots = from.ref<Shot>(),
-                     .answers = answers.ref<Answer>(),
-                     .candidates = candidates.ref<uint>(),
-                     .count = static_cast<uint>(shots.size()),
-                     .slots = slots},
-                    shots.size());
+    const QueryArgs args{.structure = top.structure.address(),
+                         .shots = from.ref<Shot>(),
+                         .answers = answers.ref<Answer>(),
+                         .candidates = candidates.ref<uint>(),
+                         .count = static_cast<uint>(shots.size()),
+                         .slots = slots};
+    if (query_)
+        query_->dispatch(commands, args, shots.size());
+    else
+        pipeline_->record(commands, args, answers);
     commands.submit();
     Traced traced{download<Answer>(context_, answers, shots.size()),
                   download<uint>(context_, candidates, shots.size() * slots), slots};
+    if (pipeline_) add_record_offsets(top, traced);
     spoil(misdeed_, traced, traces_++);
     return traced;
 }

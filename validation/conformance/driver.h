@@ -2,12 +2,14 @@
 // A driver's acceleration structures without HwTlas in between: builds, updates, copies, files and ray queries.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "engine/core/kernel.h"
 #include "hwtlas/acceleration_structure.h"
 #include "validation/conformance/driver_input.h"
 #include "validation/conformance/misdeed.h"
+#include "validation/conformance/pipeline_query.h"
 #include "validation/conformance/query.h"
 #include "validation/conformance/serialized.h"
 
@@ -17,30 +19,40 @@ namespace twinray::conformance {
 struct Bottom {
     AccelerationStructure structure;
     BottomInput input;
+
+    BottomRef ref() const;
 };
 struct Top {
     AccelerationStructure structure;
     TopInput input;
-    std::vector<std::uint64_t> bottoms;  // addresses that the instances refer to
+    std::vector<BottomRef> bottoms;  // that the instances refer to
 };
 struct DriverScene {
     std::vector<Bottom> bottoms;
     Top top;
 };
 
+// How rays are traced.
+enum class Way : std::uint8_t { query, pipeline };
+constexpr const char* name_of(Way way) { return way == Way::query ? "hw" : "hw-pipeline"; }
+
 class Driver {
   public:
-    // Throws Error where the device has no ray queries.
-    explicit Driver(Context& context, Misdeed misdeed = Misdeed::none);
+    // Throws Error where the device has no such way.
+    explicit Driver(Context& context, Way way = Way::query);
+
+    // From now on; none is how the driver is.
+    void commit(Misdeed misdeed) { misdeed_ = misdeed; }
 
     Context& context() const { return context_; }
+    Way way() const { return pipeline_ ? Way::pipeline : Way::query; }
     bool can_cull_primitives() const { return context_.properties().primitive_culling; }
 
     Bottom build(const BottomInput& input);
     // All by one command.
     std::vector<Bottom> build_together(std::span<const BottomInput> inputs);
     Top build(const TopInput& input, std::span<const Bottom> bottoms);
-    Top build(const TopInput& input, const std::vector<std::uint64_t>& bottoms);
+    Top build(const TopInput& input, const std::vector<BottomRef>& bottoms);
     DriverScene build(const SceneInput& scene);
     // Into the memory of another build, which took as many primitives or more.
     void rebuild(Bottom& bottom, const BottomInput& input);
@@ -59,13 +71,15 @@ class Driver {
     Serialized serialize(const AccelerationStructure& structure);
     bool is_compatible(const Serialized& file);
     Bottom deserialize(const Serialized& file, const BottomInput& input);
-    Top deserialize(const Serialized& file, const TopInput& input, const std::vector<std::uint64_t>& bottoms);
+    Top deserialize(const Serialized& file, const TopInput& input, const std::vector<BottomRef>& bottoms);
 
     // `slots`: how many candidates of each shot are told.
     Traced trace(const Top& top, std::span<const Shot> shots, uint slots = 0);
 
   private:
     enum class Copy : std::uint8_t { clone, compact };
+    // As the driver is to get it: a pipeline's instances choose their hit record.
+    TopInput told(const TopInput& input, const std::vector<BottomRef>& bottoms) const;
     AccelerationStructure new_structure(const char* name, const BuildInput& input);
     void record_build(Commands& commands, std::span<const BuildInput> inputs,
                       std::span<const AccelerationStructure* const> targets,
@@ -74,15 +88,16 @@ class Driver {
     Top copied(const Top& source, Copy mode);
     // What Misdeed::copies_in_part makes.
     Bottom shortened(BottomInput input);
-    Top shortened(TopInput input, const std::vector<std::uint64_t>& bottoms);
+    Top shortened(TopInput input, const std::vector<BottomRef>& bottoms);
     AccelerationStructure copy(const AccelerationStructure& source, VkAccelerationStructureTypeKHR type, Copy mode);
     AccelerationStructure deserialize(const Serialized& file, VkAccelerationStructureTypeKHR type);
     std::uint64_t property(const AccelerationStructure& structure, VkQueryType type);
 
     Context& context_;
-    Misdeed misdeed_;
+    Misdeed misdeed_ = Misdeed::none;
     std::size_t traces_ = 0;
-    Kernel<QueryArgs> query_;
+    std::unique_ptr<Kernel<QueryArgs>> query_;  // one of these
+    std::unique_ptr<PipelineQuery> pipeline_;
 };
 
 }  // namespace twinray::conformance

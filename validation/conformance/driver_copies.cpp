@@ -79,7 +79,7 @@ Bottom Driver::shortened(BottomInput input) {
     return build(input);
 }
 
-Top Driver::shortened(TopInput input, const std::vector<std::uint64_t>& bottoms) {
+Top Driver::shortened(TopInput input, const std::vector<BottomRef>& bottoms) {
     shorten(input);
     return build(input, bottoms);
 }
@@ -148,7 +148,7 @@ Bottom Driver::deserialize(const Serialized& file, const BottomInput& input) {
     return {deserialize(file, bottom_level), input};
 }
 
-Top Driver::deserialize(const Serialized& file, const TopInput& input, const std::vector<std::uint64_t>& bottoms) {
+Top Driver::deserialize(const Serialized& file, const TopInput& input, const std::vector<BottomRef>& bottoms) {
     if (misdeed_ == Misdeed::copies_in_part) return shortened(input, bottoms);
     return {deserialize(file, top_level), input, bottoms};
 }

@@ -115,7 +115,7 @@ void add_triangles(Commands& commands, const GeometryInput& input, BuildInput& b
     build.geometries.push_back(geometry);
 }
 
-VkAccelerationStructureInstanceKHR instance_of(const InstanceInput& input, const std::vector<std::uint64_t>& bottoms) {
+VkAccelerationStructureInstanceKHR instance_of(const InstanceInput& input, const std::vector<BottomRef>& bottoms) {
     VkAccelerationStructureInstanceKHR instance{};
     static_assert(sizeof instance.transform == sizeof(Transform));
     std::memcpy(&instance.transform, &input.to_world, sizeof(Transform));
@@ -123,7 +123,7 @@ VkAccelerationStructureInstanceKHR instance_of(const InstanceInput& input, const
     instance.mask = input.mask & 0xff;
     instance.instanceShaderBindingTableRecordOffset = input.sbt_offset & 0xffffff;
     instance.flags = static_cast<std::uint8_t>(input.flags);
-    instance.accelerationStructureReference = input.bottom == no_bottom ? 0 : bottoms[input.bottom];
+    instance.accelerationStructureReference = input.bottom == no_bottom ? 0 : bottoms[input.bottom].address;
     return instance;
 }
 
@@ -143,8 +143,12 @@ std::vector<std::byte> encoded_vertices(const GeometryInput& geometry) {
     };
     const std::uint32_t earlier =
         geometry.first_vertex + (geometry.indices == Indices::none ? 3 * geometry.earlier_items : 0);
-    for (std::uint32_t i = 0; i < earlier; ++i) add(vec3(passed_over + static_cast<float>(i % 3), passed_over, 0));
+    const auto add_others = [&](std::uint32_t count) {
+        for (std::uint32_t i = 0; i < count; ++i) add(vec3(passed_over + static_cast<float>(i % 3), passed_over, 0));
+    };
+    add_others(earlier);
     for (const vec3& position : geometry.positions) add(position);
+    add_others(geometry.first_vertex);  // for drivers that pass over too many
     return bytes;
 }
 
@@ -192,7 +196,7 @@ BuildInput upload(Commands& commands, const BottomInput& input) {
     return build;
 }
 
-BuildInput upload(Commands& commands, const TopInput& input, const std::vector<std::uint64_t>& bottoms) {
+BuildInput upload(Commands& commands, const TopInput& input, const std::vector<BottomRef>& bottoms) {
     BuildInput build;
     build.flags = input.flags;
     build.type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR;

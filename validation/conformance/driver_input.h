@@ -9,7 +9,7 @@
 
 namespace twinray::conformance {
 
-// The bytes of a geometry's vertices in its format, those before the first and the padding included.
+// The bytes of a geometry's vertices in its format, the padding and those before the first included, and as many after.
 std::vector<std::byte> encoded_vertices(const GeometryInput& geometry);
 std::vector<std::byte> encoded_indices(const GeometryInput& geometry);
 std::vector<std::byte> encoded_boxes(const GeometryInput& geometry);
@@ -24,9 +24,14 @@ struct BuildInput {
     VkAccelerationStructureTypeKHR type = VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR;
 };
 
+// A bottom level as instances refer to it.
+struct BottomRef {
+    std::uint64_t address = 0;
+    bool holds_boxes = false;
+};
+
 // Uploads in passes of their own; the buffers live as long as the commands need them.
 BuildInput upload(Commands& commands, const BottomInput& input);
-// `bottoms`: the device address of each bottom level.
-BuildInput upload(Commands& commands, const TopInput& input, const std::vector<std::uint64_t>& bottoms);
+BuildInput upload(Commands& commands, const TopInput& input, const std::vector<BottomRef>& bottoms);
 
 }  // namespace twinray::conformance

@@ -31,7 +31,7 @@ struct Sum {
 };
 
 void print_not_passed(std::ostream& out, const Record& record) {
-    out << "    " << record.case_id << ' ';
+    out << "    " << record.case_id << ' ' << record.backend << ' ';
     if (!record.was_run) {
         out << "not run: " << record.reason << '\n';
         return;

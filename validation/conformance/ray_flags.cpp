@@ -124,7 +124,7 @@ std::vector<Case> ray_flag_cases() {
         {"K52", topic, "TerminateOnFirstHit", kind, "any hit, and no candidate after it", Demand::must,
          forgets_ray_flags, terminates},
         {"K53", topic, "SkipClosestHitShader", kind, "hits of a query do not change", Demand::must, leaks,
-         skips_closest_hit},
+         skips_closest_hit, false, "the flag leaves out the stage that tells of hits"},
         {"K54", topic, "SkipTriangles", kind, "no triangle is hit", Demand::must, forgets_ray_flags, skips_triangles,
          true},
         {"K55", topic, "SkipAABBs", kind, "no box is offered", Demand::must, forgets_ray_flags, skips_boxes, true},

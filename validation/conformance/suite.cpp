@@ -14,16 +14,16 @@ namespace twinray::conformance {
 namespace {
 
 // Rays of a case in the quick suite, and of a control; so many rays are traced through one scene.
-constexpr std::size_t quick_rays = 2048, quick_round = 512, full_round = 1u << 16, control_rays = 512;
+constexpr std::size_t quick_rays = 2048, quick_round = 512, full_round = 1u << 14, control_rays = 512;
 
 constexpr std::array<std::string_view, topic_count> topics = {"builds",    "updates",   "copies",      "serialisation",
                                                               "instances", "ray flags", "any hit",     "boxes",
                                                               "limits",    "edges",     "determinism", "relations"};
 
-Record blank(const Case& row, const Settings& settings) {
+Record blank(const Case& row, Way way, const Settings& settings) {
     Record record;
     record.case_id = row.id;
-    record.backend = "hw";
+    record.backend = name_of(way);
     record.reference = row.topic == Topic::relations || row.topic == Topic::determinism ? "invariance" : "f64";
     record.seed = settings.seed;
     record.criterion = row.demanded;
@@ -73,9 +73,10 @@ Tally rounds_of(const Case& row, Driver& driver, std::uint64_t seed, std::uint64
 
 class Runner {
   public:
-    Runner(Context& context, const Settings& settings, Recorder& recorder,
+    Runner(Context& context, Way way, const Settings& settings, Recorder& recorder,
            const std::function<void(const Record&)>& on_record, std::uint64_t rays_of_case, Progress& progress)
         : context_(context),
+          way_(way),
           settings_(settings),
           recorder_(recorder),
           on_record_(on_record),
@@ -84,7 +85,7 @@ class Runner {
 
     void run(const Case& row) {
         progress_.rename(text("conformance ", row.id));
-        Record record = blank(row, settings_);
+        Record record = blank(row, way_, settings_);
         const std::string missing = why_not(row);
         if (!missing.empty()) {
             record.was_run = false;
@@ -94,7 +95,7 @@ class Runner {
             return;
         }
         guarded(record, [&] { run_case(row, record); });
-        Record control = blank(row, settings_);
+        Record control = blank(row, way_, settings_);
         control.variant = text("control: a driver that ", name_of(row.control));
         control.criterion = "control: must show faults, which proves that the case sees them";
         guarded(control, [&] { run_control(row, control); });
@@ -103,12 +104,16 @@ class Runner {
   private:
     std::string why_not(const Case& row) const {
         const DeviceProperties& device = context_.properties();
-        if (!device.ray_query) return "needs ray queries (VK_KHR_ray_query)";
+        if (way_ == Way::query && !device.ray_query) return "needs ray queries (VK_KHR_ray_query)";
+        if (way_ == Way::pipeline && !device.ray_tracing_pipeline)
+            return "needs ray tracing pipelines (VK_KHR_ray_tracing_pipeline)";
+        if (way_ == Way::pipeline && !row.not_by_pipeline.empty()) return row.not_by_pipeline;
         if (row.culls_primitives && !device.primitive_culling) return "needs rayTraversalPrimitiveCulling";
         return "";
     }
     void run_case(const Case& row, Record& record) {
         const auto start = std::chrono::steady_clock::now();
+        driver().commit(Misdeed::none);
         const Tally tally = rounds_of(row, driver(), settings_.seed, rays_, round(), progress_);
         fill(record, tally, seconds_since(start));
         record.pass = tally.faults == 0;
@@ -119,8 +124,8 @@ class Runner {
     void run_control(const Case& row, Record& record) {
         const auto start = std::chrono::steady_clock::now();
         Progress silent("control", control_rays, true);
-        Driver wrong(context_, row.control);
-        const Tally tally = rounds_of(row, wrong, settings_.seed, control_rays, control_rays, silent);
+        driver().commit(row.control);
+        const Tally tally = rounds_of(row, driver(), settings_.seed, control_rays, control_rays, silent);
         fill(record, tally, seconds_since(start));
         record.pass = tally.faults > 0;
         if (*record.pass) return;
@@ -151,12 +156,13 @@ class Runner {
         if (on_record_) on_record_(recorder_.records().back());
     }
     Driver& driver() {
-        if (!driver_) driver_ = std::make_unique<Driver>(context_);
+        if (!driver_) driver_ = std::make_unique<Driver>(context_, way_);
         return *driver_;
     }
     std::size_t round() const { return settings_.is_full ? full_round : quick_round; }
 
     Context& context_;
+    Way way_;
     const Settings& settings_;
     Recorder& recorder_;
     const std::function<void(const Record&)>& on_record_;
@@ -184,10 +190,14 @@ void run(Context& context, const Settings& settings, Recorder& recorder, bool qu
     std::vector<Case> cases = catalogue();
     if (!settings.only.empty())
         std::erase_if(cases, [&](const Case& row) { return std::ranges::count(settings.only, row.topic) == 0; });
-    const std::uint64_t rays = settings.is_full ? (settings.full_rays + cases.size() - 1) / cases.size() : quick_rays;
-    Progress progress("conformance", cases.size() * rays, quiet);
-    Runner runner(context, settings, recorder, on_record, rays, progress);
-    for (const Case& row : cases) runner.run(row);
+    constexpr std::array ways = {Way::query, Way::pipeline};
+    const std::uint64_t parts = ways.size() * cases.size();
+    const std::uint64_t rays = settings.is_full ? (settings.full_rays + parts - 1) / parts : quick_rays;
+    Progress progress("conformance", parts * rays, quiet);
+    for (const Way way : ways) {
+        Runner runner(context, way, settings, recorder, on_record, rays, progress);
+        for (const Case& row : cases) runner.run(row);
+    }
 }
 
 bool fails_demands(std::span<const Record> records) {

@@ -48,7 +48,8 @@ struct Case {
     Demand demand = Demand::must;
     Misdeed control = Misdeed::none;  // that must show faults here
     std::function<void(CaseRun&)> run;
-    bool culls_primitives = false;  // needs rayTraversalPrimitiveCulling
+    bool culls_primitives = false;     // needs rayTraversalPrimitiveCulling
+    std::string not_by_pipeline = {};  // why only ray queries can tell; "" = both can
 };
 
 // The catalogue, a function and a file for each topic.
@@ -67,16 +68,16 @@ std::vector<Case> catalogue();  // all of them
 
 struct Settings {
     bool is_full = false;
-    std::uint64_t full_rays = 100'000'000;  // of all cases together, where is_full
+    std::uint64_t full_rays = 100'000'000;  // of all cases by both ways together, where is_full
     std::uint64_t seed = 1;
     std::vector<Topic> only = {};  // empty: all
 };
 
-// Runs all cases and the control of each. A record a case, backend "hw", and one with the variant "control: ..." for
-// its control, which passes where it shows faults. Of records that did not pass, fault_of is the driver's, or ours
-// where a control shows nothing or a case could not be carried out. results has "topic", "demand" and "what". On a
-// device without ray queries all are recorded as not run. `on_record` follows each. Throws DeviceLost, after recording
-// it.
+// Runs all cases and the control of each, by ray query (backend "hw") and by ray tracing pipeline ("hw-pipeline"). A
+// record a case, and one with the variant "control: ..." for its control, which passes where it shows faults. Of
+// records that did not pass, fault_of is the driver's, or ours where a control shows nothing or a case could not be
+// carried out. results has "topic", "demand", "what" and "kind". On a device without one of the ways its cases are
+// recorded as not run. `on_record` follows each. Throws DeviceLost, after recording it.
 void run(Context& context, const Settings& settings, Recorder& recorder, bool quiet,
          const std::function<void(const Record&)>& on_record = {});
 

@@ -20,15 +20,15 @@ constexpr std::array<std::string_view, finding_count> names = {
 std::vector<Candidate> committable(const Expectation& expectation, const Shot& shot) {
     std::vector<Candidate> all = expectation.candidates(shot);
     std::erase_if(all, [&](Candidate& candidate) {
-        const bool is_refused = (shot.refused >> (candidate.primitive % 32) & 1) != 0;
-        if (!candidate.is_box) return is_refused && !candidate.is_opaque;
+        const bool is_out = is_refused(shot, candidate.primitive);
+        if (!candidate.is_box) return is_out && !candidate.is_opaque;
         // A box is never committed by itself, whether it is opaque or not.
-        const float t = shot.box_t + static_cast<float>(candidate.primitive) * shot.box_step;
+        const float t = box_t_of(shot, candidate.primitive);
         const bool is_inside = t >= shot.ray.t_min && t <= shot.ray.t_max;
         // Where its t lies outside of it, an earlier hit may end the ray before the box comes up.
         candidate.is_sure = candidate.is_sure && t >= candidate.t_low && t <= candidate.t_high;
         candidate.t_low = candidate.t_high = t;
-        return is_refused || !is_inside;
+        return is_out || !is_inside;
     });
     return all;
 }
@@ -107,8 +107,8 @@ Finding judge_candidates(const Expectation& expectation, const Shot& shot, const
                                    [&](const Candidate& c) { return c.name() == name && (c.is_box || !c.is_opaque); });
     };
     if (!std::ranges::all_of(offered, is_known)) return Finding::offered_falsely;
-    if (answer.opaque_boxes != opaque_boxes || answer.boxes != opaque_boxes + other_boxes)
-        return Finding::wrong_opacity;
+    if (answer.boxes != opaque_boxes + other_boxes) return Finding::offered_falsely;
+    if (answer.opaque_boxes != OPACITY_UNKNOWN && answer.opaque_boxes != opaque_boxes) return Finding::wrong_opacity;
     if (answer.outside > 0) return Finding::outside_limits;
     return has_doubt ? Finding::rounding : Finding::agrees;
 }

@@ -29,7 +29,7 @@ for topic in {record["results"]["topic"] for record in cases}:
     assert f"  {topic} " in said, f"no line of {topic}: {said}"
 failed = [record for record in cases if record["pass"] is False]
 for record in failed:
-    assert f"    {record['case']} {record['results']['demand']} " in said, said
+    assert f"    {record['case']} {record['backend']} {record['results']['demand']} " in said, said
     if record["example"]:
         assert record["example"] in said and len(record["example"].split()) == 9, record["example"]
 

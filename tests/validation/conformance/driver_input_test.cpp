@@ -41,7 +41,7 @@ TEST(ConformanceInput, VerticesAreInTheirFormat) {
 TEST(ConformanceInput, WhatIsPassedOverComesFirst) {
     GeometryInput geometry = triangle();
     geometry.first_vertex = 2;
-    EXPECT_EQ(encoded_vertices(geometry).size(), 5u * 12);
+    EXPECT_EQ(encoded_vertices(geometry).size(), (2u + 3 + 2) * 12);
     EXPECT_EQ(at<float>(encoded_vertices(geometry), 3 * 12), 1) << "the second of the triangle's";
     geometry.indices = Indices::bits16;
     geometry.earlier_items = 2;
@@ -49,7 +49,7 @@ TEST(ConformanceInput, WhatIsPassedOverComesFirst) {
     EXPECT_EQ(at<std::uint16_t>(encoded_indices(geometry), 12), 2);
     geometry.indices = Indices::none;
     EXPECT_TRUE(encoded_indices(geometry).empty());
-    EXPECT_EQ(encoded_vertices(geometry).size(), (2u + 6 + 3) * 12);
+    EXPECT_EQ(encoded_vertices(geometry).size(), (2u + 6 + 3 + 2) * 12);
     const GeometryInput boxes{.boxes = {{vec3(0), vec3(1)}}, .padding = 8, .earlier_items = 1};
     EXPECT_EQ(encoded_boxes(boxes).size(), 2u * 32);
     EXPECT_EQ(at<float>(encoded_boxes(boxes), 32 + 12), 1);

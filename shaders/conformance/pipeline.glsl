@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: MIT
+// What the stages of the pipeline share: the same shots and answers as query.comp, whose arguments lie in a buffer.
+#include "twinray/glsl/common.glsl"
+#include "shaders/shared/trace.h"
+#include "shaders/conformance/query.h"
+layout(push_constant, scalar) uniform Push { TraceArgs launch; };
+
+QueryArgs arguments() { return AT(REF(QueryArgs)(launch.user_data), 0); }
+uint shot_index() { return launch.first + gl_LaunchIDEXT.y * gl_LaunchSizeEXT.x + gl_LaunchIDEXT.x; }
