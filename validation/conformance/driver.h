@@ -42,7 +42,7 @@ class Driver {
     explicit Driver(Context& context, Way way = Way::query);
 
     // From now on; none is how the driver is.
-    void commit(Misdeed misdeed) { misdeed_ = misdeed; }
+    void behave_as(Misdeed misdeed) { misdeed_ = misdeed; }
 
     Context& context() const { return context_; }
     Way way() const { return pipeline_ ? Way::pipeline : Way::query; }

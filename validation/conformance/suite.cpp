@@ -113,7 +113,7 @@ class Runner {
     }
     void run_case(const Case& row, Record& record) {
         const auto start = std::chrono::steady_clock::now();
-        driver().commit(Misdeed::none);
+        driver().behave_as(Misdeed::none);
         const Tally tally = rounds_of(row, driver(), settings_.seed, rays_, round(), progress_);
         fill(record, tally, seconds_since(start));
         record.pass = tally.faults == 0;
@@ -124,7 +124,7 @@ class Runner {
     void run_control(const Case& row, Record& record) {
         const auto start = std::chrono::steady_clock::now();
         Progress silent("control", control_rays, true);
-        driver().commit(row.control);
+        driver().behave_as(row.control);
         const Tally tally = rounds_of(row, driver(), settings_.seed, control_rays, control_rays, silent);
         fill(record, tally, seconds_since(start));
         record.pass = tally.faults > 0;
