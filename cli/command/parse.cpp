@@ -158,6 +158,8 @@ bool parse(const Command& command, const std::vector<std::string>& arguments) {
     } catch (const CLI::ParseError& error) {
         refuse(error.what());
     }
+    for (const Given& given : all)
+        if (given.option == &help_option() && given.is_there()) return false;  // among letters: "-hq"
     check_known(command, app.remaining());
     for (const Given& given : all)
         if (given.is_there()) store(given);

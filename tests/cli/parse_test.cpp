@@ -60,6 +60,7 @@ TEST(Parse, HelpComesBeforeAllFaults) {
     SampleValues values;
     EXPECT_FALSE(parse(sample_command(values), {"--frob", "--help"}));
     EXPECT_FALSE(parse(sample_command(values), {"-h"}));
+    EXPECT_FALSE(parse(sample_command(values), {"-hx"})) << "a letter among others";
 }
 
 TEST(Parse, RefusalsNameOptionValueAndWhatIsAllowed) {
