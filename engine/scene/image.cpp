@@ -10,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "engine/scene/bytes.h"
+#include "engine/scene/image_checks.h"
 #include "engine/scene/image_exr.h"
 
 // A private copy of stb_image, with only the decoders that we offer to untrusted files.
@@ -76,6 +77,9 @@ HdrImage load_radiance_image(const std::filesystem::path& file) {
         !stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
         fail("'", object, "': not a Radiance .hdr image");
     check_image_size(width, height, object);
+    if (!can_hold_radiance(bytes.size(), static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height)))
+        fail("'", object, "': damaged Radiance .hdr image (", width, " x ", height, " pixels are more than its ",
+             bytes.size(), " bytes can hold)");
     const std::unique_ptr<float, FreePixels> pixels(
         stbi_loadf_from_memory(bytes.data(), size, &width, &height, &channels, 3));
     if (!pixels) fail("'", object, "': damaged Radiance .hdr image (", stbi_failure_reason(), ")");
@@ -102,6 +106,9 @@ void check_image_size(std::int64_t width, std::int64_t height, const std::string
 Image decode_image(std::span<const std::uint8_t> bytes, const std::string& object) {
     const int size = checked_size(bytes, object);
     if (size == 0 || stbi_is_hdr_from_memory(bytes.data(), size)) fail(object, " is ", description_of(bytes));
+    if (const std::string fault = fault_of_png(bytes); !fault.empty()) fail(object, " is a damaged PNG (", fault, ")");
+    if (const std::string fault = fault_of_jpeg(bytes); !fault.empty())
+        fail(object, " is a damaged JPEG (", fault, ")");
     Image image;
     image.name = object;
     if (stbi_is_16_bit_from_memory(bytes.data(), size))

@@ -12,7 +12,24 @@
 namespace twinray {
 namespace {
 
-HdrImage read_pixels(Imf::InputFile& in, const std::string& object) {
+// How many bytes of pixels a byte of a file can become: deflate's 1032, of lines or of the means and ends of DWA's 8 x
+// 8 blocks; other codecs stay below.
+std::uint64_t most_expansion(Imf::Compression compression) {
+    return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION ? 1u << 15 : 1u << 11;
+}
+
+// Before memory is taken for a size that nothing but a header tells.
+void check_pixels_fit(const Imf::Header& header, std::uint64_t pixels, const std::filesystem::path& file) {
+    std::uint64_t pixel_bytes = 0;
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
+        pixel_bytes += channel.channel().type == Imf::HALF ? 2 : 4;
+    const std::uint64_t file_bytes = std::filesystem::file_size(file);
+    if (pixels * pixel_bytes > most_expansion(header.compression()) * file_bytes)
+        fail("'", file.string(), "': ", pixels, " pixels are more than its ", file_bytes, " bytes can hold");
+}
+
+HdrImage read_pixels(Imf::InputFile& in, const std::filesystem::path& file) {
+    const std::string object = file.string();
     const Imath::Box2i window = in.header().dataWindow();
     const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
     const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
@@ -21,6 +38,7 @@ HdrImage read_pixels(Imf::InputFile& in, const std::string& object) {
     const bool is_grey = !channels.findChannel("R") && channels.findChannel("Y");
     if (!is_grey && !(channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B")))
         fail("'", object, "': has neither channels R, G and B nor Y");
+    check_pixels_fit(in.header(), static_cast<std::uint64_t>(width * height), file);
 
     HdrImage image{static_cast<uint>(width), static_cast<uint>(height), {}};
     image.rgb.resize(static_cast<std::size_t>(width * height));
@@ -56,7 +74,7 @@ Imath::Box2i display_window(const HdrImage& image) {
 HdrImage load_exr_image(const std::filesystem::path& file) {
     try {
         Imf::InputFile in(file.string().c_str());
-        return read_pixels(in, file.string());
+        return read_pixels(in, file);
     } catch (const Error&) {
         throw;
     } catch (const std::exception& e) {  // OpenEXR's own, and running out of memory on a false size

@@ -51,7 +51,17 @@ TEST(Image, AFalseHugeSizeIsRefused) {
     const std::string png = png_bytes(1, 1, 8, 6, "abcd");
     const std::string header = big_endian(100000) + big_endian(100000) + std::string("\x08\x06\0\0\0", 5);
     const std::string huge = png.substr(0, 8) + png_chunk("IHDR", header) + png.substr(33);
-    expect_contains(error_of([&] { decode(huge); }), "picture is a damaged PNG (too large)");
+    expect_contains(error_of([&] { decode(huge); }), "picture is a damaged PNG (too large: 100000 x 100000 pixels");
+}
+
+TEST(Image, AHuffmanTableOfMoreCodesThanBytesHaveValuesIsRefused) {
+    const auto jpeg = [](char codes_a_length) {
+        return std::string("\xff\xd8\xff\xc4\x10\x03\0", 7) + std::string(16, codes_a_length) + std::string(4096, 'v');
+    };
+    expect_contains(error_of([&] { decode(jpeg('\xff')); }), "a Huffman table of 4080 codes, more than 256");
+    expect_contains(error_of([&] { decode("\xff\xff" + jpeg('\x11').substr(1)); }), "a Huffman table of 272 codes");
+    expect_contains(error_of([&] { decode(jpeg('\x10')); }), "a Huffman table is cut off");
+    expect_contains(error_of([&] { decode(jpeg('\0')); }), "picture is a damaged JPEG");
 }
 
 TEST(Image, TheCheckerboardIsMagentaAndBlack) {
