@@ -56,6 +56,7 @@ class Reader {
     std::span<const std::byte> bytes_;
 };
 
+// Of a film that has no more pixels than a file could have bytes, so that nothing overflows.
 std::uint64_t size_of(const FilmHeader& header) {
     return sizeof header + std::uint64_t{header.text_bytes} + std::uint64_t{header.word_count} * sizeof(uint) +
            std::uint64_t{header.width} * header.height * sizeof(FilmPixel) + sizeof(uint);
@@ -69,9 +70,10 @@ void check(const std::filesystem::path& file, std::span<const std::byte> bytes) 
         fail("'", file.string(), "': a film of another version of path_tracer; this one reads version 1");
     FilmHeader header;
     std::memcpy(&header, bytes.data(), sizeof header);
-    if (bytes.size() != size_of(header))
-        fail("'", file.string(), "': ", bytes.size(), " bytes, but a film of ", header.width, " x ", header.height,
-             " pixels has ", size_of(header), "; it was cut short or damaged");
+    const std::uint64_t pixels = std::uint64_t{header.width} * header.height;
+    if (pixels > bytes.size() || bytes.size() != size_of(header))
+        fail("'", file.string(), "': ", bytes.size(), " bytes are not those of a film of ", header.width, " x ",
+             header.height, " pixels; it was cut short or damaged");
     uint sum = 0;
     std::memcpy(&sum, bytes.data() + bytes.size() - sizeof sum, sizeof sum);
     if (sum != crc32_of(bytes.first(bytes.size() - sizeof sum)))
