@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "engine/core/error.h"
+#include "engine/core/nested_json.h"
 
 namespace twinray::kernels {
 namespace {
@@ -80,9 +81,9 @@ std::vector<KernelRow> read_rows(const std::filesystem::path& file) {
     std::string line;
     for (int number = 1; std::getline(in, line); ++number) {
         try {
-            const nlohmann::json json = nlohmann::json::parse(line);
+            const nlohmann::json json = parse_json<nlohmann::json>(line);
             if (json.contains("kernel")) rows.push_back(row_of(json));
-        } catch (const nlohmann::json::exception& failure) {
+        } catch (const std::exception& failure) {
             fail("'", file.string(), "', line ", number, ": ", failure.what());
         }
     }

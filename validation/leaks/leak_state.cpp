@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/nested_json.h"
 
 namespace twinray {
 
@@ -36,7 +37,12 @@ std::uint64_t hash_of(const Mesh& mesh) {
 
 LeakState read_state(const std::filesystem::path& file, const nlohmann::json& identity) {
     std::ifstream in(file);
-    const nlohmann::json state = nlohmann::json::parse(in, nullptr, false);
+    nlohmann::json state;
+    try {
+        state = parse_json<nlohmann::json>(in);
+    } catch (const std::exception&) {
+        state = {};
+    }
     if (!state.is_object()) fail("'", file.string(), "' holds no state of `twinray leaks`");
     for (const auto& [name, value] : identity.items())
         if (const nlohmann::json was = state.value(name, nlohmann::json()); was != value)

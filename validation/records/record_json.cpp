@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "engine/core/error.h"
+#include "engine/core/nested_json.h"
 #include "validation/records/record.h"
 
 namespace twinray {
@@ -173,14 +174,19 @@ std::string to_json(const Record& record) {
 
 Record record_of_json(std::string_view line) {
     try {
-        return parsed(Json::parse(line));
+        return parsed(parse_json<Json>(line));
     } catch (const std::exception& error) {
         fail("not a record of a report: ", error.what());
     }
 }
 
 std::string kind_of_json(std::string_view line) {
-    const Json json = Json::parse(line, nullptr, false);
+    Json json;
+    try {
+        json = parse_json<Json>(line);
+    } catch (const Json::exception&) {
+        fail("not a JSON object");
+    }
     if (!json.is_object()) fail("not a JSON object");
     if (!json.contains("schema") || !json["schema"].is_string()) return "no schema";
     const std::string schema = json["schema"];

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "engine/core/error.h"
+#include "engine/core/nested_json.h"
 
 namespace twinray::replay {
 namespace {
@@ -98,7 +99,7 @@ Replay read(const std::filesystem::path& file) {
     std::ifstream in(file);
     if (!in) fail("replay '", file.string(), "' cannot be opened");
     try {
-        const json object = json::parse(in);
+        const json object = parse_json<json>(in);
         if (object.at("schema") != schema) fail("its schema is ", object.at("schema").dump(), ", not ", schema);
         const json& ray = object.at("ray");
         return {object.at("scene").get<std::string>(),

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstring>
 
+#include "engine/core/nested_json.h"
+
 namespace twinray {
 namespace {
 
@@ -54,15 +56,12 @@ Container split(const GltfFile& file, const Bytes& bytes) {
 }
 
 json parse(const GltfFile& file, std::string_view source) {
-    constexpr int max_depth = 100;  // tinygltf and nlohmann's writer recurse; real files stay under 15
-    const auto limit_depth = [&](int depth, json::parse_event_t, json&) {
-        if (depth > max_depth) file.fail("the JSON is nested deeper than ", max_depth, " levels");
-        return true;
-    };
     try {
-        return json::parse(source, limit_depth);
+        return parse_json<json>(source);
     } catch (const json::exception& e) {
         file.fail("not valid JSON: ", e.what());
+    } catch (const Error& e) {
+        file.fail(e.what());
     }
 }
 

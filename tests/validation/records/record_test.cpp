@@ -78,6 +78,12 @@ TEST(Record, RefusesWhatIsNone) {
     }
 }
 
+TEST(Record, JsonNestedAMillionDeepIsRefused) {
+    const std::string deep = "{\"schema\":" + std::string(1'000'000, '[') + std::string(1'000'000, ']') + "}";
+    test::expect_contains(test::error_of([&] { record_of_json(deep); }), "nested deeper than 100 levels");
+    test::expect_contains(test::error_of([&] { kind_of_json(deep); }), "nested deeper than 100 levels");
+}
+
 TEST(Value, TextShowsIntegersAsIntegers) {
     EXPECT_EQ(Value(3).text(), "3");
     EXPECT_EQ(Value(0.5).text(), "0.5");

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// JSON of files that anybody may have written.
+#pragma once
+
+#include <utility>
+
+#include "engine/core/error.h"
+
+namespace twinray {
+
+// nlohmann's writer, copies and comparisons, and tinygltf, recurse; files of ours and of others stay under 15 levels.
+inline constexpr int most_json_levels = 100;
+
+// Parses as Json::parse does, whose exceptions go through. Throws Error where it is nested deeper.
+template <class Json, class Source>
+Json parse_json(Source&& source) {
+    return Json::parse(std::forward<Source>(source), [](int depth, auto, auto&) {
+        if (depth > most_json_levels) fail("the JSON is nested deeper than ", most_json_levels, " levels");
+        return true;
+    });
+}
+
+}  // namespace twinray
