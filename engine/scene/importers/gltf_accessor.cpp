@@ -126,9 +126,10 @@ Elements gather(const GltfFile& file, int index, int components, const std::stri
 
     Elements elements{{}, accessor.componentType, accessor.normalized};
     if (accessor.bufferView < 0) {
-        constexpr std::size_t max_implicit = std::size_t(1) << 24;  // no bytes of the file vouch for this count
-        if (accessor.count > max_implicit)
-            file.fail(object, ": accessor ", index, " has no bufferView but count ", accessor.count, ", over 2^24");
+        if (accessor.count > file.zeros_left)
+            file.fail(object, ": accessor ", index, " has no bufferView but count ", accessor.count,
+                      ", and all of the file's that have none may have ", file.zeros_left, " more");
+        file.zeros_left -= accessor.count;
         elements.bytes.resize(accessor.count * size);
     } else {
         const Layout layout{accessor.bufferView, accessor.byteOffset, stride_of(file, accessor, size, object), size,

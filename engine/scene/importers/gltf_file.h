@@ -27,6 +27,8 @@ struct GltfFile {
     // "animations" and "skins": tinygltf is not given them, so that faults of those that nothing uses do not matter.
     std::shared_ptr<const nlohmann::json> motion;
     std::vector<std::string> warnings;
+    // Elements that accessors without a bufferView may still have, of all reads of them: no bytes vouch for these.
+    mutable std::size_t zeros_left = 0;
 
     template <class... Parts>
     [[noreturn]] void fail(const Parts&... parts) const {
