@@ -1,39 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "cli/face_groups.h"
 
-#include <cmath>
-#include <iomanip>
-
 #include "cli/command/values.h"
-#include "engine/scene/number_lines.h"
-#include "engine/core/error.h"
+#include "cli/csv_files.h"
 
 namespace twinray::cli {
-namespace {
-
-constexpr uint no_group = ~0u;
-
-std::vector<uint> read_face_groups(const std::filesystem::path& file, std::size_t face_count) {
-    std::vector<uint> groups(face_count, no_group);
-    read_number_lines(file, "groups file", "face,group", [&](std::span<const double> line, std::size_t number) {
-        const auto checked = [&](double value, const char* of) {
-            if (!(value >= 0) || !(value < static_cast<double>(face_count)) || value != std::floor(value))
-                fail("groups file '", file.string(), "', line ", number, ": ", of, ' ', std::setprecision(17), value,
-                     "; both are whole numbers from 0 to ", static_cast<std::int64_t>(face_count) - 1,
-                     ", as there are so many faces");
-            return static_cast<uint>(value);
-        };
-        const uint face = checked(line[0], "face"), group = checked(line[1], "group");
-        if (groups[face] != no_group)
-            fail("groups file '", file.string(), "', line ", number, ": face ", face, " is there twice");
-        groups[face] = group;
-    });
-    for (std::size_t face = 0; face < face_count; ++face)
-        if (groups[face] == no_group) fail("groups file '", file.string(), "': face ", face, " is missing");
-    return groups;
-}
-
-}  // namespace
 
 void FaceGroupOptions::set_groups(Faces& faces) const {
     if (by == FaceGrouping::custom) faces.set_custom_groups(read_face_groups(file, faces.count()));

@@ -5,14 +5,14 @@
 #include <random>
 
 #include "cli/command/values.h"
-#include "engine/scene/number_lines.h"
+#include "cli/csv_files.h"
 #include "engine/core/error.h"
 #include "twinray/glsl/vector_math.h"
 
 namespace twinray::cli {
 namespace {
 
-constexpr std::uint64_t most_points = 1u << 28, most_cells = 640;
+constexpr std::uint64_t most_cells = 640;
 
 }  // namespace
 
@@ -22,15 +22,6 @@ QueryBox query_box(const Scene& scene) {
     const dvec3 lo(bounds.lo), hi(bounds.hi), size = hi - lo;
     const double margin = 0.1 * std::max({size.x, size.y, size.z});
     return {lo - margin, size + 2 * margin};
-}
-
-std::vector<dvec3> read_points(const std::filesystem::path& file, const dvec3& origin) {
-    std::vector<dvec3> points;
-    read_number_lines(file, "points file", "x,y,z", [&](std::span<const double> xyz, std::size_t) {
-        if (points.size() == most_points) fail("points file '", file.string(), "': it has more than ", most_points);
-        points.push_back(dvec3(xyz[0], xyz[1], xyz[2]) - origin);
-    });
-    return points;
 }
 
 std::vector<dvec3> QueryPointOptions::make(const Scene& scene, std::uint64_t seed) const {

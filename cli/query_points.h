@@ -30,7 +30,4 @@ struct QueryPointOptions {
 // --points, --random, --grid: at most one of them.
 std::vector<Option> query_point_options(QueryPointOptions& options);
 
-// x,y,z a line, under a heading or none; from each `origin` is subtracted.
-std::vector<dvec3> read_points(const std::filesystem::path& file, const dvec3& origin);
-
 }  // namespace twinray::cli

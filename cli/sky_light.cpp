@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command/values.h"
-#include "engine/scene/number_lines.h"
+#include "cli/csv_files.h"
 #include "engine/core/error.h"
 #include "validation/records/progress.h"
 
@@ -15,14 +15,6 @@ namespace twinray::cli {
 namespace {
 
 constexpr uint most_samples = 1u << 20;
-
-std::vector<SunPosition> read_sun(const std::filesystem::path& file) {
-    std::vector<SunPosition> positions;
-    read_number_lines(file, "sun file", "x,y,z,hours", [&](std::span<const double> n, std::size_t) {
-        positions.push_back({.direction = {n[0], n[1], n[2]}, .hours = n[3]});
-    });
-    return positions;
-}
 
 void write(const std::filesystem::path& file, const std::string& what, const SkyLight& light) {
     CsvFile csv(file, "face,free_rays," + what + ",ci_low,ci_high");
