@@ -36,7 +36,12 @@ function(twinray_add_library name)
         VERBATIM
     )
 
-    add_library(twinray_${name} ${library})
+    # Merged, what clang's sanitizers count of each part would be counted several times.
+    if(TWINRAY_FUZZ)
+        add_library(twinray_${name} STATIC ${objects})
+    else()
+        add_library(twinray_${name} ${library})
+    endif()
     add_library(twinray::${name} ALIAS twinray_${name})
     set_target_properties(
         twinray_${name}

@@ -25,3 +25,16 @@ if(TWINRAY_SANITIZE)
     target_compile_options(twinray_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined)
     target_link_options(twinray_options INTERFACE -fsanitize=address,undefined)
 endif()
+# Sanitizers and the counters that a fuzzer and llvm-cov read; tests/fuzz links what starts it.
+if(TWINRAY_FUZZ)
+    if(NOT CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+        message(
+            FATAL_ERROR
+            "twinray: TWINRAY_FUZZ=ON needs clang, not ${CMAKE_CXX_COMPILER_ID}; tools/fuzz.sh configures it"
+        )
+    endif()
+    set(fuzz_options -fsanitize=address,undefined,float-cast-overflow,fuzzer-no-link)
+    list(APPEND fuzz_options -fno-sanitize-recover=all -fprofile-instr-generate -fcoverage-mapping)
+    target_compile_options(twinray_options INTERFACE ${fuzz_options})
+    target_link_options(twinray_options INTERFACE ${fuzz_options})
+endif()

@@ -4,6 +4,7 @@
 #   tools/setup.sh           install all; does nothing if everything is there
 #   tools/setup.sh demo      install what path_tracer needs, and no more
 #   tools/setup.sh python    install what `pip install .` needs, and no more
+#   tools/setup.sh fuzz      install clang too, for tools/fuzz.sh
 #   tools/setup.sh --undo    remove the apt configuration that it wrote
 #   SKIP_APT=1               install nothing, whatever is missing
 # On Debian 12 (bookworm) two things are not in the release itself: a Mesa whose CPU driver traces rays (from
@@ -186,9 +187,10 @@ main() {
         return
         ;;
     demo) packages=("${demo_packages[@]}") ;;
+    fuzz) packages+=(clang-19 libclang-rt-19-dev llvm-19) ;;
     python) packages=("${demo_packages[@]}" libeigen3-dev python3-dev python3-venv) ;;
     '') ;;
-    *) die "unknown option '$1'; usage: tools/setup.sh [demo|python|--undo]" ;;
+    *) die "unknown option '$1'; usage: tools/setup.sh [demo|python|fuzz|--undo]" ;;
     esac
     if [[ ${SKIP_APT-} == 1 ]]; then
         say "SKIP_APT=1, installs nothing"

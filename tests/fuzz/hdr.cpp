@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// Environment maps.
+#include "tests/fuzz/contract.h"
+#include <twinray/scene.h>
+
+namespace twinray::fuzz {
+namespace {
+
+void load(const std::filesystem::path& file) {
+    is_taken([&] {
+        const HdrImage image = load_hdr_image(file);
+        require(image.rgb.size() == std::size_t(image.width) * image.height, "an image has a colour a pixel");
+        for (const vec3& pixel : image.rgb)
+            for (const float value : {pixel.x, pixel.y, pixel.z})
+                require(value >= 0 && value < INFINITY, "a map can be sampled as light");
+    });
+}
+
+}  // namespace
+
+void hdr(Input input) { load(file_of(input, "input.hdr")); }
+void exr(Input input) { load(file_of(input, "input.exr")); }
+
+}  // namespace twinray::fuzz
