@@ -51,6 +51,7 @@ void check_header(const SavedHeader& found, std::size_t file_bytes) {
         {"record", found.record_bytes, own.record_bytes}, {"instance", found.instance_bytes, own.instance_bytes}};
     for (const auto& [name, there, here] : sizes)
         if (there != here) fail("its ", name, " has ", there, " bytes; this library's has ", here);
+    if (found.reserved != 0) fail("its reserved word is ", found.reserved, ", not 0");
     if (found.layout >= all_layouts.size()) fail("unknown layout ", found.layout);
     if (found.file_bytes != file_bytes)
         fail("truncated or joined: it has ", file_bytes, " bytes, and its header says ", found.file_bytes);
@@ -163,6 +164,7 @@ Geometry read_mesh(Reader& reader, const SavedEntry& entry) {
     if (!has_boxes && entry.kind != GEOMETRY_TRIANGLES) fail("unknown kind of geometry ", entry.kind);
     if (has_boxes ? !positions.empty() || !triangles.empty() : !boxes.empty())
         fail(triangles.size(), " triangles of ", positions.size(), " positions and ", boxes.size(), " boxes");
+    if (has_boxes && entry.scale != 1) fail("boxes at scale ", entry.scale, ", not 1");
     if (has_boxes) return Geometry(BoxesView{name, boxes});
     if (int exponent = 0; std::frexp(entry.scale, &exponent) != 0.5f || std::abs(exponent) > 101)
         fail("scale ", entry.scale, " is no power of two between 2^-100 and 2^100");

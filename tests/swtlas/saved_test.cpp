@@ -173,6 +173,7 @@ TEST_P(SavedFile, OtherFormatsAreNamed) {
     expect_contains(edited([](SavedHeader& h) { h.layout = all_layouts.size(); }), "unknown layout 3");
     expect_contains(edited([](SavedHeader& h) { h.entry_bytes = 80; }), "its entry has 80 bytes");
     expect_contains(edited([](SavedHeader& h) { h.record_bytes = 0; }), "its record has 0 bytes");
+    expect_contains(edited([](SavedHeader& h) { h.reserved = 4; }), "its reserved word is 4, not 0");
 }
 
 // Nothing is allocated for them: 2^60 of anything would end the test.
