@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "engine/core/error.h"
-#include "engine/core/nested_json.h"
+#include "engine/core/json_input.h"
 
 namespace twinray::kernels {
 namespace {
@@ -39,9 +39,10 @@ std::string name_of(const KernelRow& row) {
 }
 
 KernelRow row_of(const nlohmann::json& json) {
-    KernelRow row{json.at("device"), json.at("kernel"), json.at("variant"), {}, json.value("subgroup", 0u)};
+    KernelRow row{json.at("device"), json.at("kernel"), json.at("variant"), {}};
+    if (json.contains("subgroup")) row.subgroup_size = unsigned_of<std::uint32_t>(json.at("subgroup"));
     for (const Column& column : columns)
-        if (json.contains(column.key)) row.figures.*column.figure = json.at(column.key).get<std::uint64_t>();
+        if (json.contains(column.key)) row.figures.*column.figure = unsigned_of<std::uint64_t>(json.at(column.key));
     return row;
 }
 

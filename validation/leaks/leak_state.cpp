@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
-#include "engine/core/nested_json.h"
+#include "engine/core/json_input.h"
 
 namespace twinray {
 
@@ -48,9 +48,9 @@ LeakState read_state(const std::filesystem::path& file, const nlohmann::json& id
         if (const nlohmann::json was = state.value(name, nlohmann::json()); was != value)
             fail("'", file.string(), "' is of another run: its ", name, " is ", was.dump(), ", not ", value.dump());
     try {
-        return {{state.at("rays"), state.at("leaks"), state.at("double_hits"), state.at("unspecified")},
-                state.at("seconds")};
-    } catch (const nlohmann::json::exception& error) {
+        const auto count = [&](const char* name) { return unsigned_of<std::uint64_t>(state.at(name)); };
+        return {{count("rays"), count("leaks"), count("double_hits"), count("unspecified")}, state.at("seconds")};
+    } catch (const std::exception& error) {
         fail("'", file.string(), "': ", error.what());
     }
 }

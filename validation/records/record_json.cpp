@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "engine/core/error.h"
-#include "engine/core/nested_json.h"
+#include "engine/core/json_input.h"
 #include "validation/records/record.h"
 
 namespace twinray {
@@ -83,7 +83,7 @@ TimeFigures time_of(const Json& json) {
                      interval_of(json.at("median_95")),
                      number_of(json.at("mad")),
                      number_of(json.at("min")),
-                     json.at("reps").get<std::uint64_t>()};
+                     unsigned_of<std::uint64_t>(json.at("reps"))};
     for (const auto& [name, value] : json.items())
         if (name.ends_with("_ms")) time.phases_ms[name.substr(0, name.size() - 3)] = number_of(value);
     return time;
@@ -112,12 +112,13 @@ Record parsed(const Json& json) {
     record.level = json.at("level");
     record.variant = json.at("variant");
     record.reference = json.at("reference");
-    record.n = json.at("n");
-    record.seed = json.at("seed");
-    record.counts = json.at("counts").get<std::map<std::string, std::uint64_t>>();
+    record.n = unsigned_of<std::uint64_t>(json.at("n"));
+    record.seed = unsigned_of<std::uint64_t>(json.at("seed"));
+    for (const auto& [name, count] : json.at("counts").items())
+        record.counts.emplace(name, unsigned_of<std::uint64_t>(count));
     record.results = values_of(json.at("results"));
     record.error = optional_of<ErrorFigures>(json.at("error"), error_of);
-    record.faults = json.at("faults");
+    record.faults = unsigned_of<std::uint64_t>(json.at("faults"));
     record.bound95 = optional_of<double>(json.at("bound95"), number_of);
     record.time = optional_of<TimeFigures>(json.at("time"), time_of);
     record.pass = optional_of<bool>(json.at("pass"), [](const Json& pass) { return pass.get<bool>(); });

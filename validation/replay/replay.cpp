@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "engine/core/error.h"
-#include "engine/core/nested_json.h"
+#include "engine/core/json_input.h"
 
 namespace twinray::replay {
 namespace {
@@ -51,11 +51,11 @@ Hit answer_of(const json& hit) {
     if (hit.is_null()) return miss();
     return {1,
             float_of(hit.at("t")),
-            hit.at("primitive").get<uint>(),
+            unsigned_of<uint>(hit.at("primitive")),
             0,
             float_of(hit.at("u")),
             float_of(hit.at("v")),
-            hit.at("instance").get<uint>(),
+            unsigned_of<uint>(hit.at("instance")),
             0};
 }
 
@@ -65,8 +65,8 @@ ReferenceHit reference_hit(const json& hit) {
             number(hit.at("t")),
             number(hit.at("u")),
             number(hit.at("v")),
-            hit.at("primitive").get<uint>(),
-            hit.at("instance").get<uint>(),
+            unsigned_of<uint>(hit.at("primitive")),
+            unsigned_of<uint>(hit.at("instance")),
             0};
 }
 

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstring>
 
-#include "engine/core/nested_json.h"
+#include "engine/core/json_input.h"
 
 namespace twinray {
 namespace {

@@ -2,6 +2,8 @@
 // JSON of files that anybody may have written.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -18,6 +20,15 @@ Json parse_json(Source&& source) {
         if (depth > most_json_levels) fail("the JSON is nested deeper than ", most_json_levels, " levels");
         return true;
     });
+}
+
+// Json::get() wraps what is negative and casts fractions, also those beyond the range. Throws Error naming the value.
+template <class T, class Json>
+T unsigned_of(const Json& json) {
+    constexpr T most = std::numeric_limits<T>::max();
+    if (!json.is_number_unsigned() || json.template get<std::uint64_t>() > most)
+        fail(json.dump(), " is not a whole number from 0 to ", most);
+    return json.template get<T>();
 }
 
 }  // namespace twinray
