@@ -102,6 +102,7 @@ bool is_usable(const ModelGeometry& geometry) {
 
 Context& shared_context() {
     static Context context({.name = "twinray fuzz", .use_ray_query = false, .log = [](std::string_view) {}});
+    static const std::unique_ptr<AbstractAccel> keeps_pipelines = make_reference_accel(context);
     return context;
 }
 

@@ -46,9 +46,10 @@ Bytes changed(Bytes bytes, std::mt19937& random) {
             *first = kind < 2 ? static_cast<std::uint8_t>(random()) : kind < 4 ? *first ^ (1u << below(8)) : 0xff;
         else if (kind == 5)
             bytes.erase(first, below(8) == 0 ? bytes.end() : last);
-        else if (kind == 6)
-            bytes.insert(first, Bytes(first, last).begin(), Bytes(first, last).end());
-        else
+        else if (kind == 6) {
+            const Bytes again(first, last);
+            bytes.insert(first, again.begin(), again.end());
+        } else
             std::copy(first, last, bytes.begin() + below(static_cast<std::size_t>(first - bytes.begin())));
     }
     return bytes;
