@@ -56,7 +56,7 @@ TEST(Image, AFalseHugeSizeIsRefused) {
 
 TEST(Image, AHuffmanTableOfMoreCodesThanBytesHaveValuesIsRefused) {
     const auto jpeg = [](char codes_a_length) {
-        return std::string("\xff\xd8\xff\xc4\x10\x03\0", 7) + std::string(16, codes_a_length) + std::string(4096, 'v');
+        return std::string("\xff\xd8\xff\xc4\x10\x03\0", 7) + std::string(16, codes_a_length) + std::string(4096, '\0');
     };
     expect_contains(error_of([&] { decode(jpeg('\xff')); }), "a Huffman table of 4080 codes, more than 256");
     expect_contains(error_of([&] { decode("\xff\xff" + jpeg('\x11').substr(1)); }), "a Huffman table of 272 codes");
