@@ -9,11 +9,13 @@
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "validation/conformance/suite.h"
 #include "validation/report/compare_text.h"
 #include "validation/report/gnuplot.h"
 #include "validation/report/page.h"
 #include "validation/report/summary.h"
 #include "validation/report/verdict.h"
+#include "validation/reproducer/write.h"
 #include "validation/suite/devices.h"
 #include "engine/core/error.h"
 #include "validation/reference/float_probe.h"
@@ -37,7 +39,7 @@ struct ReportOptions {
     AccelOptions trees = {};
 };
 
-constexpr double quick_seconds = 80;  // what follows takes some more
+constexpr double quick_seconds = 70;  // of the suite; what follows takes some more
 
 // With a budget, a full suite begins as a quick one does, and gets as far as the time is enough for.
 suite::Settings settings_of(const ReportOptions& options) {
@@ -52,10 +54,38 @@ suite::Settings settings_of(const ReportOptions& options) {
     return settings;
 }
 
-void check_only(const std::vector<std::string>& patterns, std::span<const suite::SuiteCase> cases) {
-    for (const std::string& pattern : patterns)
-        if (std::none_of(cases.begin(), cases.end(), [&](const auto& row) { return suite::matches(row.id, pattern); }))
+bool is_wanted(const ReportOptions& options, const std::string& id) {
+    return options.only.empty() || std::any_of(options.only.begin(), options.only.end(), [&](const auto& pattern) {
+               return suite::matches(id, pattern);
+           });
+}
+
+// Cases about the driver's own structures, which run by themselves.
+std::vector<suite::SuiteCase> conformance_cases() {
+    std::vector<suite::SuiteCase> cases;
+    for (const conformance::Case& row : conformance::catalogue())
+        cases.push_back({row.id, row.what, row.kind, row.demanded + " (" + std::string(name_of(row.demand)) + ')'});
+    return cases;
+}
+
+// All of them, if one is asked for and the driver takes part.
+void run_conformance(const ReportOptions& options, Context& context, Recorder& recorder) {
+    const bool is_asked = std::any_of(options.accels.begin(), options.accels.end(),
+                                      [](suite::Backend backend) { return !is_ours(backend); });
+    const std::vector<suite::SuiteCase> cases = conformance_cases();
+    if (!(options.accels.empty() || is_asked)) return;
+    if (std::none_of(cases.begin(), cases.end(), [&](const auto& row) { return is_wanted(options, row.id); })) return;
+    conformance::run(context, {.is_full = options.suite == "full" && !options.budget, .seed = options.common.seed},
+                     recorder, options.common.quiet);
+}
+
+void check_only(const std::vector<std::string>& patterns, std::span<const suite::SuiteCase> cases,
+                std::span<const suite::SuiteCase> others) {
+    for (const std::string& pattern : patterns) {
+        const auto fits = [&](const suite::SuiteCase& row) { return suite::matches(row.id, pattern); };
+        if (std::none_of(cases.begin(), cases.end(), fits) && std::none_of(others.begin(), others.end(), fits))
             throw UsageError(text("--only ", pattern, " fits no case; see the catalogue in the report"));
+    }
 }
 
 // What a run must have in common with one that it goes on with.
@@ -96,11 +126,26 @@ std::vector<std::pair<report::Figure, std::string>> drawn_figures(const ReportOp
     return drawn;
 }
 
+// Of the first fault of each class of the driver's; returns the classes.
+std::vector<std::string> write_reproducers(const ReportOptions& options, std::span<const Record> records,
+                                           suite::Devices& devices) {
+    const std::filesystem::path folder = options.folder / "reproducers";
+    std::filesystem::remove_all(folder);  // those of an earlier run
+    std::vector<std::filesystem::path> replays;
+    for (const Record& record : records)
+        if (record.fault_of == "driver" && !record.replay.empty()) replays.push_back(options.folder / record.replay);
+    if (replays.empty() || reproducer::write_reproducers(folder, replays, devices, std::cout) == 0) return {};
+    std::vector<std::string> classes;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) classes.push_back(entry.path().filename());
+    std::sort(classes.begin(), classes.end());
+    return classes;
+}
+
 // Exit status: 1 where there is a fault of ours.
 int run(const ReportOptions& options) {
     std::vector<suite::SuiteCase> cases = suite::catalogue();
     for (suite::SuiteCase& of_scene : suite::scene_cases(options.scenes)) cases.push_back(std::move(of_scene));
-    check_only(options.only, cases);
+    check_only(options.only, cases, conformance_cases());
     for (const std::filesystem::path& scene : options.scenes) load_scene(scene, options.common);
     // Read before anything is written: it may be the report that this one replaces.
     const JsonLines baseline = options.baseline.empty() ? JsonLines() : read_json_lines(options.baseline);
@@ -113,15 +158,18 @@ int run(const ReportOptions& options) {
                       kept_records(options, state));
     std::cout << "report, suite " << options.suite << ", on " << context.properties().name << '\n';
     suite::run(cases, settings_of(options), devices, recorder, state, options.common.quiet);
+    run_conformance(options, context, recorder);
     recorder.rewrite();
+    for (suite::SuiteCase& row : conformance_cases()) cases.push_back(std::move(row));
 
     write_csv(options.folder / "report.csv", recorder.records());
     for (const Record& record : recorder.records())
         append_json(options.common.json, nlohmann::json::parse(to_json(record)));
     const report::Comparison comparison = report::compare(baseline.records, recorder.records());
+    const std::vector<std::string> reproducers = write_reproducers(options, recorder.records(), devices);
     report::write_page(options.folder / "report.html",
                        {options.suite, state.seconds, cases, recorder.records(), options.baseline.string(),
-                        comparison.changes, drawn_figures(options, recorder.records())});
+                        comparison.changes, drawn_figures(options, recorder.records()), reproducers});
     report::print_summary(std::cout, recorder.records());
     if (!options.baseline.empty()) {
         std::cout << "  since " << options.baseline.string() << ":\n";

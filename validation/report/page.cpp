@@ -84,7 +84,11 @@ void write_method(std::ostream& out, const PageInput& input) {
         out << separator << count_text(count) << ' ' << escaped(kind);
         separator = ", ";
     }
-    out << ". Raw data: <a href=\"report.csv\">report.csv</a>, <a href=\"report.jsonl\">report.jsonl</a>.</p>\n"
+    out << '.';
+    for (const std::string& kind : input.reproducers)
+        out << (&kind == &input.reproducers.front() ? " For the driver's tracker: " : ", ") << "<a href=\"reproducers/"
+            << escaped(kind) << "/report.md\">" << escaped(kind) << " in a C program</a>";
+    out << (input.reproducers.empty() ? "" : ".") << " Raw data: <a href=\"report.csv\">report.csv</a>, <a href=\"report.jsonl\">report.jsonl</a>.</p>\n"
         << "</header>\n";
 }
 
@@ -164,8 +168,8 @@ std::string page(const PageInput& input) {
         write_changes(out, input);
         write_figures(out, input);
         out << "<h2 id=\"cases\">All cases</h2>\n<p class=\"soft\">Folded; the browser's search looks inside. Each row "
-               "is "
-               "an accelerator and a level over all settings of the case.</p>\n";
+               "is an accelerator and a level over all settings of the case; the error is the 99th percentile, of t in "
+               "ulp, the time in ns a ray, unless it says otherwise.</p>\n";
         write_case_tables(out, input);
         out << "<h2 id=\"not-run\">Not run</h2>\n";
         write_not_run(out, input);

@@ -20,6 +20,7 @@ struct PageInput {
     std::span<const Change> changes = {};  // since then
     // Drawn, each as an <svg> element; "" where there is no gnuplot.
     std::vector<std::pair<Figure, std::string>> figures = {};
+    std::vector<std::string> reproducers = {};  // classes of faults, each with a folder in reproducers/
 };
 
 // One page of HTML that is XML, too, needs no script, and refers to nothing but the files beside it that it links.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "validation/report/summary.h"
 
-#include <iomanip>
 #include <map>
 
 #include "validation/report/verdict.h"
@@ -9,14 +8,20 @@
 namespace twinray::report {
 
 void print_summary(std::ostream& out, std::span<const Record> records) {
+    const Verdict verdict = verdict_of(records);
+    out << verdict.headline << '\n';
+    for (const Sentence& sentence : verdict.sentences) {
+        const bool is_wrong = sentence.kind == Sentence::Kind::wrong, is_right = sentence.kind == Sentence::Kind::right;
+        out << "  " << (is_wrong ? "wrong" : is_right ? "right" : "     ") << "  " << sentence.about << ": "
+            << sentence.text << '\n';
+    }
     std::map<std::string, std::size_t> sums;
     for (const Record& record : records) {
         ++sums[result_of(record)];
-        if (!record.pass.value_or(true))
-            out << "  " << std::left << std::setw(5) << record.case_id << std::setw(12) << record.backend
-                << std::setw(11) << record.level << result_of(record) << ": " << record.faults << " of " << record.n
-                << (record.reason.empty() ? "" : "; ") << record.reason << (record.example.empty() ? "" : "; ")
-                << record.example << '\n';
+        if (record.fault_of == "twinray")
+            out << "  " << record.case_id << ' ' << record.backend << ' ' << record.level << ' ' << result_of(record)
+                << ": " << record.faults << " of " << record.n << (record.reason.empty() ? "" : "; ") << record.reason
+                << (record.example.empty() ? "" : "; ") << record.example << '\n';
     }
     out << "  ";
     const char* separator = "";

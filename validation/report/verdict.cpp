@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "engine/core/error.h"
 #include "validation/records/bootstrap.h"
@@ -82,6 +83,26 @@ Sentence sentence_of(const Finding& finding, const Finding* ours) {
     if (ours) sentence += "; by SwTlas " + rate_text(ours->faults, ours->n);
     const bool is_right = finding.faults == 0 && (!ours || ours->faults == 0);
     return {is_right ? Sentence::Kind::right : Sentence::Kind::wrong, about, sentence + '.'};
+}
+
+// Cases about the driver's own structures (K), over both ways to trace.
+void add_conformance(Verdict& verdict, std::span<const Record> records) {
+    std::set<std::string> all, musts, shoulds;
+    for (const Record& record : records) {
+        if (!record.was_run || !record.case_id.starts_with('K') || !is_users_kernel(record)) continue;
+        all.insert(record.case_id);
+        if (record.pass.value_or(true)) continue;
+        const auto demand = record.results.find("demand");
+        (demand != record.results.end() && demand->second.text() == "must" ? musts : shoulds).insert(record.case_id);
+    }
+    if (all.empty()) return;
+    const auto listed = [](const std::set<std::string>& ids) {
+        return text(ids.size(), ids.empty() ? "" : " (" + joined({ids.begin(), ids.end()}) + ')');
+    };
+    verdict.sentences.push_back({musts.empty() ? Sentence::Kind::right : Sentence::Kind::wrong, "Own structures",
+                                 text("of ", all.size(), " cases of builds, updates, copies, flags and candidates, ",
+                                      listed(musts), " fail what Vulkan demands, ", listed(shoulds),
+                                      " what it advises.")});
 }
 
 void add_speed(Verdict& verdict, std::span<const Speed> speeds, std::string_view driver) {
@@ -214,6 +235,7 @@ Verdict verdict_of(std::span<const Record> records) {
         else if (ours)
             verdict.sentences.push_back(sentence_of(*ours, nullptr));
     }
+    add_conformance(verdict, records);
     add_speed(verdict, speeds_of(records), driver);
     return verdict;
 }

@@ -157,6 +157,7 @@ std::string_view section_of(std::string_view id) {
         case 'C': return "collisions";
         case 'D': return "distances";
         case 'P': return "pictures";
+        case 'K': return "the driver's own structures";
         default: return "";
     }
 }

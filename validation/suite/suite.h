@@ -74,7 +74,7 @@ std::vector<SuiteCase> picture_cases();    // P: pictures
 std::vector<SuiteCase> catalogue();        // all of them
 // The same as L for scenes of the user's, from L11 on.
 std::vector<SuiteCase> scene_cases(std::span<const std::filesystem::path> files);
-// The section of a case id, by its letter: "edges, vertices, watertightness".
+// The section of a case id, by its letter: "edges, vertices, watertightness". K are those of validation/conformance.
 std::string_view section_of(std::string_view id);
 
 // Whether `text` fits a pattern with * (any characters) and ? (one).

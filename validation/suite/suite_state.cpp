@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
+#include "engine/core/json_input.h"
 
 namespace twinray::suite {
 namespace {
@@ -24,7 +25,7 @@ SuiteState read_state(const std::filesystem::path& file, const std::string& key)
     if (!in) fail("progress '", file.string(), "' cannot be opened: there is no run to go on with");
     SuiteState state{file, key, {}, 0};
     try {
-        const Json json = Json::parse(in);
+        const Json json = parse_json<Json>(in);
         if (json.at("schema") != schema) fail("schema ", json.at("schema").dump(), " is not ", schema);
         if (json.at("key") != key) fail("it was begun as ", json.at("key").dump(), ", and this is \"", key, '"');
         for (const auto& [id, progress] : json.at("cases").items()) state.cases[id] = progress_of(progress);
