@@ -55,9 +55,8 @@ suite::Settings settings_of(const ReportOptions& options) {
 }
 
 bool is_wanted(const ReportOptions& options, const std::string& id) {
-    return options.only.empty() || std::any_of(options.only.begin(), options.only.end(), [&](const auto& pattern) {
-               return suite::matches(id, pattern);
-           });
+    return options.only.empty() || std::any_of(options.only.begin(), options.only.end(),
+                                               [&](const auto& pattern) { return suite::matches(id, pattern); });
 }
 
 // Cases about the driver's own structures, which run by themselves.

@@ -105,7 +105,8 @@ void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vecto
     out << "<details id=\"" << row.id << "\"><summary><span class=\"" << style_of(all.worst()) << "\">" << row.id
         << "</span> " << escaped(row.title) << "</summary>\n<p>Measures " << escaped(row.measures)
         << ". Passes with: " << escaped(row.criterion) << ".</p>\n<div class=\"wide\"><table><tr><th>by</th>"
-        << "<th>settings</th><th>n</th><th>faults</th><th>classes</th><th>error</th><th>time</th><th>result</th></tr>\n";
+        << "<th>settings</th><th>n</th><th>faults</th><th>classes</th><th>error</th><th>time</th><th>result</th></"
+           "tr>\n";
     for (const Key& key : order) write_row(out, key, groups[key]);
     out << "</table></div></details>\n";
 }

@@ -88,7 +88,8 @@ void write_method(std::ostream& out, const PageInput& input) {
     for (const std::string& kind : input.reproducers)
         out << (&kind == &input.reproducers.front() ? " For the driver's tracker: " : ", ") << "<a href=\"reproducers/"
             << escaped(kind) << "/report.md\">" << escaped(kind) << " in a C program</a>";
-    out << (input.reproducers.empty() ? "" : ".") << " Raw data: <a href=\"report.csv\">report.csv</a>, <a href=\"report.jsonl\">report.jsonl</a>.</p>\n"
+    out << (input.reproducers.empty() ? "" : ".")
+        << " Raw data: <a href=\"report.csv\">report.csv</a>, <a href=\"report.jsonl\">report.jsonl</a>.</p>\n"
         << "</header>\n";
 }
 

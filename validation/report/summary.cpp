@@ -12,8 +12,11 @@ void print_summary(std::ostream& out, std::span<const Record> records) {
     out << verdict.headline << '\n';
     for (const Sentence& sentence : verdict.sentences) {
         const bool is_wrong = sentence.kind == Sentence::Kind::wrong, is_right = sentence.kind == Sentence::Kind::right;
-        out << "  " << (is_wrong ? "wrong" : is_right ? "right" : "     ") << "  " << sentence.about << ": "
-            << sentence.text << '\n';
+        out << "  "
+            << (is_wrong   ? "wrong"
+                : is_right ? "right"
+                           : "     ")
+            << "  " << sentence.about << ": " << sentence.text << '\n';
     }
     std::map<std::string, std::size_t> sums;
     for (const Record& record : records) {

@@ -99,10 +99,10 @@ void add_conformance(Verdict& verdict, std::span<const Record> records) {
     const auto listed = [](const std::set<std::string>& ids) {
         return text(ids.size(), ids.empty() ? "" : " (" + joined({ids.begin(), ids.end()}) + ')');
     };
-    verdict.sentences.push_back({musts.empty() ? Sentence::Kind::right : Sentence::Kind::wrong, "Own structures",
-                                 text("of ", all.size(), " cases of builds, updates, copies, flags and candidates, ",
-                                      listed(musts), " fail what Vulkan demands, ", listed(shoulds),
-                                      " what it advises.")});
+    verdict.sentences.push_back(
+        {musts.empty() ? Sentence::Kind::right : Sentence::Kind::wrong, "Own structures",
+         text("of ", all.size(), " cases of builds, updates, copies, flags and candidates, ", listed(musts),
+              " fail what Vulkan demands, ", listed(shoulds), " what it advises.")});
 }
 
 void add_speed(Verdict& verdict, std::span<const Speed> speeds, std::string_view driver) {
