@@ -39,7 +39,7 @@ for command in commands:
         assert re.search(rf"^    {status}$", text, re.M), f"{command}: exit status {status} is not told"
 
 # An option has one meaning, default and set of choices everywhere; these differ, and their helps say how.
-differ = {"--sides", "--grid", "--levels", "--output", "--width", "--random", "--up"}
+differ = {"--sides", "--suite", "--grid", "--levels", "--output", "--width", "--random", "--up"}
 seen = {}
 for command in commands:
     for head, help in re.findall(r"^    ((?:-\w, )?--.*)\n((?:            .*\n)+)", run(command, "--help"), re.M):

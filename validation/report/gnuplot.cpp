@@ -190,7 +190,7 @@ std::string element_of(std::string svg, const std::string& name) {
         if (const std::size_t at = head.find(attribute); at != std::string::npos)
             head.erase(at, head.find('"', at + std::string_view(attribute).size()) + 1 - at);
     svg = head + " role=\"img\" aria-label=\"" + name + '"' + svg.substr(end);
-    for (const std::string written : {"rgb(  1,   2,   3)", "rgb(1, 2, 3)", "#010203"})
+    for (const std::string written : {"rgb(  1,   2,   3)", "rgb(1,2,3)", "#010203"})
         for (std::size_t at; (at = svg.find(written)) != std::string::npos;)
             svg.replace(at, written.size(), "currentColor");
     return svg;

@@ -88,7 +88,8 @@ TEST(Gnuplot, DrawsAnElementOfThePage) {
     if (svg.empty()) GTEST_SKIP() << "gnuplot is not installed";
     EXPECT_TRUE(svg.starts_with("<svg"));
     EXPECT_NE(svg.find("currentColor"), std::string::npos);
-    EXPECT_EQ(svg.find("#010203"), std::string::npos);
+    for (const char* left : {"#010203", "rgb(1,2,3)", "rgb(  1,   2,   3)"})
+        EXPECT_EQ(svg.find(left), std::string::npos) << left;
     EXPECT_NE(svg.find("hits &amp; more"), std::string::npos);
     EXPECT_EQ(svg.find("<script"), std::string::npos);
 }
