@@ -21,6 +21,7 @@ Command help_command(const std::vector<std::string>& names);
 Command illumination_command();
 Command kernels_command();
 Command leaks_command();
+Command qualify_command();
 Command report_command();
 Command trace_command();
 Command verify_command();

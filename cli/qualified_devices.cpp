@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "cli/qualified_devices.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "engine/core/cpu_vectors.h"
+#include "engine/core/error.h"
+#include <twinray/context.h>
+
+namespace twinray::cli {
+namespace {
+
+// As a folder may be called.
+std::string folder_name(const std::string& name) {
+    std::string result;
+    for (const char c : name.substr(0, name.find('(')))
+        if (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.')
+            result += c;
+        else if (!result.empty() && result.back() != '-')
+            result += '-';
+    while (!result.empty() && result.back() == '-') result.pop_back();
+    return result.empty() ? "device" : result;
+}
+
+// Where Debian's and other packages of Chromium put it.
+std::filesystem::path swiftshader_here() {
+    for (const char* folder : {"/usr/lib/chromium", "/usr/lib64/chromium-browser", "/usr/share/vulkan/icd.d"})
+        if (const auto file = std::filesystem::path(folder) / "vk_swiftshader_icd.json"; std::filesystem::exists(file))
+            return file;
+    return {};
+}
+
+}  // namespace
+
+std::vector<QualifiedDevice> devices_to_qualify(std::span<const DeviceProperties> devices, bool has_512_bit_vectors,
+                                                const std::filesystem::path& swiftshader) {
+    std::vector<QualifiedDevice> all;
+    bool has_swiftshader = false;
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        const std::string name = folder_name(devices[i].name);
+        has_swiftshader |= devices[i].name.find("SwiftShader") != std::string::npos;
+        if (!devices[i].name.starts_with("llvmpipe")) {
+            all.push_back({text(i, '-', name), std::to_string(i)});
+            continue;
+        }
+        for (const char* width : {"128", "256", "512"})
+            if (has_512_bit_vectors || std::string_view(width) != "512")
+                all.push_back({text(i, '-', name, '-', width), std::to_string(i), {{"LP_NATIVE_VECTOR_WIDTH", width},
+                                {"MESA_SHADER_CACHE_DISABLE", "true"}}});  // whose keys lack the width
+    }
+    if (!has_swiftshader && !swiftshader.empty())
+        all.push_back({"swiftshader", "0", {{"VK_DRIVER_FILES", swiftshader.string()}}});
+    return all;
+}
+
+std::vector<QualifiedDevice> devices_to_qualify() {
+    return devices_to_qualify(list_devices(), prefers_512_bit_vectors(), swiftshader_here());
+}
+
+int run_twinray(const std::vector<std::string>& arguments, const std::map<std::string, std::string>& environment) {
+    const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+    std::vector<std::string> words = {self};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<std::string> variables;
+    for (char** variable = environ; *variable; ++variable) {
+        const std::string name(*variable, std::string_view(*variable).find('='));
+        if (!environment.contains(name)) variables.emplace_back(*variable);
+    }
+    for (const auto& [name, value] : environment) variables.push_back(name + '=' + value);
+    const auto pointers = [](std::vector<std::string>& strings) {
+        std::vector<char*> result;
+        for (std::string& string : strings) result.push_back(string.data());
+        result.push_back(nullptr);
+        return result;
+    };
+    pid_t child = 0;
+    if (const int error = posix_spawn(&child, self.c_str(), nullptr, nullptr, pointers(words).data(),
+                                      pointers(variables).data()))
+        fail("'", self, "' cannot be started: error ", error);
+    int status = 0;
+    if (waitpid(child, &status, 0) != child) fail("'", self, "' cannot be waited for");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace twinray::cli

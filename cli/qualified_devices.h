@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Which devices `twinray qualify --devices all` checks, and how it starts itself on each.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <twinray/context.h>
+
+namespace twinray::cli {
+
+struct QualifiedDevice {
+    std::string name;     // of its folder: "llvmpipe-256"
+    std::string request;  // --device
+    std::map<std::string, std::string> environment = {};
+};
+
+// A pure function of what the loader has, of whether the CPU has vectors of 512 bits, and of a manifest of SwiftShader
+// ("": none). lavapipe is checked with each width of its vectors.
+std::vector<QualifiedDevice> devices_to_qualify(std::span<const DeviceProperties> devices, bool has_512_bit_vectors,
+                                                const std::filesystem::path& swiftshader);
+std::vector<QualifiedDevice> devices_to_qualify();  // of this machine
+
+// Runs this program with these arguments and changes of its environment. Returns its exit status, 128 and more where a
+// signal ended it.
+int run_twinray(const std::vector<std::string>& arguments, const std::map<std::string, std::string>& environment);
+
+}  // namespace twinray::cli

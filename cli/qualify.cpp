@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// `twinray qualify`: the report's checks alone, for continuous integration.
+#include <fstream>
+#include <iostream>
+
+#include "cli/command/values.h"
+#include "cli/commands.h"
+#include "cli/common.h"
+#include "cli/qualified_devices.h"
+#include "engine/core/error.h"
+#include "twinray_version.h"
+#include "validation/conformance/suite.h"
+#include "validation/records/recorder.h"
+#include "validation/reference/float_probe.h"
+#include "validation/report/ci_formats.h"
+#include "validation/report/summary.h"
+#include "validation/suite/devices.h"
+
+namespace twinray::cli {
+namespace {
+
+struct QualifyOptions {
+    CommonOptions common;
+    std::filesystem::path folder = "twinray_qualify";
+    std::string devices = "one";
+    std::filesystem::path junit, tap, sarif;
+    double budget = 60;
+};
+
+// On the device of this process.
+std::vector<Record> records_here(const QualifyOptions& options) {
+    std::filesystem::create_directories(options.folder);
+    suite::Devices devices(context_desc(options.common));
+    Context& context = devices.context(suite::Backend::software);
+    Recorder recorder({utc_now(), twinray_version, probed_device(context)}, options.folder / "report.jsonl");
+    std::cout << "qualify " << context.properties().name << ", " << context.properties().driver << '\n';
+    suite::SuiteState state;
+    suite::run(suite::catalogue(),
+               {.seed = options.common.seed,
+                .seconds = options.budget,
+                .takes_times = false,
+                .replays_in = options.folder},
+               devices, recorder, state, options.common.quiet);
+    conformance::run(context, {.seed = options.common.seed}, recorder, options.common.quiet);
+    recorder.rewrite();
+    report::print_summary(std::cout, recorder.records());
+    return recorder.records();
+}
+
+// Each in a process of its own, whose driver reads its environment once.
+std::vector<Record> records_of_all(const QualifyOptions& options) {
+    std::vector<Record> records;
+    for (const QualifiedDevice& device : devices_to_qualify()) {
+        const std::filesystem::path folder = options.folder / device.name;
+        std::vector<std::string> arguments = {"qualify", "--device", device.request, "-o", folder.string(),
+                                              "--seed", std::to_string(options.common.seed),
+                                              "--budget", std::to_string(options.budget)};
+        if (options.common.quiet) arguments.push_back("--quiet");
+        if (options.common.validation) arguments.push_back("--validation");
+        const int status = run_twinray(arguments, device.environment);
+        if (status > 1) fail("qualify: device '", device.name, "' ended with status ", status);
+        for (Record& record : read_json_lines(folder / "report.jsonl").records) records.push_back(std::move(record));
+    }
+    return records;
+}
+
+void write(const std::filesystem::path& file, const std::string& text) {
+    if (file.empty()) return;
+    std::ofstream out(file);
+    out << text;
+    if (!out.flush()) fail("'", file.string(), "' cannot be written");
+}
+
+// Exit status: 1 where a check fails.
+int run(const QualifyOptions& options) {
+    for (const std::filesystem::path& file : {options.junit, options.tap, options.sarif}) check_writable(file);
+    const std::vector<Record> records = options.devices == "all" ? records_of_all(options) : records_here(options);
+    const std::vector<report::Check> checks = report::checks_of(records, options.common.strict);
+    write(options.junit, report::junit_xml(checks));
+    write(options.tap, report::tap(checks));
+    write(options.sarif, report::sarif(checks, twinray_version));
+    std::size_t failed = 0, tolerated = 0;
+    for (const report::Check& check : checks) {
+        failed += check.outcome == report::Check::Outcome::failed;
+        tolerated += check.outcome == report::Check::Outcome::tolerated;
+    }
+    std::cout << failed << " of " << checks.size() << " checks failed";
+    if (tolerated) std::cout << "; " << tolerated << " faults of drivers are not counted";
+    std::cout << '\n';
+    return failed ? 1 : 0;
+}
+
+}  // namespace
+
+Command qualify_command() {
+    const auto options = std::make_shared<QualifyOptions>();
+    const Section what = {
+        "Devices",
+        {{.name = "--devices",
+          .value = choice(options->devices, {"one", "all"}),
+          .help = "all: every device of the loader, lavapipe with vectors of 128, 256 and 512 bits, and SwiftShader where "
+                  "a browser brought it; each in a process of its own"},
+         {.name = "--budget",
+          .value = number(options->budget, {.least = 1}),
+          .help = "seconds for each device"}}};
+    const Section output = {
+        "Output",
+        {output_option(folder(options->folder), "folder of report.jsonl and replays; with --devices all one for each"),
+         {.name = "--junit", .value = file(options->junit), .help = "written: JUnit XML"},
+         {.name = "--tap", .value = file(options->tap), .help = "written: Test Anything Protocol 14"},
+         {.name = "--sarif", .value = file(options->sarif), .help = "written: SARIF 2.1.0"}}};
+    return {.name = "qualify",
+            .group = "Checking",
+            .summary = "check drivers for continuous integration",
+            .description = "Runs the checks of the report, and those of the driver's own structures, without timing "
+                           "anything. A fault of the driver is told, and fails with --strict alone; where Vulkan only "
+                           "advises, it never does.",
+            .sections = {what, output, common_options(options->common)},
+            .examples = {{"twinray qualify --devices all --strict --junit qualify.xml", "every driver that is here"}},
+            .fault = "a check failed",
+            .run = [options] { return run(*options); }};
+}
+
+}  // namespace twinray::cli

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// What a report found, as continuous integration reads it: pure functions of records.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "validation/records/record.h"
+
+namespace twinray::report {
+
+// A case on one accelerator, level and variant, over all its settings.
+struct Check {
+    enum class Outcome : std::uint8_t {
+        passed,
+        failed,     // a fault of ours; strictly, of the driver, too
+        tolerated,  // a fault of the driver
+        skipped     // not run, or only measured
+    };
+    std::string device;   // "llvmpipe (LLVM 15.0.6, 256 bits)"
+    std::string case_id;  // "W04"
+    std::string on;       // "hw watertight"
+    std::string demanded;
+    std::string message;  // of the worst setting: what is wrong, with its first ray
+    std::uint64_t n = 0, faults = 0;
+    Outcome outcome = Outcome::passed;
+};
+
+// In the order of the records. Strictly, a fault of the driver fails: of cases K that Vulkan only advises it does not.
+std::vector<Check> checks_of(std::span<const Record> records, bool is_strict);
+
+// JUnit XML, as CI systems take it: a test suite for each device. What is tolerated or skipped is skipped there.
+std::string junit_xml(std::span<const Check> checks);
+// Test Anything Protocol 14. What is tolerated is "not ok ... # TODO".
+std::string tap(std::span<const Check> checks);
+// SARIF 2.1.0: a result for each fault, an error where it fails, else a warning.
+std::string sarif(std::span<const Check> checks, const std::string& version);
+
+}  // namespace twinray::report
