@@ -69,9 +69,8 @@ int run(const std::vector<std::string>& words) {
 }  // namespace
 
 std::vector<Command> all_commands() {
-    std::vector<Command> commands = {view_command(),   trace_command(), devices_command(),
-                                     verify_command(), leaks_command(), report_command(),
-                                     qualify_command()};
+    std::vector<Command> commands = {view_command(),  trace_command(),  devices_command(), verify_command(),
+                                     leaks_command(), report_command(), qualify_command()};
 #ifdef TWINRAY_HAS_BENCH
     commands.push_back(bench_command());
 #endif

@@ -49,7 +49,9 @@ std::vector<QualifiedDevice> devices_to_qualify(std::span<const DeviceProperties
         }
         for (const char* width : {"128", "256", "512"})
             if (has_512_bit_vectors || std::string_view(width) != "512")
-                all.push_back({text(i, '-', name, '-', width), std::to_string(i), {{"LP_NATIVE_VECTOR_WIDTH", width},
+                all.push_back({text(i, '-', name, '-', width),
+                               std::to_string(i),
+                               {{"LP_NATIVE_VECTOR_WIDTH", width},
                                 {"MESA_SHADER_CACHE_DISABLE", "true"}}});  // whose keys lack the width
     }
     if (!has_swiftshader && !swiftshader.empty())
@@ -78,8 +80,8 @@ int run_twinray(const std::vector<std::string>& arguments, const std::map<std::s
         return result;
     };
     pid_t child = 0;
-    if (const int error = posix_spawn(&child, self.c_str(), nullptr, nullptr, pointers(words).data(),
-                                      pointers(variables).data()))
+    if (const int error =
+            posix_spawn(&child, self.c_str(), nullptr, nullptr, pointers(words).data(), pointers(variables).data()))
         fail("'", self, "' cannot be started: error ", error);
     int status = 0;
     if (waitpid(child, &status, 0) != child) fail("'", self, "' cannot be waited for");

@@ -2,6 +2,7 @@
 // `twinray qualify`: the report's checks alone, for continuous integration.
 #include <fstream>
 #include <iostream>
+#include <optional>
 
 #include "cli/command/values.h"
 #include "cli/commands.h"
@@ -19,12 +20,14 @@
 namespace twinray::cli {
 namespace {
 
+constexpr double default_seconds = 60;
+
 struct QualifyOptions {
     CommonOptions common;
     std::filesystem::path folder = "twinray_qualify";
     std::string devices = "one";
     std::filesystem::path junit, tap, sarif;
-    double budget = 60;
+    std::optional<double> budget;  // seconds for each device
 };
 
 // On the device of this process.
@@ -37,7 +40,7 @@ std::vector<Record> records_here(const QualifyOptions& options) {
     suite::SuiteState state;
     suite::run(suite::catalogue(),
                {.seed = options.common.seed,
-                .seconds = options.budget,
+                .seconds = options.budget.value_or(default_seconds),
                 .takes_times = false,
                 .replays_in = options.folder},
                devices, recorder, state, options.common.quiet);
@@ -52,9 +55,15 @@ std::vector<Record> records_of_all(const QualifyOptions& options) {
     std::vector<Record> records;
     for (const QualifiedDevice& device : devices_to_qualify()) {
         const std::filesystem::path folder = options.folder / device.name;
-        std::vector<std::string> arguments = {"qualify", "--device", device.request, "-o", folder.string(),
-                                              "--seed", std::to_string(options.common.seed),
-                                              "--budget", std::to_string(options.budget)};
+        std::vector<std::string> arguments = {"qualify",
+                                              "--device",
+                                              device.request,
+                                              "-o",
+                                              folder.string(),
+                                              "--seed",
+                                              std::to_string(options.common.seed),
+                                              "--budget",
+                                              std::to_string(options.budget.value_or(default_seconds))};
         if (options.common.quiet) arguments.push_back("--quiet");
         if (options.common.validation) arguments.push_back("--validation");
         const int status = run_twinray(arguments, device.environment);
@@ -98,11 +107,12 @@ Command qualify_command() {
         "Devices",
         {{.name = "--devices",
           .value = choice(options->devices, {"one", "all"}),
-          .help = "all: every device of the loader, lavapipe with vectors of 128, 256 and 512 bits, and SwiftShader where "
-                  "a browser brought it; each in a process of its own"},
+          .help =
+              "all: every device of the loader, lavapipe with vectors of 128, 256 and 512 bits, and SwiftShader where "
+              "a browser brought it; each in a process of its own"},
          {.name = "--budget",
           .value = number(options->budget, {.least = 1}),
-          .help = "seconds for each device"}}};
+          .help = "seconds for each device; 60 if not given"}}};
     const Section output = {
         "Output",
         {output_option(folder(options->folder), "folder of report.jsonl and replays; with --devices all one for each"),
@@ -112,9 +122,10 @@ Command qualify_command() {
     return {.name = "qualify",
             .group = "Checking",
             .summary = "check drivers for continuous integration",
-            .description = "Runs the checks of the report, and those of the driver's own structures, without timing "
-                           "anything. A fault of the driver is told, and fails with --strict alone; where Vulkan only "
-                           "advises, it never does.",
+            .description =
+                "Runs the checks of the report, and those of the driver's own structures, without timing "
+                "anything. A fault of the driver is told, and fails with --strict alone; where Vulkan only "
+                "advises, it never does.",
             .sections = {what, output, common_options(options->common)},
             .examples = {{"twinray qualify --devices all --strict --junit qualify.xml", "every driver that is here"}},
             .fault = "a check failed",

@@ -19,7 +19,8 @@ std::vector<std::string> names_of(const std::vector<QualifiedDevice>& devices) {
 }
 
 TEST(QualifiedDevices, LavapipeHasEachWidthThatTheCpuHas) {
-    const std::vector<DeviceProperties> devices = {named("NVIDIA H100 (SXM)"), named("llvmpipe (LLVM 15.0.6, 256 bits)")};
+    const std::vector<DeviceProperties> devices = {named("NVIDIA H100 (SXM)"),
+                                                   named("llvmpipe (LLVM 15.0.6, 256 bits)")};
     const std::vector<std::string> narrow = {"0-NVIDIA-H100", "1-llvmpipe-128", "1-llvmpipe-256"};
     std::vector<std::string> wide = narrow;
     wide.push_back("1-llvmpipe-512");

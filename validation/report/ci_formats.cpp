@@ -51,9 +51,7 @@ std::string message_of(const Record& record) {
 
 std::string name_of(const Check& check) { return check.case_id + (check.on.empty() ? "" : ' ' + check.on); }
 
-bool is_skipped(const Check& check) {
-    return check.outcome == Outcome::tolerated || check.outcome == Outcome::skipped;
-}
+bool is_skipped(const Check& check) { return check.outcome == Outcome::tolerated || check.outcome == Outcome::skipped; }
 
 // Control characters, which XML 1.0 does not have, are left out.
 std::string xml(std::string text) {
@@ -80,7 +78,8 @@ std::vector<Check> checks_of(std::span<const Record> records, bool is_strict) {
         const auto [place, is_new] = places.try_emplace({record.device.name, record.case_id, on}, checks.size());
         const Outcome outcome = outcome_of(record, is_strict);
         if (is_new)
-            checks.push_back({record.device.name, record.case_id, on, record.criterion, message_of(record), 0, 0, outcome});
+            checks.push_back(
+                {record.device.name, record.case_id, on, record.criterion, message_of(record), 0, 0, outcome});
         Check& check = checks[place->second];
         check.n += record.n;
         check.faults += record.faults;
@@ -127,8 +126,8 @@ std::string tap(std::span<const Check> checks) {
         std::replace(line.begin(), line.end(), '\n', ' ');
         out += line + '\n';
         if (check.outcome == Outcome::failed)
-            out += "  ---\n  message: " + nlohmann::json(check.message).dump(-1, ' ', false,
-                                                                            nlohmann::json::error_handler_t::replace) +
+            out += "  ---\n  message: " +
+                   nlohmann::json(check.message).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
                    "\n  ...\n";
     }
     return out;
@@ -147,12 +146,11 @@ std::string sarif(std::span<const Check> checks, const std::string& version) {
                            {"message", {{"text", name_of(check) + " on " + check.device + ": " + check.message}}},
                            {"locations", {{{"logicalLocations", {{{"name", check.device}, {"kind", "module"}}}}}}}});
     }
-    const Json log = {
-        {"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
-        {"version", "2.1.0"},
-        {"runs",
-         {{{"tool", {{"driver", {{"name", "twinray qualify"}, {"version", version}, {"rules", rules}}}}},
-           {"results", results}}}}};
+    const Json log = {{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
+                      {"version", "2.1.0"},
+                      {"runs",
+                       {{{"tool", {{"driver", {{"name", "twinray qualify"}, {"version", version}, {"rules", rules}}}}},
+                         {"results", results}}}}};
     return log.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

@@ -28,7 +28,8 @@ std::vector<Record> some() {
     advised.results = {{"demand", "should"}};
     Record absent = record("N11", "", {});
     absent.was_run = false, absent.reason = "needs 4 GiB";
-    return {record("W04", "sw", true), record("W04", "hw", true), record("W04", "hw", false, "driver"), advised, absent};
+    return {record("W04", "sw", true), record("W04", "hw", true), record("W04", "hw", false, "driver"), advised,
+            absent};
 }
 
 using Outcome = Check::Outcome;
