@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/fuzz/accel_arguments.h"
 #include "tests/fuzz/accel_model.h"
 #include "tests/fuzz/contract.h"
 #include <twinray/context.h>
@@ -10,84 +11,6 @@
 
 namespace twinray::fuzz {
 namespace {
-
-// What a call gets, made of the bytes that are left; 0 where none is.
-class Source {
-  public:
-    explicit Source(Input bytes) : bytes_(bytes) {}
-    bool is_empty() const { return bytes_.empty(); }
-    std::uint8_t byte() {
-        if (bytes_.empty()) return 0;
-        const std::uint8_t first = bytes_.front();
-        bytes_ = bytes_.subspan(1);
-        return first;
-    }
-    std::size_t below(std::size_t n) { return byte() % n; }
-    // Most often a multiple of 1/16 between -8 and 8; now and then a number that is none, or whose square is not.
-    float number() {
-        constexpr float odd[] = {NAN, INFINITY, -INFINITY, 1e30f, 1e-30f, 1e-42f, -0.0f, 3.4e38f};
-        const std::uint8_t first = byte();
-        return first < std::size(odd) ? odd[first] : (float(first) - 128) / 16;
-    }
-    vec3 point() {
-        const float x = number(), y = number();
-        return {x, y, number()};
-    }
-    Transform transform() {
-        const auto kind = below(8);
-        if (kind == 0) return {};
-        if (kind < 4) return Transform::translation(point());
-        if (kind < 6) return Transform::scaling(point());
-        Transform any;
-        for (vec4& row : any.rows) row = vec4(point(), number());
-        return any;
-    }
-    std::vector<Transform> transforms(std::size_t count) {
-        std::vector<Transform> all(count);
-        for (Transform& each : all) each = transform();
-        return all;
-    }
-    InstanceOptions options() {
-        const std::uint8_t bits = byte();
-        return {.custom_index = bits == 255 ? 1u << 24 : bits,
-                .mask = bits % 4 ? std::uint8_t(0xff) : byte(),
-                .disable_culling = bits % 8 == 1,
-                .flip_facing = bits % 8 == 3,
-                .non_opaque = bits % 32 == 7};
-    }
-    std::vector<InstanceOptions> options(std::size_t count) {
-        std::vector<InstanceOptions> all(below(8) == 0 ? below(4) : below(2) * count);
-        for (InstanceOptions& each : all) each = options();
-        return all;
-    }
-    std::vector<vec3> points(std::size_t count) {
-        std::vector<vec3> all(count);
-        for (vec3& each : all) each = point();
-        return all;
-    }
-    ModelGeometry geometry() {
-        const auto kind = below(8);
-        if (kind == 0) return {};
-        if (kind == 1) return {{}, {{point(), point()}}, true};
-        if (kind < 4) return {make_quad(point(), vec3(2, 0, 0), vec3(0, 2, 0)), {}, false};
-        Mesh mesh;
-        mesh.positions = points(1 + below(6));
-        for (std::size_t left = 1 + below(4); left > 0; --left) {
-            const auto corner = [&] { return uint(below(mesh.positions.size() + (kind == 7))); };
-            const uint x = corner(), y = corner();
-            mesh.triangles.emplace_back(x, y, corner());
-        }
-        return {std::move(mesh), {}, false};
-    }
-    Ray ray() {
-        const vec3 origin = point(), direction = point();
-        const auto ends = below(4);
-        return {origin, ends == 1 ? number() : 0, direction, ends >= 2 ? INFINITY : 4.0f};
-    }
-
-  private:
-    Input bytes_;
-};
 
 bool is_usable(const ModelGeometry& geometry) {
     return std::ranges::all_of(geometry.boxes,
@@ -109,7 +32,7 @@ Context& shared_context() {
 // The accelerator and its model, which each call changes alike.
 class History {
   public:
-    explicit History(Source source) : source_(source) { begin(); }
+    explicit History(Arguments source) : source_(source) { begin(); }
 
     void run() {
         constexpr int most_calls = 64;
@@ -399,7 +322,7 @@ class History {
                 "a hit is the closest, with the lowest ids");
     }
 
-    Source source_;
+    Arguments source_;
     std::unique_ptr<AbstractAccel> accel_;
     AccelModel model_;
     int accel_count_ = 0;  // and those before
@@ -412,6 +335,6 @@ class History {
 
 }  // namespace
 
-void accel(Input input) { History(Source(input)).run(); }
+void accel(Input input) { History(Arguments(input)).run(); }
 
 }  // namespace twinray::fuzz

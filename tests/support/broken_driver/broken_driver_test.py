@@ -28,7 +28,8 @@ def counts(fault):
     if fault:
         environment.update(VK_ADD_LAYER_PATH=layer, VK_INSTANCE_LAYERS="VK_LAYER_TWINRAY_broken_driver")
     records = here / f"{fault}.jsonl"
-    command = [twinray, "verify", here / "soup.obj", "--random", str(RAYS), "--aimed", "0", "--json", records, "--quiet"]
+    command = [twinray, "verify", here / "soup.obj", "--random", str(RAYS), "--aimed", "0", "--json", records,
+               "--quiet"]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, cwd=here)
     assert done.returncode == 0, f"{fault}: status {done.returncode}\n{done.stdout}{done.stderr}"
     return {

@@ -5,6 +5,7 @@
 
 #include "engine/core/error.h"
 #include "tests/scene/temp_dir.h"
+#include "tests/support/device.h"
 #include "validation/report/gnuplot.h"
 
 namespace twinray::report {
@@ -85,7 +86,7 @@ TEST(Gnuplot, DrawsAnElementOfThePage) {
         factors_figure(std::vector{estimate("hits & more", 1024, 0.04), estimate("hits & more", 4096, 0.02)});
     const std::string svg = draw(figure, folder / "plots");
     EXPECT_TRUE(std::filesystem::exists(folder / "plots/factors.gp"));
-    if (svg.empty()) GTEST_SKIP() << "gnuplot is not installed";
+    if (svg.empty()) TWINRAY_LACKS("gnuplot", "gnuplot is not installed");
     EXPECT_TRUE(svg.starts_with("<svg"));
     EXPECT_NE(svg.find("currentColor"), std::string::npos);
     for (const char* left : {"#010203", "rgb(1,2,3)", "rgb(  1,   2,   3)"})

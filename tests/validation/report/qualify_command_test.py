@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs `twinray qualify` as continuous integration does. Usage: qualify_command_test.py TWINRAY [FOLDER_OF_THE_BROKEN_DRIVER]"""
+"""Runs `twinray qualify` as continuous integration does.
+Usage: qualify_command_test.py TWINRAY [FOLDER_OF_THE_BROKEN_DRIVER]"""
 import json
 import os
 import pathlib
@@ -23,9 +24,9 @@ def qualify(name, *arguments, status=0, **environment):
     log = json.loads(pathlib.Path(f"{out}.sarif").read_text())
     cases = [case for suite in suites for case in suite]
     assert lines[0] == "TAP version 14" and lines[1] == f"1..{len(cases)}"
-    assert sum(int(suite.get("failures")) for suite in suites) == sum(case.find("failure") is not None for case in cases)
-    assert sum(result["level"] == "error" for result in log["runs"][0]["results"]) == \
-        sum(case.find("failure") is not None for case in cases)
+    failures = sum(case.find("failure") is not None for case in cases)
+    assert sum(int(suite.get("failures")) for suite in suites) == failures
+    assert sum(result["level"] == "error" for result in log["runs"][0]["results"]) == failures
     assert f"of {len(cases)} checks failed" in run.stdout, run.stdout
     return suites, cases
 
