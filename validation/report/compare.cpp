@@ -9,6 +9,7 @@
 #include <set>
 
 #include "engine/core/error.h"
+#include "validation/report/significance.h"
 #include "validation/report/wording.h"
 
 namespace twinray::report {
@@ -39,6 +40,14 @@ struct Suspicion {
 // So many of n, before and now.
 struct Counted {
     std::uint64_t before = 0, n_before = 0, now = 0, n_now = 0;
+    // Of the rate: above 0 where it rose.
+    double rise() const {
+        return static_cast<double>(now) * static_cast<double>(n_before) -
+               static_cast<double>(before) * static_cast<double>(n_now);
+    }
+    std::string text_of(const std::string& kind) const {
+        return kind + ' ' + rate_text(before, n_before) + " -> " + rate_text(now, n_now);
+    }
     Counted& operator+=(const Counted& other) {
         before += other.before, n_before += other.n_before;
         now += other.now, n_now += other.n_now;
@@ -47,11 +56,25 @@ struct Counted {
 };
 
 Suspicion suspicion_of(const std::string& what, const std::string& kind, const Counted& counted) {
-    const bool is_more = static_cast<double>(counted.now) * static_cast<double>(counted.n_before) >
-                         static_cast<double>(counted.before) * static_cast<double>(counted.n_now);
-    return {{is_more ? Change::Kind::worse : Change::Kind::better, what,
-             kind + ' ' + rate_text(counted.before, counted.n_before) + " -> " + rate_text(counted.now, counted.n_now)},
+    return {{counted.rise() > 0 ? Change::Kind::worse : Change::Kind::better, what, counted.text_of(kind)},
             fisher_exact(counted.before, counted.n_before, counted.now, counted.n_now)};
+}
+
+// Of whole cases, each of which counts as one: its rays share a scene that is random, too.
+Suspicion suspicion_of_cases(const std::string& what, const std::string& kind,
+                             const std::map<std::string, Counted>& cases) {
+    Counted sum;
+    std::size_t rose = 0, fell = 0;
+    for (const auto& [id, counted] : cases) {
+        sum += counted;
+        rose += counted.rise() > 0;
+        fell += counted.rise() < 0;
+    }
+    const bool is_worse = rose > fell;
+    return {{is_worse ? Change::Kind::worse : Change::Kind::better, what,
+             sum.text_of(kind) +
+                 text(is_worse ? ", more in " : ", less in ", std::max(rose, fell), " cases of ", cases.size())},
+            sign_test(rose, fell)};
 }
 
 // Any answer that Vulkan and rounding allow.
@@ -94,6 +117,7 @@ class Comparing {
                 continue;
             }
             pairs_.emplace_back(found->second, &record);
+            result_.has_one_seed &= found->second->seed == record.seed;
             --result_.only_before;
         }
         result_.compared = pairs_.size();
@@ -101,8 +125,8 @@ class Comparing {
 
     Comparison result() {
         for (const Pair& pair : pairs_) look_at(pair);
-        for (const auto& [what, kinds] : sums_)
-            for (const auto& [kind, counted] : kinds) suspicions_.push_back(suspicion_of(what, kind, counted));
+        for (const auto& [what, kinds] : by_case_)
+            for (const auto& [kind, cases] : kinds) suspicions_.push_back(suspicion_over(what, kind, cases));
         compare_times();
         std::vector<double> p;
         for (const Suspicion& suspicion : suspicions_) p.push_back(suspicion.p);
@@ -114,6 +138,14 @@ class Comparing {
     }
 
   private:
+    Suspicion suspicion_over(const std::string& what, const std::string& kind,
+                             const std::map<std::string, Counted>& cases) const {
+        if (!result_.has_one_seed) return suspicion_of_cases(what, kind, cases);
+        Counted sum;
+        for (const auto& [id, counted] : cases) sum += counted;
+        return suspicion_of(what, kind, sum);
+    }
+
     void add(Change::Kind kind, const Record& record, const std::string& how) {
         result_.changes.push_back({kind, name_of(record), how});
     }
@@ -136,8 +168,8 @@ class Comparing {
         } else if (is_users_kernel(*now)) {
             for (const auto& [kind, counted] : counts_of(*before, *now)) {
                 if (counted.before + counted.now == 0) continue;
-                suspicions_.push_back(suspicion_of(name_of(*now), kind, counted));
-                if (now->level != "fast") sums_[group_of(*now) + " over all cases"][kind] += counted;
+                if (result_.has_one_seed) suspicions_.push_back(suspicion_of(name_of(*now), kind, counted));
+                if (now->level != "fast") by_case_[group_of(*now) + " over all cases"][kind][now->case_id] += counted;
             }
         }
     }
@@ -198,7 +230,8 @@ class Comparing {
     }
 
     std::vector<Pair> pairs_;
-    std::map<std::string, std::map<std::string, Counted>> sums_;
+    // What: the kinds, each by case.
+    std::map<std::string, std::map<std::string, std::map<std::string, Counted>>> by_case_;
     std::vector<Suspicion> suspicions_;
     Comparison result_ = {};
 };
@@ -213,35 +246,6 @@ bool Comparison::is_worse() const {
 
 Comparison compare(std::span<const Record> before, std::span<const Record> now) {
     return Comparing(before, now).result();
-}
-
-double fisher_exact(std::uint64_t count_a, std::uint64_t n_a, std::uint64_t count_b, std::uint64_t n_b) {
-    const auto log_choose = [](double n, double k) {
-        return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1);
-    };
-    const auto a = static_cast<double>(n_a), b = static_cast<double>(n_b);
-    const std::uint64_t count = count_a + count_b;
-    const double all = log_choose(a + b, static_cast<double>(count));
-    const auto log_p = [&](std::uint64_t k) {
-        return log_choose(a, static_cast<double>(k)) + log_choose(b, static_cast<double>(count - k)) - all;
-    };
-    const double seen = log_p(count_a), slack = 1e-7;  // of rounding
-    double p = 0;
-    for (std::uint64_t k = count > n_b ? count - n_b : 0; k <= std::min(count, n_a); ++k)
-        if (const double here = log_p(k); here <= seen + slack) p += std::exp(here);
-    return std::min(p, 1.0);
-}
-
-std::vector<bool> holm(std::span<const double> p, double level) {
-    std::vector<std::size_t> order(p.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
-    std::vector<bool> is_refuted(p.size(), false);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        if (p[order[i]] > level / static_cast<double>(p.size() - i)) break;
-        is_refuted[order[i]] = true;
-    }
-    return is_refuted;
 }
 
 }  // namespace twinray::report

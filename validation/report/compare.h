@@ -39,21 +39,17 @@ struct Comparison {
     std::size_t compared = 0;                   // records with a counterpart
     std::size_t tests = 0;                      // of the hypothesis that nothing changed
     std::size_t only_before = 0, only_now = 0;  // without one
+    bool has_one_seed = true;                   // both asked the same rays, where they asked as many
 
     bool is_worse() const;
 };
 
 // Records correspond where case, settings, accelerator, level and variant are the same. Counts of classes and of faults
-// are compared by Fisher's exact test, for each record and for each accelerator and level over all cases; times, of as
-// many rays, by the bootstrap. What is left of the tests by Holm's procedure (1979) at false_alarms is a change.
-// Certain, without a test: a fault of ours where there was none; a record of under 100 items that asked the same (seed
-// and n) and passes no more, or again; a record that ran and does not.
+// are compared by Fisher's exact test, for each record and for each accelerator and level over all cases. Where seeds
+// differ, so do the scenes, in which the rays of a case are no independent trials: then only over all cases, by the
+// sign test of whole cases. Times, of as many rays, are compared by the bootstrap. What is left of the tests by Holm's
+// procedure (1979) at false_alarms is a change. Certain, without a test: a fault of ours where there was none; a record
+// of under 100 items that asked the same (seed and n) and passes no more, or again; a record that ran and does not.
 Comparison compare(std::span<const Record> before, std::span<const Record> now);
-
-// P of a table at least as unlikely as this one, where both rates are the same: Fisher's exact test (1922), two-sided.
-double fisher_exact(std::uint64_t count_a, std::uint64_t n_a, std::uint64_t count_b, std::uint64_t n_b);
-
-// Which of the hypotheses with these p are refuted so that the chance to refute a true one is at most `level`.
-std::vector<bool> holm(std::span<const double> p, double level);
 
 }  // namespace twinray::report

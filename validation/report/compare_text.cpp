@@ -54,6 +54,9 @@ void print_comparison(std::ostream& out, const Comparison& comparison) {
         << comparison.only_before << " only before, " << comparison.only_now << " only now; " << comparison.tests
         << " tests, which report a change where there is none in " << number(100 * false_alarms)
         << " % of comparisons at most\n  "
+        << (comparison.has_one_seed
+                ? ""
+                : "their seeds differ, and so do their scenes: rates are compared over all cases together\n  ")
         << (comparison.is_worse()        ? "verdict: worse"
             : comparison.changes.empty() ? "verdict: no change beyond noise"
                                          : "verdict: changed, and nothing is worse")

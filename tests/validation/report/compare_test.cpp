@@ -6,6 +6,7 @@
 #include <random>
 
 #include "engine/core/error.h"
+#include "validation/report/significance.h"
 
 namespace twinray::report {
 namespace {
@@ -48,6 +49,13 @@ TEST(Holm, IsStepwise) {
     EXPECT_TRUE(holm({}, 0.05).empty());
 }
 
+TEST(SignTest, IsTheBinomial) {
+    EXPECT_NEAR(sign_test(10, 0), 2.0 / 1024, 1e-12);
+    EXPECT_NEAR(sign_test(1, 9), 2 * 11.0 / 1024, 1e-12);
+    EXPECT_EQ(sign_test(5, 5), 1);
+    EXPECT_EQ(sign_test(0, 0), 1);
+}
+
 TEST(Compare, NothingChangedIsNoChange) {
     const std::vector<Record> records = twenty([](int i) { return measured(id(i), 100, 3); });
     const Comparison comparison = compare(records, records);
@@ -80,6 +88,37 @@ TEST(Compare, ChanceIsNoChange) {
         alarms += !compare(twenty(make), twenty(make)).changes.empty();
     }
     EXPECT_LE(alarms, 17) << "of 200, at a stated rate of 5 %";
+}
+
+// The rays of a case share its scene: another seed is another rate.
+TEST(Compare, ScenesOfOtherSeedsAreNoChange) {
+    std::mt19937 random(5);
+    std::uniform_int_distribution<std::uint64_t> leaks(0, 2000);
+    int alarms = 0, of_one_seed = 0;
+    for (int trial = 0; trial < 200; ++trial) {
+        const auto make = [&](int i) { return measured(id(i), 100, leaks(random)); };
+        const std::vector<Record> before = twenty(make);
+        std::vector<Record> now = twenty(make);
+        of_one_seed += !compare(before, now).changes.empty();
+        for (Record& record : now) record.seed = 2;
+        alarms += !compare(before, now).changes.empty();
+    }
+    EXPECT_LE(alarms, 17) << "of 200, at a stated rate of 5 %";
+    EXPECT_GT(of_one_seed, 100) << "where the rays are the same, such a difference is one";
+}
+
+TEST(Compare, ADriverThatLosesRaysInAllCasesIsFoundByAnotherSeed) {
+    std::mt19937 random(5);
+    std::uniform_int_distribution<std::uint64_t> leaks(0, 100);
+    const std::vector<Record> before = twenty([&](int i) { return measured(id(i), 100, leaks(random)); });
+    std::vector<Record> now = twenty([&](int i) { return measured(id(i), 100, 200 + leaks(random)); });
+    for (Record& record : now) record.seed = 2;
+    const Comparison comparison = compare(before, now);
+    EXPECT_FALSE(comparison.has_one_seed);
+    ASSERT_EQ(comparison.changes.size(), 1u);
+    EXPECT_EQ(comparison.changes[0].what, "hw watertight over all cases");
+    EXPECT_TRUE(comparison.changes[0].how.ends_with(", more in 20 cases of 20")) << comparison.changes[0].how;
+    EXPECT_TRUE(comparison.is_worse());
 }
 
 TEST(Compare, SlowerIsFoundBesideABusyMachine) {
