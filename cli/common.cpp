@@ -91,6 +91,12 @@ ContextDesc context_desc(const CommonOptions& options) {
     return desc;
 }
 
+ContextDesc watched_context_desc(const CommonOptions& options, double most_wait_seconds) {
+    ContextDesc desc = context_desc(options);
+    desc.most_wait_seconds = most_wait_seconds;
+    return desc;
+}
+
 std::unique_ptr<Context> make_context(const CommonOptions& options) {
     return std::make_unique<Context>(context_desc(options));
 }

@@ -53,6 +53,9 @@ std::vector<Option> tree_options(AccelOptions& options);
 // features of the device unused.
 ContextDesc context_desc(const CommonOptions& options);
 std::unique_ptr<Context> make_context(const CommonOptions& options);
+// The same for commands that check drivers, which may hang: nothing that they submit takes so many seconds.
+inline constexpr double most_suite_seconds = 300, most_conformance_seconds = 60;
+ContextDesc watched_context_desc(const CommonOptions& options, double most_wait_seconds);
 
 std::unique_ptr<AbstractAccel> make_accel(Context& context, const AccelChoice& choice, Level level = Level::watertight);
 // Holds the scene, built.

@@ -33,7 +33,7 @@ struct QualifyOptions {
 // On the device of this process.
 std::vector<Record> records_here(const QualifyOptions& options) {
     std::filesystem::create_directories(options.folder);
-    suite::Devices devices(context_desc(options.common));
+    suite::Devices devices(watched_context_desc(options.common, most_suite_seconds));
     Context& context = devices.context(suite::Backend::software);
     Recorder recorder({utc_now(), twinray_version, probed_device(context)}, options.folder / "report.jsonl");
     std::cout << "qualify " << context.properties().name << ", " << context.properties().driver << '\n';
@@ -44,7 +44,8 @@ std::vector<Record> records_here(const QualifyOptions& options) {
                 .takes_times = false,
                 .replays_in = options.folder},
                devices, recorder, state, options.common.quiet);
-    conformance::run(context, {.seed = options.common.seed}, recorder, options.common.quiet);
+    Context of_its_own(watched_context_desc(options.common, most_conformance_seconds));
+    conformance::run(of_its_own, {.seed = options.common.seed}, recorder, options.common.quiet);
     recorder.rewrite();
     report::print_summary(std::cout, recorder.records());
     return recorder.records();

@@ -11,11 +11,11 @@
 namespace twinray::cli {
 
 int verify_conformance(const CommonOptions& options, bool is_full) {
-    const std::unique_ptr<Context> context = make_context(options);
-    Recorder recorder({utc_now(), twinray_version, probed_device(*context)});
-    std::cout << "conformance, " << (is_full ? "full" : "quick") << ", on " << context->properties().name << ", "
-              << context->properties().driver << '\n';
-    conformance::run(*context, {.is_full = is_full, .seed = options.seed}, recorder, options.quiet,
+    Context context(watched_context_desc(options, most_conformance_seconds));
+    Recorder recorder({utc_now(), twinray_version, probed_device(context)});
+    std::cout << "conformance, " << (is_full ? "full" : "quick") << ", on " << context.properties().name << ", "
+              << context.properties().driver << '\n';
+    conformance::run(context, {.is_full = is_full, .seed = options.seed}, recorder, options.quiet,
                      [&](const Record& record) { append_json(options.json, nlohmann::json::parse(to_json(record))); });
     conformance::print(std::cout, recorder.records());
     if (conformance::has_fault_of_ours(recorder.records())) return 1;

@@ -102,6 +102,8 @@ struct Context::State {
     void keep_pipelines() noexcept;
     VkSemaphore new_timeline(const char* name);
     void wait_for(SyncPoint point) const;
+    VkResult wait_for(const VkSemaphoreWaitInfo& info) const;
+    VkResult note_hang() const;
     VkResult enqueue(std::span<const Submission> submissions, std::uint64_t promised) const;
     VkResult enqueue(std::span<const VkSubmitInfo> infos) const;
     std::string words_of_loss() const;
@@ -144,6 +146,8 @@ struct Context::State {
     std::deque<Retired> retired_;
     std::vector<SyncPoint> announced_;  // the latest by semaphore, not known to be reached
     mutable bool is_lost_ = false;
+    mutable bool is_hung_ = false;  // and so lost
+    double most_wait_seconds_ = 0;  // as in ContextDesc
     mutable std::mutex messages_mutex_;
     std::vector<std::string> messages_;
 };

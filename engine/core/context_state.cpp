@@ -85,7 +85,8 @@ void disable_features(ContextDesc& desc, const std::string& list) {
     }
 }
 
-Context::State::State(const ContextDesc& desc) : log_(desc.log), watch_(desc.watch_kernels) {
+Context::State::State(const ContextDesc& desc)
+    : log_(desc.log), watch_(desc.watch_kernels), most_wait_seconds_(desc.most_wait_seconds) {
     vk_.load_global(desc.get_instance_proc_addr);
     try {
         create_instance(desc);
@@ -128,7 +129,8 @@ Context::State::State(const AdoptedDevice& adopted)
 Context::State::~State() {
     finish();
     keep_pipelines();
-    destroy_everything();
+    // Destroying what a hung device still runs would wait for it.
+    if (!is_hung_ || reached(timeline_) >= submitted_) destroy_everything();
 }
 
 void Context::State::create_instance(const ContextDesc& desc) {

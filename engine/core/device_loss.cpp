@@ -11,6 +11,12 @@ std::string Context::State::words_of_loss() const {
     return name_of(VK_ERROR_DEVICE_LOST) + submission_log_.sentence() + *fault_;
 }
 
+VkResult Context::State::note_hang() const {
+    is_hung_ = true;
+    fault_ = text("; it has ended none of its submissions for ", most_wait_seconds_, " s");
+    return VK_ERROR_DEVICE_LOST;
+}
+
 void Context::State::check(VkResult result, const char* action) const {
     is_lost_ |= result == VK_ERROR_DEVICE_LOST;
     if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(text(action, ": ", words_of_loss()));

@@ -146,8 +146,21 @@ void Context::State::wait_for(SyncPoint point) const {
     info.semaphoreCount = 1;
     info.pSemaphores = &point.semaphore;
     info.pValues = &point.value;
-    check(vk_.vkWaitSemaphores(device_, &info, UINT64_MAX), "wait for the GPU");
+    check(wait_for(info), "wait for the GPU");
     if (point.semaphore == timeline_) submission_log_.reached(point.value);
+}
+
+// While the device ends submissions, it is patient.
+VkResult Context::State::wait_for(const VkSemaphoreWaitInfo& info) const {
+    if (most_wait_seconds_ <= 0) return vk_.vkWaitSemaphores(device_, &info, UINT64_MAX);
+    const auto most = static_cast<std::uint64_t>(most_wait_seconds_ * 1e9);
+    for (std::uint64_t ended = reached(timeline_);;) {
+        const VkResult result = vk_.vkWaitSemaphores(device_, &info, most);
+        if (result != VK_TIMEOUT) return result;
+        const std::uint64_t now = reached(timeline_);
+        if (now == ended) return note_hang();
+        ended = now;
+    }
 }
 
 void Context::State::wait_for_gpu() {

@@ -218,6 +218,9 @@ struct ContextDesc {
     std::optional<TuningRow> tuning = {};  // none: what TWINRAY_TUNING names, else by device
     // None: by device, as KernelTuning has it; 0: no limit.
     std::optional<double> most_submission_seconds = {};
+    // A device that ends none of its submissions for so long while it is waited for counts as lost: DeviceLost. 0: it
+    // is waited for as long as it takes, as a hung one is for ever where no driver watches.
+    double most_wait_seconds = 0;
     PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;  // null: open the system's loader
     std::filesystem::path pipeline_folder =
         {};        // keeps compiled pipelines between runs, a file for each device and driver; empty: none does

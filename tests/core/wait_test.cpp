@@ -2,6 +2,7 @@
 // Submissions of twinray's that wait on a timeline of the host.
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "engine/core/error.h"
 #include "tests/core/host_device.h"
 #include "tests/support/device.h"
+#include "tests/support/fault_injection.h"
 
 namespace twinray {
 namespace {
@@ -74,6 +76,29 @@ TEST_F(WaitTest, AWaitForNothingIsRefused) {
     EXPECT_THROW(context().wait_before_next_submission({timeline_, 0}), Error);
     EXPECT_THROW(context().wait_before_next_submission({timeline_, 1}, 0), Error);
     context().wait(Commands(context(), "does not wait").submit());
+}
+
+// No driver hangs on demand: waiting for it is made to time out.
+TEST(HungDevice, IsLostAndNotWaitedForAgain) {
+    test::FaultInjector driver;
+    {
+        std::optional<Context> context;
+        try {
+            context.emplace(ContextDesc{.most_wait_seconds = 0.01, .get_instance_proc_addr = driver.entry()});
+        } catch (const Error& error) {
+            TWINRAY_LACKS("vulkan", error.what());
+        }
+        driver.inject({"vkWaitSemaphores", 1, test::every_call, VK_TIMEOUT});
+        const SyncPoint point = Commands(*context, "hangs").submit();
+        const std::string said = test::what_is_thrown_by([&] { context->wait(point); });
+        EXPECT_NE(said.find("in flight: 'hangs'"), std::string::npos) << said;
+        EXPECT_NE(said.find("ended none of its submissions for 0.01 s"), std::string::npos) << said;
+        const std::uint64_t calls = driver.calls();
+        EXPECT_THROW(context->wait_for_gpu(), DeviceLost);
+        EXPECT_EQ(driver.calls(), calls);
+        driver.heal();
+    }
+    EXPECT_TRUE(driver.live().empty());
 }
 
 }  // namespace

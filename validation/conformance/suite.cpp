@@ -83,22 +83,25 @@ class Runner {
           rays_(rays_of_case),
           progress_(progress) {}
 
+    // Throws DeviceLost, after recording it.
     void run(const Case& row) {
         progress_.rename(text("conformance ", row.id));
-        Record record = blank(row, way_, settings_);
         const std::string missing = why_not(row);
-        if (!missing.empty()) {
-            record.was_run = false;
-            record.reason = missing;
-            add(record);
-            progress_.advance(rays_);
-            return;
-        }
+        if (!missing.empty()) return leave_out(row, missing);
+        Record record = blank(row, way_, settings_);
         guarded(record, [&] { run_case(row, record); });
         Record control = blank(row, way_, settings_);
         control.variant = text("control: a driver that ", name_of(row.control));
         control.criterion = "control: must show faults, which proves that the case sees them";
         guarded(control, [&] { run_control(row, control); });
+    }
+
+    void leave_out(const Case& row, const std::string& reason) {
+        Record record = blank(row, way_, settings_);
+        record.was_run = false;
+        record.reason = reason;
+        add(record);
+        progress_.advance(rays_);
     }
 
   private:
@@ -134,19 +137,19 @@ class Runner {
     }
     template <class Work>
     void guarded(Record& record, const Work& work) {
-        const auto fail_by = [&](const std::exception& error) {
+        const auto fail_by = [&](const std::exception& error, const char* fault_of) {
             record.pass = false;
-            record.fault_of = "twinray";
+            record.fault_of = fault_of;
             record.reason = error.what();
             add(record);
         };
         try {
             work();
         } catch (const DeviceLost& lost) {
-            fail_by(lost);
+            fail_by(lost, "driver");
             throw;
         } catch (const std::exception& error) {
-            fail_by(error);
+            fail_by(error, "twinray");
             return;
         }
         add(record);
@@ -194,9 +197,20 @@ void run(Context& context, const Settings& settings, Recorder& recorder, bool qu
     const std::uint64_t parts = ways.size() * cases.size();
     const std::uint64_t rays = settings.is_full ? (settings.full_rays + parts - 1) / parts : quick_rays;
     Progress progress("conformance", parts * rays, quiet);
+    std::string lost;  // where it was
     for (const Way way : ways) {
         Runner runner(context, way, settings, recorder, on_record, rays, progress);
-        for (const Case& row : cases) runner.run(row);
+        for (const Case& row : cases) {
+            if (!lost.empty()) {
+                runner.leave_out(row, lost);
+                continue;
+            }
+            try {
+                runner.run(row);
+            } catch (const DeviceLost&) {
+                lost = text("the device was lost in ", row.id);
+            }
+        }
     }
 }
 

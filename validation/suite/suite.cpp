@@ -54,7 +54,7 @@ class SuiteRun {
                 known.push_back(state_.cases.contains(row->id) ? state_.cases[row->id]
                                                                : CaseProgress{.can_improve = false});
             const std::optional<std::size_t> next = next_to_improve(known, seconds_left());
-            if (!next) return;
+            if (!next || !lost_in_.empty()) return;
             recorder_.drop(cases_[*next]->id);
             const Outcome outcome = run_guarded(*cases_[*next], known[*next].effort + effort_step);
             note(*cases_[*next], after_step(known[*next], outcome.seconds, outcome.uncertainty));
@@ -62,6 +62,8 @@ class SuiteRun {
             progress.advance(now - std::exchange(shown, now));
         }
     }
+
+    const std::string& lost_in() const { return lost_in_; }
 
   private:
     struct Outcome {
@@ -74,6 +76,8 @@ class SuiteRun {
     void run_first(const SuiteCase& row) {
         if (!row.run) {
             CaseRun(row, settings_, devices_, recorder_).add_not_run(row.not_run);
+        } else if (!lost_in_.empty()) {
+            CaseRun(row, settings_, devices_, recorder_).add_not_run("the device was lost in " + lost_in_);
         } else if (settings_.seconds > 0 && seconds_left() <= 0) {
             CaseRun(row, settings_, devices_, recorder_)
                 .add_not_run(text("the time of ", settings_.seconds, " s was spent before its turn"));
@@ -102,7 +106,7 @@ class SuiteRun {
             row.run(here);
         } catch (const DeviceLost& lost) {
             here.add_failure(lost.what());
-            throw;
+            lost_in_ = row.id;
         } catch (const std::exception& error) {
             here.add_failure(error.what());
             devices_.drop_accels();
@@ -112,6 +116,7 @@ class SuiteRun {
     }
 
     Settings settings_;
+    std::string lost_in_;  // the case in which the device was lost, if it was
     Devices& devices_;
     Recorder& recorder_;
     SuiteState& state_;
@@ -170,11 +175,12 @@ bool matches(std::string_view text, std::string_view pattern) {
            matches(text.substr(1), pattern.substr(1));
 }
 
-void run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder,
-         SuiteState& state, bool quiet) {
+std::string run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder,
+                SuiteState& state, bool quiet) {
     SuiteRun suite(cases, settings, devices, recorder, state);
     suite.first_round(quiet);
     if (settings.seconds > 0) suite.improve(quiet);
+    return suite.lost_in();
 }
 
 }  // namespace twinray::suite

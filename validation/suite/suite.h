@@ -83,9 +83,9 @@ bool matches(std::string_view text, std::string_view pattern);
 class Devices;
 // Runs the cases that settings.only names and `state` does not have yet, the first of each section first; one that
 // throws is recorded as our fault, and the rest goes on. With the seconds that are left, those whose rate of faults is
-// least certain run again with more effort: their new records take the place of the old ones. Throws DeviceLost, after
-// recording it.
-void run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder,
-         SuiteState& state, bool quiet);
+// least certain run again with more effort: their new records take the place of the old ones. Returns the case in which
+// the device was lost, or hung (see ContextDesc::most_wait_seconds), after which none is run; "" where it was not.
+std::string run(std::span<const SuiteCase> cases, const Settings& settings, Devices& devices, Recorder& recorder,
+                SuiteState& state, bool quiet);
 
 }  // namespace twinray::suite

@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
+#include "engine/core/error.h"
 #include "tests/support/device.h"
+#include "tests/support/fault_injection.h"
 #include "validation/conformance/driver.h"
 #include "validation/conformance/output.h"
 
@@ -86,6 +89,31 @@ TEST_F(ConformanceSuite, FullSharesItsRaysOutToTheCases) {
         EXPECT_LE(record.n, 100'000u) << record.case_id;
         EXPECT_EQ(record.pass, true) << record.case_id << ' ' << record.reason << ' ' << record.example;
     }
+}
+
+// A device that never ends what the fifth case submits.
+TEST(ConformanceOfAHungDevice, TellsTheCaseAndEnds) {
+    test::FaultInjector driver;
+    std::optional<Context> context;
+    try {
+        context.emplace(ContextDesc{.most_wait_seconds = 0.01, .get_instance_proc_addr = driver.entry()});
+    } catch (const Error& error) {
+        TWINRAY_LACKS("vulkan", error.what());
+    }
+    const DeviceProperties& device = context->properties();
+    if (!device.ray_query || !device.ray_tracing_pipeline) TWINRAY_LACKS("ray_tracing", "no ray tracing");
+    Recorder recorder({"now", "0.1", {}});
+    std::string hung;
+    conformance::run(*context, {}, recorder, true, [&](const Record& record) {
+        if (recorder.records().size() == 8) driver.inject({"vkWaitSemaphores", 1, test::every_call, VK_TIMEOUT});
+        if (record.fault_of == "driver" && recorder.records().size() == 9) hung = record.reason;
+    });
+    EXPECT_NE(hung.find("it has ended none of its submissions for 0.01 s"), std::string::npos) << hung;
+    for (const Record& record : std::span(recorder.records()).subspan(9)) {
+        EXPECT_FALSE(record.was_run);
+        EXPECT_EQ(record.reason, "the device was lost in K05");
+    }
+    driver.heal();
 }
 
 class ConformanceWithoutQueries : public test::VulkanTest {

@@ -53,6 +53,21 @@ std::vector<Ray> rays() { return random_rays({vec3(-1), vec3(1)}, 500, 1); }
 
 const std::function<void(CaseRun&)> sound = [](CaseRun& run) { run.measure(world_of(make_icosphere(3)), rays()); };
 
+TEST_F(SuiteRun, EndsWhereTheDeviceIsLost) {
+    if (!can_run_) return;
+    const auto lost = [](CaseRun&) { throw DeviceLost("gone"); };
+    Recorder recorder({"now", "0.1", {}});
+    SuiteState state;
+    EXPECT_EQ(suite::run(std::vector{make_case("W01", sound), make_case("W02", lost), make_case("W03", sound)}, {},
+                         *devices_, recorder, state, true),
+              "W02");
+    const Record& last = recorder.records().back();
+    EXPECT_EQ(last.case_id, "W03");
+    EXPECT_FALSE(last.was_run);
+    EXPECT_EQ(last.reason, "the device was lost in W02");
+    EXPECT_TRUE(state.cases.contains("W02")) << "or --resume runs into it again";
+}
+
 TEST_F(SuiteRun, MeasuresEveryAbleConfigurationAndListsTheOthers) {
     if (!can_run_) return;
     const std::vector<Record> records = run({make_case("W01", sound)});
