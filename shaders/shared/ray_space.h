@@ -9,11 +9,10 @@
 //  - Boxes: near and far planes use reciprocals padded by a factor 1 -+ 2^-20, which covers the 2.5 ulp that Vulkan
 //    allows a division and the roundings of (plane - origin) * reciprocal (Ize, "Robust BVH Ray Traversal", 2013,
 //    with the constant for Vulkan), and origins shifted by an absolute pad for what an instance transform adds.
-//    Reciprocals have a limit: across the dominant axis a ray counts as moving by 2^-40 of what it moves along it at
-// least,
-//    far less than the pad. So they are finite for directions of any use. Where the distance to what lies in the
-// space is
-//    beyond 2^80 in t, t of boxes is taken times a power of two, so that no product of a box with them overflows.
+//    Reciprocals have a limit: across the dominant axis a ray counts as moving by 2^-40 at least of what it moves
+//    along it, far less than the pad. So they are finite for directions of any use. Where the distance to what lies in
+//    the space is beyond 2^80 in t, or within 2^-40, t of boxes is taken times a power of two, so that no product of
+//    a box with them overflows or is denormal.
 //  - Triangles: shear constants of Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", 2013.
 struct RaySpace
 {
@@ -90,13 +89,15 @@ FUNC BoxRay box_ray(RaySpace space)
     return ray;
 }
 
-// 1, or the power of two that brings the largest t at which a ray may meet something below 2^80. That is 2^38 pads at
-// most times the reciprocal of the direction's dominant entry.
+// 1, or the power of two that brings the largest t at which a ray may meet something between 2^-40 and 2^80. That is
+// 2^38 pads at most times the reciprocal of the direction's dominant entry.
 FUNC float scale_of_reach(float pad, float along)
 {
-    uint exponent = (floatBitsToUint(pad) >> 23u) + (floatBitsToUint(along) >> 23u);
-    const uint HIGHEST = 80u - 38u + 254u;
-    return uintBitsToFloat((127u - min(max(exponent, HIGHEST) - HIGHEST, 126u)) << 23u);
+    const int LOWEST = -40 - 38;
+    const int HIGHEST = 80 - 38;
+    int exponent = int(floatBitsToUint(pad) >> 23u) + int(floatBitsToUint(along) >> 23u) - 254;
+    int power = min(max(exponent, LOWEST), HIGHEST) - exponent;
+    return uintBitsToFloat(uint(min(max(power, -126), 126) + 127) << 23u);
 }
 
 // pad: see above; 2^-38 of the coordinates of the origin and of all boxes at least.

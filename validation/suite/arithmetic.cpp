@@ -20,10 +20,10 @@ std::vector<SuiteCase> arithmetic_cases() {
          "the path tracer has no fix for terminators: rays leave by the geometric normal, so coarse meshes show "
          "facets"},
         {"F05", "a concave corner of 1 to 179 degrees, rays that end on its wall or lead away from it",
-         "leaks, false occlusion", "0 where the wall is farther than twice the offset; else flagged",
+         "leaks, false occlusion", "0 where the wall and its edges are farther than twice the offset; else flagged",
          leave_a_concave_corner},
         {"F06", "rays at the edges of a grid far from the origin; kernels with and without `precise`, and the CPU twin",
-         "decisions other than the twin's", "0 with `precise`", contraction},
+         "decisions other than the twin's", "0 with `precise`, where the device divides as IEEE 754 does", contraction},
         {"F07", "float probe: roundings, contraction, NaN, denormals", "what watertightness rests on and is not so",
          "0, else the robust levels cannot be claimed", float_probe},
         {"F08", "rays with denormal coordinates, on the device, and on its CPU twin with denormals flushed",

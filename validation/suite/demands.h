@@ -14,6 +14,9 @@ CaseRun::Outcome ask_each(const Configuration& configuration, std::span<const Ra
 CaseRun::Outcome ask_each(const Traced& traced, std::span<const Ray> rays,
                           const std::function<std::string(std::size_t i, const Hit& hit)>& complaint);
 
+// Why SwTlas's hits may differ in their last bits from those of other devices; "" where they may not.
+std::string why_bits_may_differ(CaseRun& run, const Configuration& configuration);
+
 // From Level::refined on: t of every hit that names the reference's primitive is within so many units in its last
 // place. What is wrong is ours, also on hardware: the library computes it.
 void expect_refined_t(CaseRun& run, const Measured& measured, std::span<const Ray> rays, double ulps, Values params);

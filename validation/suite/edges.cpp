@@ -11,7 +11,7 @@ namespace {
 
 // From around the centre of a closed sphere, wherever they go.
 void from_inside(CaseRun& run) {
-    const std::size_t count = run.amount(8'192, 1'000'000);
+    const std::size_t count = run.amount(4'096, 1'000'000);
     for (const uint subdivisions : {0u, 3u, 6u}) {
         const Mesh sphere = make_icosphere(subdivisions);
         Bounds middle;

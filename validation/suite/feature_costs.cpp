@@ -101,14 +101,14 @@ void add_records(CaseRun& run, const char* rays, const std::vector<Step>& steps)
 void feature_costs(CaseRun& run) {
     const std::vector<Configuration> able = run.configurations();
     if (std::find(able.begin(), able.end(), Configuration{}) == able.end()) return;
-    const Mesh mesh = make_icosphere(static_cast<uint>(run.amount(6, 8)));
-    const std::vector<Ray> rays = primary_rays(bounds_of(mesh), static_cast<uint>(run.amount(128, 1024)));
+    const Mesh mesh = make_icosphere(static_cast<uint>(run.amount(5, 8)));
+    const std::vector<Ray> rays = primary_rays(bounds_of(mesh), static_cast<uint>(run.amount(96, 1024)));
     SwTlas accel(run.devices().context(Backend::software), {.can_move = false});
     accel.push(mesh);
     accel.sync();
     for (const auto& [query, name] : {std::pair{Query::closest, "closest"}, std::pair{Query::any, "any"}}) {
         std::vector<Step> steps = steps_of(accel, query);
-        trace_rounds(accel, rays, query, run.amount(7, 25), steps);
+        trace_rounds(accel, rays, query, run.amount(5, 25), steps);
         add_records(run, name, steps);
     }
 }

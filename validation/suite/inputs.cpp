@@ -27,7 +27,7 @@ void spoil_component(Ray& ray, std::size_t i) {
 
 void non_finite_rays(CaseRun& run) {
     const Mesh sphere = make_icosphere(4);
-    run.measure(world_of(sphere), every_second(sphere, run.amount(8'192, 1'000'000), run.seed(), spoil_component));
+    run.measure(world_of(sphere), every_second(sphere, run.amount(4'096, 1'000'000), run.seed(), spoil_component));
 }
 
 // NaN, infinite and zero rays alone, in turns with as many normal ones: they may not be a way to stall a device.
@@ -35,11 +35,11 @@ void time_of_bad_rays(CaseRun& run) {
     constexpr double limit = 2.5;
     const Mesh sphere = make_icosphere(5);
     const World world = world_of(sphere);
-    const std::vector<Ray> normal = random_rays(bounds_of(sphere), run.amount(16'384, 1'000'000), run.seed());
+    const std::vector<Ray> normal = random_rays(bounds_of(sphere), run.amount(8'192, 1'000'000), run.seed());
     std::vector<Ray> bad = normal;
     for (std::size_t i = 0; i < bad.size(); ++i) spoil_component(bad[i], i);
     const std::vector<Configuration> configurations = run.configurations();
-    const std::size_t reps = run.amount(5, 15);
+    const std::size_t reps = run.amount(3, 15);
     const std::vector<Traced> normals = trace(run.devices(), configurations, world, {.rays = normal, .reps = reps});
     const std::vector<Traced> bads = trace(run.devices(), configurations, world, {.rays = bad, .reps = reps});
     for (std::size_t i = 0; i < configurations.size(); ++i) {

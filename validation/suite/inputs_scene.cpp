@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <cstdlib>
 #include <cstring>
+#include <memory>
+#include <set>
 
 #include <twinray/scene.h>
 
+#include "engine/core/error.h"
 #include "validation/suite/inputs.h"
 #include "validation/suite/scenes.h"
 #include <twinray/geometry.h>
@@ -172,17 +175,27 @@ void empty_and_small(CaseRun& run) {
                 {.params = {{"instances", "of an empty mesh among others"}}, .reps = 1});
 }
 
+// `count` of them, all of their bytes 0, in memory that takes none until it is read: what is refused is not.
+template <class T>
+std::span<const T> zeros(std::size_t count, std::unique_ptr<void, decltype(&std::free)>& memory) {
+    memory.reset(std::calloc(count, sizeof(T)));
+    if (!memory) fail("no memory for ", count, " items");
+    return {static_cast<const T*>(memory.get()), count};
+}
+
 void too_many(CaseRun& run) {
     constexpr std::size_t limit = Geometry::max_primitives + 1;
-    std::vector<WrongUse> uses = {
-        {"2^25 triangles", "33554431",
-         [](AbstractAccel& accel) {
-             const std::array<vec3, 3> vertices{};
-             accel.push(MeshView("huge", vertices, std::vector<uvec3>(limit)));
-         }},
-        {"2^25 boxes", "33554431", [](AbstractAccel& accel) {
-             accel.push(BoxesView{"huge", std::vector<Bounds>(limit, Bounds{vec3(0), vec3(1)})});
-         }}};
+    std::unique_ptr<void, decltype(&std::free)> triangle_memory(nullptr, &std::free), box_memory(nullptr, &std::free);
+    const auto triangles = zeros<uvec3>(limit, triangle_memory);
+    const auto boxes = zeros<Bounds>(limit, box_memory);
+    std::vector<WrongUse> uses = {{"2^25 triangles", "33554431",
+                                   [&](AbstractAccel& accel) {
+                                       const std::array<vec3, 3> vertices{};
+                                       accel.push(MeshView("huge", vertices, triangles));
+                                   }},
+                                  {"2^25 boxes", "33554431", [&](AbstractAccel& accel) {
+                                       accel.push(BoxesView{"huge", boxes});
+                                   }}};
     if (run.amount(0, 1))  // takes 2 GiB on the host
         uses.push_back({"2^24 instances", "16777215", [](AbstractAccel& accel) {
                             accel.push(make_box(vec3(0), vec3(1)), std::vector<Transform>(max_instances + 1));

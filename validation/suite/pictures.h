@@ -83,7 +83,7 @@ struct FlatQuestion {
     bool is_swept = true;  // over spp, which then stands among the parameters
 };
 // Records a row for each number of samples: the root mean square of the pixels' relative errors, one a seed; the mean
-// of all pixels and its z-score, which must not be beyond 4 (plus what float32 rounds); the efficiency.
+// of all pixels and its z-score, which must not be beyond 6 (plus what float32 rounds); the efficiency.
 void measure_flat(CaseRun& run, const Configuration& configuration, const FlatQuestion& question);
 
 // 1 / (variance * seconds) of a series of pictures, with its interval by bootstrap over the seeds: `variances` and `ms`

@@ -35,8 +35,21 @@ Transform somewhere(Random& random) { return Transform::translation(random.in_bo
 struct Corner {
     Departures departures;
     std::vector<bool> ends_on_wall;
-    std::vector<double> distance;  // of the point from the wall
+    std::vector<double> distance;  // how far the ray may be moved at least before it meets what it did not, or no more
 };
+
+// Of the line through p along `way` from the line through `corner` along `edge`.
+double distance_of_lines(const dvec3& p, const dvec3& way, const dvec3& corner, const dvec3& edge) {
+    const dvec3 across = cross(way, edge);
+    return std::abs(dot(corner - p, normalize(across)));
+}
+
+// Of a ray that ends on the wall from the wall's edges; where the wall is nearly flat to the floor, that is little.
+double distance_from_edges(const dvec3& p, const dvec3& way, const dvec3& up_wall) {
+    const dvec3 y(0, 1, 0);
+    return std::min({distance_of_lines(p, way, dvec3(0), y), distance_of_lines(p, way, up_wall, y),
+                     distance_of_lines(p, way, dvec3(0), up_wall), distance_of_lines(p, way, y, up_wall)});
+}
 
 Corner concave_corner(Random& random, double degrees, std::size_t count) {
     const double dihedral = glm::radians(degrees);
@@ -59,7 +72,9 @@ Corner concave_corner(Random& random, double degrees, std::size_t count) {
         item.direction = vec3(linear * normalize(way));
         departures.items.push_back(item);
         corner.ends_on_wall.push_back(to_wall);
-        corner.distance.push_back(degrees < 90 ? x * std::sin(dihedral) : x);
+        const double from_wall = degrees < 90 ? x * std::sin(dihedral) : x;
+        corner.distance.push_back(to_wall ? std::min(from_wall, distance_from_edges(dvec3(x, y, 0), way, up_wall))
+                                          : from_wall);
     }
     return corner;
 }
