@@ -14,6 +14,8 @@ VALIDATION = ["validation/" + room for room in ("reference", "leaks", "records",
 CHECKS = VALIDATION + ["validation/" + room for room in ("conformance", "exact", "kernels", "picture", "replay", "report", "reproducer", "suite")]
 # See include alone.
 AS_HOSTS = ["samples", "bindings", "shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"]
+# Built alone, too: a header lies beside what includes it. One shows the structs of the engine.
+TUTORIALS, INSIDE = "samples/tutorials/", "samples/tutorials/10_inside_the_builder/"
 SEES = {  # besides itself, include and, unless AS_HOSTS, shaders/shared
     "include": ["shaders/hwtlas"],  # the public face; its GLSL has parts there and in shaders/shared
     "engine": ENGINE,  # headers that gather the others
@@ -65,14 +67,15 @@ def violation(root, source, bracket, target):
     exists = os.path.isfile(os.path.join(root, file))
     if bracket == "<" and not file.startswith("include/"):
         return "a file of this project is included with quotes" if exists else None
-    if GENERATED.search(target):
+    is_beside = os.path.isfile(os.path.join(root, os.path.dirname(source), target))
+    if GENERATED.search(target) or (source.startswith(TUTORIALS) and "/" not in target and is_beside):
         return None
     if not exists or ".." in target.split("/"):
         return "no such file; includes are written from the root, those of other projects in <>"
     origin, seen = layer(source), layer(file)
     kernels_of_others = GLSL.search(source) and not origin.startswith("shaders/") and seen.startswith("shaders/")
     sees = [] if origin == "shaders/shared" else SEES[origin if origin in SEES else "shaders"]
-    shared = [] if origin in AS_HOSTS else ["shaders/shared"]
+    shared = [] if origin in AS_HOSTS and not source.startswith(INSIDE) else ["shaders/shared"]
     if seen in [origin, "include"] + shared + sees or kernels_of_others:
         return None
     return f"{origin} must not see {seen}"
