@@ -85,24 +85,32 @@ Sentence sentence_of(const Finding& finding, const Finding* ours) {
     return {is_right ? Sentence::Kind::right : Sentence::Kind::wrong, about, sentence + '.'};
 }
 
-// Cases about the driver's own structures (K), over both ways to trace.
-void add_conformance(Verdict& verdict, std::span<const Record> records) {
+// Cases about the driver's own structures (K), over both ways to trace: those that ran, those that fail.
+struct OwnStructures {
     std::set<std::string> all, musts, shoulds;
+};
+OwnStructures own_structures_of(std::span<const Record> records) {
+    OwnStructures cases;
     for (const Record& record : records) {
         if (!record.was_run || !record.case_id.starts_with('K') || !is_users_kernel(record)) continue;
-        all.insert(record.case_id);
+        cases.all.insert(record.case_id);
         if (record.pass.value_or(true)) continue;
         const auto demand = record.results.find("demand");
-        (demand != record.results.end() && demand->second.text() == "must" ? musts : shoulds).insert(record.case_id);
+        const bool is_must = demand != record.results.end() && demand->second.text() == "must";
+        (is_must ? cases.musts : cases.shoulds).insert(record.case_id);
     }
-    if (all.empty()) return;
+    return cases;
+}
+
+void add_own_structures(Verdict& verdict, const OwnStructures& cases) {
+    if (cases.all.empty()) return;
     const auto listed = [](const std::set<std::string>& ids) {
         return text(ids.size(), ids.empty() ? "" : " (" + joined({ids.begin(), ids.end()}) + ')');
     };
     verdict.sentences.push_back(
-        {musts.empty() ? Sentence::Kind::right : Sentence::Kind::wrong, "Own structures",
-         text("of ", all.size(), " cases of builds, updates, copies, flags and candidates, ", listed(musts),
-              " fail what Vulkan demands, ", listed(shoulds), " what it advises.")});
+        {cases.musts.empty() ? Sentence::Kind::right : Sentence::Kind::wrong, "Own structures",
+         text("of ", cases.all.size(), " cases of builds, updates, copies, flags and candidates, ", listed(cases.musts),
+              " fail what Vulkan demands, ", listed(cases.shoulds), " what it advises.")});
 }
 
 void add_speed(Verdict& verdict, std::span<const Speed> speeds, std::string_view driver) {
@@ -125,7 +133,7 @@ void add_speed(Verdict& verdict, std::span<const Speed> speeds, std::string_view
                   with_interval(refined->ratio, refined->ratio_95), " times as long.")});
 }
 
-std::string headline_of(std::span<const Finding> findings, std::string_view driver) {
+std::string headline_of(std::span<const Finding> findings, const OwnStructures& cases, std::string_view driver) {
     std::vector<std::string> wrongs;
     for (const Finding& finding : findings) {
         if (finding.backend != driver || finding.faults == 0) continue;
@@ -137,6 +145,7 @@ std::string headline_of(std::span<const Finding> findings, std::string_view driv
             case Mistake::counted_wrong: wrongs.push_back("counts shared edges twice"); break;
         }
     }
+    if (!cases.musts.empty()) wrongs.push_back("fails what Vulkan demands of its own structures");
     if (wrongs.empty()) return "No fault of this driver's ray tracing was seen.";
     std::string all = wrongs.front();
     for (std::size_t i = 1; i < wrongs.size(); ++i) all += (i + 1 < wrongs.size() ? ", " : " and ") + wrongs[i];
@@ -218,15 +227,17 @@ std::vector<Speed> speeds_of(std::span<const Record> records) {
 Verdict verdict_of(std::span<const Record> records) {
     Verdict verdict;
     const std::vector<Finding> findings = findings_of(records);
+    const OwnStructures own = own_structures_of(records);
     const std::string driver = driver_backend(records);
     verdict.has_driver = !driver.empty();
     verdict.are_we_right = faults_of_ours(records) == 0;
     verdict.is_driver_right =
         std::none_of(records.begin(), records.end(), [](const Record& r) { return r.fault_of == "driver"; });
-    verdict.headline = verdict.has_driver ? headline_of(findings, driver)
+    verdict.headline = verdict.has_driver ? headline_of(findings, own, driver)
                                           : "This driver traces no rays by itself: SwTlas alone was checked.";
     if (!verdict.are_we_right)
-        verdict.headline = text("twinray is wrong in ", faults_of_ours(records), " measurements. ", verdict.headline);
+        verdict.headline = text("twinray is wrong in ", faults_of_ours(records),
+                                faults_of_ours(records) == 1 ? " measurement. " : " measurements. ", verdict.headline);
     for (const Mistake mistake : all_mistakes) {
         const Finding* ours = find(findings, "sw", mistake);
         const Finding* theirs = find(findings, driver, mistake);
@@ -235,7 +246,7 @@ Verdict verdict_of(std::span<const Record> records) {
         else if (ours)
             verdict.sentences.push_back(sentence_of(*ours, nullptr));
     }
-    add_conformance(verdict, records);
+    add_own_structures(verdict, own);
     add_speed(verdict, speeds_of(records), driver);
     return verdict;
 }
