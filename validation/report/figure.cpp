@@ -195,7 +195,7 @@ Figure features_figure(std::span<const Record> records) {
 
 std::vector<Figure> figures_of(std::span<const Record> records) {
     std::vector<Figure> figures;
-    for (Figure& figure : std::vector{levels_figure(records), leaks_figure(records), paths_figure(records),
+    for (Figure& figure : std::vector{leaks_figure(records), levels_figure(records), paths_figure(records),
                                       factors_figure(records), features_figure(records)})
         if (std::any_of(figure.series.begin(), figure.series.end(), [](const auto& s) { return !s.points.empty(); }))
             figures.push_back(std::move(figure));

@@ -108,7 +108,7 @@ void add_own_structures(Verdict& verdict, const OwnStructures& cases) {
         return text(ids.size(), ids.empty() ? "" : " (" + joined({ids.begin(), ids.end()}) + ')');
     };
     verdict.sentences.push_back(
-        {cases.musts.empty() ? Sentence::Kind::right : Sentence::Kind::wrong, "Own structures",
+        {cases.musts.empty() ? Sentence::Kind::right : Sentence::Kind::wrong, "Acceleration structures",
          text("of ", cases.all.size(), " cases of builds, updates, copies, flags and candidates, ", listed(cases.musts),
               " fail what Vulkan demands, ", listed(cases.shoulds), " what it advises.")});
 }
@@ -126,11 +126,11 @@ void add_speed(Verdict& verdict, std::span<const Speed> speeds, std::string_view
                   " times as long as SwTlas at watertight, over ", hardware->measurements,
                   " measurements of the same rays.")});
     if (refined != speeds.end() && plain != speeds.end() && refined->median_p99_ulp > 0)
-        verdict.sentences.push_back(
-            {Sentence::Kind::measured, "Error against run time",
-             text("at level refined 99 % of hits are within ", number(refined->median_p99_ulp, 2),
-                  " units in the last place of t, for ", number(plain->median_p99_ulp, 2), " at watertight; it takes ",
-                  with_interval(refined->ratio, refined->ratio_95), " times as long.")});
+        verdict.sentences.push_back({Sentence::Kind::measured, "Error against run time",
+                                     text("99 % of the hits of SwTlas are within ", number(plain->median_p99_ulp, 2),
+                                          " units in the last place of t at level watertight, and within ",
+                                          number(refined->median_p99_ulp, 2), " at level refined, which takes ",
+                                          with_interval(refined->ratio, refined->ratio_95), " times as long.")});
 }
 
 std::string headline_of(std::span<const Finding> findings, const OwnStructures& cases, std::string_view driver) {
@@ -142,10 +142,10 @@ std::string headline_of(std::span<const Finding> findings, const OwnStructures& 
             case Mistake::false_hit: wrongs.push_back("reports hits that are not there"); break;
             case Mistake::wrong_distance: wrongs.push_back("gets distances wrong"); break;
             case Mistake::not_finite: wrongs.push_back("answers with numbers that are not finite"); break;
-            case Mistake::counted_wrong: wrongs.push_back("counts shared edges twice"); break;
+            case Mistake::counted_wrong: wrongs.push_back("counts shared edges other than once"); break;
         }
     }
-    if (!cases.musts.empty()) wrongs.push_back("fails what Vulkan demands of its own structures");
+    if (!cases.musts.empty()) wrongs.push_back("fails what Vulkan demands of acceleration structures");
     if (wrongs.empty()) return "No fault of this driver's ray tracing was seen.";
     std::string all = wrongs.front();
     for (std::size_t i = 1; i < wrongs.size(); ++i) all += (i + 1 < wrongs.size() ? ", " : " and ") + wrongs[i];

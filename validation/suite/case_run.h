@@ -76,6 +76,9 @@ class CaseRun {
     // A record of this case, to be filled further and added.
     Record record(const Configuration& configuration) const;
     void add(const Record& record) { recorder_.add(record); }
+    // The same of what is computed from an accelerator's answers: what did not pass is ours, or the driver's where
+    // SwTlas passed with the same settings.
+    void add_computed(Record record);
     // Of the cases before this one, too.
     std::span<const Record> earlier() const { return recorder_.records(); }
     void add_not_run(const std::string& reason, const Configuration* configuration = nullptr);

@@ -29,6 +29,7 @@ Record checked(const char* id, const char* backend, std::uint64_t n, std::map<st
 TEST(Wording, RatesSayHowSureTheyAre) {
     EXPECT_EQ(rate_text(0, 2'100'000), "0 of 2.1 million (below 1.4 per million)");
     EXPECT_EQ(rate_text(460, 10'000), "4.6 % (4.2 to 5)");
+    EXPECT_EQ(rate_text(27'000, 100'000), "27 % (26.7 to 27.3)");
     EXPECT_EQ(rate_text(5, 1'000'000), "5 per million (1.6 to 12)");
     EXPECT_EQ(count_text(8192), "8,192");
     EXPECT_EQ(number(1250), "1250");
@@ -75,7 +76,7 @@ TEST(Verdict, OwnStructuresThatBreakADemandAreInTheHeadline) {
     EXPECT_EQ(verdict_of(std::vector{right, wrong}).headline, "No fault of this driver's ray tracing was seen.");
     wrong.results.insert_or_assign("demand", "must");
     EXPECT_EQ(verdict_of(std::vector{right, wrong}).headline,
-              "This driver fails what Vulkan demands of its own structures.");
+              "This driver fails what Vulkan demands of acceleration structures.");
 }
 
 TEST(Verdict, AFaultOfOursComesFirst) {

@@ -53,6 +53,27 @@ std::vector<Ray> rays() { return random_rays({vec3(-1), vec3(1)}, 500, 1); }
 
 const std::function<void(CaseRun&)> sound = [](CaseRun& run) { run.measure(world_of(make_icosphere(3)), rays()); };
 
+// What is computed alike from the answers of both is the driver's fault where it is right by SwTlas.
+TEST_F(SuiteRun, WhatIsRightBySoftwareIsTheDriversFault) {
+    if (!can_run_) return;
+    const auto computed = [](CaseRun& run) {
+        for (const char* backend : {"sw", "hw"})
+            for (const int setting : {1, 2}) {
+                Record record = run.record({});
+                record.backend = backend;
+                record.params = {{"setting", setting}};
+                record.pass = backend == std::string("sw") && setting == 1;
+                run.add_computed(record);
+            }
+    };
+    const std::vector<Record> records = run({make_case("P99", computed)});
+    ASSERT_EQ(records.size(), 4u);
+    EXPECT_EQ(records[0].fault_of, "");
+    EXPECT_EQ(records[1].fault_of, "twinray");
+    EXPECT_EQ(records[2].fault_of, "driver");
+    EXPECT_EQ(records[3].fault_of, "twinray") << "SwTlas is wrong, too";
+}
+
 TEST_F(SuiteRun, EndsWhereTheDeviceIsLost) {
     if (!can_run_) return;
     const auto lost = [](CaseRun&) { throw DeviceLost("gone"); };
