@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Doxygen's input filter: prints a header with its `//` comments in the form that Doxygen reads.
 A comment before a declaration becomes `///`, one behind it `///<`, the comment on top that of the file. Overloads
-that follow a function without a blank line share its comment, and so do aliases. The namespace twinray is left out, so that a page of the
-reference, which is a header, has the names themselves and not once more the namespace.
+that follow a function without a blank line share its comment, and so do aliases. The namespace twinray is left out, so
+that a page of the reference, which is a header, has the names themselves and not once more the namespace.
 Usage: doxygen_filter.py FILE"""
 
 import pathlib
