@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """How Sphinx makes the site; tools/docs.sh runs it on the pages that docs/site/stage.py has put together."""
 
-import os
 import pathlib
 import re
 import sys
@@ -30,13 +29,15 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # docstrings say more: shapes and dtypes
 napoleon_google_docstring = False
 
+smartquotes = False  # options begin with two hyphens
+
 html_theme = "furo"
 html_title = "twinray"
 html_static_path = [str(root / "docs/site/static")]
-html_css_files = ["site.css"]
+html_js_files = ["site.js"]
 html_show_sphinx = False
 html_copy_source = False
+html_show_search_summary = False  # it would be fetched, which a page without a server cannot
 html_last_updated_fmt = None
-html_theme_options = {"source_repository": ""} if os.environ.get("TWINRAY_SITE_SOURCE") else {}
 pygments_style = "a11y-light"
 pygments_dark_style = "a11y-dark"
