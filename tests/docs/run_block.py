@@ -47,7 +47,8 @@ def run_python(block, folder, tools):
 
 
 def run_session(block, folder, tools):
-    (folder / "session.txt").write_text(block.text, encoding="utf-8")
+    with open(folder / "session.txt", "a", encoding="utf-8") as file:  # the sessions of a page go on
+        file.write(block.text + "\n")
     options = ["-o", "ELLIPSIS", "-o", "NORMALIZE_WHITESPACE"]
     return run([tools.python, "-W", "ignore", "-m", "doctest", *options, "session.txt"], folder, tools)[1]
 
