@@ -74,7 +74,7 @@ class Textures : public VulkanTest, public ::testing::WithParamInterface<Texture
     }
     std::uint64_t live_bytes() { return context().allocated_bytes(); }
 
-    FaultInjector injector_;
+    faults::FaultInjector injector_;
 
   private:
     std::unique_ptr<TextureStore> store_;
