@@ -33,6 +33,8 @@ class CaseRun {
 
     // How many rays, cells, ... at this effort: in between by equal ratios; of 0 and 1, whether all is to be done.
     std::size_t amount(std::size_t least, std::size_t full);
+    // Of the full suite, for what takes so much that no step towards it, with seconds that are left, shall bring it.
+    bool is_whole() const { return settings_.is_whole; }
     bool depends_on_effort() const { return depends_on_effort_; }  // so far
     std::uint64_t seed() const { return settings_.seed; }
     Devices& devices() { return devices_; }
