@@ -4,7 +4,7 @@
 # build/docs/html/index.html. Fails on any warning and any broken link.
 #   tools/docs.sh            installs what is missing first: packages of Python into build/docs/venv, Doxygen by apt
 #   tools/docs.sh --check    and looks at pages in a browser: axe's rules of accessibility (needs npm and chromium)
-#   TWINRAY=FILE             the command; default build/release/bin/twinray
+#   TWINRAY=FILE             the command, in a build with the samples; default build/release/bin/twinray
 #   SKIP_APT=1               install no package of the system
 # Once installed, nothing is fetched. Needs python3-venv.
 set -euo pipefail
@@ -36,6 +36,9 @@ install_packages() {
     cp $site/requirements.txt $venv/installed.txt
 }
 
+# What the pages of tutorials open with, by the programs themselves.
+make_pictures() { cmake --build "$(dirname "$(dirname "$twinray")")" --target tutorial_pictures >/dev/null; }
+
 build_site() {
     $site/doxygen.sh cpp $folder/cpp
     $site/doxygen.sh glsl $folder/glsl
@@ -47,6 +50,7 @@ build_site() {
 install_doxygen
 install_packages
 start=$EPOCHREALTIME
+make_pictures || die "the pictures of the tutorials cannot be made: build twinray, with its samples, first"
 build_site
 links=$($venv/bin/python $site/check_links.py $folder/html $folder/external_links.txt)
 if [[ ${1-} == --check ]]; then $site/check_accessibility.sh $folder/html; fi

@@ -175,7 +175,8 @@ TEST_F(MultiTypeSetTest, AnUpdateUploadsItsElementAloneAndViewsStay) {
     set().update(keys[7], glass(500));
     set().update(keys[7], glass(600));
     set().update(keys[8], glass(700));
-    EXPECT_EQ(faults::what_is_thrown_by([&] { set().view(); }), "materials: view: edits are pending; call sync() first");
+    EXPECT_EQ(faults::what_is_thrown_by([&] { set().view(); }),
+              "materials: view: edits are pending; call sync() first");
     set().sync();
     const TestSet after = set().view();
     EXPECT_EQ(std::memcmp(&before, &after, sizeof before), 0);

@@ -120,10 +120,12 @@ TEST_F(SoaTest, UploadsBeyondTheLastItemAreRefused) {
     const std::vector<float> values(8);
     Commands commands(context(), "upload");
     const auto pass = commands.pass("upload");
-    EXPECT_EQ(faults::what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), 3); }),
-              "queue: upload: 8 items from 3 exceed its 10");
-    EXPECT_NE(faults::what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), ~0u); }),
-              "");
+    EXPECT_EQ(
+        faults::what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), 3); }),
+        "queue: upload: 8 items from 3 exceed its 10");
+    EXPECT_NE(
+        faults::what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), ~0u); }),
+        "");
 }
 
 TEST_F(SoaTest, AnEmptyOneIsAllowed) {

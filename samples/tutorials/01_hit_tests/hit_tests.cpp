@@ -94,7 +94,8 @@ int main(int argc, char** argv) try {
     // [/any]
 
     // [masks]
-    for (const std::uint8_t mask : {0b01, 0b10, 0b11}) {
+    constexpr std::uint8_t masks[] = {0b01, 0b10, 0b11};
+    for (const std::uint8_t mask : masks) {
         const Hit seen = accel.closest_hits({&ray, 1}, {.mask = mask}).front();
         std::cout << "mask " << +mask << " sees custom index " << seen.custom_index << " at t = " << seen.t << '\n';
     }
