@@ -64,7 +64,7 @@ bool is_wanted(const ReportOptions& options, const std::string& id) {
 std::vector<suite::SuiteCase> conformance_cases() {
     std::vector<suite::SuiteCase> cases;
     for (const conformance::Case& row : conformance::catalogue())
-        cases.push_back({row.id, row.what, row.kind, row.demanded + " (" + std::string(name_of(row.demand)) + ')'});
+        cases.push_back({row.id, row.what, row.kind, row.demanded + " (" + std::string(name_of(row.demand)) + ')', {}});
     return cases;
 }
 

@@ -40,7 +40,7 @@ struct VerifyOptions {
 
 std::vector<RaySet> ray_sets(const VerifyOptions& options, const ReferenceScene& reference, const Scene& scene) {
     if (!options.rays.empty()) return {{"file", read_rays(options.rays, scene.origin)}};
-    return test_rays(reference, scene, options.random, options.aimed, options.common.seed);
+    return test_rays(reference, bounds_of(scene), options.random, options.aimed, options.common.seed);
 }
 
 // Level fast promises nothing.
@@ -95,7 +95,8 @@ void write_reproducers(const VerifyOptions& options, const Scene& scene, const r
 std::uint64_t run(const VerifyOptions& options) {
     const Scene scene = load_scene(options.scene, options.common);
     const std::unique_ptr<Context> context = make_context(options.common);
-    Verifier verifier(*context, scene, options.level);
+    Verifier verifier(
+        *context, ReferenceScene::of(scene), [&](AbstractAccel& accel) { push_scene(accel, scene); }, options.level);
     const ReferenceScene& reference = verifier.reference();
     const exact::Reference exact_reference(reference);
     const Arbiter arbiter = [&](const Ray& ray) { return exact_reference.rounded_hit(ray); };

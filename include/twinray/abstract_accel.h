@@ -82,25 +82,28 @@ class AbstractAccel {
     // Transforms; custom indices, masks and flags stay. update_transform wants a handle with exactly one instance,
     // update_transforms one transform per instance. AccelOptions::can_move = false forbids all that moves instances.
     void update_transform(AccelHandle handle, const Transform& transform);
+    // One for each instance of the handle.
     void update_transforms(AccelHandle handle, std::span<const Transform> transforms);
+    // Of one of its instances.
     void update_transform_at(AccelHandle handle, std::size_t index, const Transform& transform);
     // The same from device memory, read by the next sync. Nobody checks what lies there: an instance whose transform is
     // singular or not finite becomes inactive, and the accelerator warns how many.
     void update_transforms(AccelHandle handle, Ref<Transform> transforms, std::size_t count);
     // The caller's kernels write into instance_buffer(), then mark_transforms_dirty() lets the next sync take it over.
     InstanceRange instance_buffer(AccelHandle handle) const;
+    // What kernels wrote there counts from the next sync on.
     void mark_transforms_dirty(AccelHandle handle);
     // Another custom index, mask or flags for an instance, wherever it stands or is about to. Ends all views and what
     // instance_buffer() has given, as a push does.
     void update_options(AccelHandle handle, std::size_t index, const InstanceOptions& options);
 
-    bool is_valid(AccelHandle handle) const;
+    bool is_valid(AccelHandle handle) const;  // whether it names something that was not erased
     // Waits for the GPU if kernels may have moved the instances.
     InstanceState get_instance(AccelHandle handle, std::size_t index) const;
-    std::vector<InstanceState> get_instances(AccelHandle handle) const;
-    std::size_t n_instances() const;
-    std::size_t n_instances(AccelHandle handle) const;  // 0 for a dead handle
-    std::size_t n_geometries() const;
+    std::vector<InstanceState> get_instances(AccelHandle handle) const;  // all of them, in the order of their indices
+    std::size_t n_instances() const;                                     // of all handles
+    std::size_t n_instances(AccelHandle handle) const;                   // 0 for a dead handle
+    std::size_t n_geometries() const;                    // a mesh or boxes of several handles count once
     std::size_t n_primitives(AccelHandle handle) const;  // triangles or boxes of its geometry; 0 for a dead handle
     std::vector<AccelHandle> handles() const;            // those alive, in push order
 
@@ -121,7 +124,7 @@ class AbstractAccel {
     // batches that fit, of one at least, and batches use the same memory one after the other. Results do not depend on
     // it. What the host uploads is staged on top. Default: 64 MiB.
     std::uint64_t scratch_budget() const;
-    void set_scratch_budget(std::uint64_t bytes);
+    void set_scratch_budget(std::uint64_t bytes);  // for the syncs to come
     // Throws Error if edits are pending.
     AccelView view() const;
     // Counts the syncs that changed more than transforms and vertices: views of before are stale.
@@ -154,7 +157,7 @@ class AbstractAccel {
     // A sync rebuilds what it would refit where sah_if_ready() has grown past this ratio to what it was at the last
     // build; addresses and views stay. At least 1; infinity: never. Throws Error otherwise.
     double rebuild_ratio() const;
-    void set_rebuild_ratio(double ratio);
+    void set_rebuild_ratio(double ratio);  // for the syncs to come
 
     // Records the trace; the hits are visible to later passes. Throws Error on a stale or foreign view.
     void trace(Commands& commands, const AccelView& view, const TraceDesc& desc) const;
@@ -164,6 +167,7 @@ class AbstractAccel {
     // Host convenience: syncs, uploads, traces, waits and downloads. Of `desc` all counts but rays, hits, count, query
     // and occlusion_only.
     std::vector<Hit> closest_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
+    // The same for whichever hit is found first.
     std::vector<Hit> any_hits(std::span<const Ray> rays, const TraceDesc& desc = {});
     // Closest hits at the accelerator's own level, which must be refined or certified; then t, u and v of what each met
     // in float64, of the ray in float64. What is met is found with the ray rounded to float32.
@@ -180,6 +184,7 @@ class AbstractAccel {
     uint attribute_number(std::string_view name) const;
     // Whose instance was hit, and which of its instances. Throws Error for a miss and if edits are pending.
     AccelHandle handle_of(const Hit& hit) const;
+    // Counts from 0 among the instances of handle_of(hit).
     std::size_t index_in_handle(const Hit& hit) const;
     // AccelView::features without what traces with this mask, cull and occlusion_only do not need: as long as
     // revision() does not change, kernels that ask for nothing else may be specialised for it. Throws Error if edits
@@ -194,11 +199,11 @@ class AbstractAccel {
     Capability capability(Feature feature) const;
     // Throws Error, which names `kernel`, where the accelerator lacks Feature::kernel_queries.
     void check_kernel_queries(const std::string& kernel) const;
-    std::vector<Capability> capabilities() const;
+    std::vector<Capability> capabilities() const;  // of all features, in their order
     // Which of the two modules of a kernel with twinray/glsl/query.glsl fits.
     bool is_software() const;
 
-    void wait_for_gpu();
+    void wait_for_gpu();  // as Context::wait_for_gpu
     // GPU time per pass of the last sync() that built something into commands of its own; waits for it.
     std::vector<PassTiming> build_timings() const;
     // As of the last sync; what older work may still read is not counted.
@@ -209,9 +214,9 @@ class AbstractAccel {
     // The same for an accelerator of nothing but such meshes and so many instances, before any is pushed.
     BuildBytes memory_requirements(std::span<const GeometrySize> geometries, std::size_t instance_count) const;
 
-    const AccelOptions& options() const;
-    Context& context() const;
-    const std::string& name() const;
+    const AccelOptions& options() const;  // those that it was made with
+    Context& context() const;             // that it was made on
+    const std::string& name() const;      // "SwTlas", "HwTlas", ...
 
     // What the library itself needs of it.
     AccelBackend& backend() const { return *backend_; }

@@ -29,17 +29,19 @@
 
 namespace twinray {
 
+// From the lowest to the highest value, both included.
 struct Interval {
     double low = 0, high = 0;
 
     bool operator==(const Interval&) const = default;
 };
 
+// A value that rays told, and what is known of its error.
 struct Estimate {
     double value = 0;
     Interval interval_95;
 
-    double half_width() const { return (interval_95.high - interval_95.low) / 2; }
+    double half_width() const { return (interval_95.high - interval_95.low) / 2; }  // of the interval
 };
 
 // Is called with how many more rays are done; by exchanges_of_pairs() with groups.
@@ -47,6 +49,7 @@ using ProgressCallback = std::function<void(std::uint64_t)>;
 
 // Faces ---------------------------------------------------------------------------------------------------------------
 
+// A triangle of an instance; both count from 0.
 struct Face {
     uint instance, primitive;
 };
@@ -56,6 +59,7 @@ enum class Sides : std::uint8_t {
     front,  // on which the vertices turn counter-clockwise in object space
     both,
 };
+// As options spell it.
 constexpr std::string_view name_of(Sides sides) { return sides == Sides::front ? "front" : "both"; }
 
 // By what faces are put together to groups.
@@ -66,7 +70,7 @@ enum class FaceGrouping : std::uint8_t {
     material,  // by its index in the scene; of an accelerator by Faces::metadata()
     custom,    // Faces::set_custom_groups()
 };
-std::string_view name_of(FaceGrouping grouping);
+std::string_view name_of(FaceGrouping grouping);  // as options spell it
 
 // As long as the face's area in world space, perpendicular to its front; 0 of faces that no ray can meet.
 dvec3 area_vector(const Scene& scene, Face face);
@@ -83,15 +87,17 @@ class Faces {
     Faces(Faces&&) noexcept;
     Faces& operator=(Faces&&) noexcept;
     ~Faces();
-    std::size_t count() const;
-    Face operator[](std::size_t face) const;
+    std::size_t count() const;                                // of faces, those without area too
+    Face operator[](std::size_t face) const;                  // by its number
     const std::vector<double>& areas() const;                 // by face
     const std::vector<std::size_t>& triangle_counts() const;  // by instance
     std::uint64_t bytes() const;                              // of device memory
     // Of Faces of an accelerator, else Error: what it held then, whether it has been synced with edits since, and the
     // face_metadata of its meshes, ascending, each once (0 for those without), which number groups by material.
     const Scene& scene() const;
+    // No edit of it was synced since.
     bool is_current(AbstractAccel& accel) const;
+    // By the group's number.
     const std::vector<uint>& metadata() const;
 
     // One for each face, below their count. Throws Error, and changes nothing, for any other count or number.
@@ -101,6 +107,7 @@ class Faces {
     std::vector<uint> groups(FaceGrouping grouping) const;
     std::size_t group_count(FaceGrouping grouping) const;                 // groups without a face included
     std::vector<std::vector<uint>> members(FaceGrouping grouping) const;  // of each, those with an area, ascending
+    // Sums over members.
     std::vector<double> areas_of(const std::vector<std::vector<uint>>& groups) const;
 
     struct State;  // internal
@@ -114,9 +121,12 @@ class Faces {
 // F_ij is the fraction of the diffuse radiation of group i that meets group j directly (Howell, "A catalog of radiation
 // configuration factors"), A_i F_ij = A_j F_ji their exchange.
 
-enum class Sequence : std::uint8_t { sobol, random };  // of samples: Owen-scrambled Sobol points (PBRT-v4, 8.7)
+// Of samples: Owen-scrambled Sobol points (PBRT-v4, 8.7), or random ones.
+enum class Sequence : std::uint8_t { sobol, random };
+// As options spell it.
 constexpr std::string_view name_of(Sequence sequence) { return sequence == Sequence::sobol ? "sobol" : "random"; }
 
+// What a row of the matrix is computed by.
 struct ViewFactorOptions {
     FaceGrouping grouping = FaceGrouping::face;
     // `front`: faces radiate from their fronts, and what meets a back side counts as neither face nor open. `both`:
@@ -139,17 +149,20 @@ enum class PairEstimator : uint {
 };
 inline constexpr std::array all_pair_estimators = {PairEstimator::automatic, PairEstimator::hits, PairEstimator::area,
                                                    PairEstimator::contour};
+// As options spell it.
 constexpr std::string_view name_of(PairEstimator estimator) {
     constexpr std::array<std::string_view, 4> names = {"auto", "hits", "area", "contour"};
     return names[static_cast<std::size_t>(estimator)];
 }
 
+// An entry of the matrix.
 struct ViewFactor {
     uint target = 0;                     // group
     float value = 0, low = 0, high = 0;  // and its interval
     PairEstimator by = PairEstimator::hits;
 };
 
+// A row of the matrix: where the radiation of one group goes.
 struct ViewFactorRow {
     uint group = 0;
     std::uint64_t rays = 0;  // none where it has no area
@@ -167,6 +180,7 @@ struct KnownExchange {
     PairEstimator by;  // area where anything of it is by areas
 };
 
+// What exchanges_of_pairs() found.
 struct PairExchanges {
     std::vector<KnownExchange> known;  // ascending by i, then j
     std::uint64_t left_to_hits = 0;    // pairs of groups that may see each other
@@ -195,7 +209,7 @@ class ViewFactors {
                 std::span<const KnownExchange> known = {});
     ~ViewFactors();
 
-    std::size_t row_count() const;
+    std::size_t row_count() const;             // as many as groups
     const std::vector<double>& areas() const;  // of groups
     std::size_t batch_size() const;            // how many rows are best computed at a time
     // Rows [first, last), in order. What a row holds depends on the options and the scene alone.
@@ -214,6 +228,7 @@ struct ViewFactorResiduals {
         0;               // the same in its standard errors, of pairs with at least 10 rays expected either way
     double closure = 0;  // largest |1 - sum_j F_ij - open - back| of rows with an area
 };
+// Of a whole matrix.
 ViewFactorResiduals residuals_of(const std::vector<ViewFactorRow>& rows, const std::vector<double>& areas);
 
 // The least change, in squares weighted by inverse binomial variances, after which A_i F_ij = A_j F_ji but for rounding
@@ -235,7 +250,7 @@ class RowFile {
     void create();  // begins anew, without rows
     // After load() or create(). Throws Error naming the file where it cannot be written.
     void append(std::span<const ViewFactorRow> rows);
-    void remove();
+    void remove();  // the file, if it is there
 
   private:
     struct State;
@@ -262,6 +277,7 @@ Radiosity solve_radiosity(const std::vector<ViewFactorRow>& rows, std::span<cons
 
 // Light ---------------------------------------------------------------------------------------------------------------
 
+// Where in their cells rays of a grid pass.
 enum class GridPoints : std::uint8_t {
     random,   // one in each cell, uniform and independent: means are unbiased and have intervals
     centers,  // of the cells: the same rays for every seed
@@ -275,6 +291,7 @@ struct RayGridDesc {
     std::uint64_t seed = 1;
 };
 
+// What illuminate() computes, and how.
 struct IlluminationDesc {
     RayGridDesc grid;
     Sides sides = Sides::both;
@@ -297,6 +314,7 @@ struct LitArea {
     double irradiance() const { return surface > 0 ? area / surface : 0; }
 };
 
+// What illuminate() found: an entry a group.
 struct Illumination {
     std::vector<LitArea> groups;
     LitArea total;  // hits of all groups; as a group of its own
@@ -308,6 +326,7 @@ struct Illumination {
 Illumination illuminate(AbstractAccel& accel, const Scene& scene, const Faces& faces, const IlluminationDesc& desc);
 Illumination illuminate(AbstractAccel& accel, const Faces& faces, const IlluminationDesc& desc);
 
+// How sky_light() and sun_hours() sample.
 struct SkyRaysDesc {
     uint samples = 256;  // rays of each face; 1 to 2^20
     Sides sides = Sides::both;
@@ -315,12 +334,14 @@ struct SkyRaysDesc {
     ProgressCallback progress = {};
 };
 
+// What a face received.
 struct Received {
     std::uint64_t free_rays = 0;  // that got out of the scene
     double value = 0;
     Interval interval;
 };
 
+// An entry a face.
 struct SkyLight {
     std::vector<Received> faces;
     std::uint64_t ray_count = 0;
@@ -333,6 +354,7 @@ struct SkyLight {
 SkyLight sky_light(AbstractAccel& accel, const Scene& scene, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc);
 SkyLight sky_light(AbstractAccel& accel, const Faces& faces, dvec3 zenith, const SkyRaysDesc& desc);
 
+// Where the sun stands, and for how long.
 struct SunPosition {
     dvec3 direction;   // in which its rays go; finite, of any length but 0
     double hours = 1;  // for which it stays; finite and not negative
@@ -348,12 +370,15 @@ SkyLight sun_hours(AbstractAccel& accel, const Faces& faces, std::span<const Sun
 // east, the zenith's last; z is up, y north. Tregenza, "Subdivision of the sky hemisphere for luminance measurements"
 // (1987), and Reinhart's division of each into 2 x 2 or 4 x 4.
 inline constexpr std::array<std::string_view, 3> sky_names = {"tregenza145", "reinhart577", "reinhart2305"};
+// A part of the sky, by its middle.
 struct SkyPatch {
     dvec3 direction;         // unit
     double solid_angle = 0;  // steradians; 2 pi in all
 };
+// By one of sky_names; throws Error for another name.
 std::vector<SkyPatch> sky_patches(std::string_view name);
 
+// Options of visibility().
 struct VisibilityDesc {
     float t_near = 0;  // in lengths of a direction: hits before it do not count, for points on the scene itself
     ProgressCallback progress = {};
@@ -365,12 +390,14 @@ std::vector<std::uint8_t> visibility(AbstractAccel& accel, std::span<const vec3>
                                      std::span<const vec3> directions, std::span<const vec3> normals = {},
                                      const VisibilityDesc& desc = {});
 
+// What centroid() computes, and how.
 struct CentroidDesc {
     RayGridDesc grid;
     bool keeps_points = false;
     ProgressCallback progress = {};
 };
 
+// What centroid() found.
 struct Centroid {
     std::uint64_t ray_count = 0;
     std::uint64_t point_count = 0;  // rays that hit

@@ -26,6 +26,7 @@ struct ExternalMemory {
     std::uint64_t bytes = 0;
 };
 
+// What a buffer is to be.
 struct BufferDesc {
     std::string name;         // required: shows in errors, debuggers and validation messages
     std::uint64_t bytes = 0;  // 0 is allowed and gives an empty buffer with address 0
@@ -58,10 +59,10 @@ class Buffer {
     Buffer(Buffer&& other) noexcept;
     Buffer& operator=(Buffer&& other) noexcept;
 
-    VkBuffer handle() const { return made_.buffer; }
-    std::uint64_t address() const { return address_; }
-    std::uint64_t bytes() const { return bytes_; }
-    const std::string& name() const { return name_; }
+    VkBuffer handle() const { return made_.buffer; }    // null where it is empty
+    std::uint64_t address() const { return address_; }  // on the device; 0 where it is empty
+    std::uint64_t bytes() const { return bytes_; }      // as BufferDesc asked for
+    const std::string& name() const { return name_; }   // as in BufferDesc
     // With a file descriptor of the caller's, who closes it or gives it to an import that takes it. Throws Error unless
     // the buffer is exportable.
     ExportedMemory exported() const;
@@ -120,6 +121,7 @@ class Commands {
     // A scope: everything recorded while it lives belongs to it.
     class Pass {
       public:
+        // Begins it; see Commands::pass.
         Pass(Commands& commands, const std::string& name);
         ~Pass();
         Pass(const Pass&) = delete;
@@ -128,8 +130,8 @@ class Commands {
       private:
         Commands& commands_;
     };
-    [[nodiscard]] Pass pass(const std::string& name) { return Pass(*this, name); }
-    bool in_pass() const;
+    [[nodiscard]] Pass pass(const std::string& name) { return Pass(*this, name); }  // begins one
+    bool in_pass() const;                                                           // whether one is open
     // Within a pass: what follows sees what went before, as from one pass to the next.
     void barrier();
 
@@ -149,7 +151,9 @@ class Commands {
         std::uint64_t offset;  // in the target
         std::span<const std::byte> data;
     };
+    // Throws Error for one beyond the target.
     void upload_regions(const Buffer& target, std::span<const Region> regions);
+    // A range of one buffer into another.
     void copy(const Buffer& from, std::uint64_t from_offset, const Buffer& to, std::uint64_t to_offset,
               std::uint64_t bytes);
     // bytes must be a multiple of 4.
@@ -171,7 +175,7 @@ class Commands {
     double submit_and_wait();
     // The same with what is recorded so far: more may follow. Not within a pass.
     double submit_part();
-    bool is_of_caller() const;
+    bool is_of_caller() const;  // whether they were made with CallerCommands
     // When these commands are done: CallerCommands::done, or what submit() returned.
     SyncPoint done() const;
     // A point that they will reach, for what counts on them before they are submitted, as a sync that is recorded into
@@ -182,7 +186,7 @@ class Commands {
     // timestamps.
     std::vector<PassTiming> timings() const;
 
-    Context& context() const;
+    Context& context() const;        // that they were made on
     VkCommandBuffer handle() const;  // where the next pass is recorded, until it ends
 
   private:
@@ -195,6 +199,7 @@ class Commands {
 // Copies a range back to the host; submits and waits.
 void download_bytes(Context& context, const Buffer& buffer, std::uint64_t offset, std::span<std::byte> into);
 
+// The same, of values of one type.
 template <class T>
 std::vector<T> download(Context& context, const Buffer& buffer, std::uint64_t count, std::uint64_t byte_offset = 0) {
     std::vector<T> values(count);
@@ -202,11 +207,13 @@ std::vector<T> download(Context& context, const Buffer& buffer, std::uint64_t co
     return values;
 }
 
+// A constant of a kernel, given when its pipeline is made.
 struct SpecializationConstant {
     std::uint32_t id;
     std::uint32_t value;  // VkBool32 for bools
 };
 
+// What a kernel is made of.
 struct KernelDesc {
     std::string name = {};                      // folder_stem: the label and the timing have this name, too
     std::span<const std::uint32_t> spirv = {};  // embedded at build time
@@ -221,18 +228,20 @@ struct KernelDesc {
 // all others of the context that are made from the same. Use Kernel<Args>.
 class ComputePipeline {
   public:
+    // Compiles it. Throws Error.
     ComputePipeline(Context& context, const KernelDesc& desc, std::uint32_t args_bytes);
     ~ComputePipeline();
     ComputePipeline(const ComputePipeline&) = delete;
     ComputePipeline& operator=(const ComputePipeline&) = delete;
 
+    // So many groups, spread over x and y where they are many.
     void dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count,
                          VkDescriptorSet images = VK_NULL_HANDLE) const;
     // As many groups as the VkDispatchIndirectCommand at `offset` of `counts` says.
     void dispatch_indirect(Commands& commands, const void* args, const Buffer& counts, std::uint64_t offset) const;
 
-    const std::string& name() const { return desc_.name; }
-    std::uint32_t group_size() const { return desc_.group_size; }
+    const std::string& name() const { return desc_.name; }         // as in KernelDesc
+    std::uint32_t group_size() const { return desc_.group_size; }  // as in KernelDesc
 
   private:
     void bind(Commands& commands, const void* args, VkDescriptorSet images) const;
@@ -249,6 +258,7 @@ class Kernel {
     static_assert(sizeof(Args) <= 128 && sizeof(Args) % 4 == 0);
 
   public:
+    // As ComputePipeline.
     Kernel(Context& context, const KernelDesc& desc) : pipeline_(context, desc, sizeof(Args)) {}
 
     // Runs at least `count` invocations; the shader must ignore global_index() >= count. Opens a pass with the
@@ -258,14 +268,16 @@ class Kernel {
                   VkDescriptorSet images = VK_NULL_HANDLE) const {
         dispatch_groups(commands, args, (count + pipeline_.group_size() - 1) / pipeline_.group_size(), images);
     }
+    // So many groups.
     void dispatch_groups(Commands& commands, const Args& args, std::uint64_t group_count,
                          VkDescriptorSet images = VK_NULL_HANDLE) const {
         pipeline_.dispatch_groups(commands, &args, group_count, images);
     }
+    // As ComputePipeline::dispatch_indirect.
     void dispatch_indirect(Commands& commands, const Args& args, const Buffer& counts, std::uint64_t offset) const {
         pipeline_.dispatch_indirect(commands, &args, counts, offset);
     }
-    const std::string& name() const { return pipeline_.name(); }
+    const std::string& name() const { return pipeline_.name(); }  // as in KernelDesc
 
   private:
     ComputePipeline pipeline_;
@@ -275,7 +287,7 @@ class Kernel {
 // before took. Results must not depend on where it cuts. Remembers the rate from one use to the next.
 class Pace {
   public:
-    explicit Pace(const Context& context);
+    explicit Pace(const Context& context);  // with the limit of this context
 
     // Has `record(first, count)` record all of `count` items in order, in as many parts as it takes: all but the last
     // are submitted and waited for, with what the commands held before. Commands of the caller stay whole.

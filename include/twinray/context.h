@@ -27,6 +27,7 @@ struct KernelDesc;
 // Warnings and validation messages, a sentence each.
 using Log = std::function<void(std::string_view)>;
 
+// As VkPhysicalDeviceType.
 enum class DeviceKind : std::uint8_t { discrete, integrated, virtual_gpu, cpu, other };
 
 // What twinray wants to know of a device; filled by query_device_properties.
@@ -70,8 +71,9 @@ std::vector<std::string> missing_for_software(const DeviceProperties& device);
 // The same for the hardware accelerator (includes what software needs).
 std::vector<std::string> missing_for_hardware(const DeviceProperties& device);
 
-const char* name_of(DeviceKind kind);
+const char* name_of(DeviceKind kind);  // "discrete GPU", "CPU", ...
 
+// What choose_device() found.
 struct DeviceChoice {
     int index = -1;                       // into the given span; -1 = none fits
     std::vector<std::string> rejections;  // one sentence for each device that was not chosen
@@ -103,13 +105,13 @@ class DeviceRequirements {
     DeviceRequirements(const DeviceRequirements&) = delete;
     DeviceRequirements& operator=(const DeviceRequirements&) = delete;
 
-    const DeviceProperties& supported() const;
+    const DeviceProperties& supported() const;  // as given
     // A sentence each: "twinray needs timelineSemaphore because ...; this device has it".
     std::vector<std::string> sentences() const;
 
     // For a device that enables nothing else: features() is its VkDeviceCreateInfo::pNext.
     const std::vector<const char*>& extensions() const;
-    const void* features() const;
+    const void* features() const;  // the first struct of the chain
 
     // For a device of a host that enables things of its own: adds both to `info`. A feature is switched on in the
     // struct of the host's chain that has it (of the feature alone or of a Vulkan version; that struct is written to);
@@ -121,6 +123,7 @@ class DeviceRequirements {
     struct State;
     std::unique_ptr<State> state_;
 };
+// Where a buffer lies, by who writes and reads it.
 enum class Memory : std::uint8_t {
     device,    // fastest for the GPU, not mapped
     upload,    // host writes once, GPU reads
@@ -150,6 +153,7 @@ struct ImageRequest {
     const VkImageCreateInfo* info = nullptr;
 };
 
+// What it gets.
 struct AllocatedImage {
     VkImage image = VK_NULL_HANDLE;
     std::uint64_t bytes = 0;     // of its memory
@@ -196,7 +200,7 @@ enum class TuningRow : std::uint8_t {
     gpu,        // what any device gets that is not known to want another
     cpu_driver  // Mesa's lavapipe: groups one after the other on each core, and no memory of their own
 };
-const char* name_of(TuningRow row);
+const char* name_of(TuningRow row);  // as TWINRAY_TUNING names it
 
 // A value that a timeline semaphore reaches when the work submitted up to here is done.
 struct SyncPoint {
@@ -207,6 +211,7 @@ struct SyncPoint {
 // A kernel that is made, and the size of its push constants. Any thread.
 using KernelWatch = std::function<void(const KernelDesc& kernel, std::uint32_t args_bytes)>;
 
+// How a context is made that has a device of its own.
 struct ContextDesc {
     std::string name = "twinray";
     // "": the best (hardware ray tracing first, then discrete > integrated > virtual > cpu, then order); or a decimal
@@ -257,9 +262,9 @@ class Context {
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
-    VkDevice device() const;
-    VkPhysicalDevice physical_device() const;
-    std::uint32_t queue_family() const;
+    VkDevice device() const;                     // made here or adopted
+    VkPhysicalDevice physical_device() const;    // of the device
+    std::uint32_t queue_family() const;          // of the one queue
     const DeviceProperties& properties() const;  // what is enabled, not merely supported
     std::uint64_t allocated_bytes() const;       // of the buffers and images that are alive
 
@@ -269,9 +274,9 @@ class Context {
     // signals it later, on another queue; until it is signalled, whoever waits for that submission, this context's end
     // included, waits too.
     void wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
-    SyncPoint last_submission() const;
-    bool is_reached(SyncPoint point) const;
-    void wait(SyncPoint point) const;
+    SyncPoint last_submission() const;       // reached when all that was submitted so far is done
+    bool is_reached(SyncPoint point) const;  // without waiting
+    void wait(SyncPoint point) const;        // until it is reached; throws DeviceLost
     // Waits for everything submitted or announced so far, then frees what was retired.
     void wait_for_gpu();
 
@@ -285,7 +290,7 @@ class Context {
 
     // What the library itself needs of it.
     struct State;
-    State& state() const { return *state_; }
+    State& state() const { return *state_; }  // for twinray's own parts
 
   private:
     std::unique_ptr<State> state_;

@@ -15,8 +15,10 @@ namespace twinray {
 // Numbers of a position, three of them from the start of each vertex. With 16 bits as IEEE's half, or as -32767 to
 // 32767 standing for -1 to 1; arrays of 16 bits are read by words of 4 bytes, so up to 2 bytes before or behind them.
 enum class VertexFormat : std::uint8_t { float32, float16, snorm16 };
+// Of one number.
 constexpr std::uint32_t component_bytes(VertexFormat format) { return format == VertexFormat::float32 ? 4 : 2; }
 
+// What the three indices of a triangle are.
 enum class IndexFormat : std::uint8_t {
     none,  // triangle i has the vertices 3i, 3i + 1, 3i + 2
     uint16,

@@ -38,8 +38,9 @@ class DeviceLost : public Error {
 // Vectors of two to four numbers: plain data, of which GLM's, or an application's own with the same members, convert to
 // and from. They do no arithmetic, which is for the application's own.
 
-using uint = std::uint32_t;
+using uint = std::uint32_t;  // as in GLSL
 
+// Of N numbers of type T, by the names x, y, z, w.
 template <int N, class T>
 struct Vec;
 
@@ -142,6 +143,7 @@ struct Vec<4, T> {
     constexpr bool operator==(const Vec&) const = default;
 };
 
+// Vectors under the names of GLSL.
 using vec2 = Vec<2, float>;
 using vec3 = Vec<3, float>;
 using vec4 = Vec<4, float>;
@@ -159,15 +161,15 @@ using uvec4 = Vec<4, uint>;
 struct Transform {
     std::array<vec4, 3> rows = {vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0)};
 
-    static Transform translation(vec3 offset);
-    static Transform scaling(vec3 factors);
+    static Transform translation(vec3 offset);  // moves by it
+    static Transform scaling(vec3 factors);     // along the axes
     // Of a column-major matrix m[column][row], as GLM's, whose fourth row must be (0, 0, 0, 1). Throws Error otherwise.
     template <class Matrix>
     static Transform of(const Matrix& m) {
         return of_columns({vec4(m[0][0], m[0][1], m[0][2], m[0][3]), vec4(m[1][0], m[1][1], m[1][2], m[1][3]),
                            vec4(m[2][0], m[2][1], m[2][2], m[2][3]), vec4(m[3][0], m[3][1], m[3][2], m[3][3])});
     }
-    static Transform of_columns(const std::array<vec4, 4>& columns);
+    static Transform of_columns(const std::array<vec4, 4>& columns);  // by columns
 
     bool operator==(const Transform&) const = default;
 };
@@ -175,7 +177,7 @@ static_assert(sizeof(Transform) == 48);
 
 // Evaluated in float64, rounded once.
 vec3 transform_point(const Transform& transform, vec3 point);
-vec3 transform_vector(const Transform& transform, vec3 vector);
+vec3 transform_vector(const Transform& transform, vec3 vector);  // without the offset
 
 // a after b.
 Transform operator*(const Transform& a, const Transform& b);
@@ -196,11 +198,11 @@ struct Bounds {
     vec3 lo = vec3(std::numeric_limits<float>::infinity());
     vec3 hi = vec3(-std::numeric_limits<float>::infinity());
 
-    bool is_empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
-    void include(vec3 point);
+    bool is_empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }  // holds no point
+    void include(vec3 point);                                                          // grows so that it holds it
     void include(const Bounds& other);
-    vec3 size() const;  // 0 where it is empty
-    vec3 center() const;
+    vec3 size() const;    // 0 where it is empty
+    vec3 center() const;  // the middle; not a number where it is empty
 };
 
 // Eight bytes: a device address when pushed to the GPU, a host address in code that both run. GLSL has two words for
@@ -213,9 +215,10 @@ template <class T>
 struct Ref {
     Address address = 0;
 
-    T& operator[](std::size_t i) const { return reinterpret_cast<T*>(address)[i]; }  // of memory of the host
-    static Ref to(const T* host) { return {reinterpret_cast<std::uint64_t>(host)}; }
+    T& operator[](std::size_t i) const { return reinterpret_cast<T*>(address)[i]; }   // of memory of the host
+    static Ref to(const T* host) { return {reinterpret_cast<std::uint64_t>(host)}; }  // of memory of the host
 };
+// The usual ones.
 using Floats = Ref<float>;
 using Uints = Ref<uint>;
 
@@ -241,6 +244,7 @@ struct Mesh {
 
     // Texture coordinates as Texture::uv_set names them; the first stand in for a second set that the mesh lacks.
     const std::vector<vec2>& uv_set(uint set) const { return set == 1 && !second_uvs.empty() ? second_uvs : uvs; }
+    // Of one triangle.
     uint material(std::size_t triangle) const { return materials.empty() ? 0 : materials[triangle]; }
 };
 
@@ -266,8 +270,10 @@ struct MeshView {
     std::span<const AttributeView> attributes = {};  // further ones, by names that others of the accelerator may share
     std::span<const std::byte> metadata = {};        // of the mesh as a whole: any struct that is copied as bytes
 
+    // Positions and triangles alone.
     MeshView(std::string_view mesh_name, std::span<const vec3> points, std::span<const uvec3> vertex_indices)
         : name(mesh_name), positions(points), triangles(vertex_indices) {}
+    // All that the mesh has.
     MeshView(const Mesh& mesh)
         : name(mesh.name),
           positions(mesh.positions),

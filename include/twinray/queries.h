@@ -40,10 +40,12 @@ inline constexpr std::uint64_t default_max_pairs = 1u << 27;
 
 // All hits of rays ----------------------------------------------------------------------------------------------------
 
+// Hits by ray, those of all rays in one array.
 struct HitsOfRays {
     std::vector<std::uint64_t> first;  // of each ray's hits, and at the end how many there are in all
     std::vector<Hit> hits;             // of each ray ascending by t, then by (instance, primitive)
 
+    // The hits of one ray.
     std::span<const Hit> of(std::size_t ray) const {
         return std::span(hits).subspan(first[ray], first[ray + 1] - first[ray]);
     }
@@ -63,7 +65,7 @@ class AllHits {
 
     // 36 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
     std::uint64_t max_hits() const;
-    void set_max_hits(std::uint64_t count);
+    void set_max_hits(std::uint64_t count);  // for the calls to come
 
   private:
     struct State;
@@ -94,7 +96,7 @@ struct DevicePairs {
 // context, and the count where more than max_pairs() are found.
 class BroadPhase {
   public:
-    explicit BroadPhase(Context& context);
+    explicit BroadPhase(Context& context);  // keeps memory between calls
     ~BroadPhase();
 
     // All pairs, also within one handle, each once: a < b, ascending.
@@ -144,6 +146,7 @@ inline constexpr std::array all_pair_classes = {PairClass::separate,         Pai
                                                 PairClass::edge_touch,       PairClass::coplanar_touch,
                                                 PairClass::coplanar_overlap, PairClass::crossing};
 
+// As `twinray collide` writes it.
 constexpr std::string_view name_of(PairClass pair_class) {
     constexpr std::string_view names[] = {"separate",       "vertex_touch",     "edge_touch",
                                           "coplanar_touch", "coplanar_overlap", "crossing"};
@@ -155,6 +158,7 @@ struct WorldTriangle {
     dvec3 a, b, c;
 };
 
+// Two triangles whose class is asked for.
 struct TrianglePair {
     WorldTriangle a, b;
 };
@@ -177,6 +181,7 @@ struct ContactSegment {
 // Which vertices of a mesh are one, so that triangles that have them are neighbours.
 enum class SharedVertices : std::uint8_t { by_index, by_position };
 
+// What NarrowPhase::find() looks for.
 struct ContactOptions {
     // Also pairs within an instance, but for those that have no more in common than vertices that they share and the
     // edge between two of them. Pairs of its neighbours that are folded onto each other overlap.
@@ -185,6 +190,7 @@ struct ContactOptions {
     bool segments = false;  // of pairs of class crossing
 };
 
+// What NarrowPhase::find() found.
 struct Contacts {
     std::vector<TriangleContact> list;     // ascending
     std::vector<ContactSegment> segments;  // by contact, of class crossing, others (0, 0, 0); empty unless asked for
@@ -194,7 +200,7 @@ struct Contacts {
     std::uint64_t host_decided = 0;        // of those, undecided by float64
     double search_seconds = 0, classify_seconds = 0, host_seconds = 0;  // the last is part of the one before
 
-    std::size_t count(PairClass pair_class) const;
+    std::size_t count(PairClass pair_class) const;  // of the list
 };
 
 // Finds all pairs of triangles of different instances that touch or intersect, and how, exactly.
@@ -208,6 +214,7 @@ class NarrowPhase {
     // that exceeds max_pairs().
     Contacts find(const Scene& scene, const ContactOptions& options = {});
     Contacts find(AbstractAccel& accel, const ContactOptions& options = {});  // of what it holds: see scene_of()
+    // Of meshes where instances put them.
     Contacts find(std::span<const MeshView> meshes, std::span<const MeshInstance> instances,
                   const ContactOptions& options = {});
     // The class of each pair given. Throws Error for a coordinate that is neither 0 nor of a magnitude from 2^-245 to
@@ -216,6 +223,7 @@ class NarrowPhase {
 
     // Of boxes, of instances and of triangles. At most 2^32 - 1.
     std::uint64_t max_pairs() const;
+    // For the calls to come.
     void set_max_pairs(std::uint64_t count);
 
   private:
@@ -225,6 +233,7 @@ class NarrowPhase {
 
 // Points --------------------------------------------------------------------------------------------------------------
 
+// The point of a scene that is closest to a given one.
 struct ClosestPoint {
     dvec3 position = dvec3(0);  // on the triangle, in world space
     double distance = std::numeric_limits<double>::infinity();
@@ -233,6 +242,7 @@ struct ClosestPoint {
     uint instance = 0, triangle = 0;
 };
 
+// A triangle that is near to a given point, by the index of the point.
 struct NearTriangle {
     uint point = 0;
     uint instance = 0, triangle = 0;
@@ -256,7 +266,7 @@ class PointQuery {
     // What the accelerator holds now: see scene_of(). It may change or end.
     void set(AbstractAccel& accel);
     void set(std::span<const MeshView> meshes, std::span<const MeshInstance> instances);
-    std::size_t triangle_count() const;
+    std::size_t triangle_count() const;  // of what is searched
 
     // Of each point, the closest triangle that is at most `max_distance` away: of several, the first by (instance,
     // triangle). Throws Error for a distance below 0 or NaN.
@@ -285,8 +295,8 @@ class PointQuery {
 
     // Of all that a call of within() finds, 16 bytes of device memory each. Default: 2^27; at most 2^32 - 1.
     std::uint64_t max_found() const;
-    void set_max_found(std::uint64_t count);
-    std::uint64_t bytes() const;  // of device memory that is kept
+    void set_max_found(std::uint64_t count);  // for the calls to come
+    std::uint64_t bytes() const;              // of device memory that is kept
 
   private:
     struct State;

@@ -40,8 +40,10 @@ struct Image {
     bool is_placeholder = false;             // a checkerboard in place of an image that could not be decoded
 };
 
+// What lies beyond an image's edges.
 enum class Wrap : std::uint8_t { repeat, clamp_to_edge, mirrored_repeat };
-enum class Filter : std::uint8_t { linear, nearest };  // of texels that are magnified
+// Of texels that are magnified.
+enum class Filter : std::uint8_t { linear, nearest };
 
 // An image with its sampling: uv' = rotation/scale/offset of KHR_texture_transform applied to the mesh's uv.
 struct Texture {
@@ -55,6 +57,7 @@ struct Texture {
     vec3 uv_row1 = vec3(0, 1, 0);
 };
 
+// As glTF has it.
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
 // glTF 2.0 metallic-roughness material with KHR_materials_{anisotropy, clearcoat, emissive_strength, ior, sheen,
@@ -103,6 +106,7 @@ struct Instance {
 
 // KHR_materials_variants: other materials for the same triangles.
 struct MaterialVariant {
+    // The materials of one mesh.
     struct Part {
         uint mesh = 0;                // index into Scene::meshes
         std::vector<uint> materials;  // in place of Mesh::materials
@@ -122,6 +126,7 @@ struct Camera {
 
 // KHR_lights_punctual.
 struct Light {
+    // As KHR_lights_punctual names them.
     enum class Kind : std::uint8_t { directional, point, spot };
     std::string name;
     Kind kind = Kind::point;
@@ -219,6 +224,7 @@ ImagePlane image_plane(const Camera& camera, float aspect);
 // Its `t` is the depth along `forward`.
 Ray ray_through(const ImagePlane& plane, vec2 point);
 
+// Where project() puts a point.
 struct Projected {
     vec2 point;
     float depth;
@@ -243,9 +249,9 @@ static_assert(sizeof(Rgb) == 3);
 
 // Linear light in [0, 1] of a value of sRGB in [0, 1] (IEC 61966-2-1), and back; what is outside is brought inside.
 float linear_of_srgb(float encoded);
-float srgb_of_linear(float linear);
-vec3 linear_of(Rgb color);
-Rgb rgb_of_linear(vec3 linear);
+float srgb_of_linear(float linear);  // back
+vec3 linear_of(Rgb color);           // by channel
+Rgb rgb_of_linear(vec3 linear);      // by channel, rounded
 
 // `pixels`: width * height of them, row 0 on top. Whole or not at all; throws Error naming the file.
 void write_png(const std::filesystem::path& file, uint width, uint height, std::span<const Rgb> pixels);
@@ -288,27 +294,30 @@ bool is_image_file(const std::filesystem::path& file);
 // float64. Scene::rig holds them; all else of a loaded scene is in the rest pose
 // ---------------------------------------
 
+// Of an animation.
 struct TimeRange {
     double begin = 0, end = 0;  // seconds
 };
+// What a file says of an animation.
 struct AnimationInfo {
     std::string name;
     TimeRange range;    // the first and the last time of its keyframes; 0, 0 without any
     std::string fault;  // why it cannot be played; empty: it can
 };
-std::vector<AnimationInfo> animations_of(const Rig& rig);
+std::vector<AnimationInfo> animations_of(const Rig& rig);  // in the file's order
 
 // Where all nodes of a rig are, and the weights of its morph targets. Cheap to copy.
 class Pose {
   public:
     struct Nodes;
+    // Made by rest_pose() and pose_at().
     explicit Pose(std::shared_ptr<const Nodes> nodes) : nodes_(std::move(nodes)) {}
-    const Nodes* operator->() const { return nodes_.get(); }
+    const Nodes* operator->() const { return nodes_.get(); }  // for twinray's own parts
 
   private:
     std::shared_ptr<const Nodes> nodes_;
 };
-Pose rest_pose(const Rig& rig);
+Pose rest_pose(const Rig& rig);  // as the file has its nodes
 // At a time of an animation, by its index in animations_of(); before its first keyframe and after its last it stands
 // still. What the animation does not drive is at rest.
 Pose pose_at(const Rig& rig, std::size_t animation, double seconds);
@@ -366,6 +375,7 @@ class Deformer {
 
 // What a number of a texel is.
 enum class TexelFormat : std::uint8_t { unorm8, unorm16, float16, float32 };
+// Of one number.
 constexpr uint bytes_of(TexelFormat format) {
     return format == TexelFormat::unorm8 ? 1 : format == TexelFormat::float32 ? 4 : 2;
 }
@@ -387,6 +397,7 @@ struct Texels {
         const std::span<const std::byte> bytes = std::as_bytes(numbers);
         return {std::move(name), width, height, channels, format, {{bytes.begin(), bytes.end()}}};
     }
+    // Of an image of a scene, without mipmaps.
     static Texels of(const Image& image);
 };
 
@@ -400,6 +411,7 @@ enum class TextureStorage : std::uint8_t {
     buffers,  // by device address, filtered in float32: everywhere, in trace programs too
 };
 
+// How a texture is sampled.
 struct TextureOptions {
     Wrap wrap_u = Wrap::repeat;
     Wrap wrap_v = Wrap::repeat;
@@ -430,8 +442,8 @@ class TextureStore {
     // memory and views stay valid.
     void update(TextureRef ref, const Texels& texels);
     void update(TextureRef ref, const Image& image);
-    bool contains(TextureRef ref) const;
-    std::size_t size() const;
+    bool contains(TextureRef ref) const;  // whether it names one of this store
+    std::size_t size() const;             // how many textures there are
 
     // Uploads what changed since the last sync; a clean store does nothing and returns the last sync point.
     SyncPoint sync();
@@ -448,6 +460,7 @@ class TextureStore {
     std::uint64_t revision() const;
     // Bytes of textures in buffers: texels and records.
     std::uint64_t buffer_bytes() const;
+    // TextureStorage::images.
     bool has_images() const;
 
     // Throws Error if kernels compiled with TWINRAY_DEBUG met references that name nothing. Waits for the GPU.

@@ -210,6 +210,7 @@ class MultiTypeSet {
     MultiTypeSet(Context& context, const std::string& name)
         : storage_(context, name, {{std::string(Entries::name), sizeof(typename Entries::Type)}...}) {}
 
+    // A new element, behind the others of its type.
     template <class T>
     SetKey push(const T& element) {
         std::vector<T>& elements = std::get<std::vector<T>>(elements_);
@@ -230,7 +231,9 @@ class MultiTypeSet {
         check<T>(key, "get");
         return std::get<std::vector<T>>(elements_)[key.index];
     }
+    // Whether it names an element.
     bool contains(SetKey key) const { return key.type - 1u < slots() && key.index < sizes()[key.type - 1]; }
+    // How many elements there are.
     std::size_t size() const {
         return sum_unrolled([](const auto& elements) { return elements.size(); }, elements_);
     }
@@ -238,6 +241,7 @@ class MultiTypeSet {
     std::size_t size() const {
         return std::get<std::vector<T>>(elements_).size();
     }
+    // How many types there are.
     static constexpr std::size_t slots() { return sizeof...(Entries); }
 
     // The elements of a type as kernels left them; submits and waits. Throws Error if edits are pending.
@@ -382,7 +386,7 @@ class Soa {
     Soa(Context& context, const std::string& name, uint count)
         : storage_(context, name, count, Fields::offsets(count).back()) {}
 
-    uint count() const { return storage_.count(); }
+    uint count() const { return storage_.count(); }  // of items
     // What kernels take, by value. Valid as long as this lives.
     View view() const { return Fields::view(buffer().address(), count(), storage_.faults()); }
 
@@ -400,8 +404,8 @@ class Soa {
     // Throws Error if kernels compiled with TWINRAY_DEBUG met indices out of range. Waits for the GPU.
     void check_faults() const { storage_.check_faults(); }
 
-    Context& context() const { return storage_.context(); }
-    const Buffer& buffer() const { return storage_.buffer(); }
+    Context& context() const { return storage_.context(); }     // that it was made on
+    const Buffer& buffer() const { return storage_.buffer(); }  // that holds all fields
 
   private:
     template <class T>
@@ -420,7 +424,7 @@ class HostSoa {
     // Its items are zero.
     explicit HostSoa(uint count) : count_(count), memory_(Fields::offsets(count).back()) {}
 
-    uint count() const { return count_; }
+    uint count() const { return count_; }  // of items
     // Addresses of the host, for soa_get, soa_set and functions of shared headers. Valid as long as this lives.
     View view() { return Fields::view(reinterpret_cast<std::uint64_t>(memory_.data()), count_, {}); }
 
@@ -429,7 +433,9 @@ class HostSoa {
     std::vector<std::byte> memory_;
 };
 
+// The structure of arrays whose view is declared by TWINRAY_SOA_VIEW(View, LIST), on the device.
 #define TWINRAY_SOA(View, LIST) ::twinray::Soa<View LIST(TWINRAY_LIST_ENTRY, 0)>
+// The same in the host's memory.
 #define TWINRAY_HOST_SOA(View, LIST) ::twinray::HostSoa<View LIST(TWINRAY_LIST_ENTRY, 0)>
 
 // As many fields, in another number of items. Nothing is copied.
@@ -437,6 +443,7 @@ template <class View, class... Entries>
 Soa<View, Entries...> similar_soa(const Soa<View, Entries...>& like, uint count) {
     return {like.context(), like.buffer().name(), count};
 }
+// The same, in the host's memory.
 template <class View, class... Entries>
 HostSoa<View, Entries...> similar_soa(const HostSoa<View, Entries...>&, uint count) {
     return HostSoa<View, Entries...>(count);
@@ -451,6 +458,7 @@ T soa_get(const View& view, uint i, Ref<T> View::*field) {
     if (i >= view.count) fail_index("soa_get", i, view.count);
     return (view.*field)[i];
 }
+// The same, to write it.
 template <class View, class T>
 void soa_set(const View& view, uint i, Ref<T> View::*field, const std::type_identity_t<T>& value) {
     if (i >= view.count) fail_index("soa_set", i, view.count);

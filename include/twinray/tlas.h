@@ -16,7 +16,7 @@ class SwBackend;
 // The software accelerator: a two-level BVH built and traversed by compute shaders. Needs no ray tracing extension.
 class SwTlas final : public AbstractAccel {
   public:
-    explicit SwTlas(Context& context, const AccelOptions& options = {});
+    explicit SwTlas(Context& context, const AccelOptions& options = {});  // throws Error naming what is lacking
 
     // What the software accelerator can do on a device that it runs on.
     static Capability capability_on(const DeviceProperties& device, Feature feature);
@@ -24,6 +24,7 @@ class SwTlas final : public AbstractAccel {
     // Writes the built geometries and their instances, without what AccelOptions::keeps_surfaces keeps. Throws Error
     // when edits are pending and when the file cannot be written, which is then as it was before.
     void save(const std::filesystem::path& file) const;
+    // What load() has read.
     struct Loaded {
         std::unique_ptr<SwTlas> accel;
         std::vector<AccelHandle> handles;  // in the order in which they were pushed
@@ -67,11 +68,12 @@ struct AccelNeeds {
     bool kernel_queries = false;  // Feature::kernel_queries
 };
 
+// What choose_accel() chose, and why.
 struct AccelChoice {
     bool is_software = false;
     std::string why;  // "device 'cpu' is a CPU, without hardware for rays"
 
-    const char* name() const { return is_software ? "sw" : "hw"; }
+    const char* name() const { return is_software ? "sw" : "hw"; }  // as --accel takes it
 
     bool operator==(const AccelChoice&) const = default;
 };

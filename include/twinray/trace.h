@@ -23,6 +23,7 @@ struct TraceArgs;
 class Commands;
 class TraceProgram;
 
+// The hit with the smallest t, or whichever is found first.
 enum class Query : std::uint8_t { closest, any };
 
 // In which order rays are traced. Each hit is written where its ray asks for it, and is the same bits.
@@ -36,6 +37,7 @@ enum class RayOrder : std::uint8_t {
 };
 
 inline constexpr std::array all_ray_orders = {RayOrder::given, RayOrder::sorted};
+// As options spell it.
 constexpr std::string_view name_of(RayOrder order) { return order == RayOrder::sorted ? "sorted" : "given"; }
 
 // How a ray is tested against triangles, from the fastest to the surest. The hardware accelerator always uses the
@@ -47,6 +49,7 @@ enum class Level : std::uint8_t {
     certified,   // float64 decides what is hit and in which order; software only
 };
 inline constexpr std::array all_levels = {Level::fast, Level::watertight, Level::refined, Level::certified};
+// As options spell it.
 constexpr std::string_view name_of(Level level) {
     constexpr std::string_view names[] = {"fast", "watertight", "refined", "certified"};
     return names[static_cast<std::size_t>(level)];
@@ -60,6 +63,7 @@ enum class Layout : std::uint8_t {
 };
 
 inline constexpr std::array all_layouts = {Layout::compressed4, Layout::bvh2, Layout::compressed8};
+// As options spell it.
 constexpr std::string_view name_of(Layout layout) {
     constexpr std::string_view names[] = {"compressed4", "bvh2", "compressed8"};
     return names[static_cast<std::size_t>(layout)];
@@ -72,10 +76,12 @@ enum class BuildQuality : std::uint8_t {
 };
 
 inline constexpr std::array all_build_qualities = {BuildQuality::fast, BuildQuality::high, BuildQuality::ploc};
+// As options spell it.
 constexpr std::string_view name_of(BuildQuality quality) {
     return quality == BuildQuality::fast ? "fast" : quality == BuildQuality::high ? "high" : "ploc";
 }
 
+// How an accelerator is made.
 struct AccelOptions {
     // The highest level that traces ask for. From refined on, the accelerator keeps all meshes and transforms on the
     // device; it needs float64 there.
@@ -99,6 +105,7 @@ struct AccelOptions {
 // (v1 - v0) x (v2 - v0) points to, in object space: there the corners appear counter-clockwise.
 enum class Cull : std::uint8_t { none, back, front };
 
+// What to trace, and where the hits go.
 struct TraceDesc {
     Ref<Ray> rays = {};  // device address of count rays, 8-byte aligned
     Ref<Hit> hits = {};  // device address of count hits, 8-byte aligned, apart from the rays; written in no order
@@ -136,9 +143,9 @@ class TraceProgram {
     TraceProgram(const TraceProgram&) = delete;
     TraceProgram& operator=(const TraceProgram&) = delete;
 
-    std::uint64_t accel() const { return accel_; }  // its AccelView::accel
-    uint features() const { return features_; }     // FEATURE_* of the scenes it can trace
-    const std::string& name() const { return name_; }
+    std::uint64_t accel() const { return accel_; }     // its AccelView::accel
+    uint features() const { return features_; }        // FEATURE_* of the scenes it can trace
+    const std::string& name() const { return name_; }  // as in TraceProgramCode
 
     // Compiles it for a query and a level now; else the first trace of that kind does. Throws Error.
     virtual void prepare(Query query, Level level) const = 0;
@@ -155,6 +162,7 @@ class TraceProgram {
     std::string name_;
 };
 
+// What is told of an instance besides where it is.
 struct InstanceOptions {
     uint custom_index = 0;         // returned in Hit::custom_index; at most 2^24 - 1
     std::uint8_t mask = 0xff;      // an instance is seen by rays whose mask shares a bit
@@ -197,6 +205,7 @@ struct AccelView {
     SpecializationConstant features_constant() const;
 };
 
+// What an accelerator may be able to do.
 enum class Feature : std::uint8_t {
     closest_hit,
     any_hit,
@@ -217,21 +226,23 @@ enum class Feature : std::uint8_t {
 };
 constexpr std::size_t feature_count = 16;
 
+// How far it is.
 enum class Support : std::uint8_t {
     unsupported,
     emulated,  // works, but by other means than the accelerator's own
     native,
 };
 
+// What an accelerator can do of one feature.
 struct Capability {
     Feature feature;
     Support support;
     std::string note;  // how, or why not; may be empty
 };
 
-const char* name_of(Feature feature);
-const char* name_of(Support support);
-Feature feature_of(Level level);
+const char* name_of(Feature feature);  // as `twinray devices` writes it
+const char* name_of(Support support);  // likewise
+Feature feature_of(Level level);       // level_fast, ...
 
 // Device memory that an accelerator holds, in bytes.
 struct MemoryUsage {
@@ -243,7 +254,8 @@ struct MemoryUsage {
     std::uint64_t surfaces = 0;    // what else AccelOptions::keeps_surfaces keeps
     std::uint64_t scratch = 0;     // kept from one sync to the next
 
-    std::uint64_t structures() const { return geometries + scene; }
+    std::uint64_t structures() const { return geometries + scene; }  // both levels
+    // All of it.
     std::uint64_t total() const { return structures() + instances + blocks + vertices + surfaces + scratch; }
 };
 

@@ -54,14 +54,16 @@ bool is_fault_of_hardware(HitClass kind);  // hw_leak, hw_false, hw_t_err, hw_ra
 struct HitClassCounts {
     std::array<std::uint64_t, hit_class_count> counts{};
 
-    std::uint64_t operator[](HitClass kind) const { return counts[static_cast<std::size_t>(kind)]; }
-    void add(HitClass kind) { ++counts[static_cast<std::size_t>(kind)]; }
-    HitClassCounts& operator+=(const HitClassCounts& other);
-    std::uint64_t total() const, faults_of_ours() const, faults_of_hardware() const;
+    std::uint64_t operator[](HitClass kind) const { return counts[static_cast<std::size_t>(kind)]; }  // of one class
+    void add(HitClass kind) { ++counts[static_cast<std::size_t>(kind)]; }                             // one more
+    HitClassCounts& operator+=(const HitClassCounts& other);                                          // by class
+    std::uint64_t total() const;                                                                      // of all classes
+    std::uint64_t faults_of_ours() const;      // of those that is_fault_of_ours() names
+    std::uint64_t faults_of_hardware() const;  // of those that is_fault_of_hardware() names
     // Upper bound of the rate of faults (Clopper, Pearson 1934): 3 / total() where none was seen; 1 for no ray.
     double bound_95() const;
 };
-HitClassCounts count(std::span<const HitClass> classes);
+HitClassCounts count(std::span<const HitClass> classes);  // by class
 
 // One instance of a mesh, in the order of the accelerator's instance array.
 struct ReferenceInstance {
@@ -92,7 +94,7 @@ class Reference {
 
     // The smallest t in (t_min, t_max), then the lowest (instance, primitive); rays that are not is_traceable() miss.
     ReferenceHit closest_hit(const Ray& ray) const;
-    bool any_hit(const Ray& ray) const;
+    bool any_hit(const Ray& ray) const;  // whether anything lies on it
 
     // The class of a closest hit or a miss; Hit::custom_index and flags are not compared.
     HitClass classify(const Ray& ray, const Hit& hit, TracedBy by) const;
@@ -114,8 +116,8 @@ std::unique_ptr<AbstractAccel> make_reference_accel(Context& context);
 // Rays from everywhere around the scene in uniform directions, or aimed at random vertices or points of edges, where
 // intersection tests break. Ray i depends on (seed, i) and the scene alone; t_min = 0, t_max = infinity.
 std::vector<Ray> random_rays(const Bounds& bounds, std::size_t count, std::uint64_t seed);
-std::vector<Ray> vertex_aimed_rays(const Reference& reference, std::size_t count, std::uint64_t seed);
-std::vector<Ray> edge_aimed_rays(const Reference& reference, std::size_t count, std::uint64_t seed);
+std::vector<Ray> vertex_aimed_rays(const Reference& reference, std::size_t count, std::uint64_t seed);  // at vertices
+std::vector<Ray> edge_aimed_rays(const Reference& reference, std::size_t count, std::uint64_t seed);    // at edges
 
 // What a leak test has found so far.
 struct LeakCounts {
@@ -124,9 +126,10 @@ struct LeakCounts {
     std::uint64_t double_hits = 0;  // with one too many
     std::uint64_t unspecified = 0;  // rounding decides whether a triangle seen edge-on lies before the origin
 
-    std::uint64_t faults() const { return leaks + double_hits; }
-    double bound_95() const;  // as of HitClassCounts
+    std::uint64_t faults() const { return leaks + double_hits; }  // of both kinds
+    double bound_95() const;                                      // as of HitClassCounts
 };
+// A ray whose crossings are wrong in number.
 struct LeakFault {
     std::uint64_t ray_index = 0;
     Ray ray{};

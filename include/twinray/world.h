@@ -18,8 +18,8 @@ struct Transform64 {
     std::array<dvec4, 3> rows = {dvec4(1, 0, 0, 0), dvec4(0, 1, 0, 0), dvec4(0, 0, 1, 0)};
 
     Transform64() = default;
-    Transform64(const Transform& transform);
-    static Transform64 translation(dvec3 offset);
+    Transform64(const Transform& transform);       // widened, exactly
+    static Transform64 translation(dvec3 offset);  // moves by it
 };
 
 // A mesh whose vertices are in float64, not owned: its triangles keep their shape wherever they lie, as it is built
@@ -39,29 +39,33 @@ class WorldAccel {
     // The accelerator must outlive it. Throws Error for an origin that is not finite.
     explicit WorldAccel(AbstractAccel& accel, dvec3 origin = {});
 
+    // As AbstractAccel::push.
     AccelHandle push(const MeshView& mesh, const Transform64& transform = {}, const InstanceOptions& options = {});
     AccelHandle push(const MeshView& mesh, std::span<const Transform64> transforms,
                      std::span<const InstanceOptions> options = {});
     AccelHandle push(const MeshView64& mesh, const Transform64& transform = {}, const InstanceOptions& options = {});
     AccelHandle push(const DeviceMesh& mesh, std::span<const Transform64> transforms,
                      std::span<const InstanceOptions> options = {});
-    bool erase(AccelHandle handle);
+    bool erase(AccelHandle handle);  // as AbstractAccel::erase
+    // As AbstractAccel::update_transforms.
     void update_transforms(AccelHandle handle, std::span<const Transform64> transforms);
 
     // Moves every instance to where it is seen from there; the next sync refits the top level and no geometry.
     void set_origin(dvec3 origin);
-    dvec3 origin() const { return origin_; }
+    dvec3 origin() const { return origin_; }  // what is counted from
 
     // From the world to coordinates about the origin, rounded once, and back.
     vec3 local(dvec3 position) const;
     Ray local(const Ray64& ray) const;
-    dvec3 world(dvec3 position) const;
+    dvec3 world(dvec3 position) const;  // back
+    // As AbstractAccel::closest_hits.
     std::vector<Hit> closest_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
+    // As AbstractAccel::any_hits.
     std::vector<Hit> any_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
     // As AbstractAccel::exact_hits.
     std::vector<HitExact> exact_hits(std::span<const Ray64> rays, const TraceDesc& desc = {});
 
-    AbstractAccel& accel() { return accel_; }
+    AbstractAccel& accel() { return accel_; }  // that it was made with
 
   private:
     struct Placed {

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "tests/accel/surfaces_fixture.h"
-#include "tests/support/fault_injection.h"
+#include "validation/faults/fault_injection.h"
 
 namespace twinray {
 namespace {
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Every, HostWork,
 
 // From push to trace, once memory for the plans of builds is there.
 TEST_P(HostWork, AMeshInDeviceMemoryIsNeitherWaitedForNorSeenByTheHost) {
-    test::FaultInjector vulkan;
+    faults::FaultInjector vulkan;
     ContextDesc desc;
     desc.get_instance_proc_addr = vulkan.entry();
     desc.use_ray_query = GetParam() == test::Kind::ray_query;
@@ -156,7 +156,7 @@ TEST_P(HostWork, AMeshInDeviceMemoryIsNeitherWaitedForNorSeenByTheHost) {
         commands.submit();
     };
     for (const std::string_view call : {"", "vkWaitSemaphores", "vkMapMemory"}) {
-        if (!call.empty()) vulkan.inject({.function = call, .first = test::every_call});
+        if (!call.empty()) vulkan.inject({.function = call, .first = faults::every_call});
         const AccelHandle handle = accel->push(DeviceMesh{.name = "sphere",
                                                           .positions = positions.address(),
                                                           .vertex_count = mesh.positions.size(),
@@ -176,7 +176,7 @@ TEST_P(HostWork, AMeshInDeviceMemoryIsNeitherWaitedForNorSeenByTheHost) {
         vulkan.heal();
         accel->erase(handle);
     }
-    vulkan.inject({.function = "vkMapMemory", .first = test::every_call});
+    vulkan.inject({.function = "vkMapMemory", .first = faults::every_call});
     const Buffer mapped(*context, {.name = "mapped", .bytes = 256 << 20, .memory = Memory::readback});
     EXPECT_GT(vulkan.calls(), 0u) << "maps are not counted";
     vulkan.heal();

@@ -14,14 +14,14 @@
 namespace twinray {
 namespace {
 
-using test::Counts;
-using test::every_call;
-using test::Fault;
-using test::FaultInjector;
+using faults::Counts;
+using faults::every_call;
+using faults::Fault;
+using faults::FaultInjector;
+using faults::may_be_harmless;
+using faults::Outcome;
+using faults::outcome_of;
 using test::Kind;
-using test::may_be_harmless;
-using test::Outcome;
-using test::outcome_of;
 
 class Faults : public ::testing::TestWithParam<Kind> {
   protected:

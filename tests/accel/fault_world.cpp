@@ -30,7 +30,7 @@ std::unique_ptr<AbstractAccel> make_accel(Context& context, test::Kind kind) {
 
 const std::vector<Ray> world_rays = {down(0), down(2), down(4), down(6), down(8)};
 
-World::World(test::FaultInjector& faults, test::Kind kind, const ContextDesc& desc) : faults_(faults) {
+World::World(faults::FaultInjector& faults, test::Kind kind, const ContextDesc& desc) : faults_(faults) {
     ContextDesc logged = desc;
     logged.log = [this](std::string_view message) { log_.emplace_back(message); };
     context_ = std::make_unique<Context>(logged);
@@ -132,7 +132,7 @@ World::State World::state() {
     state.has_floor = accel().is_valid(floor_);
     state.has_tower = accel().is_valid(tower_);
     state.has_guest = accel().is_valid(guest_);
-    state.is_clean = test::outcome_of([&] { accel().view(); }) == test::Outcome::done;
+    state.is_clean = faults::outcome_of([&] { accel().view(); }) == faults::Outcome::done;
     for (const vec3& corner : {accel().world_bound().lo, accel().world_bound().hi})
         state.world_bound.insert(state.world_bound.end(), {corner.x, corner.y, corner.z});
     state.live = faults_.live_objects();

@@ -8,7 +8,7 @@
 
 #include <twinray/abstract_accel.h>
 #include "tests/accel/accel_fixture.h"
-#include "tests/support/fault_injection.h"
+#include "validation/faults/fault_injection.h"
 
 namespace twinray {
 
@@ -21,7 +21,7 @@ extern const std::vector<Ray> world_rays;
 // edit replaces.
 class World {
   public:
-    World(test::FaultInjector& faults, test::Kind kind, const ContextDesc& desc);
+    World(faults::FaultInjector& faults, test::Kind kind, const ContextDesc& desc);
 
     Context& context() { return *context_; }
     AbstractAccel& accel() { return *accel_; }
@@ -46,7 +46,7 @@ class World {
         std::uint64_t revision, structure_bytes;
         bool has_floor, has_tower, has_guest, is_clean;
         std::vector<float> world_bound;
-        test::Counts live;
+        faults::Counts live;
         std::uint64_t allocated_bytes;
 
         bool operator==(const State&) const = default;
@@ -57,7 +57,7 @@ class World {
     std::vector<float> expected() const;
     float tower_height() const { return tower_lift_ + tower_top_; }
 
-    test::FaultInjector& faults_;
+    faults::FaultInjector& faults_;
     std::vector<std::string> log_;
     std::unique_ptr<Context> context_;
     std::unique_ptr<AbstractAccel> accel_;

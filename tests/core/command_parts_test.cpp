@@ -8,7 +8,7 @@
 #include "test_nothing.spv.h"
 #include "tests/support/caller.h"
 #include "tests/support/device.h"
-#include "tests/support/fault_injection.h"
+#include "validation/faults/fault_injection.h"
 
 namespace twinray {
 namespace {
@@ -35,7 +35,7 @@ class CommandPartsTest : public test::VulkanTest {
     }
     Buffer word(Memory memory) { return Buffer(context(), {.name = "word", .bytes = 4, .memory = memory}); }
 
-    test::FaultInjector faults_;
+    faults::FaultInjector faults_;
 };
 
 std::vector<std::string> names(const std::vector<PassTiming>& timings) {
@@ -65,7 +65,7 @@ TEST_F(CommandPartsTest, AreSubmittedAllOrNone) {
     Commands commands(context(), "parts");
     record(commands, from, to);
     faults_.inject({.function = "vkQueueSubmit"});
-    EXPECT_EQ(test::outcome_of([&] { commands.submit(); }), test::Outcome::error);
+    EXPECT_EQ(faults::outcome_of([&] { commands.submit(); }), faults::Outcome::error);
     EXPECT_EQ(faults_.calls(), 1u) << "one call for all";
     faults_.heal();
     EXPECT_EQ(submissions(), before);
@@ -106,23 +106,23 @@ TEST_F(CommandPartsTest, APartRunsAtOnceAndMoreMayFollow) {
     if (context().state().timestamp_period_ns() > 0) {
         EXPECT_EQ(names(commands.timings()), (std::vector<std::string>{"first", "second"}));
     }
-    EXPECT_EQ(test::outcome_of([&] { commands.submit_part(); }), test::Outcome::error) << "submitted twice";
+    EXPECT_EQ(faults::outcome_of([&] { commands.submit_part(); }), faults::Outcome::error) << "submitted twice";
 }
 
 TEST_F(CommandPartsTest, APassIsNotCut) {
     Commands commands(context(), "parts");
     const auto pass = commands.pass("open");
-    EXPECT_EQ(test::outcome_of([&] { commands.submit_part(); }), test::Outcome::error);
+    EXPECT_EQ(faults::outcome_of([&] { commands.submit_part(); }), faults::Outcome::error);
 }
 
 TEST_F(CommandPartsTest, WhoseSubmissionFailsAreSpent) {
     for (const char* function : {"vkQueueSubmit", "vkWaitSemaphores", "vkCreateCommandPool"}) {
         Commands commands(context(), "parts");
         faults_.inject({.function = function});
-        EXPECT_EQ(test::outcome_of([&] { commands.submit_part(); }), test::Outcome::error) << function;
+        EXPECT_EQ(faults::outcome_of([&] { commands.submit_part(); }), faults::Outcome::error) << function;
         faults_.heal();
-        EXPECT_EQ(test::outcome_of([&] { commands.submit(); }), test::Outcome::error) << function;
-        EXPECT_EQ(test::outcome_of([&] { static_cast<void>(commands.pass("late")); }), test::Outcome::error);
+        EXPECT_EQ(faults::outcome_of([&] { commands.submit(); }), faults::Outcome::error) << function;
+        EXPECT_EQ(faults::outcome_of([&] { static_cast<void>(commands.pass("late")); }), faults::Outcome::error);
         context().wait_for_gpu();
     }
     Commands(context(), "after").submit();

@@ -8,17 +8,17 @@
 #include "engine/core/vma.h"
 #include "tests/support/caller.h"
 #include "tests/support/device.h"
-#include "tests/support/fault_injection.h"
+#include "validation/faults/fault_injection.h"
 
 namespace twinray {
 namespace {
 
-using test::Counts;
-using test::every_call;
-using test::FaultInjector;
-using test::may_be_harmless;
-using test::Outcome;
-using test::outcome_of;
+using faults::Counts;
+using faults::every_call;
+using faults::FaultInjector;
+using faults::may_be_harmless;
+using faults::Outcome;
+using faults::outcome_of;
 
 class FaultsOfCore : public ::testing::Test {
   protected:

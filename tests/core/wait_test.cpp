@@ -10,7 +10,7 @@
 #include "engine/core/error.h"
 #include "tests/core/host_device.h"
 #include "tests/support/device.h"
-#include "tests/support/fault_injection.h"
+#include "validation/faults/fault_injection.h"
 
 namespace twinray {
 namespace {
@@ -80,7 +80,7 @@ TEST_F(WaitTest, AWaitForNothingIsRefused) {
 
 // No driver hangs on demand: waiting for it is made to time out.
 TEST(HungDevice, IsLostAndNotWaitedForAgain) {
-    test::FaultInjector driver;
+    faults::FaultInjector driver;
     {
         std::optional<Context> context;
         try {
@@ -88,9 +88,9 @@ TEST(HungDevice, IsLostAndNotWaitedForAgain) {
         } catch (const Error& error) {
             TWINRAY_LACKS("vulkan", error.what());
         }
-        driver.inject({"vkWaitSemaphores", 1, test::every_call, VK_TIMEOUT});
+        driver.inject({"vkWaitSemaphores", 1, faults::every_call, VK_TIMEOUT});
         const SyncPoint point = Commands(*context, "hangs").submit();
-        const std::string said = test::what_is_thrown_by([&] { context->wait(point); });
+        const std::string said = faults::what_is_thrown_by([&] { context->wait(point); });
         EXPECT_NE(said.find("in flight: 'hangs'"), std::string::npos) << said;
         EXPECT_NE(said.find("ended none of its submissions for 0.01 s"), std::string::npos) << said;
         const std::uint64_t calls = driver.calls();

@@ -7,7 +7,7 @@
 #include <twinray/tlas.h>
 #include "tests/support/caller.h"
 #include "tests/support/device.h"
-#include "tests/support/fault_injection.h"
+#include "validation/faults/fault_injection.h"
 
 namespace twinray {
 namespace {
@@ -54,7 +54,7 @@ class Compaction : public test::VulkanTest {
     AccelHandle push_box(float x) { return accel().push(make_box(vec3(x, 0, 0), vec3(x + 1, 1, 1))); }
 
   private:
-    test::FaultInjector driver_;
+    faults::FaultInjector driver_;
     std::unique_ptr<HwTlas> accel_;
 };
 

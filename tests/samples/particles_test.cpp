@@ -7,7 +7,7 @@
 #include <twinray/tlas.h>
 #include "samples/particles/renderer.h"
 #include "tests/support/device.h"
-#include "tests/support/fault_injection.h"
+#include "validation/faults/fault_injection.h"
 
 namespace twinray::particles {
 namespace {
@@ -82,7 +82,7 @@ class ParticlesBy : public test::VulkanTest, public ::testing::WithParamInterfac
         }
         return renderer.picture();
     }
-    test::FaultInjector injector_;
+    faults::FaultInjector injector_;
 };
 INSTANTIATE_TEST_SUITE_P(EveryAccel, ParticlesBy, ::testing::Values("sw", "hw"),
                          [](const auto& which) { return std::string(which.param); });
@@ -142,7 +142,7 @@ TEST_P(ParticlesBy, TheHostNeverWaitsForAFrame) {
     context().wait_for_gpu();
     const std::uint64_t revision = accel->revision();
     const SyncPoint start = context().last_submission();
-    injector_.inject({.function = "vkWaitSemaphores", .first = test::every_call});
+    injector_.inject({.function = "vkWaitSemaphores", .first = faults::every_call});
     for (int frame = 0; frame < 100; ++frame) {
         simulation.step();
         renderer.draw();

@@ -12,7 +12,7 @@
 #include "tests/scene/set_kernel_shared.h"
 #include "tests/support/caller.h"
 #include "tests/support/device.h"
-#include "tests/support/fault_injection.h"
+#include "validation/faults/fault_injection.h"
 
 namespace twinray {
 namespace {
@@ -94,23 +94,23 @@ TEST_F(MultiTypeSetTest, KeysCountTheElementsOfEachType) {
 TEST_F(MultiTypeSetTest, KeysThatNameNothingAreRefusedAndChangeNothing) {
     const SetKey key = set().push(glass(2));
     set().sync();
-    EXPECT_EQ(what_is_thrown_by([&] { set().update(SetKey{}, glass(9)); }),
+    EXPECT_EQ(faults::what_is_thrown_by([&] { set().update(SetKey{}, glass(9)); }),
               "materials: update: the key is (type 0, index 0), where types go from 1 to 3; wanted is type 2");
-    EXPECT_EQ(what_is_thrown_by([&] {
+    EXPECT_EQ(faults::what_is_thrown_by([&] {
                   set().update(SetKey{2, 1}, glass(9));
               }),
               "materials: update: the key is (type 2, index 1), where type 2 is glass, of which there are 1; wanted is "
               "type 2");
-    EXPECT_EQ(what_is_thrown_by([&] { set().update(key, diffuse(9)); }),
+    EXPECT_EQ(faults::what_is_thrown_by([&] { set().update(key, diffuse(9)); }),
               "materials: update: the key is (type 2, index 0), where type 2 is glass, of which there are 1; wanted is "
               "type 1");
-    EXPECT_NE(what_is_thrown_by([&] { set().get<Glass>({4, 0}); }), "");
-    EXPECT_EQ(what_is_thrown_by([&] {
+    EXPECT_NE(faults::what_is_thrown_by([&] { set().get<Glass>({4, 0}); }), "");
+    EXPECT_EQ(faults::what_is_thrown_by([&] {
                   with_index(ValueOf{}, set(), SetKey{2, 7}, 1.0f);
               }),
               "with_index: the key is (type 2, index 7), where type 2 is glass, of which there are 1");
     EXPECT_EQ(set().get<Glass>(key).ior, 2.0f);
-    EXPECT_EQ(what_is_thrown_by([&] { set().view(); }), "") << "an edit is pending";
+    EXPECT_EQ(faults::what_is_thrown_by([&] { set().view(); }), "") << "an edit is pending";
 }
 
 // Values of all keys, of keys that name nothing, the sum over all elements and the unrolled loops.
@@ -160,7 +160,7 @@ TEST_F(MultiTypeSetTest, KernelsForDebuggingTellOfKeysThatNameNothing) {
     set().check_faults();
     EXPECT_EQ(run({{2, 8}}, true).front(), FALLBACK);
     run({key, {}, {2, 1}, {9, 0}}, true);
-    EXPECT_EQ(what_is_thrown_by([&] { set().check_faults(); }),
+    EXPECT_EQ(faults::what_is_thrown_by([&] { set().check_faults(); }),
               "materials: kernels met 4 keys that name nothing, the first is (type 2, index 8), where type 2 is glass, "
               "of which there are 1");
 }
@@ -175,7 +175,8 @@ TEST_F(MultiTypeSetTest, AnUpdateUploadsItsElementAloneAndViewsStay) {
     set().update(keys[7], glass(500));
     set().update(keys[7], glass(600));
     set().update(keys[8], glass(700));
-    EXPECT_EQ(what_is_thrown_by([&] { set().view(); }), "materials: view: edits are pending; call sync() first");
+    EXPECT_EQ(faults::what_is_thrown_by([&] { set().view(); }),
+              "materials: view: edits are pending; call sync() first");
     set().sync();
     const TestSet after = set().view();
     EXPECT_EQ(std::memcmp(&before, &after, sizeof before), 0);
@@ -288,7 +289,7 @@ class MultiTypeSetFault : public MultiTypeSetTest {
         desc.get_instance_proc_addr = injector_.entry();
         return desc;
     }
-    FaultInjector injector_;
+    faults::FaultInjector injector_;
 };
 
 TEST_F(MultiTypeSetFault, ASyncThatFailsChangesNothingAndTheNextOneWorks) {
@@ -303,10 +304,10 @@ TEST_F(MultiTypeSetFault, ASyncThatFailsChangesNothingAndTheNextOneWorks) {
             return last;
         }();
         injector_.inject({.function = function});
-        EXPECT_NE(what_is_thrown_by([&] { set().sync(); }), "") << function;
+        EXPECT_NE(faults::what_is_thrown_by([&] { set().sync(); }), "") << function;
         injector_.heal();
         EXPECT_EQ(set().revision(), revision);
-        EXPECT_NE(what_is_thrown_by([&] { set().view(); }), "");
+        EXPECT_NE(faults::what_is_thrown_by([&] { set().view(); }), "");
         set().sync();
         EXPECT_EQ(run({key, more})[0], -3.0f);
         EXPECT_EQ(run({key, more})[1], 1.0f - 4.0f);

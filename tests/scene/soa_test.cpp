@@ -7,7 +7,7 @@
 #include "test_soa_debug.spv.h"
 #include "tests/scene/set_kernel_shared.h"
 #include "tests/support/device.h"
-#include "tests/support/fault_injection.h"
+#include "validation/faults/fault_injection.h"
 
 namespace twinray {
 namespace {
@@ -38,8 +38,8 @@ TEST(HostSoa, GetsWhatWasSetAndRefusesOtherIndices) {
         EXPECT_EQ(soa_get(view, i, &TestQueue::pixel), i + 1);
         EXPECT_EQ(soa_get(view, i, &TestQueue::t), 0.0f);
     }
-    EXPECT_EQ(what_is_thrown_by([&] { soa_get(view, 10, &TestQueue::t); }), "soa_get: index 10 of 10 items");
-    EXPECT_EQ(what_is_thrown_by([&] { soa_set(view, ~0u, &TestQueue::t, 1); }),
+    EXPECT_EQ(faults::what_is_thrown_by([&] { soa_get(view, 10, &TestQueue::t); }), "soa_get: index 10 of 10 items");
+    EXPECT_EQ(faults::what_is_thrown_by([&] { soa_set(view, ~0u, &TestQueue::t, 1); }),
               "soa_set: index 4294967295 of 10 items");
     HostQueue longer = similar_soa(queue, 20);
     EXPECT_EQ(longer.count(), 20u);
@@ -108,10 +108,10 @@ TEST_F(SoaTest, KernelsForDebuggingTellOfIndicesOutOfRange) {
     from.check_faults();
     to.check_faults();
     run(from, to, 1, 150, true);
-    EXPECT_EQ(what_is_thrown_by([&] { from.check_faults(); }),
+    EXPECT_EQ(faults::what_is_thrown_by([&] { from.check_faults(); }),
               "from: kernels met 4 indices out of range, the first is 150 of 100 items");
     run(from, to, 100, 0, true);
-    EXPECT_NE(what_is_thrown_by([&] { to.check_faults(); }).find("to: kernels met 40 indices out of range"),
+    EXPECT_NE(faults::what_is_thrown_by([&] { to.check_faults(); }).find("to: kernels met 40 indices out of range"),
               std::string::npos);
 }
 
@@ -120,10 +120,12 @@ TEST_F(SoaTest, UploadsBeyondTheLastItemAreRefused) {
     const std::vector<float> values(8);
     Commands commands(context(), "upload");
     const auto pass = commands.pass("upload");
-    EXPECT_EQ(what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), 3); }),
-              "queue: upload: 8 items from 3 exceed its 10");
-    EXPECT_NE(what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), ~0u); }),
-              "");
+    EXPECT_EQ(
+        faults::what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), 3); }),
+        "queue: upload: 8 items from 3 exceed its 10");
+    EXPECT_NE(
+        faults::what_is_thrown_by([&] { queue.upload(commands, &TestQueue::t, std::span<const float>(values), ~0u); }),
+        "");
 }
 
 TEST_F(SoaTest, AnEmptyOneIsAllowed) {

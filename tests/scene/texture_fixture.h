@@ -13,7 +13,7 @@
 #include "test_texture_images.spv.h"
 #include "test_texture_images_debug.spv.h"
 #include "tests/support/device.h"
-#include "tests/support/fault_injection.h"
+#include "validation/faults/fault_injection.h"
 
 namespace twinray::test {
 #include "twinray/glsl/cpp_begin.h"
@@ -74,7 +74,7 @@ class Textures : public VulkanTest, public ::testing::WithParamInterface<Texture
     }
     std::uint64_t live_bytes() { return context().allocated_bytes(); }
 
-    FaultInjector injector_;
+    faults::FaultInjector injector_;
 
   private:
     std::unique_ptr<TextureStore> store_;

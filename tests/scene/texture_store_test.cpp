@@ -123,7 +123,7 @@ TEST_P(Textures, ReferencesThatNameNothingAreWhite) {
         EXPECT_EQ(answers[3].color, vec4(0));
         if (!is_debug) store().check_faults();
     }
-    const std::string told = test::what_is_thrown_by([&] { store().check_faults(); });
+    const std::string told = faults::what_is_thrown_by([&] { store().check_faults(); });
     EXPECT_NE(told.find("textures: kernels met 10 references that name nothing, the first is number "),
               std::string::npos)
         << told;
@@ -131,21 +131,22 @@ TEST_P(Textures, ReferencesThatNameNothingAreWhite) {
 
 TEST_P(Textures, WrongUseIsRefused) {
     const TextureRef texture = store().push(gray_image(3, 2, 9));
-    EXPECT_EQ(test::what_is_thrown_by([&] { store().update({}, gray_image(3, 2, 9)); }),
+    EXPECT_EQ(faults::what_is_thrown_by([&] { store().update({}, gray_image(3, 2, 9)); }),
               "textures: update: the texture has number 0; they go from 1 to 1");
-    EXPECT_EQ(test::what_is_thrown_by([&] { store().update({2}, gray_image(3, 2, 9)); }),
+    EXPECT_EQ(faults::what_is_thrown_by([&] { store().update({2}, gray_image(3, 2, 9)); }),
               "textures: update: the texture has number 2; they go from 1 to 1");
     Image broken = gray_image(3, 2, 9);
     broken.width = 4;
-    EXPECT_EQ(test::what_is_thrown_by([&] { store().push(broken); }),
+    EXPECT_EQ(faults::what_is_thrown_by([&] { store().push(broken); }),
               "textures: push: image 'gray' of 4 x 2 has 24 bytes in level 0; it needs 32");
-    EXPECT_NE(test::what_is_thrown_by([&] { store().update(texture, gray_image(0, 0, 9)); }), "");
-    EXPECT_EQ(test::what_is_thrown_by([&] { store().view(); }), "textures: view: edits are pending; call sync() first");
+    EXPECT_NE(faults::what_is_thrown_by([&] { store().update(texture, gray_image(0, 0, 9)); }), "");
+    EXPECT_EQ(faults::what_is_thrown_by([&] { store().view(); }),
+              "textures: view: edits are pending; call sync() first");
     EXPECT_EQ(store().size(), 1u);
     store().sync();
     EXPECT_EQ(red_of(texture), 9);
     if (!store().has_images()) return;
-    EXPECT_NE(test::what_is_thrown_by([&] { store().push(gray_image(1, 100'000, 9)); }).find("at most"),
+    EXPECT_NE(faults::what_is_thrown_by([&] { store().push(gray_image(1, 100'000, 9)); }).find("at most"),
               std::string::npos);
 }
 
@@ -178,7 +179,7 @@ TEST_P(Textures, AThousandUpdatesLeakNothing) {
     store().sync();
     context().wait_for_gpu();
     const std::uint64_t bytes = live_bytes();
-    const test::Counts objects = injector_.live_objects();
+    const faults::Counts objects = injector_.live_objects();
     for (uint i = 0; i < 1000; ++i) {
         const uint side = i / 10 % 2 ? 64 : 48;  // a hundred times another size
         store().update(texture, gray_image(side, side, static_cast<std::uint8_t>(i % 200)));
@@ -268,11 +269,11 @@ TEST_P(Textures, ASyncThatFailsChangesNothingAndTheNextOneWorks) {
     for (const char* function : functions) {
         context().wait_for_gpu();
         const std::uint64_t revision = store().revision(), bytes = live_bytes();
-        const test::Counts objects = injector_.live_objects();
+        const faults::Counts objects = injector_.live_objects();
         store().update(texture, gray_image(5 + static_cast<uint>(revision), 4, 6));
         const TextureRef more = store().push(gray_image(4, 4, 7));
         injector_.inject({.function = function});
-        EXPECT_NE(test::what_is_thrown_by([&] { store().sync(); }), "") << function;
+        EXPECT_NE(faults::what_is_thrown_by([&] { store().sync(); }), "") << function;
         EXPECT_EQ(injector_.injected(), 1u) << function;
         injector_.heal();
         EXPECT_EQ(store().revision(), revision);
@@ -293,10 +294,10 @@ TEST_P(Textures, KernelsAndStoresMustFit) {
     const Kernel<test::TextureTestArgs> without(context(),
                                                 {.name = "test_texture", .spirv = test_texture_buffers_spirv});
     Commands commands(context(), "unfit");
-    EXPECT_EQ(test::what_is_thrown_by([&] { kernel.dispatch(commands, {}, 1); }),
+    EXPECT_EQ(faults::what_is_thrown_by([&] { kernel.dispatch(commands, {}, 1); }),
               "kernel 'test_texture': dispatched without images");
     if (!store().has_images()) return;
-    EXPECT_EQ(test::what_is_thrown_by([&] { without.dispatch(commands, {}, 1, store().images()); }),
+    EXPECT_EQ(faults::what_is_thrown_by([&] { without.dispatch(commands, {}, 1, store().images()); }),
               "kernel 'test_texture': it takes no images");
 }
 

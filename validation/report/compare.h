@@ -45,11 +45,12 @@ struct Comparison {
 };
 
 // Records correspond where case, settings, accelerator, level and variant are the same. Counts of classes and of faults
-// are compared by Fisher's exact test, for each record and for each accelerator and level over all cases. Where seeds
-// differ, so do the scenes, in which the rays of a case are no independent trials: then only over all cases, by the
-// sign test of whole cases. Times, of as many rays, are compared by the bootstrap. What is left of the tests by Holm's
-// procedure (1979) at false_alarms is a change. Certain, without a test: a fault of ours where there was none; a record
-// of under 100 items that asked the same (seed and n) and passes no more, or again; a record that ran and does not.
+// are compared by Fisher's exact test, for each record and for each accelerator and level over all cases of as many
+// rays. Where seeds differ, so do the scenes, in which the rays of a case are no independent trials: then only over all
+// cases, by the sign test of whole cases. Times, of as many rays, are compared by the bootstrap. What is left of the
+// tests by Holm's procedure (1979) at false_alarms is a change. Certain, without a test: a fault of ours where there
+// was none; a record of under 100 items that asked the same (seed and n) and passes no more, or again; a record that
+// ran and does not.
 Comparison compare(std::span<const Record> before, std::span<const Record> now);
 
 }  // namespace twinray::report

@@ -32,7 +32,6 @@ struct Figure {
     bool is_log_x = true, is_log_y = true;
     std::vector<std::string> rows = {};  // names of y = 0, 1, ..., from above: y has no scale then
     std::optional<double> mark_x = {};   // a line at what all are compared with
-    std::vector<double> x_tics = {};     // beside those that gnuplot chooses
     std::vector<FigureSeries> series = {};
 };
 

@@ -103,7 +103,8 @@ std::vector<Label> labels_of(const Figure& figure, const Axes& axes) {
         if (series.points.empty()) continue;
         const auto last = std::max_element(series.points.begin(), series.points.end(),
                                            [](const auto& a, const auto& b) { return a.x < b.x; });
-        add(series.label, last->x, last->y, series.color);
+        // Beside the plot, where no other line passes.
+        add(series.label, labels_points(figure) ? last->x : axes.x.high, last->y, series.color);
     }
     std::vector<LabelPlace> places;
     for (const Label& label : labels) places.push_back(label.place);
@@ -112,17 +113,27 @@ std::vector<Label> labels_of(const Figure& figure, const Axes& axes) {
     return labels;
 }
 
+// Where powers of ten alone would leave an axis with one number or none.
+void write_tics(std::ostream& out, char axis, const Axis& range) {
+    const std::vector<double> tics = log_tics(range.low, range.high);
+    if (tics.empty()) return;
+    out << "set " << axis << "tics (";
+    for (std::size_t i = 0; i < tics.size(); ++i) out << (i ? ", " : "") << quoted(number(tics[i])) << ' ' << tics[i];
+    out << ")\n";
+}
+
 void write_axes(std::ostream& out, const Figure& figure, const Axes& axes) {
     const std::string text_style = std::string(" textcolor rgb \"") + text_color + '"';
     out << "set border 3 linecolor rgb \"" << text_color << "\"\nset tics nomirror" << text_style
         << "\nset grid linecolor rgb \"#80808080\"\nset xlabel " << quoted(figure.x_label) << text_style << '\n'
         << "set xrange [" << axes.x.low << ':' << axes.x.high << "]\n";
     if (figure.is_log_x) out << "set logscale x\nset format x \"%g\"\n";
-    for (const double tic : figure.x_tics) out << "set xtics add (" << quoted(number(tic)) << ' ' << tic << ")\n";
+    if (figure.is_log_x) write_tics(out, 'x', axes.x);
     if (figure.rows.empty()) {
         out << "set ylabel " << quoted(figure.y_label) << text_style << "\nset yrange [" << axes.y.low << ':'
             << axes.y.high << "]\n";
         if (figure.is_log_y) out << "set logscale y\nset format y \"%g\"\n";
+        if (figure.is_log_y) write_tics(out, 'y', axes.y);
         return;
     }
     out << "set yrange [" << axes.y.high << ':' << axes.y.low << "]\nset ytics (";
@@ -193,6 +204,9 @@ std::string element_of(std::string svg, const std::string& name) {
     for (const std::string written : {"rgb(  1,   2,   3)", "rgb(1,2,3)", "#010203"})
         for (std::size_t at; (at = svg.find(written)) != std::string::npos;)
             svg.replace(at, written.size(), "currentColor");
+    // gnuplot's own colour of a group, which would be the current one.
+    for (const std::string black = " color=\"black\""; svg.find(black) != std::string::npos;)
+        svg.erase(svg.find(black), black.size());
     return svg;
 }
 
@@ -210,6 +224,17 @@ std::vector<LabelPlace> apart(std::vector<LabelPlace> places) {
             if (std::abs(here.x - other.x) < width && std::abs(here.y - other.y) < height) here.y = other.y + height;
         }
     return places;
+}
+
+std::vector<double> log_tics(double low, double high) {
+    std::vector<double> tics;
+    if (high / low > 30) return tics;
+    const std::vector<double> steps =
+        high / low > 6 ? std::vector<double>{1, 2, 5} : std::vector<double>{1, 1.5, 2, 3, 4, 5, 7};
+    for (double decade = std::pow(10, std::floor(std::log10(low))); decade <= high; decade *= 10)
+        for (const double step : steps)
+            if (step * decade >= low && step * decade <= high) tics.push_back(step * decade);
+    return tics;
 }
 
 std::string gnuplot_script(const Figure& figure, const std::filesystem::path& svg) {

@@ -16,6 +16,10 @@ struct LabelPlace {
 // function.
 std::vector<LabelPlace> apart(std::vector<LabelPlace> places);
 
+// 1, 2 and 5 times powers of ten between low and high, or more of them where those are few; none where that is over 30
+// to 1, and powers of ten do.
+std::vector<double> log_tics(double low, double high);
+
 // The script that writes `svg`: a pure function. Text and axes are in `text_color`, which a page replaces by its own.
 inline constexpr const char* text_color = "#010203";
 std::string gnuplot_script(const Figure& figure, const std::filesystem::path& svg);

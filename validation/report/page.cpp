@@ -39,7 +39,7 @@ th { color: var(--soft); font-weight: 600; } code { font-size: .72rem; overflow-
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 0 1rem; font-size: .85rem; margin: .4rem 0; }
 dt { color: var(--soft); } dd { margin: 0; }
 @media (max-width: 40rem) { .headline { font-size: 1.25rem; } body { font-size: 15px; } }
-@media print { body { font-size: 10.5pt; max-width: none; } figure, li { break-inside: avoid; } }
+@media print { body { font-size: 10.5pt; max-width: none; } figure, li { break-inside: avoid; } h2, h3 { break-after: avoid; } }
 )";
 
 void write_verdict(std::ostream& out, const PageInput& input, const Verdict& verdict) {
@@ -73,12 +73,13 @@ void write_method(std::ostream& out, const PageInput& input) {
     }
     std::size_t reached = 0;
     for (const auto& [id, was_run] : cases) reached += was_run;
-    out << "<p class=\"soft\">Every answer was checked by a float64 reference, exact where that cannot tell; in "
-           "brackets "
-           "are 95 % intervals. "
+    out << "<p class=\"soft\">SwTlas is twinray's own traversal in compute shaders; fast, watertight, refined and "
+           "certified are levels of its triangle test. Every answer was checked by a float64 reference, and by "
+           "rational "
+           "arithmetic where that cannot tell. In brackets are 95 % intervals. "
         << reached << " of " << cases.size() << " cases ran";
     if (input.seconds > 0) out << " in " << number(input.seconds, 3) << " s";
-    out << " (suite " << escaped(input.suite) << "). Measurements: ";
+    out << " (suite " << escaped(input.suite) << "). By accelerator and level, measurements: ";
     const char* separator = "";
     for (const auto& [kind, count] : sums) {
         out << separator << count_text(count) << ' ' << escaped(kind);

@@ -85,24 +85,32 @@ Sentence sentence_of(const Finding& finding, const Finding* ours) {
     return {is_right ? Sentence::Kind::right : Sentence::Kind::wrong, about, sentence + '.'};
 }
 
-// Cases about the driver's own structures (K), over both ways to trace.
-void add_conformance(Verdict& verdict, std::span<const Record> records) {
+// Cases about the driver's own structures (K), over both ways to trace: those that ran, those that fail.
+struct OwnStructures {
     std::set<std::string> all, musts, shoulds;
+};
+OwnStructures own_structures_of(std::span<const Record> records) {
+    OwnStructures cases;
     for (const Record& record : records) {
         if (!record.was_run || !record.case_id.starts_with('K') || !is_users_kernel(record)) continue;
-        all.insert(record.case_id);
+        cases.all.insert(record.case_id);
         if (record.pass.value_or(true)) continue;
         const auto demand = record.results.find("demand");
-        (demand != record.results.end() && demand->second.text() == "must" ? musts : shoulds).insert(record.case_id);
+        const bool is_must = demand != record.results.end() && demand->second.text() == "must";
+        (is_must ? cases.musts : cases.shoulds).insert(record.case_id);
     }
-    if (all.empty()) return;
+    return cases;
+}
+
+void add_own_structures(Verdict& verdict, const OwnStructures& cases) {
+    if (cases.all.empty()) return;
     const auto listed = [](const std::set<std::string>& ids) {
         return text(ids.size(), ids.empty() ? "" : " (" + joined({ids.begin(), ids.end()}) + ')');
     };
     verdict.sentences.push_back(
-        {musts.empty() ? Sentence::Kind::right : Sentence::Kind::wrong, "Own structures",
-         text("of ", all.size(), " cases of builds, updates, copies, flags and candidates, ", listed(musts),
-              " fail what Vulkan demands, ", listed(shoulds), " what it advises.")});
+        {cases.musts.empty() ? Sentence::Kind::right : Sentence::Kind::wrong, "Acceleration structures",
+         text("of ", cases.all.size(), " cases of builds, updates, copies, flags and candidates, ", listed(cases.musts),
+              " fail what Vulkan demands, ", listed(cases.shoulds), " what it advises.")});
 }
 
 void add_speed(Verdict& verdict, std::span<const Speed> speeds, std::string_view driver) {
@@ -118,14 +126,14 @@ void add_speed(Verdict& verdict, std::span<const Speed> speeds, std::string_view
                   " times as long as SwTlas at watertight, over ", hardware->measurements,
                   " measurements of the same rays.")});
     if (refined != speeds.end() && plain != speeds.end() && refined->median_p99_ulp > 0)
-        verdict.sentences.push_back(
-            {Sentence::Kind::measured, "Error against run time",
-             text("at level refined 99 % of hits are within ", number(refined->median_p99_ulp, 2),
-                  " units in the last place of t, for ", number(plain->median_p99_ulp, 2), " at watertight; it takes ",
-                  with_interval(refined->ratio, refined->ratio_95), " times as long.")});
+        verdict.sentences.push_back({Sentence::Kind::measured, "Error against run time",
+                                     text("99 % of the hits of SwTlas are within ", number(plain->median_p99_ulp, 2),
+                                          " units in the last place of t at level watertight, and within ",
+                                          number(refined->median_p99_ulp, 2), " at level refined, which takes ",
+                                          with_interval(refined->ratio, refined->ratio_95), " times as long.")});
 }
 
-std::string headline_of(std::span<const Finding> findings, std::string_view driver) {
+std::string headline_of(std::span<const Finding> findings, const OwnStructures& cases, std::string_view driver) {
     std::vector<std::string> wrongs;
     for (const Finding& finding : findings) {
         if (finding.backend != driver || finding.faults == 0) continue;
@@ -134,9 +142,10 @@ std::string headline_of(std::span<const Finding> findings, std::string_view driv
             case Mistake::false_hit: wrongs.push_back("reports hits that are not there"); break;
             case Mistake::wrong_distance: wrongs.push_back("gets distances wrong"); break;
             case Mistake::not_finite: wrongs.push_back("answers with numbers that are not finite"); break;
-            case Mistake::counted_wrong: wrongs.push_back("counts shared edges twice"); break;
+            case Mistake::counted_wrong: wrongs.push_back("counts shared edges other than once"); break;
         }
     }
+    if (!cases.musts.empty()) wrongs.push_back("fails what Vulkan demands of acceleration structures");
     if (wrongs.empty()) return "No fault of this driver's ray tracing was seen.";
     std::string all = wrongs.front();
     for (std::size_t i = 1; i < wrongs.size(); ++i) all += (i + 1 < wrongs.size() ? ", " : " and ") + wrongs[i];
@@ -218,15 +227,17 @@ std::vector<Speed> speeds_of(std::span<const Record> records) {
 Verdict verdict_of(std::span<const Record> records) {
     Verdict verdict;
     const std::vector<Finding> findings = findings_of(records);
+    const OwnStructures own = own_structures_of(records);
     const std::string driver = driver_backend(records);
     verdict.has_driver = !driver.empty();
     verdict.are_we_right = faults_of_ours(records) == 0;
     verdict.is_driver_right =
         std::none_of(records.begin(), records.end(), [](const Record& r) { return r.fault_of == "driver"; });
-    verdict.headline = verdict.has_driver ? headline_of(findings, driver)
+    verdict.headline = verdict.has_driver ? headline_of(findings, own, driver)
                                           : "This driver traces no rays by itself: SwTlas alone was checked.";
     if (!verdict.are_we_right)
-        verdict.headline = text("twinray is wrong in ", faults_of_ours(records), " measurements. ", verdict.headline);
+        verdict.headline = text("twinray is wrong in ", faults_of_ours(records),
+                                faults_of_ours(records) == 1 ? " measurement. " : " measurements. ", verdict.headline);
     for (const Mistake mistake : all_mistakes) {
         const Finding* ours = find(findings, "sw", mistake);
         const Finding* theirs = find(findings, driver, mistake);
@@ -235,7 +246,7 @@ Verdict verdict_of(std::span<const Record> records) {
         else if (ours)
             verdict.sentences.push_back(sentence_of(*ours, nullptr));
     }
-    add_conformance(verdict, records);
+    add_own_structures(verdict, own);
     add_speed(verdict, speeds_of(records), driver);
     return verdict;
 }

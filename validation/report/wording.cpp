@@ -43,8 +43,10 @@ std::string rate_text(std::uint64_t count, std::uint64_t n) {
     const std::string name = is_rare ? "per million" : "%";
     if (count == 0)
         return "0 of " + count_text(n) + " (below " + number(upper_bound_95(0, n) * unit, 2) + ' ' + name + ')';
-    return number(unit * static_cast<double>(count) / static_cast<double>(n), 2) + ' ' + name + " (" +
-           number(unit * rate.low, 2) + " to " + number(unit * rate.high, 2) + ')';
+    int digits = 2;  // more where the ends would read alike
+    while (digits < 5 && number(unit * rate.low, digits) == number(unit * rate.high, digits)) ++digits;
+    return number(unit * static_cast<double>(count) / static_cast<double>(n), digits) + ' ' + name + " (" +
+           number(unit * rate.low, digits) + " to " + number(unit * rate.high, digits) + ')';
 }
 
 std::string with_interval(double value, const Interval& interval, int digits) {

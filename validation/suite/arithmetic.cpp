@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Self-intersection and arithmetic.
 #include "validation/suite/floats.h"
+#include "validation/suite/pictures.h"
 #include "validation/suite/spawning.h"
 
 namespace twinray::suite {
@@ -14,11 +15,9 @@ std::vector<SuiteCase> arithmetic_cases() {
          "rays that meet the triangle they leave", "0", leave_triangles_of_all_kinds},
         {"F03", "two plates 1e-3 to 1e-7 apart, rays from the lower one", "rays that miss the upper one",
          "0 where the gap is wider than twice the offset that the point tells; else flagged", leave_between_plates},
-        {"F04", "terminator on coarse sphere (shading vs geometric normal)",
-         "no black triangles with terminator fix; energy change < 1 %",
-         "no black triangles with terminator fix; energy change < 1 %", nullptr,
-         "the path tracer has no fix for terminators: rays leave by the geometric normal, so coarse meshes show "
-         "facets"},
+        {"F04", "shadow terminator: coarse spheres with smooth normals under a small far light, beside a fine one",
+         "black pixels where the fine one is lit, energy",
+         "none: measured; the path tracer leaves by the geometric normal and corrects nothing", shadow_terminator},
         {"F05", "a concave corner of 1 to 179 degrees, rays that end on its wall or lead away from it",
          "leaks, false occlusion", "0 where the wall and its edges are farther than twice the offset; else flagged",
          leave_a_concave_corner},

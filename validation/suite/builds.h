@@ -12,5 +12,6 @@ void expect_sound_tree(CaseRun& run, const Mesh& mesh, Values params);
 
 void refit_many_times(CaseRun& run);
 void refit_collapse(CaseRun& run);
+void both_shapes_of_kernels(CaseRun& run);
 
 }  // namespace twinray::suite

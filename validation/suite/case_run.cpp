@@ -226,6 +226,18 @@ void CaseRun::add_not_run(const std::string& reason, const Configuration* config
     add(result);
 }
 
+void CaseRun::add_computed(Record record) {
+    const bool is_of_hardware =
+        record.backend == name_of(Backend::ray_query) || record.backend == name_of(Backend::pipeline);
+    const auto is_right_by_software = [&](const Record& other) {
+        return other.case_id == record.case_id && other.backend == name_of(Backend::software) && other.pass == true &&
+               other.params == record.params && other.variant == record.variant;
+    };
+    if (record.pass == false)
+        record.fault_of = is_of_hardware && std::ranges::any_of(earlier(), is_right_by_software) ? "driver" : "twinray";
+    add(record);
+}
+
 void CaseRun::add_failure(const std::string& what) {
     Record result = blank();
     result.pass = false;

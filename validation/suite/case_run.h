@@ -33,6 +33,8 @@ class CaseRun {
 
     // How many rays, cells, ... at this effort: in between by equal ratios; of 0 and 1, whether all is to be done.
     std::size_t amount(std::size_t least, std::size_t full);
+    // Of the full suite, for what takes so much that no step towards it, with seconds that are left, shall bring it.
+    bool is_whole() const { return settings_.is_whole; }
     bool depends_on_effort() const { return depends_on_effort_; }  // so far
     std::uint64_t seed() const { return settings_.seed; }
     Devices& devices() { return devices_; }
@@ -76,6 +78,9 @@ class CaseRun {
     // A record of this case, to be filled further and added.
     Record record(const Configuration& configuration) const;
     void add(const Record& record) { recorder_.add(record); }
+    // The same of what is computed from an accelerator's answers: what did not pass is ours, or the driver's where
+    // SwTlas passed with the same settings.
+    void add_computed(Record record);
     // Of the cases before this one, too.
     std::span<const Record> earlier() const { return recorder_.records(); }
     void add_not_run(const std::string& reason, const Configuration* configuration = nullptr);

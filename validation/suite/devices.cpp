@@ -21,12 +21,14 @@ Devices::~Devices() = default;
 
 Context& Devices::context(Backend backend) {
     if (backend != Backend::pipeline) return *context_;
-    if (!pipeline_context_) {
-        ContextDesc desc = desc_;
-        desc.use_ray_query = false;
-        pipeline_context_ = std::make_unique<Context>(desc);
-    }
+    if (!pipeline_context_) pipeline_context_ = std::make_unique<Context>(desc(backend));
     return *pipeline_context_;
+}
+
+ContextDesc Devices::desc(Backend backend) const {
+    ContextDesc desc = desc_;
+    if (backend == Backend::pipeline) desc.use_ray_query = false;
+    return desc;
 }
 
 std::string Devices::why_not(const Configuration& configuration) {
@@ -45,11 +47,17 @@ Level Devices::level_to_make(const Configuration& configuration) {
     return std::max(configuration.level, Level::watertight);
 }
 
+AccelOptions Devices::options(const Configuration& configuration, Layout layout) const {
+    return {level_to_make(configuration), layout, trees_.build_quality};
+}
+
 std::unique_ptr<AbstractAccel> Devices::make_accel(const Configuration& configuration, Layout layout) {
-    const AccelOptions options{level_to_make(configuration), layout, trees_.build_quality};
-    Context& where = context(configuration.backend);
-    if (is_ours(configuration.backend)) return std::make_unique<SwTlas>(where, options);
-    return std::make_unique<HwTlas>(where, BuildOrder::automatic, options);
+    return make_accel(context(configuration.backend), configuration.backend, options(configuration, layout));
+}
+
+std::unique_ptr<AbstractAccel> Devices::make_accel(Context& context, Backend backend, const AccelOptions& options) {
+    if (is_ours(backend)) return std::make_unique<SwTlas>(context, options);
+    return std::make_unique<HwTlas>(context, BuildOrder::automatic, options);
 }
 
 AbstractAccel& Devices::empty_accel(const Configuration& configuration, Layout layout) {

@@ -28,6 +28,8 @@ class Devices {
     Devices& operator=(const Devices&) = delete;
 
     Context& context(Backend backend);
+    // Of which context(backend) was made, for cases that want contexts of their own.
+    ContextDesc desc(Backend backend) const;
     const AccelOptions& trees() const { return trees_; }
     // Why it cannot answer here; "" if it can.
     std::string why_not(const Configuration& configuration);
@@ -37,11 +39,14 @@ class Devices {
     // The level of the accelerator that a configuration's traces run on: configurations that share it share the
     // accelerator.
     static Level level_to_make(const Configuration& configuration);
+    AccelOptions options(const Configuration& configuration, Layout layout) const;
     // One of a case's own.
     std::unique_ptr<AbstractAccel> make_accel(const Configuration& configuration) {
         return make_accel(configuration, trees_.layout);
     }
     std::unique_ptr<AbstractAccel> make_accel(const Configuration& configuration, Layout layout);
+    // The same on a context of the case's own.
+    static std::unique_ptr<AbstractAccel> make_accel(Context& context, Backend backend, const AccelOptions& options);
     // Compiled when first needed; not for the pipeline, in which no kernel traces.
     const CrossingCounter& crossing_counter(const Configuration& configuration);
     // What the library has warned of since the last call; cases provoke warnings, so they are not printed.

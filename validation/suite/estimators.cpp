@@ -147,7 +147,6 @@ void set_series(Record& record, const Series& series) {
     else if (!covers_enough(series.inside, record.n))
         record.reason = text("of intervals, only ", series.inside, " hold the truth");
     record.pass = record.reason.empty();
-    if (!*record.pass) record.fault_of = "twinray";
 }
 
 Record record_of(const CaseRun& run, const Configuration& configuration, const FactorQuestion& question,
@@ -186,7 +185,7 @@ void measure_sampled(CaseRun& run, Estimators& estimators, const Configuration& 
             record.results.emplace("slope_low", law->slope_95.low);
             record.results.emplace("slope_high", law->slope_95.high);
         }
-        run.add(record);
+        run.add_computed(record);
     }
 }
 
@@ -231,7 +230,7 @@ void measure_factor(CaseRun& run, const FactorQuestion& question, std::span<cons
         record.backend = "cpu";
         record.level = "";
         set_series(record, series);
-        run.add(record);
+        run.add_computed(record);
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cases of the section N that are about scenes and wrong use.
+// Cases of the section N that are about scenes, wrong use, large buffers and failing drivers.
 #pragma once
 
 #include "validation/suite/case_run.h"
@@ -14,5 +14,9 @@ void wrong_use(CaseRun& run);
 void empty_and_small(CaseRun& run);
 void too_many(CaseRun& run);
 void masks_and_culling(CaseRun& run);
+
+// inputs_large.cpp, inputs_failures.cpp
+void large_buffers(CaseRun& run);
+void failing_calls(CaseRun& run);
 
 }  // namespace twinray::suite

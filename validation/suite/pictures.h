@@ -57,6 +57,7 @@ class RenderFixture {
     std::vector<Exposure> expose(std::uint64_t seed, std::span<const uint> spp);
     Exposure expose(std::uint64_t seed, uint spp);
 
+    void set_camera(const path_tracer::CameraRays& camera) { settings_.camera = camera; }  // for the next exposure
     const Census& census() const { return census_; }
     path_tracer::Renderer& renderer() { return renderer_; }
     AbstractAccel& accel() { return accel_; }
@@ -89,6 +90,10 @@ void measure_flat(CaseRun& run, const Configuration& configuration, const FlatQu
 // 1 / (variance * seconds) of a series of pictures, with its interval by bootstrap over the seeds: `variances` and `ms`
 // are one a seed. Nothing where no picture varies.
 void set_efficiency(Record& record, std::span<const double> variances, std::span<const double> ms);
+
+// Cases in files of their own: F04 and P16.
+void shadow_terminator(CaseRun& run);
+void by_mitsuba(CaseRun& run);
 
 // The first cases of the section; suite.h has the others.
 std::vector<SuiteCase> picture_energy_cases();

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures against others: of the other accelerator, of another renderer, of more samples.
+// Pictures against others: of the other accelerator, of more samples.
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-
-#include <nlohmann/json.hpp>
 
 #include <twinray/scene.h>
 
@@ -70,85 +66,6 @@ void by_both_accelerators(CaseRun& run) {
                              " pixels differ without a ray that does; of the rays, SwTlas is wrong about ", ours);
     }
     run.add(record);
-}
-
-// Means over blocks of pixels, by channel.
-std::vector<double> block_means(const HdrImage& picture, uint block) {
-    const uint count = picture.width / block;
-    std::vector<double> means(std::size_t{count} * count * 3);
-    for (uint y = 0; y < picture.height; ++y)
-        for (uint x = 0; x < picture.width; ++x)
-            for (int channel = 0; channel < 3; ++channel)
-                means[(std::size_t{y / block} * count + x / block) * 3 + static_cast<std::size_t>(channel)] +=
-                    double{picture.rgb[std::size_t{y} * picture.width + x][channel]} / (block * block);
-    return means;
-}
-
-struct Scores {
-    double mean = 0, rms = 0, largest = 0, relative_mse = 0;
-};
-
-// Of runs with seeds of their own against means with standard errors.
-Scores scores_of(std::span<const std::vector<double>> runs, std::span<const double> mean,
-                 std::span<const double> error) {
-    Scores scores;
-    const auto n = static_cast<double>(runs.size()), count = static_cast<double>(mean.size());
-    for (std::size_t i = 0; i < mean.size(); ++i) {
-        double sum = 0, squares = 0;
-        for (const std::vector<double>& run : runs) sum += run[i] / n;
-        for (const std::vector<double>& run : runs) squares += std::pow(run[i] - sum, 2);
-        const double z = (sum - mean[i]) / std::hypot(std::sqrt(squares / (n - 1) / n), error[i]);
-        scores.mean += z / count;
-        scores.rms += z * z / count;
-        scores.largest = std::max(scores.largest, std::abs(z));
-        scores.relative_mse += std::pow(sum - mean[i], 2) / (mean[i] * mean[i] + 0.01) / count;
-    }
-    scores.rms = std::sqrt(scores.rms);
-    return scores;
-}
-
-// Pictures of tests/samples/peers, 12,288 samples a pixel.
-void by_mitsuba(CaseRun& run) {
-    const std::filesystem::path folder = "tests/samples/peers";
-    if (!std::filesystem::exists(folder / "cornell_box.json"))
-        return run.add_not_run(folder.string() + " is not here: run in the source tree of twinray");
-    std::ifstream file(folder / "cornell_box.json");
-    const nlohmann::json json = nlohmann::json::parse(file);
-    const std::vector<double> mean = json["mean"], error = json["error"];
-    RenderDesc desc{.scene = load_scene(folder / "cornell_box.gltf")};
-    desc.settings.width = desc.settings.height = json["side"];
-    desc.settings.max_depth = json["depth"];
-    desc.settings.filter = path_tracer::FILTER_BOX;
-    desc.settings.camera = path_tracer::camera_rays(desc.scene.cameras[0], 1);
-    for (const Configuration& configuration : analysis_configurations(run)) {
-        RenderFixture fixture(run, configuration, desc);
-        std::vector<std::vector<double>> runs;
-        std::vector<double> ms;
-        const std::size_t seeds = run.amount(10, 32);
-        for (std::size_t seed = 0; seed < seeds; ++seed) {
-            const Exposure exposure = fixture.expose(run.seed() + seed, static_cast<uint>(run.amount(4, 64)));
-            runs.push_back(block_means(exposure.picture, json["block"]));
-            ms.push_back(exposure.ms);
-        }
-        const Scores scores = scores_of(runs, mean, error);
-        // Channels of a block go together: a third as many independent scores, of Student's variance.
-        const double independent = static_cast<double>(mean.size()) / 3, n = static_cast<double>(seeds);
-        const double expected = std::sqrt((n - 1) / (n - 3)), allowed = 4 / std::sqrt(independent);
-        Record record = run.record(configuration);
-        record.reference = "Mitsuba 3";
-        record.n = mean.size();
-        record.time = time_figures("ms_per_picture", ms);
-        record.results = {{"seeds", seeds},
-                          {"z_mean", scores.mean},
-                          {"z_rms", scores.rms},
-                          {"z_largest", scores.largest},
-                          {"relMSE", scores.relative_mse}};
-        record.faults = !(std::abs(scores.mean) < allowed) || !(scores.rms < expected + 1.5 * allowed);
-        fixture.census().add_to(record);
-        record.pass = record.faults == 0;
-        if (!*record.pass) record.fault_of = "twinray", record.reason = "more than the noise of both explains";
-        run.add(record);
-    }
 }
 
 // How pictures are sampled: a curve of the plots.

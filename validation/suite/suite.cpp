@@ -74,9 +74,7 @@ class SuiteRun {
     double seconds_left() const { return settings_.seconds - seconds_before_ - seconds_since(start_); }
 
     void run_first(const SuiteCase& row) {
-        if (!row.run) {
-            CaseRun(row, settings_, devices_, recorder_).add_not_run(row.not_run);
-        } else if (!lost_in_.empty()) {
+        if (!lost_in_.empty()) {
             CaseRun(row, settings_, devices_, recorder_).add_not_run("the device was lost in " + lost_in_);
         } else if (settings_.seconds > 0 && seconds_left() <= 0) {
             CaseRun(row, settings_, devices_, recorder_)
@@ -101,6 +99,7 @@ class SuiteRun {
         const std::size_t before = recorder_.records().size();
         Settings settings = settings_;
         settings.effort = effort;
+        settings.is_whole = settings_.effort >= 1;
         CaseRun here(row, settings, devices_, recorder_);
         try {
             row.run(here);

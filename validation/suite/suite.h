@@ -39,6 +39,7 @@ struct Settings {
     std::vector<std::string> only = {};  // patterns of case ids with * and ?; empty: all
     std::uint64_t seed = 1;
     double seconds = 0;       // no case is begun after these, and what is left goes to the least certain; 0: no limit
+    bool is_whole = false;    // the full suite: set by run()
     bool takes_times = true;  // false: answers are checked, and nothing is repeated to be timed
     // Folder of the report, into whose folder "replays" the first faulty ray of each record goes; "": none is written.
     std::filesystem::path replays_in = {};
@@ -52,8 +53,7 @@ struct SuiteCase {
     std::string title;      // how it is made
     std::string measures;   // what is counted
     std::string criterion;  // when it passes
-    std::function<void(CaseRun&)> run = nullptr;
-    std::string not_run = {};  // why there is no `run`
+    std::function<void(CaseRun&)> run;
 };
 
 // The catalogue, a function and a file for each section.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include <twinray/scene.h>
 #include "engine/core/error.h"
 #include "validation/reference/aimed_rays.h"
 
@@ -32,9 +31,9 @@ void keep(std::vector<Fault>& faults, const Fault& fault) {
 
 AccelOptions options_for(Level level) { return {.level = std::max(level, Level::watertight)}; }
 
-// Built, and its kernel compiled.
-void build(AbstractAccel& accel, const Scene& scene, Level level) {
-    push_scene(accel, scene);
+// Filled, built, and its kernel compiled.
+void build(AbstractAccel& accel, const Verifier::Fill& fill, Level level) {
+    fill(accel);
     const Ray ray{vec3(0), 0, vec3(1), 1};
     static_cast<void>(accel.closest_hits(std::span(&ray, 1), {.level = level}));
 }
@@ -48,9 +47,9 @@ std::string lacking_for_hardware(const DeviceProperties& device, Level level) {
 
 }  // namespace
 
-std::vector<RaySet> test_rays(const ReferenceScene& reference, const Scene& scene, std::size_t random,
+std::vector<RaySet> test_rays(const ReferenceScene& reference, const Bounds& bounds, std::size_t random,
                               std::size_t aimed, std::uint64_t seed) {
-    return {{"random", random_rays(bounds_of(scene), random, seed)},
+    return {{"random", random_rays(bounds, random, seed)},
             {"vertex", vertex_aimed_rays(reference, aimed, seed)},
             {"edge", edge_aimed_rays(reference, aimed, seed)}};
 }
@@ -61,15 +60,15 @@ std::uint64_t Comparison::disagreeing() const {
     return count;
 }
 
-Verifier::Verifier(Context& context, const Scene& scene, Level level)
+Verifier::Verifier(Context& context, ReferenceScene reference, const Fill& fill, Level level)
     : level_(level),
-      reference_(ReferenceScene::of(scene)),
+      reference_(std::move(reference)),
       why_no_hardware_(lacking_for_hardware(context.properties(), level)),
       software_(context, options_for(level)) {
-    build(software_, scene, level);
+    build(software_, fill, level);
     if (!why_no_hardware_.empty()) return;
     hardware_ = std::make_unique<HwTlas>(context, BuildOrder::automatic, options_for(level));
-    build(*hardware_, scene, level);
+    build(*hardware_, fill, level);
 }
 
 Comparison Verifier::compare(std::span<const Ray> rays, const Arbiter& arbiter, Progress& progress) {

@@ -2,6 +2,7 @@
 // Both accelerators on one scene, compared with the reference, a set of rays at a time.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,7 +18,7 @@ struct RaySet {
     std::vector<Ray> rays;
 };
 // Random rays, and rays aimed at vertices and at edges.
-std::vector<RaySet> test_rays(const ReferenceScene& reference, const Scene& scene, std::size_t random,
+std::vector<RaySet> test_rays(const ReferenceScene& reference, const Bounds& bounds, std::size_t random,
                               std::size_t aimed, std::uint64_t seed);
 
 // An answer that is a fault, of ours or of the driver's.
@@ -42,9 +43,10 @@ inline constexpr std::size_t max_faults_of_ours = 10'000, max_faults_of_driver =
 
 class Verifier {
   public:
-    // Builds both accelerators, or SwTlas alone where the device lacks what HwTlas needs at the level, and compiles
-    // their kernels, so that what is timed is tracing. The scene must outlive it.
-    Verifier(Context& context, const Scene& scene, Level level);
+    // Lets both accelerators be filled with the reference's scene, or SwTlas alone where the device lacks what HwTlas
+    // needs at the level, and compiles their kernels, so that what is timed is tracing.
+    using Fill = std::function<void(AbstractAccel&)>;
+    Verifier(Context& context, ReferenceScene reference, const Fill& fill, Level level);
 
     const ReferenceScene& reference() const { return reference_; }
     const HwTlas* hardware() const { return hardware_.get(); }               // null: see the next

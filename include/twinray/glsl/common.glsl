@@ -31,7 +31,9 @@ layout(constant_id = 105) const bool FUSED_FMA = false;
 #define Address uvec2
 #define Uint64 uvec2
 const Address NULL_ADDRESS = Address(0u);
+// Whether it is 0.
 bool is_null(Address address) { return address == NULL_ADDRESS; }
+// So many bytes behind it.
 Address address_after(Address base, uint bytes)
 {
     uint carry;
@@ -54,13 +56,16 @@ Address address_at(Address base, uint index, uint stride)
     name##_buffer buffer_of(name ref) { return name##_buffer(ref.address); } \
     bool is_null(name ref) { return is_null(ref.address); }
 #define REF(T) T##_ref
+// Item i of what lies at an address; it can be read and written.
 #define AT(ref, i) buffer_of(ref).items[i]
+// Declares REF(T) for a struct T; `alignment` in bytes, of the addresses.
 #define BUFFER_OF(T, alignment) REFERENCE(T##_ref, , T items[], alignment)
 #define FEATURE(id, name) layout(constant_id = id) const bool name = true;
 
 // For where either rounding will do.
 #define FMA(a, b, c) fma(a, b, c)
 #define COUNT_STEPS(what, count) // kernels do not
+// Before `for`.
 #define UNROLL [[unroll]]
 #define DONT_UNROLL [[dont_unroll]]
 

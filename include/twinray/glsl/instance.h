@@ -43,10 +43,12 @@ const uint INSTANCE_NON_OPAQUE = 8u;  // not opaque: the trace program decides a
 const uint GEOMETRY_TRIANGLES = 0u;
 const uint GEOMETRY_BOXES = 1u;
 
+// As VkGeometryInstanceFlagBitsKHR.
 FUNC uint flags_of(InstanceRecord instance) { return instance.sbt_offset_flags >> 24u; }
-FUNC uint custom_index_of(InstanceRecord instance) { return instance.custom_index_mask & 0xffffffu; }
-FUNC uint mask_of(InstanceRecord instance) { return instance.custom_index_mask >> 24u; }
+FUNC uint custom_index_of(InstanceRecord instance) { return instance.custom_index_mask & 0xffffffu; }  // 24 bits
+FUNC uint mask_of(InstanceRecord instance) { return instance.custom_index_mask >> 24u; }               // 8 bits
 
+// From object space.
 FUNC Rows to_world_of(InstanceRecord instance) {
     Rows rows;
     rows.r0 = instance.object_to_world[0];

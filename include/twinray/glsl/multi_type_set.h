@@ -14,6 +14,7 @@ struct SetKey {
 };
 BUFFER_OF(SetKey, 4);
 
+// Whether it can name an element: is not all zero.
 FUNC bool is_valid(SetKey key) { return key.type != 0u; }
 
 // TWINRAY_SET_VIEW(MaterialSet, MATERIALS): struct MaterialSet with, for each type, the array `diffuse` of its elements

@@ -15,6 +15,7 @@
 
 Hit twinray_passed; // by the traversal under way
 
+// Before the first.
 Hit no_hit() { return miss(); }
 
 bool intersect_primitive(Candidate candidate, Ray ray_local, inout float t, inout vec2 uv) { return false; }

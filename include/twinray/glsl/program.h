@@ -6,6 +6,7 @@
 #define TWINRAY_PROGRAM_H
 #include "twinray/glsl/rays.h"
 
+// What a traversal has found and asks about.
 struct Candidate {
     uint primitive_index;  // box or triangle of the geometry, in the user's numbering
     uint instance_index;

@@ -12,6 +12,7 @@ FUNC uint ray_count(uint count, Uints indirect_count) {
     return written < count ? written : count;
 }
 
+// What a ray that meets nothing gets.
 FUNC Hit miss() {
     Hit hit;
     hit.hit = 0u;
@@ -25,7 +26,9 @@ FUNC Hit miss() {
     return hit;
 }
 
+// Of an array in device memory.
 FUNC Ray load_ray(REF(Ray) rays, uint index) { return AT(rays, index); }
+// Likewise.
 FUNC void store_hit(REF(Hit) hits, uint index, Hit hit) { AT(hits, index) = hit; }
 
 // The magnitudes' bits, doubled, which are in the order of the magnitudes, NaN above all.
@@ -34,6 +37,7 @@ FUNC uint largest_bits(vec3 v) {
 }
 
 const uint INFINITE_BITS = 0xff000000u;  // of largest_bits: the least that is not finite
+// Neither infinite nor NaN.
 FUNC bool is_finite(vec3 v) { return largest_bits(v) < INFINITE_BITS; }
 
 // Rays that Vulkan forbids (non-finite origin or direction, zero direction, NaN or empty interval) miss.

@@ -49,7 +49,9 @@ FUNC Frame frame_about(vec3 z) {
     return frame;
 }
 
+// Components of v along the axes of the frame.
 FUNC vec3 to_local(Frame frame, vec3 v) { return vec3(dot(frame.x, v), dot(frame.y, v), dot(frame.z, v)); }
+// The vector with these components.
 FUNC vec3 to_world(Frame frame, vec3 v) { return frame.x * v.x + frame.y * v.y + frame.z * v.z; }
 
 #endif

@@ -93,5 +93,5 @@ void Drawing::write(const std::filesystem::path& file) const {
     out << "<svg xmlns='http://www.w3.org/2000/svg' width='" << width_ << "' height='480' viewBox='0 0 " << width_
         << " 480' font-family='sans-serif'>\n<rect width='100%' height='100%' fill='white'/>\n"
         << body_ << "</svg>\n";
-    if (!out.flush()) throw Error("'" + file.string() + "' could not be written");
+    if (!out.flush()) throw Error(file.string() + ": could not be written");
 }

@@ -10,7 +10,7 @@
 
 #include "engine/core/error.h"
 #include "tests/support/device.h"
-#include "tests/support/fault_injection.h"
+#include "validation/faults/fault_injection.h"
 #include "validation/conformance/driver.h"
 #include "validation/conformance/output.h"
 
@@ -93,7 +93,7 @@ TEST_F(ConformanceSuite, FullSharesItsRaysOutToTheCases) {
 
 // A device that never ends what the fifth case submits.
 TEST(ConformanceOfAHungDevice, TellsTheCaseAndEnds) {
-    test::FaultInjector driver;
+    faults::FaultInjector driver;
     std::optional<Context> context;
     try {
         context.emplace(ContextDesc{.most_wait_seconds = 0.01, .get_instance_proc_addr = driver.entry()});
@@ -105,7 +105,7 @@ TEST(ConformanceOfAHungDevice, TellsTheCaseAndEnds) {
     Recorder recorder({"now", "0.1", {}});
     std::string hung;
     conformance::run(*context, {}, recorder, true, [&](const Record& record) {
-        if (recorder.records().size() == 8) driver.inject({"vkWaitSemaphores", 1, test::every_call, VK_TIMEOUT});
+        if (recorder.records().size() == 8) driver.inject({"vkWaitSemaphores", 1, faults::every_call, VK_TIMEOUT});
         if (record.fault_of == "driver" && recorder.records().size() == 9) hung = record.reason;
     });
     EXPECT_NE(hung.find("it has ended none of its submissions for 0.01 s"), std::string::npos) << hung;

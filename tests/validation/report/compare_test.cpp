@@ -107,6 +107,19 @@ TEST(Compare, ScenesOfOtherSeedsAreNoChange) {
     EXPECT_GT(of_one_seed, 100) << "where the rays are the same, such a difference is one";
 }
 
+// A case that had more time asks more rays, of which as many are lost.
+TEST(Compare, OtherAmountsAreNoChange) {
+    std::vector<Record> now = twenty([](int i) { return measured(id(i), 100); });
+    now[3] = measured(id(3), 100, 410, 4096);
+    const std::vector<Record> before = now;
+    now[3] = measured(id(3), 100, 4100, 40960);
+    EXPECT_TRUE(compare(before, now).changes.empty()) << compare(before, now).changes[0].how;
+    now[3] = measured(id(3), 100, 5100, 40960);
+    const Comparison comparison = compare(before, now);
+    ASSERT_EQ(comparison.changes.size(), 1u);
+    EXPECT_EQ(comparison.changes[0].what, "W3 hw watertight {aim vertex}");
+}
+
 TEST(Compare, ADriverThatLosesRaysInAllCasesIsFoundByAnotherSeed) {
     std::mt19937 random(5);
     std::uniform_int_distribution<std::uint64_t> leaks(0, 100);

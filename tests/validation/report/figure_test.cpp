@@ -70,6 +70,13 @@ TEST(Gnuplot, LabelsThatAreNearEachOtherAreMovedApart) {
     EXPECT_EQ(places[3].y, 0.5);
 }
 
+TEST(Gnuplot, ShortAxesHaveNumbers) {
+    EXPECT_EQ(log_tics(0.3, 4), (std::vector{0.5, 1.0, 2.0}));
+    EXPECT_EQ(log_tics(0.009, 0.06).size(), 3u);
+    EXPECT_EQ(log_tics(1.6, 4.9), (std::vector{2.0, 3.0, 4.0}));
+    EXPECT_TRUE(log_tics(1, 1000).empty()) << "powers of ten will do";
+}
+
 TEST(Gnuplot, AScriptHoldsPointsBarsBoundsAndLabels) {
     const Figure figure = leaks_figure(std::vector{leaks("hw", 46, 1000), leaks("sw", 0, 1000)});
     const std::string script = gnuplot_script(figure, "plots/leaks.svg");
@@ -89,7 +96,7 @@ TEST(Gnuplot, DrawsAnElementOfThePage) {
     if (svg.empty()) TWINRAY_LACKS("gnuplot", "gnuplot is not installed");
     EXPECT_TRUE(svg.starts_with("<svg"));
     EXPECT_NE(svg.find("currentColor"), std::string::npos);
-    for (const char* left : {"#010203", "rgb(1,2,3)", "rgb(  1,   2,   3)"})
+    for (const char* left : {"#010203", "rgb(1,2,3)", "rgb(  1,   2,   3)", "color=\"black\""})
         EXPECT_EQ(svg.find(left), std::string::npos) << left;
     EXPECT_NE(svg.find("hits &amp; more"), std::string::npos);
     EXPECT_EQ(svg.find("<script"), std::string::npos);

@@ -51,7 +51,7 @@ TEST(Page, AFaultOfOursIsInTheFirstLine) {
     bad.example = "SW_LEAK 0x1p+0";
     bad.replay = "replays/W04-1.json";
     const std::string page = page_of({bad});
-    EXPECT_TRUE(has(page, "<p class=\"headline bad\">twinray is wrong in 1 measurements."));
+    EXPECT_TRUE(has(page, "<p class=\"headline bad\">twinray is wrong in 1 measurement."));
     EXPECT_TRUE(has(page, "SW_LEAK 0x1p+0"));
     EXPECT_TRUE(has(page, "<a href=\"replays/W04-1.json\">replay</a>"));
 }

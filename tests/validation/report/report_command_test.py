@@ -13,8 +13,11 @@ import xml.etree.ElementTree
 twinray, here = sys.argv[1], pathlib.Path(tempfile.mkdtemp())
 
 
-def report(*arguments, status=0):
-    run = subprocess.run([twinray, "report", "--quiet", "--validation", *arguments], capture_output=True, text=True)
+def report(*arguments, status=0, seconds="10"):
+    # In so few seconds what is least certain is not asked again.
+    run = subprocess.run(
+        [twinray, "report", "--quiet", "--validation", "--budget", seconds, *arguments], capture_output=True, text=True
+    )
     assert run.returncode == status, f"{arguments}: status {run.returncode}\n{run.stdout}{run.stderr}"
     assert "VUID" not in run.stderr and "SYNC-HAZARD" not in run.stderr, run.stderr
     return run.stdout
@@ -25,10 +28,10 @@ def lines(file):
 
 
 first = here / "first"
-report("--only", "N07,B10,N13", "-o", str(first), "--json", str(here / "all.jsonl"))
+report("--only", "N07,B10,N06", "-o", str(first), "--json", str(here / "all.jsonl"))
 records = lines("first/report.jsonl")
 assert records and lines("all.jsonl") == records
-assert {r["case"] for r in records} == {"N07", "B10", "N13"}
+assert {r["case"] for r in records} == {"N07", "B10", "N06"}
 assert all(r["schema"] == "twinray-report/1" and r["device"]["driver"] and r["git"] for r in records)
 judged = [r for r in records if r["case"] == "N07" and r["status"] == "run" and r["backend"] == "sw"]
 assert judged and all(r["pass"] and r["n"] == 144 and r["faults"] == 0 for r in judged), judged
@@ -49,7 +52,7 @@ if shutil.which("gnuplot"):
     assert len(page.findall(".//{http://www.w3.org/2000/svg}svg[@aria-label]")) == 2
 
 # The device's arithmetic: on a CPU driver every bit is that of the CPU twin.
-report("--only", "F06,F07,F08,F09", "--accels", "sw", "-o", str(here / "floats"))
+report("--only", "F06,F07,F08,F09", "--accels", "sw", "-o", str(here / "floats"), seconds="60")
 floats = [r for r in lines("floats/report.jsonl") if r["status"] == "run"]
 assert {r["case"] for r in floats} == {"F06", "F07", "F08", "F09"}
 if "llvmpipe" in floats[0]["device"]["name"]:
@@ -109,9 +112,9 @@ del progress["cases"]["B10"]
 (first / "progress.json").write_text(json.dumps(progress))
 whole = (first / "report.jsonl").read_text()
 (first / "report.jsonl").write_text(whole[:-20])
-report("--only", "N07,B10,N13", "-o", str(first), "--resume")
+report("--only", "N07,B10,N06", "-o", str(first), "--resume")
 gone_on = sorted((r["case"], r["backend"], r["level"], r["run"] == records[0]["run"]) for r in lines("first/report.jsonl"))
-assert gone_on == sorted((r["case"], r["backend"], r["level"], r["case"] == "N07") for r in records)
+assert gone_on == sorted((r["case"], r["backend"], r["level"], r["case"] != "B10") for r in records)
 report("--only", "N07", "-o", str(first), "--resume", status=1)
 report("--only", "N07", "-o", str(here / "nothing"), "--resume", status=1)
 report("--accels", "gpu", status=2)

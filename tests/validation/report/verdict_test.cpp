@@ -29,6 +29,7 @@ Record checked(const char* id, const char* backend, std::uint64_t n, std::map<st
 TEST(Wording, RatesSayHowSureTheyAre) {
     EXPECT_EQ(rate_text(0, 2'100'000), "0 of 2.1 million (below 1.4 per million)");
     EXPECT_EQ(rate_text(460, 10'000), "4.6 % (4.2 to 5)");
+    EXPECT_EQ(rate_text(27'000, 100'000), "27 % (26.7 to 27.3)");
     EXPECT_EQ(rate_text(5, 1'000'000), "5 per million (1.6 to 12)");
     EXPECT_EQ(count_text(8192), "8,192");
     EXPECT_EQ(number(1250), "1250");
@@ -68,12 +69,22 @@ TEST(Verdict, SaysWhatTheDriverDoesWrongFirst) {
     EXPECT_NE(speed->text.find("take 3 (3 to 3) times as long"), std::string::npos) << speed->text;
 }
 
+TEST(Verdict, OwnStructuresThatBreakADemandAreInTheHeadline) {
+    Record right = checked("W04", "hw", 1000, {{"AGREE", 1000}}), wrong = checked("K07", "hw", 1000, {{"LOST", 10}});
+    right.pass = true, wrong.pass = false, wrong.fault_of = "driver";
+    wrong.results.insert_or_assign("demand", "should");
+    EXPECT_EQ(verdict_of(std::vector{right, wrong}).headline, "No fault of this driver's ray tracing was seen.");
+    wrong.results.insert_or_assign("demand", "must");
+    EXPECT_EQ(verdict_of(std::vector{right, wrong}).headline,
+              "This driver fails what Vulkan demands of acceleration structures.");
+}
+
 TEST(Verdict, AFaultOfOursComesFirst) {
     Record wrong = checked("W04", "sw", 1000, {{"SW_LEAK", 1}});
     wrong.pass = false, wrong.fault_of = "twinray";
     const Verdict verdict = verdict_of(std::vector{wrong});
     EXPECT_FALSE(verdict.are_we_right);
-    EXPECT_TRUE(verdict.headline.starts_with("twinray is wrong in 1 measurements."));
+    EXPECT_TRUE(verdict.headline.starts_with("twinray is wrong in 1 measurement."));
     EXPECT_FALSE(verdict.has_driver);
 }
 

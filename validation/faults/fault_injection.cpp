@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/support/fault_injection.h"
+#include "validation/faults/fault_injection.h"
 
 #include <dlfcn.h>
 
@@ -9,7 +9,7 @@
 
 #include "engine/core/error.h"
 
-namespace twinray::test {
+namespace twinray::faults {
 namespace {
 
 // What twinray and VMA call, each function once: with the error that a driver would most likely return.
@@ -290,4 +290,4 @@ std::string what_is_thrown_by(const std::function<void()>& action) {
     return what;
 }
 
-}  // namespace twinray::test
+}  // namespace twinray::faults

@@ -13,7 +13,7 @@
 
 #include "engine/core/vulkan_functions.h"
 
-namespace twinray::test {
+namespace twinray::faults {
 
 // Which calls fail, counted from when it was told. The default is none.
 struct Fault {
@@ -94,4 +94,4 @@ enum class Outcome { done, error, lost };
 Outcome outcome_of(const std::function<void()>& action, std::string* what = nullptr);
 std::string what_is_thrown_by(const std::function<void()>& action);
 
-}  // namespace twinray::test
+}  // namespace twinray::faults

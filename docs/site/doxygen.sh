@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Makes Doxygen's XML of the public headers; what Doxygen says is a warning, so nothing may be said.
+# Usage: doxygen.sh cpp|glsl FOLDER   FOLDER/xml becomes it
+set -euo pipefail
+site=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+cd "$site/../.."
+
+case ${1-} in
+cpp) input=include/twinray words=AMD_VULKAN_MEMORY_ALLOCATOR_H ;;
+glsl) input=include/twinray/glsl words=$(tr '\n' ' ' <docs/site/glsl_words.txt) ;;
+*)
+    echo "doxygen.sh: what is '${1-}'? usage: doxygen.sh cpp|glsl FOLDER" >&2
+    exit 2
+    ;;
+esac
+mkdir -p "$2"
+rm -rf "${2:?}/xml"
+{
+    cat docs/site/Doxyfile
+    printf 'OUTPUT_DIRECTORY = %s\nINPUT = %s\nPREDEFINED = %s\n' "$2" "$input" "$words"
+} | doxygen - >/dev/null 2>"$2/warnings.txt"
+if [[ -s $2/warnings.txt ]]; then
+    cat "$2/warnings.txt" >&2
+    exit 1
+fi

@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Runs what the README and the pages of docs/ show, or finds in its fence why not: blocks.py says how blocks tell.
+Pages of pages_not_covered.txt are left out; the list may only shrink.
+Usage: code_blocks.py --programs FOLDER --package FOLDER [--root FOLDER] [--check-only] [PAGE...]
+  --programs   where twinray and path_tracer are        --package      where the Python package is
+  --python     which Python runs blocks; it has what the package needs
+  --check-only info strings alone: nothing is run"""
+
+import argparse
+import pathlib
+import sys
+import tempfile
+
+try:
+    import blocks
+except ModuleNotFoundError as error:
+    print(f"{error}: tools/docs.sh installs it into build/docs/venv")
+    sys.exit(77)
+import run_block
+
+# Lower it whenever a page is taken out of the list.
+MOST_NOT_COVERED = 24
+
+
+def pages_of(root):
+    return ["README.md", *sorted(page.relative_to(root).as_posix() for page in (root / "docs").rglob("*.md"))]
+
+
+def faults_of_page(root, page):
+    found = blocks.blocks_of((root / page).read_text(encoding="utf-8"))
+    return [f"{page}:{block.line}: {block.fault}" for block in found if block.fault]
+
+
+def blocks_to_run(root, page):
+    return [block for block in blocks.blocks_of((root / page).read_text(encoding="utf-8")) if block.is_run]
+
+
+def faults_of_list(root, listed):
+    faults = [f"pages_not_covered.txt: no such page: {page}" for page in listed if not (root / page).is_file()]
+    faults += [
+        f"pages_not_covered.txt: {page} is covered now; take it out and lower MOST_NOT_COVERED"
+        for page in listed
+        if (root / page).is_file() and not faults_of_page(root, page) and not blocks_to_run(root, page)
+    ]
+    if len(listed) > MOST_NOT_COVERED:
+        faults.append(f"pages_not_covered.txt: {len(listed)} pages, at most {MOST_NOT_COVERED}; it may only shrink")
+    return faults
+
+
+def run_page(tools, page):
+    faults, count = [], 0
+    with tempfile.TemporaryDirectory() as folder:
+        for block in blocks_to_run(tools.root, page):
+            count += 1
+            fault = run_block.WAYS[block.language](block, pathlib.Path(folder), tools)
+            if fault:
+                faults.append(f"{page}:{block.line}: {fault}")
+    return faults, count
+
+
+def main(arguments):
+    here = pathlib.Path(__file__).resolve().parent
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--programs", type=pathlib.Path)
+    parser.add_argument("--package", type=pathlib.Path)
+    parser.add_argument("--python", default=sys.executable)
+    parser.add_argument("--root", type=pathlib.Path, default=here.parents[1])
+    parser.add_argument("--check-only", action="store_true")
+    parser.add_argument("pages", nargs="*")
+    tools = parser.parse_args(arguments)
+    tools.wraps = here / "wraps"
+    list_file = tools.root / "tests/docs/pages_not_covered.txt"
+    listed = list_file.read_text(encoding="utf-8").split() if list_file.is_file() else []
+    pages = tools.pages or [page for page in pages_of(tools.root) if page not in listed]
+    faults = [] if tools.pages else faults_of_list(tools.root, listed)
+    total = 0
+    for page in pages:
+        faults += faults_of_page(tools.root, page)
+        if not tools.check_only:
+            found, count = run_page(tools, page)
+            faults += found
+            total += count
+            if count:
+                print(f"{page}: {count} blocks, {len(found)} faults", flush=True)
+    for fault in faults:
+        print(fault)
+    print(f"code_blocks: {len(pages)} pages, {total} blocks run, {len(listed)} pages not covered, {len(faults)} faults")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: MIT
+"""Runs or compiles one block of code; what went wrong is text."""
+
+import doctest
+import os
+import re
+import subprocess
+
+SECONDS = 240
+
+
+def run(command, folder, tools, wanted_status=0, text=None):
+    """What a command prints, and what is wrong."""
+    environment = os.environ | {
+        "PATH": f"{tools.programs}:{os.environ['PATH']}",
+        "PYTHONPATH": str(tools.package),
+        "XDG_CACHE_HOME": str(folder / ".cache"),
+    }
+    try:
+        result = subprocess.run(
+            command, cwd=folder, env=environment, input=text, capture_output=True, text=True, timeout=SECONDS
+        )
+    except subprocess.TimeoutExpired:
+        return "", f"ran for more than {SECONDS} s"
+    if result.returncode != wanted_status:
+        return result.stdout, f"exit status {result.returncode}, not {wanted_status}:\n{result.stdout}{result.stderr}"
+    return result.stdout, ""
+
+
+def run_sh(block, folder, tools):
+    return run(["bash", "-euo", "pipefail", "-c", block.text], folder, tools, int(block.options.get("exit", 0)))[1]
+
+
+def run_console(block, folder, tools):
+    for part in re.split(r"^\$ ", block.text, flags=re.M)[1:]:
+        command, _, wanted = part.partition("\n")
+        printed, fault = run(["bash", "-euo", "pipefail", "-c", command], folder, tools)
+        if fault:
+            return f"{command}: {fault}"
+        if wanted.strip() and not doctest.OutputChecker().check_output(wanted, printed, doctest.ELLIPSIS):
+            return f"{command}: printed\n{printed}where the page has\n{wanted}"
+    return ""
+
+
+def run_python(block, folder, tools):
+    return run([tools.python, "-W", "ignore", "-"], folder, tools, text=block.text)[1]
+
+
+def run_session(block, folder, tools):
+    with open(folder / "session.txt", "a", encoding="utf-8") as file:  # the sessions of a page go on
+        file.write(block.text + "\n")
+    options = ["-o", "ELLIPSIS", "-o", "NORMALIZE_WHITESPACE"]
+    return run([tools.python, "-W", "ignore", "-m", "doctest", *options, "session.txt"], folder, tools)[1]
+
+
+def wrapped(block, tools):
+    name = block.options.get("wrap")
+    if name is None:
+        return block.text
+    wrap = (tools.wraps / f"{name}.{block.language}").read_text(encoding="utf-8")
+    return wrap.replace("BLOCK\n", block.text)
+
+
+def compile_cpp(block, folder, tools):
+    command = ["g++", "-std=c++20", "-fsyntax-only", f"-I{tools.root}/include", "-x", "c++", "-"]
+    return run(command, folder, tools, text=wrapped(block, tools))[1]
+
+
+def compile_glsl(block, folder, tools):
+    for accelerator in ("SW", "HW"):
+        command = ["glslangValidator", "--target-env", "vulkan1.2", f"-DTWINRAY_{accelerator}"]
+        command += [f"-I{tools.root}", f"-I{tools.root}/include", f"-I{tools.root}/shaders", "--stdin", "-S", "comp"]
+        fault = run(command, folder, tools, text=wrapped(block, tools))[1]
+        if fault:
+            return f"with TWINRAY_{accelerator}: {fault}"
+    return ""
+
+
+WAYS = {
+    "sh": run_sh,
+    "console": run_console,
+    "python": run_python,
+    "pycon": run_session,
+    "cpp": compile_cpp,
+    "glsl": compile_glsl,
+}
