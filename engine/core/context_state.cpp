@@ -129,8 +129,13 @@ Context::State::State(const AdoptedDevice& adopted)
 Context::State::~State() {
     finish();
     keep_pipelines();
-    // Destroying what a hung device still runs would wait for it.
-    if (!is_hung_ || reached(timeline_) >= submitted_) destroy_everything();
+    if (!is_hung_ || reached(timeline_) >= submitted_) {
+        destroy_everything();
+        return;
+    }
+    // Destroying what a hung device still runs would wait for it, or take its memory away: it is left as it is.
+    static_cast<void>(allocator_.release());
+    static_cast<void>(new std::deque<Retired>(std::move(retired_)));
 }
 
 void Context::State::create_instance(const ContextDesc& desc) {
