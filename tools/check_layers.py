@@ -11,7 +11,8 @@ ENGINE = BASE + ["engine", "engine/analysis", "engine/collide", "engine/points"]
 PRODUCT = ENGINE + ["swtlas", "hwtlas"]
 # twinray::validation, then what the command and the tests link beside it.
 VALIDATION = ["validation/" + room for room in ("reference", "leaks", "records", "verify", "cpu_reference")]
-CHECKS = VALIDATION + ["validation/" + room for room in ("conformance", "exact", "faults", "kernels", "picture", "replay", "report", "reproducer", "suite")]
+BESIDE = "conformance exact faults kernels picture replay report reproducer suite".split()
+CHECKS = VALIDATION + ["validation/" + room for room in BESIDE]
 # See include alone.
 AS_HOSTS = ["samples", "bindings", "shaders/path_tracer", "shaders/embed_renderer", "shaders/particles"]
 # Built alone, too: a header lies beside what includes it. One shows the structs of the engine.
@@ -48,7 +49,9 @@ MOST_PUBLIC = {"headers": 15, "lines": 3640}  # of include/twinray, its GLSL apa
 MOST_LINES = {"include/twinray/abstract_accel.h": 270}
 GLSL = re.compile(r"\.(glsl|comp|rgen|rmiss|rchit|rahit|rint|rcall|vert|frag)$")  # outside shaders/, sees them all
 SOURCE = re.compile(r"\.(h|hpp|c|cc|cpp|inl)$|" + GLSL.pattern)
-GENERATED = re.compile(r"\.(spv|trace_program)\.h$|^twinray_program\.glsl$|^twinray_version\.h$|^kernel_modules\.h$|\.(py|c|gltf|json)\.h$")  # by the build, or as installed
+GENERATED = re.compile(  # by the build, or as installed
+    r"\.(spv|trace_program)\.h$|^twinray_program\.glsl$|^twinray_version\.h$|^kernel_modules\.h$|\.(py|c|gltf|json)\.h$"
+)
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 

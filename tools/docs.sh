@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Builds the documentation site from docs/, the comments of the public headers, the Python package and the command's help:
-# build/docs/html/index.html. Fails on any warning and any broken link.
+# Builds the documentation site from docs/, the comments of the public headers, the Python package and the command's
+# help: build/docs/html/index.html. Fails on any warning and any broken link.
 #   tools/docs.sh            installs what is missing first: packages of Python into build/docs/venv, Doxygen by apt
 #   tools/docs.sh --check    and looks at pages in a browser: axe's rules of accessibility (needs npm and chromium)
 #   TWINRAY=FILE             the command, in a build with the samples; default build/release/bin/twinray

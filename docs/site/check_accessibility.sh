@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Looks at pages of the built site in a browser, by check_accessibility.mjs. Needs npm, which fetches two packages the first
-# time, and chromium.
+# Looks at pages of the built site in a browser, by check_accessibility.mjs. Needs chromium and npm, which fetches two
+# packages the first time.
 # Usage: check_accessibility.sh FOLDER
 set -euo pipefail
 site=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

@@ -24,6 +24,12 @@ def page_of(name):
     return f"# `<twinray/{name}.h>`\n\n```{{doxygenfile}} {name}.h\n:sections: {SECTIONS}\n```\n"
 
 
+def index_of(introduction, rows, names):
+    """A page that lists headers in a table and leads to their pages."""
+    table = "| header | what is there |\n|---|---|\n" + "\n".join(rows)
+    return f"{introduction}\n\n{table}\n\n```{{toctree}}\n:hidden:\n\n" + "\n".join(names) + "\n```\n"
+
+
 def write(folder, headers):
     folder.mkdir(parents=True)
     names = sorted(
@@ -31,12 +37,10 @@ def write(folder, headers):
         key=lambda name: (ORDER.index(name) if name in ORDER else len(ORDER), name),
     )
     rows = [f"| [`<twinray/{name}.h>`]({name}.md) | {first_sentence(headers / f'{name}.h')} |" for name in names]
-    (folder / "index.md").write_text(
+    introduction = (
         "# C++\n\nWhat `include/twinray` declares in namespace `twinray`, from its comments. "
-        "`<twinray/twinray.h>` includes what traces rays.\n\n"
-        "| header | what is there |\n|---|---|\n" + "\n".join(rows) + "\n\n```{toctree}\n:hidden:\n\n"
-        + "\n".join(names) + "\n```\n",
-        encoding="utf-8",
-    )  # fmt: skip
+        "`<twinray/twinray.h>` includes what traces rays."
+    )
+    (folder / "index.md").write_text(index_of(introduction, rows, names), encoding="utf-8")
     for name in names:
         (folder / f"{name}.md").write_text(page_of(name), encoding="utf-8")

@@ -4,7 +4,7 @@
 import pathlib
 
 import doxygen_xml as xml
-from cpp_pages import first_sentence
+from cpp_pages import first_sentence, index_of
 
 # Headers that are only a way to include others, or that C++ alone reads.
 NOT_FOR_KERNELS = {"cpp.h", "cpp_begin.h", "cpp_end.h", "cpp_sampling.h", "cpp_spawn.h", "vector_math.h"}
@@ -98,10 +98,8 @@ def write(folder, xml_folder, headers):
         names.append(page)
         rows.append(f"| [`twinray/glsl/{name}`]({page}.md) | {xml.escaped(first_sentence(headers / name))} |")
         (folder / f"{page}.md").write_text(page_of(compound, structs.get(name, [])), encoding="utf-8")
-    (folder / "index.md").write_text(
+    introduction = (
         "# GLSL\n\nWhat kernels of yours include, from the headers' comments. "
-        "[Kernels](../../kernels.md) is the manual.\n\n"
-        "| header | what is there |\n|---|---|\n" + "\n".join(rows) + "\n\n```{toctree}\n:hidden:\n\n"
-        + "\n".join(names) + "\n```\n",
-        encoding="utf-8",
-    )  # fmt: skip
+        "[Kernels](../../kernels.md) is the manual."
+    )
+    (folder / "index.md").write_text(index_of(introduction, rows, names), encoding="utf-8")

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include <twinray/scene.h>
 
@@ -14,6 +15,9 @@ struct PictureError {
     double relative_mse = 0;  // of the squared difference over the squared reference + 0.01, which keeps black out
 };
 PictureError error_against(const HdrImage& picture, const HdrImage& reference);
+
+// Means over blocks of block x block pixels, by channel, in the order of pixels; what is over at the edges is left out.
+std::vector<double> block_means(const HdrImage& picture, uint block);
 
 // Throws Error unless the file is a picture of that size.
 HdrImage load_reference(const std::filesystem::path& file, uint width, uint height);

@@ -20,7 +20,7 @@ except ModuleNotFoundError as error:
 import run_block
 
 # Lower it whenever a page is taken out of the list.
-MOST_NOT_COVERED = 24
+MOST_NOT_COVERED = 23
 
 
 def pages_of(root):

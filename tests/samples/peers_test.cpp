@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "samples/path_tracer/reference.h"
 #include "tests/samples/render.h"
 
 namespace twinray::path_tracer {
@@ -34,17 +35,6 @@ Reference load_reference(const std::string& name) {
     for (std::size_t i = 0; i < sky.size(); i += 3) image.rgb.push_back({sky[i], sky[i + 1], sky[i + 2]});
     reference.sky = std::make_unique<EnvironmentMap>(std::move(image));
     return reference;
-}
-
-std::vector<double> block_means(const HdrImage& picture, uint block) {
-    const uint count = picture.width / block;
-    std::vector<double> means(std::size_t{count} * count * 3);
-    for (uint y = 0; y < picture.height; ++y)
-        for (uint x = 0; x < picture.width; ++x)
-            for (int channel = 0; channel < 3; ++channel)
-                means[(std::size_t{y / block} * count + x / block) * 3 + static_cast<std::size_t>(channel)] +=
-                    double{picture.rgb[y * picture.width + x][channel]} / (block * block);
-    return means;
 }
 
 // Of renders with seeds of their own.

@@ -75,7 +75,13 @@ std::string classes_of(const Group& group) {
     return text;
 }
 
-void write_row(std::ostream& out, const Key& key, const Group& group) {
+std::string fault_text(const Record& record) {
+    return escaped(settings_text(record)) + ' ' + escaped(record.reason) + " <code>" + escaped(record.example) +
+           "</code>";
+}
+
+// `told`: what the rows above say of their faults, which is not said again.
+void write_row(std::ostream& out, const Key& key, const Group& group, std::set<std::string>& told) {
     const Record& worst = group.worst();
     out << "<tr><td>" << escaped(key[0] + ' ' + key[1]) << (key[2].empty() ? "" : " (" + escaped(key[2]) + ')')
         << "</td><td>" << group.records.size() << "</td><td>" << count_text(group.n()) << "</td><td>"
@@ -87,8 +93,8 @@ void write_row(std::ostream& out, const Key& key, const Group& group) {
         << escaped(unit_of(group, true)) << "</td><td class=\"" << style_of(worst) << "\">" << escaped(result_of(worst))
         << "</td></tr>\n";
     if (worst.pass.value_or(true) || (worst.reason.empty() && worst.example.empty())) return;
-    out << "<tr><td colspan=\"8\">" << escaped(settings_text(worst)) << ' ' << escaped(worst.reason) << " <code>"
-        << escaped(worst.example) << "</code>";
+    const std::string fault = fault_text(worst);
+    out << "<tr><td colspan=\"8\">" << (told.insert(fault).second ? fault : "as above");
     if (!worst.replay.empty()) out << " <a href=\"" << escaped(worst.replay) << "\">replay</a>";
     out << "</td></tr>\n";
 }
@@ -107,7 +113,8 @@ void write_case(std::ostream& out, const suite::SuiteCase& row, const std::vecto
         << ". Passes with: " << escaped(row.criterion) << ".</p>\n<div class=\"wide\"><table><tr><th>by</th>"
         << "<th>settings</th><th>n</th><th>faults</th><th>classes</th><th>error</th><th>time</th><th>result</th></"
            "tr>\n";
-    for (const Key& key : order) write_row(out, key, groups[key]);
+    std::set<std::string> told;
+    for (const Key& key : order) write_row(out, key, groups[key], told);
     out << "</table></div></details>\n";
 }
 

@@ -39,7 +39,8 @@ th { color: var(--soft); font-weight: 600; } code { font-size: .72rem; overflow-
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 0 1rem; font-size: .85rem; margin: .4rem 0; }
 dt { color: var(--soft); } dd { margin: 0; }
 @media (max-width: 40rem) { .headline { font-size: 1.25rem; } body { font-size: 15px; } }
-@media print { body { font-size: 10.5pt; max-width: none; } figure, li { break-inside: avoid; } h2, h3 { break-after: avoid; } }
+@media print { body { font-size: 10.5pt; max-width: none; } figure, li { break-inside: avoid; }
+  h2, h3 { break-after: avoid; } }
 )";
 
 void write_verdict(std::ostream& out, const PageInput& input, const Verdict& verdict) {

@@ -16,22 +16,11 @@
 #include "validation/suite/estimators.h"
 #include "validation/suite/pictures.h"
 #include "samples/path_tracer/camera.h"
+#include "samples/path_tracer/reference.h"
 #include "engine/core/error.h"
 
 namespace twinray::suite {
 namespace {
-
-// Means over blocks of pixels, by channel.
-std::vector<double> block_means(const HdrImage& picture, uint block) {
-    const uint count = picture.width / block;
-    std::vector<double> means(std::size_t{count} * count * 3);
-    for (uint y = 0; y < picture.height; ++y)
-        for (uint x = 0; x < picture.width; ++x)
-            for (int channel = 0; channel < 3; ++channel)
-                means[(std::size_t{y / block} * count + x / block) * 3 + static_cast<std::size_t>(channel)] +=
-                    double{picture.rgb[std::size_t{y} * picture.width + x][channel]} / (block * block);
-    return means;
-}
 
 struct Scores {
     double mean = 0, rms = 0, largest = 0, relative_mse = 0;
@@ -103,7 +92,7 @@ void by_mitsuba(CaseRun& run) {
         const std::size_t seeds = run.amount(10, 32);
         for (std::size_t seed = 0; seed < seeds; ++seed) {
             const Exposure exposure = fixture.expose(run.seed() + seed, static_cast<uint>(run.amount(2, 64)));
-            runs.push_back(block_means(exposure.picture, json["block"]));
+            runs.push_back(path_tracer::block_means(exposure.picture, json["block"]));
             ms.push_back(exposure.ms);
         }
         const Scores scores = scores_of(runs, mean, error);

@@ -113,7 +113,8 @@ del progress["cases"]["B10"]
 whole = (first / "report.jsonl").read_text()
 (first / "report.jsonl").write_text(whole[:-20])
 report("--only", "N07,B10,N06", "-o", str(first), "--resume")
-gone_on = sorted((r["case"], r["backend"], r["level"], r["run"] == records[0]["run"]) for r in lines("first/report.jsonl"))
+began = records[0]["run"]
+gone_on = sorted((r["case"], r["backend"], r["level"], r["run"] == began) for r in lines("first/report.jsonl"))
 assert gone_on == sorted((r["case"], r["backend"], r["level"], r["case"] != "B10") for r in records)
 report("--only", "N07", "-o", str(first), "--resume", status=1)
 report("--only", "N07", "-o", str(here / "nothing"), "--resume", status=1)

@@ -8,6 +8,7 @@
 #include <twinray/scene.h>
 
 #include "validation/reference/aimed_rays.h"
+#include "tests/support/device.h"
 #include "validation/suite/twin.h"
 
 namespace twinray::suite {
@@ -21,19 +22,19 @@ std::size_t hit_count(const std::vector<Hit>& hits) {
 
 // t is 1e-36 and its products with the steps of compressed boxes are denormal: they are taken times a power of two.
 TEST(FlushedDenormals, LongDirectionsLoseNothing) {
-    if (!FlushDenormals::is_able()) GTEST_SKIP() << "not on this processor";
+    if (!FlushDenormals::is_able()) TWINRAY_LACKS("flushed_denormals", "this processor cannot");
     Scene scene;
     scene.meshes = {make_icosphere(3)};
     scene.instances = {{"", 0, {}}};
-    const std::unique_ptr<reference::Scene> twin = twin_of(scene);
+    const std::unique_ptr<reference::Scene> on_cpu = twin_of(scene);
     std::vector<Ray> rays = random_rays({vec3(-1), vec3(1)}, 4096, 1);
     for (Ray& ray : rays) ray.direction = normalize(ray.direction);
-    const std::size_t expected = hit_count(trace_twin(*twin, rays, Level::watertight));
+    const std::size_t expected = hit_count(trace_twin(*on_cpu, rays, Level::watertight));
     EXPECT_GT(expected, 500u);
     for (const float length : {1e-30f, 1e30f, 1e36f}) {
         std::vector<Ray> stretched = rays;
         for (Ray& ray : stretched) ray.direction *= length;
-        const std::size_t found = hit_count(trace_twin(*twin, stretched, Level::watertight, Denormals::flushed));
+        const std::size_t found = hit_count(trace_twin(*on_cpu, stretched, Level::watertight, Denormals::flushed));
         EXPECT_GE(found + expected / 100, expected) << length;  // those nearer than 0.01 have a denormal t themselves
     }
 }
