@@ -2,17 +2,17 @@
 # SPDX-License-Identifier: MIT
 # Builds the documentation site from docs/, the comments of the public headers, the Python package and the command's
 # help: build/docs/html/index.html. Fails on any warning and any broken link.
-#   tools/docs.sh            installs what is missing first: packages of Python into build/docs/venv, Doxygen by apt
+#   tools/docs.sh            installs what is missing and builds twinray first: its programs make pictures and pages
 #   tools/docs.sh --check    and looks at pages in a browser: axe's rules of accessibility (needs npm and chromium)
-#   TWINRAY=FILE             the command, in a build with the samples; default build/release/bin/twinray
+#   TWINRAY=FILE             takes this command, of a build with samples and Python, and builds none
 #   SKIP_APT=1               install no package of the system
-# Once installed, nothing is fetched. Needs python3-venv.
+# Once installed, nothing is fetched.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. tools/lib.sh
 
 folder=build/docs
 site=docs/site
-venv=$folder/venv
 twinray=${TWINRAY-build/release/bin/twinray}
 
 die() {
@@ -20,20 +20,13 @@ die() {
     exit 1
 }
 
-install_doxygen() {
-    if command -v doxygen >/dev/null; then return; fi
-    if [[ ${SKIP_APT-} == 1 ]] || ! command -v apt-get >/dev/null; then die "doxygen is not installed"; fi
-    local as_root=()
-    if ((EUID != 0)); then as_root=(sudo); fi
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends doxygen >/dev/null ||
-        die "doxygen cannot be installed: run apt-get update, then this again"
-}
-
-install_packages() {
-    if cmp -s $site/requirements.txt $venv/installed.txt; then return; fi
-    python3 -m venv --clear $venv
-    $venv/bin/pip install --quiet --disable-pip-version-check -r $site/requirements.txt
-    cp $site/requirements.txt $venv/installed.txt
+# A build that is there is brought up to date as it is configured; else one without tests is made.
+build_twinray() {
+    if [[ -x $twinray ]] && grep -q '^TWINRAY_PYTHON:BOOL=ON' build/release/CMakeCache.txt; then
+        cmake --build --preset release
+    else
+        with_python=1 build docs
+    fi
 }
 
 # What the pages of tutorials open with, by the programs themselves.
@@ -42,18 +35,18 @@ make_pictures() { cmake --build "$(dirname "$(dirname "$twinray")")" --target tu
 build_site() {
     $site/doxygen.sh cpp $folder/cpp
     $site/doxygen.sh glsl $folder/glsl
-    $venv/bin/python $site/stage.py $folder/source "$twinray"
+    "$python" $site/stage.py $folder/source "$twinray"
     rm -rf $folder/html
-    $venv/bin/sphinx-build -q -W --keep-going -j auto -c docs -d $folder/doctrees $folder/source $folder/html
+    "$python" -m sphinx -q -W --keep-going -j auto -c docs -d $folder/doctrees $folder/source $folder/html
 }
 
-install_doxygen
-install_packages
-start=$EPOCHREALTIME
-make_pictures || die "the pictures of the tutorials cannot be made: build twinray, with its samples, first"
+if [[ -z ${TWINRAY-} ]]; then build_twinray; fi
+python=$(python_for_docs)
+section "Pictures and pages"
+make_pictures || die "the pictures of the tutorials cannot be made"
 build_site
-links=$($venv/bin/python $site/check_links.py $folder/html $folder/external_links.txt)
+links=$("$python" $site/check_links.py $folder/html $folder/external_links.txt)
 if [[ ${1-} == --check ]]; then $site/check_accessibility.sh $folder/html; fi
-minutes=$(awk -v from="$start" -v to="$EPOCHREALTIME" 'BEGIN { printf "%.1f", (to - from) / 60 }')
+minutes=$(awk -v seconds=$SECONDS 'BEGIN { printf "%.1f", seconds / 60 }')
 pages=$(find $folder/html -name '*.html' | wc -l)
 echo "docs: $minutes minutes, $pages pages, warnings 0, $links"

@@ -34,6 +34,17 @@ python_for_package() {
     echo "$folder/bin/python"
 }
 
+# The same for what builds the documentation and runs what its pages show.
+python_for_docs() {
+    local folder=$PWD/build/docs/venv wanted=docs/site/requirements.txt
+    if ! cmp -s "$wanted" "$folder/installed.txt"; then
+        python3 -m venv --clear "$folder" >&2 &&
+            "$folder/bin/pip" install --quiet --disable-pip-version-check -r "$wanted" >&2 &&
+            cp "$wanted" "$folder/installed.txt" || return
+    fi
+    echo "$folder/bin/python"
+}
+
 # Installs the packages and builds; the working directory is the checkout. TWINRAY_WERROR=ON in the environment makes
 # warnings errors.
 build() { # preset [what tools/setup.sh takes]

@@ -20,6 +20,7 @@ packages=(
     "${demo_packages[@]}" pkg-config python3-minimal python3-venv python3-dev libvulkan-volk-dev vulkan-tools
     vulkan-validationlayers spirv-tools
     libgtest-dev libgmp-dev libeigen3-dev assimp-testmodels chromium-common graphviz gnuplot-nox
+    doxygen
     libglfw3-dev libimgui-dev xvfb xauth
 )
 if [[ $(uname -m) == x86_64 ]]; then packages+=(libembree-dev); fi # twinray bench measures it, too

@@ -4,8 +4,8 @@
 # the accelerators' common contract, within three minutes on two cores.
 #   tools/test.sh [quick|release|debug|asan]
 # TWINRAY_REQUIRE names the devices without which tests fail instead of skipping:
-# "vulkan,ray_tracing,descriptor_indexing" unless it is set; with "python" in it the Python package must be built, too,
-# for which PyPI must be reached.
+# "vulkan,ray_tracing,descriptor_indexing" unless it is set; with "python" or "docs" in it the Python package must be
+# built, or the documentation, for which PyPI must be reached.
 # The last lines are ctest's summary.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -25,6 +25,7 @@ fi
 # Sanitizers want to be loaded before Python; quick is about other things.
 if [[ $preset == release && ${#which[@]} == 0 ]]; then with_python=1; fi
 build "$preset"
+if [[ ${with_python-} ]] && ! python_for_docs >/dev/null && [[ ${TWINRAY_REQUIRE-} == *docs* ]]; then exit 1; fi
 section "Tests ($preset)"
 export TWINRAY_REQUIRE=${TWINRAY_REQUIRE-vulkan,ray_tracing,descriptor_indexing}
 exec ctest --preset "$preset" "${which[@]}"
