@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <twinray/trace.h>
 
+#include "engine/accel/check_level.h"
+#include "engine/core/error.h"
+
 namespace twinray {
 
 const char* name_of(Feature feature) {
@@ -18,6 +21,14 @@ const char* name_of(Support support) {
 
 Feature feature_of(Level level) {
     return static_cast<Feature>(static_cast<int>(Feature::level_fast) + static_cast<int>(level));
+}
+
+void check_level(const std::string& name, const char* doing, const Capability& can, Level level, Level made_for) {
+    if (can.support == Support::unsupported)
+        fail(name, ": ", doing, ": ", name_of(can.feature), " is unsupported: ", can.note);
+    if (level >= Level::refined && level > made_for)
+        fail(name, ": ", doing, ": ", name_of(feature_of(level)), " is more than the accelerator was made for, ",
+             name_of(feature_of(made_for)), "; see AccelOptions");
 }
 
 }  // namespace twinray

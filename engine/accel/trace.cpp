@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tracing through AccelBackend: what every accelerator checks, and the host's convenience.
 #include "engine/accel/accel_backend.h"
+#include "engine/accel/check_level.h"
 #include "engine/accel/ray_sort.h"
 #include "engine/core/error.h"
 #include "engine/core/pace.h"
@@ -98,11 +99,7 @@ void AccelBackend::check_desc(const AccelView& view, const TraceDesc& desc) cons
     if (desc.indirect_count.address % 4)
         fail(name_, ": trace: indirect count at ", desc.indirect_count.address, " must be aligned to 4 bytes");
     if (desc.count > UINT32_MAX) fail(name_, ": trace: ", desc.count, " rays; at most ", UINT32_MAX, " in one call");
-    if (const Capability level = capability(feature_of(desc.level)); level.support == Support::unsupported)
-        fail(name_, ": trace: ", name_of(level.feature), " is unsupported: ", level.note);
-    if (desc.level >= Level::refined && desc.level > options_.level)
-        fail(name_, ": trace: ", name_of(feature_of(desc.level)), " is more than the accelerator was made for, ",
-             name_of(feature_of(options_.level)), "; see AccelOptions");
+    check_level(*this, "trace", desc.level);
 }
 
 uint AccelBackend::features_for(const TraceDesc& desc) const {

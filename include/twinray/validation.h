@@ -141,7 +141,8 @@ struct LeakFault {
 class LeakTest {
   public:
     // Fills `accel`, which is empty, has Feature::kernel_queries and outlives the test. Throws Error naming the mesh
-    // and an edge that is not between two triangles, or where no point inside is found.
+    // and an edge that is not between two triangles, where no point inside is found, or where the accelerator was not
+    // made for the level.
     LeakTest(AbstractAccel& accel, const Mesh& mesh, Level level, std::uint64_t seed);
     ~LeakTest();
 

@@ -75,4 +75,15 @@ TEST_F(HostValidation, ALeakTestFindsNoFaultInAClosedMeshAndRefusesAnOpenOne) {
     EXPECT_THROW(LeakTest(other, make_quad(vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)), Level::watertight, 1), Error);
 }
 
+TEST_F(HostValidation, ALeakTestRefusesALevelThatTheAcceleratorWasNotMadeFor) {
+    SwTlas accel(context());
+    try {
+        const LeakTest test(accel, make_icosphere(1), Level::refined, 1);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(), "SwTlas: LeakTest: level refined is more than the accelerator was made for, level "
+                                   "watertight; see AccelOptions");
+    }
+}
+
 }  // namespace

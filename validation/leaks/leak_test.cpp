@@ -2,6 +2,7 @@
 #include <twinray/validation.h>
 
 #include <twinray/abstract_accel.h>
+#include "engine/accel/check_level.h"
 #include "engine/core/parallel.h"
 #include "engine/core/statistics.h"
 #include "validation/leaks/crossings.h"
@@ -28,7 +29,10 @@ struct LeakTest::State {
 };
 
 LeakTest::LeakTest(AbstractAccel& accel, const Mesh& mesh, Level level, std::uint64_t seed)
-    : state_(std::make_unique<State>(accel, mesh, level, seed)) {}
+{
+    check_level(accel, "LeakTest", level);
+    state_ = std::make_unique<State>(accel, mesh, level, seed);
+}
 
 LeakTest::~LeakTest() = default;
 
