@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Waves and floating balls, moved by kernels: moving_scenes FOLDER
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -50,8 +51,8 @@ int main(int argc, char** argv) try {
     const std::filesystem::path folder = argv[1];
     std::filesystem::create_directories(folder);
     widen_cpu_vectors();
-    const uint width = 320, height = 280;
-    std::vector<Rgb> strip(3 * width * height);
+    const uint width = 320, height = 280, gap = 4, across = 3 * width + 2 * gap;
+    std::vector<Rgb> strip(across * height, Rgb{255, 255, 255});
     // [main]
     Context context;
     SwTlas accel(context, {.keeps_surfaces = true});
@@ -69,10 +70,11 @@ int main(int argc, char** argv) try {
                   << " hits on water differ from those of a new tree\n";
         // [/main]
         if (error > 0x1p-21 || differing > 0) throw Error("the accelerator does not show what the kernels wrote");
-        for (uint y = 0; y < height; ++y) std::copy_n(&picture[y * width], width, &strip[(3 * y + frame) * width]);
+        for (uint y = 0; y < height; ++y)
+            std::copy_n(&picture[y * width], width, &strip[y * across + frame * (width + gap)]);
     }
     if (accel.revision() != revision) throw Error("views became stale");
-    write_png(folder / "09_moving_scenes.png", 3 * width, height, strip);
+    write_png(folder / "09_moving_scenes.png", across, height, strip);
 } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

@@ -11,6 +11,7 @@ layout(push_constant, scalar) uniform Push { PictureArgs args; };
 
 const float EVERYWHERE = 1e30; // t_max
 
+// [radiance]
 vec3 radiance(Ray ray)
 {
     Hit hit;
@@ -24,6 +25,7 @@ vec3 radiance(Ray ray)
     vec3 color = hit.custom_index == 1u ? vec3(0.9, 0.35, 0.15) : vec3(0.15, 0.4, 0.55);
     return color * (0.3 + 0.15 * normal.y + 0.8 * (is_lit ? dot(normal, to_sun) : 0.0));
 }
+// [/radiance]
 
 void main()
 {
