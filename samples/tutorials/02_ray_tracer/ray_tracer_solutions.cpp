@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Solutions of the exercises of tutorial 2. Exits with 1 unless each gives what is known; writes a picture by all
 // three.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 

@@ -2,6 +2,7 @@
 // The ray tracer of tutorial 2, but for its main: a scene, a camera and one bounce of all rays.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <vector>

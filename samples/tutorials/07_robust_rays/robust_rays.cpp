@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Rays that get out of a closed mesh, counted and drawn: robust_rays FOLDER
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Solutions of the exercises.
 #include <iostream>
+#include <random>
 
 #include <twinray/scene.h>
 #include <twinray/tlas.h>

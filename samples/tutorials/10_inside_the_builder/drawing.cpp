@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "drawing.h"
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
