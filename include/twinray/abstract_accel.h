@@ -146,8 +146,8 @@ class AbstractAccel {
     // Measured by the GPU in float32, with pairwise sums: right to 1e-5 of itself. What a driver builds is hidden: for
     // HwTlas it is an estimate, the cost of the tree that halves the driver's input again and again. The form without a
     // handle is about the top level, measured in each sync, the other about a geometry, measured from the first sync on
-    // that follows update_vertices() of what is built, a DeviceMesh's from its first sync: nothing before. They wait for
-    // the last sync that measured.
+    // that follows update_vertices() of what is built, a DeviceMesh's from its first sync: nothing before. They wait
+    // for the last sync that measured.
     std::optional<double> sah() const;
     std::optional<double> sah(AccelHandle handle) const;
     // The same without waiting: the latest that the GPU has done since the tree was last built; nothing while it has

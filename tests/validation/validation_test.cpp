@@ -81,8 +81,9 @@ TEST_F(HostValidation, ALeakTestRefusesALevelThatTheAcceleratorWasNotMadeFor) {
         const LeakTest test(accel, make_icosphere(1), Level::refined, 1);
         FAIL();
     } catch (const Error& error) {
-        EXPECT_STREQ(error.what(), "SwTlas: LeakTest: level refined is more than the accelerator was made for, level "
-                                   "watertight; see AccelOptions");
+        EXPECT_STREQ(error.what(),
+                     "SwTlas: LeakTest: level refined is more than the accelerator was made for, level "
+                     "watertight; see AccelOptions");
     }
 }
 

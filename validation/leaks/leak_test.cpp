@@ -28,8 +28,7 @@ struct LeakTest::State {
     CrossingCounter counter;
 };
 
-LeakTest::LeakTest(AbstractAccel& accel, const Mesh& mesh, Level level, std::uint64_t seed)
-{
+LeakTest::LeakTest(AbstractAccel& accel, const Mesh& mesh, Level level, std::uint64_t seed) {
     check_level(accel, "LeakTest", level);
     state_ = std::make_unique<State>(accel, mesh, level, seed);
 }
