@@ -36,8 +36,10 @@ install_packages() {
     cp $site/requirements.txt $venv/installed.txt
 }
 
-# What the pages of tutorials open with, by the programs themselves.
-make_pictures() { cmake --build "$(dirname "$(dirname "$twinray")")" --target tutorial_pictures >/dev/null; }
+# What the pages of tutorials open with, and the gallery: by the programs themselves.
+make_pictures() {
+    cmake --build "$(dirname "$(dirname "$twinray")")" --target tutorial_pictures gallery_pictures >/dev/null
+}
 
 build_site() {
     $site/doxygen.sh cpp $folder/cpp
@@ -50,7 +52,7 @@ build_site() {
 install_doxygen
 install_packages
 start=$EPOCHREALTIME
-make_pictures || die "the pictures of the tutorials cannot be made: build twinray, with its samples, first"
+make_pictures || die "the pictures of the tutorials and the gallery cannot be made: build twinray, with its samples, first"
 build_site
 links=$($venv/bin/python $site/check_links.py $folder/html $folder/external_links.txt)
 if [[ ${1-} == --check ]]; then $site/check_accessibility.sh $folder/html; fi
