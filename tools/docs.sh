@@ -29,8 +29,10 @@ build_twinray() {
     fi
 }
 
-# What the pages of tutorials open with, by the programs themselves.
-make_pictures() { cmake --build "$(dirname "$(dirname "$twinray")")" --target tutorial_pictures >/dev/null; }
+# What the pages of tutorials open with, and the gallery: by the programs themselves.
+make_pictures() {
+    cmake --build "$(dirname "$(dirname "$twinray")")" --target tutorial_pictures gallery_pictures >/dev/null
+}
 
 build_site() {
     $site/doxygen.sh cpp $folder/cpp
@@ -43,7 +45,7 @@ build_site() {
 if [[ -z ${TWINRAY-} ]]; then build_twinray; fi
 python=$(python_for_docs)
 section "Pictures and pages"
-make_pictures || die "the pictures of the tutorials cannot be made"
+make_pictures || die "the pictures of the tutorials and the gallery cannot be made"
 build_site
 links=$("$python" $site/check_links.py $folder/html $folder/external_links.txt)
 if [[ ${1-} == --check ]]; then $site/check_accessibility.sh $folder/html; fi

@@ -70,7 +70,7 @@ def filtered(name, source):
         behind = BEHIND.match(line)
         code = behind[1] if behind else line
         bare = re.sub(r'"[^"]*"|\'.\'', "", code)
-        if begins:
+        if begins or (depth == 0 and bare.lstrip().startswith("#")):  # a macro that stands alone has no semicolon
             function_name = name_declared(bare, lines[position] if position < len(lines) else "")
             if not comment and not behind and function_name and function_name == last_name:
                 comment = last_comment

@@ -3,6 +3,7 @@
 #ifndef TWINRAY_ACCEL_HEADER_H
 #define TWINRAY_ACCEL_HEADER_H
 
+// Where to find what only some accelerators keep.
 struct AccelHeader {
     Address surfaces;    // of a SurfaceTable, or 0 without AccelOptions::keeps_surfaces
     Address refinement;  // of a RefineScene, or 0 below Level::refined

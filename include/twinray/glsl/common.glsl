@@ -10,25 +10,33 @@
 
 #extension GL_EXT_spirv_intrinsics : require
 
+// NMin: the lesser of two numbers; of NaN and a number the number.
 spirv_instruction(set = "GLSL.std.450", id = 79) float n_min(float a, float b);
+// NMax: the greater of two numbers; of NaN and a number the number.
 spirv_instruction(set = "GLSL.std.450", id = 80) float n_max(float a, float b);
-// The lesser and the greater of two numbers; of NaN and a number b it is b: what min() and max() leave open. Of two
-// zeros either. By one instruction, or by a comparison where that is less (KernelTuning::compares_numbers).
+// Whether min_no_nan() and max_no_nan() compare, where that is less than NMin and NMax
+// (KernelTuning::compares_numbers).
 layout(constant_id = 106) const bool COMPARES_NUMBERS = false;
+// The lesser of two numbers; of NaN and a number b it is b: what min() leaves open. Of two zeros either.
 float min_no_nan(float a, float b) { return COMPARES_NUMBERS ? (a < b ? a : b) : n_min(a, b); }
+// The greater of two numbers; of NaN and a number b it is b: what max() leaves open. Of two zeros either.
 float max_no_nan(float a, float b) { return COMPARES_NUMBERS ? (a > b ? a : b) : n_max(a, b); }
 
 // Whether fma() rounds once. Set for every kernel that the library makes (KernelTuning::has_fused_fma).
 layout(constant_id = 105) const bool FUSED_FMA = false;
+// a * b + c, rounded once where FUSED_FMA is true.
 #define FUSED(a, b, c) fma(a, b, c)
 
 #define FUNC
+// The type of a parameter that the function reads and writes; in C++ a reference.
 #define INOUT(T) inout T
+// Before a variable: what it is made of is computed as written, not fused or reordered.
 #define PRECISE precise
 
 // Where something lies in device memory, and other integers of 64 bits that kernels pass on: two words, the low one
 // first, as not every device has integers of 64 bits.
 #define Address uvec2
+// An integer of 64 bits that is no address, likewise two words.
 #define Uint64 uvec2
 const Address NULL_ADDRESS = Address(0u);
 // Whether it is 0.
@@ -55,18 +63,22 @@ Address address_at(Address base, uint index, uint stride)
     struct name { Address address; }; \
     name##_buffer buffer_of(name ref) { return name##_buffer(ref.address); } \
     bool is_null(name ref) { return is_null(ref.address); }
+// The type of the address of items of type T, which BUFFER_OF declares.
 #define REF(T) T##_ref
 // Item i of what lies at an address; it can be read and written.
 #define AT(ref, i) buffer_of(ref).items[i]
 // Declares REF(T) for a struct T; `alignment` in bytes, of the addresses.
 #define BUFFER_OF(T, alignment) REFERENCE(T##_ref, , T items[], alignment)
+// Declares a specialisation constant that says whether kernels have a feature; all have it unless told otherwise.
 #define FEATURE(id, name) layout(constant_id = id) const bool name = true;
 
 // For where either rounding will do.
 #define FMA(a, b, c) fma(a, b, c)
-#define COUNT_STEPS(what, count) // kernels do not
-// Before `for`.
+// Counts work of a traversal where its CPU reference runs: kernels do not.
+#define COUNT_STEPS(what, count)
+// Before `for`: unrolls the loop.
 #define UNROLL [[unroll]]
+// Before `for`: keeps the loop, where its body is long.
 #define DONT_UNROLL [[dont_unroll]]
 
 REFERENCE(Floats, , float items[], 4)
@@ -77,9 +89,10 @@ REFERENCE(Vec4s, , vec4 items[], 4)
 REFERENCE(Uvec2s, , uvec2 items[], 4)
 REFERENCE(Uvec3s, , uvec3 items[], 4)
 
-// Linear index of this group and this invocation; Kernel::dispatch spreads large counts over x and y. Macros, because
+// Linear index of this group; Kernel::dispatch spreads large counts over x and y. A macro, as the next two, because
 // gl_WorkGroupSize has its value only after the shader's local_size declaration, which follows this include.
 #define group_index() (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x)
+// Linear index of this invocation, from 0: which item of the dispatch it is for.
 #define global_index() (group_index() * gl_WorkGroupSize.x + gl_LocalInvocationID.x)
 // The same after dealing groups out to `threads` (shaders/shared/workgroup.h), for kernels whose groups take unequal
 // times.

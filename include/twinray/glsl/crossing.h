@@ -5,6 +5,7 @@
 #include "shaders/shared/intersect.h"
 #include "twinray/glsl/spawn.h"
 
+// Where on a triangle, and how far along the ray.
 struct Crossing {
     vec2 uv;  // within the triangle
     float t;

@@ -14,6 +14,7 @@ void note_fault(REF(Faults) faults, uint type, uint index)
 }
 #define TWINRAY_FAULT(faults, type, index) note_fault(faults, type, index);
 #else
+// A statement with its semicolon: notes that a kernel was refused `index` of `type`; nothing without TWINRAY_DEBUG.
 #define TWINRAY_FAULT(faults, type, index)
 #endif
 #endif

@@ -5,6 +5,7 @@
 #include "twinray/glsl/rays.h"
 #include "twinray/glsl/transform.h"
 
+// An instance as kernels may write it: AbstractAccel::instance_buffer().
 struct InstanceRecord {
     vec4 object_to_world[3];  // rows of a 3x4 matrix
     uint custom_index_mask;   // 24-bit custom index, 8-bit mask in the high byte
@@ -74,5 +75,6 @@ FUNC bool is_finite_map(Rows m) {
     return is_finite(vec3(m.r0.x, m.r0.y, m.r0.z)) && is_finite(vec3(m.r1.x, m.r1.y, m.r1.z)) &&
            is_finite(vec3(m.r2.x, m.r2.y, m.r2.z)) && is_finite(vec3(m.r0.w, m.r1.w, m.r2.w));
 }
+// Whether an instance with this map and its inverse can be hit: both are finite.
 FUNC bool is_usable(Rows to_world, Rows to_object) { return is_finite_map(to_world) && is_finite_map(to_object); }
 #endif

@@ -20,8 +20,6 @@
 #define KEY_OF_(set, key, ACTION) key
 #define ACTION_OF_(set, key, ACTION) ACTION
 
-// ACTION(element) for the element that `key` names: a switch over the types of the list. `set` and `key` are variables
-// or members, not calls.
 #define SET_CASE_(P, number, Type, name)                                                        \
     case uint(number) + 1u:                                                                     \
         if (KEY_OF_ P.index < SET_OF_ P.name##_count) {                                         \
@@ -30,18 +28,20 @@
             TWINRAY_FAULT(SET_OF_ P.faults, KEY_OF_ P.type, KEY_OF_ P.index)                    \
         }                                                                                       \
         break;
+// ACTION(element) for the element that `key` names: a switch over the types of the list. `set` and `key` are variables
+// or members, not calls.
 #define WITH_INDEX(LIST, set, key, ACTION)                                                      \
     switch (key.type) {                                                                         \
         LIST(SET_CASE_, (set, key, ACTION))                                                     \
         default: TWINRAY_FAULT(set.faults, key.type, key.index) break;                          \
     }
 
-// ACTION(element, i) for all elements, type after type in the order of the list; i counts them from 0.
 #define SET_LOOP_(P, number, Type, name)                                                        \
     for (uint name##_index = 0u; name##_index < SET_OF_ P.name##_count; name##_index++) {       \
         ACTION_OF_ P(AT(SET_OF_ P.name, name##_index), set_index_);                             \
         set_index_++;                                                                           \
     }
+// ACTION(element, i) for all elements, type after type in the order of the list; i counts them from 0.
 #define FOREACH_ELEMENT(LIST, set, ACTION)                                                      \
     {                                                                                           \
         uint set_index_ = 0u;                                                                   \

@@ -17,12 +17,13 @@ BUFFER_OF(SetKey, 4);
 // Whether it can name an element: is not all zero.
 FUNC bool is_valid(SetKey key) { return key.type != 0u; }
 
-// TWINRAY_SET_VIEW(MaterialSet, MATERIALS): struct MaterialSet with, for each type, the array `diffuse` of its elements
-// and their number `diffuse_count`. 16 bytes a type and 16 more. The element types need a BUFFER_OF before it.
+// A type's part of TWINRAY_SET_VIEW.
 #define TWINRAY_SET_FIELD(P, number, Type, name) \
     REF(Type) name;                              \
     uint name##_count;                           \
     uint name##_reserved;
+// TWINRAY_SET_VIEW(MaterialSet, MATERIALS): struct MaterialSet with, for each type, the array `diffuse` of its elements
+// and their number `diffuse_count`. 16 bytes a type and 16 more. The element types need a BUFFER_OF before it.
 #define TWINRAY_SET_VIEW(Name, LIST)                   \
     struct Name {                                      \
         LIST(TWINRAY_SET_FIELD, 0) REF(Faults) faults; \

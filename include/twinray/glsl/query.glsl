@@ -23,6 +23,7 @@ layout(constant_id = LEVEL_CONSTANT) const uint TRACE_LEVEL = LEVEL_WATERTIGHT;
 #if defined(TWINRAY_SW)
 #include "twinray/glsl/stack.glsl"
 #include "shaders/shared/traverse.h"
+// The hit by float32 alone, whatever options.level: what trace() begins with. A miss has hit = 0.
 Hit trace_float32(Address accel, Ray ray, TraceOptions options)
 {
     return traverse(AT(REF(SwTlasHeader)(accel), 0), ray, options);
@@ -51,9 +52,12 @@ Hit trace(Address accel, Ray ray, TraceOptions options)
     return refined(hit, ray, advance, load_given_mesh(scene.instances, hit.instance_index));
 }
 #else
+// The hit that `options` ask for, by their level; t counts in units of the direction. A miss has hit = 0.
 Hit trace(Address accel, Ray ray, TraceOptions options) { return trace_float32(accel, ray, options); }
 #endif
 
+// Options of this kernel, with its level and features: mask of 8 bits, flags CULL_BACK, CULL_FRONT or 0, query
+// QUERY_CLOSEST or QUERY_ANY.
 TraceOptions trace_options(uint mask, uint flags, uint query)
 {
     TraceOptions options;
@@ -66,6 +70,7 @@ TraceOptions trace_options(uint mask, uint flags, uint query)
     return options;
 }
 
+// What closest_hit() and any_hit() do with their options: whether there is a hit.
 bool find_hit(Address accel, Ray ray, TraceOptions options, Address user_data, out Hit hit)
 {
     options.user_data = user_data;

@@ -54,5 +54,6 @@ FUNC uvec2 sample_pair(uint pixel, uint sample_index, uint dimension, uint seed)
 
 // In [0, 1), a multiple of 2^-24.
 FUNC float unit_float(uint word) { return float(word >> 8u) * 5.9604644775390625e-08f; }
+// Two of them: each in [0, 1), a multiple of 2^-24.
 FUNC vec2 unit_floats(uvec2 words) { return vec2(unit_float(words.x), unit_float(words.y)); }
 #endif

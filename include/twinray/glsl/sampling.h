@@ -31,6 +31,7 @@ FUNC vec2 sample_triangle(vec2 u) {
     return vec2(1.0f - root, u.y * root);
 }
 
+// Three unit axes at right angles, right-handed.
 struct Frame {
     vec3 x;
     vec3 y;

@@ -12,7 +12,7 @@
 #include "twinray/glsl/faults.glsl"
 #include "twinray/glsl/soa.h"
 
-// Statements; `queue` is a variable or a member, not a call.
+// A statement: variable = field of item i, where there is one. `queue` is a variable or a member, not a call.
 #define SOA_GET(queue, i, field, variable)                                                      \
     {                                                                                           \
         if ((i) < queue.count) {                                                                \
@@ -21,6 +21,7 @@
             TWINRAY_FAULT(queue.faults, 0u, i)                                                  \
         }                                                                                       \
     }
+// A statement: field of item i = value, where there is one.
 #define SOA_SET(queue, i, field, value)                                                         \
     {                                                                                           \
         if ((i) < queue.count) {                                                                \

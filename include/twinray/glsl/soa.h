@@ -15,9 +15,10 @@ BUFFER_OF(vec3, 4);
 BUFFER_OF(vec4, 4);
 BUFFER_OF(uvec2, 4);
 
+// A field's part of TWINRAY_SOA_VIEW.
+#define TWINRAY_SOA_FIELD(P, number, Type, name) REF(Type) name;
 // TWINRAY_SOA_VIEW(RayQueue, RAY_QUEUE): struct RayQueue with an array for each field and the `count` of items in all
 // of them. 8 bytes a field and 16 more.
-#define TWINRAY_SOA_FIELD(P, number, Type, name) REF(Type) name;
 #define TWINRAY_SOA_VIEW(Name, LIST)           \
     struct Name {                              \
         LIST(TWINRAY_SOA_FIELD, 0) uint count; \

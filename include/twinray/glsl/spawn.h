@@ -40,6 +40,7 @@ struct TriangleVertices {
     vec3 c;
 };
 
+// Of a map to world space that has an inverse.
 FUNC Placement placement_of(Rows to_world) {
     Placement placement;
     placement.to_world = to_world;
@@ -60,7 +61,9 @@ FUNC TriangleVertices vertices_of(Floats positions, Uints indices, uint primitiv
     return vertices;
 }
 
+// The first three components.
 FUNC vec3 xyz(vec4 v) { return vec3(v.x, v.y, v.z); }
+// Where a map takes the origin: its fourth column.
 FUNC vec3 offset_of(Rows m) { return vec3(m.r0.w, m.r1.w, m.r2.w); }
 
 // |m| |v|, without m's offset: the scale of the rounding errors of the product.
@@ -68,6 +71,7 @@ FUNC vec3 magnitude(Rows m, vec3 v) {
     return vec3(dot(abs(xyz(m.r0)), abs(v)), dot(abs(xyz(m.r1)), abs(v)), dot(abs(xyz(m.r2)), abs(v)));
 }
 
+// The transpose of m's linear part times v: of a map's inverse it takes normals the way the map takes points.
 FUNC vec3 transposed_times(Rows m, vec3 v) { return xyz(m.r0) * v.x + xyz(m.r1) * v.y + xyz(m.r2) * v.z; }
 
 // Bound of what an accelerator's own inverse and the product with it add to a vector of this size in world space.
@@ -82,6 +86,7 @@ FUNC float scaled_length(vec3 v) {
     return scale == 0.0f ? 0.0f : length(v / scale) * scale;
 }
 
+// The least of the three heights of a triangle with these edges from one corner, in their unit; 0 if it is a point.
 FUNC float least_height(vec3 edge1, vec3 edge2) {
     float scale = power_of_two_below(max(largest_entry(edge1), largest_entry(edge2)));
     if (scale == 0.0f) return 0.0f;

@@ -10,12 +10,14 @@
 
 uint twinray_stack_registers[REGISTER_STACK_SIZE];
 
+// An entry in registers; `slot` is below REGISTER_STACK_SIZE. It is selected: registers have no index.
 uint entry_of_registers(uint slot)
 {
     uint entry = twinray_stack_registers[0];
     UNROLL for (uint i = 1u; i < REGISTER_STACK_SIZE; ++i) entry = slot == i ? twinray_stack_registers[i] : entry;
     return entry;
 }
+// Writes it.
 void set_entry_of_registers(uint slot, uint entry)
 {
     UNROLL for (uint i = 0u; i < REGISTER_STACK_SIZE; ++i)
@@ -28,17 +30,21 @@ uint load_entry(uint slot) { return entry_of_registers(slot); }
 void store_entry(uint slot, uint entry) { set_entry_of_registers(slot, entry); }
 #else
 #ifndef TWINRAY_INVOCATIONS
+// Of a workgroup.
 #define TWINRAY_INVOCATIONS 64
 #endif
 layout(constant_id = STACK_CONSTANT) const uint STACK = STACK_SHARED;
 shared uint twinray_stack[STACK_SIZE * TWINRAY_INVOCATIONS];
 
+// How many entries an invocation has.
 uint stack_size() { return STACK == STACK_REGISTERS ? REGISTER_STACK_SIZE : STACK_SIZE; }
+// The entry at `slot`, which is below stack_size().
 uint load_entry(uint slot)
 {
     if (STACK == STACK_REGISTERS) return entry_of_registers(slot);
     return twinray_stack[slot * TWINRAY_INVOCATIONS + gl_LocalInvocationIndex];
 }
+// Writes the entry at `slot`, which is below stack_size().
 void store_entry(uint slot, uint entry)
 {
     if (STACK == STACK_REGISTERS) set_entry_of_registers(slot, entry);

@@ -18,11 +18,13 @@
 #include "twinray/glsl/accel_header.h"
 #include "twinray/glsl/surface_at.h"
 
+// What an accelerator with AccelOptions::keeps_surfaces holds of its meshes; of others there is nothing to read.
 SurfaceTable surfaces_of(Address accel)
 {
     return AT(REF(SurfaceTable)(AT(REF(AccelHeader)(accel), 0).surfaces), 0);
 }
 
+// The triangle of a hit for which has_surface() is true, and where the ray meets it; normal_at() and others read it.
 SurfacePlace surface_place(Address accel, Ray ray, Hit hit) { return surface_place(surfaces_of(accel), ray, hit); }
 
 // Whether the hit is of a triangle: functions below, and surface_place(), want that. Misses and boxes have no surface.
@@ -38,18 +40,22 @@ Surface surface_at(Address accel, Ray ray, Hit hit)
     return surface_at(surface_place(accel, ray, hit), hit.instance_index);
 }
 
-// Each alone.
+// Where the ray meets the triangle, in world space.
 vec3 surface_position(Address accel, Ray ray, Hit hit) { return point_at(surface_place(accel, ray, hit)).position; }
+// Shading normal, as normal_at(): unit, world space, on the side of the geometric one.
 vec3 surface_normal(Address accel, Ray ray, Hit hit)
 {
     SurfacePlace place = surface_place(accel, ray, hit);
     return normal_at(place, point_at(place));
 }
+// The first texture coordinates; (0, 0) where the mesh has none.
 vec2 surface_uv(Address accel, Ray ray, Hit hit) { return uv0_at(surface_place(accel, ray, hit)); }
+// The colour of the vertices; (1, 1, 1, 1) where the mesh has none.
 vec4 surface_color(Address accel, Ray ray, Hit hit) { return color_at(surface_place(accel, ray, hit)); }
 
-// As AbstractAccel::handle_of() and index_in_handle(): AccelHandle::id, and which of its instances.
+// As AbstractAccel::handle_of(): AccelHandle::id.
 Uint64 handle_of(Address accel, Hit hit) { return surface_geometry(surfaces_of(accel), hit.instance_index).handle; }
+// As AbstractAccel::index_in_handle(): which of the instances of its handle, from 0.
 uint index_in_handle(Address accel, Hit hit)
 {
     return hit.instance_index - surface_geometry(surfaces_of(accel), hit.instance_index).first_instance;

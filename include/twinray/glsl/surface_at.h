@@ -33,6 +33,7 @@ struct SurfaceGeometry {
 };
 BUFFER_OF(SurfaceGeometry, 8);
 
+// What an accelerator holds of its surfaces, on the device.
 struct SurfaceTable {
     REF(InstanceRecord) instances;     // by Hit::instance_index
     Uints geometry_of_instance;        // likewise: the number of its geometry
@@ -59,10 +60,12 @@ struct SurfacePlace {
     uint attribute_count;
 };
 
+// Of an instance: what the push of its geometry brought.
 FUNC SurfaceGeometry surface_geometry(SurfaceTable table, uint instance_index) {
     return AT(table.geometries, AT(table.geometry_of_instance, instance_index));
 }
 
+// Of a hit of a triangle, not of a miss or a box.
 FUNC SurfacePlace surface_place(SurfaceTable table, Ray ray, Hit hit) {
     uint number = AT(table.geometry_of_instance, hit.instance_index);
     InstanceRecord record = AT(table.instances, hit.instance_index);
@@ -118,6 +121,7 @@ FUNC vec4 interpolated(vec4 a, vec4 b, vec4 c, vec2 uv) {
     return sum;
 }
 
+// The array of an attribute by its number; its values are null where the mesh has none.
 FUNC SurfaceAttribute attribute_of(SurfacePlace place, uint number) {
     SurfaceAttribute none;
     none.values = Floats(NULL_ADDRESS);
@@ -145,15 +149,19 @@ FUNC vec4 attribute_at(SurfacePlace place, uint number, vec4 missing) {
     return interpolated_attribute(array, array.components, place);
 }
 
+// Texture coordinates by their attribute number, interpolated; (0, 0) where the mesh has none.
 FUNC vec2 uv_at(SurfacePlace place, uint number) {
     SurfaceAttribute array = attribute_of(place, number);
     if (is_null(array.values)) return vec2(0.0f, 0.0f);
     vec4 uv = interpolated_attribute(array, 2u, place);
     return vec2(uv.x, uv.y);
 }
+// The first.
 FUNC vec2 uv0_at(SurfacePlace place) { return uv_at(place, ATTRIBUTE_UV0); }
+// The second.
 FUNC vec2 uv1_at(SurfacePlace place) { return uv_at(place, ATTRIBUTE_UV1); }
 
+// Colour of the vertices, interpolated, as it was pushed; (1, 1, 1, 1) where the mesh has none.
 FUNC vec4 color_at(SurfacePlace place) {
     SurfaceAttribute array = attribute_of(place, ATTRIBUTE_COLORS);
     if (is_null(array.values)) return vec4(1.0f, 1.0f, 1.0f, 1.0f);

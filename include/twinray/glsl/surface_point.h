@@ -3,6 +3,7 @@
 #ifndef TWINRAY_SURFACE_POINT_H
 #define TWINRAY_SURFACE_POINT_H
 
+// The point, its normals, and how far a ray must start from it.
 struct SurfacePoint {
     vec3 position;  // world; up to `offset` beside the triangle, as an accelerator sees it
     // geometric, unit, world; of the side on which the vertices turn counter-clockwise in object space

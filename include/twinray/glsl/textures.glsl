@@ -20,6 +20,7 @@
 #include "twinray/glsl/textures.h"
 layout(constant_id = TEXEL_FORMATS_CONSTANT) const bool TEXEL_FORMATS = true;
 
+// Whether the reference names a texture of the table.
 bool has_texture(TextureTable table, TextureRef ref)
 {
     if (ref.number - 1u < table.count) return true;
@@ -55,6 +56,7 @@ vec4 sample_texture(TextureTable table, TextureRef ref, vec2 uv)
 // The same of a texture that was not pushed as sRGB: kernels then lack the decoding, where that is theirs to do.
 vec4 sample_linear_texture(TextureTable table, TextureRef ref, vec2 uv) { return sample_texture(table, ref, uv); }
 
+// Trilinear, or of one level, as the texture was pushed; lod counts levels from 0, the whole image.
 vec4 sample_texture_lod(TextureTable table, TextureRef ref, vec2 uv, float lod)
 {
     if (!has_texture(table, ref)) return vec4(1.0);
@@ -68,6 +70,7 @@ uint texture_levels(TextureTable table, TextureRef ref)
     return uint(textureQueryLevels(TWINRAY_IMAGE(ref)));
 }
 #else
+// From sRGB in [0, 1] to linear light.
 vec3 texture_srgb_to_linear(vec3 c)
 {
     return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
@@ -97,6 +100,7 @@ float texel_number(TextureRecord record, uint format, uint index)
     return format == TEXEL_FLOAT16 ? float_of_half(bits) : float(bits) / 65535.0;
 }
 
+// Texel (x, y) of a level, both in range, decoded; what it has of fewer than four channels is followed by 0, 0, 1.
 vec4 texture_texel(TextureRecord record, uint x, uint y, bool is_srgb)
 {
     uint texel = y * record.width + x, format = record.format & 3u, channels = record.format >> 2u;
@@ -181,6 +185,7 @@ vec4 texture_filtered(TextureRecord record, vec2 uv, bool is_srgb)
     return mix(top, bottom, weight.y);
 }
 
+// Bilinear in float32, or the nearest texel, as the texture was pushed. v = 0 is the edge of the first row.
 vec4 sample_texture(TextureTable table, TextureRef ref, vec2 uv)
 {
     if (!has_texture(table, ref)) return vec4(1.0);

@@ -4,12 +4,15 @@
 #define TWINRAY_TRANSFORM_H
 #include "twinray/glsl/exact.h"
 
+// The rows of a map.
 struct Rows {
     vec4 r0;
     vec4 r1;
     vec4 r2;
 };
 
+// One coordinate of the image of a vector, which has no place: the row without its offset. Products and sums round in
+// this order, on every device.
 FUNC float row_vector(vec4 row, vec3 v) {
     PRECISE float x = row.x * v.x;
     PRECISE float y = row.y * v.y;
@@ -19,20 +22,24 @@ FUNC float row_vector(vec4 row, vec3 v) {
     return sum;
 }
 
+// One coordinate of the image of a point, likewise.
 FUNC float row_point(vec4 row, vec3 p) {
     PRECISE float sum = row_vector(row, p);
     sum = sum + row.w;
     return sum;
 }
 
+// The image of a vector: m without its offset.
 FUNC vec3 transform_vector(Rows m, vec3 v) {
     return vec3(row_vector(m.r0, v), row_vector(m.r1, v), row_vector(m.r2, v));
 }
+// The image of a point.
 FUNC vec3 transform_point(Rows m, vec3 p) { return vec3(row_point(m.r0, p), row_point(m.r1, p), row_point(m.r2, p)); }
 
 // The largest power of two that is not above a positive float (0 for denormals).
 FUNC float power_of_two_below(float largest) { return uintBitsToFloat(floatBitsToUint(largest) & 0x7f800000u); }
 
+// a x b, whose products and differences each round once, on every device.
 FUNC vec3 cross_precise(vec3 a, vec3 b) {
     PRECISE float xp = a.y * b.z;
     PRECISE float xq = a.z * b.y;
@@ -58,7 +65,9 @@ FUNC vec3 doubled_cross(vec3 a, vec3 b, INOUT(vec3) missing) {
 
 // b where either is no number, of which max() promises nothing, while drivers on CPUs pay for a promise of their own.
 FUNC float max_by_comparison(float a, float b) { return a > b ? a : b; }
+// The largest magnitude of the components, none of which is NaN.
 FUNC float largest_entry(vec3 v) { return max_by_comparison(abs(v.x), max_by_comparison(abs(v.y), abs(v.z))); }
+// The largest magnitude of a coordinate of a box.
 FUNC float largest_coordinate(vec3 lo, vec3 hi) { return max_by_comparison(largest_entry(lo), largest_entry(hi)); }
 
 // The inverse of an invertible map: cofactors over the determinant, both in doubled precision, so that each entry of

@@ -56,8 +56,10 @@ FUNC bool is_surely_not_zero(float p, float q) {
     return abs(difference) > size * 4.76837158203125e-07f;
 }
 
+// Whether no coordinate is infinite or NaN.
 FUNC bool is_finite_triangle(vec3 a, vec3 b, vec3 c) { return is_finite(a) && is_finite(b) && is_finite(c); }
 
+// Whether it can be hit: its vertices are finite, and not on one line, exactly.
 FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c) {
     if (!is_finite_triangle(a, b, c)) return false;
     PRECISE vec3 u = b - a;

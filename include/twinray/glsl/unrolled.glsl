@@ -16,6 +16,7 @@
 #include "twinray/glsl/common.glsl"
 
 #define TUPLE_FIELD_(P, number, Type, name) Type name;
+// struct Name with a member for each type of the list.
 #define TUPLE(Name, LIST) struct Name { LIST(TUPLE_FIELD_, 0) };
 
 // The parts of what lists pass on to each type.
@@ -23,24 +24,24 @@
 #define SECOND_(a, b, c) b
 #define THIRD_(a, b, c) c
 
-// ACTION(element) for each.
 #define FOR_CASE_(P, number, Type, name) SECOND_ P(FIRST_ P.name);
+// ACTION(element) for each.
 #define FOR_UNROLLED(LIST, tuple, ACTION) { LIST(FOR_CASE_, (tuple, ACTION, 0)) }
 
-// to.member = FUNCTION(from.member) for each; `to` has members of the same names.
 #define MAP_CASE_(P, number, Type, name) SECOND_ P.name = THIRD_ P(FIRST_ P.name);
+// to.member = FUNCTION(from.member) for each; `to` has members of the same names.
 #define MAP_UNROLLED(LIST, from, to, FUNCTION) { LIST(MAP_CASE_, (from, to, FUNCTION)) }
 
-// result = FUNCTION(result, element) for each in order; result keeps its value where there are none.
 #define REDUCE_CASE_(P, number, Type, name) SECOND_ P = THIRD_ P(SECOND_ P, FIRST_ P.name);
+// result = FUNCTION(result, element) for each in order; result keeps its value where there are none.
 #define REDUCE_UNROLLED(LIST, tuple, result, FUNCTION) { LIST(REDUCE_CASE_, (tuple, result, FUNCTION)) }
 
-// result = result + FUNCTION(element) for each in order.
 #define SUM_CASE_(P, number, Type, name) SECOND_ P = SECOND_ P + THIRD_ P(FIRST_ P.name);
+// result = result + FUNCTION(element) for each in order.
 #define SUM_UNROLLED(LIST, tuple, result, FUNCTION) { LIST(SUM_CASE_, (tuple, result, FUNCTION)) }
 
-// ACTION(element) for the element at an index: a switch. An index out of range calls nothing.
 #define GET_CASE_(P, number, Type, name) case uint(number): SECOND_ P(FIRST_ P.name); break;
+// ACTION(element) for the element at an index: a switch. An index out of range calls nothing.
 #define GET_UNROLLED(LIST, tuple, index, ACTION) \
     switch (uint(index)) { LIST(GET_CASE_, (tuple, ACTION, 0)) default: break; }
 #endif

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Runs the commands of one part of the gallery, in a folder of their own, and takes out its pictures.
+# Usage: make_picture.sh PROGRAMS NAME FOLDER PICTURE...   PROGRAMS: the folder of path_tracer, twinray and the samples;
+#                                                          NAME.sh is run; FOLDER: where its pictures go
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+programs=$(cd "$1" && pwd) name=$2 pictures=$3
+mkdir -p "$pictures"
+pictures=$(cd "$pictures" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+cd "$work"
+PATH=$programs:$here:$PATH PYTHONDONTWRITEBYTECODE=1 bash -euo pipefail "$here/$name.sh"
+mv "${@:4}" "$pictures"
