@@ -146,7 +146,7 @@ void Renderer::draw(VkCommandBuffer commands, const FrameArgs& args, const Scene
 
 FrameArgs Renderer::args_of(const Frame& frame) const {
     const VkExtent2D size = targets_.size();
-    const glm::vec3 eye(2.6f, 3.4f, 5.4f), forward = normalize(glm::vec3(0, 0.85f, 0) - eye);
+    const glm::vec3 eye(2.6f, 3.4f, 5.4f), forward = normalize(glm::vec3(0.25f, 0.85f, 0) - eye);
     const float half_height = 0.4f, aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
     const glm::vec3 right = normalize(cross(forward, glm::vec3(0, 1, 0))), up = cross(right, forward);
     FrameArgs args;
