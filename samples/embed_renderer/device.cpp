@@ -161,6 +161,7 @@ void Device::create_allocator() {
     require(vmaCreateAllocator(&info, &allocator_), "create the allocator");
 }
 
+// [adopted]
 AdoptedDevice Device::adopted() const {
     AdoptedDevice adopted;
     adopted.instance = instance_;
@@ -175,6 +176,7 @@ AdoptedDevice Device::adopted() const {
     adopted.log = log_;
     return adopted;
 }
+// [/adopted]
 
 void Device::run_once(const std::function<void(VkCommandBuffer)>& record) const {
     VkCommandPoolCreateInfo pool_info{};

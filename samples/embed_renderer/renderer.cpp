@@ -129,6 +129,7 @@ FrameResult Renderer::render(float turns) {
     return result;
 }
 
+// [frame]
 // Everything that belongs to a frame. twinray's commands are recorded among ours; they order themselves after what is
 // named as producer and before what is named as consumer, we order the rest.
 void Renderer::record(VkCommandBuffer commands, float turns) {
@@ -158,6 +159,7 @@ void Renderer::record(VkCommandBuffer commands, float turns) {
     composite(commands);
     timer_.lap(commands, "composite");
 }
+// [/frame]
 
 // After everything of the last frame that has read the transforms.
 void Renderer::move(VkCommandBuffer commands, float turns) {

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "pipelines.h"
+
+namespace renderer {
+namespace {
+
+VkShaderModule module_of(const Device& device, Spirv spirv) {
+    auto info = of_type<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+    info.codeSize = spirv.size_bytes();
+    info.pCode = spirv.data();
+    VkShaderModule module = VK_NULL_HANDLE;
+    require(vkCreateShaderModule(device.handle(), &info, nullptr, &module), "create a shader module");
+    return module;
+}
+
+VkPipelineShaderStageCreateInfo stage_of(VkShaderStageFlagBits stage, VkShaderModule module) {
+    auto info = of_type<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
+    info.stage = stage;
+    info.module = module;
+    info.pName = "main";
+    return info;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const Device& device, VkPipelineBindPoint point, VkShaderStageFlags stages)
+    : device_(device), point_(point), stages_(stages) {
+    const VkPushConstantRange range{stages, 0, sizeof(FrameArgs)};
+    auto info = of_type<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+    info.pushConstantRangeCount = 1;
+    info.pPushConstantRanges = &range;
+    require(vkCreatePipelineLayout(device.handle(), &info, nullptr, &layout_), "create a pipeline layout");
+}
+
+// No vertex input: the vertex shader reads what it needs by address. Depth is 1 nearby and 0 far away.
+Pipeline::Pipeline(const Device& device, const Targets& targets, Spirv vertex, Spirv fragment)
+    : Pipeline(device, VK_PIPELINE_BIND_POINT_GRAPHICS, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT) {
+    const VkPipelineShaderStageCreateInfo stages[] = {
+        stage_of(VK_SHADER_STAGE_VERTEX_BIT, module_of(device, vertex)),
+        stage_of(VK_SHADER_STAGE_FRAGMENT_BIT, module_of(device, fragment))};
+    const auto input =
+        of_type<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
+    auto assembly =
+        of_type<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
+    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    const VkExtent2D size = targets.size();
+    const VkViewport all{0, 0, static_cast<float>(size.width), static_cast<float>(size.height), 0, 1};
+    const VkRect2D scissor{{0, 0}, size};
+    auto viewport = of_type<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
+    viewport.viewportCount = viewport.scissorCount = 1;
+    viewport.pViewports = &all;
+    viewport.pScissors = &scissor;
+    auto raster =
+        of_type<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
+    raster.lineWidth = 1;
+    auto samples =
+        of_type<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
+    samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+    auto depth =
+        of_type<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
+    depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
+    depth.depthCompareOp = VK_COMPARE_OP_GREATER;
+    VkPipelineColorBlendAttachmentState written{};
+    written.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT;
+    auto blend = of_type<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
+    blend.attachmentCount = 1;
+    blend.pAttachments = &written;
+
+    auto info = of_type<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
+    info.stageCount = 2;
+    info.pStages = stages;
+    info.pVertexInputState = &input;
+    info.pInputAssemblyState = &assembly;
+    info.pViewportState = &viewport;
+    info.pRasterizationState = &raster;
+    info.pMultisampleState = &samples;
+    info.pDepthStencilState = &depth;
+    info.pColorBlendState = &blend;
+    info.layout = layout_;
+    info.renderPass = targets.render_pass();
+    const VkResult result = vkCreateGraphicsPipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
+    for (const auto& stage : stages) vkDestroyShaderModule(device.handle(), stage.module, nullptr);
+    require(result, "create the raster pipeline");
+}
+
+Pipeline::Pipeline(const Device& device, Spirv compute)
+    : Pipeline(device, VK_PIPELINE_BIND_POINT_COMPUTE, VK_SHADER_STAGE_COMPUTE_BIT) {
+    auto info = of_type<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+    info.stage = stage_of(VK_SHADER_STAGE_COMPUTE_BIT, module_of(device, compute));
+    info.layout = layout_;
+    const VkResult result = vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
+    vkDestroyShaderModule(device.handle(), info.stage.module, nullptr);
+    require(result, "create a kernel");
+}
+
+Pipeline::~Pipeline() {
+    vkDestroyPipeline(device_.handle(), pipeline_, nullptr);
+    vkDestroyPipelineLayout(device_.handle(), layout_, nullptr);
+}
+
+void Pipeline::bind(VkCommandBuffer commands, const FrameArgs& args) const {
+    vkCmdBindPipeline(commands, point_, pipeline_);
+    vkCmdPushConstants(commands, layout_, stages_, 0, sizeof args, &args);
+}
+
+}  // namespace renderer
