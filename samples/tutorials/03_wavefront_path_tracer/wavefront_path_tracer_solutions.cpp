@@ -3,6 +3,7 @@
 // a second each way traces.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <numbers>
 #include <string_view>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
+
 #include "scene.h"
 
 #include <glm/gtc/matrix_transform.hpp>
