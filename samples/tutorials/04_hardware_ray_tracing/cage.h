@@ -4,7 +4,6 @@
 #define TUTORIALS_CAGE_H
 #include "twinray/glsl/rays.h"
 
-// [scene]
 // What instances are, by their custom index. The mask of each is 1 << that.
 const uint FLOOR = 0u;  // at y = -1
 const uint CAGE = 1u;   // a sphere of radius 1 about (0, 0, 0)
@@ -13,7 +12,6 @@ const uint IN_THE_WAY_OF_LIGHT = (1u << CAGE) | (1u << BALL);
 
 const float BALL_RADIUS = 0.5f;
 const float WIRE_WIDTH = 0.09f;  // as a weight of a triangle's corner
-// [/scene]
 
 struct PictureArgs {
     Address accel;

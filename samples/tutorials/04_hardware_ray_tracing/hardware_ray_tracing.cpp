@@ -12,7 +12,9 @@
 #include "picture.h"
 #include "ways.h"
 
-// [aim]
+constexpr uint picture_size = 320;
+
+// [ask]
 // From the eye to each vertex of the ball, where up to six triangles meet.
 std::vector<Ray> rays_at_vertices(const Mesh& ball) {
     std::vector<Ray> rays;
@@ -20,9 +22,7 @@ std::vector<Ray> rays_at_vertices(const Mesh& ball) {
         rays.push_back({.origin = eye(), .t_min = 0, .direction = vertex - eye(), .t_max = INFINITY});
     return rays;
 }
-// [/aim]
 
-// [answers]
 // What a way answers, and what float64 says to each of the answers.
 struct Answers {
     std::vector<Hit> hits;
@@ -36,9 +36,8 @@ Answers ask(const Way& way, const Mesh& ball, const Reference& reference, std::s
     answers.classes = reference.classify(rays, answers.hits, way.is_software ? TracedBy::software : TracedBy::hardware);
     return answers;
 }
-// [/answers]
+// [/ask]
 
-// [print]
 void print_row(const Way& way, const Answers& answers, const Answers& of_software) {
     const HitClassCounts counts = count(answers.classes);
     const auto lost = counts[HitClass::sw_leak] + counts[HitClass::hw_leak];
@@ -46,7 +45,8 @@ void print_row(const Way& way, const Answers& answers, const Answers& of_softwar
     std::size_t other_triangle = 0, other_t = 0;
     for (std::size_t i = 0; i < answers.hits.size(); ++i) {
         const Hit &hit = answers.hits[i], &theirs = of_software.hits[i];
-        if (hit.hit && theirs.hit && hit.primitive_index != theirs.primitive_index)
+        if (!hit.hit || !theirs.hit) continue;
+        if (hit.primitive_index != theirs.primitive_index)
             ++other_triangle;
         else
             other_t += hit.t != theirs.t;
@@ -57,7 +57,6 @@ void print_row(const Way& way, const Answers& answers, const Answers& of_softwar
         std::cout << std::setw(10) << number;
     std::cout << '\n';
 }
-// [/print]
 
 // [map]
 // For each pixel the ball where SwTlas meets it, coloured by how the way answered the ray at the nearest vertex.
@@ -173,7 +172,6 @@ void write_strip(const std::filesystem::path& file, std::span<const std::vector<
     write_png(file, width, size, strip);
 }
 
-// [pixels]
 // Colours of host and device may be rounded one apart.
 std::size_t differing_pixels(std::span<const Rgb> a, std::span<const Rgb> b) {
     const auto apart = [](std::uint8_t x, std::uint8_t y) { return std::abs(int(x) - int(y)) > 1; };
@@ -182,18 +180,31 @@ std::size_t differing_pixels(std::span<const Rgb> a, std::span<const Rgb> b) {
         differing += apart(a[i].r, b[i].r) || apart(a[i].g, b[i].g) || apart(a[i].b, b[i].b);
     return differing;
 }
-// [/pixels]
+
+// By batches and, where kernels can trace, by a kernel, too. Each is compared with `first`, if there is one.
+std::vector<Rgb> picture_of_cage(const Way& way, const std::vector<Rgb>& first) {
+    const std::unique_ptr<AbstractAccel> accel = way.make_accel();
+    push_cage(*accel);
+    const std::vector<Rgb> picture = picture_by_batches(*accel, picture_size);
+    const auto compare = [&](const char* by, const std::vector<Rgb>& one, const std::vector<Rgb>& other) {
+        const std::size_t differing = differing_pixels(one, other);
+        std::cout << "cage by " << way.name << by << differing << " of " << one.size() << " pixels differ\n";
+        if (differing > picture_size) throw Error("the pictures differ");
+    };
+    if (!first.empty()) compare(", batches: ", picture, first);
+    if (accel->capability(Feature::kernel_queries).support == Support::native)
+        compare(", a kernel: ", picture_by_kernel(*accel, picture_size), picture);
+    return picture;
+}
 
 int main(int argc, char** argv) try {
     if (argc != 2) throw Error("usage: hardware_ray_tracing FOLDER");
     const std::filesystem::path folder = argv[1];
     std::filesystem::create_directories(folder);
-    // [ways]
     const std::vector<Way> ways = ways_of_device();
     for (const Way& way : ways) print_lacking(way);
     const AccelChoice choice = choose_accel(ways.front().context->properties(), "auto", {.kernel_queries = true});
     std::cout << "of both, choose_accel takes " << name_of(choice) << ": " << choice.why << '\n';
-    // [/ways]
 
     // [compare]
     const Mesh ball = make_icosphere(5);
@@ -219,33 +230,17 @@ int main(int argc, char** argv) try {
         if (way.is_software && other > 0) throw Error("SwTlas depends on its tree");
     }
 
-    // [costs]
     std::vector<Ray> seen;
     for (uint pixel = 0; pixel < 512 * 512; ++pixel) seen.push_back(camera_ray(pixel, 512, 0.29f));
     std::cout << "on this machine        Mrays/s  build ms  refit ms  bytes/tri   scratch KiB\n";
     for (const Way& way : ways) print_cost(way, ball, seen);
-    // [/costs]
 
-    // [pictures]
-    constexpr uint size = 320;
     std::vector<std::vector<Rgb>> pictures;
-    for (const Way& way : ways) {
-        const std::unique_ptr<AbstractAccel> accel = way.make_accel();
-        push_cage(*accel);
-        pictures.push_back(picture_by_batches(*accel, size));
-        const std::size_t others = differing_pixels(pictures.back(), pictures.front());
-        std::cout << "cage by " << way.name << ": " << others << " of " << size * size
-                  << " pixels differ from the first";
-        if (accel->capability(Feature::kernel_queries).support == Support::native)
-            std::cout << ", " << differing_pixels(picture_by_kernel(*accel, size), pictures.back())
-                      << " between batches and a kernel";
-        std::cout << '\n';
-        if (others > size) throw Error("the pictures differ");
-    }
-    // [/pictures]
+    for (const Way& way : ways)
+        pictures.push_back(picture_of_cage(way, pictures.empty() ? std::vector<Rgb>() : pictures.front()));
     pictures.resize(3);
-    pictures.push_back(map_of_vertices(ways.front(), ball, of_aimed.back(), of_aimed.front(), size));
-    write_strip(folder / "04_hardware_ray_tracing.png", pictures, size);
+    pictures.push_back(map_of_vertices(ways.front(), ball, of_aimed.back(), of_aimed.front(), picture_size));
+    write_strip(folder / "04_hardware_ray_tracing.png", pictures, picture_size);
     std::cout << "wrote 04_hardware_ray_tracing.png\n";
 } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';

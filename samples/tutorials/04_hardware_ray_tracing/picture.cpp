@@ -5,7 +5,7 @@
 #include "cage_picture_hw.spv.h"
 #include "cage_picture_sw.spv.h"
 
-// [push]
+// [batches]
 void push_cage(AbstractAccel& accel) {
     accel.push(make_quad({-30, -1, 30}, {60, 0, 0}, {0, 0, -60}), {}, {.custom_index = FLOOR, .mask = 1 << FLOOR});
     accel.push(make_icosphere(2), {}, {.custom_index = CAGE, .mask = 1 << CAGE, .non_opaque = true});
@@ -13,24 +13,7 @@ void push_cage(AbstractAccel& accel) {
     accel.push(BoxesView{"ball", {&box, 1}}, {}, {.custom_index = BALL, .mask = 1 << BALL});
     accel.sync();
 }
-// [/push]
 
-// [kernel]
-std::vector<Rgb> picture_by_kernel(AbstractAccel& accel, uint size) {
-    Context& context = accel.context();
-    QueryKernel<PictureArgs> kernel(accel, {.name = "cage picture"}, cage_picture_sw_spirv, cage_picture_hw_spirv);
-    const Buffer pixels(context, {.name = "pixels", .bytes = size * size * sizeof(uint)});
-    Commands commands(context, "picture");
-    kernel.dispatch(commands, {accel.view().scene, pixels.ref<uint>(), size}, size * size);
-    commands.submit();
-    std::vector<Rgb> picture;
-    for (const uint pixel : download<uint>(context, pixels, size * size))
-        picture.push_back({std::uint8_t(pixel), std::uint8_t(pixel >> 8), std::uint8_t(pixel >> 16)});
-    return picture;
-}
-// [/kernel]
-
-// [batches]
 std::vector<Rgb> picture_by_batches(AbstractAccel& accel, uint size) {
     const std::unique_ptr<TraceProgram> program = accel.make_program(cage);
     std::vector<Ray> rays, to_light;
@@ -47,3 +30,18 @@ std::vector<Rgb> picture_by_batches(AbstractAccel& accel, uint size) {
     return picture;
 }
 // [/batches]
+
+// [kernel]
+std::vector<Rgb> picture_by_kernel(AbstractAccel& accel, uint size) {
+    Context& context = accel.context();
+    QueryKernel<PictureArgs> kernel(accel, {.name = "cage picture"}, cage_picture_sw_spirv, cage_picture_hw_spirv);
+    const Buffer pixels(context, {.name = "pixels", .bytes = size * size * sizeof(uint)});
+    Commands commands(context, "picture");
+    kernel.dispatch(commands, {accel.view().scene, pixels.ref<uint>(), size}, size * size);
+    commands.submit();
+    std::vector<Rgb> picture;
+    for (const uint pixel : download<uint>(context, pixels, size * size))
+        picture.push_back({std::uint8_t(pixel), std::uint8_t(pixel >> 8), std::uint8_t(pixel >> 16)});
+    return picture;
+}
+// [/kernel]

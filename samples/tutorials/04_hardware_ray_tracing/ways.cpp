@@ -9,6 +9,12 @@ std::unique_ptr<AbstractAccel> Way::make_accel(const AccelOptions& options) cons
     if (is_software) return std::make_unique<SwTlas>(*context, options);
     return std::make_unique<HwTlas>(*context, BuildOrder::automatic, options);
 }
+
+void print_lacking(const Way& way) {
+    for (const Capability& capability : way.make_accel()->capabilities())
+        if (capability.support == Support::unsupported)
+            std::cout << way.name << " lacks " << name_of(capability.feature) << ": " << capability.note << '\n';
+}
 // [/accel]
 
 // [ways]
@@ -33,11 +39,3 @@ std::vector<Way> ways_of_device() {
     return ways;
 }
 // [/ways]
-
-// [lacking]
-void print_lacking(const Way& way) {
-    for (const Capability& capability : way.make_accel()->capabilities())
-        if (capability.support == Support::unsupported)
-            std::cout << way.name << " lacks " << name_of(capability.feature) << ": " << capability.note << '\n';
-}
-// [/lacking]
