@@ -112,13 +112,14 @@ std::size_t differing_by_tree(const Way& way, const Mesh& ball, std::span<const 
 // Of some work, until the device has done it: the least of five, since the first also pays for what is done once.
 template <class Work>
 double least_ms(Context& context, const Work& work) {
+    using Clock = std::chrono::steady_clock;
     double least = INFINITY;
     for (int i = 0; i < 5; ++i) {
-        const auto start = std::chrono::steady_clock::now();
+        const Clock::time_point start = Clock::now();
         work();
         context.wait_for_gpu();
-        least = std::min(least,
-                         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        const std::chrono::duration<double, std::milli> took = Clock::now() - start;
+        least = std::min(least, took.count());
     }
     return least;
 }
