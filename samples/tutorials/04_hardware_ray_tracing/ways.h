@@ -10,7 +10,6 @@
 
 using namespace twinray;
 
-// [way]
 // A device, as one way of tracing uses it, and the accelerator that it makes there.
 struct Way {
     std::string name;
@@ -22,7 +21,6 @@ struct Way {
 
 // SwTlas first, then what the device's driver offers. Prints what it does not.
 std::vector<Way> ways_of_device();
-// [/way]
 
 // What an accelerator cannot do, and why.
 void print_lacking(const Way& way);
