@@ -20,8 +20,8 @@ grep -q "Error of t against run time" monday/report.html
 
 if ls monday/replays/W02-*.json > /dev/null 2>&1; then
     # [replay]
-    replay=$(ls monday/replays/W02-*.json | head -n 1)
-    "$twinray" verify --replay "$replay" --reproducer for_the_tracker > steps.txt
+    set -- monday/replays/W02-*.json # $1 is the first
+    "$twinray" verify --replay "$1" --reproducer for_the_tracker > steps.txt
     # [/replay]
     grep -q "no fault of ours" steps.txt
     grep -q "## The scene" for_the_tracker/report.md

@@ -63,14 +63,12 @@ inline Contest make_contest(Context& context, const Scene& scene) {
 }
 // [/contestants]
 
-// [truth]
 // The float64 answer to each ray, from the CPU.
 inline std::vector<ReferenceHit> truth_of(const Reference& reference, const std::vector<Ray>& rays) {
     std::vector<ReferenceHit> truth;
     for (const Ray& ray : rays) truth.push_back(reference.closest_hit(ray));
     return truth;
 }
-// [/truth]
 
 // [ulp]
 // A unit in the last place: how far it is from the float32 at `value` to the next one.

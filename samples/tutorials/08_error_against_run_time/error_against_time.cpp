@@ -13,7 +13,6 @@ using namespace twinray;
 
 namespace {
 
-// [result]
 // What was found out about a contestant.
 struct Result {
     std::string name;
@@ -21,7 +20,6 @@ struct Result {
     double ulp_median = 0, ulp_99 = 0, ulp_max = 0;  // error of t
     std::uint64_t faults = 0, aimed = 0;             // rays aimed at vertices that were answered wrongly, and all
 };
-// [/result]
 
 // [time]
 // Rays on the device, and room for their hits.
@@ -110,8 +108,8 @@ void write_csv(const std::filesystem::path& file, const std::vector<Result>& res
 void print(const Result& r) {
     std::cout << std::left << std::setw(21) << r.name << std::right << std::fixed << std::setprecision(1)
               << std::setw(7) << r.ns << " (" << r.ns_low << " to " << r.ns_high << ")" << std::setprecision(2)
-              << std::setw(9) << r.ulp_median << std::setw(8) << r.ulp_99 << std::setw(9) << r.ulp_max
-              << std::setw(8) << r.faults << '\n';
+              << std::setw(9) << r.ulp_median << std::setw(8) << r.ulp_99 << std::setw(9) << r.ulp_max << std::setw(8)
+              << r.faults << '\n';
 }
 
 // What holds on every device.

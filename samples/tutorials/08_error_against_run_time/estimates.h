@@ -11,7 +11,6 @@
 
 using namespace twinray;
 
-// [squares]
 // Two unit squares at a distance of 1 that face each other.
 inline Scene facing_squares() {
     Scene scene;
@@ -27,9 +26,7 @@ inline double known_factor() {
     const double root = std::sqrt(2.0);
     return 2 / std::numbers::pi * (std::log(2 / std::sqrt(3.0)) + 2 * root * std::atan(1 / root) - 2 * std::atan(1.0));
 }
-// [/squares]
 
-// [methods]
 struct Method {
     const char* name;
     PairEstimator estimator;
@@ -38,9 +35,7 @@ struct Method {
 constexpr Method methods[] = {{"random hits", PairEstimator::hits, Sequence::random},
                               {"Sobol hits", PairEstimator::hits, Sequence::sobol},
                               {"Sobol areas", PairEstimator::area, Sequence::sobol}};
-// [/methods]
 
-// [estimate]
 // An answer, and how long you wait for it.
 struct TimedFactor {
     double value = 0, ms = 0;
@@ -76,4 +71,3 @@ class Estimator {
     SwTlas accel_;
     Faces faces_;
 };
-// [/estimate]
