@@ -69,6 +69,7 @@ Curve curve_of(Estimator& estimator, const Method& method) {
     for (std::uint64_t rays = 1 << 8; rays <= 1 << 16; rays *= 4)
         curve.points.push_back(point_of(estimator, method, rays));
     curve.fit = fit_of(curve.points);
+    if (curve.fit.slope > -0.3) throw Error(std::string(method.name) + ": the error does not fall");
     curve.tried = point_of(estimator, method, curve.fit.rays_for(wanted_error));
     return curve;
 }
