@@ -1,0 +1,16 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# A job of continuous integration, with a second of time. Usage: ci.sh TWINRAY FOLDER
+set -eu
+twinray=$1
+seconds=1
+rm -rf "$2/job"
+mkdir -p "$2/job"
+cd "$2/job"
+
+# [qualify]
+"$twinray" qualify --budget $seconds --junit qualify.xml --tap qualify.tap --sarif qualify.sarif -o qualified
+# [/qualify]
+grep -q '<testcase classname="W01" name="W01 sw watertight"/>' qualify.xml
+grep -q "^ok .* W01 sw watertight on " qualify.tap
+grep -q '"version": "2.1.0"' qualify.sarif

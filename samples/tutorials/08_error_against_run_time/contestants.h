@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// Ways to trace the same rays, and how far the t of each is from the truth.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <twinray/scene.h>
+#include <twinray/tlas.h>
+#include <twinray/validation.h>
+
+using namespace twinray;
+
+// [contestants]
+// One way to trace: an accelerator at one of its levels.
+struct Contestant {
+    std::string name;
+    AbstractAccel* accel;
+    Level level;
+    TracedBy by;
+};
+
+// Both accelerators with the scene in them, and what can be measured on this device.
+struct Contest {
+    std::vector<std::unique_ptr<AbstractAccel>> accels;
+    std::vector<Contestant> contestants;
+
+    void enter(std::unique_ptr<AbstractAccel> accel, const Scene& scene, const std::vector<Level>& levels) {
+        push_scene(*accel, scene);
+        accel->sync();
+        const TracedBy by = accel->is_software() ? TracedBy::software : TracedBy::hardware;
+        const std::string who = by == TracedBy::software ? "twinray " : "driver ";
+        for (const Level level : levels)
+            contestants.push_back({who + std::string(name_of(level)), accel.get(), level, by});
+        accels.push_back(std::move(accel));
+    }
+};
+
+// Of `levels` those that an accelerator has on this device: from refined on it takes float64.
+template <class Accel>
+std::vector<Level> levels_of(const Context& context, std::vector<Level> levels) {
+    std::erase_if(levels, [&](Level level) {
+        return Accel::capability_on(context.properties(), feature_of(level)).support == Support::unsupported;
+    });
+    return levels;
+}
+
+inline Contest make_contest(Context& context, const Scene& scene) {
+    Contest contest;
+    const auto levels = levels_of<SwTlas>(context, {all_levels.begin(), all_levels.end()});
+    // An accelerator is made for the highest level that it will be asked for. Nothing compiles behind what is timed.
+    const AccelOptions options{.level = levels.back(), .compiles_in_background = false};
+    contest.enter(std::make_unique<SwTlas>(context, options), scene, levels);
+    if (!missing_for_hardware(context.properties()).empty()) return contest;
+    // A driver has one test of its own; refined computes t, u and v anew.
+    const auto of_driver = levels_of<HwTlas>(context, {Level::watertight, Level::refined});
+    contest.enter(std::make_unique<HwTlas>(context, BuildOrder::automatic, AccelOptions{.level = of_driver.back()}),
+                  scene, of_driver);
+    return contest;
+}
+// [/contestants]
+
+// The float64 answer to each ray, from the CPU.
+inline std::vector<ReferenceHit> truth_of(const Reference& reference, const std::vector<Ray>& rays) {
+    std::vector<ReferenceHit> truth;
+    for (const Ray& ray : rays) truth.push_back(reference.closest_hit(ray));
+    return truth;
+}
+
+// [ulp]
+// A unit in the last place: how far it is from the float32 at `value` to the next one.
+inline double ulp_of(double value) {
+    const float rounded = std::abs(static_cast<float>(value));
+    return double{std::nextafter(rounded, INFINITY)} - double{rounded};
+}
+
+// Errors of t in such units, ascending, of all rays that met the triangle that they should.
+inline std::vector<double> errors_of_t(const std::vector<ReferenceHit>& truth, const std::vector<Hit>& hits) {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        const bool is_same = hits[i].hit && truth[i].hit && hits[i].primitive_index == truth[i].primitive;
+        if (is_same) errors.push_back(std::abs(double{hits[i].t} - truth[i].t) / ulp_of(truth[i].t));
+    }
+    std::sort(errors.begin(), errors.end());
+    return errors;
+}
+// [/ulp]
+
+// Of ascending values: the one below which a fraction of them lies.
+inline double quantile(const std::vector<double>& ascending, double fraction) {
+    return ascending.at(std::min(ascending.size() - 1, std::size_t(fraction * double(ascending.size()))));
+}
