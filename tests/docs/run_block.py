@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Runs or compiles one block of code; what went wrong is text."""
+"""Runs or compiles one block of code, or looks for its lines in what a command prints; what went wrong is text."""
 
 import doctest
 import os
@@ -14,7 +14,7 @@ def run(command, folder, tools, wanted_status=0, text=None):
     environment = os.environ | {
         "PATH": f"{tools.programs}:{os.environ['PATH']}",
         "PYTHONPATH": str(tools.package),
-        "XDG_CACHE_HOME": str(folder / ".cache"),
+        "XDG_CACHE_HOME": str(tools.cache),
     }
     try:
         result = subprocess.run(
@@ -27,14 +27,18 @@ def run(command, folder, tools, wanted_status=0, text=None):
     return result.stdout, ""
 
 
+def run_shell(text, folder, tools, wanted_status=0):
+    return run(["bash", "-euo", "pipefail", "-c", text], folder, tools, wanted_status)
+
+
 def run_sh(block, folder, tools):
-    return run(["bash", "-euo", "pipefail", "-c", block.text], folder, tools, int(block.options.get("exit", 0)))[1]
+    return run_shell(block.text, folder, tools, int(block.options.get("exit", 0)))[1]
 
 
 def run_console(block, folder, tools):
     for part in re.split(r"^\$ ", block.text, flags=re.M)[1:]:
         command, _, wanted = part.partition("\n")
-        printed, fault = run(["bash", "-euo", "pipefail", "-c", command], folder, tools)
+        printed, fault = run_shell(command, folder, tools)
         if fault:
             return f"{command}: {fault}"
         if wanted.strip() and not doctest.OutputChecker().check_output(wanted, printed, doctest.ELLIPSIS):
@@ -76,6 +80,27 @@ def compile_glsl(block, folder, tools):
     return ""
 
 
+def printed_once(command, folder, tools):
+    """What a command prints, which a page runs but once, and what is wrong."""
+    known = tools.printed.setdefault(folder, {})
+    if command not in known:
+        known[command] = run_shell(command, folder, tools)
+    return known[command]
+
+
+def find_lines(block, folder, tools):
+    command, device = block.options["printed-by"], block.options.get("on")
+    if device:
+        devices, fault = printed_once("twinray devices", folder, tools)
+        if fault or not re.search(rf"^\*.*{re.escape(device)}", devices, re.M):
+            return fault
+    printed, fault = printed_once(command, folder, tools)
+    lines = [".*".join(re.escape(part) for part in line.split("...")) for line in block.text.splitlines()]
+    if not fault and not re.search("^" + "\n".join(lines) + "$", printed, re.M):
+        fault = f"printed\n{printed}where the page has\n{block.text}"
+    return fault and f"{command}: {fault}"
+
+
 WAYS = {
     "sh": run_sh,
     "console": run_console,
@@ -83,4 +108,5 @@ WAYS = {
     "pycon": run_session,
     "cpp": compile_cpp,
     "glsl": compile_glsl,
+    "text": find_lines,
 }
