@@ -21,7 +21,7 @@ import given
 import run_block
 
 # Lower it whenever a page is taken out of the list.
-MOST_NOT_COVERED = 19
+MOST_NOT_COVERED = 16
 
 
 def pages_of(root):

@@ -7,6 +7,7 @@ import re
 import subprocess
 
 SECONDS = 240
+SEE_THE_TREE = {"containers", "suite"}  # wraps of C++ that include more than what is installed
 
 
 def run(command, folder, tools, wanted_status=0, text=None):
@@ -58,22 +59,33 @@ def run_session(block, folder, tools):
 
 
 def wrapped(block, tools):
+    """What is compiled: the block, or its wrap with it; `#include` lines go where that has INCLUDES. Messages name the
+    page's lines."""
     name = block.options.get("wrap")
     if name is None:
         return block.text
     wrap = (tools.wraps / f"{name}.{block.language}").read_text(encoding="utf-8")
-    return wrap.replace("BLOCK\n", block.text)
+    lines, includes = block.text.splitlines(), []
+    if "INCLUDES\n" in wrap:
+        includes = [line for line in lines if line.startswith("#include")]
+        lines = ["" if line.startswith("#include") else line for line in lines]
+        wrap = wrap.replace("INCLUDES\n", "\n".join([*includes, ""]))
+    return wrap.replace("BLOCK", "\n".join([f'\n#line {block.line + 1} "page"', *lines, ""]))
 
 
 def compile_cpp(block, folder, tools):
-    command = ["g++", "-std=c++20", "-fsyntax-only", f"-I{tools.root}/include", "-x", "c++", "-"]
+    folders = [tools.root / "include", tools.wraps]
+    if block.options.get("wrap") in SEE_THE_TREE:
+        folders.append(tools.root)
+    command = ["g++", "-std=c++20", "-fsyntax-only", *[f"-I{folder}" for folder in folders], "-x", "c++", "-"]
     return run(command, folder, tools, text=wrapped(block, tools))[1]
 
 
 def compile_glsl(block, folder, tools):
     for accelerator in ("SW", "HW"):
         command = ["glslangValidator", "--target-env", "vulkan1.2", f"-DTWINRAY_{accelerator}"]
-        command += [f"-I{tools.root}", f"-I{tools.root}/include", f"-I{tools.root}/shaders", "--stdin", "-S", "comp"]
+        command += [f"-I{tools.root / folder}" for folder in ("", "include", "shaders")]
+        command += [f"-I{tools.wraps}", "--stdin", "-S", "comp"]
         fault = run(command, folder, tools, text=wrapped(block, tools))[1]
         if fault:
             return f"with TWINRAY_{accelerator}: {fault}"
