@@ -9,7 +9,7 @@
 ```glsl wrap="kernel"          compiled in place of BLOCK in wraps/kernel.glsl
 ```sh not-run="needs a GPU"    and why
 ```text printed-by="COMMAND"   lines that it prints, one below the other, with `...` for anything; a page runs it once
-```text printed-by="..." on="llvmpipe"   compared on a device of this name alone
+```sh needs="radv"               run where there is such (NEEDS); of any language
 ```text                        else is no code, as are csv, json and what Sphinx makes of itself (`{...}`)
 
 Files that pages take for given are in their folder: given.py.
@@ -23,7 +23,12 @@ import markdown_it
 NO_CODE = {"text", "csv", "json"}
 RUN = {"sh", "console", "python", "pycon", "cpp", "glsl", "text"}
 OPTIONS = {"not-run": RUN - {"text"} | {"cmake"}, "exit": {"sh"}, "wrap": {"cpp", "glsl"}}
-OPTIONS |= {"printed-by": {"text"}, "on": {"text"}}
+OPTIONS |= {"printed-by": {"text"}, "needs": RUN}
+# What blocks may need, by the command that succeeds where it is there.
+NEEDS = {
+    "llvmpipe": "twinray devices | grep -q '^[*].*llvmpipe'",
+    "radv": "ls /usr/share/vulkan/icd.d/radeon_icd*",
+}
 CODE_OF_SPHINX = {"{code}", "{code-block}", "{sourcecode}"}
 OPTION = re.compile(r'([\w-]+)=(?:"([^"]*)"|(\S+))')
 
@@ -52,6 +57,8 @@ def fault_of(language, rest, options):
     for name, value in options.items():
         if language not in OPTIONS.get(name, ()):
             return f"no option '{name}' for '{language}'"
+        if name == "needs" and value not in NEEDS:
+            return f"needs '{value}', which is none of {', '.join(NEEDS)}"
         if name == "not-run" and len(value.split()) < 2:
             return "not-run wants a reason"
     if language == "text" and "printed-by" not in options:

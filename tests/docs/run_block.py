@@ -6,6 +6,8 @@ import os
 import re
 import subprocess
 
+import blocks
+
 SECONDS = 240
 SEE_THE_TREE = {"containers", "suite"}  # wraps of C++ that include more than what is installed
 
@@ -92,6 +94,14 @@ def compile_glsl(block, folder, tools):
     return ""
 
 
+def can_run(block, folder, tools):
+    """Whether what the block needs is there."""
+    needs = block.options.get("needs")
+    if needs not in tools.found:
+        tools.found[needs] = needs is None or not run_shell(blocks.NEEDS[needs], folder, tools)[1]
+    return tools.found[needs]
+
+
 def printed_once(command, folder, tools):
     """What a command prints, which a page runs but once, and what is wrong."""
     known = tools.printed.setdefault(folder, {})
@@ -101,11 +111,7 @@ def printed_once(command, folder, tools):
 
 
 def find_lines(block, folder, tools):
-    command, device = block.options["printed-by"], block.options.get("on")
-    if device:
-        devices, fault = printed_once("twinray devices", folder, tools)
-        if fault or not re.search(rf"^\*.*{re.escape(device)}", devices, re.M):
-            return fault
+    command = block.options["printed-by"]
     printed, fault = printed_once(command, folder, tools)
     lines = [".*".join(re.escape(part) for part in line.split("...")) for line in block.text.splitlines()]
     if not fault and not re.search("^" + "\n".join(lines) + "$", printed, re.M):
