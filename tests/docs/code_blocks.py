@@ -10,6 +10,7 @@ import argparse
 import pathlib
 import sys
 import tempfile
+import time
 
 try:
     import blocks
@@ -56,11 +57,12 @@ def run_pages(tools, pages):
     with tempfile.TemporaryDirectory() as above:
         tools.cache = pathlib.Path(above) / "cache"
         for number, page in enumerate(pages):
+            begin = time.monotonic()
             found, count = run_page(tools, page, pathlib.Path(above) / str(number))
             faults += found
             total += count
             if count:
-                print(f"{page}: {count} blocks, {len(found)} faults", flush=True)
+                print(f"{page}: {count} blocks, {len(found)} faults, {time.monotonic() - begin:.1f} s", flush=True)
     return faults, total
 
 
