@@ -29,11 +29,12 @@ NAME = re.compile(r"\b(\w+)(?=\()|\b([A-Z]\w*[a-z]\w*)\b|^(\w+)$")
 
 
 class Public:
-    """The public headers and the Python package, as text."""
+    """The public headers and the Python package, as text without comments."""
 
     def __init__(self, root):
-        files = sorted((root / "include/twinray").rglob("*.*")) + sorted((root / "bindings/python").rglob("*.py"))
-        self.text = "\n".join(file.read_text(encoding="utf-8") for file in files)
+        files = [*(root / "include/twinray").rglob("*.*"), *(root / "bindings/python").rglob("*.py")]
+        text = "\n".join(file.read_text(encoding="utf-8") for file in files)
+        self.text = re.sub(r"(?<!:)//.*|^ *#(?! *define).*", "", text, flags=re.M)  # URLs stay
         self.words = set(re.findall(r"\w+", self.text))
 
     @functools.lru_cache(maxsize=None)
