@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Names that pages give in code font exist: commands and options, members of public types, and what tables of calls of
+"""Names that pages give in code font exist: commands and options, members of types, and what tables of calls of
 other libraries have in the column of twinray. Commands of blocks that are not run are looked at, too.
 Usage: names_of_pages.py --programs FOLDER [PAGE...]"""
 
@@ -21,6 +21,9 @@ import code_blocks
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAMS = ("twinray", "path_tracer", "particles", "embed_renderer")
 OF_OTHERS = {"--fix", "--freeze-spec-const"}  # options of tools/lint.sh and of spirv-opt
+FOLDERS_OF_TYPES = ("include", "engine", "swtlas", "hwtlas", "validation", "samples", "cli", "viewer", "bench")
+SOURCES = {".h", ".cpp"}
+TYPE = re.compile(r"\b(?:struct|class|namespace) ([A-Z]\w*)")
 SPAN = re.compile(r"`([^`]+)`")
 OPTION = re.compile(r"(?<![\w-])--?[a-z][\w-]*")
 MEMBER = re.compile(r"(?<![\w:])([A-Z]\w*)::(\w+)")
@@ -36,6 +39,10 @@ class Public:
         text = "\n".join(file.read_text(encoding="utf-8") for file in files)
         self.text = re.sub(r"(?<!:)//.*|^ *#(?! *define).*", "", text, flags=re.M)  # URLs stay
         self.words = set(re.findall(r"\w+", self.text))
+        inside = [
+            file for folder in FOLDERS_OF_TYPES for file in (root / folder).rglob("*.*") if file.suffix in SOURCES
+        ]
+        self.types = {name for file in inside for name in TYPE.findall(file.read_text(encoding="utf-8"))}
 
     @functools.lru_cache(maxsize=None)
     def bodies(self, name):
@@ -50,9 +57,9 @@ class Public:
         return found
 
     def has_member(self, name, member):
-        """Types that are not public have what they like."""
+        """Types that are not public have what they like, but must be there."""
         bodies = self.bodies(name)
-        return not bodies or any(re.search(rf"\b{member}\b", body) for body in bodies)
+        return any(re.search(rf"\b{member}\b", body) for body in bodies) or not bodies and name in self.types
 
 
 class Programs:

@@ -7,8 +7,9 @@ import sys
 
 import names_of_pages
 
-PAGE = """`twinray verify --nonsense` and `twinray frob`, `SwTlas::store`, `SharedVertices::by_place`;
-right: `twinray verify --aimed 7`, `SwTlas::save`, `twinray help`, `path_tracer merge *.film -o FILE`.
+PAGE = """`twinray verify --nonsense` and `twinray frob`, `SwTlas::store`, `SharedVertices::by_place`, and
+`Shared::by_position`; right: `twinray verify --aimed 7`, `SwTlas::save`, `twinray help`,
+`path_tracer merge *.film -o FILE`.
 `path_tracer SCENE --fames 3`, `--picture-sise W H`
 
 | Embree | twinray |
@@ -24,11 +25,12 @@ WANTED = [
     "page.md:1: no command 'twinray frob'",
     "page.md:1: `SwTlas::store`: SwTlas has no store",
     "page.md:1: `SharedVertices::by_place`: SharedVertices has no by_place",
-    "page.md:3: 'path_tracer' has no option --fames",
-    "page.md:3: no program has an option --picture-sise",
-    "page.md:7: no SwTlass in headers or package",
-    "page.md:7: no push_it in headers or package",
-    "page.md:9: 'twinray report' has no option --siute",
+    "page.md:2: `Shared::by_position`: Shared has no by_position",
+    "page.md:4: 'path_tracer' has no option --fames",
+    "page.md:4: no program has an option --picture-sise",
+    "page.md:8: no SwTlass in headers or package",
+    "page.md:8: no push_it in headers or package",
+    "page.md:10: 'twinray report' has no option --siute",
 ]
 
 
