@@ -8,7 +8,11 @@
 ```cpp                         a whole file, compiled
 ```glsl wrap="kernel"          compiled in place of BLOCK in wraps/kernel.glsl
 ```sh not-run="needs a GPU"    and why
-```text                        is no code, as are csv, json and what Sphinx makes of itself (`{...}`)
+```text printed-by="COMMAND"   lines that it prints, one below the other, with `...` for anything; a page runs it once
+```sh needs="radv"               run where there is such (NEEDS); of any language
+```text                        else is no code, as are csv, json and what Sphinx makes of itself (`{...}`)
+
+Files that pages take for given are in their folder: given.py.
 """
 
 import dataclasses
@@ -17,8 +21,15 @@ import re
 import markdown_it
 
 NO_CODE = {"text", "csv", "json"}
-RUN = {"sh", "console", "python", "pycon", "cpp", "glsl"}
-OPTIONS = {"not-run": RUN | {"cmake", "bash"}, "exit": {"sh"}, "wrap": {"cpp", "glsl"}}
+RUN = {"sh", "console", "python", "pycon", "cpp", "glsl", "text"}
+OPTIONS = {"not-run": RUN - {"text"} | {"cmake"}, "exit": {"sh"}, "wrap": {"cpp", "glsl"}}
+OPTIONS |= {"printed-by": {"text"}, "needs": RUN}
+# What blocks may need, by the command that succeeds where it is there.
+NEEDS = {
+    "llvmpipe": "twinray devices | grep -q '^[*].*llvmpipe'",
+    "radv": "ls /usr/share/vulkan/icd.d/radeon_icd*",
+}
+CODE_OF_SPHINX = {"{code}", "{code-block}", "{sourcecode}"}
 OPTION = re.compile(r'([\w-]+)=(?:"([^"]*)"|(\S+))')
 
 
@@ -46,25 +57,32 @@ def fault_of(language, rest, options):
     for name, value in options.items():
         if language not in OPTIONS.get(name, ()):
             return f"no option '{name}' for '{language}'"
+        if name == "needs" and value not in NEEDS:
+            return f"needs '{value}', which is none of {', '.join(NEEDS)}"
         if name == "not-run" and len(value.split()) < 2:
             return "not-run wants a reason"
+    if language == "text" and "printed-by" not in options:
+        return "text has printed-by, or no option"
     if language not in RUN and "not-run" not in options:
         return f"'{language}' is neither run nor says not-run"
     return ""
 
 
-def blocks_of(text):
+def blocks_of(text, lines_above=0):
     """Every block of code of a page. Those that are indented have no language: fence them."""
     found = []
     for token in markdown_it.MarkdownIt().parse(text):
-        line = token.map[0] + 1 if token.map else 0
+        line = token.map[0] + 1 + lines_above if token.map else 0
         if token.type == "code_block":
             found.append(Block("", {}, token.content, line, "an indented block; fence it"))
         if token.type != "fence":
             continue
         language, _, rest = token.info.strip().partition(" ")
-        if language in NO_CODE or language.startswith("{"):
-            continue
-        options = {name: quoted or bare for name, quoted, bare in OPTION.findall(rest)}
-        found.append(Block(language, options, token.content, line, fault_of(language, rest, options)))
+        if language in CODE_OF_SPHINX:
+            found.append(Block("", {}, token.content, line, f"{language} is not looked into; fence it"))
+        elif language.startswith("{") and language != "{eval-rst}":
+            found += blocks_of(token.content, line)  # an admonition holds Markdown
+        elif not language.startswith("{") and (language not in NO_CODE or rest):
+            options = {name: quoted or bare for name, quoted, bare in OPTION.findall(rest)}
+            found.append(Block(language, options, token.content, line, fault_of(language, rest, options)))
     return found

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Runs what the README and the pages of docs/ show, or finds in its fence why not: blocks.py says how blocks tell.
-Pages of pages_not_covered.txt are left out; the list may only shrink.
 Usage: code_blocks.py --programs FOLDER --package FOLDER [--root FOLDER] [--check-only] [PAGE...]
   --programs   where twinray and path_tracer are        --package      where the Python package is
   --python     which Python runs blocks; it has what the package needs
@@ -11,20 +10,21 @@ import argparse
 import pathlib
 import sys
 import tempfile
+import time
 
 try:
     import blocks
 except ModuleNotFoundError as error:
     print(f"{error}: tools/docs.sh installs it into build/docs/venv")
     sys.exit(77)
+import given
 import run_block
 
-# Lower it whenever a page is taken out of the list.
-MOST_NOT_COVERED = 23
+ELSEWHERE = ["README.md", "CONTRIBUTING.md", "samples/README.md"]  # on the site, too
 
 
 def pages_of(root):
-    return ["README.md", *sorted(page.relative_to(root).as_posix() for page in (root / "docs").rglob("*.md"))]
+    return [*ELSEWHERE, *sorted(page.relative_to(root).as_posix() for page in (root / "docs").rglob("*.md"))]
 
 
 def faults_of_page(root, page):
@@ -36,27 +36,34 @@ def blocks_to_run(root, page):
     return [block for block in blocks.blocks_of((root / page).read_text(encoding="utf-8")) if block.is_run]
 
 
-def faults_of_list(root, listed):
-    faults = [f"pages_not_covered.txt: no such page: {page}" for page in listed if not (root / page).is_file()]
-    faults += [
-        f"pages_not_covered.txt: {page} is covered now; take it out and lower MOST_NOT_COVERED"
-        for page in listed
-        if (root / page).is_file() and not faults_of_page(root, page) and not blocks_to_run(root, page)
-    ]
-    if len(listed) > MOST_NOT_COVERED:
-        faults.append(f"pages_not_covered.txt: {len(listed)} pages, at most {MOST_NOT_COVERED}; it may only shrink")
-    return faults
-
-
-def run_page(tools, page):
+def run_page(tools, page, folder):
     faults, count = [], 0
-    with tempfile.TemporaryDirectory() as folder:
-        for block in blocks_to_run(tools.root, page):
-            count += 1
-            fault = run_block.WAYS[block.language](block, pathlib.Path(folder), tools)
-            if fault:
-                faults.append(f"{page}:{block.line}: {fault}")
+    folder.mkdir()
+    given.write(folder)
+    for block in blocks_to_run(tools.root, page):
+        if not run_block.can_run(block, folder, tools):
+            print(f"{page}:{block.line}: not run: no {block.options['needs']} is here")
+            continue
+        count += 1
+        fault = run_block.WAYS[block.language](block, folder, tools)
+        if fault:
+            faults.append(f"{page}:{block.line}: {fault}")
     return faults, count
+
+
+def run_pages(tools, pages):
+    """What is wrong, and how many blocks were run. Each page has a folder; compiled kernels are shared."""
+    faults, total = [], 0
+    with tempfile.TemporaryDirectory() as above:
+        tools.cache = pathlib.Path(above) / "cache"
+        for number, page in enumerate(pages):
+            begin = time.monotonic()
+            found, count = run_page(tools, page, pathlib.Path(above) / str(number))
+            faults += found
+            total += count
+            if count:
+                print(f"{page}: {count} blocks, {len(found)} faults, {time.monotonic() - begin:.1f} s", flush=True)
+    return faults, total
 
 
 def main(arguments):
@@ -69,23 +76,16 @@ def main(arguments):
     parser.add_argument("--check-only", action="store_true")
     parser.add_argument("pages", nargs="*")
     tools = parser.parse_args(arguments)
-    tools.wraps = here / "wraps"
-    list_file = tools.root / "tests/docs/pages_not_covered.txt"
-    listed = list_file.read_text(encoding="utf-8").split() if list_file.is_file() else []
-    pages = tools.pages or [page for page in pages_of(tools.root) if page not in listed]
-    faults = [] if tools.pages else faults_of_list(tools.root, listed)
-    total = 0
+    tools.wraps, tools.printed, tools.found = here / "wraps", {}, {}
+    pages = tools.pages or pages_of(tools.root)
+    faults = []
     for page in pages:
         faults += faults_of_page(tools.root, page)
-        if not tools.check_only:
-            found, count = run_page(tools, page)
-            faults += found
-            total += count
-            if count:
-                print(f"{page}: {count} blocks, {len(found)} faults", flush=True)
+    found, total = ([], 0) if tools.check_only else run_pages(tools, pages)
+    faults += found
     for fault in faults:
         print(fault)
-    print(f"code_blocks: {len(pages)} pages, {total} blocks run, {len(listed)} pages not covered, {len(faults)} faults")
+    print(f"code_blocks: {len(pages)} pages, {total} blocks run, {len(faults)} faults")
     return 1 if faults else 0
 
 

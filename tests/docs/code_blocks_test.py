@@ -21,6 +21,11 @@ FAULTY = {
     "a failure within a line": ("```sh\nfalse | cat\n```\n", "exit status 1"),
     "a command that should fail": ("```sh exit=3\ntrue\n```\n", "not 3"),
     "other output": ("```console\n$ echo one\ntwo\n```\n", "where the page has"),
+    "a line that is not printed": ('```text printed-by="seq 3"\n1\n3\n```\n', "where the page has"),
+    "a need that nobody knows": ('```sh needs="luck"\ntrue\n```\n', "needs 'luck'"),
+    "an option of mere text": ('```text needs="radv"\n1\n```\n', "text has printed-by"),
+    "a fault in an admonition": ("````{note}\n```sh\nfalse\n```\n````\n", "page.md:2: exit status 1"),
+    "code that Sphinx alone sees": ("```{code-block} sh\nfalse\n```\n", "fence it"),
     "Python that fails": ("```python\nassert 1 == 2\n```\n", "AssertionError"),
     "a session with another answer": ("```pycon\n>>> 1 + 1\n3\n```\n", "Expected"),
     "C++ that is none": ("```cpp\nint main() { return nothing; }\n```\n", "nothing"),
@@ -40,6 +45,10 @@ assert open("seven.txt").read() == "7\\n"
 ```pycon
 >>> 1 + 1
 2
+```
+```text printed-by="echo one; echo two three"
+one
+two ...
 ```
 ```cpp
 int main() {}
@@ -71,7 +80,7 @@ def main():
         if status != 1 or words not in printed or ", 1 faults" not in printed:
             wrong.append(f"{name}: status {status}: {printed}")
     status, printed = told(RIGHT)
-    if status != 0 or "6 blocks run" not in printed:
+    if status != 0 or "7 blocks run" not in printed:
         wrong.append(f"a page without a fault: status {status}: {printed}")
     print("\n".join(wrong) or f"code_blocks_test: {len(FAULTY)} faults seen, and a page without one")
     return 1 if wrong else 0

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Runs or compiles one block of code; what went wrong is text."""
+"""Runs or compiles one block of code, or looks for its lines in what a command prints; what went wrong is text."""
 
 import doctest
 import os
 import re
 import subprocess
 
+import blocks
+
 SECONDS = 240
+SEE_THE_TREE = {"containers", "suite"}  # wraps of C++ that include more than what is installed
 
 
 def run(command, folder, tools, wanted_status=0, text=None):
@@ -14,7 +17,7 @@ def run(command, folder, tools, wanted_status=0, text=None):
     environment = os.environ | {
         "PATH": f"{tools.programs}:{os.environ['PATH']}",
         "PYTHONPATH": str(tools.package),
-        "XDG_CACHE_HOME": str(folder / ".cache"),
+        "XDG_CACHE_HOME": str(tools.cache),
     }
     try:
         result = subprocess.run(
@@ -27,14 +30,18 @@ def run(command, folder, tools, wanted_status=0, text=None):
     return result.stdout, ""
 
 
+def run_shell(text, folder, tools, wanted_status=0):
+    return run(["bash", "-euo", "pipefail", "-c", text], folder, tools, wanted_status)
+
+
 def run_sh(block, folder, tools):
-    return run(["bash", "-euo", "pipefail", "-c", block.text], folder, tools, int(block.options.get("exit", 0)))[1]
+    return run_shell(block.text, folder, tools, int(block.options.get("exit", 0)))[1]
 
 
 def run_console(block, folder, tools):
     for part in re.split(r"^\$ ", block.text, flags=re.M)[1:]:
         command, _, wanted = part.partition("\n")
-        printed, fault = run(["bash", "-euo", "pipefail", "-c", command], folder, tools)
+        printed, fault = run_shell(command, folder, tools)
         if fault:
             return f"{command}: {fault}"
         if wanted.strip() and not doctest.OutputChecker().check_output(wanted, printed, doctest.ELLIPSIS):
@@ -54,26 +61,62 @@ def run_session(block, folder, tools):
 
 
 def wrapped(block, tools):
+    """What is compiled: the block, or its wrap with it; `#include` lines go where that has INCLUDES. Messages name the
+    page's lines."""
     name = block.options.get("wrap")
     if name is None:
         return block.text
     wrap = (tools.wraps / f"{name}.{block.language}").read_text(encoding="utf-8")
-    return wrap.replace("BLOCK\n", block.text)
+    lines, includes = block.text.splitlines(), []
+    if "INCLUDES\n" in wrap:
+        includes = [line for line in lines if line.startswith("#include")]
+        lines = ["" if line.startswith("#include") else line for line in lines]
+        wrap = wrap.replace("INCLUDES\n", "\n".join([*includes, ""]))
+    return wrap.replace("BLOCK", "\n".join([f'\n#line {block.line + 1} "page"', *lines, ""]))
 
 
 def compile_cpp(block, folder, tools):
-    command = ["g++", "-std=c++20", "-fsyntax-only", f"-I{tools.root}/include", "-x", "c++", "-"]
+    folders = [tools.root / "include", tools.wraps]
+    if block.options.get("wrap") in SEE_THE_TREE:
+        folders.append(tools.root)
+    command = ["g++", "-std=c++20", "-fsyntax-only", *[f"-I{folder}" for folder in folders], "-x", "c++", "-"]
     return run(command, folder, tools, text=wrapped(block, tools))[1]
 
 
 def compile_glsl(block, folder, tools):
     for accelerator in ("SW", "HW"):
         command = ["glslangValidator", "--target-env", "vulkan1.2", f"-DTWINRAY_{accelerator}"]
-        command += [f"-I{tools.root}", f"-I{tools.root}/include", f"-I{tools.root}/shaders", "--stdin", "-S", "comp"]
+        command += [f"-I{tools.root / folder}" for folder in ("", "include", "shaders")]
+        command += [f"-I{tools.wraps}", "--stdin", "-S", "comp"]
         fault = run(command, folder, tools, text=wrapped(block, tools))[1]
         if fault:
             return f"with TWINRAY_{accelerator}: {fault}"
     return ""
+
+
+def can_run(block, folder, tools):
+    """Whether what the block needs is there."""
+    needs = block.options.get("needs")
+    if needs not in tools.found:
+        tools.found[needs] = needs is None or not run_shell(blocks.NEEDS[needs], folder, tools)[1]
+    return tools.found[needs]
+
+
+def printed_once(command, folder, tools):
+    """What a command prints, which a page runs but once, and what is wrong."""
+    known = tools.printed.setdefault(folder, {})
+    if command not in known:
+        known[command] = run_shell(command, folder, tools)
+    return known[command]
+
+
+def find_lines(block, folder, tools):
+    command = block.options["printed-by"]
+    printed, fault = printed_once(command, folder, tools)
+    lines = [".*".join(re.escape(part) for part in line.split("...")) for line in block.text.splitlines()]
+    if not fault and not re.search("^" + "\n".join(lines) + "$", printed, re.M):
+        fault = f"printed\n{printed}where the page has\n{block.text}"
+    return fault and f"{command}: {fault}"
 
 
 WAYS = {
@@ -83,4 +126,5 @@ WAYS = {
     "pycon": run_session,
     "cpp": compile_cpp,
     "glsl": compile_glsl,
+    "text": find_lines,
 }

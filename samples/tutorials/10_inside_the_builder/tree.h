@@ -17,11 +17,13 @@ namespace twinray {
 using namespace twinray;
 
 // A node of either tree. The binary one has two children, the wide one up to four.
+// [node]
 struct Node {
     Bounds box;
     std::vector<int> children;  // index of a node, or below 0: ~ position in the Morton order
     int first = 0, last = 0;    // the positions below it
 };
+// [/node]
 
 struct Sorted {
     std::vector<uint> codes;  // in order
