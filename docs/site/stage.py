@@ -81,9 +81,8 @@ def main(folder, twinray):
     folder.mkdir(parents=True)
     stage_pages(folder)
     without_empty_trees(folder)
-    # Pages of tutorials show parts of their programs, the gallery its commands.
-    for shown in ("samples/tutorials", "samples/gallery"):
-        shutil.copytree(root / shown, folder.parent / shown, dirs_exist_ok=True)
+    # Pages of tutorials show parts of programs, the gallery its commands.
+    shutil.copytree(root / "samples", folder.parent / "samples", dirs_exist_ok=True)
     cpp_pages.write(folder / "reference/cpp", root / "include/twinray")
     glsl_pages.write(folder / "reference/glsl", folder.parent / "glsl/xml", root / "include/twinray/glsl")
     commands_pages.write(folder / "reference/commands", twinray)

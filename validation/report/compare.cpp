@@ -31,6 +31,16 @@ std::string name_of(const Record& record) {
 
 std::string group_of(const Record& record) { return record.backend + ' ' + record.level; }
 
+// Whether it could not be run, for another reason than time.
+bool is_lost(const Record& record) {
+    return !record.was_run && record.reason.find("was spent before its turn") == std::string::npos;
+}
+
+// Whether they are of one case, accelerator and level, whatever their settings.
+bool asks_of_one(const Record& a, const Record& b) {
+    return a.case_id == b.case_id && a.backend == b.backend && a.level == b.level;
+}
+
 // Something that may have changed, with the probability of what was seen if it did not.
 struct Suspicion {
     Change change;
@@ -109,18 +119,26 @@ class Comparing {
     Comparing(std::span<const Record> before, std::span<const Record> now) {
         std::map<std::string, const Record*> known;
         for (const Record& record : before) known[name_of(record)] = &record;
-        result_.only_before = known.size();
+        std::vector<const Record*> only_now;
         for (const Record& record : now) {
             const auto found = known.find(name_of(record));
             if (found == known.end()) {
-                ++result_.only_now;
+                only_now.push_back(&record);
                 continue;
             }
             pairs_.emplace_back(found->second, &record);
             result_.has_one_seed &= found->second->seed == record.seed;
-            --result_.only_before;
+            known.erase(found);
         }
         result_.compared = pairs_.size();
+        result_.only_before = known.size();
+        result_.only_now = only_now.size();
+        // What is not run has no settings, so that it corresponds to nothing that has.
+        for (const Record* record : only_now)
+            if (is_lost(*record) && std::ranges::any_of(known, [&](const auto& was) {
+                    return was.second->was_run && asks_of_one(*was.second, *record);
+                }))
+                add_lost(*record);
     }
 
     Comparison result() {
@@ -146,6 +164,8 @@ class Comparing {
         return suspicion_of(what, kind, sum);
     }
 
+    void add_lost(const Record& record) { add(Change::Kind::worse, record, "was run, and is not: " + record.reason); }
+
     void add(Change::Kind kind, const Record& record, const std::string& how) {
         result_.changes.push_back({kind, name_of(record), how});
     }
@@ -153,8 +173,7 @@ class Comparing {
     void look_at(const Pair& pair) {
         const auto& [before, now] = pair;
         if (before->was_run != now->was_run) {
-            if (!now->was_run && now->reason.find("was spent before its turn") == std::string::npos)
-                add(Change::Kind::worse, *now, "was run, and is not: " + now->reason);
+            if (is_lost(*now)) add_lost(*now);
             return;
         }
         if (!now->was_run) return;

@@ -50,7 +50,7 @@ struct Comparison {
 // cases, by the sign test of whole cases. Times, of as many rays, are compared by the bootstrap. What is left of the
 // tests by Holm's procedure (1979) at false_alarms is a change. Certain, without a test: a fault of ours where there
 // was none; a record of under 100 items that asked the same (seed and n) and passes no more, or again; a record that
-// ran and does not.
+// ran and does not, or all of a case, accelerator and level.
 Comparison compare(std::span<const Record> before, std::span<const Record> now);
 
 }  // namespace twinray::report

@@ -21,7 +21,8 @@ std::string escaped(std::string_view text) {
 
 std::string number(double value, int digits) {
     std::ostringstream out;
-    const bool is_long = std::abs(value) >= std::pow(10, digits) && std::abs(value) < 1e6;
+    // 99.6 too, of which two digits would be 1e+02.
+    const bool is_long = std::abs(value) >= std::pow(10, digits) - 0.5 && std::abs(value) < 1e6;
     if (is_long)
         out << std::llround(value);
     else

@@ -2,6 +2,7 @@
 // The same rays in software, by ray queries and by a ray tracing pipeline: hardware_ray_tracing FOLDER
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <iomanip>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Error of a view factor against rays and against time: error_against_samples FOLDER
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>

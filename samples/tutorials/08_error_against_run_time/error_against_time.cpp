@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Error of t against the time of a ray, for each level of both accelerators: error_against_time FOLDER
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Solutions of exercises 1 and 3.
+#include <cmath>
 #include <iostream>
 
 #include "samples/tutorials/08_error_against_run_time/contestants.h"

@@ -172,6 +172,24 @@ TEST(Compare, WhatRanAndDoesNotIsWorseUnlessTimeWasShort) {
     EXPECT_FALSE(compare(before, now).is_worse());
 }
 
+// A record that was not run has no settings: there is one for all of its case, accelerator and level.
+TEST(Compare, ACaseThatTheDriverCannotRunAnyMoreIsWorseWhateverItsSettings) {
+    std::vector<Record> before = {measured("W1", 100), measured("W1", 100), measured("W1", 100, 0, 4096, "sw")};
+    before[1].params = {{"aim", "edge"}};
+    std::vector<Record> now = {measured("W1", 100), before[2]};
+    now[0].params.clear();
+    now[0].was_run = false, now[0].reason = "the device has no ray queries";
+    const Comparison comparison = compare(before, now);
+    ASSERT_EQ(comparison.changes.size(), 1u);
+    EXPECT_EQ(comparison.changes[0].what, "W1 hw watertight");
+    EXPECT_EQ(comparison.changes[0].how, "was run, and is not: the device has no ray queries");
+    EXPECT_TRUE(comparison.is_worse());
+    now[0].reason = "the time of 80 s was spent before its turn";
+    EXPECT_FALSE(compare(before, now).is_worse());
+    now[0].reason = "level certified is unsupported", now[0].level = "certified";  // neither before
+    EXPECT_FALSE(compare(before, now).is_worse());
+}
+
 TEST(Compare, RecordsWithoutACounterpartAreCounted) {
     const std::vector<Record> before = {measured("W1", 100), measured("W2", 100)},
                               now = {measured("W2", 100), measured("W3", 100)};

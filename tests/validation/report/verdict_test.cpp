@@ -30,6 +30,8 @@ TEST(Wording, RatesSayHowSureTheyAre) {
     EXPECT_EQ(rate_text(0, 2'100'000), "0 of 2.1 million (below 1.4 per million)");
     EXPECT_EQ(rate_text(460, 10'000), "4.6 % (4.2 to 5)");
     EXPECT_EQ(rate_text(27'000, 100'000), "27 % (26.7 to 27.3)");
+    EXPECT_EQ(rate_text(4'096, 4'096), "100 % (99.9 to 100)");
+    EXPECT_EQ(number(99.6, 2), "100");
     EXPECT_EQ(rate_text(5, 1'000'000), "5 per million (1.6 to 12)");
     EXPECT_EQ(count_text(8192), "8,192");
     EXPECT_EQ(number(1250), "1250");
