@@ -39,13 +39,13 @@ Rgb color_of(const Hit& hit) {
     const auto mixed = [&](float weight) { return white + (1 - white) * weight; };
     return rgb_of_linear({mixed(weights.x), mixed(weights.y), mixed(weights.z)});
 }
-// [/color]
 
 std::size_t count(const std::vector<Hit>& hits) {
     std::size_t found = 0;
     for (const Hit& hit : hits) found += hit.hit;
     return found;
 }
+// [/color]
 
 int main(int argc, char** argv) try {
     const std::filesystem::path folder = argc > 1 ? argv[1] : ".";

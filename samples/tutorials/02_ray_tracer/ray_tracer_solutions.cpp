@@ -33,9 +33,9 @@ void pass_through_glass(AbstractAccel& accel, std::vector<Ray>& rays) {
 }
 // [/glass]
 
+// [light]
 enum class Middle { mirror, glass };
 
-// [light]
 // The loop of the tutorial: what one ray a pixel brings.
 std::vector<vec3> light_of(AbstractAccel& accel, std::vector<Ray> rays, vec3 to_sun, Middle middle) {
     std::vector<vec3> picture(rays.size(), vec3(0));
