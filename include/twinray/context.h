@@ -115,8 +115,8 @@ class DeviceRequirements {
 
     // For a device of a host that enables things of its own: adds both to `info`. A feature is switched on in the
     // struct of the host's chain that has it (of the feature alone or of a Vulkan version; that struct is written to);
-    // where there is none, one of ours is put before the chain, into which pEnabledFeatures moves. Until
-    // vkCreateDevice `info` refers to this object. Once.
+    // where there is none, one of ours is put before the chain, into which pEnabledFeatures moves. `info`
+    // refers to this object for as long as it is read, by vkCreateDevice and enabled_properties. Once.
     void add_to(VkDeviceCreateInfo& info);
 
   private:

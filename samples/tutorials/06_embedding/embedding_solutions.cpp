@@ -40,6 +40,7 @@ struct Lender {
 
 VkResult allocate(void* user, const twinray::BufferRequest& request, twinray::AllocatedBuffer& result) {
     auto& lender = *static_cast<Lender*>(user);
+    // request.alignment: memory of its own begins at large powers of two; parts of a block must heed it.
     const auto place = request.memory == twinray::Memory::device ? Buffer::Place::device : Buffer::Place::host;
     try {
         auto buffer = std::make_unique<Buffer>(lender.device, request.bytes, place, request.usage);
@@ -76,7 +77,8 @@ void trace_in_lent_memory() {
         std::cout << "2: a hit at t = " << hit.t << "; " << lender.lent.size() << " buffers are lent\n";
         if (!hit.hit || lender.lent.empty()) throw twinray::Error("twinray does not use the renderer's memory");
     }
-    std::cout << "2: at the end " << lender.lent.size() << " of " << lender.bytes << " bytes\n";
+    std::cout << "2: at the end " << lender.lent.size() << " buffers are lent; " << lender.bytes
+              << " bytes were in all\n";
     if (!lender.lent.empty()) throw twinray::Error("twinray kept memory of the renderer's");
 }
 

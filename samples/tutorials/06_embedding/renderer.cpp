@@ -53,7 +53,10 @@ void Renderer::create_frame(Frame& frame, std::size_t thing_count) {
 }
 
 Renderer::~Renderer() {
-    wait(submitted_);
+    try {
+        wait(submitted_);
+    } catch (const std::exception&) {  // the device is lost: nothing runs there any more
+    }
     for (const Frame& frame : frames_) vkDestroyCommandPool(device_.handle(), frame.pool, nullptr);
     vkDestroySemaphore(device_.handle(), timeline_, nullptr);
 }
@@ -75,21 +78,20 @@ std::uint64_t Renderer::submit(const Scene& scene, Shadows* shadows) {
     std::memcpy(frame.bodies.mapped(), bodies.data(), bodies.size() * sizeof(Body));
     try {
         record(frame, scene, shadows);
+        auto timeline = of_type<VkTimelineSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO);
+        timeline.signalSemaphoreValueCount = 1;
+        timeline.pSignalSemaphoreValues = &number;
+        auto info = of_type<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+        info.pNext = &timeline;
+        info.commandBufferCount = 1;
+        info.pCommandBuffers = &frame.commands;
+        info.signalSemaphoreCount = 1;
+        info.pSignalSemaphores = &timeline_;
+        require(vkQueueSubmit(device_.queue(), 1, &info, VK_NULL_HANDLE), "submit a frame");
     } catch (...) {
         give_up(number);
         throw;
     }
-
-    auto timeline = of_type<VkTimelineSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO);
-    timeline.signalSemaphoreValueCount = 1;
-    timeline.pSignalSemaphoreValues = &number;
-    auto info = of_type<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
-    info.pNext = &timeline;
-    info.commandBufferCount = 1;
-    info.pCommandBuffers = &frame.commands;
-    info.signalSemaphoreCount = 1;
-    info.pSignalSemaphores = &timeline_;
-    require(vkQueueSubmit(device_.queue(), 1, &info, VK_NULL_HANDLE), "submit a frame");
     return submitted_ = number;
 }
 // [/submit]

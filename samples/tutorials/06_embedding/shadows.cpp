@@ -55,7 +55,12 @@ Shadows::Shadows(const Device& device, const Scene& scene, VkExtent2D size, cons
 
 // [end]
 // Frames of the renderer may still use what the accelerator owns. twinray was told of them.
-Shadows::~Shadows() { context_.wait_for_gpu(); }
+Shadows::~Shadows() {
+    try {
+        context_.wait_for_gpu();
+    } catch (const Error&) {  // the device is lost: nothing runs there any more
+    }
+}
 // [/end]
 
 // [move]

@@ -69,7 +69,8 @@ int main(int argc, char** argv) try {
         std::cout << "frame " << frame << ": balls are off by " << error << " at most; " << differing
                   << " hits on water differ from those of a new tree\n";
         // [/main]
-        if (error > 0x1p-21 || differing > 0) throw Error("the accelerator does not show what the kernels wrote");
+        // Kernels and host each have a sine of their own; Vulkan's may be off by 2^-11.
+        if (error > 1e-3 || differing > 0) throw Error("the accelerator does not show what the kernels wrote");
         for (uint y = 0; y < height; ++y)
             std::copy_n(&picture[y * width], width, &strip[y * across + frame * (width + gap)]);
     }
