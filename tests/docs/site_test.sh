@@ -11,4 +11,5 @@ if [[ ${TWINRAY_REQUIRE-} != *docs* ]] && ! has_tools; then
     echo "Doxygen or Sphinx is not installed; tools/docs.sh installs both"
     exit 77
 fi
-TWINRAY=$1 tools/docs.sh
+# Other tests run beside it, some of which count seconds.
+CMAKE_BUILD_PARALLEL_LEVEL=1 TWINRAY=$1 tools/docs.sh

@@ -103,7 +103,8 @@ report("--compare", str(first), str(here / "none"), status=1)
 
 # Negative controls show faults in both layouts, or the report fails.
 for layout in ("compressed4", "bvh2"):
-    report("--only", "W14,W15", "--accels", "sw", "--layout", layout, "-o", str(here / ("controls_" + layout)))
+    report("--only", "W14,W15", "--accels", "sw", "--layout", layout, "-o", str(here / ("controls_" + layout)),
+           seconds="20")
     assert sum(r["variant"].startswith("control: ") and bool(r["pass"])
                for r in lines("controls_" + layout + "/report.jsonl")) >= 2
 # A run that was cut short goes on.
