@@ -48,7 +48,7 @@ std::uint64_t faults_of_ours(const VerifyOptions& options, const Comparison& com
     return options.level == Level::fast ? 0 : comparison.software.faults_of_ours();
 }
 
-std::string verdict_text(const VerifyOptions& options, std::uint64_t faults) {
+std::string result_text(const VerifyOptions& options, std::uint64_t faults) {
     if (options.level == Level::fast) return "no fault of ours: level fast may lose rays at edges and find them twice";
     return faults ? text(faults, " faults of ours") : "no fault of ours";
 }
@@ -134,7 +134,7 @@ std::uint64_t run(const VerifyOptions& options) {
     }
     if (!options.reproducers.empty())
         write_reproducers(options, scene, replay_of(options, scene, context->properties()), of_driver);
-    std::cout << verdict_text(options, faults) << '\n';
+    std::cout << result_text(options, faults) << '\n';
     return faults;
 }
 

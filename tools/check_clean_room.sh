@@ -64,7 +64,8 @@ debootstrap --variant=minbase "${include[@]}" "$suite" "$room" "$mirror" >"$room
 }
 rm -f "$room.log"
 
-# The network as this machine sees it: names (localhost is one), name servers, and apt's proxies and other transport settings.
+# The network as this machine sees it: names (localhost is one), name servers, apt's proxies and other transport
+# settings.
 cp -L /etc/resolv.conf "$room/etc/resolv.conf"
 cp -L /etc/hosts "$room/etc/hosts"
 apt-config dump | grep -E '^Acquire::(https?::.*|Check-[A-Za-z-]*|Retries) "' \

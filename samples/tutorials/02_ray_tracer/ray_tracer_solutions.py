@@ -71,7 +71,8 @@ def pass_through_glass(rays, index=1.5):
         through = 1 - np.sum(along**2, axis=1, keepdims=True)
         refracted = along - np.sqrt(np.maximum(0, through)) * normals
         rays = rays.copy()
-        rays[met] = np.concatenate([positions, np.where(through > 0, refracted, reflected(directions, normals))], axis=1)
+        onward = np.where(through > 0, refracted, reflected(directions, normals))
+        rays[met] = np.concatenate([positions, onward], axis=1)
     return rays
     # [/glass]
 
