@@ -89,15 +89,15 @@ int run(const QualifyOptions& options) {
     write(options.junit, report::junit_xml(checks));
     write(options.tap, report::tap(checks));
     write(options.sarif, report::sarif(checks, twinray_version));
-    std::size_t failed = 0, tolerated = 0;
+    std::size_t failures = 0, tolerated = 0;
     for (const report::Check& check : checks) {
-        failed += check.outcome == report::Check::Outcome::failed;
+        failures += check.outcome == report::Check::Outcome::failed;
         tolerated += check.outcome == report::Check::Outcome::tolerated;
     }
-    std::cout << failed << " of " << checks.size() << " checks failed";
+    std::cout << failures << " of " << checks.size() << " checks failed";
     if (tolerated) std::cout << "; " << tolerated << " faults of drivers are not counted";
     std::cout << '\n';
-    return failed ? 1 : 0;
+    return failures ? 1 : 0;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "cli/command/values.h"
 #include "cli/commands.h"
+#include "cli/case_choice.h"
 #include "cli/common.h"
 #include "cli/compare_reports.h"
 #include "validation/conformance/suite.h"
@@ -55,11 +56,6 @@ suite::Settings settings_of(const ReportOptions& options) {
     return settings;
 }
 
-bool is_wanted(const ReportOptions& options, const std::string& id) {
-    return options.only.empty() || std::any_of(options.only.begin(), options.only.end(),
-                                               [&](const auto& pattern) { return suite::matches(id, pattern); });
-}
-
 // Cases about the driver's own structures, which run by themselves.
 std::vector<suite::SuiteCase> conformance_cases() {
     std::vector<suite::SuiteCase> cases;
@@ -68,25 +64,27 @@ std::vector<suite::SuiteCase> conformance_cases() {
     return cases;
 }
 
-// All of them, if one is asked for and the driver takes part.
+// Those asked for, if the driver takes part.
 void run_conformance(const ReportOptions& options, Recorder& recorder) {
     const bool is_asked = std::any_of(options.accels.begin(), options.accels.end(),
                                       [](suite::Backend backend) { return !is_ours(backend); });
     const std::vector<suite::SuiteCase> cases = conformance_cases();
     if (!(options.accels.empty() || is_asked)) return;
-    if (std::none_of(cases.begin(), cases.end(), [&](const auto& row) { return is_wanted(options, row.id); })) return;
+    if (std::none_of(cases.begin(), cases.end(), [&](const auto& row) { return is_chosen(options.only, row.id); }))
+        return;
     Context of_its_own(watched_context_desc(options.common, most_conformance_seconds));
-    conformance::run(of_its_own, {.is_full = options.suite == "full" && !options.budget, .seed = options.common.seed},
+    conformance::run(of_its_own,
+                     {.is_full = options.suite == "full" && !options.budget,
+                      .seed = options.common.seed,
+                      .is_wanted = [&](const conformance::Case& row) { return is_chosen(options.only, row.id); }},
                      recorder, options.common.quiet);
 }
 
-void check_only(const std::vector<std::string>& patterns, std::span<const suite::SuiteCase> cases,
-                std::span<const suite::SuiteCase> others) {
-    for (const std::string& pattern : patterns) {
-        const auto fits = [&](const suite::SuiteCase& row) { return suite::matches(row.id, pattern); };
-        if (std::none_of(cases.begin(), cases.end(), fits) && std::none_of(others.begin(), others.end(), fits))
-            throw UsageError(text("--only ", pattern, " fits no case; see the catalogue in the report"));
-    }
+void check_only(const ReportOptions& options, std::span<const suite::SuiteCase> cases) {
+    std::vector<std::string> ids;
+    for (const suite::SuiteCase& row : cases) ids.push_back(row.id);
+    for (const suite::SuiteCase& row : conformance_cases()) ids.push_back(row.id);
+    check_choice(options.only, ids, "the catalogue of the report");
 }
 
 // What a run must have in common with one that it goes on with.
@@ -146,7 +144,7 @@ std::vector<std::string> write_reproducers(const ReportOptions& options, std::sp
 int run(const ReportOptions& options) {
     std::vector<suite::SuiteCase> cases = suite::catalogue();
     for (suite::SuiteCase& of_scene : suite::scene_cases(options.scenes)) cases.push_back(std::move(of_scene));
-    check_only(options.only, cases, conformance_cases());
+    check_only(options, cases);
     for (const std::filesystem::path& scene : options.scenes) load_scene(scene, options.common);
     // Read before anything is written: it may be the report that this one replaces.
     const JsonLines baseline = options.baseline.empty() ? JsonLines() : read_json_lines(options.baseline);
@@ -197,7 +195,7 @@ Command report_command() {
          {.name = "--resume",
           .value = flag(options->resume),
           .help = "go on with the run in the folder that was cut short"},
-         {.name = "--only", .value = words(options->only, "CASE,..."), .help = "case ids with * and ?, as N07,B*"},
+         only_option(options->only),
          {.name = "--scenes",
           .value = file_list(options->scenes),
           .help = "scenes of yours, on which each level is measured as case L11, ..."},

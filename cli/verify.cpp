@@ -7,6 +7,7 @@
 
 #include "cli/command/values.h"
 #include "cli/commands.h"
+#include "cli/case_choice.h"
 #include "cli/common.h"
 #include "cli/verify_conformance.h"
 #include "engine/scene/ray_file.h"
@@ -32,6 +33,7 @@ struct VerifyOptions {
     std::filesystem::path replays;                  // folder; "" = only faults of ours are written
     std::filesystem::path reproducers, reproducer;  // folders of faults of the driver
     std::string suite;                              // in place of a scene
+    std::vector<std::string> only;                  // of its cases
     bool is_full = false;
     std::size_t random = 100'000;
     std::size_t aimed = 10'000;
@@ -182,12 +184,15 @@ Command verify_command() {
           .value = folder(options->reproducer),
           .help = "such a folder for the ray of --replay",
           .needs = {"--replay"}}}};
+    Option only = only_option(options->only);
+    only.needs = {"--suite"};
     const Section suite = {
         "Suite",
         {{.name = "--suite",
           .value = choice(options->suite, {"conformance"}),
           .help = "instead of a scene: cases about the driver's own structures, each with a control that must fail; "
                   "with --strict a driver that fails what Vulkan demands is a fault, too"},
+         only,
          {.name = "--full",
           .value = flag(options->is_full),
           .help = "with 100 million rays, not 400,000",
@@ -208,7 +213,8 @@ Command verify_command() {
             .run = [options] {
                 if (!options->scene.empty() + !options->replay.empty() + !options->suite.empty() != 1)
                     throw UsageError("one of SCENE, --replay FILE and --suite conformance is required");
-                if (!options->suite.empty()) return verify_conformance(options->common, options->is_full);
+                if (!options->suite.empty())
+                    return verify_conformance(options->common, options->only, options->is_full);
                 if (options->random + options->aimed == 0)
                     throw UsageError("--random 0 and --aimed 0 leave nothing to compare");
                 return (options->replay.empty() ? run(*options) > 0 : run_replay(*options)) ? 1 : 0;

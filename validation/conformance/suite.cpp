@@ -191,8 +191,7 @@ std::vector<Case> catalogue() {
 void run(Context& context, const Settings& settings, Recorder& recorder, bool quiet,
          const std::function<void(const Record&)>& on_record) {
     std::vector<Case> cases = catalogue();
-    if (!settings.only.empty())
-        std::erase_if(cases, [&](const Case& row) { return std::ranges::count(settings.only, row.topic) == 0; });
+    if (settings.is_wanted) std::erase_if(cases, [&](const Case& row) { return !settings.is_wanted(row); });
     constexpr std::array ways = {Way::query, Way::pipeline};
     const std::uint64_t parts = ways.size() * cases.size();
     const std::uint64_t rays = settings.is_full ? (settings.full_rays + parts - 1) / parts : quick_rays;

@@ -70,7 +70,7 @@ struct Settings {
     bool is_full = false;
     std::uint64_t full_rays = 100'000'000;  // of all cases by both ways together, where is_full
     std::uint64_t seed = 1;
-    std::vector<Topic> only = {};  // empty: all
+    std::function<bool(const Case&)> is_wanted = {};  // of the catalogue; empty: all
 };
 
 // Runs all cases and the control of each, by ray query (backend "hw") and by ray tracing pipeline ("hw-pipeline"). A
