@@ -69,7 +69,9 @@ uint levels_to_collapse(uint leaf_count, uint subtree_leaves) {
 
 float software_unit(std::span<const vec3> positions) {
     const float unit = Geometry::near_unit(positions);
-    return unit >= 0x1p-20f && unit < 0x1p60f ? 1 : unit;
+    if (unit >= 0x1p-20f && unit < 0x1p60f) return 1;
+    // A direction that is short for so large a mesh is no denormal in it, which devices may flush.
+    return unit < 1 ? unit : unit * 0x1p-30f;
 }
 
 // Alone it needs no tree_of; all other parts are as long or, rounded up one by one, longer.

@@ -81,6 +81,12 @@ TEST(Verdict, OwnStructuresThatBreakADemandAreInTheHeadline) {
               "This driver fails what Vulkan demands of acceleration structures.");
 }
 
+TEST(Verdict, AFaultThatNoFindingCountsIsInTheHeadline) {
+    Record wrong = checked("S02", "hw", 1000, {{"HW_LEAK", 10}});
+    wrong.pass = false, wrong.fault_of = "driver";
+    EXPECT_EQ(verdict_of(std::vector{wrong}).headline, "This driver is wrong in 1 measurement.");
+}
+
 TEST(Verdict, AFaultOfOursComesFirst) {
     Record wrong = checked("W04", "sw", 1000, {{"SW_LEAK", 1}});
     wrong.pass = false, wrong.fault_of = "twinray";
