@@ -133,7 +133,12 @@ void add_speed(Verdict& verdict, std::span<const Speed> speeds, std::string_view
                                           with_interval(refined->ratio, refined->ratio_95), " times as long.")});
 }
 
-std::string headline_of(std::span<const Finding> findings, const OwnStructures& cases, std::string_view driver) {
+std::size_t faults_of(std::span<const Record> records, std::string_view whose) {
+    return static_cast<std::size_t>(std::ranges::count(records, whose, &Record::fault_of));
+}
+
+std::string headline_of(std::span<const Record> records, std::span<const Finding> findings, const OwnStructures& cases,
+                        std::string_view driver) {
     std::vector<std::string> wrongs;
     for (const Finding& finding : findings) {
         if (finding.backend != driver || finding.faults == 0) continue;
@@ -146,7 +151,15 @@ std::string headline_of(std::span<const Finding> findings, const OwnStructures& 
         }
     }
     if (!cases.musts.empty()) wrongs.push_back("fails what Vulkan demands of acceleration structures");
-    if (wrongs.empty()) return "No fault of this driver's ray tracing was seen.";
+    if (wrongs.empty()) {
+        // Of cases that no finding counts; what Vulkan only advises is no fault.
+        const auto faults = std::ranges::count_if(records, [](const Record& record) {
+            const auto demand = record.results.find("demand");
+            return record.fault_of == "driver" && (demand == record.results.end() || demand->second != Value("should"));
+        });
+        return faults == 0 ? "No fault of this driver's ray tracing was seen."
+                           : text("This driver is wrong in ", faults, faults == 1 ? " measurement." : " measurements.");
+    }
     std::string all = wrongs.front();
     for (std::size_t i = 1; i < wrongs.size(); ++i) all += (i + 1 < wrongs.size() ? ", " : " and ") + wrongs[i];
     return "This driver " + all + '.';
@@ -160,10 +173,7 @@ std::string result_of(const Record& record) {
     return *record.pass ? "pass" : "fault of " + record.fault_of;
 }
 
-std::size_t faults_of_ours(std::span<const Record> records) {
-    return static_cast<std::size_t>(
-        std::count_if(records.begin(), records.end(), [](const Record& r) { return r.fault_of == "twinray"; }));
-}
+std::size_t faults_of_ours(std::span<const Record> records) { return faults_of(records, "twinray"); }
 
 std::string_view name_of(Mistake mistake) {
     switch (mistake) {
@@ -231,9 +241,8 @@ Verdict verdict_of(std::span<const Record> records) {
     const std::string driver = driver_backend(records);
     verdict.has_driver = !driver.empty();
     verdict.are_we_right = faults_of_ours(records) == 0;
-    verdict.is_driver_right =
-        std::none_of(records.begin(), records.end(), [](const Record& r) { return r.fault_of == "driver"; });
-    verdict.headline = verdict.has_driver ? headline_of(findings, own, driver)
+    verdict.is_driver_right = faults_of(records, "driver") == 0;
+    verdict.headline = verdict.has_driver ? headline_of(records, findings, own, driver)
                                           : "This driver traces no rays by itself: SwTlas alone was checked.";
     if (!verdict.are_we_right)
         verdict.headline = text("twinray is wrong in ", faults_of_ours(records),
