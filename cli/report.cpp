@@ -6,9 +6,9 @@
 
 #include <twinray/scene.h>
 
+#include "cli/case_choice.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
-#include "cli/case_choice.h"
 #include "cli/common.h"
 #include "cli/compare_reports.h"
 #include "validation/conformance/suite.h"

@@ -5,9 +5,9 @@
 
 #include <twinray/scene.h>
 
+#include "cli/case_choice.h"
 #include "cli/command/values.h"
 #include "cli/commands.h"
-#include "cli/case_choice.h"
 #include "cli/common.h"
 #include "cli/verify_conformance.h"
 #include "engine/scene/ray_file.h"

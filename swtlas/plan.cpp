@@ -68,10 +68,10 @@ uint levels_to_collapse(uint leaf_count, uint subtree_leaves) {
 }  // namespace
 
 float software_unit(std::span<const vec3> positions) {
-    const float unit = Geometry::near_unit(positions);
-    if (unit >= 0x1p-20f && unit < 0x1p60f) return 1;
-    // A direction that is short for so large a mesh is no denormal in it, which devices may flush.
-    return unit < 1 ? unit : unit * 0x1p-30f;
+    const int exponent = Geometry::size_exponent(positions);
+    if (exponent >= -20 && exponent < 60) return 1;
+    // A direction that is short for a mesh so large is no denormal in it, which devices may flush.
+    return exponent < 0 ? Geometry::near_unit(positions) : std::ldexp(1.0f, exponent - 30);
 }
 
 // Alone it needs no tree_of; all other parts are as long or, rounded up one by one, longer.

@@ -13,8 +13,7 @@ namespace twinray {
 
 // The unit in which the software traversal wants a mesh: 1 while its largest coordinate is between 2^-20 and 2^60,
 // where products of two coordinates and their rounding errors stay in the range of float32, so that parts of a mesh
-// that are far smaller than the whole keep their size; else a power of two near its size, or 2^30 below it where that
-// is large.
+// that are far smaller than the whole keep their size; else a power of two near its size, of a large one 2^-30 of it.
 float software_unit(std::span<const vec3> positions);
 
 // Byte offsets into one scratch buffer.

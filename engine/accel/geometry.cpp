@@ -64,13 +64,16 @@ std::vector<vec3> Geometry::given_positions() const {
     return given;
 }
 
-float Geometry::near_unit(std::span<const vec3> positions) {
+int Geometry::size_exponent(std::span<const vec3> positions) {
     float largest = 0;
     for (const vec3& p : positions)
         if (is_finite(p)) largest = std::max(largest, largest_entry(p));
-    if (largest == 0) return 1;
+    return largest == 0 ? 0 : std::ilogb(largest);
+}
+
+float Geometry::near_unit(std::span<const vec3> positions) {
     // So that neither it nor its reciprocal leaves the range of normal floats.
-    return std::ldexp(1.0f, std::clamp(std::ilogb(largest), -100, 100));
+    return std::ldexp(1.0f, std::clamp(size_exponent(positions), -100, 100));
 }
 
 Geometry::Geometry(const BoxesView& view)

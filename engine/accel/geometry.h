@@ -39,6 +39,8 @@ struct Geometry {
     void move_to(std::span<const vec3> others);
     // As the user gave them.
     std::vector<vec3> given_positions() const;
+    // The exponent of the largest finite coordinate, which is below 2^(1 + exponent); 0 where all are 0.
+    static int size_exponent(std::span<const vec3> positions);
     // The power of two just below the largest finite coordinate, so that coordinates in units of it are near 1.
     static float near_unit(std::span<const vec3> positions);
 

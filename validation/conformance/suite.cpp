@@ -191,11 +191,11 @@ std::vector<Case> catalogue() {
 void run(Context& context, const Settings& settings, Recorder& recorder, bool quiet,
          const std::function<void(const Record&)>& on_record) {
     std::vector<Case> cases = catalogue();
-    if (settings.is_wanted) std::erase_if(cases, [&](const Case& row) { return !settings.is_wanted(row); });
     constexpr std::array ways = {Way::query, Way::pipeline};
-    const std::uint64_t parts = ways.size() * cases.size();
-    const std::uint64_t rays = settings.is_full ? (settings.full_rays + parts - 1) / parts : quick_rays;
-    Progress progress("conformance", parts * rays, quiet);
+    const std::uint64_t all = ways.size() * cases.size();  // so that a case takes as many whichever others run
+    const std::uint64_t rays = settings.is_full ? (settings.full_rays + all - 1) / all : quick_rays;
+    if (settings.is_wanted) std::erase_if(cases, [&](const Case& row) { return !settings.is_wanted(row); });
+    Progress progress("conformance", ways.size() * cases.size() * rays, quiet);
     std::string lost;  // where it was
     for (const Way way : ways) {
         Runner runner(context, way, settings, recorder, on_record, rays, progress);

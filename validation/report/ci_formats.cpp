@@ -7,17 +7,13 @@
 #include <set>
 
 #include "engine/core/error.h"
+#include "validation/report/verdict.h"
 #include "validation/report/wording.h"
 
 namespace twinray::report {
 namespace {
 
 using Outcome = Check::Outcome;
-
-bool is_only_advised(const Record& record) {
-    const auto demand = record.results.find("demand");
-    return demand != record.results.end() && demand->second.text() == "should";
-}
 
 Outcome outcome_of(const Record& record, bool is_strict) {
     if (!record.was_run || !record.pass) return Outcome::skipped;

@@ -95,9 +95,7 @@ OwnStructures own_structures_of(std::span<const Record> records) {
         if (!record.was_run || !record.case_id.starts_with('K') || !is_users_kernel(record)) continue;
         cases.all.insert(record.case_id);
         if (record.pass.value_or(true)) continue;
-        const auto demand = record.results.find("demand");
-        const bool is_must = demand != record.results.end() && demand->second.text() == "must";
-        (is_must ? cases.musts : cases.shoulds).insert(record.case_id);
+        (is_only_advised(record) ? cases.shoulds : cases.musts).insert(record.case_id);
     }
     return cases;
 }
@@ -153,10 +151,8 @@ std::string headline_of(std::span<const Record> records, std::span<const Finding
     if (!cases.musts.empty()) wrongs.push_back("fails what Vulkan demands of acceleration structures");
     if (wrongs.empty()) {
         // Of cases that no finding counts; what Vulkan only advises is no fault.
-        const auto faults = std::ranges::count_if(records, [](const Record& record) {
-            const auto demand = record.results.find("demand");
-            return record.fault_of == "driver" && (demand == record.results.end() || demand->second != Value("should"));
-        });
+        const auto faults = std::ranges::count_if(
+            records, [](const Record& record) { return record.fault_of == "driver" && !is_only_advised(record); });
         return faults == 0 ? "No fault of this driver's ray tracing was seen."
                            : text("This driver is wrong in ", faults, faults == 1 ? " measurement." : " measurements.");
     }
@@ -166,6 +162,11 @@ std::string headline_of(std::span<const Record> records, std::span<const Finding
 }
 
 }  // namespace
+
+bool is_only_advised(const Record& record) {
+    const auto demand = record.results.find("demand");
+    return demand != record.results.end() && demand->second.text() == "should";
+}
 
 std::string result_of(const Record& record) {
     if (!record.was_run) return "not run";

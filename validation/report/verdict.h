@@ -14,6 +14,8 @@ namespace twinray::report {
 
 // "pass", "fault of twinray", "fault of driver", "measured" or "not run".
 std::string result_of(const Record& record);
+// Whether Vulkan only advises what the record's case asks: who fails it is not at fault.
+bool is_only_advised(const Record& record);
 // Records that show a fault of ours: where there is one the command exits with 1.
 std::size_t faults_of_ours(std::span<const Record> records);
 

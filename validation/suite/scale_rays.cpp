@@ -2,6 +2,7 @@
 // Scale: how long directions are, how far hits, and what is denormal.
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "validation/suite/demands.h"
 #include "validation/suite/scale.h"
@@ -31,8 +32,7 @@ std::vector<Ray> rays_of_any_length(const World& world, const Bounds& bounds, st
 
 // Those that hit at a t which is a normal float when directions are so long: devices may flush others to 0, where a ray
 // has not begun.
-std::vector<Ray> with_normal_t(const World& world, std::span<const Ray> rays, float length) {
-    const std::vector<ReferenceHit> references = references_of(world.reference, rays);
+std::vector<Ray> with_normal_t(std::span<const Ray> rays, std::span<const ReferenceHit> references, float length) {
     std::vector<Ray> kept;
     for (std::size_t i = 0; i < rays.size(); ++i)
         if (!references[i].hit || references[i].t >= 2 * double{std::numeric_limits<float>::min()} * double{length})
@@ -64,8 +64,9 @@ void lengths_of_directions(CaseRun& run) {
     const World world = world_of(sphere);
     const std::vector<Ray> rays = rays_of_any_length(world, bounds_of(sphere), run.amount(512, 100'000), run.seed());
     lengths_by_powers_of_two(run, world, rays);
+    const std::vector<ReferenceHit> references = references_of(world.reference, rays);
     for (const float length : {1e-30f, 1e-20f, 1e-12f, 1e-6f, 1e6f, 1e12f, 1e20f, 1e30f, 1e36f}) {
-        const std::vector<Ray> long_rays = stretched(with_normal_t(world, rays, length), length);
+        const std::vector<Ray> long_rays = stretched(with_normal_t(rays, references, length), length);
         const Measured measured = run.measure(world, long_rays, {.params = {{"length", length}}, .reps = 1});
         expect_refined_t(run, measured, long_rays, 1, {{"length", length}});
     }

@@ -59,7 +59,7 @@ FUNC bool is_surely_not_zero(float p, float q) {
 // Whether no coordinate is infinite or NaN.
 FUNC bool is_finite_triangle(vec3 a, vec3 b, vec3 c) { return is_finite(a) && is_finite(b) && is_finite(c); }
 
-// 0 for a denormal coordinate, by its bits: what some devices make of it, and no other then.
+// 0 for a denormal coordinate, decided by its bits, so that devices which flush denormals and those which do not agree.
 FUNC float flushed(float x) { return (floatBitsToUint(x) & 0x7f800000u) == 0u ? 0.0f : x; }
 // The same of each coordinate.
 FUNC vec3 flushed_point(vec3 p) { return vec3(flushed(p.x), flushed(p.y), flushed(p.z)); }
@@ -67,15 +67,15 @@ FUNC vec3 flushed_point(vec3 p) { return vec3(flushed(p.x), flushed(p.y), flushe
 // Whether it can be hit: its vertices are finite, and not on one line, exactly; denormal coordinates count as 0.
 FUNC bool is_active_triangle(vec3 a, vec3 b, vec3 c) {
     if (!is_finite_triangle(a, b, c)) return false;
+    a = flushed_point(a);
+    b = flushed_point(b);
+    c = flushed_point(c);
     PRECISE vec3 u = b - a;
     PRECISE vec3 v = c - a;
     if (is_surely_not_zero(u.x * v.y, u.y * v.x) || is_surely_not_zero(u.y * v.z, u.z * v.y) ||
         is_surely_not_zero(u.z * v.x, u.x * v.z))
         return true;
     // Scaled by a power of two, which is exact, so that the products neither overflow nor vanish.
-    a = flushed_point(a);
-    b = flushed_point(b);
-    c = flushed_point(c);
     float largest = max(largest_entry(a), max(largest_entry(b), largest_entry(c)));
     if (largest == 0.0f) return false;
     float scale = power_of_two_below(largest);

@@ -86,7 +86,7 @@ TEST_F(ConformanceSuite, TellsTheFirstFaultyRay) {
 // In full the same cases take more rays, in larger rounds.
 TEST_F(ConformanceSuite, FullSharesItsRaysOutToTheCases) {
     if (!context().properties().ray_query) return;
-    for (const Record& record : run({.is_full = true, .full_rays = 600'000, .is_wanted = of_topic(Topic::limits)})) {
+    for (const Record& record : run({.is_full = true, .full_rays = 9'600'000, .is_wanted = of_topic(Topic::limits)})) {
         if (is_control(record)) continue;
         EXPECT_GT(record.n, 10'000u) << record.case_id;
         EXPECT_LE(record.n, 100'000u) << record.case_id;

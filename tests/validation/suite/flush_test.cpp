@@ -48,7 +48,7 @@ TEST(FlushedDenormals, LongDirectionsLoseNothing) {
 // Times 1e30 a mesh is built in a unit of its own, in which a direction 1e-8 long is short.
 TEST(FlushedDenormals, ShortDirectionsInLargeScenesLoseNothing) {
     if (!FlushDenormals::is_able()) TWINRAY_LACKS("flushed_denormals", "this processor cannot");
-    for (const auto& [size, length] : {std::pair{3e30f, 1e-8f}, {1e38f, 1.0f}, {1e20f, 1e-15f}}) {
+    for (const auto& [size, length] : {std::pair{3e30f, 1e-8f}, {1e38f, 1.0f}, {1e20f, 1e-15f}, {3e38f, 4.0f}}) {
         Scene scene;
         scene.meshes = {make_icosphere(3)};
         for (vec3& position : scene.meshes[0].positions) position *= size;
@@ -62,6 +62,7 @@ TEST(FlushedDenormals, ShortDirectionsInLargeScenesLoseNothing) {
         const std::size_t expected = hit_count(trace_twin(*on_cpu, rays, Level::watertight));
         EXPECT_GT(expected, 500u);
         EXPECT_EQ(hit_count(trace_twin(*on_cpu, rays, Level::watertight, Denormals::flushed)), expected) << size;
+        EXPECT_GT(10 * hit_count(trace_twin(*on_cpu, rays, Level::fast, Denormals::flushed)), 9 * expected) << size;
     }
 }
 
@@ -72,6 +73,10 @@ TEST(FlushedDenormals, TreesAreTheSame) {
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
         mesh.positions[i] *= std::ldexp(1.0f, 20 - static_cast<int>(i / 3 % 60) * 4);
     append(mesh, scaled(make_icosphere(0), 0x1p126f));
+    const auto first = static_cast<uint>(mesh.positions.size());
+    for (const vec3& corner : {vec3(0), vec3(0x1p-36f, 0x1p96f, 0), vec3(0, 0x1p126f, 0)})
+        mesh.positions.push_back(corner);
+    mesh.triangles.push_back({first, first + 1, first + 2});  // flat where the denormal is 0
     const Geometry geometry(mesh, software_unit(mesh.positions));
     const auto tree_of = [&] {
         const std::vector<LeafBox> boxes = reference::leaves_triangles(geometry.positions, geometry.triangles);
