@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Pages of each kind, light and dark, on a desktop and a phone: axe's rules of accessibility, no page wider than its
-// window, and a search that finds without a server.
+// Pages, light and dark, on a desktop and a phone: axe's rules of accessibility, no page wider than its window, and a
+// search that finds without a server.
 // Usage: node check_accessibility.mjs FOLDER CHROMIUM
 import fs from "node:fs";
 import puppeteer from "puppeteer-core";
 
 const [folder, executablePath] = process.argv.slice(2);
 const axe = fs.readFileSync("node_modules/axe-core/axe.min.js", "utf8");
-const pages = [
-    "index", "gallery", "conventions", "tutorials/index", "how-to/from_embree", "numerics", "python", "reference/cpp/geometry",
-    "reference/glsl/ray_h", "reference/python", "reference/commands/verify", "search",
-];
+// All that is written by hand, and one page of each kind that is made.
+const made = ["reference/cpp/geometry", "reference/glsl/ray_h", "reference/python", "reference/commands/verify", "search"];
+const written = fs.readdirSync(folder, { recursive: true })
+    .filter((file) => file.endsWith(".html") && !/^(reference|_static|_modules)\/|^(search|genindex|py-modindex)\./.test(file))
+    .map((file) => file.replace(/\.html$/, ""));
+const pages = [...written, ...made];
 const widths = { desktop: 1280, phone: 390 };
 const faults = [];
 
