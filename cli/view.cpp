@@ -161,6 +161,7 @@ int run(const ViewOptions& options) {
     if (has_window && (!options.common.json.empty() || options.samples > 0))
         throw UsageError("--json and --spp are for pictures without a window: --screenshot, --headless");
     for (const auto& file : {options.screenshot, options.record, options.exported}) check_writable(file);
+    if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
     const auto say = [](const std::string& line) { std::cout << line << std::endl; };
     viewer::ViewerDesc desc{.file = options.scene,
                             .state = state_of(options),

@@ -104,7 +104,6 @@ if has_hardware:
     compared("difference", "--layer", "eyelight", status=1)
 
 # Frames, figures and what is said of a ray.
-(here / "frames").mkdir()
 said = run("scene.obj", *CAMERA, "--layer", "path", "--headless", "3", "-o", "frames", "--json", "view.jsonl",
            "--pick", "80", "40")
 assert sorted(p.name for p in (here / "frames").iterdir()) == ["frame0.png", "frame1.png", "frame2.png"]
