@@ -80,6 +80,8 @@ HdrImage load_radiance_image(const std::filesystem::path& file) {
     if (!can_hold_radiance(bytes.size(), static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height)))
         fail("'", object, "': damaged Radiance .hdr image (", width, " x ", height, " pixels are more than its ",
              bytes.size(), " bytes can hold)");
+    if (!has_whole_runs(bytes, static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height)))
+        fail("'", object, "': damaged Radiance .hdr image (its rows are cut off)");
     const std::unique_ptr<float, FreePixels> pixels(
         stbi_loadf_from_memory(bytes.data(), size, &width, &height, &channels, 3));
     if (!pixels) fail("'", object, "': damaged Radiance .hdr image (", stbi_failure_reason(), ")");

@@ -2,6 +2,7 @@
 #include "engine/scene/image_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "engine/core/error.h"
@@ -30,6 +31,26 @@ std::string fault_of_huffman_tables(std::span<const std::uint8_t> segment) {
 // Without a length: fill bytes, restarts, and what stands for a byte 0xff.
 bool is_alone(std::uint8_t marker) { return marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd8) || marker == 0xff; }
 
+// What follows the header of a Radiance image: an empty line, and the one with the size.
+std::span<const std::uint8_t> radiance_rows(std::span<const std::uint8_t> bytes) {
+    constexpr std::array<std::uint8_t, 2> empty_line = {'\n', '\n'};
+    const auto size = std::ranges::search(bytes, empty_line).end();
+    const auto end = std::find(size, bytes.end(), '\n');
+    return end == bytes.end() ? std::span<const std::uint8_t>() : bytes.subspan(end + 1 - bytes.begin());
+}
+
+// Takes the runs of one channel of a row off `rows`. False: they are cut off.
+bool take_runs(std::span<const std::uint8_t>& rows, std::uint64_t width) {
+    for (std::uint64_t done = 0; done < width;) {
+        if (rows.empty()) return false;
+        const std::size_t count = rows[0];
+        const bool is_repeated = count > 128;
+        done += is_repeated ? count - 128 : count;
+        rows = rows.subspan(std::min(rows.size(), 1 + (is_repeated ? 1 : count)));
+    }
+    return true;
+}
+
 }  // namespace
 
 std::string fault_of_png(std::span<const std::uint8_t> bytes) {
@@ -50,6 +71,18 @@ bool can_hold_radiance(std::uint64_t bytes, std::uint64_t width, std::uint64_t h
     const bool has_runs = width >= 8 && width < 32768;
     const std::uint64_t row = has_runs ? 4 + 4 * 2 * ((width + 126) / 127) : 4 * width;
     return height == 0 || row <= bytes / height;
+}
+
+bool has_whole_runs(std::span<const std::uint8_t> bytes, std::uint64_t width, std::uint64_t height) {
+    constexpr std::size_t row_head = 4;  // 2, 2 and the width, where the row has runs
+    std::span<const std::uint8_t> rows = radiance_rows(bytes);
+    for (std::uint64_t row = 0; row < height; ++row) {
+        if (rows.size() < row_head || rows[0] != 2 || rows[1] != 2 || rows[2] >= 128) return true;
+        rows = rows.subspan(row_head);
+        for (int channel = 0; channel < 4; ++channel)
+            if (!take_runs(rows, width)) return false;
+    }
+    return true;
 }
 
 std::string fault_of_jpeg(std::span<const std::uint8_t> bytes) {

@@ -16,5 +16,7 @@ std::string fault_of_png(std::span<const std::uint8_t> bytes);
 std::string fault_of_jpeg(std::span<const std::uint8_t> bytes);
 // Of a Radiance image, whether so many bytes can hold its pixels: stb_image makes black ones of what is missing.
 bool can_hold_radiance(std::uint64_t bytes, std::uint64_t width, std::uint64_t height);
+// Whether the runs of its rows end before the bytes do: behind them stb_image reads empty runs for ever.
+bool has_whole_runs(std::span<const std::uint8_t> bytes, std::uint64_t width, std::uint64_t height);
 
 }  // namespace twinray
