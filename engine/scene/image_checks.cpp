@@ -2,7 +2,6 @@
 #include "engine/scene/image_checks.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 
 #include "engine/core/error.h"
@@ -31,12 +30,16 @@ std::string fault_of_huffman_tables(std::span<const std::uint8_t> segment) {
 // Without a length: fill bytes, restarts, and what stands for a byte 0xff.
 bool is_alone(std::uint8_t marker) { return marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd8) || marker == 0xff; }
 
-// What follows the header of a Radiance image: an empty line, and the one with the size.
+// What is behind a line.
+std::span<const std::uint8_t> next_line(std::span<const std::uint8_t> bytes) {
+    const auto end = std::ranges::find(bytes, '\n');
+    return {end == bytes.end() ? end : end + 1, bytes.end()};
+}
+
+// What follows the header of a Radiance image, which ends with a line that is empty as a string of C, and one of sizes.
 std::span<const std::uint8_t> radiance_rows(std::span<const std::uint8_t> bytes) {
-    constexpr std::array<std::uint8_t, 2> empty_line = {'\n', '\n'};
-    const auto size = std::ranges::search(bytes, empty_line).end();
-    const auto end = std::find(size, bytes.end(), '\n');
-    return end == bytes.end() ? std::span<const std::uint8_t>() : bytes.subspan(end + 1 - bytes.begin());
+    while (!bytes.empty() && bytes[0] != '\n' && bytes[0] != '\0') bytes = next_line(bytes);
+    return next_line(next_line(bytes));
 }
 
 // Takes the runs of one channel of a row off `rows`. False: they are cut off.

@@ -82,6 +82,20 @@ TEST(HdrImage, RadianceIsReadAsLinearLight) {
     EXPECT_EQ(image.rgb[1], vec3(0, 8, 0));
 }
 
+// A row of 8 pixels by runs: of each channel one that repeats a byte 8 times, or 8 bytes. A header may end with a NUL.
+TEST(HdrImage, RowsOfRunsAreReadWholeOrRefused) {
+    const TempDir dir;
+    using namespace std::string_literals;
+    const std::string runs = "\x02\x02\x00\x08\x88\x80\x08"s + std::string(8, '\x40') + "\x88\x00\x88\x81"s;
+    for (const std::string& line : {"\n"s, "\0\n"s}) {
+        const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n" + line + "-Y 1 +X 8\n";
+        EXPECT_EQ(load_hdr_image(dir.write("a.hdr", header + runs)).rgb, std::vector(8, vec3(1, 0.5f, 0)));
+        for (std::size_t left = 4; left + 1 < runs.size(); ++left)
+            expect_contains(error_of([&] { load_hdr_image(dir.write("a.hdr", header + runs.substr(0, left))); }),
+                            "its rows are cut off");
+    }
+}
+
 // Writes interleaved floats, as many channels as names, with the data window starting at (3, 5).
 std::filesystem::path write_exr(const TempDir& dir, const std::vector<std::string>& channels, int width, int height,
                                 const std::vector<float>& values, Imf::Compression compression) {
