@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "engine/core/error.h"
-#include "validation/suite/twin.h"
+#include "validation/suite/cpu_reference.h"
 
 namespace twinray::viewer {
 namespace {
@@ -122,7 +122,7 @@ const Reference& Stage::reference() {
 }
 
 const reference::Scene& Stage::cpu_reference() {
-    if (!cpu_reference_) cpu_reference_ = suite::twin_of(scene_);
+    if (!cpu_reference_) cpu_reference_ = suite::cpu_reference_of(scene_);
     return *cpu_reference_;
 }
 

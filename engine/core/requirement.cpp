@@ -130,7 +130,7 @@ std::vector<Requirement> requirements_of(const DeviceProperties& device) {
         {"shaderFloat64", "it computes all distances in float64", points, device.shader_float64, {Float64}},
         {"shaderFloat64", "it decides in float64 which triangles meet", contacts, device.shader_float64, {Float64}},
         {"shaderInt64",
-         "they compute with them; twinray's own have twins that do not",
+         "they compute with them; twinray's own have variants that do not",
          int64_kernels,
          device.shader_int64,
          {Int64}},

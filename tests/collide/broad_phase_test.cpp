@@ -107,16 +107,16 @@ TEST_P(BroadPhaseTest, BetweenHandlesAndWithinOne) {
     EXPECT_EQ(broad_phase().instance_pairs(accel(), hc, ha), brute_force(c, a, 500, 0));
     EXPECT_EQ(broad_phase().instance_pairs(accel(), hb, hb), brute_force(b, b, 300, 300));
     EXPECT_EQ(broad_phase().count(accel(), hc, hb), brute_force(c, b, 500, 300).size());
-    const auto twin = make_accel();
-    twin->push(unit_cube, transforms_of(c));
-    twin->push(unit_cube, transforms_of(b));
+    const auto second = make_accel();
+    second->push(unit_cube, transforms_of(c));
+    second->push(unit_cube, transforms_of(b));
     std::vector<Cube> cb = c;
     cb.insert(cb.end(), b.begin(), b.end());
     accel().erase(hb);
     accel().erase(hc);
-    EXPECT_EQ(broad_phase().instance_pairs(accel(), *twin), brute_force(a, cb, 0, 0));
-    EXPECT_EQ(broad_phase().count(accel(), *twin), brute_force(a, cb, 0, 0).size());
-    EXPECT_TRUE(broad_phase().any(accel(), *twin));
+    EXPECT_EQ(broad_phase().instance_pairs(accel(), *second), brute_force(a, cb, 0, 0));
+    EXPECT_EQ(broad_phase().count(accel(), *second), brute_force(a, cb, 0, 0).size());
+    EXPECT_TRUE(broad_phase().any(accel(), *second));
 }
 
 // Instances sorted by place, not by number: x = 10, 0, 10.5.
@@ -172,9 +172,9 @@ TEST_P(BroadPhaseTest, IdenticalBoxesAreAllFound) {
 TEST_P(BroadPhaseTest, CountsBeyondThirtyTwoBits) {
     constexpr std::uint64_t n = 70'000;
     accel().push(unit_cube, std::vector<Transform>(n));
-    const auto twin = make_accel();
-    twin->push(unit_cube, std::vector<Transform>(n));
-    EXPECT_EQ(broad_phase().count(accel(), *twin), n * n);
+    const auto second = make_accel();
+    second->push(unit_cube, std::vector<Transform>(n));
+    EXPECT_EQ(broad_phase().count(accel(), *second), n * n);
 }
 
 TEST_P(BroadPhaseTest, WrongUseIsAnError) {

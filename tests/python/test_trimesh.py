@@ -73,8 +73,8 @@ def test_follows_the_mesh(ball):
 
 
 def test_is_pickled_and_copied(ball):
-    for twin in (pickle.loads(pickle.dumps(ball.ray)), copy.deepcopy(ball.ray)):
-        assert twin.intersects_any([[0, 0, 4]], [[0, 0, -1]]).all()
+    for copied in (pickle.loads(pickle.dumps(ball.ray)), copy.deepcopy(ball.ray)):
+        assert copied.intersects_any([[0, 0, 4]], [[0, 0, -1]]).all()
 
 
 def test_contains(ball):

@@ -60,22 +60,22 @@ void print_path(std::ostream& out, const char* tree, const std::vector<Box>& pat
 }  // namespace
 
 Explainer::Explainer(const Scene& scene, const ReferenceScene& reference, const Ray& ray, Level level)
-    : reference_(reference), ray_(ray), twin_(suite::twin_of(scene, {.layout = Layout::bvh2})) {
+    : reference_(reference), ray_(ray), on_cpu_(suite::cpu_reference_of(scene, {.layout = Layout::bvh2})) {
     double advance = 0;
-    searched_ = twin_->searched_ray(ray, static_cast<uint>(level), advance);
+    searched_ = on_cpu_->searched_ray(ray, static_cast<uint>(level), advance);
 }
 
 RaySpace Explainer::object_space(uint instance) const {
-    const auto& rows = twin_->instance(instance).world_to_object;
+    const auto& rows = on_cpu_->instance(instance).world_to_object;
     const Rows to_object{rows[0], rows[1], rows[2]};
     const vec3 origin = transform_point(to_object, searched_.origin);
     return make_ray_space(origin, transform_vector(to_object, searched_.direction),
-                          vertex_pad(origin, twin_->instance(instance).extent));
+                          vertex_pad(origin, on_cpu_->instance(instance).extent));
 }
 
 void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const {
     out << "  triangle " << triangle.primitive << " of instance " << triangle.instance << '\n';
-    const reference::Scene::Tree tree = twin_->geometry_tree(triangle.instance);
+    const reference::Scene::Tree tree = on_cpu_->geometry_tree(triangle.instance);
     const auto leaf = std::ranges::find(tree.triangles, triangle.primitive, &BvhTriangle::primitive_index);
     const ActiveTriangle* active = reference_.geometry(triangle.instance).find(triangle.primitive);
     if (leaf == tree.triangles.end() || !active) {
@@ -118,14 +118,14 @@ void Explainer::print_test(std::ostream& out, exact::TriangleId triangle) const 
 void Explainer::print_boxes(std::ostream& out, exact::TriangleId triangle) const {
     out << "  boxes to triangle " << triangle.primitive << " of instance " << triangle.instance << '\n';
     std::vector<Box> path;
-    const Bvh& top = twin_->scene_tree().bvh;
+    const Bvh& top = on_cpu_->scene_tree().bvh;
     const RaySpace world = make_ray_space(searched_.origin, searched_.direction,
                                           world_pad(searched_.origin, largest_coordinate(top.lo, top.hi)));
     find_path(
         top, top.root, [&](uint leaf) { return leaf == triangle.instance; }, path);
     print_path(out, "tree of instances", path, world, searched_);
     path.clear();
-    const reference::Scene::Tree tree = twin_->geometry_tree(triangle.instance);
+    const reference::Scene::Tree tree = on_cpu_->geometry_tree(triangle.instance);
     find_path(
         tree.bvh, tree.bvh.root, [&](uint leaf) { return tree.triangles[leaf].primitive_index == triangle.primitive; },
         path);

@@ -5,7 +5,7 @@
 #include <iosfwd>
 
 #include "validation/exact/exact_reference.h"
-#include "validation/suite/twin.h"
+#include "validation/suite/cpu_reference.h"
 
 namespace twinray::replay {
 
@@ -25,7 +25,7 @@ class Explainer {
     const ReferenceScene& reference_;
     Ray ray_;       // as given
     Ray searched_;  // as the level searches with it
-    std::unique_ptr<reference::Scene> twin_;
+    std::unique_ptr<reference::Scene> on_cpu_;
 };
 
 }  // namespace twinray::replay

@@ -21,15 +21,17 @@ std::vector<SuiteCase> arithmetic_cases() {
         {"F05", "a concave corner of 1 to 179 degrees, rays that end on its wall or lead away from it",
          "leaks, false occlusion", "0 where the wall and its edges are farther than twice the offset; else flagged",
          leave_a_concave_corner},
-        {"F06", "rays at the edges of a grid far from the origin; kernels with and without `precise`, and the CPU twin",
-         "decisions other than the twin's", "0 with `precise`, where the device divides as IEEE 754 does", contraction},
+        {"F06",
+         "rays at the edges of a grid far from the origin; kernels with and without `precise`, and the CPU reference",
+         "decisions other than the CPU reference's", "0 with `precise`, where the device divides as IEEE 754 does",
+         contraction},
         {"F07", "float probe: roundings, contraction, NaN, denormals", "what watertightness rests on and is not so",
          "0, else the robust levels cannot be claimed", float_probe},
-        {"F08", "rays with denormal coordinates, on the device, and on its CPU twin with denormals flushed",
+        {"F08", "rays with denormal coordinates, on the device, and on its CPU reference with denormals flushed",
          "classes of both; triangles that change by flushing", "0 SW_LEAK, SW_FALSE, T_ERR", denormals},
-        {"F09", "random and aimed rays on SwTlas and on its twin, the same code compiled for the CPU",
+        {"F09", "random and aimed rays on SwTlas and on its CPU reference, the same code compiled for the CPU",
          "hits that differ in a bit: ids, t, u, v",
-         "0 where the device divides as IEEE 754 does; elsewhere measured only", device_against_twin},
+         "0 where the device divides as IEEE 754 does; elsewhere measured only", device_against_cpu},
     };
 }
 

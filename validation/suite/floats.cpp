@@ -9,7 +9,7 @@
 
 #include "validation/suite/demands.h"
 #include "validation/suite/flush.h"
-#include "validation/suite/twin.h"
+#include "validation/suite/cpu_reference.h"
 #include "engine/core/error.h"
 #include <twinray/geometry.h>
 #include "validation/reference/aimed_rays.h"
@@ -28,17 +28,17 @@ Scene scene_with(const Mesh& mesh, std::vector<Transform> transforms = {Transfor
     return scene;
 }
 
-// What a configuration answers and what its twin does, batch by batch.
+// What a configuration answers and what the CPU reference does, batch by batch.
 Difference compared(CaseRun& run, const Configuration& configuration, const Scene& scene, std::span<const Ray> rays,
                     const std::optional<Control>& control = {}) {
     const World world = world_of(scene);
-    const std::unique_ptr<reference::Scene> twin = twin_of(scene, run.devices().trees());
+    const std::unique_ptr<reference::Scene> on_cpu = cpu_reference_of(scene, run.devices().trees());
     Difference sum;
     for (std::size_t first = 0; first < rays.size(); first += batch_size) {
         const auto batch = rays.subspan(first, std::min(batch_size, rays.size() - first));
         const std::vector<Traced> traced = trace(run.devices(), std::span(&configuration, 1), world,
                                                  {.rays = batch, .reps = 0, .control = control ? &*control : nullptr});
-        sum += difference(batch, traced.front().hits, trace_twin(*twin, batch, configuration.level));
+        sum += difference(batch, traced.front().hits, trace_cpu_reference(*on_cpu, batch, configuration.level));
     }
     return sum;
 }
@@ -92,7 +92,7 @@ struct NamedScene {
     Scene scene;
 };
 
-std::vector<NamedScene> scenes_for_twins() {
+std::vector<NamedScene> scenes_for_both() {
     return {{"soup", scene_with(make_soup(2000, 5, 0.2f))},
             {"sphere", scene_with(make_icosphere(5))},
             {"height field", scene_with(make_grid(64, 64, 0.2f, 3))},
@@ -165,16 +165,18 @@ void denormals(CaseRun& run) {
             run.add_not_run("the host's denormals cannot be flushed", &configuration);
             continue;
         }
-        for (const auto& [name, scene] : scenes_for_twins()) {
+        for (const auto& [name, scene] : scenes_for_both()) {
             const World world = world_of(scene);
             const std::size_t count = run.amount(2'000, 1'000'000);
             const std::vector<Ray> rays =
                 with_denormals(random_and_aimed(scene, count, count / 4, run.seed()), run.seed());
-            const std::unique_ptr<reference::Scene> twin = twin_of(scene, run.devices().trees());
-            const std::vector<Hit> flushed = trace_twin(*twin, rays, configuration.level, Denormals::flushed);
+            const std::unique_ptr<reference::Scene> on_cpu = cpu_reference_of(scene, run.devices().trees());
+            const std::vector<Hit> flushed =
+                trace_cpu_reference(*on_cpu, rays, configuration.level, Denormals::flushed);
             const std::vector<Traced> traced =
                 trace(run.devices(), std::span(&configuration, 1), world, {.rays = rays, .reps = 0});
-            const Difference changed = difference(rays, flushed, trace_twin(*twin, rays, configuration.level));
+            const Difference changed =
+                difference(rays, flushed, trace_cpu_reference(*on_cpu, rays, configuration.level));
             CheckResult checked = check(world.reference, rays, flushed, configuration.backend);
             const CheckResult of_device = check(world.reference, rays, traced.front().hits, configuration.backend);
             checked.classes += of_device.classes;
@@ -186,10 +188,10 @@ void denormals(CaseRun& run) {
     }
 }
 
-void device_against_twin(CaseRun& run) {
+void device_against_cpu(CaseRun& run) {
     for (const Configuration& configuration : precise_configurations(run)) {
         const std::string excuse = why_bits_may_differ(run, configuration);
-        for (const auto& [name, scene] : scenes_for_twins()) {
+        for (const auto& [name, scene] : scenes_for_both()) {
             const std::vector<Ray> rays =
                 random_and_aimed(scene, run.amount(25'000, 2'500'000), run.amount(2'500, 250'000), run.seed());
             const Difference found = compared(run, configuration, scene, rays);

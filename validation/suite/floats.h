@@ -9,6 +9,6 @@ namespace twinray::suite {
 void contraction(CaseRun& run);
 void float_probe(CaseRun& run);
 void denormals(CaseRun& run);
-void device_against_twin(CaseRun& run);
+void device_against_cpu(CaseRun& run);
 
 }  // namespace twinray::suite

@@ -51,13 +51,13 @@ if shutil.which("gnuplot"):
     page = xml.etree.ElementTree.parse(here / "plots/report.html").getroot()
     assert len(page.findall(".//{http://www.w3.org/2000/svg}svg[@aria-label]")) == 2
 
-# The device's arithmetic: on a CPU driver every bit is that of the CPU twin.
+# The device's arithmetic: on a CPU driver every bit is that of the CPU reference.
 report("--only", "F06,F07,F08,F09", "--accels", "sw", "-o", str(here / "floats"), seconds="60")
 floats = [r for r in lines("floats/report.jsonl") if r["status"] == "run"]
 assert {r["case"] for r in floats} == {"F06", "F07", "F08", "F09"}
 if "llvmpipe" in floats[0]["device"]["name"]:
-    twins = [r for r in floats if r["case"] == "F09"]
-    assert twins and all(r["pass"] and r["faults"] == 0 and r["n"] > 0 for r in twins), twins
+    arithmetic = [r for r in floats if r["case"] == "F09"]
+    assert arithmetic and all(r["pass"] and r["faults"] == 0 and r["n"] > 0 for r in arithmetic), arithmetic
 
 # Beside a baseline of which a count was better, and in which a case passed.
 better = [dict(r, faults=0, counts={}) for r in records]

@@ -15,7 +15,7 @@
 #include "validation/reference/aimed_rays.h"
 #include "tests/support/device.h"
 #include "validation/suite/scenes.h"
-#include "validation/suite/twin.h"
+#include "validation/suite/cpu_reference.h"
 
 namespace twinray::suite {
 namespace {
@@ -32,15 +32,16 @@ TEST(FlushedDenormals, LongDirectionsLoseNothing) {
     Scene scene;
     scene.meshes = {make_icosphere(3)};
     scene.instances = {{"", 0, {}}};
-    const std::unique_ptr<reference::Scene> on_cpu = twin_of(scene);
+    const std::unique_ptr<reference::Scene> on_cpu = cpu_reference_of(scene);
     std::vector<Ray> rays = random_rays({vec3(-1), vec3(1)}, 4096, 1);
     for (Ray& ray : rays) ray.direction = normalize(ray.direction);
-    const std::size_t expected = hit_count(trace_twin(*on_cpu, rays, Level::watertight));
+    const std::size_t expected = hit_count(trace_cpu_reference(*on_cpu, rays, Level::watertight));
     EXPECT_GT(expected, 500u);
     for (const float length : {1e-30f, 1e30f, 1e36f}) {
         std::vector<Ray> stretched = rays;
         for (Ray& ray : stretched) ray.direction *= length;
-        const std::size_t found = hit_count(trace_twin(*on_cpu, stretched, Level::watertight, Denormals::flushed));
+        const std::size_t found =
+            hit_count(trace_cpu_reference(*on_cpu, stretched, Level::watertight, Denormals::flushed));
         EXPECT_GE(found + expected / 100, expected) << length;  // those nearer than 0.01 have a denormal t themselves
     }
 }
@@ -53,16 +54,18 @@ TEST(FlushedDenormals, ShortDirectionsInLargeScenesLoseNothing) {
         scene.meshes = {make_icosphere(3)};
         for (vec3& position : scene.meshes[0].positions) position *= size;
         scene.instances = {{"", 0, {}}};
-        const std::unique_ptr<reference::Scene> on_cpu = twin_of(scene);
+        const std::unique_ptr<reference::Scene> on_cpu = cpu_reference_of(scene);
         std::vector<Ray> rays = random_rays({vec3(-1), vec3(1)}, 4096, 1);
         for (Ray& ray : rays) {
             ray.origin *= size;
             ray.direction = length * normalize(ray.direction);
         }
-        const std::size_t expected = hit_count(trace_twin(*on_cpu, rays, Level::watertight));
+        const std::size_t expected = hit_count(trace_cpu_reference(*on_cpu, rays, Level::watertight));
         EXPECT_GT(expected, 500u);
-        EXPECT_EQ(hit_count(trace_twin(*on_cpu, rays, Level::watertight, Denormals::flushed)), expected) << size;
-        EXPECT_GT(10 * hit_count(trace_twin(*on_cpu, rays, Level::fast, Denormals::flushed)), 9 * expected) << size;
+        EXPECT_EQ(hit_count(trace_cpu_reference(*on_cpu, rays, Level::watertight, Denormals::flushed)), expected)
+            << size;
+        EXPECT_GT(10 * hit_count(trace_cpu_reference(*on_cpu, rays, Level::fast, Denormals::flushed)), 9 * expected)
+            << size;
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "validation/suite/twin.h"
+#include "validation/suite/cpu_reference.h"
 
 #include <algorithm>
 #include <cstring>
@@ -22,22 +22,23 @@ double ulps_between(float a, float b) {
 
 }  // namespace
 
-std::unique_ptr<reference::Scene> twin_of(const Scene& scene, const AccelOptions& trees) {
-    auto twin = std::make_unique<reference::Scene>(trees.layout, trees.build_quality);
-    for (const Mesh& mesh : scene.meshes) twin->add_geometry(mesh);
+std::unique_ptr<reference::Scene> cpu_reference_of(const Scene& scene, const AccelOptions& trees) {
+    auto on_cpu = std::make_unique<reference::Scene>(trees.layout, trees.build_quality);
+    for (const Mesh& mesh : scene.meshes) on_cpu->add_geometry(mesh);
     for (const Instance& instance : scene.instances)
-        twin->add_instance(instance.mesh, make_instance_record(instance.transform));
-    twin->build();
-    return twin;
+        on_cpu->add_instance(instance.mesh, make_instance_record(instance.transform));
+    on_cpu->build();
+    return on_cpu;
 }
 
-std::vector<Hit> trace_twin(const reference::Scene& twin, std::span<const Ray> rays, Level level, Denormals denormals) {
+std::vector<Hit> trace_cpu_reference(const reference::Scene& on_cpu, std::span<const Ray> rays, Level level,
+                                     Denormals denormals) {
     std::vector<Hit> hits(rays.size());
     parallel_for(rays.size(), [&](std::size_t begin, std::size_t end) {
         std::optional<FlushDenormals> flush;
         if (denormals == Denormals::flushed) flush.emplace();
         for (std::size_t i = begin; i < end; ++i)
-            hits[i] = twin.trace(rays[i], QUERY_CLOSEST, 0xff, static_cast<uint>(level));
+            hits[i] = on_cpu.trace(rays[i], QUERY_CLOSEST, 0xff, static_cast<uint>(level));
     });
     return hits;
 }
@@ -50,17 +51,17 @@ Difference& Difference::operator+=(const Difference& other) {
     return *this;
 }
 
-Difference difference(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const Hit> twin) {
+Difference difference(std::span<const Ray> rays, std::span<const Hit> hits, std::span<const Hit> on_cpu) {
     Difference result;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (std::memcmp(&hits[i], &twin[i], sizeof(Hit)) == 0) continue;
+        if (std::memcmp(&hits[i], &on_cpu[i], sizeof(Hit)) == 0) continue;
         if (result.total() == 0) result.example = hexadecimal(rays[i]);
-        if (!is_same_decision(hits[i], twin[i])) {
+        if (!is_same_decision(hits[i], on_cpu[i])) {
             ++result.decisions;
             continue;
         }
         ++result.bits;
-        result.worst_ulp = std::max(result.worst_ulp, ulps_between(hits[i].t, twin[i].t));
+        result.worst_ulp = std::max(result.worst_ulp, ulps_between(hits[i].t, on_cpu[i].t));
     }
     return result;
 }
