@@ -43,7 +43,7 @@ std::vector<QualifiedDevice> devices_to_qualify(std::span<const DeviceProperties
     for (std::size_t i = 0; i < devices.size(); ++i) {
         const std::string name = folder_name(devices[i].name);
         has_swiftshader |= devices[i].name.find("SwiftShader") != std::string::npos;
-        if (!devices[i].name.starts_with("llvmpipe")) {
+        if (!takes_any_vector_width(devices[i])) {
             all.push_back({text(i, '-', name), std::to_string(i)});
             continue;
         }

@@ -23,7 +23,11 @@ struct Blas {
     std::size_t compacted_index = 0;            // in `compacted`
 
     Uints table() const { return original ? original->ref<uint>() : Uints{}; }
-    HwGeometry block() const { return {bounds.lo, bounds.hi, structure.address(), table(), kind, 0}; }
+    HwGeometry block(const Context& context) const {
+        HwGeometry block{bounds.lo, bounds.hi, structure.address(), table(), kind, 0};
+        context.fill_absent(block.triangles);
+        return block;
+    }
     std::uint64_t bytes() const { return structure.bytes() + (original ? original->bytes() : 0); }
 };
 

@@ -73,7 +73,7 @@ void HwBackend::build_still(Commands& commands, std::span<const GeometryInput> i
     std::vector<Blas> blases = build_blases(commands, geometries, {reorder_, scratch_budget()});
     const auto pass = commands.pass("hwtlas geometry blocks");
     for (std::size_t i = 0; i < indices.size(); ++i) {
-        commands.write(*inputs[indices[i]].block, blases[i].block());
+        commands.write(*inputs[indices[i]].block, blases[i].block(context()));
         built[indices[i]] = std::make_unique<HwBuiltGeometry>(std::move(blases[i]));
     }
 }

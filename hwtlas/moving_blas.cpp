@@ -170,7 +170,7 @@ void MovingBlasBuilder::record(Commands& commands, std::span<const MovingMesh> m
     if (meshes.empty()) return;
     if (mode == BuildMode::build) {
         const auto pass = commands.pass("hwtlas geometry blocks");
-        for (const MovingMesh& mesh : meshes) commands.write(*mesh.block, mesh.blas->block());
+        for (const MovingMesh& mesh : meshes) commands.write(*mesh.block, mesh.blas->block(context_));
     }
     std::vector<std::uint64_t> bytes;
     for (const MovingMesh& mesh : meshes) bytes.push_back(scratch_bytes(mesh.triangle_count, mode));

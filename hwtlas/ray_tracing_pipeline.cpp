@@ -96,7 +96,8 @@ RayTracingPipeline::RayTracingPipeline(Context& context, const RayTracingPipelin
     : context_(context),
       name_(desc.name),
       limits_(limits_of(context)),
-      launch_limit_(std::min(limits_.maxRayDispatchInvocationCount, desc.launch_limit)) {
+      launch_limit_(std::min(limits_.maxRayDispatchInvocationCount, desc.launch_limit)),
+      addresses_(kernel_addresses(desc.ray_generation)) {
     layout_ = create_push_constant_layout(context, stages, sizeof(TraceArgs));
     try {
         create_pipeline(desc);
@@ -185,7 +186,9 @@ void RayTracingPipeline::trace(Commands& commands, const TraceArgs& args) const 
         part.first = static_cast<uint>(first);
         part.count = static_cast<uint>(std::min<std::uint64_t>(args.count, first + per_launch));
         const std::uint32_t count = part.count - part.first, width = std::min(count, launch_width);
-        vk.vkCmdPushConstants(commands.handle(), layout_, stages, 0, sizeof(part), &part);
+        const std::vector<std::byte> readable =
+            readable_args(context_, name_, addresses_, std::as_bytes(std::span(&part, 1)));
+        vk.vkCmdPushConstants(commands.handle(), layout_, stages, 0, sizeof(part), readable.data());
         vk.vkCmdTraceRaysKHR(commands.handle(), &generation, &miss, &hit, &callable, width, (count + width - 1) / width,
                              1);
     }

@@ -42,6 +42,7 @@ class RayTracingPipeline {
     std::string name_;
     VkPhysicalDeviceRayTracingPipelinePropertiesKHR limits_{};
     std::uint32_t launch_limit_;
+    std::vector<KernelAddress> addresses_;  // among TraceArgs
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkPipeline pipeline_ = VK_NULL_HANDLE;
     Buffer table_;

@@ -78,7 +78,9 @@ Tlas TlasBuilder::make(Commands& commands, std::size_t capacity, const AccelHead
         AccelerationStructure(context_, "tlas", VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, sizes.structure);
     tlas.scratch = make_build_scratch(context_, "tlas scratch", sizes.scratch);
     const auto pass = commands.pass("hwtlas scene");
-    commands.write(tlas.scene, HwTlasHeader{header, tlas.structure.address(), tlas.instances.ref<HwInstance>()});
+    HwTlasHeader scene{header, tlas.structure.address(), tlas.instances.ref<HwInstance>()};
+    context_.fill_absent(scene.instances);
+    commands.write(tlas.scene, scene);
     return tlas;
 }
 

@@ -147,6 +147,8 @@ Builder::Batch Builder::begin(Commands& commands, const BuildPlan& plan, std::sp
     std::vector<BuildTree> with_nodes(trees.begin(), trees.end());
     if (has_records(plan.layout))
         for (BuildTree& tree : with_nodes) tree.nodes.address = base + at.nodes + tree.first * sizeof(BvhNode);
+    for (BuildTree& tree : with_nodes)
+        commands.context().fill_absent(tree.positions, tree.indices, tree.nodes, tree.triangles, tree.records);
     {
         const auto pass = commands.pass("swtlas build input");
         const Commands::Region regions[] = {{at.trees, std::as_bytes(std::span(with_nodes))},

@@ -29,9 +29,11 @@ AccelHandle SwBackend::push_saved(Commands& commands, SavedGeometry&& saved) {
     Buffer block(context(), {.name = "geometry block", .bytes = geometry_block_bytes});
     auto built = std::make_unique<SwBuiltGeometry>(context(), saved.mesh, options().layout);
     saved.bvh.nodes = built->nodes();
+    SwGeometry written{saved.bvh, built->triangles(), built->records(), saved.mesh.kind, 0};
+    context().fill_absent(written.bvh.nodes, written.triangles, written.records);
     {
         const auto pass = commands.pass("swtlas load");
-        commands.write(block, SwGeometry{saved.bvh, built->triangles(), built->records(), saved.mesh.kind, 0});
+        commands.write(block, written);
         const Commands::Region regions[] = {{built->layout.nodes, std::as_bytes(std::span(saved.nodes))},
                                             {built->layout.triangles, std::as_bytes(std::span(saved.leaves))},
                                             {built->layout.records, std::as_bytes(std::span(saved.records))}};

@@ -134,8 +134,9 @@ void SwBackend::record_build(Commands& commands, const Batch& batch, const Buffe
             std::unique_ptr<SwBuiltGeometry> made;
             if (!input.current) made = std::make_unique<SwBuiltGeometry>(context(), *input.geometry, options().layout);
             const auto& target = made ? *made : static_cast<const SwBuiltGeometry&>(*input.current);
-            const SwGeometry block{empty_bvh(target.nodes().address), target.triangles(), target.records(),
-                                   input.geometry->kind, 0};
+            SwGeometry block{empty_bvh(target.nodes().address), target.triangles(), target.records(),
+                             input.geometry->kind, 0};
+            context().fill_absent(block.bvh.nodes, block.triangles, block.records);
             commands.write(*input.block, block);
             trees.push_back(batch.tree(i, target, meshes[i]));
             built.push_back(std::move(made));
@@ -182,8 +183,9 @@ std::unique_ptr<AccelBackend::BuiltTlas> SwBackend::build_tlas(Commands& command
         made->bytes = made->buffer.bytes();
         scene = made.get();
     }
-    const SwTlasHeader header{input.header, empty_bvh(scene->nodes().address), scene->records(), scene->instances(),
-                              input.count};
+    SwTlasHeader header{input.header, empty_bvh(scene->nodes().address), scene->records(), scene->instances(),
+                        input.count};
+    context().fill_absent(header.bvh.nodes, header.records, header.instances);
     {
         const auto pass = commands.pass("swtlas scene input");
         commands.write(scene->buffer, header);

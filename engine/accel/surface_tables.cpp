@@ -39,13 +39,13 @@ SurfaceTables::Staged SurfaceTables::stage(Commands& commands, std::span<const I
             attribute_count = std::max(attribute_count, array.number + 1);
 
     std::vector<SurfaceGeometry> geometries;
-    std::vector<SurfaceAttribute> attributes(items.size() * attribute_count);
+    std::vector<SurfaceAttribute> attributes(items.size() * attribute_count, {{context_.absent()}, 0, 0});
     std::vector<uint> geometry_of_instance;
     for (std::size_t i = 0; i < items.size(); ++i) {
         SurfaceSlice& slice = *items[i].slice;
         const std::uint64_t base = stage_data(commands, slice, staged);
         const auto at = [&](const std::optional<SurfaceSlice::Place>& place) {
-            return place ? place->address(base) : 0;
+            return place ? place->address(base) : context_.absent();
         };
         geometries.push_back({items[i].handle,
                               {at(slice.face_metadata)},
@@ -63,7 +63,7 @@ SurfaceTables::Staged SurfaceTables::stage(Commands& commands, std::span<const I
     const std::uint64_t of_attributes = append_aligned(rows, std::as_bytes(std::span(attributes)));
     const std::uint64_t of_instances = append_aligned(rows, std::as_bytes(std::span(geometry_of_instance)));
     staged.rows.emplace(context_, BufferDesc{.name = "surface rows", .bytes = rows.size()});
-    const std::uint64_t address = rows.empty() ? 0 : staged.rows->address();
+    const std::uint64_t address = rows.empty() ? context_.absent() : staged.rows->address();
     if (!rows.empty()) commands.upload(*staged.rows, std::span<const std::byte>(rows));
     commands.write(table_, SurfaceTable{instances,
                                         {address + of_instances},

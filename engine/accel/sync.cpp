@@ -79,7 +79,8 @@ void AccelBackend::stage_sources(Commands& commands, Staged& staged) {
     if (staged.sources.empty()) return;
     const auto pass = commands.pass("geometry sources");
     for (const HeldGeometry* held : staged.sources) {
-        const PackedMesh mesh = keeps_meshes() ? kept_mesh(*held, staged) : PackedMesh{};
+        PackedMesh mesh = keeps_meshes() ? kept_mesh(*held, staged) : PackedMesh{};
+        context_.fill_absent(mesh.positions, mesh.indices);
         commands.write(held->block, GeometrySource{mesh.positions, mesh.indices, held->geometry.scale, 0},
                        GEOMETRY_SOURCE_OFFSET);
     }
@@ -124,7 +125,8 @@ void AccelBackend::stage_scene(Commands& commands, Staged& staged) {
                           bound_.result(),
                           staged.has_moved,
                           scene_costs_.target(),
-                          {surfaces_ ? surfaces_->table().address : 0, refinement_ ? refinement_->scene().address : 0}};
+                          {surfaces_ ? surfaces_->table().address : context_.absent(),
+                           refinement_ ? refinement_->scene().address : context_.absent()}};
     if (refinement_) staged.refinement = refinement_->stage(commands, input.records, input.count, input.bound);
     if (surfaces_ && dirty_ == Dirty::structure) stage_surfaces(commands, staged);
     staged.is_scene_built = must_build({.is_built = scene_ != nullptr,

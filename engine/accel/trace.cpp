@@ -68,7 +68,7 @@ void AccelBackend::record_rays(Commands& commands, const AccelView& view, const 
                          .rays = desc.rays,
                          .hits = desc.hits,
                          .indirect_count = desc.indirect_count,
-                         .user_data = desc.user_data,
+                         .user_data = desc.user_data ? desc.user_data : context_.absent(),
                          .order = record_order(commands, desc),
                          .count = static_cast<uint>(desc.count),
                          .mask = desc.mask,

@@ -68,10 +68,10 @@ InstancedMesh added_to(Upload& upload, const MeshView& mesh, std::span<const uin
     return added;
 }
 
-void move_to(std::uint64_t address, InstancedMesh& mesh, SharedVertices shared) {
+void move_to(const Context& context, std::uint64_t address, InstancedMesh& mesh, SharedVertices shared) {
     mesh.positions.address += address;
     mesh.indices.address += address;
-    mesh.vertex_ids.address = shared == SharedVertices::by_index ? 0 : mesh.vertex_ids.address + address;
+    mesh.vertex_ids.address = shared == SharedVertices::by_index ? context.absent() : mesh.vertex_ids.address + address;
 }
 
 InstancedMesh on_host(const MeshView& mesh, std::span<const uint> ids) {
@@ -142,7 +142,7 @@ void TriangleSet::set(std::span<const MeshView> meshes, std::span<const MeshInst
     }
     if (count_ == 0) return;
     allocate(upload.bytes);
-    for (InstancedMesh& mesh : table) move_to(data_.address(), mesh, shared);
+    for (InstancedMesh& mesh : table) move_to(context_, data_.address(), mesh, shared);
     Commands commands(context_, "collide meshes");
     {
         const auto pass = commands.pass("collide meshes");

@@ -44,6 +44,8 @@ struct Context::State {
     const DeviceProperties& properties() const { return properties_; }  // what is enabled, not merely supported
     const KernelTuning& tuning() const { return tuning_; }
     float timestamp_period_ns() const { return timestamp_period_ns_; }  // 0: the queue has no timestamps
+    bool is_validating() const { return messenger_ != VK_NULL_HANDLE; }  // ContextDesc::validation
+    std::uint64_t absent() const { return absent_; }                     // Context::absent
 
     // Stages and accesses of everything that twinray records; used by its barriers.
     VkPipelineStageFlags stages() const;
@@ -98,6 +100,7 @@ struct Context::State {
     void set_tuning(std::optional<TuningRow> row, std::optional<double> most_submission_seconds);
     void create_own_objects(const AllocatorHooks& allocator, const std::filesystem::path& pipeline_folder);
     void create_timeline();
+    void create_absent();
     void create_pipeline_cache(const PipelineStore& store);
     void keep_pipelines() noexcept;
     VkSemaphore new_timeline(const char* name);
@@ -127,6 +130,8 @@ struct Context::State {
     std::uint32_t api_version_ = VK_API_VERSION_1_2;
     std::function<void()> lock_queue_, unlock_queue_;
     std::unique_ptr<Allocator> allocator_;
+    AllocatedBuffer absent_memory_;
+    std::uint64_t absent_ = 0;
     VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
     bool owns_pipeline_cache_ = false;
     PipelineTable pipelines_;

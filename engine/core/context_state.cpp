@@ -4,15 +4,19 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <sstream>
 
 #include "engine/core/device_properties.h"
 #include "engine/core/dry_device.h"
 #include "engine/core/error.h"
 #include "engine/core/statistics_feature.h"
+#include "twinray/glsl/cpp.h"
 
 namespace twinray {
 namespace {
+
+constexpr std::uint64_t absent_bytes = 4096;  // as much as kernels may read at Context::absent, at most
 
 VkInstance new_instance(const VulkanFunctions& vk, const std::string& name, bool validation) {
     VkApplicationInfo application{};
@@ -205,7 +209,20 @@ void Context::State::create_own_objects(const AllocatorHooks& allocator, const s
                                                          tuning_.memory_block_bytes);
 
     create_timeline();
+    create_absent();
     if (!pipeline_cache_) create_pipeline_cache(PipelineStore(pipeline_folder, properties.properties));
+}
+
+// Each pair of words is the address again, so that what is absent has only absent parts.
+void Context::State::create_absent() {
+    absent_memory_ = allocator_->allocate({"absent", absent_bytes, VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, Memory::upload, 16});
+    VkBufferDeviceAddressInfo address{};
+    address.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO;
+    address.buffer = absent_memory_.buffer;
+    absent_ = absent_near(vk_.vkGetBufferDeviceAddress(device_, &address));
+    auto* const bytes = static_cast<std::byte*>(absent_memory_.mapped);
+    for (std::uint64_t at = 1; at + sizeof(absent_) <= absent_bytes; at += sizeof(absent_))
+        std::memcpy(bytes + at, &absent_, sizeof(absent_));
 }
 
 void Context::State::create_pipeline_cache(const PipelineStore& store) {
@@ -243,6 +260,7 @@ void Context::State::destroy_everything() noexcept {
     if (owns_pipeline_cache_) vk_.vkDestroyPipelineCache(device_, pipeline_cache_, nullptr);
     for (const VkSemaphore timeline : {timeline_, promised_timeline_})
         if (timeline) vk_.vkDestroySemaphore(device_, timeline, nullptr);
+    if (absent_memory_.buffer) allocator_->free(absent_memory_, absent_bytes);
     allocator_.reset();
     if (!owns_device_) return;
     if (device_) vk_.vkDestroyDevice(device_, nullptr);

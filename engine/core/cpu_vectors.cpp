@@ -1,13 +1,41 @@
 // SPDX-License-Identifier: MIT
 #include "engine/core/cpu_vectors.h"
 
-#include <twinray/context.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "engine/core/pipeline_store.h"
 
 namespace twinray {
+namespace {
+
+constexpr int first_mesa_of_one_width = 26;
+
+// In a process of its own, since a driver that was loaded keeps the width that it found.
+bool drivers_here_take_any_width() {
+    const pid_t child = fork();
+    if (child == 0) {
+        try {
+            _exit(std::ranges::any_of(list_devices(), takes_any_vector_width) ? EXIT_SUCCESS : EXIT_FAILURE);
+        } catch (const std::exception&) {
+            _exit(EXIT_FAILURE);
+        }
+    }
+    int status = 0;
+    return child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == EXIT_SUCCESS;
+}
+
+}  // namespace
+
+bool takes_any_vector_width(const DeviceProperties& device) {
+    constexpr std::string_view mesa = "Mesa ";
+    const std::size_t at = device.driver.find(mesa);
+    if (!device.name.starts_with("llvmpipe") || at == std::string::npos) return false;
+    return std::atoi(device.driver.c_str() + at + mesa.size()) < first_mesa_of_one_width;
+}
 
 bool prefers_512_bit_vectors() {
 #if defined(__x86_64__)
@@ -30,7 +58,7 @@ std::optional<std::filesystem::path> folder_of_wide_code(bool is_preferred, bool
 void widen_cpu_vectors() {
     const bool is_set = std::getenv("LP_NATIVE_VECTOR_WIDTH") || std::getenv("MESA_SHADER_CACHE_DIR");
     const auto folder = folder_of_wide_code(prefers_512_bit_vectors(), is_set, user_pipeline_folder());
-    if (!folder) return;
+    if (!folder || !drivers_here_take_any_width()) return;
     setenv("LP_NATIVE_VECTOR_WIDTH", "512", 1);
     setenv("MESA_SHADER_CACHE_DIR", folder->c_str(), 1);
 }

@@ -62,7 +62,10 @@ void ComputePipeline::bind(Commands& commands, const void* args, VkDescriptorSet
     if (images)
         vk.vkCmdBindDescriptorSets(commands.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, compiled_->layout, 0, 1, &images,
                                    0, nullptr);
-    vk.vkCmdPushConstants(commands.handle(), compiled_->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, args_bytes_, args);
+    const std::vector<std::byte> readable =
+        readable_args(context_, desc_.name, compiled_->addresses, {static_cast<const std::byte*>(args), args_bytes_});
+    vk.vkCmdPushConstants(commands.handle(), compiled_->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, args_bytes_,
+                          readable.data());
 }
 
 void ComputePipeline::dispatch_groups(Commands& commands, const void* args, std::uint64_t group_count,

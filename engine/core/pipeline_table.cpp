@@ -78,6 +78,7 @@ std::shared_ptr<CompiledKernel> compile(Context& context, const KernelDesc& desc
         create_push_constant_layout(context, VK_SHADER_STAGE_COMPUTE_BIT, args_bytes,
                                     desc.has_images ? context.state().image_array_layout() : VK_NULL_HANDLE);
     kernel->pipeline = new_pipeline(context, desc, kernel->layout, telling);
+    kernel->addresses = kernel_addresses(desc.spirv);
     return kernel;
 }
 

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <string>
 
+#include "engine/core/kernel_addresses.h"
 #include "engine/core/vulkan_functions.h"
 
 namespace twinray {
@@ -26,6 +27,7 @@ struct CompiledKernel {
     VkDevice device;
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline pipeline = VK_NULL_HANDLE;
+    std::vector<KernelAddress> addresses = {};
 };
 
 enum class Telling : std::uint8_t {

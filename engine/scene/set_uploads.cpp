@@ -60,7 +60,8 @@ SetUploads::Staged SetUploads::stage(Commands& commands, Elements elements) cons
         if (room != array.capacity())
             replacement.emplace(context_,
                                 BufferDesc{.name = name_ + ": " + array.type.name, .bytes = room * array.type.bytes});
-        staged.slots.push_back({(replacement ? *replacement : array.buffer).address(), static_cast<uint>(count)});
+        const std::uint64_t address = (replacement ? *replacement : array.buffer).address();
+        staged.slots.push_back({address ? address : context_.absent(), static_cast<uint>(count)});
     }
     record_growth(commands, staged);
     record_uploads(commands, staged, elements);

@@ -243,8 +243,8 @@ void disable_features(ContextDesc& desc, const std::string& list);
 // "twinray" in the user's folder for caches: $XDG_CACHE_HOME, else .cache in $HOME; empty where neither is set.
 std::filesystem::path user_pipeline_folder();
 
-// For programs that compute alone: where the driver is Mesa's for CPUs and the processor has AVX-512, its vectors
-// become 512 bits wide, with which SwTlas traces 1.0 to 2 times as fast and ray queries 0.8 to 1.3 times; Mesa 25.0's
+// For programs that compute alone: where the driver is Mesa's for CPUs, below Mesa 26, and the processor has AVX-512, its
+// vectors become 512 bits wide, with which SwTlas traces 1.0 to 2 times as fast and ray queries 0.8 to 1.3 times; Mesa 25.0's
 // rasteriser crashes with them. Sets LP_NATIVE_VECTOR_WIDTH and MESA_SHADER_CACHE_DIR for this process and those it
 // starts, unless the user has set one of them. To be called before other threads and the first Context.
 void widen_cpu_vectors();
@@ -267,6 +267,15 @@ class Context {
     std::uint32_t queue_family() const;          // of the one queue
     const DeviceProperties& properties() const;  // what is enabled, not merely supported
     std::uint64_t allocated_bytes() const;       // of the buffers and images that are alive
+    // What kernels get as the address of something that is absent: an odd one, at which there is memory all the same,
+    // since some drivers read before they know that they need not. is_absent() of twinray/glsl/common.glsl tells it.
+    // Kernel<Args> puts it in place of 0; structs that a host uploads want it in the members that kernels ask for.
+    std::uint64_t absent() const;
+    // Puts it into those of the addresses that are 0.
+    template <class... T>
+    void fill_absent(Ref<T>&... refs) const {
+        ((refs.address = refs.address ? refs.address : absent()), ...);
+    }
 
     // The next submission, whichever call makes it (Commands::submit, AbstractAccel::sync, ...), runs its `stages`, and
     // all that is submitted later does, only once the GPU has reached `point`, on a timeline semaphore of the host, and

@@ -8,6 +8,17 @@
 namespace twinray::path_tracer {
 using samples::fail;
 
+namespace {
+
+void fill_absent(const Context& context, SceneData& data) {
+    context.fill_absent(data.instances, data.extras, data.materials, data.layered, data.material_kinds,
+                        data.textures.records, data.textures.faults, data.lights.emitters, data.lights.punctual,
+                        data.lights.faults, data.light_keys, data.light_table, data.environment.pixels,
+                        data.environment.row_sums, data.environment.column_sums);
+}
+
+}  // namespace
+
 SceneFeatures features_of(const Scene& scene, const LocalLights& lights, const EnvironmentMap* environment) {
     SceneFeatures features;
     features.kinds = kinds_of(scene);
@@ -39,6 +50,7 @@ DeviceScene::DeviceScene(Context& context, const Scene& scene, const LocalLights
     {
         const auto pass = commands.pass("path tracer upload");
         upload_all(commands, scene, lights, environment);
+        fill_absent(context, record_);
         commands.write(data_, record_);
     }
     commands.submit();
@@ -54,6 +66,7 @@ void DeviceScene::move(const Scene& scene, const LocalLights& lights) {
         const auto pass = commands.pass("path tracer move");
         record_.instances = upload_instances(commands, scene, lights);
         upload_lights(commands, lights);
+        fill_absent(context_, record_);
         commands.write(data_, record_);
     }
     commands.submit();
@@ -133,6 +146,7 @@ void DeviceScene::upload_extras(Commands& commands, const Scene& scene) {
             extras.colors = {upload(commands, "colors of '" + mesh.name + "'", mesh.colors).address};
         if (has_second_uvs && !mesh.second_uvs.empty())
             extras.second_uvs = {upload(commands, "second uvs of '" + mesh.name + "'", mesh.second_uvs).address};
+        context_.fill_absent(extras.second_uvs, extras.colors);
     }
     for (const Instance& instance : scene.instances) records.push_back(of_meshes[instance.mesh]);
     record_.extras = upload(commands, "extras of vertices", records);
@@ -145,6 +159,7 @@ Ref<SurfaceInstance> DeviceScene::upload_instances(Commands& commands, const Sce
         record.vertices = meshes_[scene.instances[i].mesh].vertices;
         record.triangles = meshes_[scene.instances[i].mesh].triangles;
         record.emitter_density = upload_moving(commands, "emitter densities", lights.densities[i]);
+        context_.fill_absent(record.vertices, record.triangles, record.emitter_density);
         records.push_back(record);
     }
     return upload_moving(commands, "surface instances", records);

@@ -87,7 +87,9 @@ void WaveBuffers::set_first_surfaces(Commands& commands, Ref<FirstSurface> first
     for (const uint shadow_turn : {0u, 1u})
         for (const uint turn : {0u, 1u}) {
             all.push_back(data_of(turn, shadow_turn));
-            all.back().first_surfaces = first_surfaces;
+            WaveData& data = all.back();
+            data.first_surfaces = first_surfaces;
+            commands.context().fill_absent(data.media, data.next_media, data.kinds, data.queues, data.first_surfaces);
         }
     commands.upload(data_, std::span(std::as_const(all)));
 }

@@ -29,6 +29,6 @@ FUNC uint group_of(CountFacesArgs args, uint ray)
     Hit hit = AT(args.hits, ray);
     if (hit.hit == 0u) return NO_GROUP;
     uint face = face_of(args.table, hit);
-    return is_null(args.groups) ? face : AT(args.groups, face);
+    return is_absent(args.groups) ? face : AT(args.groups, face);
 }
 #endif

@@ -95,6 +95,6 @@ FUNC uint target_of(FaceTargetsArgs args, Ray ray, Hit hit)
     if (hit.hit == 0u) return TARGET_OPEN;
     uint face = face_of(args.table, hit);
     if (args.is_two_sided == 0u && !meets_front(args.table, face, ray.direction)) return TARGET_BACK;
-    return is_null(args.groups) ? face : AT(args.groups, face);
+    return is_absent(args.groups) ? face : AT(args.groups, face);
 }
 #endif

@@ -22,6 +22,6 @@ void main()
     ray.t_min = args.t_near;
     ray.direction = row(args.vectors, i % args.vector_count);
     ray.t_max = uintBitsToFloat(0x7f800000u);
-    if (!is_null(args.normals) && !(dot(row(args.normals, point), ray.direction) > 0.0f)) ray.t_max = -1.0f;
+    if (!is_absent(args.normals) && !(dot(row(args.normals, point), ray.direction) > 0.0f)) ray.t_max = -1.0f;
     AT(args.rays, i) = ray;
 }

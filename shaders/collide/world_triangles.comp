@@ -33,7 +33,7 @@ void main()
     WorldTriangle triangle = world_triangle(mesh, indices);
     TriangleName name;
     name.vertices = indices;
-    if (!is_null(mesh.vertex_ids))
+    if (!is_absent(mesh.vertex_ids))
         name.vertices =
             uvec3(AT(mesh.vertex_ids, indices.x), AT(mesh.vertex_ids, indices.y), AT(mesh.vertex_ids, indices.z));
     name.mesh = index;

@@ -38,7 +38,7 @@ void main()
     normal = normalize(transposed_times(to_object_of(instance), object_normal));
     uv = vec4(vertex.uv, vertex.uv);
     color = vec3(1.0);
-    if (!is_null(AT(args.frame, 0).extras))
+    if (!is_absent(AT(args.frame, 0).extras))
     {
         VertexExtras extras = AT(AT(args.frame, 0).extras, gl_InstanceIndex);
         uv.zw = second_uv_of(extras, index, vertex.uv);

@@ -34,5 +34,5 @@ void main()
 {
     uint i = args.first + global_index();
     if (i >= args.end) return;
-    trace(args.scene, AT(args.rays, i), trace_options(args.mask, args.flags | ALL_NON_OPAQUE, QUERY_CLOSEST));
+    trace(args.scene, AT(args.rays, i), trace_options(args.mask, args.flags | ALL_NON_OPAQUE, QUERY_CLOSEST, absent_near(args.scene)));
 }

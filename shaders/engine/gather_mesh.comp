@@ -30,7 +30,7 @@ uint vertex_of(uint corner)
 
 uvec3 triangle(uint index)
 {
-    uint count = is_null(args.count_on_device) ? args.triangle_count : AT(args.count_on_device, 0);
+    uint count = is_absent(args.count_on_device) ? args.triangle_count : AT(args.count_on_device, 0);
     if (index >= count) return uvec3(0u);
     uvec3 vertices = uvec3(vertex_of(3u * index), vertex_of(3u * index + 1u), vertex_of(3u * index + 2u));
     if (all(lessThan(vertices, uvec3(args.vertex_count)))) return vertices;

@@ -35,5 +35,5 @@ void main()
     }
     if (thread != 0u || index >= max(args.count, 1u)) return;
     AT(args.joined, group_index()) = items[0];
-    if (!is_null(args.result)) write_cost(items[0].sum, root, unit);
+    if (!is_absent(args.result)) write_cost(items[0].sum, root, unit);
 }

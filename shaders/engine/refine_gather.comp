@@ -11,5 +11,5 @@ void main()
 {
     uint i = global_index();
     if (i >= args.count) return;
-    AT(args.instances, i) = refine_instance(in_built_units(AT(args.records, i)));
+    AT(args.instances, i) = refine_instance(in_built_units(AT(args.records, i)), absent_near(args.records.address));
 }

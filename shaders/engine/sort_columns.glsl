@@ -16,7 +16,7 @@ Uints kept_columns(SortArgs args)
 {
     return Uints(address_at(args.kept.address, group_index(), DIGITS * THREADS * 4u));
 }
-bool keeps_columns(SortArgs args) { return !is_null(args.kept); }
+bool keeps_columns(SortArgs args) { return !is_absent(args.kept); }
 
 uint slot_of(SortArgs args, uint key)
 {

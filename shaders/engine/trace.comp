@@ -22,8 +22,7 @@ void main()
     uint size = gl_WorkGroupSize.x;
     uint run = TRACE_INTERLEAVE == 0u ? 1u : run_of_blocks(count, size, groups);
     uint first = interleaved_group(group_index(), groups, TRACE_INTERLEAVE) * run * size + gl_LocalInvocationID.x;
-    TraceOptions options = trace_options(args.mask, args.flags, TRACE_QUERY);
-    options.user_data = args.user_data;
+    TraceOptions options = trace_options(args.mask, args.flags, TRACE_QUERY, args.user_data);
     for (uint k = 0u; k < run && first + k * size < count; ++k)
     {
         uint i = ray_at(args.order, first + k * size);

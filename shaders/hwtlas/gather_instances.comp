@@ -14,14 +14,14 @@ void main()
 {
     uint position = global_index();
     if (position >= args.count) return;
-    bool has_table = !is_null(args.instances);
-    bool has_order = !is_null(args.order);
+    bool has_table = !is_absent(args.instances);
+    bool has_order = !is_absent(args.order);
     uint index = position;
     if (has_order) index = AT(args.order, position);
     else if (has_table) index = AT(args.instances, position).instance_index;
     InstanceRecord record = in_built_units(AT(args.records, index));
     Rows to_world = to_world_of(record);
-    bool usable = !is_null(record.geometry) && is_usable(to_world, inverse_of(to_world));
+    bool usable = has_geometry(record) && is_usable(to_world, inverse_of(to_world));
     HwGeometry geometry;
     geometry.kind = GEOMETRY_TRIANGLES;
     if (usable) geometry = AT(REF(HwGeometry)(record.geometry), 0);
@@ -42,7 +42,7 @@ void main()
     if (!has_table) return;
     HwInstance instance;
     if (usable) instance.triangles = geometry.triangles;
-    else instance.triangles = Uints(NULL_ADDRESS);
+    else instance.triangles = Uints(absent_near(args.records.address));
     instance.instance_index = index;
     instance.pad = 0u;
     AT(args.instances, position) = instance;

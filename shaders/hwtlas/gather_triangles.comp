@@ -23,8 +23,8 @@ void main()
 {
     uint position = global_index();
     if (position >= args.count) return;
-    bool has_table = !is_null(args.table);
-    bool has_order = !is_null(args.order);
+    bool has_table = !is_absent(args.table);
+    bool has_order = !is_absent(args.order);
     uint index = has_order ? AT(args.order, position) : (has_table ? AT(args.table, position) : position);
     if (has_order) AT(args.table, position) = index;
     MeshTriangle triangle = load_triangle(args, index);

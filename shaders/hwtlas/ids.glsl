@@ -14,7 +14,7 @@ Candidate candidate_of(HwTlasHeader scene, uint instance_id, uint primitive_id, 
     candidate.instance_index = instance_id;
     candidate.custom_index = custom_index;
     candidate.user_data = options.user_data;
-    if ((options.features & FEATURE_REMAP) != 0u && !is_null(scene.instances))
+    if ((options.features & FEATURE_REMAP) != 0u && !is_absent(scene.instances))
     {
         HwInstance instance = AT(scene.instances, instance_id);
         candidate.instance_index = instance.instance_index;

@@ -12,7 +12,7 @@ const uint LAST = 0x3fffffffu; // of what cannot be hit
 
 uint code_of(InstanceRecord record)
 {
-    if (is_null(record.geometry)) return LAST;
+    if (!has_geometry(record)) return LAST;
     GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);
     Rows to_world = to_world_of(record);
     if (!(box.lo.x <= box.hi.x) || !is_finite_map(to_world)) return LAST;

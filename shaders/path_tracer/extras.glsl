@@ -6,12 +6,12 @@
 // The first texture coordinates stand in where a mesh has no others.
 vec2 second_uv_of(VertexExtras extras, uint vertex, vec2 first)
 {
-    return is_null(extras.second_uvs) ? first : AT(extras.second_uvs, vertex);
+    return is_absent(extras.second_uvs) ? first : AT(extras.second_uvs, vertex);
 }
 
 vec4 color_of(VertexExtras extras, uint vertex)
 {
-    if (is_null(extras.colors)) return vec4(1.0);
+    if (is_absent(extras.colors)) return vec4(1.0);
     return AT(extras.colors, vertex);
 }
 #endif

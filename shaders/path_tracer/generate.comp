@@ -32,5 +32,5 @@ void main()
     AT(wave.paths.pdf, i) = 0.0;
     AT(wave.paths.pixel, i) = index;
     AT(wave.paths.progress, i) = 0u;
-    if (!is_null(wave.media)) AT(wave.media, i) = 0u;
+    if (!is_absent(wave.media)) AT(wave.media, i) = 0u;
 }

@@ -153,7 +153,7 @@ LightSample sample_light(SceneData scene, vec3 from, uvec2 choice, vec2 u)
 float emitter_pdf(SceneData scene, Hit hit, Surface surface, vec3 from, vec3 direction)
 {
     Floats density = AT(scene.instances, hit.instance_index).emitter_density;
-    if (is_null(density)) return 0.0;
+    if (is_absent(density)) return 0.0;
     vec3 way = surface.point.position - from;
     return (1.0 - scene.environment.chance) * AT(density, hit.primitive_index) * dot(way, way) /
            abs(dot(surface.point.normal, direction));

@@ -15,7 +15,7 @@ void main()
     uint i = global_index();
     if (i >= args.count) return;
     AT(args.vertices, i).position = load_vec3(args.positions, 3u * i);
-    if (!is_null(args.normals)) AT(args.vertices, i).normal = load_vec3(args.normals, 3u * i);
-    if (!is_null(args.tangents))
+    if (!is_absent(args.normals)) AT(args.vertices, i).normal = load_vec3(args.normals, 3u * i);
+    if (!is_absent(args.tangents))
         AT(args.vertices, i).tangent = vec4(load_vec3(args.tangents, 4u * i), AT(args.tangents, 4u * i + 3u));
 }

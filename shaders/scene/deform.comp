@@ -20,7 +20,7 @@ void store_vec3(Floats to, uint at, vec3 value)
 
 vec3 displaced(vec3 value, Floats displacements, uint vertex)
 {
-    if (is_null(displacements)) return value;
+    if (is_absent(displacements)) return value;
     for (uint i = 0u; i < args.target_count; ++i)
     {
         float weight = AT(args.target_weights, i);
@@ -75,13 +75,13 @@ vec3 times_cofactors(Rows m, vec3 v)
 void move_directions(Rows blend, bool is_skinned, uint vertex)
 {
     Rows m = scaled(blend);
-    if (!is_null(args.normals))
+    if (!is_absent(args.normals))
     {
         vec3 normal = displaced(load_vec3(args.normals, 3u * vertex), args.target_normals, vertex);
         if (is_skinned) normal = times_cofactors(m, normal);
         store_vec3(args.moved_normals, 3u * vertex, unit_or_zero(normal));
     }
-    if (!is_null(args.tangents))
+    if (!is_absent(args.tangents))
     {
         vec3 tangent = displaced(load_vec3(args.tangents, 4u * vertex), args.target_tangents, vertex);
         if (is_skinned) tangent = transform_vector(m, tangent);

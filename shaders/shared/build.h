@@ -152,8 +152,8 @@ FUNC vec3 center_of(LeafBox box)
     return center;
 }
 
-FUNC bool has_instances(BuildTree tree) { return is_null(tree.positions); }
-FUNC bool has_boxes(BuildTree tree) { return is_null(tree.indices); }
+FUNC bool has_instances(BuildTree tree) { return is_absent(tree.positions); }
+FUNC bool has_boxes(BuildTree tree) { return is_absent(tree.indices); }
 
 FUNC BvhTriangle fetch_primitive(BuildTree tree, uint primitive)
 {

@@ -43,7 +43,7 @@ FUNC SwTree top_tree(SwTlasHeader scene)
 {
     SwTree tree;
     tree.nodes = scene.bvh.nodes;
-    tree.triangles = REF(BvhTriangle)(NULL_ADDRESS);
+    tree.triangles = REF(BvhTriangle)(scene.instances.address) /* has none */;
     tree.records = scene.records;
     tree.root = scene.bvh.root;
     return tree;
@@ -62,7 +62,7 @@ FUNC bool is_binary(SwTlasHeader scene, TraceOptions options)
 {
     bool may_be = (options.features & FEATURE_BVH2) != 0u;
     bool may_have_records = (options.features & (FEATURE_COMPRESSED | FEATURE_COMPRESSED8)) != 0u;
-    return may_be && (!may_have_records || is_null(scene.records));
+    return may_be && (!may_have_records || is_absent(scene.records));
 }
 FUNC bool may_be_wide(TraceOptions options) { return (options.features & FEATURE_COMPRESSED8) != 0u; }
 FUNC bool is_surely_wide(TraceOptions options)

@@ -31,7 +31,7 @@ FUNC HitDouble exact_hit(REF(RefineInstance) instances, Ray64 ray, Hit hit)
     exact.u = double(hit.u);
     exact.v = double(hit.v);
     GivenMesh mesh = load_given_mesh(instances, hit.instance_index);
-    if (is_null(mesh.indices)) return exact;
+    if (is_absent(mesh.indices)) return exact;
     PlaneHit met = meet_plane(ray.origin, ray.direction, mesh, hit.primitive_index);
     if (met.det == double(0.0f)) return exact;
     exact.t = met.t;

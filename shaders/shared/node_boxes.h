@@ -12,14 +12,14 @@ struct AnyNode
     ChildSlots slots;
 };
 
-FUNC uint slots_of(SwGeometry geometry) { return is_null(geometry.records) ? 2u : 8u; }
+FUNC uint slots_of(SwGeometry geometry) { return is_absent(geometry.records) ? 2u : 8u; }
 
 FUNC AnyNode node_of(SwGeometry geometry, uint index)
 {
     AnyNode node;
     node.slots.first = 0u;
     node.slots.mask = 3u;
-    if (is_null(geometry.records))
+    if (is_absent(geometry.records))
     {
         node.binary = load_node(geometry.bvh.nodes, index);
         return node;
@@ -32,14 +32,14 @@ FUNC AnyNode node_of(SwGeometry geometry, uint index)
 
 FUNC uint child_in(SwGeometry geometry, AnyNode node, uint slot)
 {
-    if (is_null(geometry.records)) return child_of(node.binary, slot).child;
+    if (is_absent(geometry.records)) return child_of(node.binary, slot).child;
     return child_index(node.slots, slot);
 }
 
 // The box of a child as rays meet it.
 FUNC LeafBox box_in(SwGeometry geometry, AnyNode node, uint slot)
 {
-    if (!is_null(geometry.records)) return box_in_planes(node.record, node.second_half, slot);
+    if (!is_absent(geometry.records)) return box_in_planes(node.record, node.second_half, slot);
     BvhChild child = child_of(node.binary, slot);
     LeafBox box;
     box.lo = child.lo;
@@ -49,7 +49,7 @@ FUNC LeafBox box_in(SwGeometry geometry, AnyNode node, uint slot)
 
 FUNC bool is_inner_child(SwGeometry geometry, uint child)
 {
-    if (is_null(geometry.records)) return (child & LEAF_BIT) == 0u;
+    if (is_absent(geometry.records)) return (child & LEAF_BIT) == 0u;
     return !is_leaf(load_record(geometry.records, child));
 }
 #endif

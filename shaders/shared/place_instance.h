@@ -16,7 +16,7 @@ const uint CUT_STACK = 7u * (WIDE_CUT_LEVELS - 1u) + 1u; // nodes that wait: few
 
 FUNC uint cut_levels(SwGeometry geometry)
 {
-    if (is_null(geometry.records)) return BINARY_CUT_LEVELS;
+    if (is_absent(geometry.records)) return BINARY_CUT_LEVELS;
     return is_wide_node(load_record(geometry.records, geometry.bvh.root)) ? WIDE_CUT_LEVELS : CUT_LEVELS;
 }
 
@@ -139,7 +139,7 @@ FUNC SwInstance place_instance(InstanceRecord record, INOUT(LeafBox) box)
     instance.extent = 0.0f;
     instance.reserved = 0u;
     box = empty_box();
-    if (is_null(record.geometry) || !is_usable(to_world, to_object)) return instance;
+    if (!has_geometry(record) || !is_usable(to_world, to_object)) return instance;
     SwGeometry geometry = AT(REF(SwGeometry)(record.geometry), 0);
     instance.nodes = geometry.bvh.nodes;
     instance.triangles = geometry.triangles;

@@ -128,7 +128,7 @@ FUNC Hit refined(Hit hit, Ray ray, double advance, GivenMesh mesh)
 {
     PRECISE double moved = double(hit.t) + advance;
     hit.t = rounded_within(moved, ray);
-    if (is_null(mesh.indices)) return hit;
+    if (is_absent(mesh.indices)) return hit;
     dvec3 origin = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
     dvec3 direction = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
     PlaneHit met = meet_plane(origin, direction, mesh, hit.primitive_index);

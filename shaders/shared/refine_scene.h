@@ -43,16 +43,17 @@ struct RefineGatherArgs
 };
 
 // What refining needs of an instance, whose record is in built units.
-FUNC RefineInstance refine_instance(InstanceRecord record)
+// `absent`: the address that it gets in place of a mesh which is not there.
+FUNC RefineInstance refine_instance(InstanceRecord record, Address absent)
 {
     const float UP = 1.00000095367431640625f; // 1 + 2^-20: more than rounding to float32 takes
     Rows to_world = to_world_of(record);
     RefineInstance instance;
     for (uint row = 0u; row < 3u; row = row + 1u) instance.mesh.object_to_world[row] = record.object_to_world[row];
-    instance.mesh.positions = Floats(NULL_ADDRESS);
-    instance.mesh.indices = Uints(NULL_ADDRESS);
+    instance.mesh.positions = Floats(absent);
+    instance.mesh.indices = Uints(absent);
     instance.extent = 0.0f;
-    if (!is_null(record.geometry))
+    if (has_geometry(record))
     {
         GeometrySource mesh = AT(REF(GeometrySource)(address_after(record.geometry, GEOMETRY_SOURCE_OFFSET)), 0);
         GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);

@@ -54,5 +54,5 @@ struct TraceArgs
     uint first; // ray that the launch begins with
 };
 
-FUNC uint ray_at(Uints order, uint position) { return is_null(order) ? position : AT(order, position); }
+FUNC uint ray_at(Uints order, uint position) { return is_absent(order) ? position : AT(order, position); }
 #endif

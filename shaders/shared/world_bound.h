@@ -87,7 +87,7 @@ FUNC GeometryBox instance_box(InstanceRecord given, INOUT(bool) is_unusable)
     none.hi = vec3(-infinity);
     is_unusable = false;
     InstanceRecord record = in_built_units(given);
-    if (is_null(record.geometry)) return none;
+    if (!has_geometry(record)) return none;
     Rows to_world = to_world_of(record);
     is_unusable = !is_usable(to_world, inverse_of(to_world));
     if (is_unusable) return none;

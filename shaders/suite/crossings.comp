@@ -46,6 +46,6 @@ void main()
 {
     uint i = global_index();
     if (i >= push.count) return;
-    trace(push.scene, AT(push.rays, i), trace_options(0xffu, 0u, QUERY_CLOSEST));
+    trace(push.scene, AT(push.rays, i), trace_options(0xffu, 0u, QUERY_CLOSEST, absent_near(push.scene)));
     AT(push.counts, i) = crossings;
 }

@@ -9,7 +9,7 @@ layout(local_size_x_id = GROUP_SIZE_CONSTANT) in;
 layout(push_constant, scalar) uniform Push { DuplicateCodesArgs push; };
 #define args push.build
 
-uint tree_at(uint position) { return is_null(args.tree_of) ? 0u : AT(args.tree_of, AT(args.order, position)); }
+uint tree_at(uint position) { return is_absent(args.tree_of) ? 0u : AT(args.tree_of, AT(args.order, position)); }
 
 bool begins_duplicates(uint position)
 {

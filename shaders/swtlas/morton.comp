@@ -18,6 +18,6 @@ void main()
         uint leaf = chunk.first + i;
         LeafBox box = load_box(args.boxes, leaf);
         AT(args.codes, leaf) = is_active(box) ? morton_code(center_of(box), bounds.lo, bounds.hi) : INACTIVE_CODE;
-        if (!is_null(args.tree_of)) AT(args.tree_of, leaf) = chunk.tree;
+        if (!is_absent(args.tree_of)) AT(args.tree_of, leaf) = chunk.tree;
     }
 }

@@ -15,7 +15,7 @@ shared float sums[AREA_GROUP];
 
 float area_of(Bvh tree, float unit, uint index)
 {
-    if (!is_null(args.records)) return areas_in(args.records, index, unit);
+    if (!is_absent(args.records)) return areas_in(args.records, index, unit);
     BvhNode node = AT(tree.nodes, index);
     return half_area(node.lo0, node.hi0, unit) + half_area(node.lo1, node.hi1, unit);
 }

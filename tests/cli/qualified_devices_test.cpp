@@ -6,9 +6,10 @@
 namespace twinray::cli {
 namespace {
 
-DeviceProperties named(const char* name) {
+DeviceProperties named(const char* name, const char* driver = "") {
     DeviceProperties device;
     device.name = name;
+    device.driver = driver;
     return device;
 }
 
@@ -18,15 +19,21 @@ std::vector<std::string> names_of(const std::vector<QualifiedDevice>& devices) {
     return names;
 }
 
-TEST(QualifiedDevices, LavapipeHasEachWidthThatTheCpuHas) {
+TEST(QualifiedDevices, LavapipeBelowMesa26HasEachWidthThatTheCpuHas) {
     const std::vector<DeviceProperties> devices = {named("NVIDIA H100 (SXM)"),
-                                                   named("llvmpipe (LLVM 15.0.6, 256 bits)")};
+                                                   named("llvmpipe (LLVM 15.0.6, 256 bits)", "llvmpipe Mesa 25.0.7-2")};
     const std::vector<std::string> narrow = {"0-NVIDIA-H100", "1-llvmpipe-128", "1-llvmpipe-256"};
     std::vector<std::string> wide = narrow;
     wide.push_back("1-llvmpipe-512");
     EXPECT_EQ(names_of(devices_to_qualify(devices, false, {})), narrow);
     EXPECT_EQ(names_of(devices_to_qualify(devices, true, {})), wide);
     EXPECT_EQ(devices_to_qualify(devices, true, {})[1].environment.at("LP_NATIVE_VECTOR_WIDTH"), "128");
+}
+
+TEST(QualifiedDevices, LavapipeFromMesa26OnHasTheWidthThatItChooses) {
+    const std::vector<DeviceProperties> devices = {named("llvmpipe (LLVM 19.1.7, 256 bits)", "llvmpipe Mesa 26.1.6-1")};
+    EXPECT_EQ(names_of(devices_to_qualify(devices, true, {})), std::vector<std::string>{"0-llvmpipe"});
+    EXPECT_TRUE(devices_to_qualify(devices, true, {})[0].environment.empty());
 }
 
 TEST(QualifiedDevices, SwiftShaderJoinsUnlessTheLoaderHasIt) {

@@ -76,7 +76,7 @@ void Scene::build_refinement(std::span<const InstanceRecord> records) {
     refined_.clear();
     for (std::size_t i = 0; i < records.size(); ++i) {
         const BuiltGeometry& built = geometries_[placed_[i].first];
-        refined_.push_back(refine_instance(records[i]));
+        refined_.push_back(refine_instance(records[i], NULL_ADDRESS));
         if (instances_[i].root == NOTHING || !is_active(built.tree.box)) continue;
         const GeometryBox world = box_in_world({built.tree.box.lo, built.tree.box.hi}, to_world_of(records[i]));
         bound_ = {min(bound_.lo, world.lo), max(bound_.hi, world.hi)};

@@ -5,8 +5,8 @@
 
 // Where to find what only some accelerators keep.
 struct AccelHeader {
-    Address surfaces;    // of a SurfaceTable, or 0 without AccelOptions::keeps_surfaces
-    Address refinement;  // of a RefineScene, or 0 below Level::refined
+    Address surfaces;    // of a SurfaceTable, absent without AccelOptions::keeps_surfaces
+    Address refinement;  // of a RefineScene, absent below Level::refined
 };
 BUFFER_OF(AccelHeader, 8);
 #endif

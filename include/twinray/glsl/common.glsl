@@ -39,8 +39,11 @@ layout(constant_id = 105) const bool FUSED_FMA = false;
 // An integer of 64 bits that is no address, likewise two words.
 #define Uint64 uvec2
 const Address NULL_ADDRESS = Address(0u);
-// Whether it is 0.
-bool is_null(Address address) { return address == NULL_ADDRESS; }
+// Kernels get no address that cannot be read, since a driver may read through one before it knows that the branch around
+// the read is not taken. What is absent has an odd address (Context::absent): everything else begins at a multiple of 4.
+bool is_absent(Address address) { return (address.x & 1u) != 0u; }
+// The address of something absent, made of that of anything present.
+Address absent_near(Address present) { return Address(present.x | 1u, present.y); }
 // So many bytes behind it.
 Address address_after(Address base, uint bytes)
 {
@@ -62,7 +65,7 @@ Address address_at(Address base, uint index, uint stride)
     layout(buffer_reference, scalar, buffer_reference_align = alignment) qualifier buffer name##_buffer { contents; }; \
     struct name { Address address; }; \
     name##_buffer buffer_of(name ref) { return name##_buffer(ref.address); } \
-    bool is_null(name ref) { return is_null(ref.address); }
+    bool is_absent(name ref) { return is_absent(ref.address); }
 // The type of the address of items of type T, which BUFFER_OF declares.
 #define REF(T) T##_ref
 // Item i of what lies at an address; it can be read and written.

@@ -22,15 +22,17 @@ inline float uintBitsToFloat(uint bits) { return std::bit_cast<float>(bits); }
 inline uint floatBitsToUint(float value) { return std::bit_cast<uint>(value); }
 
 constexpr std::uint64_t NULL_ADDRESS = 0;
-inline bool is_null(std::uint64_t address) { return address == NULL_ADDRESS; }
+// On the host 0 stands for what is absent, too: kernels get Context::absent for it.
+inline bool is_absent(std::uint64_t address) { return address == NULL_ADDRESS || (address & 1) != 0; }
+inline std::uint64_t absent_near(std::uint64_t present) { return present | 1; }
 inline std::uint64_t address_after(std::uint64_t base, uint bytes) { return base + bytes; }
 inline std::uint64_t address_at(std::uint64_t base, uint index, uint stride) {
     return base + std::uint64_t{index} * stride;
 }
 
 template <class T>
-bool is_null(Ref<T> ref) {
-    return is_null(ref.address);
+bool is_absent(Ref<T> ref) {
+    return is_absent(ref.address);
 }
 
 using Vec2s = Ref<vec2>;

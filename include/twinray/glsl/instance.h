@@ -49,6 +49,9 @@ FUNC uint flags_of(InstanceRecord instance) { return instance.sbt_offset_flags >
 FUNC uint custom_index_of(InstanceRecord instance) { return instance.custom_index_mask & 0xffffffu; }  // 24 bits
 FUNC uint mask_of(InstanceRecord instance) { return instance.custom_index_mask >> 24u; }               // 8 bits
 
+// Whether a geometry is placed: kernels that write instances may take it away.
+FUNC bool has_geometry(InstanceRecord instance) { return instance.geometry != NULL_ADDRESS; }
+
 // From object space.
 FUNC Rows to_world_of(InstanceRecord instance) {
     Rows rows;
@@ -60,7 +63,7 @@ FUNC Rows to_world_of(InstanceRecord instance) {
 
 // The instance of what was built, not of what was given.
 FUNC InstanceRecord in_built_units(InstanceRecord instance) {
-    if (is_null(instance.geometry)) return instance;
+    if (!has_geometry(instance)) return instance;
     float scale = AT(REF(GeometrySource)(address_after(instance.geometry, GEOMETRY_SOURCE_OFFSET)), 0).scale;
     for (uint row = 0u; row < 3u; row = row + 1u) {
         vec4 r = instance.object_to_world[row];

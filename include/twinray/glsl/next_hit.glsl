@@ -34,7 +34,7 @@ bool next_hit(Address accel, Ray ray, uint mask, uint flags, inout Hit hit)
 {
     twinray_passed = hit;
     if (hit.hit != 0u) ray.t_min = uintBitsToFloat(floatBitsToUint(hit.t) - 1u);
-    TraceOptions options = trace_options(mask, flags | ALL_NON_OPAQUE, QUERY_CLOSEST);
+    TraceOptions options = trace_options(mask, flags | ALL_NON_OPAQUE, QUERY_CLOSEST, absent_near(accel));
     options.features |= FEATURE_FILTERS; // whatever the kernel was specialised for: accept_hit is one
     options.level = min(options.level, LEVEL_WATERTIGHT);
     hit = trace(accel, ray, options);

@@ -58,22 +58,21 @@ Hit trace(Address accel, Ray ray, TraceOptions options) { return trace_float32(a
 
 // Options of this kernel, with its level and features: mask of 8 bits, flags CULL_BACK, CULL_FRONT or 0, query
 // QUERY_CLOSEST or QUERY_ANY.
-TraceOptions trace_options(uint mask, uint flags, uint query)
+TraceOptions trace_options(uint mask, uint flags, uint query, Address user_data)
 {
     TraceOptions options;
+    options.user_data = user_data;
     options.mask = mask;
     options.flags = flags;
     options.query = query;
     options.level = TRACE_LEVEL;
     options.features = TRACE_FEATURES;
-    options.user_data = NULL_ADDRESS;
     return options;
 }
 
 // What closest_hit() and any_hit() do with their options: whether there is a hit.
-bool find_hit(Address accel, Ray ray, TraceOptions options, Address user_data, out Hit hit)
+bool find_hit(Address accel, Ray ray, TraceOptions options, out Hit hit)
 {
-    options.user_data = user_data;
     hit = trace(accel, ray, options);
     return hit.hit != 0u;
 }
@@ -82,28 +81,28 @@ bool find_hit(Address accel, Ray ray, TraceOptions options, Address user_data, o
 // user_data is for kernels with a program of their own (twinray/glsl/program.h), which finds it in its candidates.
 bool closest_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit)
 {
-    return find_hit(accel, ray, trace_options(mask, flags, QUERY_CLOSEST), user_data, hit);
+    return find_hit(accel, ray, trace_options(mask, flags, QUERY_CLOSEST, user_data), hit);
 }
 bool closest_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
 {
-    return closest_hit(accel, ray, mask, flags, NULL_ADDRESS, hit);
+    return closest_hit(accel, ray, mask, flags, absent_near(accel), hit);
 }
 bool closest_hit(Address accel, Ray ray, out Hit hit) { return closest_hit(accel, ray, 0xffu, 0u, hit); }
 
 // Any hit of them, whichever is found first. False: hit is a miss.
 bool any_hit(Address accel, Ray ray, uint mask, uint flags, Address user_data, out Hit hit)
 {
-    return find_hit(accel, ray, trace_options(mask, flags, QUERY_ANY), user_data, hit);
+    return find_hit(accel, ray, trace_options(mask, flags, QUERY_ANY, user_data), hit);
 }
 bool any_hit(Address accel, Ray ray, uint mask, uint flags, out Hit hit)
 {
-    return any_hit(accel, ray, mask, flags, NULL_ADDRESS, hit);
+    return any_hit(accel, ray, mask, flags, absent_near(accel), hit);
 }
 
 // Whether anything lies on the ray.
 bool any_hit(Address accel, Ray ray, uint mask, uint flags)
 {
-    TraceOptions options = trace_options(mask, flags, QUERY_ANY);
+    TraceOptions options = trace_options(mask, flags, QUERY_ANY, absent_near(accel));
     options.features &= ~FEATURE_HITS;
     return trace(accel, ray, options).hit != 0u;
 }

@@ -7,7 +7,7 @@
 
 // How many rays to trace: `count`, or what a kernel has written if that is less.
 FUNC uint ray_count(uint count, Uints indirect_count) {
-    if (is_null(indirect_count)) return count;
+    if (is_absent(indirect_count)) return count;
     uint written = AT(indirect_count, 0);
     return written < count ? written : count;
 }

@@ -67,9 +67,9 @@ uint face_metadata(Address accel, Hit hit)
     SurfaceTable table = surfaces_of(accel);
     uint custom_index = custom_index_of(AT(table.instances, hit.instance_index));
     Uints of_faces = surface_geometry(table, hit.instance_index).face_metadata;
-    return custom_index != 0u || is_null(of_faces) ? custom_index : AT(of_faces, hit.primitive_index);
+    return custom_index != 0u || is_absent(of_faces) ? custom_index : AT(of_faces, hit.primitive_index);
 }
-// Where MeshView::metadata of the geometry lies: AT(REF(T)(geometry_metadata(accel, hit)), 0). 0: it has none.
+// Where MeshView::metadata of the geometry lies: AT(REF(T)(geometry_metadata(accel, hit)), 0). is_absent(): it has none.
 Address geometry_metadata(Address accel, Hit hit)
 {
     return surface_geometry(surfaces_of(accel), hit.instance_index).metadata;

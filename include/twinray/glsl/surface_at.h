@@ -8,7 +8,7 @@
 
 // An array of a mesh: float32 numbers, `components` (1 to 4) a vertex, or a face.
 struct SurfaceAttribute {
-    Floats values;  // null: the mesh has none
+    Floats values;  // absent where the mesh has none
     uint components;
     uint is_per_face;
 };
@@ -26,8 +26,8 @@ const uint ATTRIBUTES_NAMED = 5u;
 // What one push brought.
 struct SurfaceGeometry {
     Uint64 handle;        // AccelHandle::id
-    Uints face_metadata;  // one a face, or null
-    Address metadata;     // MeshView::metadata, or 0
+    Uints face_metadata;  // one a face, or absent
+    Address metadata;     // MeshView::metadata, or absent
     uint first_instance;  // Hit::instance_index of its first instance
     uint face_count;
 };
@@ -121,10 +121,10 @@ FUNC vec4 interpolated(vec4 a, vec4 b, vec4 c, vec2 uv) {
     return sum;
 }
 
-// The array of an attribute by its number; its values are null where the mesh has none.
+// The array of an attribute by its number; its values are absent where the mesh has none.
 FUNC SurfaceAttribute attribute_of(SurfacePlace place, uint number) {
     SurfaceAttribute none;
-    none.values = Floats(NULL_ADDRESS);
+    none.values = Floats(absent_near(place.attributes.address));
     none.components = 1u;
     none.is_per_face = 0u;
     if (number >= place.attribute_count) return none;
@@ -145,14 +145,14 @@ FUNC vec4 interpolated_attribute(SurfaceAttribute array, uint components, Surfac
 // fewer than four components is followed by 0, 0, 1.
 FUNC vec4 attribute_at(SurfacePlace place, uint number, vec4 missing) {
     SurfaceAttribute array = attribute_of(place, number);
-    if (is_null(array.values)) return missing;
+    if (is_absent(array.values)) return missing;
     return interpolated_attribute(array, array.components, place);
 }
 
 // Texture coordinates by their attribute number, interpolated; (0, 0) where the mesh has none.
 FUNC vec2 uv_at(SurfacePlace place, uint number) {
     SurfaceAttribute array = attribute_of(place, number);
-    if (is_null(array.values)) return vec2(0.0f, 0.0f);
+    if (is_absent(array.values)) return vec2(0.0f, 0.0f);
     vec4 uv = interpolated_attribute(array, 2u, place);
     return vec2(uv.x, uv.y);
 }
@@ -164,7 +164,7 @@ FUNC vec2 uv1_at(SurfacePlace place) { return uv_at(place, ATTRIBUTE_UV1); }
 // Colour of the vertices, interpolated, as it was pushed; (1, 1, 1, 1) where the mesh has none.
 FUNC vec4 color_at(SurfacePlace place) {
     SurfaceAttribute array = attribute_of(place, ATTRIBUTE_COLORS);
-    if (is_null(array.values)) return vec4(1.0f, 1.0f, 1.0f, 1.0f);
+    if (is_absent(array.values)) return vec4(1.0f, 1.0f, 1.0f, 1.0f);
     return interpolated_attribute(array, 4u, place);
 }
 
@@ -181,7 +181,7 @@ FUNC vec3 unit_or(vec3 v, vec3 otherwise) {
 FUNC vec3 object_normal(SurfacePlace place, vec3 of_triangle) {
     vec3 zero = vec3(0.0f, 0.0f, 0.0f);
     SurfaceAttribute normals = attribute_of(place, ATTRIBUTE_NORMALS);
-    if (is_null(normals.values)) return of_triangle;
+    if (is_absent(normals.values)) return of_triangle;
     vec3 a = xyz(load_attribute(normals, 3u, place.indices.x));
     vec3 b = xyz(load_attribute(normals, 3u, place.indices.y));
     vec3 c = xyz(load_attribute(normals, 3u, place.indices.z));
@@ -194,7 +194,7 @@ FUNC vec3 object_normal(SurfacePlace place, vec3 of_triangle) {
 
 // Unit, world space: interpolated vertex normals by the inverse transpose, on the side of point.normal.
 FUNC vec3 normal_at(SurfacePlace place, SurfacePoint point) {
-    if (is_null(attribute_of(place, ATTRIBUTE_NORMALS).values)) return point.normal;
+    if (is_absent(attribute_of(place, ATTRIBUTE_NORMALS).values)) return point.normal;
     vec3 normal = object_normal(place, point.normal_object);
     vec3 world = unit_or(transposed_times(place.placement.to_object, normal), point.normal);
     return dot(world, point.normal) < 0.0f ? -world : world;
@@ -205,7 +205,7 @@ FUNC vec3 normal_at(SurfacePlace place, SurfacePoint point) {
 FUNC vec4 tangent_at(SurfacePlace place, SurfacePoint point, vec3 normal) {
     vec4 none = vec4(0.0f, 0.0f, 0.0f, 0.0f);
     SurfaceAttribute tangents = attribute_of(place, ATTRIBUTE_TANGENTS);
-    if (is_null(tangents.values)) return none;
+    if (is_absent(tangents.values)) return none;
     vec4 tangent = interpolated_attribute(tangents, 4u, place);
     vec3 world = unit_or(transform_vector(place.placement.to_world, xyz(tangent)), xyz(none));
     if (world == xyz(none)) return none;
@@ -219,7 +219,7 @@ FUNC vec4 tangent_at(SurfacePlace place, SurfacePoint point, vec3 normal) {
 // The instance's custom index where that is not 0, else what the face was given, else 0.
 FUNC uint face_metadata_at(SurfacePlace place) {
     if (place.custom_index != 0u) return place.custom_index;
-    if (is_null(place.geometry.face_metadata)) return 0u;
+    if (is_absent(place.geometry.face_metadata)) return 0u;
     return AT(place.geometry.face_metadata, place.primitive_index);
 }
 

@@ -20,7 +20,7 @@ void main()
     if (i >= push.count) return;
     SwTlasHeader header = AT(REF(SwTlasHeader)(push.accel), 0);
     SwInstance instance = load_instance(header.instances, 0u);
-    if (!is_null(push.records))
+    if (!is_absent(push.records))
     {
         AT(push.records, i) = AT(instance.records, i);
         return;

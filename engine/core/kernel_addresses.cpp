@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "engine/core/kernel_addresses.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <map>
+
+#include "engine/core/context.h"
+#include "engine/core/error.h"
+
+namespace twinray {
+namespace {
+
+using Words = std::span<const std::uint32_t>;
+
+// Numbers of the SPIR-V specification.
+enum Op : std::uint32_t {
+    Name = 5,
+    MemberName = 6,
+    TypeStruct = 30,
+    TypePointer = 32,
+    Function = 54,
+    Variable = 59,
+    MemberDecorate = 72,
+};
+constexpr std::uint32_t decoration_offset = 35, storage_push_constant = 9;
+constexpr std::size_t header_words = 5;
+
+struct Member {
+    std::string name;
+    std::uint32_t type = 0, offset = 0;
+};
+
+// What a module declares before its functions.
+class Declarations {
+  public:
+    explicit Declarations(Words spirv) {
+        for (std::size_t at = header_words; at < spirv.size(); at += spirv[at] >> 16) {
+            if ((spirv[at] & 0xffffu) == Function) return;
+            take(spirv.subspan(at, spirv[at] >> 16));
+        }
+    }
+    std::vector<KernelAddress> addresses() const {
+        std::vector<KernelAddress> found;
+        if (pushed_ != 0) collect(pushed_, "", 0, found);
+        return found;
+    }
+
+  private:
+    void take(Words words) {
+        switch (words[0] & 0xffffu) {
+            case MemberName:
+                structs_[words[1]][words[2]].name = reinterpret_cast<const char*>(words.data() + 3);
+                return;
+            case MemberDecorate:
+                if (words[3] == decoration_offset) structs_[words[1]][words[2]].offset = words[4];
+                return;
+            case TypeStruct:
+                for (std::uint32_t i = 2; i < words.size(); ++i) structs_[words[1]][i - 2].type = words[i];
+                return;
+            case TypePointer: pointees_[words[1]] = words[3]; return;
+            case Variable:
+                if (words[3] == storage_push_constant) pushed_ = pointees_[words[1]];
+                return;
+            default: return;
+        }
+    }
+
+    // As REFERENCE of twinray/glsl/common.glsl declares it.
+    static bool is_ref(const std::map<std::uint32_t, Member>& members) {
+        return members.size() == 1 && members.begin()->second.name == "address";
+    }
+    void collect(std::uint32_t type, const std::string& name, std::uint32_t offset,
+                 std::vector<KernelAddress>& found) const {
+        const auto members = structs_.find(type);
+        if (members == structs_.end()) return;
+        if (is_ref(members->second)) return found.push_back({name, offset});
+        for (const auto& [index, member] : members->second)
+            collect(member.type, name.empty() ? member.name : name + "." + member.name, offset + member.offset, found);
+    }
+
+    std::map<std::uint32_t, std::map<std::uint32_t, Member>> structs_;  // by id, by index
+    std::map<std::uint32_t, std::uint32_t> pointees_;
+    std::uint32_t pushed_ = 0;
+};
+
+// Whether the host has memory there.
+bool is_mapped(std::uint64_t address) {
+    const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+    return msync(reinterpret_cast<void*>(address / page * page), 1, MS_ASYNC) == 0;
+}
+
+}  // namespace
+
+std::vector<KernelAddress> kernel_addresses(std::span<const std::uint32_t> spirv) {
+    return Declarations(spirv).addresses();
+}
+
+std::vector<std::byte> readable_args(Context& context, const std::string& kernel,
+                                     std::span<const KernelAddress> addresses, std::span<const std::byte> args) {
+    std::vector<std::byte> readable(args.begin(), args.end());
+    const std::uint64_t absent = context.absent();
+    const bool is_checked = context.state().is_validating() && context.properties().kind == DeviceKind::cpu;
+    for (const KernelAddress& member : addresses) {
+        std::byte* const at = readable.data() + member.offset;
+        std::uint64_t address = 0;
+        std::memcpy(&address, at, sizeof(address));
+        if (address == 0) std::memcpy(at, &absent, sizeof(absent));
+        if (is_checked && address != 0 && !is_mapped(address))
+            context.state().warn(text("kernel '", kernel, "': nothing can be read at its '", member.name, "', ", address));
+    }
+    return readable;
+}
+
+}  // namespace twinray

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// The addresses among the arguments of a kernel. Some drivers read through an address before they know that the branch
+// around the read is not taken (lavapipe from Mesa 26.1 on), so a kernel never gets one that cannot be read: where the
+// host gives 0 for something absent, the kernel gets Context::absent.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <twinray/context.h>
+
+namespace twinray {
+
+// An address in the push constants of a kernel.
+struct KernelAddress {
+    std::string name;  // of the member, as "mesh.indices"
+    std::uint32_t offset = 0;
+};
+
+// All members of type REF(T), by the names that glslang leaves in a module. Members of type Address are not told from
+// other pairs of words; hosts never leave those 0.
+std::vector<KernelAddress> kernel_addresses(std::span<const std::uint32_t> spirv);
+
+// Arguments with Context::absent in place of 0. In a context with ContextDesc::validation it also logs each address at
+// which nothing can be read, with the kernel's name, where addresses are those of the host, as on a CPU.
+std::vector<std::byte> readable_args(Context& context, const std::string& kernel,
+                                     std::span<const KernelAddress> addresses, std::span<const std::byte> args);
+
+}  // namespace twinray
