@@ -81,6 +81,7 @@ struct Context::State {
 
     void warn(std::string_view message) const;
     std::vector<std::string> validation_messages() const;
+    void add_validation_message(const std::string& message);  // any thread
     void set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const;
 
   private:

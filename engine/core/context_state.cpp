@@ -298,14 +298,17 @@ void Context::State::set_name(VkObjectType type, std::uint64_t handle, const std
     vk_.vkSetDebugUtilsObjectNameEXT(device_, &info);
 }
 
+void Context::State::add_validation_message(const std::string& message) {
+    {
+        const std::lock_guard lock(messages_mutex_);
+        messages_.push_back(message);
+    }
+    warn(message);
+}
+
 VkBool32 VKAPI_PTR Context::State::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                               const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
-    State& context = *static_cast<State*>(user);
-    {
-        const std::lock_guard lock(context.messages_mutex_);
-        context.messages_.emplace_back(data->pMessage);
-    }
-    context.warn(data->pMessage);
+    static_cast<State*>(user)->add_validation_message(data->pMessage);
     return VK_FALSE;
 }
 

@@ -107,9 +107,11 @@ std::vector<std::byte> readable_args(Context& context, const std::string& kernel
         std::byte* const at = readable.data() + member.offset;
         std::uint64_t address = 0;
         std::memcpy(&address, at, sizeof(address));
-        if (address == 0) std::memcpy(at, &absent, sizeof(absent));
-        if (is_checked && address != 0 && !is_mapped(address))
-            context.state().warn(text("kernel '", kernel, "': nothing can be read at its '", member.name, "', ", address));
+        if (address == 0) address = absent;
+        std::memcpy(at, &address, sizeof(address));
+        if (is_checked && !is_mapped(address))
+            context.state().add_validation_message(
+                text("kernel '", kernel, "': nothing can be read at '", member.name, "', address ", address));
     }
     return readable;
 }

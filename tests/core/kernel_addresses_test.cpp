@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// No kernel gets an address that cannot be read. Every test of a VulkanTest checks it for each dispatch that it makes, by
+// a validation message; here it is seen that the message comes.
+#include "engine/core/kernel_addresses.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include <twinray/tlas.h>
+#include "engine/accel/trace_args.h"
+#include "engine/core/error.h"
+#include "swtlas_trace.spv.h"
+#include "tests/support/device.h"
+#include "twinray/glsl/cpp.h"
+
+namespace twinray {
+namespace {
+
+const KernelAddress& named(const std::vector<KernelAddress>& addresses, const std::string& name) {
+    for (const KernelAddress& address : addresses)
+        if (address.name.ends_with(name)) return address;
+    throw Error(text("no address '", name, "'"));
+}
+
+TEST(KernelAddresses, AreFoundInAModule) {
+    const std::vector<KernelAddress> found = kernel_addresses(swtlas_trace_spirv);
+    EXPECT_EQ(found.size(), 4u);  // scene and user_data are of type Address
+    EXPECT_EQ(named(found, "rays").offset, offsetof(TraceArgs, rays));
+    EXPECT_EQ(named(found, "hits").offset, offsetof(TraceArgs, hits));
+    EXPECT_EQ(named(found, "indirect_count").offset, offsetof(TraceArgs, indirect_count));
+    EXPECT_EQ(named(found, "order").offset, offsetof(TraceArgs, order));
+}
+
+TraceArgs readable(Context& context, const TraceArgs& args) {
+    const std::vector<std::byte> bytes = readable_args(context, "a kernel", kernel_addresses(swtlas_trace_spirv),
+                                                       std::as_bytes(std::span(&args, 1)));
+    TraceArgs result;
+    std::memcpy(&result, bytes.data(), sizeof(result));
+    return result;
+}
+
+using KernelAddressesOnDevice = test::VulkanTest;
+
+TEST_F(KernelAddressesOnDevice, ThatAreAbsentCanBeRead) {
+    const Buffer rays(context(), {.name = "rays", .bytes = sizeof(Ray)});
+    TraceArgs args{};
+    args.rays = rays.ref<Ray>();
+    args.count = 7;
+    const TraceArgs given = readable(context(), args);
+    EXPECT_EQ(given.rays.address, rays.address());
+    EXPECT_EQ(given.order.address, context().absent());
+    EXPECT_EQ(given.indirect_count.address, context().absent());
+    EXPECT_EQ(given.count, 7u);
+    EXPECT_TRUE(is_absent(given.order));
+    EXPECT_FALSE(is_absent(given.rays));
+}
+
+TEST(KernelAddressesOfACpu, ThatCannotBeReadAreNamed) {
+    const std::unique_ptr<Context> context = test::make_context({.log = [](std::string_view) {}});
+    if (!context) return;
+    if (context->properties().kind != DeviceKind::cpu) GTEST_SKIP() << "needs a device with addresses of the host";
+    TraceArgs args{};
+    args.order.address = 64;
+    readable(*context, args);
+    const std::vector<std::string> messages = context->validation_messages();
+    ASSERT_EQ(messages.size(), 1u);
+    EXPECT_NE(messages[0].find("kernel 'a kernel': nothing can be read at 'args.order', address 64"), std::string::npos)
+        << messages[0];
+}
+
+TEST_F(KernelAddressesOnDevice, OfWhatIsAbsentLeadBackToIt) {
+    if (context().properties().kind != DeviceKind::cpu) GTEST_SKIP() << "needs a device with addresses of the host";
+    std::uint64_t part = 0;
+    for (const std::uint64_t offset : {0, 8, 64, 1024}) {
+        std::memcpy(&part, reinterpret_cast<const void*>(context().absent() + offset), sizeof(part));
+        EXPECT_EQ(part, context().absent());
+    }
+}
+
+}  // namespace
+}  // namespace twinray
