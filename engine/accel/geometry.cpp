@@ -81,7 +81,7 @@ Geometry::Geometry(const BoxesView& view)
 
 InstanceRecord make_instance_record(const Transform& transform, const InstanceOptions& options) {
     InstanceRecord record{};
-    for (int row = 0; row < 3; ++row) record.object_to_world[row] = transform.rows[static_cast<std::size_t>(row)];
+    record.object_to_world = {transform.rows[0], transform.rows[1], transform.rows[2]};
     record.custom_index_mask = options.custom_index | (uint{options.mask} << 24);
     record.sbt_offset_flags = (options.disable_culling ? INSTANCE_DISABLE_CULLING << 24 : 0) |
                               (options.flip_facing ? INSTANCE_FLIP_FACING << 24 : 0) |
@@ -98,7 +98,8 @@ InstanceOptions options_of(const InstanceRecord& record) {
 }
 
 Transform transform_of(const InstanceRecord& record) {
-    return {{record.object_to_world[0], record.object_to_world[1], record.object_to_world[2]}};
+    const Rows& rows = record.object_to_world;
+    return {{rows.r0, rows.r1, rows.r2}};
 }
 
 }  // namespace twinray

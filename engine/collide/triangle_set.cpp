@@ -83,7 +83,7 @@ InstancedMesh on_host(const MeshView& mesh, std::span<const uint> ids) {
 }
 
 InstancedMesh instanced(InstancedMesh mesh, const Transform& transform, std::size_t first_triangle) {
-    std::copy(transform.rows.begin(), transform.rows.end(), mesh.object_to_world);
+    mesh.object_to_world = {transform.rows[0], transform.rows[1], transform.rows[2]};
     mesh.first_triangle = static_cast<uint>(first_triangle);
     mesh.is_mirrored = determinant(transform) < 0 ? 1 : 0;
     return mesh;

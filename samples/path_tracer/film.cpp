@@ -33,13 +33,23 @@ double luminance_of(const FilmPixel& pixel, uint block_size) {
     return pixel.count ? luminance_sum(pixel) / block_size / pixel.count : 0;
 }
 
+uvec2 digit_of(const FilmDigits& digits, uint sum) {
+    const uvec2 all[] = {digits.red, digits.green, digits.blue, digits.square};
+    return all[sum];
+}
+
+void add_digits(FilmDigits& digits, const FilmDigits& other) {
+    digits.red = add64(digits.red, other.red);
+    digits.green = add64(digits.green, other.green);
+    digits.blue = add64(digits.blue, other.blue);
+    digits.square = add64(digits.square, other.square);
+}
+
 void merge_pixel(FilmPixel& pixel, FilmPixel other) {
     film_raise_all(pixel, other.positions & 0xffffu, other.positions >> 16);
     film_raise_all(other, pixel.positions & 0xffffu, pixel.positions >> 16);
-    for (uint i = 0; i <= FILM_SQUARES; ++i) {
-        pixel.high[i] = add64(pixel.high[i], other.high[i]);
-        pixel.low[i] = add64(pixel.low[i], other.low[i]);
-    }
+    add_digits(pixel.high, other.high);
+    add_digits(pixel.low, other.low);
     pixel.count += other.count;
 }
 
@@ -149,8 +159,8 @@ double sum_of(const FilmPixel& pixel, uint sum) {
     const bool is_square = sum == FILM_SQUARES;
     const int position = static_cast<int>(is_square ? pixel.positions >> 16 : pixel.positions & 0xffffu);
     const int unit = static_cast<int>(FILM_DIGIT_BITS) * position - (is_square ? 298 : 149);
-    const auto high = number_of(pixel.high[sum]);
-    const auto low = number_of(pixel.low[sum]);
+    const auto high = number_of(digit_of(pixel.high, sum));
+    const auto low = number_of(digit_of(pixel.low, sum));
     return std::ldexp(high, unit + static_cast<int>(FILM_DIGIT_BITS)) + std::ldexp(low, unit);
 }
 

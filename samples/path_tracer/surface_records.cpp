@@ -82,12 +82,9 @@ std::vector<SurfaceMaterial> material_records(const Scene& scene, TextureList& t
 }
 
 SurfaceInstance instance_record(const Transform& transform) {
-    const Rows inverse = inverse_of({transform.rows[0], transform.rows[1], transform.rows[2]});
     SurfaceInstance record{};
-    for (std::size_t i = 0; i < 3; ++i) record.object_to_world[i] = transform.rows[i];
-    record.world_to_object[0] = inverse.r0;
-    record.world_to_object[1] = inverse.r1;
-    record.world_to_object[2] = inverse.r2;
+    record.object_to_world = {transform.rows[0], transform.rows[1], transform.rows[2]};
+    record.world_to_object = inverse_of(record.object_to_world);
     return record;
 }
 

@@ -7,7 +7,7 @@
 
 struct FacesOfInstance
 {
-    vec4 object_to_world[3];
+    Rows object_to_world;
     Floats positions; // 3 tightly packed floats a vertex, in object space
     Uints indices;    // 3 a triangle
     uint first;       // face of triangle 0
@@ -28,21 +28,12 @@ FUNC uint face_of(FaceTable table, Hit hit)
     return AT(table.instances, hit.instance_index).first + hit.primitive_index;
 }
 
-FUNC Rows to_world_of(FacesOfInstance instance)
-{
-    Rows rows;
-    rows.r0 = instance.object_to_world[0];
-    rows.r1 = instance.object_to_world[1];
-    rows.r2 = instance.object_to_world[2];
-    return rows;
-}
-
 // The point (1-u-v) v0 + u v1 + v v2 of a face, in world space, with what it takes to leave it.
 FUNC SurfacePoint point_on_face(FaceTable table, uint face, vec2 uv)
 {
     Face which = AT(table.faces, face);
     FacesOfInstance instance = AT(table.instances, which.instance);
-    return surface_point(placement_of(to_world_of(instance)),
+    return surface_point(placement_of(instance.object_to_world),
                          vertices_of(instance.positions, instance.indices, which.primitive), uv);
 }
 
@@ -56,6 +47,6 @@ FUNC bool meets_front(FaceTable table, uint face, vec3 direction)
     vec3 edge2 = vertices.c - vertices.a;
     float scale = power_of_two_below(max(largest_entry(edge1), largest_entry(edge2)));
     vec3 normal = cross_precise(edge1 / scale, edge2 / scale);
-    return dot(transform_vector(inverse_of(to_world_of(instance)), direction), normal) < 0.0f;
+    return dot(transform_vector(inverse_of(instance.object_to_world), direction), normal) < 0.0f;
 }
 #endif

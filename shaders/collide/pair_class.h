@@ -22,7 +22,7 @@ BUFFER_OF(WorldTriangle, 8);
 // A mesh where an instance puts it, and which of all triangles are its.
 struct InstancedMesh
 {
-    vec4 object_to_world[3];
+    Rows object_to_world;
     Floats positions;
     Uints indices;
     Uints vertex_ids;    // of each vertex: those with one id are one; null: each is its own

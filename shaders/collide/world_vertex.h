@@ -18,8 +18,8 @@ FUNC dvec3 world_vertex(InstancedMesh mesh, uint vertex)
 {
     dvec3 p = dvec3(widened(AT(mesh.positions, 3u * vertex)), widened(AT(mesh.positions, 3u * vertex + 1u)),
                     widened(AT(mesh.positions, 3u * vertex + 2u)));
-    return dvec3(world_coordinate(mesh.object_to_world[0], p), world_coordinate(mesh.object_to_world[1], p),
-                 world_coordinate(mesh.object_to_world[2], p));
+    Rows rows = mesh.object_to_world;
+    return dvec3(world_coordinate(rows.r0, p), world_coordinate(rows.r1, p), world_coordinate(rows.r2, p));
 }
 
 FUNC uvec3 indices_of(InstancedMesh mesh, uint primitive)

@@ -22,7 +22,8 @@ void main()
     AT(args.answers, i).primitive = gl_PrimitiveID;
     AT(args.answers, i).object_origin = gl_ObjectRayOriginEXT;
     AT(args.answers, i).object_direction = gl_ObjectRayDirectionEXT;
-    for (uint column = 0u; column < 4u; ++column) AT(args.answers, i).to_world[column] = gl_ObjectToWorldEXT[column];
+    AT(args.answers, i).to_world = Columns(gl_ObjectToWorldEXT[0], gl_ObjectToWorldEXT[1], gl_ObjectToWorldEXT[2],
+                                           gl_ObjectToWorldEXT[3]);
     if (is_triangle)
     {
         AT(args.answers, i).is_front = is_front ? 1u : 0u;

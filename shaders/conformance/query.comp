@@ -66,7 +66,7 @@ void read_committed(rayQueryEXT query, inout Answer answer)
     answer.object_origin = rayQueryGetIntersectionObjectRayOriginEXT(query, true);
     answer.object_direction = rayQueryGetIntersectionObjectRayDirectionEXT(query, true);
     mat4x3 to_world = rayQueryGetIntersectionObjectToWorldEXT(query, true);
-    for (uint column = 0u; column < 4u; ++column) answer.to_world[column] = to_world[column];
+    answer.to_world = Columns(to_world[0], to_world[1], to_world[2], to_world[3]);
     if (!is_triangle) return;
     answer.is_front = rayQueryGetIntersectionFrontFaceEXT(query, true) ? 1u : 0u;
     answer.uv = rayQueryGetIntersectionBarycentricsEXT(query, true);
@@ -81,7 +81,7 @@ Answer nothing()
     answer.is_front = 0u;
     answer.uv = vec2(0.0f);
     answer.object_origin = answer.object_direction = vec3(0.0f);
-    for (uint column = 0u; column < 4u; ++column) answer.to_world[column] = vec3(0.0f);
+    answer.to_world = Columns(vec3(0.0f), vec3(0.0f), vec3(0.0f), vec3(0.0f));
     answer.triangles = answer.boxes = answer.opaque_boxes = answer.outside = 0u;
     return answer;
 }

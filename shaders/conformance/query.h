@@ -23,6 +23,15 @@ const uint ANSWER_MISS = 0u;
 const uint ANSWER_TRIANGLE = 1u;
 const uint ANSWER_BOX = 2u;
 
+// A map.
+struct Columns
+{
+    vec3 c0;
+    vec3 c1;
+    vec3 c2;
+    vec3 c3;
+};
+
 // What was committed, and how many candidates came up on the way. A miss has zeros but for the candidates.
 struct Answer
 {
@@ -37,7 +46,7 @@ struct Answer
     vec2 uv;
     vec3 object_origin;
     vec3 object_direction;
-    vec3 to_world[4];      // columns
+    Columns to_world;
     uint triangles;        // candidates
     uint boxes;
     uint opaque_boxes;     // of them, those that were called opaque; OPACITY_UNKNOWN where nobody is told

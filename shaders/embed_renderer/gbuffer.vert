@@ -34,8 +34,8 @@ void main()
         object_normal = cross(AT(instance.vertices, corners.y).position - a,
                               AT(instance.vertices, corners.z).position - a);
     }
-    gl_Position = projected(transform_point(to_world_of(instance), vertex.position));
-    normal = normalize(transposed_times(to_object_of(instance), object_normal));
+    gl_Position = projected(transform_point(instance.object_to_world, vertex.position));
+    normal = normalize(transposed_times(instance.world_to_object, object_normal));
     uv = vec4(vertex.uv, vertex.uv);
     color = vec3(1.0);
     if (!is_absent(AT(args.frame, 0).extras))

@@ -15,22 +15,4 @@
 #include "twinray/glsl/sampling.h"
 #include "shaders/path_tracer/camera.h"
 #include "shaders/embed_renderer/frame.h"
-
-Rows to_world_of(SurfaceInstance instance)
-{
-    Rows rows;
-    rows.r0 = instance.object_to_world[0];
-    rows.r1 = instance.object_to_world[1];
-    rows.r2 = instance.object_to_world[2];
-    return rows;
-}
-
-Rows to_object_of(SurfaceInstance instance)
-{
-    Rows rows;
-    rows.r0 = instance.world_to_object[0];
-    rows.r1 = instance.world_to_object[1];
-    rows.r2 = instance.world_to_object[2];
-    return rows;
-}
 #endif

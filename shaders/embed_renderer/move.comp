@@ -18,14 +18,7 @@ void main()
     rows.r0 = vec4(args.radius, 0.0, 0.0, at.x);
     rows.r1 = vec4(0.0, args.radius, 0.0, at.y);
     rows.r2 = vec4(0.0, 0.0, args.radius, at.z);
-    Rows inverse = inverse_of(rows);
-    AT(args.records, i).object_to_world[0] = rows.r0;
-    AT(args.records, i).object_to_world[1] = rows.r1;
-    AT(args.records, i).object_to_world[2] = rows.r2;
-    AT(args.instances, i).object_to_world[0] = rows.r0;
-    AT(args.instances, i).object_to_world[1] = rows.r1;
-    AT(args.instances, i).object_to_world[2] = rows.r2;
-    AT(args.instances, i).world_to_object[0] = inverse.r0;
-    AT(args.instances, i).world_to_object[1] = inverse.r1;
-    AT(args.instances, i).world_to_object[2] = inverse.r2;
+    AT(args.records, i).object_to_world = rows;
+    AT(args.instances, i).object_to_world = rows;
+    AT(args.instances, i).world_to_object = inverse_of(rows);
 }

@@ -25,8 +25,8 @@ SurfacePoint visible_point(CameraRays camera, vec3 direction, uvec2 ids)
     SurfaceInstance instance = AT(AT(args.frame, 0).instances, ids.x);
     uvec3 indices = AT(instance.triangles, ids.y).vertices;
     Placement placement;
-    placement.to_world = to_world_of(instance);
-    placement.to_object = to_object_of(instance);
+    placement.to_world = instance.object_to_world;
+    placement.to_object = instance.world_to_object;
     TriangleVertices vertices;
     vertices.a = AT(instance.vertices, indices.x).position;
     vertices.b = AT(instance.vertices, indices.y).position;

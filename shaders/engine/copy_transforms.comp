@@ -11,7 +11,6 @@ void main()
 {
     uint index = global_index();
     if (index >= args.count) return;
-    AT(args.records, index).object_to_world[0] = AT(args.rows, 3u * index);
-    AT(args.records, index).object_to_world[1] = AT(args.rows, 3u * index + 1u);
-    AT(args.records, index).object_to_world[2] = AT(args.rows, 3u * index + 2u);
+    AT(args.records, index).object_to_world =
+        Rows(AT(args.rows, 3u * index), AT(args.rows, 3u * index + 1u), AT(args.rows, 3u * index + 2u));
 }

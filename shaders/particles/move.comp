@@ -23,8 +23,8 @@ void main()
     }
     AT(args.particles.position, i) = position;
     AT(args.particles.velocity, i) = velocity;
-    AT(args.instances, i).object_to_world[0] = vec4(radius, 0.0, 0.0, position.x);
-    AT(args.instances, i).object_to_world[1] = vec4(0.0, radius, 0.0, position.y);
-    AT(args.instances, i).object_to_world[2] = vec4(0.0, 0.0, radius, position.z);
+    AT(args.instances, i).object_to_world.r0 = vec4(radius, 0.0, 0.0, position.x);
+    AT(args.instances, i).object_to_world.r1 = vec4(0.0, radius, 0.0, position.y);
+    AT(args.instances, i).object_to_world.r2 = vec4(0.0, 0.0, radius, position.z);
     AT(args.materials.heat, i) = heat_material(i, velocity, args.max_speed);
 }

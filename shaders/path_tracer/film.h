@@ -10,16 +10,25 @@
 #include "twinray/glsl/word64.h"
 
 const uint FILM_DIGIT_BITS = 40u; // 2^23 numbers fit into a sum of 64 bits with a sign
-const uint FILM_SQUARES = 3u;     // index of their sum
+const uint FILM_SQUARES = 3u;     // the number of their sum, behind red, green and blue
+
+// Of the sums of a block's red, green and blue, and of its luminance squared.
+struct FilmDigits
+{
+    uvec2 red;
+    uvec2 green;
+    uvec2 blue;
+    uvec2 square;
+};
 
 // 72 bytes. A sum is (high * 2^40 + low) * 2^(40 position), in two's complement, in units of 2^-149 for colors and of
 // 2^-298 for squares.
 struct FilmPixel
 {
-    uint count;       // of the blocks that were added
-    uint positions;      // low half: of the color sums; high half: of the sum of squares
-    uvec2 high[4]; // of a block's red, green and blue, and of its luminance squared
-    uvec2 low[4];
+    uint count;     // of the blocks that were added
+    uint positions; // low half: of the color sums; high half: of the sum of squares
+    FilmDigits high;
+    FilmDigits low;
 };
 BUFFER_OF(FilmPixel, 8);
 
@@ -44,44 +53,47 @@ FUNC uvec2 film_digit(uvec2 mantissa, uint shift, uint position)
 }
 
 // What lies below the positions is left out; a sum whose position is not lower already stays.
-FUNC void film_raise(INOUT(FilmPixel) pixel, uint sum, uint from, uint to)
+FUNC void film_raise(INOUT(uvec2) high, INOUT(uvec2) low, uint from, uint to)
 {
     if (to <= from) return;
-    pixel.low[sum] = to == from + 1u ? pixel.high[sum] : uvec2(0u);
-    pixel.high[sum] = uvec2(0u);
+    low = to == from + 1u ? high : uvec2(0u);
+    high = uvec2(0u);
 }
 
 FUNC void film_raise_all(INOUT(FilmPixel) pixel, uint color_position, uint square_position)
 {
     uint old_color = pixel.positions & 0xffffu, old_square = pixel.positions >> 16u;
-    for (uint i = 0u; i < FILM_SQUARES; ++i) film_raise(pixel, i, old_color, color_position);
-    film_raise(pixel, FILM_SQUARES, old_square, square_position);
+    film_raise(pixel.high.red, pixel.low.red, old_color, color_position);
+    film_raise(pixel.high.green, pixel.low.green, old_color, color_position);
+    film_raise(pixel.high.blue, pixel.low.blue, old_color, color_position);
+    film_raise(pixel.high.square, pixel.low.square, old_square, square_position);
     pixel.positions = max(old_color, color_position) | (max(old_square, square_position) << 16u);
+}
+
+// To the digits of a sum, whose position is high enough.
+FUNC void film_add_color(INOUT(uvec2) high, INOUT(uvec2) low, float value, uint position)
+{
+    uint shift = film_shift(value);
+    uvec2 mantissa = uvec2(film_mantissa(value), 0u);
+    uvec2 low_digit = film_digit(mantissa, shift, position), high_digit = film_digit(mantissa, shift, position + 1u);
+    bool is_negative = value < 0.0f;
+    low = add64(low, is_negative ? negate64(low_digit) : low_digit);
+    high = add64(high, is_negative ? negate64(high_digit) : high_digit);
 }
 
 // A block's sum of finite radiance.
 FUNC void film_add(INOUT(FilmPixel) pixel, vec3 radiance, float luminance_of_it)
 {
-    float values[3];
-    values[0] = radiance.x;
-    values[1] = radiance.y;
-    values[2] = radiance.z;
     uint shift = max(film_shift(radiance.x), max(film_shift(radiance.y), film_shift(radiance.z)));
     uint square_shift = 2u * film_shift(luminance_of_it);
     film_raise_all(pixel, film_position(shift, 24u), film_position(square_shift, 48u));
     uint position = pixel.positions & 0xffffu, square_position = pixel.positions >> 16u;
-    for (uint i = 0u; i < FILM_SQUARES; ++i)
-    {
-        uint digit_shift = film_shift(values[i]);
-        uvec2 mantissa = uvec2(film_mantissa(values[i]), 0u), low = film_digit(mantissa, digit_shift, position);
-        uvec2 high = film_digit(mantissa, digit_shift, position + 1u);
-        bool is_negative = values[i] < 0.0f;
-        pixel.low[i] = add64(pixel.low[i], is_negative ? negate64(low) : low);
-        pixel.high[i] = add64(pixel.high[i], is_negative ? negate64(high) : high);
-    }
+    film_add_color(pixel.high.red, pixel.low.red, radiance.x, position);
+    film_add_color(pixel.high.green, pixel.low.green, radiance.y, position);
+    film_add_color(pixel.high.blue, pixel.low.blue, radiance.z, position);
     uvec2 square = multiply64(film_mantissa(luminance_of_it), film_mantissa(luminance_of_it));
-    pixel.low[FILM_SQUARES] = add64(pixel.low[FILM_SQUARES], film_digit(square, square_shift, square_position));
-    pixel.high[FILM_SQUARES] = add64(pixel.high[FILM_SQUARES], film_digit(square, square_shift, square_position + 1u));
+    pixel.low.square = add64(pixel.low.square, film_digit(square, square_shift, square_position));
+    pixel.high.square = add64(pixel.high.square, film_digit(square, square_shift, square_position + 1u));
     pixel.count += 1u;
 }
 

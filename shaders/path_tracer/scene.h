@@ -4,6 +4,7 @@
 #define TWINRAY_PATH_TRACER_SCENE_H
 #include "twinray/glsl/multi_type_set.h"
 #include "twinray/glsl/textures.h"
+#include "twinray/glsl/transform.h"
 
 // Ids of the specialisation constants: what a scene lacks is compiled out.
 const uint PT_HAS_ALPHA = 0u;        // some material is masked or blended: rays may pass surfaces
@@ -51,8 +52,8 @@ BUFFER_OF(SurfaceTriangle, 16);
 // By Hit::instance_index.
 struct SurfaceInstance
 {
-    vec4 object_to_world[3];
-    vec4 world_to_object[3];
+    Rows object_to_world;
+    Rows world_to_object;
     REF(SurfaceVertex) vertices;
     REF(SurfaceTriangle) triangles;
     Floats emitter_density; // per triangle: probability of being chosen as light / world area; null if none emits

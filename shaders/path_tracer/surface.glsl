@@ -55,13 +55,11 @@ TriangleData load_triangle_data(SceneData scene, uint instance_index, uint primi
     return data;
 }
 
-Rows rows_of(vec4 map[3]) { return Rows(map[0], map[1], map[2]); }
-
 Placement load_placement(REF(SurfaceInstance) instances, uint index)
 {
     Placement placement;
-    placement.to_world = rows_of(AT(instances, index).object_to_world);
-    placement.to_object = rows_of(AT(instances, index).world_to_object);
+    placement.to_world = AT(instances, index).object_to_world;
+    placement.to_object = AT(instances, index).world_to_object;
     return placement;
 }
 

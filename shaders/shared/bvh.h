@@ -133,7 +133,7 @@ BUFFER_OF(SwGeometry, 8);
 // An instance as traversal reads it.
 struct SwInstance
 {
-    vec4 world_to_object[3];
+    Rows world_to_object;
     REF(BvhNode) nodes;
     REF(BvhTriangle) triangles;
     REF(CompressedRecord) records;

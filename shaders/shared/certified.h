@@ -38,9 +38,8 @@ FUNC CertifiedRay certified_ray(RefineInstance instance, Ray ray, bool is_moved)
     const double MOVING = double(HALF_ULP);
     RowsDouble to_object = instance.world_to_object;
     RowsDouble magnitude = absolute(to_object);
-    dvec3 translation =
-        abs(dvec3(double(instance.mesh.object_to_world[0].w), double(instance.mesh.object_to_world[1].w),
-                  double(instance.mesh.object_to_world[2].w)));
+    Rows to_world = instance.mesh.object_to_world;
+    dvec3 translation = abs(dvec3(double(to_world.r0.w), double(to_world.r1.w), double(to_world.r2.w)));
     dvec3 o = dvec3(double(ray.origin.x), double(ray.origin.y), double(ray.origin.z));
     dvec3 d = dvec3(double(ray.direction.x), double(ray.direction.y), double(ray.direction.z));
     dvec3 origin = transform_vector_double(to_object, o) + offset_double(to_object);

@@ -107,12 +107,8 @@ FUNC LocalRay ray_in_instance(SwInstance instance, INOUT(InInstance) inside, Ray
     vec3 direction = ray.direction;
     if ((options.features & FEATURE_TRANSFORMS) != 0u)
     {
-        Rows to_object;
-        to_object.r0 = instance.world_to_object[0];
-        to_object.r1 = instance.world_to_object[1];
-        to_object.r2 = instance.world_to_object[2];
-        origin = transform_point(to_object, origin);
-        direction = transform_vector(to_object, direction);
+        origin = transform_point(instance.world_to_object, origin);
+        direction = transform_vector(instance.world_to_object, direction);
     }
     local.origin = without_negative_zeros(origin);
     local.direction = without_negative_zeros(direction);

@@ -129,9 +129,7 @@ FUNC SwInstance place_instance(InstanceRecord record, INOUT(LeafBox) box)
     Rows to_world = to_world_of(record);
     Rows to_object = inverse_of(to_world);
     SwInstance instance;
-    instance.world_to_object[0] = to_object.r0;
-    instance.world_to_object[1] = to_object.r1;
-    instance.world_to_object[2] = to_object.r2;
+    instance.world_to_object = to_object;
     instance.custom_index_mask = record.custom_index_mask;
     instance.flags = flags_of(record);
     instance.kind = GEOMETRY_TRIANGLES;

@@ -60,9 +60,9 @@ FUNC dvec3 vertex_from(dvec3 origin, GivenMesh mesh, uint vertex)
     uint at = 3u * AT(mesh.indices, vertex); // load_position costs AMD's compilers up to 40 registers here
     dvec3 v = dvec3(double(AT(mesh.positions, at)), double(AT(mesh.positions, at + 1u)),
                     double(AT(mesh.positions, at + 2u)));
-    vec4 r0 = mesh.object_to_world[0];
-    vec4 r1 = mesh.object_to_world[1];
-    vec4 r2 = mesh.object_to_world[2];
+    vec4 r0 = mesh.object_to_world.r0;
+    vec4 r1 = mesh.object_to_world.r1;
+    vec4 r2 = mesh.object_to_world.r2;
     PRECISE double x = product_sum(dvec3(double(r0.x), double(r0.y), double(r0.z)), v) + (double(r0.w) - origin.x);
     PRECISE double y = product_sum(dvec3(double(r1.x), double(r1.y), double(r1.z)), v) + (double(r1.w) - origin.y);
     PRECISE double z = product_sum(dvec3(double(r2.x), double(r2.y), double(r2.z)), v) + (double(r2.w) - origin.z);

@@ -8,7 +8,7 @@
 // The triangles of an instance as they were given, positions in units of a power of two, which the map contains.
 struct GivenMesh
 {
-    vec4 object_to_world[3];
+    Rows object_to_world;
     Floats positions; // 3 a vertex
     Uints indices;    // 3 a triangle, in the user's numbering; null: boxes
 };
@@ -49,7 +49,7 @@ FUNC RefineInstance refine_instance(InstanceRecord record, Address absent)
     const float UP = 1.00000095367431640625f; // 1 + 2^-20: more than rounding to float32 takes
     Rows to_world = to_world_of(record);
     RefineInstance instance;
-    for (uint row = 0u; row < 3u; row = row + 1u) instance.mesh.object_to_world[row] = record.object_to_world[row];
+    instance.mesh.object_to_world = to_world;
     instance.mesh.positions = Floats(absent);
     instance.mesh.indices = Uints(absent);
     instance.extent = 0.0f;

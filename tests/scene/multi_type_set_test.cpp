@@ -21,7 +21,7 @@ using namespace test;
 
 Diffuse diffuse(float x) { return {vec3(x, x + 1, x + 2), 0.5f * x}; }
 Glass glass(float x) { return {x}; }
-Layered layered(float x) { return {uvec2(0, 9), {vec4(x), vec4(x), vec4(3 * x)}}; }
+Layered layered(float x) { return {uvec2(0, 9), vec4(x), vec4(x), vec4(3 * x)}; }
 
 struct ValueOf {
     template <class T>

@@ -19,7 +19,9 @@ BUFFER_OF(Glass, 4);
 // Longer than the others.
 struct Layered {
     uvec2 id;
-    vec4 layers[3];
+    vec4 lowest;
+    vec4 middle;
+    vec4 highest;
 };
 BUFFER_OF(Layered, 8);
 
@@ -28,7 +30,7 @@ TWINRAY_SET_VIEW(TestSet, TEST_TYPES)
 
 FUNC float value_of(Diffuse diffuse, float x) { return x * diffuse.gain + diffuse.color.y; }
 FUNC float value_of(Glass glass, float x) { return x - glass.ior; }
-FUNC float value_of(Layered layered, float x) { return x + layered.layers[2].w + float(layered.id.y); }
+FUNC float value_of(Layered layered, float x) { return x + layered.highest.w + float(layered.id.y); }
 
 // The weight in which FOREACH_ELEMENT takes an element.
 FUNC float weight_of(uint i) { return float(1u + i % 7u); }

@@ -216,8 +216,7 @@ TEST(Spawn, CornersAndPlacementsAreReadFromBuffers) {
     EXPECT_EQ(vertices.b, vec3(7, 8, 9));
     EXPECT_EQ(vertices.c, vec3(1, 2, 3));
     InstanceRecord record{};
-    for (int row = 0; row < 3; ++row) record.object_to_world[row][row] = 2;
-    record.object_to_world[1].w = 6;
+    record.object_to_world = {vec4(2, 0, 0, 0), vec4(0, 2, 0, 6), vec4(0, 0, 2, 0)};
     const Placement placement = placement_of(record);
     EXPECT_EQ(transform_point(placement.to_world, vec3(1, 1, 1)), vec3(2, 8, 2));
     EXPECT_EQ(transform_point(placement.to_object, vec3(2, 8, 2)), vec3(1, 1, 1));

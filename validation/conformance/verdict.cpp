@@ -39,9 +39,10 @@ bool is_named(const Candidate& candidate, const Answer& answer) {
 }
 
 bool is_map_of(const Answer& answer, const Transform& to_world) {
+    const vec3 columns[] = {answer.to_world.c0, answer.to_world.c1, answer.to_world.c2, answer.to_world.c3};
     for (std::size_t row = 0; row < 3; ++row)
         for (std::size_t column = 0; column < 4; ++column)
-            if (answer.to_world[column][row] != to_world.rows[row][column]) return false;
+            if (columns[column][row] != to_world.rows[row][column]) return false;
     return true;
 }
 

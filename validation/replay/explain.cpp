@@ -66,8 +66,7 @@ Explainer::Explainer(const Scene& scene, const ReferenceScene& reference, const 
 }
 
 RaySpace Explainer::object_space(uint instance) const {
-    const auto& rows = on_cpu_->instance(instance).world_to_object;
-    const Rows to_object{rows[0], rows[1], rows[2]};
+    const Rows& to_object = on_cpu_->instance(instance).world_to_object;
     const vec3 origin = transform_point(to_object, searched_.origin);
     return make_ray_space(origin, transform_vector(to_object, searched_.direction),
                           vertex_pad(origin, on_cpu_->instance(instance).extent));

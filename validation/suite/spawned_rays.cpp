@@ -27,7 +27,7 @@ Spawner::Spawner(Context& context)
 
 SpawnedRays Spawner::operator()(const Mesh& mesh, const Transform& instance, std::span<const SpawnItem> items) const {
     InstanceRecord record{};
-    std::copy(instance.rows.begin(), instance.rows.end(), record.object_to_world);
+    record.object_to_world = {instance.rows[0], instance.rows[1], instance.rows[2]};
     const Buffer item_buffer = uploaded(context_, "spawn items", items);
     const Buffer instances = uploaded(context_, "spawn instance", std::span<const InstanceRecord>(&record, 1));
     const Buffer positions = uploaded(context_, "spawn positions", std::span<const vec3>(mesh.positions));

@@ -7,10 +7,10 @@
 
 // An instance as kernels may write it: AbstractAccel::instance_buffer().
 struct InstanceRecord {
-    vec4 object_to_world[3];  // rows of a 3x4 matrix
-    uint custom_index_mask;   // 24-bit custom index, 8-bit mask in the high byte
-    uint sbt_offset_flags;    // 24-bit shader binding table offset (0), 8-bit VkGeometryInstanceFlagsKHR
-    Address geometry;         // address of the accelerator's block for the geometry; 0 = inactive
+    Rows object_to_world;
+    uint custom_index_mask;  // 24-bit custom index, 8-bit mask in the high byte
+    uint sbt_offset_flags;   // 24-bit shader binding table offset (0), 8-bit VkGeometryInstanceFlagsKHR
+    Address geometry;        // address of the accelerator's block for the geometry; 0 = inactive
 };
 BUFFER_OF(InstanceRecord, 16);
 
@@ -53,22 +53,18 @@ FUNC uint mask_of(InstanceRecord instance) { return instance.custom_index_mask >
 FUNC bool has_geometry(InstanceRecord instance) { return instance.geometry != NULL_ADDRESS; }
 
 // From object space.
-FUNC Rows to_world_of(InstanceRecord instance) {
-    Rows rows;
-    rows.r0 = instance.object_to_world[0];
-    rows.r1 = instance.object_to_world[1];
-    rows.r2 = instance.object_to_world[2];
-    return rows;
-}
+FUNC Rows to_world_of(InstanceRecord instance) { return instance.object_to_world; }
+
+// The row with its linear part in units of `scale`.
+FUNC vec4 scaled_row(vec4 row, float scale) { return vec4(row.x * scale, row.y * scale, row.z * scale, row.w); }
 
 // The instance of what was built, not of what was given.
 FUNC InstanceRecord in_built_units(InstanceRecord instance) {
     if (!has_geometry(instance)) return instance;
     float scale = AT(REF(GeometrySource)(address_after(instance.geometry, GEOMETRY_SOURCE_OFFSET)), 0).scale;
-    for (uint row = 0u; row < 3u; row = row + 1u) {
-        vec4 r = instance.object_to_world[row];
-        instance.object_to_world[row] = vec4(r.x * scale, r.y * scale, r.z * scale, r.w);
-    }
+    instance.object_to_world.r0 = scaled_row(instance.object_to_world.r0, scale);
+    instance.object_to_world.r1 = scaled_row(instance.object_to_world.r1, scale);
+    instance.object_to_world.r2 = scaled_row(instance.object_to_world.r2, scale);
     return instance;
 }
 

@@ -13,8 +13,8 @@ void main()
     uint i = global_index();
     if (i >= args.ball_count) return;
     vec2 place = place_of_ball(i);
-    AT(args.balls, i).object_to_world[0] = vec4(BALL_RADIUS, 0.0, 0.0, place.x);
-    AT(args.balls, i).object_to_world[1] = vec4(0.0, BALL_RADIUS, 0.0, height_of(place, args.time));
-    AT(args.balls, i).object_to_world[2] = vec4(0.0, 0.0, BALL_RADIUS, place.y);
+    AT(args.balls, i).object_to_world.r0 = vec4(BALL_RADIUS, 0.0, 0.0, place.x);
+    AT(args.balls, i).object_to_world.r1 = vec4(0.0, BALL_RADIUS, 0.0, height_of(place, args.time));
+    AT(args.balls, i).object_to_world.r2 = vec4(0.0, 0.0, BALL_RADIUS, place.y);
 }
 // [/float]

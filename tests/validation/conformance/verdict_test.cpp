@@ -25,7 +25,7 @@ class ConformanceVerdict : public ::testing::Test {
         answer.uv = vec2((0.25f + 4) / 12, (0.25f + 4) / 12);
         answer.object_origin = shot_.ray.origin;
         answer.object_direction = shot_.ray.direction;
-        for (std::size_t i = 0; i < 3; ++i) answer.to_world[i][i] = 1;
+        answer.to_world = {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), vec3(0)};
         return answer;
     }
     Finding judged(const Answer& answer) const { return judge_hit(Expectation(scene_), shot_, answer); }
@@ -59,7 +59,7 @@ TEST_F(ConformanceVerdict, OfRightAndWrongHits) {
     wrong.object_origin.x += 0.01f;
     EXPECT_EQ(judged(wrong), Finding::wrong_transform);
     wrong = hit(0);
-    wrong.to_world[3].x = 0x1p-20f;
+    wrong.to_world.c3.x = 0x1p-20f;
     EXPECT_EQ(judged(wrong), Finding::wrong_transform);
 }
 
