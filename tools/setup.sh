@@ -9,7 +9,8 @@
 #   SKIP_APT=1               install nothing, whatever is missing
 # On Debian 12 (bookworm) two things are not in the release itself: a Mesa whose CPU driver traces rays (from
 # bookworm-backports) and the header-only Vulkan Memory Allocator (from trixie). Both suites are added at priorities
-# that let through these packages and nothing else. On Debian 13 (trixie) no configuration is written.
+# that let through these packages and nothing else. On newer releases, and on Debian's children, such as
+# Ubuntu, no configuration is written; it names what they do not serve.
 set -euo pipefail
 
 demo_packages=(
@@ -25,6 +26,13 @@ packages=(
 )
 if [[ $(uname -m) == x86_64 ]]; then packages+=(libembree-dev); fi # twinray bench measures it, too
 oldest_mesa=24 # the first whose lavapipe has acceleration structures and ray queries
+# What is lost without a package that some release lacks; CMake names the others when it misses them.
+declare -A without=(
+    [libembree-dev]="twinray bench does not measure Embree" [chromium-common]="no tests on SwiftShader"
+    [libglfw3-dev]="twinray view opens no window" [libimgui-dev]="twinray view opens no window"
+    [assimp-testmodels]="tests of its models are skipped" [gnuplot-nox]="no plots" [doxygen]="no documentation"
+    [graphviz]="no figures in the documentation" [vulkan-validationlayers]="nothing checks our use of Vulkan"
+)
 
 backports_file=/etc/apt/sources.list.d/twinray-bookworm-backports.sources
 trixie_file=/etc/apt/sources.list.d/twinray-trixie-vma.sources
@@ -51,6 +59,27 @@ missing_packages() {
     if [[ -n $number ]] && dpkg --compare-versions "$number" lt "$oldest_mesa"; then
         echo "mesa-vulkan-drivers >= $oldest_mesa (installed: $number)"
     fi
+}
+
+# Leaves out what apt does not serve, and names it.
+leave_out_what_is_not_served() {
+    local -A served=()
+    local package wanted=("${packages[@]}")
+    while read -r package; do
+        served[$package]=1
+    done < <(apt-cache show --no-all-versions "${wanted[@]}" 2>/dev/null | sed -n 's/^Package: //p')
+    packages=()
+    for package in "${wanted[@]}"; do
+        if [[ ${served[$package]-} ]]; then packages+=("$package"); else
+            say "apt serves no $package: ${without[$package]-CMake says whether it is needed}"
+        fi
+    done
+}
+
+# What is missing, but for what apt's indexes, where there are any, do not serve.
+left_to_install() {
+    if ((!is_bookworm)) && [[ -n $(apt_sources) ]]; then leave_out_what_is_not_served >/dev/null; fi
+    missing_packages
 }
 
 become_root() {
@@ -147,17 +176,20 @@ configure_bookworm() {
 install_packages() {
     become_root
     log=$(mktemp --suffix=.log "${TMPDIR:-/tmp}/twinray-setup.XXXXXX")
-    if [[ $1 == bookworm ]]; then configure_bookworm; fi
-    say "installs ${#packages[@]} packages and what they depend on; log in $log"
+    if ((is_bookworm)); then configure_bookworm; fi
     # An unrelated source of this system may fail without harm; ours may not.
     if ! apt_get update && grep -qE '^(E|Err).*(bookworm-backports|trixie)' "$log"; then
         apt_failed "reading the package indexes"
     fi
+    if ((!is_bookworm)); then leave_out_what_is_not_served; fi
+    say "installs ${#packages[@]} packages and what they depend on; log in $log"
     apt_get install -y --no-install-recommends "${packages[@]}" || apt_failed "installing"
     { grep -h '^Need to get' "$log" || true; } | sed 's/^Need to get/setup: downloaded/'
     local missing
     missing=$(missing_packages)
-    if [[ -n $missing ]]; then
+    if [[ -n $missing ]] && ((!is_bookworm)); then
+        say "too old to trace rays on the CPU; the driver of a GPU does: $missing"
+    elif [[ -n $missing ]]; then
         die "apt reported no error, but these are missing or too old (log in $log): ${missing//$'\n'/, }"
     fi
     say_how_to_undo
@@ -197,20 +229,21 @@ main() {
         say "SKIP_APT=1, installs nothing"
         return
     fi
-    local ID='' VERSION_CODENAME=''
+    local ID='' ID_LIKE='' VERSION_CODENAME='' is_bookworm=0
     # shellcheck disable=SC1091
     if [[ -r /etc/os-release ]]; then . /etc/os-release; fi
-    if [[ $ID != debian || ! $VERSION_CODENAME =~ ^(bookworm|trixie)$ ]]; then
-        say "this is neither Debian 12 nor Debian 13: nothing is installed. twinray needs, by their Debian names:"
+    if [[ "$ID $VERSION_CODENAME" == 'debian bookworm' ]]; then is_bookworm=1; fi
+    if [[ " $ID $ID_LIKE " != *' debian '* ]]; then
+        say "this is neither Debian nor a child of it: nothing is installed. twinray needs, by their Debian names:"
         printf '    %s\n' "${packages[*]}" | fold -s -w 110
         say "with Mesa >= $oldest_mesa, or the driver of a GPU. CMake names what it does not find."
         return
     fi
-    if [[ -z $(missing_packages) ]]; then
-        say "all packages are installed"
+    if [[ -z $(left_to_install) ]]; then
+        say "all packages that apt serves are installed"
         return
     fi
-    install_packages "$VERSION_CODENAME"
+    install_packages
 }
 
 main "$@"
