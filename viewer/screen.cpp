@@ -35,6 +35,17 @@ void apply(VkCommandBuffer commands, VkPipelineStageFlags from, VkPipelineStageF
     vkCmdPipelineBarrier(commands, from, to, 0, 0, nullptr, 0, nullptr, 1, &change);
 }
 
+// Newer releases of Dear ImGui take the render pass as a member.
+template <typename Info>
+bool init_overlay(Info info, VkRenderPass pass) {
+    if constexpr (requires { info.RenderPass; }) {
+        info.RenderPass = pass;
+        return ImGui_ImplVulkan_Init(&info);
+    } else {
+        return ImGui_ImplVulkan_Init(&info, pass);
+    }
+}
+
 }  // namespace
 
 Screen::Screen(GLFWwindow* window, const ContextDesc& desc)
@@ -126,7 +137,7 @@ void Screen::start_overlay() {
     info.MinImageCount = 2;
     info.ImageCount = 2;
     info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
-    if (!ImGui_ImplVulkan_Init(&info, pass_)) fail("window: Dear ImGui cannot use the device");
+    if (!init_overlay(info, pass_)) fail("window: Dear ImGui cannot use the device");
     has_overlay_ = true;
 #if IMGUI_VERSION_NUM < 19000
     VkCommandBufferBeginInfo begin{};
