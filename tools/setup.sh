@@ -22,7 +22,7 @@ packages=(
     vulkan-validationlayers spirv-tools
     libgtest-dev libgmp-dev libeigen3-dev assimp-testmodels chromium-common graphviz gnuplot-nox
     doxygen
-    libglfw3-dev libimgui-dev xvfb xauth
+    libglfw3-dev libimgui-dev xvfb xauth mesa-drm-shim
 )
 if [[ $(uname -m) == x86_64 ]]; then packages+=(libembree-dev); fi # twinray bench measures it, too
 oldest_mesa=24 # the first whose lavapipe has acceleration structures and ray queries

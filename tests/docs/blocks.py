@@ -27,7 +27,8 @@ OPTIONS |= {"printed-by": {"text"}, "needs": RUN}
 # What blocks may need, by the command that succeeds where it is there.
 NEEDS = {
     "llvmpipe": "twinray devices | grep -q '^[*].*llvmpipe'",
-    "radv": "ls /usr/share/vulkan/icd.d/radeon_icd*",
+    "radv": "twinray kernels --family navi31 --filter sort_scan",
+    "nvk": "twinray kernels --family ampere --filter sort_scan",
 }
 CODE_OF_SPHINX = {"{code}", "{code-block}", "{sourcecode}"}
 OPTION = re.compile(r'([\w-]+)=(?:"([^"]*)"|(\S+))')

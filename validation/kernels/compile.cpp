@@ -20,7 +20,8 @@ std::vector<KernelRow> compile_all(const KernelList& list, const std::string& de
             const ListedKernel& kernel = list.kernels[i];
             if (!fits(kernel, filter)) continue;
             const KernelStatistics statistics = compile_for_statistics(*list.context, kernel.desc, kernel.args_bytes);
-            rows[i] = {device, kernel.name, kernel.variant, figures_of(statistics.told), statistics.subgroup_size};
+            rows[i] = {device,         list.context->properties().driver, kernel.name,
+                       kernel.variant, figures_of(statistics.told),       statistics.subgroup_size};
         }
     });
     std::erase_if(rows, [](const KernelRow& row) { return row.kernel.empty(); });
@@ -29,8 +30,8 @@ std::vector<KernelRow> compile_all(const KernelList& list, const std::string& de
 
 }  // namespace
 
-CompiledKernels compile_kernels(const ContextDesc& desc, const std::string& family, const std::string& filter) {
-    if (!family.empty()) pretend_family(family);
+CompiledKernels compile_kernels(ContextDesc desc, const std::string& family, const std::string& filter) {
+    if (!family.empty()) desc.device = find_device(find_family(family));
     const KernelList list = list_kernels(desc);
     const DeviceProperties& properties = list.context->properties();
     const std::string device = family.empty() ? properties.name : family;

@@ -15,8 +15,8 @@ struct CompiledKernels {
     std::vector<BuildRow> builds;  // none with a filter
 };
 
-// For the device of `desc`, or for the family of AMD's GPUs (see pretend_family) where it is not empty. `filter`: only
+// For the device of `desc`, or for the family, which is in effect (see family.h), where it is not empty. `filter`: only
 // kernels with this in their name or variant; "": all.
-CompiledKernels compile_kernels(const ContextDesc& desc, const std::string& family, const std::string& filter);
+CompiledKernels compile_kernels(ContextDesc desc, const std::string& family, const std::string& filter);
 
 }  // namespace twinray::kernels

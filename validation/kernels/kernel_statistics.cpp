@@ -17,6 +17,8 @@ struct Word {
     Figure figure;
 };
 
+constexpr std::string_view registers_of_turnip = "registers used";  // of four words a lane
+
 constexpr Word words[] = {
     // RADV
     {"vgprs", &KernelFigures::vgprs},
@@ -26,9 +28,22 @@ constexpr Word words[] = {
     {"lds size", &KernelFigures::shared_bytes},
     {"instructions", &KernelFigures::instructions},
     {"code size", &KernelFigures::code_bytes},
+    {"spilled vgprs", &KernelFigures::spills},
+    {"spilled sgprs", &KernelFigures::spills},
+    // NVK, which has its count of instructions and its size of code as others have
+    {"number of gprs", &KernelFigures::vgprs},
+    {"max warps/sm", &KernelFigures::waves},
+    {"slm size", &KernelFigures::scratch_bytes},
+    {"spills to reg", &KernelFigures::spills},
+    {"spills to memory", &KernelFigures::spills},
+    // Turnip, likewise
+    {registers_of_turnip, &KernelFigures::vgprs},
+    {"max waves per core", &KernelFigures::waves},
+    {"stp count", &KernelFigures::spills},
     // ANV
     {"instruction count", &KernelFigures::instructions},
     {"scratch memory size", &KernelFigures::scratch_bytes},
+    {"spill count", &KernelFigures::spills},
     {"workgroup memory size", &KernelFigures::shared_bytes},
     // NVIDIA
     {"register count", &KernelFigures::vgprs},
@@ -104,11 +119,17 @@ KernelStatistics compile_for_statistics(Context& context, const KernelDesc& desc
 
 KernelFigures figures_of(std::span<const Statistic> told) {
     KernelFigures figures;
+    bool counts_words = false;  // of code, not bytes
     for (const Statistic& statistic : told) {
         const std::string name = lower(statistic.name);
-        for (const Word& word : words)
-            if (name == word.name) figures.*word.figure = count_of(statistic);
+        for (const Word& word : words) {
+            const std::optional<std::uint64_t> count = count_of(statistic);
+            if (name != word.name || !count) continue;
+            figures.*word.figure = (figures.*word.figure).value_or(0) + *count;
+        }
+        counts_words |= name == registers_of_turnip;
     }
+    if (counts_words && figures.code_bytes) *figures.code_bytes *= 4;
     return figures;
 }
 

@@ -28,17 +28,19 @@ KernelStatistics compile_for_statistics(Context& context, const KernelDesc& desc
 
 // What drivers tell under names of their own; empty: this one does not.
 struct KernelFigures {
-    std::optional<std::uint64_t> vgprs;          // registers of a lane
+    std::optional<std::uint64_t> vgprs;          // registers of a lane; Turnip's are of four words
     std::optional<std::uint64_t> sgprs;          // registers of a subgroup
     std::optional<std::uint64_t> waves;          // subgroups that a unit keeps at a time, at most
     std::optional<std::uint64_t> scratch_bytes;  // memory that stands in for registers: of a subgroup with Mesa's RADV
     std::optional<std::uint64_t> shared_bytes;   // of a group
     std::optional<std::uint64_t> instructions;
     std::optional<std::uint64_t> code_bytes;
+    std::optional<std::uint64_t> spills;  // how often a register is kept elsewhere: in memory or in one of another kind
 
     bool operator==(const KernelFigures&) const = default;
 };
-// Knows the names of Mesa's drivers and of NVIDIA's, in any case. A value below 0 is none.
+// Knows the names of Mesa's drivers and of NVIDIA's, in any case. Of several names of one figure the values add up. A
+// value below 0 is none.
 KernelFigures figures_of(std::span<const Statistic> told);
 
 }  // namespace twinray

@@ -88,8 +88,10 @@ void make_library_kernels(Context& context) {
         make_queries(hardware);
     }
     const BroadPhase collisions(context);
-    const NarrowPhase contacts(context);
-    const PointQuery points(context);
+    if (context.properties().shader_float64) {
+        const NarrowPhase contacts(context);
+        const PointQuery points(context);
+    }
     const Deformer deformer(context, std::make_shared<Rig>());
     probe_floats(context);
     make_analysis(context);

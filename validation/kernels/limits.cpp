@@ -5,7 +5,10 @@
 #include <array>
 #include <fstream>
 #include <iomanip>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
 #include <sstream>
 
 #include "engine/core/error.h"
@@ -30,6 +33,7 @@ constexpr Column columns[] = {
     {"waves", "waves", nullptr, &KernelFigures::waves, false},
     {"scratch", "scratch", "bytes of scratch", &KernelFigures::scratch_bytes, false},
     {"shared", "shared", "bytes of shared memory", &KernelFigures::shared_bytes, false},
+    {"spills", "spills", "spills", &KernelFigures::spills, false},
     {"instructions", "instructions", "instructions", &KernelFigures::instructions, true},
     {"code", nullptr, nullptr, &KernelFigures::code_bytes, false},
 };
@@ -38,8 +42,9 @@ std::string name_of(const KernelRow& row) {
     return row.device + ": " + row.kernel + (row.variant.empty() ? "" : ", " + row.variant);
 }
 
-KernelRow row_of(const nlohmann::json& json) {
-    KernelRow row{json.at("device"), json.at("kernel"), json.at("variant"), {}};
+KernelRow row_of(const nlohmann::json& json, const std::map<std::string, std::string>& drivers) {
+    KernelRow row{json.at("device"), {}, json.at("kernel"), json.at("variant"), {}};
+    if (const auto driver = drivers.find(row.device); driver != drivers.end()) row.driver = driver->second;
     if (json.contains("subgroup")) row.subgroup_size = unsigned_of<std::uint32_t>(json.at("subgroup"));
     for (const Column& column : columns)
         if (json.contains(column.key)) row.figures.*column.figure = unsigned_of<std::uint64_t>(json.at(column.key));
@@ -55,6 +60,16 @@ void compare(const KernelRow& row, const KernelRow& limit, double margin, std::v
             faults.push_back(
                 text(name_of(row), ": ", *now, ' ', column.words, ", at most ", static_cast<std::uint64_t>(allowed)));
     }
+}
+
+const KernelRow* find_limit(const KernelRow& row, std::span<const KernelRow> limits) {
+    const auto limit =
+        std::ranges::find_if(limits, [&](const KernelRow& other) { return name_of(other) == name_of(row); });
+    return limit == limits.end() ? nullptr : &*limit;
+}
+
+bool is_comparable(const KernelRow& row, const KernelRow& limit) {
+    return mesa_release_of(row.driver) == mesa_release_of(limit.driver) || row.driver.empty() || limit.driver.empty();
 }
 
 std::vector<std::string> cells_of(const KernelRow& row) {
@@ -79,11 +94,13 @@ std::vector<KernelRow> read_rows(const std::filesystem::path& file) {
     std::ifstream in(file);
     if (!in) fail("'", file.string(), "' cannot be read");
     std::vector<KernelRow> rows;
+    std::map<std::string, std::string> drivers;
     std::string line;
     for (int number = 1; std::getline(in, line); ++number) {
         try {
             const nlohmann::json json = parse_json<nlohmann::json>(line);
-            if (json.contains("kernel")) rows.push_back(row_of(json));
+            if (json.contains("driver")) drivers[json.at("device")] = json.at("driver");
+            if (json.contains("kernel")) rows.push_back(row_of(json, drivers));
         } catch (const std::exception& failure) {
             fail("'", file.string(), "', line ", number, ": ", failure.what());
         }
@@ -91,14 +108,27 @@ std::vector<KernelRow> read_rows(const std::filesystem::path& file) {
     return rows;
 }
 
+std::string mesa_release_of(const std::string& driver) {
+    const std::regex release(R"(Mesa (\d+\.\d+))");
+    std::smatch found;
+    return std::regex_search(driver, found, release) ? found[1].str() : std::string();
+}
+
+std::vector<std::string> not_comparable(std::span<const KernelRow> rows, std::span<const KernelRow> limits) {
+    std::set<std::string> faults;
+    for (const KernelRow& row : rows)
+        if (const KernelRow* limit = find_limit(row, limits); limit && !is_comparable(row, *limit))
+            faults.insert(text(row.device, ": not compared: this is ", row.driver, ", the limits are of ", limit->driver));
+    return {faults.begin(), faults.end()};
+}
+
 std::vector<std::string> grown(std::span<const KernelRow> rows, std::span<const KernelRow> limits, double margin) {
     std::vector<std::string> faults;
     for (const KernelRow& row : rows) {
-        const auto limit =
-            std::ranges::find_if(limits, [&](const KernelRow& other) { return name_of(other) == name_of(row); });
-        if (limit == limits.end())
+        const KernelRow* limit = find_limit(row, limits);
+        if (!limit)
             faults.push_back(name_of(row) + ": there is no limit for it");
-        else
+        else if (is_comparable(row, *limit))
             compare(row, *limit, margin, faults);
     }
     return faults;

@@ -18,9 +18,9 @@ using Faults = std::vector<std::string>;
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-KernelRow row(const char* variant = "") {
-    constexpr KernelFigures figures{96, 128, 10, 0, 512, 1000, 8000};
-    return {"navi21", "trace", variant, figures, 64};
+KernelRow row(const char* variant = "", const char* driver = "radv Mesa 26.2.6-1") {
+    constexpr KernelFigures figures{96, 128, 10, 0, 512, 1000, 8000, 3};
+    return {"navi21", driver, "trace", variant, figures, 64};
 }
 
 struct TemporaryFile {
@@ -47,6 +47,7 @@ TEST(KernelLimits, EachFigureThatGrowsIsTold) {
     EXPECT_EQ(faults_with(&KernelFigures::scratch_bytes, 1), Faults{"navi21: trace: 1 bytes of scratch, at most 0"});
     EXPECT_EQ(faults_with(&KernelFigures::shared_bytes, 513),
               Faults{"navi21: trace: 513 bytes of shared memory, at most 512"});
+    EXPECT_EQ(faults_with(&KernelFigures::spills, 4), Faults{"navi21: trace: 4 spills, at most 3"});
     EXPECT_EQ(faults_with(&KernelFigures::instructions, 1021),
               Faults{"navi21: trace: 1021 instructions, at most 1020"});
 }
@@ -59,6 +60,21 @@ TEST(KernelLimits, ARowWithoutALimitIsTold) {
     EXPECT_EQ(grown(now, of_other_device).size(), 1);
 }
 
+TEST(KernelLimits, AnotherReleaseOfMesaIsToldAndNotCompared) {
+    std::vector<KernelRow> now{row(), row("again")};
+    for (KernelRow& grown_row : now) grown_row.figures.vgprs = 200;
+    const auto limits_by = [](const char* driver) { return std::vector{row("", driver), row("again", driver)}; };
+    EXPECT_EQ(not_comparable(now, limits_by("radv Mesa 26.1.6-1~bpo13+1")),
+              Faults{"navi21: not compared: this is radv Mesa 26.2.6-1, the limits are of radv Mesa 26.1.6-1~bpo13+1"});
+    EXPECT_EQ(grown(now, limits_by("radv Mesa 26.1.6-1~bpo13+1")), Faults{});
+    for (const char* driver : {"radv Mesa 26.2.0", ""}) {
+        EXPECT_EQ(not_comparable(now, limits_by(driver)), Faults{});
+        EXPECT_EQ(grown(now, limits_by(driver)).size(), 2) << driver;
+    }
+    EXPECT_EQ(mesa_release_of("turnip Mesa driver Mesa 26.2.6-1"), "26.2");
+    EXPECT_EQ(mesa_release_of("NVIDIA 580.95.05"), "");
+}
+
 TEST(KernelLimits, WhatOneSideDoesNotTellIsNotCompared) {
     std::vector<KernelRow> silent{row()};
     silent[0].figures = {};
@@ -68,13 +84,14 @@ TEST(KernelLimits, WhatOneSideDoesNotTellIsNotCompared) {
 
 TEST(KernelLimits, RowsAreReadAsTheyWereWritten) {
     const TemporaryFile file;
-    file.write(R"({"device":"navi21","driver":"radv"})"
+    file.write(R"({"device":"navi21","driver":"radv Mesa 26.2.6-1"})"
                "\n" +
                to_json(row("a b")).dump() + '\n');
     const std::vector<KernelRow> rows = read_rows(file.path);
     ASSERT_EQ(rows.size(), 1);
     EXPECT_EQ(rows[0].figures, row().figures);
     EXPECT_EQ(rows[0].variant, "a b");
+    EXPECT_EQ(rows[0].driver, row().driver);
     EXPECT_EQ(rows[0].subgroup_size, 64);
 }
 
@@ -94,8 +111,8 @@ TEST(KernelLimits, TablesLeaveEmptyWhatIsNotTold) {
     std::vector<KernelRow> rows{row("fast")};
     rows[0].figures.waves.reset();
     EXPECT_EQ(table_of(rows),
-              "kernel  specialisation  VGPR  waves  scratch  shared  instructions\n"
-              "trace   fast              96               0     512          1000\n");
+              "kernel  specialisation  VGPR  waves  scratch  shared  spills  instructions\n"
+              "trace   fast              96               0     512       3          1000\n");
 }
 
 TEST(KernelVariant, SaysWhatConstantsChoose) {

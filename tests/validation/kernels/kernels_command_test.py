@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 TWINRAY = sys.argv.pop(1)
-HEAD = "kernel specialisation VGPR waves scratch shared instructions".split()
+HEAD = "kernel specialisation VGPR waves scratch shared spills instructions".split()
 
 
 def kernels(*arguments, **environment):
@@ -83,8 +83,31 @@ class KernelsCommand(unittest.TestCase):
 
     def test_a_family_that_is_none(self):
         result = kernels("--family", "navi99")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("navi99", result.stderr)
+        self.assertIn("ampere", result.stderr)
+
+    def test_a_gpu_that_the_shim_does_not_know(self):
+        """The program is made to believe that it runs over a shim, which is not there."""
+        result = kernels("--family", "ada", NOUVEAU_CHIPSET="192", LD_PRELOAD="libnouveau_noop_drm_shim.so",
+                         VK_DRIVER_FILES="/nowhere.json", VK_ICD_FILENAMES="/nowhere.json")
         self.assertEqual(result.returncode, 1)
-        self.assertIn("twinray: family 'navi99': RADV knows no such GPU", result.stderr)
+        self.assertIn("twinray: family 'ada' is not here: this Mesa's libnouveau_noop_drm_shim.so", result.stderr)
+        self.assertIn("does not know NVIDIA Ada (NOUVEAU_CHIPSET=192)", result.stderr)
+
+    def test_other_families_are_compiled_where_one_is_not_here(self):
+        result = kernels("--family", "ada,navi21", "--filter", "sort_scan")
+        self.assertEqual(result.returncode, int("family 'ada' is not here" in result.stderr), result.stderr)
+        self.assertIn("navi21: ", result.stdout)
+
+    def test_limits_of_another_release_are_not_compared(self):
+        kernels("--family", "navi21", "--filter", "sort_scan", "--json", self.file)
+        rows = self.rows()
+        rows[0]["driver"] = "radv Mesa 1.0"
+        self.write(rows)
+        result = kernels("--family", "navi21", "--filter", "sort_scan", "--against", self.file)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("navi21: not compared: this is radv Mesa ", result.stdout)
 
     def test_a_device_and_a_family_exclude_each_other(self):
         self.assertEqual(kernels("--family", "navi21", "--device", "0").returncode, 2)
