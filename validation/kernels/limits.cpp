@@ -118,7 +118,8 @@ std::vector<std::string> not_comparable(std::span<const KernelRow> rows, std::sp
     std::set<std::string> faults;
     for (const KernelRow& row : rows)
         if (const KernelRow* limit = find_limit(row, limits); limit && !is_comparable(row, *limit))
-            faults.insert(text(row.device, ": not compared: this is ", row.driver, ", the limits are of ", limit->driver));
+            faults.insert(
+                text(row.device, ": not compared: this is ", row.driver, ", the limits are of ", limit->driver));
     return {faults.begin(), faults.end()};
 }
 

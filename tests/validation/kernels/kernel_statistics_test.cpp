@@ -24,11 +24,11 @@ TEST(KernelStatistics, RadvsWordsAreMapped) {
 
 // As Mesa 26.1 and 26.2 tell them.
 TEST(KernelStatistics, NvksWordsAreMapped) {
-    const std::vector<Statistic> told = {{"Instruction count", u(1657)},  {"Static cycle count", u(158327)},
-                                         {"Max warps/SM", u(16)},         {"Spills to memory", u(2)},
-                                         {"Fills from memory", u(4)},     {"Spills to reg", u(29)},
-                                         {"Fills from reg", u(10)},       {"Code size", u(26512)},
-                                         {"Number of GPRs", u(104)},      {"SLM size", u(16)}};
+    const std::vector<Statistic> told = {{"Instruction count", u(1657)}, {"Static cycle count", u(158327)},
+                                         {"Max warps/SM", u(16)},        {"Spills to memory", u(2)},
+                                         {"Fills from memory", u(4)},    {"Spills to reg", u(29)},
+                                         {"Fills from reg", u(10)},      {"Code size", u(26512)},
+                                         {"Number of GPRs", u(104)},     {"SLM size", u(16)}};
     const KernelFigures expected{104, {}, 16, 16, {}, 1657, 26512, 31};
     EXPECT_EQ(figures_of(told), expected);
 }
