@@ -20,6 +20,7 @@ bool has_fused_fma(std::uint32_t driver) {
         case VK_DRIVER_ID_AMD_OPEN_SOURCE:
         case VK_DRIVER_ID_AMD_PROPRIETARY:
         case VK_DRIVER_ID_NVIDIA_PROPRIETARY:
+        case VK_DRIVER_ID_MESA_NVK:
         case VK_DRIVER_ID_INTEL_OPEN_SOURCE_MESA: return true;
         default: return false;
     }

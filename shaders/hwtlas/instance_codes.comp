@@ -8,14 +8,16 @@
 layout(local_size_x = 256) in;
 layout(push_constant, scalar) uniform Push { HwCodesArgs args; };
 
-const uint LAST = 0x3fffffffu; // of what cannot be hit
+// The code of what cannot be hit: lavapipe from Mesa 26.1 on takes one instance for another where an inactive one comes
+// before it.
+const uint LAST = 0x3fffffffu;
 
 uint code_of(InstanceRecord record)
 {
-    if (!has_geometry(record)) return LAST;
+    if (!has_geometry(record) || mask_of(record) == 0u) return LAST;
     GeometryBox box = AT(REF(GeometryBox)(record.geometry), 0);
     Rows to_world = to_world_of(record);
-    if (!(box.lo.x <= box.hi.x) || !is_finite_map(to_world)) return LAST;
+    if (!(box.lo.x <= box.hi.x) || !is_usable(to_world, inverse_of(to_world))) return LAST;
     precise vec3 middle = box.lo * 0.5f + box.hi * 0.5f; // halved first: their sum might not be finite
     vec3 center = transform_point(to_world, middle);
     WorldBound bound = AT(args.bound, 0);

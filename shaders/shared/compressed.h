@@ -104,10 +104,11 @@ FUNC uint slot_towards(REF(CompressedRecord) records, ChildSlots slots, uint tar
     DONT_UNROLL for (uint slot = 0u; slot < 8u; slot = slot + 1u)
     {
         uint index = child_index(slots, slot);
-        if (has_child(slots, slot) && index == target) return slot;
         uint child = has_child(slots, slot) ? AT(records, index).a.w : LEAF_BIT;
         uint begin = child & (MOST_RECORDS - 1u);
-        bool is_later = (child & LEAF_BIT) == 0u && begin <= target && begin >= latest;
+        bool is_it = has_child(slots, slot) && index == target; // found: none is later
+        begin = is_it ? NOTHING : begin;
+        bool is_later = is_it || ((child & LEAF_BIT) == 0u && begin <= target && begin >= latest);
         found = is_later ? slot : found;
         latest = is_later ? begin : latest;
     }

@@ -84,7 +84,13 @@ FUNC EnteredChildren children_of_record(CompressedRecord record, SwTree tree, Bo
                                          TraceOptions options)
 {
     ChildKeys keys = enter_compressed(record, ray, search.t_min, search.t_best, options.query);
-    if (target != NOTHING) keys = keys_from(keys, slot_towards(tree.records, child_slots(record, record), target));
+    if (target != NOTHING)
+    {
+        ChildSlots slots;
+        slots.first = first_child_of(record);
+        slots.mask = (1u << children_in(record)) - 1u;
+        keys = keys_from(keys, slot_towards(tree.records, slots, target));
+    }
     sort_keys(keys);
     EnteredChildren children;
     children.first = at_record(first_child_of(record) + (keys.key0 & 3u));

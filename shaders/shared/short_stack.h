@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The stack of a traversal: the last entry in registers, as many below it as shared memory has room for at full
-// occupancy. Where more are pushed the lowest are overwritten, and has_lost says so (Laine, "Restart Trail for
+// occupancy. Where more are pushed the lowest are overwritten, and `bottom` is not 0 (Laine, "Restart Trail for
 // Stackless BVH Traversal", 2010).
 //
 // Where words lie is up to whoever includes this: load_entry(slot) and store_entry(slot, word), slot < stack_size(), a
@@ -12,24 +12,23 @@
 const uint NO_STACK_ENTRY = 0u;
 
 // Below `last`, which may be NO_STACK_ENTRY, entries bottom to top - 1, each in the slot of its number modulo the
-// stack's capacity.
+// stack's capacity. Those below `bottom` are lost.
 struct ShortStack
 {
     uint last;
     uint second; // its other word, where entries have two
     uint top;
     uint bottom;
-    bool has_lost; // entries below `bottom`
 };
 
+// `has_lost`: as if entries had been lost.
 FUNC ShortStack empty_stack(bool has_lost)
 {
     ShortStack stack;
     stack.last = NO_STACK_ENTRY;
     stack.second = 0u;
-    stack.top = 0u;
-    stack.bottom = 0u;
-    stack.has_lost = has_lost;
+    stack.top = has_lost ? 1u : 0u;
+    stack.bottom = stack.top;
     return stack;
 }
 
@@ -46,7 +45,6 @@ FUNC void push_entry(INOUT(ShortStack) stack, uint entry, uint second, bool has_
         stack.top = stack.top + 1u;
         bool is_over = stack.top - stack.bottom > capacity;
         stack.bottom = is_over ? stack.bottom + 1u : stack.bottom;
-        stack.has_lost = stack.has_lost || is_over;
     }
     stack.last = entry;
     if (has_two_words) stack.second = second;

@@ -139,7 +139,7 @@ FUNC bool visit_next(INOUT(Traversal) here, SwTlasHeader scene, bool is_binary, 
     }
     bool waits = here.stack.last != NO_STACK_ENTRY;
     if (waits) take_child(here, is_binary, options);
-    else if (here.stack.has_lost && here.at.edge != ROOT_EDGE)
+    else if (here.stack.bottom != 0u && here.at.edge != ROOT_EDGE)
     {
         restart(here, has_top && here.outside != NOTHING, is_binary, options);
         waits = true;
@@ -154,8 +154,6 @@ FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options)
     bool has_top = (options.features & FEATURE_INSTANCES) != 0u;
     bool binary = is_binary(scene, options);
     Traversal here = begin_traversal(scene, ray, binary, options);
-    BoxRay only_ray;
-    if (!has_top) only_ray = box_ray(here.space);
     bool is_traced = is_traceable(ray) && here.tree.root != NOTHING;
     if (!has_top) is_traced = is_traced && is_visible(scene.instances, 0u, options);
     Search search = begin_search(ray);
@@ -175,11 +173,10 @@ FUNC Hit traverse(SwTlasHeader scene, Ray ray, TraceOptions options)
         {
             COUNT_STEPS(nodes, 1u);
             COUNT_STEPS(boxes, binary ? 2u : children_in(record));
-            BoxRay boxes_ray = only_ray;
-            if (has_top) boxes_ray = box_ray(here.space);
+            BoxRay boxes_ray = box_ray(here.space);
             EnteredChildren children;
             if (binary) children = children_of_node(here.at.item, here.tree, boxes_ray, search, here.target, options);
-            else if (may_be_wide(options) && is_wide)
+            else if (is_surely_wide(options) || (may_be_wide(options) && is_wide))
                 children = children_of_wide(record, second_half, here.tree, boxes_ray, search, here.target);
             else children = children_of_record(record, here.tree, boxes_ray, search, here.target, options);
             descends = visit_children(here, children, options);

@@ -131,6 +131,11 @@ FUNC bool comes_before(TriangleHit hit, uint instance_index, uint primitive_inde
 FUNC bool find_in_leaf(BvhTriangle leaf, InInstance inside, RaySpace space, TraceOptions options, INOUT(Search) search)
 {
     TriangleHit hit;
+    hit.t = 0.0f;
+    hit.t_low = 0.0f;
+    hit.u = 0.0f;
+    hit.v = 0.0f;
+    hit.along = false;
     bool is_first = false;
     if (intersect_leaf(leaf, inside, space, search, options, hit))
     {
