@@ -7,10 +7,10 @@
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "cli/verify_conformance.h"
 #include "cli/qualified_devices.h"
 #include "engine/core/error.h"
 #include "twinray_version.h"
-#include "validation/conformance/suite.h"
 #include "validation/records/recorder.h"
 #include "validation/reference/float_probe.h"
 #include "validation/report/ci_formats.h"
@@ -44,8 +44,7 @@ std::vector<Record> records_here(const QualifyOptions& options) {
                 .takes_times = false,
                 .replays_in = options.folder},
                devices, recorder, state, options.common.quiet);
-    Context of_its_own(watched_context_desc(options.common, most_conformance_seconds));
-    conformance::run(of_its_own, {.seed = options.common.seed}, recorder, options.common.quiet);
+    run_conformance(options.common, {}, false, recorder);
     recorder.rewrite();
     report::print_summary(std::cout, recorder.records());
     return recorder.records();

@@ -10,8 +10,8 @@
 #include "cli/command/values.h"
 #include "cli/commands.h"
 #include "cli/common.h"
+#include "cli/verify_conformance.h"
 #include "cli/compare_reports.h"
-#include "validation/conformance/suite.h"
 #include "validation/report/compare_text.h"
 #include "validation/report/gnuplot.h"
 #include "validation/report/page.h"
@@ -72,12 +72,7 @@ void run_conformance(const ReportOptions& options, Recorder& recorder) {
     if (!(options.accels.empty() || is_asked)) return;
     if (std::none_of(cases.begin(), cases.end(), [&](const auto& row) { return is_chosen(options.only, row.id); }))
         return;
-    Context of_its_own(watched_context_desc(options.common, most_conformance_seconds));
-    conformance::run(of_its_own,
-                     {.is_full = options.suite == "full" && !options.budget,
-                      .seed = options.common.seed,
-                      .is_wanted = [&](const conformance::Case& row) { return is_chosen(options.only, row.id); }},
-                     recorder, options.common.quiet);
+    run_conformance(options.common, options.only, options.suite == "full" && !options.budget, recorder);
 }
 
 void check_only(const ReportOptions& options, std::span<const suite::SuiteCase> cases) {

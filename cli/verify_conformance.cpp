@@ -1,30 +1,115 @@
 // SPDX-License-Identifier: MIT
 #include "cli/verify_conformance.h"
 
+#include <unistd.h>
+
+#include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "cli/case_choice.h"
+#include "cli/qualified_devices.h"
 #include "engine/core/error.h"
 #include "twinray_version.h"
 #include "validation/conformance/output.h"
 
 namespace twinray::cli {
+namespace {
 
-int verify_conformance(const CommonOptions& options, const std::vector<std::string>& only, bool is_full) {
-    std::vector<std::string> ids;
-    for (const conformance::Case& row : conformance::catalogue()) ids.push_back(row.id);
-    check_choice(only, ids, "docs/conformance.md");
+// In the environment of a process that runs cases itself.
+constexpr const char* here_variable = "TWINRAY_CONFORMANCE_HERE";
+
+// A file that is there while this lives.
+class TemporaryFile {
+  public:
+    TemporaryFile() : path_((std::filesystem::temp_directory_path() / "twinray-conformance-XXXXXX").string()) {
+        const int file = mkstemp(path_.data());
+        if (file < 0) fail("'", path_, "' cannot be written: ", std::strerror(errno));
+        close(file);
+    }
+    ~TemporaryFile() { std::remove(path_.c_str()); }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+    const std::string& path() const { return path_; }
+
+  private:
+    std::string path_;
+};
+
+std::vector<std::string> arguments_of(const CommonOptions& options, std::span<const conformance::Case> cases,
+                                      bool is_full, const std::string& json) {
+    std::string ids;
+    for (const conformance::Case& row : cases) ids += (ids.empty() ? "" : ",") + row.id;
+    std::vector<std::string> words = {"verify", "--suite", "conformance", "--only", ids,
+                                      "--json", json,      "--seed",      std::to_string(options.seed)};
+    if (!options.device.empty()) words.insert(words.end(), {"--device", options.device});
+    if (options.pipelines) words.insert(words.end(), {"--pipelines", options.pipelines->string()});
+    if (is_full) words.emplace_back("--full");
+    if (options.quiet) words.emplace_back("--quiet");
+    if (options.validation) words.emplace_back("--validation");
+    return words;
+}
+
+// The chosen ones that no record is of.
+std::vector<conformance::Case> cases_left(const std::vector<std::string>& only, std::span<const Record> records) {
+    std::vector<conformance::Case> left = conformance::catalogue();
+    std::erase_if(left, [&](const conformance::Case& row) {
+        return !is_chosen(only, row.id) ||
+               std::ranges::any_of(records, [&](const Record& record) { return record.case_id == row.id; });
+    });
+    return left;
+}
+
+// What that process does: appends the records to options.json, prints nothing.
+int run_conformance_here(const CommonOptions& options, const std::vector<std::string>& only, bool is_full) {
     Context context(watched_context_desc(options, most_conformance_seconds));
     Recorder recorder({utc_now(), twinray_version, probed_device(context)});
-    std::cout << "conformance, " << (is_full ? "full" : "quick") << ", on " << context.properties().name << ", "
-              << context.properties().driver << '\n';
     conformance::run(context,
                      {.is_full = is_full,
                       .seed = options.seed,
                       .is_wanted = [&](const conformance::Case& row) { return is_chosen(only, row.id); }},
                      recorder, options.quiet,
                      [&](const Record& record) { append_json(options.json, nlohmann::json::parse(to_json(record))); });
+    return 0;
+}
+
+}  // namespace
+
+void run_conformance(const CommonOptions& options, const std::vector<std::string>& only, bool is_full,
+                     Recorder& recorder, const std::function<void(const Record&)>& on_record) {
+    std::vector<Record> all;
+    const auto take = [&](const Record& record) {
+        all.push_back(record);
+        recorder.add(record);
+        if (on_record) on_record(recorder.records().back());
+    };
+    for (std::vector<conformance::Case> left = cases_left(only, all); !left.empty(); left = cases_left(only, all)) {
+        const TemporaryFile file;
+        const int status = run_twinray(arguments_of(options, left, is_full, file.path()), {{here_variable, "1"}});
+        if (status != 0 && status < 128) fail("the cases of conformance could not be run: see above");
+        const std::vector<Record> records = read_json_lines(file.path()).records;
+        for (const Record& record : records) take(record);
+        if (status == 0) return;
+        const std::string how = text("the driver ended the process: ", strsignal(status - 128));
+        for (const conformance::Case& row : left) {
+            const std::vector<Record> ended =
+                conformance::records_of_ended(row, records, {.is_full = is_full, .seed = options.seed}, how);
+            for (const Record& record : ended) take(record);
+            if (!ended.empty()) break;
+        }
+    }
+}
+
+int verify_conformance(const CommonOptions& options, const std::vector<std::string>& only, bool is_full) {
+    if (std::getenv(here_variable)) return run_conformance_here(options, only, is_full);
+    std::vector<std::string> ids;
+    for (const conformance::Case& row : conformance::catalogue()) ids.push_back(row.id);
+    check_choice(only, ids, "docs/conformance.md");
+    Recorder recorder({utc_now(), twinray_version, probed_device(*make_context(options))});
+    std::cout << "conformance, " << (is_full ? "full" : "quick") << ", on " << recorder.run().device.name << ", "
+              << recorder.run().device.driver << std::endl;
+    run_conformance(options, only, is_full, recorder,
+                    [&](const Record& record) { append_json(options.json, nlohmann::json::parse(to_json(record))); });
     conformance::print(std::cout, recorder.records());
     if (conformance::has_fault_of_ours(recorder.records())) return 1;
     return options.strict && conformance::fails_demands(recorder.records()) ? 1 : 0;

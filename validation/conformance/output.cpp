@@ -40,9 +40,9 @@ void print_not_passed(std::ostream& out, const Record& record) {
         out << "a fault of ours, " << (is_control(record) ? record.variant : "") << ": " << record.reason << '\n';
     else
         out << fact(record, "demand") << ' ' << fact(record, "what") << ": demanded: " << record.criterion << '\n';
-    out << "       ";
+    if (!record.counts.empty()) out << "       ";
     for (const auto& [name, count] : record.counts) out << ' ' << name << ' ' << count;
-    out << '\n';
+    if (!record.counts.empty()) out << '\n';
     if (record.fault_of == "driver" && record.example.empty()) out << "        " << record.reason << '\n';
     if (!record.example.empty()) out << "        " << record.example << '\n';
 }

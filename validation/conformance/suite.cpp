@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <deque>
 
 #include "engine/core/error.h"
 #include "engine/core/statistics.h"
@@ -197,9 +198,10 @@ void run(Context& context, const Settings& settings, Recorder& recorder, bool qu
     if (settings.is_wanted) std::erase_if(cases, [&](const Case& row) { return !settings.is_wanted(row); });
     Progress progress("conformance", ways.size() * cases.size() * rays, quiet);
     std::string lost;  // where it was
-    for (const Way way : ways) {
-        Runner runner(context, way, settings, recorder, on_record, rays, progress);
-        for (const Case& row : cases) {
+    std::deque<Runner> runners;
+    for (const Way way : ways) runners.emplace_back(context, way, settings, recorder, on_record, rays, progress);
+    for (const Case& row : cases)
+        for (Runner& runner : runners) {
             if (!lost.empty()) {
                 runner.leave_out(row, lost);
                 continue;
@@ -210,7 +212,26 @@ void run(Context& context, const Settings& settings, Recorder& recorder, bool qu
                 lost = text("the device was lost in ", row.id);
             }
         }
+}
+
+std::vector<Record> records_of_ended(const Case& row, std::span<const Record> finished, const Settings& settings,
+                                     const std::string& how) {
+    std::vector<Record> records;
+    for (const Way way : {Way::query, Way::pipeline}) {
+        const auto is_of_it = [&](const Record& record) {
+            return record.case_id == row.id && record.backend == name_of(way);
+        };
+        if (std::ranges::any_of(finished, is_of_it)) continue;
+        Record record = blank(row, way, settings);
+        record.reason = how;
+        record.was_run = records.empty();
+        if (record.was_run) {
+            record.pass = false;
+            record.fault_of = "driver";
+        }
+        records.push_back(record);
     }
+    return records;
 }
 
 bool fails_demands(std::span<const Record> records) {

@@ -74,13 +74,18 @@ struct Settings {
 };
 
 // Runs all cases and the control of each, by ray query (backend "hw") and by ray tracing pipeline ("hw-pipeline"). A
-// record a case, and one with the variant "control: ..." for its control, which passes where it shows faults. Of
+// record a case, each case by both ways before the next, and one with the variant "control: ..." for its control, which passes where it shows faults. Of
 // records that did not pass, fault_of is the driver's, or ours where a control shows nothing or a case could not be
 // carried out. results has "topic", "demand", "what" and "kind". On a device without one of the ways its cases are
 // recorded as not run. `on_record` follows each. A case in which the device is lost or hangs (see
 // ContextDesc::most_wait_seconds) is the driver's fault, and the cases after it are not run: nothing of the context is.
 void run(Context& context, const Settings& settings, Recorder& recorder, bool quiet,
          const std::function<void(const Record&)>& on_record = {});
+
+// Records of a case that was begun in a process which the driver ended, beside those that it left: a fault of the
+// driver, `how` it ended, and what was not run for it. None where `finished` has all of the case.
+std::vector<Record> records_of_ended(const Case& row, std::span<const Record> finished, const Settings& settings,
+                                     const std::string& how);
 
 // Of records of a run: whether the driver fails what Vulkan demands; whether the suite itself does.
 bool fails_demands(std::span<const Record> records);
