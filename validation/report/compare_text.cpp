@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iomanip>
+#include <set>
 
 #include "engine/core/error.h"
 #include "validation/records/recorder.h"
@@ -22,6 +23,35 @@ std::string_view word_of(Change::Kind kind) {
     return "";
 }
 
+std::string listed(const std::set<std::string>& ids) {
+    return text(ids.size(), ids.empty() ? "" : " (" + joined({ids.begin(), ids.end()}) + ')');
+}
+
+// One for SwTlas, one for each way of the driver.
+void print_rows(std::ostream& out, std::span<const Record> records) {
+    const std::vector<Finding> findings = findings_of(records);
+    const std::vector<Speed> speeds = speeds_of(records);
+    const OwnStructures own = own_structures_of(records);
+    for (const std::string_view backend : {"sw", "hw", "hw-pipeline"}) {
+        std::set<std::string> cases;
+        for (const Record& record : records)
+            if (record.was_run && record.backend == backend && is_users_kernel(record)) cases.insert(record.case_id);
+        if (cases.empty()) continue;
+        out << "| " << records.front().device.name << ", " << records.front().device.driver << " | "
+            << answerer(backend) << " | " << cases.size() << " |";
+        for (const Mistake mistake : all_mistakes) {
+            const auto found = std::ranges::find_if(findings, [&](const Finding& finding) {
+                return finding.backend == backend && finding.mistake == mistake;
+            });
+            out << ' ' << (found == findings.end() ? "" : rate_text(found->faults, found->n)) << " |";
+        }
+        const auto speed = std::ranges::find_if(
+            speeds, [&](const Speed& one) { return one.backend == backend && one.level == "watertight"; });
+        out << ' ' << (backend == "sw" || own.all.empty() ? "" : listed(own.musts) + "; " + listed(own.shoulds))
+            << " | " << (speed == speeds.end() ? "" : with_interval(speed->ratio, speed->ratio_95)) << " |\n";
+    }
+}
+
 }  // namespace
 
 NamedReport read_report(const std::filesystem::path& path) {
@@ -36,11 +66,14 @@ void print_side_by_side(std::ostream& out, std::span<const NamedReport> reports)
         const Record& first = report.records.front();
         out << report.name << ": " << first.device.name << ", " << first.device.driver << "; twinray " << first.git
             << ", " << first.run << "\n  " << verdict_of(report.records).headline << '\n';
-        for (const Finding& finding : findings_of(report.records))
-            if (finding.faults)
-                out << "    " << std::left << std::setw(12) << finding.backend << name_of(finding.mistake) << ": "
-                    << rate_text(finding.faults, finding.n) << '\n';
     }
+    out << "\n| driver | answers | cases |";
+    for (const Mistake mistake : all_mistakes) out << ' ' << name_of(mistake) << " |";
+    out << " own structures: fail what Vulkan demands; advises | time over SwTlas |\n|---|---|---|";
+    for (std::size_t i = 0; i < all_mistakes.size(); ++i) out << "---|";
+    out << "---|---|\n";
+    for (const NamedReport& report : reports) print_rows(out, report.records);
+    out << '\n';
 }
 
 void print_comparison(std::ostream& out, const Comparison& comparison) {

@@ -85,21 +85,6 @@ Sentence sentence_of(const Finding& finding, const Finding* ours) {
     return {is_right ? Sentence::Kind::right : Sentence::Kind::wrong, about, sentence + '.'};
 }
 
-// Cases about the driver's own structures (K), over both ways to trace: those that ran, those that fail.
-struct OwnStructures {
-    std::set<std::string> all, musts, shoulds;
-};
-OwnStructures own_structures_of(std::span<const Record> records) {
-    OwnStructures cases;
-    for (const Record& record : records) {
-        if (!record.was_run || !record.case_id.starts_with('K') || !is_users_kernel(record)) continue;
-        cases.all.insert(record.case_id);
-        if (record.pass.value_or(true)) continue;
-        (is_only_advised(record) ? cases.shoulds : cases.musts).insert(record.case_id);
-    }
-    return cases;
-}
-
 void add_own_structures(Verdict& verdict, const OwnStructures& cases) {
     if (cases.all.empty()) return;
     const auto listed = [](const std::set<std::string>& ids) {
@@ -197,6 +182,17 @@ std::vector<Finding> findings_of(std::span<const Record> records) {
             if (finding.n) findings.push_back(finding);
         }
     return findings;
+}
+
+OwnStructures own_structures_of(std::span<const Record> records) {
+    OwnStructures cases;
+    for (const Record& record : records) {
+        if (!record.was_run || !record.case_id.starts_with('K') || !is_users_kernel(record)) continue;
+        cases.all.insert(record.case_id);
+        if (record.pass.value_or(true)) continue;
+        (is_only_advised(record) ? cases.shoulds : cases.musts).insert(record.case_id);
+    }
+    return cases;
 }
 
 std::vector<Speed> speeds_of(std::span<const Record> records) {

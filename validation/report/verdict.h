@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,6 +48,13 @@ struct Speed {
     double median_p99_ulp = 0, worst_p99_ulp = 0;  // of t, over the cases that measured an error; 0: none did
 };
 std::vector<Speed> speeds_of(std::span<const Record> records);
+
+// Cases about the driver's own structures (K), over both ways to trace: those that ran, those that fail what Vulkan
+// demands, or advises.
+struct OwnStructures {
+    std::set<std::string> all, musts, shoulds;
+};
+OwnStructures own_structures_of(std::span<const Record> records);
 
 struct Sentence {
     enum class Kind : std::uint8_t { right, wrong, measured } kind;
