@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
+#include <random>
 
 #include "tests/support/sw_build.h"
 
@@ -84,6 +85,31 @@ TEST_P(SwRefit, ARotatedInstanceHasABoxAroundWhatItsGeometryHasBecome) {
     accel.update_vertices(handle, ball.positions);
     accel.sync();
     expect_around(download_scene(accel), ball.positions, map, 0.9);
+}
+
+// Each triangle three times, so that equal t are decided by number, in whichever order the trees are.
+TEST_P(SwRefit, ARefittedGeometryHasTheHitsOfAFreshOneToTheLastBit) {
+    Mesh mesh = make_soup(400, 1, 0.3f);
+    const std::vector<uvec3> once = mesh.triangles;
+    for (int copy = 0; copy < 2; ++copy) mesh.triangles.insert(mesh.triangles.end(), once.begin(), once.end());
+    std::mt19937 random(7);
+    std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
+    SwTlas refitted(context(), options());
+    const AccelHandle handle = refitted.push(mesh);
+    refitted.sync();
+    const Mesh other = make_soup(400, 2, 0.3f);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        mesh.positions[i] = 0.9f * mesh.positions[i] + 0.1f * other.positions[i];
+    refitted.update_vertices(handle, mesh.positions);
+    SwTlas fresh(context(), options());
+    fresh.push(mesh);
+    std::vector<Ray> rays;
+    std::uniform_real_distribution<float> draw(-1, 1);
+    const auto point = [&] { return vec3(draw(random), draw(random), draw(random)); };
+    for (int i = 0; i < 10'000; ++i) rays.push_back({2.0f * point(), 0, point(), INFINITY});
+    const std::vector<Hit> hits = refitted.closest_hits(rays);
+    EXPECT_TRUE(same_bytes(hits, fresh.closest_hits(rays)));
+    EXPECT_GT(std::ranges::count(hits, 1u, &Hit::hit), 100);
 }
 
 TEST_P(SwRefit, RotatedBoxesLieInTheirBox) {
