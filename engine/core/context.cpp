@@ -11,7 +11,7 @@ VkDevice Context::device() const { return state_->device(); }
 VkPhysicalDevice Context::physical_device() const { return state_->physical_device(); }
 std::uint32_t Context::queue_family() const { return state_->queue_family(); }
 const DeviceProperties& Context::properties() const { return state_->properties(); }
-std::uint64_t Context::allocated_bytes() const { return state_->allocator().live_bytes(); }
+std::uint64_t Context::allocated_bytes() const { return state_->allocator().live_bytes() - State::absent_bytes; }
 std::uint64_t Context::absent() const { return state_->absent(); }
 void Context::wait_before_next_submission(SyncPoint point, VkPipelineStageFlags stages) {
     state_->wait_before_next_submission(point, stages);

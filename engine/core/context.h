@@ -23,6 +23,8 @@ struct Submission {
 
 struct Context::State {
   public:
+    static constexpr std::uint64_t absent_bytes = 4096;  // of the memory at Context::absent
+
     explicit State(const ContextDesc& desc);
     // Throws Error where check_adoption does.
     explicit State(const AdoptedDevice& adopted);

@@ -16,8 +16,6 @@
 namespace twinray {
 namespace {
 
-constexpr std::uint64_t absent_bytes = 4096;  // as much as kernels may read at Context::absent, at most
-
 VkInstance new_instance(const VulkanFunctions& vk, const std::string& name, bool validation) {
     VkApplicationInfo application{};
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;

@@ -266,7 +266,7 @@ class Context {
     VkPhysicalDevice physical_device() const;    // of the device
     std::uint32_t queue_family() const;          // of the one queue
     const DeviceProperties& properties() const;  // what is enabled, not merely supported
-    std::uint64_t allocated_bytes() const;       // of the buffers and images that are alive
+    std::uint64_t allocated_bytes() const;       // of the buffers and images made with it
     // What kernels get as the address of something that is absent: an odd one, at which there is memory all the same,
     // since some drivers read before they know that they need not. is_absent() of twinray/glsl/common.glsl tells it.
     // Kernel<Args> puts it in place of 0; structs that a host uploads want it in the members that kernels ask for.
