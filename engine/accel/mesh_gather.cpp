@@ -46,7 +46,7 @@ void check_device_mesh(const DeviceMesh& mesh) {
              3 * component);
     check_indices_of(mesh);
     if (mesh.count_on_device.address % 4 != 0)
-        fail("mesh '", mesh.name, "': device address ", mesh.count_on_device.address,
+        fail("mesh '", mesh.name, "': device address ", std::uint64_t{mesh.count_on_device.address},
              " of its count must be a multiple of 4");
     if (mesh.bounds && (mesh.bounds->is_empty() || !is_finite(mesh.bounds->lo) || !is_finite(mesh.bounds->hi)))
         fail("mesh '", mesh.name, "': its bounds must be finite and not empty");

@@ -94,10 +94,11 @@ void AccelBackend::check_desc(const AccelView& view, const TraceDesc& desc) cons
     if (view.revision != revision_)
         fail(name_, ": trace: stale view of revision ", view.revision, "; the accelerator is at ", revision_);
     if (desc.rays.address % 8 || desc.hits.address % 8)
-        fail(name_, ": trace: rays at ", desc.rays.address, " and hits at ", desc.hits.address,
-             " must be aligned to 8 bytes");
+        fail(name_, ": trace: rays at ", std::uint64_t{desc.rays.address}, " and hits at ",
+             std::uint64_t{desc.hits.address}, " must be aligned to 8 bytes");
     if (desc.indirect_count.address % 4)
-        fail(name_, ": trace: indirect count at ", desc.indirect_count.address, " must be aligned to 4 bytes");
+        fail(name_, ": trace: indirect count at ", std::uint64_t{desc.indirect_count.address},
+             " must be aligned to 4 bytes");
     if (desc.count > UINT32_MAX) fail(name_, ": trace: ", desc.count, " rays; at most ", UINT32_MAX, " in one call");
     check_level(*this, "trace", desc.level);
 }

@@ -212,7 +212,7 @@ ReferenceScene ReferenceBackend::synced_scene() const {
     }
     std::vector<ReferenceInstance> instances;
     for (const InstanceRecord& record : records) {
-        const auto geometry = index_of.find(record.geometry);
+        const auto geometry = index_of.find(std::uint64_t{record.geometry});
         if (geometry == index_of.end())
             fail(name(), ": instance ", instances.size(), ": a kernel has written its geometry's address");
         instances.push_back(placed(record, geometry->second));
