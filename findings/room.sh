@@ -3,7 +3,7 @@
 # What the scripts of this folder share. They source it. It makes a room (a minimal Debian in a temp folder, gone at
 # exit), puts pinned packages into it, and makes and runs C programs and compute kernels there.
 #   ROOMS=FOLDER     keeps rooms in FOLDER for the next script, one script at a time (remove FOLDER when done)
-#   MIRROR=ADDRESS   takes packages from there, not from the archive that this machine uses
+#   MIRROR=ADDRESS   takes packages from there, not from the Debian archive that this machine uses; it may be an old one
 # Needs root, debootstrap, an x86-64 machine with AVX2 and 2 GB on the disk.
 set -euo pipefail
 
@@ -73,7 +73,7 @@ fill_room() {
             'Created-By: Packages' |
             awk -F'|' '!uri && $1 == "Debian" && $2 == "main" && $3 == "Debian" { uri = $4 } END { print uri }')
     fi
-    if [[ -z $mirror ]]; then fail "apt has no Debian mirror; run apt-get update"; fi
+    if [[ -z $mirror ]]; then fail "apt has no Debian mirror; run apt-get update or set MIRROR"; fi
     if [[ -n $(ls -A "$room" 2>/dev/null) ]]; then fail "$room is no room of these scripts; remove it"; fi
     if [[ $mirror == https:* ]]; then include=(--include=ca-certificates); fi
     mkdir -p "$room"
@@ -83,6 +83,7 @@ fill_room() {
     apt-config dump | grep -E '^Acquire::(https?::.*|Check-[A-Za-z-]*|Retries) "' \
         >"$room/etc/apt/apt.conf.d/99transport" || true
     echo 'APT::Install-Recommends "false";' >"$room/etc/apt/apt.conf.d/98lean"
+    if [[ -n ${MIRROR-} ]]; then echo 'Acquire::Check-Valid-Until "false";' >>"$room/etc/apt/apt.conf.d/98lean"; fi
     echo "$mirror" >"$room/mirror"
     mkdir "$room/probe"
     if [[ $1 == trixie ]]; then more_of trixie-backports; fi
